@@ -1,0 +1,39 @@
+# Everything comes from Debian 12 by package name (scripts/lib.sh lists them).
+find_package(Threads REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(Ceres REQUIRED)
+find_package(NLopt REQUIRED)
+find_package(SQLite3 REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(VTK 9.1 REQUIRED COMPONENTS
+  CommonCore CommonDataModel FiltersCore FiltersGeometry FiltersGeneral
+  FiltersSources IOXML IOGeometry IOImage RenderingCore RenderingOpenGL2
+  RenderingAnnotation RenderingFreeType InteractionStyle)
+
+# meniscus_find_library(TARGET header library...): an imported target for a
+# package that ships neither a CMake nor a pkg-config file.
+function(meniscus_find_library target header)
+  string(MAKE_C_IDENTIFIER ${target} id)
+  find_path(${id}_INCLUDE_DIR ${header} PATH_SUFFIXES suitesparse REQUIRED)
+  add_library(${target} INTERFACE IMPORTED GLOBAL)
+  target_include_directories(${target} SYSTEM INTERFACE ${${id}_INCLUDE_DIR})
+  foreach(library ${ARGN})
+    find_library(${id}_${library}_LIBRARY ${library} REQUIRED)
+    target_link_libraries(${target} INTERFACE ${${id}_${library}_LIBRARY})
+  endforeach()
+endfunction()
+meniscus_find_library(deps::cholmod cholmod.h cholmod metis openblas)
+meniscus_find_library(deps::tetgen tetgen.h tet)
+meniscus_find_library(deps::udunits udunits2.h udunits2)
+meniscus_find_library(deps::qhull libqhull_r/libqhull_r.h qhull_r)
+meniscus_find_library(deps::toml toml++/toml.h)
+meniscus_find_library(deps::cli11 CLI/CLI.hpp)
+
+if(MENISCUS_BUILD_TESTS)
+  include(GoogleTest)
+  find_package(GTest REQUIRED)
+  find_package(benchmark REQUIRED)
+endif()

@@ -1,0 +1,42 @@
+# Flags that every target shares, as one interface target.
+add_library(meniscus_options INTERFACE)
+add_library(meniscus::options ALIAS meniscus_options)
+target_compile_options(meniscus_options INTERFACE
+  $<BUILD_INTERFACE:-Wall -Wextra -Wshadow -Wnon-virtual-dtor>)
+# -fPIC everywhere: one precompiled header serves libraries and programs.
+target_compile_options(meniscus_options INTERFACE
+  -march=${MENISCUS_MARCH} -fPIC)
+# Debian's Ceres and VTK are built for plain x86-64. Eigen chooses alignment,
+# and with it the allocator, by instruction set; one fixed value keeps Eigen
+# objects exchangeable with those libraries.
+target_compile_definitions(meniscus_options INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
+target_include_directories(meniscus_options INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+
+# meniscus_add_library(NAME SOURCES ... PUBLIC targets ... PRIVATE targets ...)
+# One static library per folder, with the alias meniscus::NAME.
+function(meniscus_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(meniscus_${name} STATIC ${ARG_SOURCES})
+  add_library(meniscus::${name} ALIAS meniscus_${name})
+  target_link_libraries(meniscus_${name}
+    PUBLIC meniscus_options ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  if(NOT name STREQUAL core)
+    target_precompile_headers(meniscus_${name} REUSE_FROM meniscus_core)
+  endif()
+endfunction()
+
+# meniscus_add_test(NAME SOURCES ... LINK targets ... [LABELS ...] [TIMEOUT s])
+# One GoogleTest program, each of its cases a CTest test.
+function(meniscus_add_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name}
+    PRIVATE ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  target_precompile_headers(${name} REUSE_FROM meniscus_core)
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+endfunction()

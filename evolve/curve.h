@@ -1,0 +1,67 @@
+/// Boundary curves: where films are held. Numbers only; the case file's
+/// expressions have been evaluated before.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/types.h"
+
+namespace meniscus {
+
+/// All closed shapes run counter-clockwise seen from the tip of `normal`
+/// (which need not be of unit length, but not zero). Lengths in case units.
+struct Circle {
+  Vec3 center = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();
+  double radius = 1.0;
+};
+
+struct Ellipse {
+  Vec3 center = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();
+  Vec3 axis = Vec3::UnitX();  // direction of radius_1, made normal to `normal`
+  double radius_1 = 1.0;
+  double radius_2 = 1.0;
+};
+
+struct Rectangle {
+  Vec3 center = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();
+  Vec3 axis = Vec3::UnitX();  // direction of `width`
+  double width = 1.0;
+  double height = 1.0;
+  double corner_radius = 0.0;
+};
+
+/// Closed polygon through `points` in order; may be non-planar.
+struct Polygon {
+  Points points;
+};
+
+using CurveShape = std::variant<Circle, Ellipse, Rectangle, Polygon>;
+
+struct Curve {
+  std::string name;
+  CurveShape shape;
+};
+
+/// Throws InvalidInput, naming the curve and the value, for a shape that is no
+/// curve: radius or side not above 0, zero normal, fewer than three points,
+/// two equal neighbours, anything not finite.
+void validate(const Curve& curve);
+
+/// Point at parameter t in [0, 1), by arclength along straight parts and by
+/// angle along arcs; smooth in the shape's numbers at fixed t.
+Vec3 point_at(const CurveShape& shape, double t);
+
+/// Total length [length].
+double length_of(const CurveShape& shape);
+
+/// Increasing parameters in [0, 1) that cut the curve into pieces of about
+/// `edge` [length], corners kept, at least `least` pieces in all.
+std::vector<double> sample_parameters(const CurveShape& shape, double edge,
+                                      int least = 12);
+
+}  // namespace meniscus

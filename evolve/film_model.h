@@ -1,0 +1,110 @@
+/// The frozen film. Start complex, grooming and equilibrium act once, at the
+/// initial design, and fix triangulation and a reference film that the
+/// boundary curves carry. For any later design each free film vertex moves
+/// along its own fixed direction on the carried reference film, so that the
+/// film is a unique smooth function of the design (docs/theory).
+///
+///   x_i(p) = X_i(p) + h_i n_i(p),   X(p) = C r(p)
+///
+/// r: rim points on the curves at fixed curve parameters; C: constant harmonic
+/// weights; n_i: unit vertex normal of X(p); h: minimises tension x area over
+/// the film at the bodies' volumes and pressures.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/monitor.h"
+#include "core/surface_mesh.h"
+#include "evolve/film_system.h"
+
+namespace meniscus {
+
+struct BodyState {
+  std::string name;
+  double volume = 0.0;         // [length^3]
+  double target_volume = 0.0;  // [length^3]; the volume where none is asked
+  double pressure = 0.0;       // inside minus outside [force/length^2]
+};
+
+struct FilmReport {
+  int vertices = 0;
+  int facets = 0;
+  double energy = 0.0;    // sum of tension x area [force length]
+  double area = 0.0;      // of films, caps not counted [length^2]
+  double residual = 0.0;  // max |dE/dh_i - sum p dV/dh_i| over free vertices
+  double residual_bound = 0.0;  // 1e-9 x tension x mean edge [force]
+  double min_eigenvalue = 0.0;  // of the constrained Hessian in the metric of
+                                // lumped vertex area [force/length^3]
+  int index = 0;                // its number of negative eigenvalues
+  int iterations = 0;
+  double smallest_neck = 0.0;  // smallest clear width across a body [length]
+  Vec3 neck_position = Vec3::Zero();
+  std::string verdict;  // "stable", "unstable: ...", "pinching: ..."
+  std::vector<BodyState> bodies;
+  double seconds = 0.0;
+};
+
+/// The film at one design: points of every vertex of the model's fine mesh, or
+/// why there is none. `heights` are h, one per free vertex.
+struct FilmState {
+  Points points;
+  VectorX heights;
+  FilmReport report;
+  std::optional<Failure> failure;
+};
+
+struct FilmModelOptions {
+  double edge = 0.0;    // target edge of the meshed film [length], > 0
+  int refinements = 1;  // nested 1:4 refinements up to the film's own mesh
+  Monitor* monitor = nullptr;
+};
+
+struct SettleOptions {
+  double residual_factor = 1e-9;    // stop: residual <= factor x tension x edge
+  double volume_tolerance = 1e-10;  // relative
+  int max_iterations = 60;
+  Monitor* monitor = nullptr;
+};
+
+class FilmModel {
+ public:
+  /// Freezes a model at `initial`. Throws InvalidInput for a system that
+  /// cannot be built (open body, unknown curve, curve off the hull). A film
+  /// that cannot be found or is unstable is reported by reference().failure,
+  /// and the model must then not be used further.
+  static FilmModel freeze(const FilmSystem& initial,
+                          const FilmModelOptions& options);
+
+  /// The settled film at the initial design.
+  const FilmState& reference() const;
+
+  /// Equilibrium for another design of the same system; a pure function of
+  /// the model and `system`. A failure is in the state, not thrown.
+  FilmState settle(const FilmSystem& system,
+                   const SettleOptions& options = {}) const;
+
+  /// The closed surface for meshing, from any state's points: corners at the
+  /// meshed resolution, mid-sides from the finer film (on straight edges when
+  /// refinements = 0). Labels are the names of films and caps. Linear in
+  /// `points` with constant weights.
+  QuadraticSurface surface(const Points& points) const;
+
+  /// All facets at the film's own resolution (caps included), for files and
+  /// pictures.
+  SurfaceMesh fine_mesh(const Points& points) const;
+
+  FilmModel(FilmModel&&) noexcept;
+  FilmModel& operator=(FilmModel&&) noexcept;
+  ~FilmModel();
+
+ private:
+  struct Impl;
+  explicit FilmModel(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace meniscus

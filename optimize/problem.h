@@ -1,0 +1,70 @@
+/// What an optimizer needs of a design: variables with bounds and a function
+/// that answers with numbers or says why it cannot.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/monitor.h"
+#include "core/types.h"
+
+namespace meniscus {
+
+struct Variable {
+  std::string name;
+  double initial = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;  // lower < upper; initial within
+};
+
+/// Residuals r(x) of a least-squares match, each meant to become 0, scaled so
+/// that |r| is the relative mismatch that the user's tolerance bounds.
+/// `gradient`: d r_i / d x_j, rows by residual, when the function can give it.
+struct ResidualAnswer {
+  VectorX residuals;
+  VectorX mismatch;  // relative mismatch per target, compared to tolerance
+  std::optional<Eigen::MatrixXd> jacobian;
+  std::optional<Failure> failure;  // then the rest is empty
+};
+using ResidualFunction = std::function<ResidualAnswer(const VectorX& x)>;
+
+enum class Termination {
+  Converged,    // every mismatch within tolerance
+  Stalled,      // the method found a minimum that misses the tolerance
+  AtBound,      // as Stalled, with a variable at its bound
+  NoFeasible,   // no point could be evaluated
+  LimitReached  // evaluations or time
+};
+const char* name_of(Termination termination);
+
+struct MatchOptions {
+  std::string method = "ceres";  // or NLopt's: "bobyqa", "cobyla", "sbplx", ...
+  double tolerance = 1e-3;       // largest mismatch accepted
+  int max_evaluations = 100;     // finite-difference ones included
+  double time_limit = 0.0;       // [s], 0: none
+  double difference_step = 1e-3;  // x (upper - lower), for finite differences
+  Monitor* monitor = nullptr;
+};
+
+struct MatchReport {
+  Termination termination = Termination::Stalled;
+  std::string message;    // why it stopped, in words, with figures
+  VectorX best;           // the incumbent, kept by us, not by the library
+  ResidualAnswer answer;  // at `best`
+  double cost = 0.0;      // sum of squares / 2 at `best`
+  int evaluations = 0;    // calls of the function, finite differences included
+  int failed_evaluations = 0;
+  int iterations = 0;
+  Eigen::MatrixXd jacobian;  // last known at or near `best`, may be empty
+};
+
+/// Dispatches on options.method; throws InvalidInput for an unknown one (the
+/// message lists those there are) and for bad bounds or start.
+MatchReport match(const std::vector<Variable>& variables,
+                  const ResidualFunction& function,
+                  const MatchOptions& options);
+
+}  // namespace meniscus
