@@ -143,8 +143,8 @@ void FilmEnergy::build_pattern() {
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (liquid_[f] != 0) {
       for_pairs(f, [&](int a, int b) {
-        const int* at = std::lower_bound(inner + outer[b],
-                                         inner + outer[b + 1], a);
+        const int* at =
+            std::lower_bound(inner + outer[b], inner + outer[b + 1], a);
         slots_.push_back(static_cast<int>(at - inner));
       });
     }
@@ -295,8 +295,7 @@ VectorX FilmEnergy::lumped_area(const Points& points) const {
 }
 
 double FilmEnergy::smallest_cosine(const Points& points,
-                                   const Points& directions,
-                                   int* facet) const {
+                                   const Points& directions, int* facet) const {
   double least = 1.0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (liquid_[f] == 0 || corner_start_[f] == corner_start_[f + 1]) {

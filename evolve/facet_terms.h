@@ -39,7 +39,9 @@ struct FacetFrame {
     return corner[(i + 1) % 3].cross(corner[(i + 2) % 3]) / 6.0;
   }
 
-  double volume() const { return corner[0].dot(corner[1].cross(corner[2])) / 6.0; }
+  double volume() const {
+    return corner[0].dot(corner[1].cross(corner[2])) / 6.0;
+  }
 
   /// d2A along v at corner i and w at corner j.
   double area_hessian(int i, const Vec3& v, int j, const Vec3& w) const {
