@@ -1,0 +1,20 @@
+/// Where other programs are: those of the system, and this program's own
+/// helpers (core/child_process.h runs them).
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace meniscus {
+
+/// An executable file of this name in PATH, or `name` itself if it has a '/'.
+std::optional<std::filesystem::path> find_program(const std::string& name);
+
+/// A helper of this program: the path in the environment variable `variable`
+/// if that is set, else beside the running program, else in
+/// ../libexec/meniscus from there. Nothing when it is not executable there.
+std::optional<std::filesystem::path> find_helper(const std::string& name,
+                                                 const std::string& variable);
+
+}  // namespace meniscus
