@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <Eigen/Dense>
 
@@ -9,7 +10,9 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kLanczosSteps = 40;
+constexpr int kLanczosSteps = 60;
+constexpr int kLanczosCheck = 5;           // steps between looks
+constexpr double kLanczosAccuracy = 1e-6;  // of the eigenvalue, relative
 constexpr double kPivotShift = 1e-12;  // x mean diagonal, after a zero pivot
 
 /// A fixed vector with parts in every mode, whatever the film's symmetry.
@@ -128,9 +131,22 @@ LowestMode ConstrainedHessian::lowest_mode(const VectorX& metric) const {
   const auto apply = [&](const VectorX& v) -> VectorX {
     return root.cwiseProduct(constrained_inverse(root.cwiseProduct(v)));
   };
+  // Ritz values ascend: with `index_` negative eigenvalues the lowest lambda
+  // belongs to the index_-th of them, else to the largest value.
+  const auto pick = [&](const Eigen::MatrixXd& upper) {
+    const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
+    const Eigen::Index size = upper.cols();
+    const Eigen::Index at =
+        index_ > 0 ? std::min<Eigen::Index>(index_, size) - 1 : size - 1;
+    return std::pair<double, VectorX>(eigen.eigenvalues()[at],
+                                      eigen.eigenvectors().col(at));
+  };
   VectorX v = apply(start_vector(n));
   int built = 0;
   double scale = 0.0;
+  double theta = 0.0;
+  VectorX ritz;
   for (; built < steps; ++built) {
     for (int pass = 0; pass < 2 && built > 0; ++pass) {
       v -= basis.leftCols(built) * (basis.leftCols(built).transpose() * v);
@@ -144,17 +160,21 @@ LowestMode ConstrainedHessian::lowest_mode(const VectorX& metric) const {
     scale = std::max(scale, v.norm());
     small.col(built).head(built + 1) =
         basis.leftCols(built + 1).transpose() * v;
+    if ((built + 1) % kLanczosCheck == 0) {
+      const double before = theta;
+      std::tie(theta, ritz) = pick(small.topLeftCorner(built + 1, built + 1));
+      if (std::abs(theta - before) <= kLanczosAccuracy * std::abs(theta)) {
+        ++built;
+        break;
+      }
+    }
   }
-  small.conservativeResize(built, built);
-  const Eigen::MatrixXd full = small.selfadjointView<Eigen::Upper>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
-  // Ritz values ascend: with `index_` negative eigenvalues the lowest lambda
-  // belongs to the index_-th of them, else to the largest value.
-  const int pick = index_ > 0 ? std::min(index_, built) - 1 : built - 1;
-  const double theta = eigen.eigenvalues()[pick];
+  if (built == 0) {
+    return result;
+  }
+  std::tie(theta, ritz) = pick(small.topLeftCorner(built, built));
   result.eigenvalue = theta != 0.0 ? 1.0 / theta : 0.0;
-  result.mode = (basis.leftCols(built) * eigen.eigenvectors().col(pick))
-                    .cwiseQuotient(root);
+  result.mode = (basis.leftCols(built) * ritz).cwiseQuotient(root);
   Eigen::Index at = 0;
   const double largest = result.mode.cwiseAbs().maxCoeff(&at);
   if (largest > 0.0) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "evolve/curvature_flow.h"
 #include "tests/evolve/film_shapes.h"
 
 namespace meniscus {
@@ -50,6 +51,19 @@ TEST(Equilibrium, EllipsoidBecomesASphereAtSecondOrder) {
   const double coarse = sphere_error(3);
   const double fine = sphere_error(4);
   EXPECT_NEAR(std::log2(std::abs(coarse / fine)), 2.0, 0.2);
+}
+
+// From twice the volume and from half of it, edges and corners included.
+TEST(Equilibrium, CubeFlowsToASphere) {
+  for (const double volume : {0.5, 1.0, 2.0}) {
+    FilmComplex complex = shapes::drop(shapes::box(Vec3(1, 1, 1), 8), volume);
+    flow_to_rest(complex, {});
+    const FilmState state = settle_normals(complex);
+    EXPECT_FALSE(state.failure) << state.report.verdict;
+    const double exact =
+        std::cbrt(36.0 * std::numbers::pi * volume * volume);
+    EXPECT_NEAR(state.report.area, exact, 0.02 * exact);
+  }
 }
 
 FilmState cylinder(double length, bool by_volume) {
