@@ -29,9 +29,9 @@ Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind) {
     weight.push_back(reference.surfaces[label].liquid == film ? 1.0 : 0.0);
   }
   const auto count = static_cast<int>(extension.vertices.size());
-  LaplaceSystem laplace = cotan_laplacian(
-      reference.mesh, weight, unknown_of, count,
-      film ? CotanWeights::Clamped : CotanWeights::Exact);
+  LaplaceSystem laplace =
+      cotan_laplacian(reference.mesh, weight, unknown_of, count,
+                      film ? CotanWeights::Clamped : CotanWeights::Exact);
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {
     sum += laplace.inner.coeff(i, i);
@@ -50,8 +50,7 @@ Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind) {
     throw MeshError(
         "the reference film cannot be carried: its Laplacian is singular at "
         "vertex " +
-        std::to_string(
-            extension.vertices[extension.factor->failed_column()]));
+        std::to_string(extension.vertices[extension.factor->failed_column()]));
   }
   return extension;
 }

@@ -11,8 +11,8 @@ namespace meniscus {
 
 namespace {
 
-constexpr double kVolumeStep = 0.15;       // most relative change a step
-constexpr double kVolumeReached = 1e-6;    // relative
+constexpr double kVolumeStep = 0.15;     // most relative change a step
+constexpr double kVolumeReached = 1e-6;  // relative
 constexpr int kPressureIterations = 12;
 
 class Flow {
@@ -80,9 +80,8 @@ class Flow {
     Points& x = complex_.mesh.points;
     const int n = energy_.unknowns();
     const auto held = static_cast<int>(held_.size());
-    LaplaceSystem laplace =
-        cotan_laplacian(complex_.mesh, facet_weight_, unknown_of_, n,
-                        CotanWeights::Exact);
+    LaplaceSystem laplace = cotan_laplacian(
+        complex_.mesh, facet_weight_, unknown_of_, n, CotanWeights::Exact);
     const VectorX mass = energy_.lumped_area(x);
     for (int i = 0; i < n; ++i) {
       laplace.inner.coeffRef(i, i) += mass[i] / tau_;
@@ -127,8 +126,7 @@ class Flow {
     for (Eigen::Index k = 0; k < held; ++k) {
       const double target = *targets_.bodies[held_[k]].volume;
       const double most = kVolumeStep * std::abs(target);
-      goal[k] = now[held_[k]] +
-                std::clamp(target - now[held_[k]], -most, most);
+      goal[k] = now[held_[k]] + std::clamp(target - now[held_[k]], -most, most);
     }
     VectorX pressure = VectorX::Zero(held);
     Points x = moved(dx, pressure);

@@ -9,7 +9,7 @@ namespace meniscus {
 
 struct FlowOptions {
   int max_steps = 30;
-  double smoothing = 3.0;      // first step smooths over this many edges
+  double smoothing = 3.0;       // first step smooths over this many edges
   double energy_change = 1e-4;  // stop: relative change of energy per step
   Monitor* monitor = nullptr;
 };

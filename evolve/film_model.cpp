@@ -44,10 +44,10 @@ FilmTargets blend(const FilmTargets& from, const FilmTargets& to, double t) {
 }  // namespace
 
 struct FilmModel::Impl {
-  FilmComplex complex;         // finest level, at the reference film
-  std::vector<Edge> parents;   // of the first refinement's new vertices
-  int corner_count = 0;        // vertices of the meshed level
-  SurfaceMesh meshed;          // facets and labels of the meshed level
+  FilmComplex complex;        // finest level, at the reference film
+  std::vector<Edge> parents;  // of the first refinement's new vertices
+  int corner_count = 0;       // vertices of the meshed level
+  SurfaceMesh meshed;         // facets and labels of the meshed level
   std::optional<FilmEnergy> energy;
   std::optional<Carry> carry;
   FilmTargets targets;
@@ -70,9 +70,8 @@ FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
       continue;
     }
     const auto film = std::find_if(
-        system.films.begin(), system.films.end(), [&](const FilmSpec& f) {
-          return f.name == complex.surfaces[s].name;
-        });
+        system.films.begin(), system.films.end(),
+        [&](const FilmSpec& f) { return f.name == complex.surfaces[s].name; });
     if (film == system.films.end()) {
       throw InvalidInput(
           fmt::format("the design has no film '{}', which its model has",
@@ -81,14 +80,14 @@ FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
     result.tension[s] = film->tension;
   }
   for (ComplexBody& body : result.bodies) {
-    const auto spec = std::find_if(
-        system.bodies.begin(), system.bodies.end(),
-        [&](const BodySpec& b) { return b.name == body.name; });
+    const auto spec =
+        std::find_if(system.bodies.begin(), system.bodies.end(),
+                     [&](const BodySpec& b) { return b.name == body.name; });
     if (spec == system.bodies.end() ||
         spec->volume.has_value() != body.volume.has_value()) {
-      throw InvalidInput(fmt::format(
-          "the design must give body '{}' a {}, as its model does", body.name,
-          body.volume ? "volume" : "pressure"));
+      throw InvalidInput(
+          fmt::format("the design must give body '{}' a {}, as its model does",
+                      body.name, body.volume ? "volume" : "pressure"));
     }
     body.volume = spec->volume;
     body.pressure = spec->pressure;
@@ -124,9 +123,8 @@ void FilmModel::Impl::list_mid_sides() {
   }
   for (const Edge& e : edges) {
     const auto at = fine.find(e);
-    const bool curved =
-        at != fine.end() &&
-        complex.vertices[at->second].kind != VertexKind::InCap;
+    const bool curved = at != fine.end() &&
+                        complex.vertices[at->second].kind != VertexKind::InCap;
     mid_vertex.push_back(curved ? at->second : -1);
   }
 }
@@ -163,9 +161,9 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
         "the film's edge length must be above 0, found {}", options.edge));
   }
   if (options.refinements < 0 || options.refinements > 6) {
-    throw InvalidInput(fmt::format(
-        "the film's refinements must be 0 to 6, found {}",
-        options.refinements));
+    throw InvalidInput(
+        fmt::format("the film's refinements must be 0 to 6, found {}",
+                    options.refinements));
   }
   const Timer timer;
   auto impl = std::make_unique<Impl>();
@@ -184,9 +182,9 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
     }
     if (!impl->reference.failure) {
       const FilmEnergy energy(impl->complex);
-      impl->reference = settle_in_normals(
-          energy, impl->complex, targets_of(impl->complex),
-          impl->complex.mesh.points, settle);
+      impl->reference =
+          settle_in_normals(energy, impl->complex, targets_of(impl->complex),
+                            impl->complex.mesh.points, settle);
       impl->complex.mesh.points = impl->reference.points;
     }
   }
@@ -213,8 +211,7 @@ FilmState FilmModel::settle(const FilmSystem& system,
                             const SettleOptions& options) const {
   const Timer timer;
   const FilmTargets goal = impl_->targets_of_system(system);
-  const Points moves =
-      impl_->carry->rim_moves(impl_->curves_of_system(system));
+  const Points moves = impl_->carry->rim_moves(impl_->curves_of_system(system));
   FilmState state;
   int iterations = 0;
   for (const int parts : kParts) {

@@ -13,7 +13,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kFlowSteps = 8;    // between remeshings
+constexpr int kFlowSteps = 8;     // between remeshings
 constexpr int kPolishRounds = 2;  // of averaging and Newton at the end
 
 bool pinches(const FilmComplex& complex, double edge) {
@@ -83,9 +83,8 @@ FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options) {
       }
       remesh_films(complex, {.edge = *edge});
     }
-    const std::string reason =
-        bring_near(complex, edge, options.max_rounds, steps,
-                   options.settle.monitor);
+    const std::string reason = bring_near(complex, edge, options.max_rounds,
+                                          steps, options.settle.monitor);
     if (!reason.empty()) {
       return given_up(complex, reason, steps);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -39,7 +40,10 @@ class FacetTree {
     if (nodes_.empty()) {
       return best;
     }
-    const Vec3 inverse = direction.cwiseInverse();
+    // No infinity, so that a line in a box's own plane gives 0 and not NaN.
+    const Vec3 inverse = direction.unaryExpr([](double d) {
+      return 1.0 / (std::abs(d) > 1e-200 ? d : std::copysign(1e-200, d));
+    });
     std::array<int, 64> stack{};
     int top = 0;
     stack[top++] = 0;
@@ -57,8 +61,10 @@ class FacetTree {
           }
         }
       } else {
-        stack[top++] = node.left;
-        stack[top++] = node.right;
+        // The near half last, so that it comes off the stack first.
+        const bool forward = direction[node.axis] > 0.0;
+        stack[top++] = forward ? node.right : node.left;
+        stack[top++] = forward ? node.left : node.right;
       }
     }
     return best;
@@ -72,21 +78,16 @@ class FacetTree {
     int last = 0;
     int left = -1;
     int right = -1;
+    int axis = 0;
 
     bool box_hit(const Vec3& origin, const Vec3& inverse, double limit) const {
       double enter = 0.0;
       double leave = limit;
       for (int k = 0; k < 3; ++k) {
-        double a = (low[k] - origin[k]) * inverse[k];
-        double b = (high[k] - origin[k]) * inverse[k];
-        if (std::isnan(a) || std::isnan(b)) {
-          continue;  // the line runs in the box's own plane
-        }
-        if (a > b) {
-          std::swap(a, b);
-        }
-        enter = std::max(enter, a);
-        leave = std::min(leave, b);
+        const double a = (low[k] - origin[k]) * inverse[k];
+        const double b = (high[k] - origin[k]) * inverse[k];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
       }
       return enter <= leave * (1.0 + 1e-12);
     }
@@ -114,6 +115,7 @@ class FacetTree {
                          const double y = centers_[b][axis];
                          return x < y || (x == y && a < b);
                        });
+      node.axis = static_cast<int>(axis);
       node.left = build(first, middle);
       node.right = build(middle, last);
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "evolve/curvature_flow.h"
@@ -34,6 +35,25 @@ TEST(Equilibrium, CatenoidAtSecondOrder) {
   EXPECT_NEAR(std::log2(std::abs(coarse / fine)), 2.0, 0.2);
 }
 
+FilmState catenoid_from_flow(double spacing) {
+  FilmComplex complex =
+      shapes::tube(1.0, spacing, 48, 14, [](double) { return 1.0; });
+  flow_to_rest(complex, {});
+  return settle_normals(complex);
+}
+
+// The limit is 1.32548 (reference.md).
+TEST(Equilibrium, CatenoidExistsUpToItsLimit) {
+  const FilmState inside = catenoid_from_flow(1.31);
+  EXPECT_FALSE(inside.failure) << inside.report.verdict;
+  const FilmState beyond = catenoid_from_flow(1.34);
+  ASSERT_TRUE(beyond.failure);
+  EXPECT_THAT(beyond.report.verdict,
+              testing::AnyOf(testing::HasSubstr("no equilibrium"),
+                             testing::HasSubstr("pinching")));
+  EXPECT_NEAR(beyond.report.neck_position.norm(), 0.0, 0.1);
+}
+
 double sphere_error(int levels) {
   SurfaceMesh mesh = shapes::sphere(1.0, levels);
   for (Vec3& p : mesh.points) {
@@ -60,8 +80,7 @@ TEST(Equilibrium, CubeFlowsToASphere) {
     flow_to_rest(complex, {});
     const FilmState state = settle_normals(complex);
     EXPECT_FALSE(state.failure) << state.report.verdict;
-    const double exact =
-        std::cbrt(36.0 * std::numbers::pi * volume * volume);
+    const double exact = std::cbrt(36.0 * std::numbers::pi * volume * volume);
     EXPECT_NEAR(state.report.area, exact, 0.02 * exact);
   }
 }
