@@ -4,11 +4,12 @@
 /// along its own fixed direction on the carried reference film, so that the
 /// film is a unique smooth function of the design (docs/theory).
 ///
-///   x_i(p) = X_i(p) + h_i n_i(p),   X(p) = C r(p)
+///   x_i(p) = X_i(p) + h_i n_i(p),   X(p) = X(p0) + C (r(p) - r(p0))
 ///
 /// r: rim points on the curves at fixed curve parameters; C: constant harmonic
-/// weights; n_i: unit vertex normal of X(p); h: minimises tension x area over
-/// the film at the bodies' volumes and pressures.
+/// weights, rows summing to one (evolve/carry.h); n_i: unit vertex normal of
+/// X(p); h: minimises tension x area over the film at the bodies' volumes and
+/// pressures.
 #pragma once
 
 #include <memory>

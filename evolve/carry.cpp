@@ -1,0 +1,109 @@
+#include "evolve/carry.h"
+
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+// Holds vertices that no rim reaches; too small to be felt by any other.
+constexpr double kHold = 1e-12;  // x mean weight
+
+}  // namespace
+
+Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind) {
+  Extension extension;
+  std::vector<int> unknown_of(reference.vertices.size(), -1);
+  for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
+    if (reference.vertices[v].kind == kind) {
+      unknown_of[v] = static_cast<int>(extension.vertices.size());
+      extension.vertices.push_back(static_cast<int>(v));
+    }
+  }
+  if (extension.vertices.empty()) {
+    return extension;
+  }
+  const bool film = kind == VertexKind::Free;
+  std::vector<double> weight;
+  for (const int label : reference.mesh.facet_label) {
+    weight.push_back(reference.surfaces[label].liquid == film ? 1.0 : 0.0);
+  }
+  const auto count = static_cast<int>(extension.vertices.size());
+  LaplaceSystem laplace =
+      cotan_laplacian(reference.mesh, weight, unknown_of, count,
+                      film ? CotanWeights::Clamped : CotanWeights::Exact);
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) {
+    sum += laplace.inner.coeff(i, i);
+  }
+  const bool held = laplace.outer.nonZeros() > 0;
+  for (int i = 0; i < count; ++i) {
+    if (!held) {
+      laplace.inner.coeffRef(i, i) += sum / count;
+    } else if (film) {
+      laplace.inner.coeffRef(i, i) += kHold * sum / count;
+    }
+  }
+  extension.outer = std::move(laplace.outer);
+  extension.factor.emplace(laplace.inner, FactorKind::Cholesky);
+  if (!extension.factor->factorize(laplace.inner)) {
+    throw MeshError(
+        "the reference film cannot be carried: its Laplacian is singular at "
+        "vertex " +
+        std::to_string(extension.vertices[extension.factor->failed_column()]));
+  }
+  return extension;
+}
+
+Carry::Carry(const FilmComplex& reference)
+    : reference_(reference.mesh.points),
+      kinds_(reference.vertices),
+      films_(extend(reference, VertexKind::Free)),
+      caps_(extend(reference, VertexKind::InCap)) {}
+
+Points Carry::rim_moves(const std::vector<Curve>& curves) const {
+  Points moves(reference_.size(), Vec3::Zero());
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    if (kinds_[v].kind == VertexKind::OnCurve) {
+      moves[v] =
+          point_at(curves[kinds_[v].curve].shape, kinds_[v].t) - reference_[v];
+    }
+  }
+  return moves;
+}
+
+void Carry::apply(const Extension& extension, const Points& moves,
+                  Points& result) {
+  if (extension.vertices.empty()) {
+    return;
+  }
+  const Eigen::Map<const Eigen::Matrix3Xd> all(
+      moves.front().data(), 3, static_cast<Eigen::Index>(moves.size()));
+  const Eigen::MatrixXd right = extension.outer * all.transpose();
+  if (right.isZero(0.0)) {
+    return;
+  }
+  const Eigen::MatrixXd found = extension.factor->solve(right);
+  for (std::size_t i = 0; i < extension.vertices.size(); ++i) {
+    result[extension.vertices[i]] +=
+        found.row(static_cast<Eigen::Index>(i)).transpose();
+  }
+}
+
+Points Carry::at(const Points& rim_moves, double fraction) const {
+  Points moves = rim_moves;
+  for (Vec3& move : moves) {
+    move *= fraction;
+  }
+  Points result = reference_;
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    if (kinds_[v].kind == VertexKind::OnCurve) {
+      result[v] += moves[v];
+    }
+  }
+  apply(films_, moves, result);
+  apply(caps_, moves, result);
+  return result;
+}
+
+}  // namespace meniscus

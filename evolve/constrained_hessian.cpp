@@ -1,0 +1,186 @@
+#include "evolve/constrained_hessian.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include <Eigen/Dense>
+
+namespace meniscus {
+
+namespace {
+
+constexpr int kLanczosSteps = 60;
+constexpr int kLanczosCheck = 5;           // steps between looks
+constexpr double kLanczosAccuracy = 1e-6;  // of the eigenvalue, relative
+constexpr double kPivotShift = 1e-12;  // x mean diagonal, after a zero pivot
+
+/// A fixed vector with parts in every mode, whatever the film's symmetry.
+VectorX start_vector(Eigen::Index n) {
+  VectorX v(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double phase = 0.6180339887498949 * static_cast<double>(i + 1);
+    v[i] = 0.25 + (phase - std::floor(phase));
+  }
+  return v;
+}
+
+}  // namespace
+
+ConstrainedHessian::ConstrainedHessian(const SparseMatrix& pattern,
+                                       const std::vector<int>& order)
+    : factor_(pattern, FactorKind::Indefinite, order) {}
+
+bool ConstrainedHessian::factorize(const SparseMatrix& hessian,
+                                   const VectorX& metric, double shift,
+                                   const Eigen::MatrixXd& constraints) {
+  SparseMatrix matrix = hessian;
+  double diagonal = 0.0;
+  const auto add = [&](const VectorX& d) {
+    for (int i = 0; i < matrix.cols(); ++i) {
+      matrix.valuePtr()[matrix.outerIndexPtr()[i]] += d[i];
+    }
+  };
+  for (int i = 0; i < matrix.cols(); ++i) {
+    diagonal += std::abs(matrix.valuePtr()[matrix.outerIndexPtr()[i]]);
+  }
+  if (!std::isfinite(matrix.coeffs().sum())) {
+    return false;
+  }
+  if (shift > 0.0) {
+    add(shift * metric);
+  }
+  const auto n = static_cast<double>(std::max<Eigen::Index>(1, matrix.cols()));
+  for (int attempt = 0; !factor_.factorize(matrix); ++attempt) {
+    if (attempt == 3) {
+      return false;
+    }
+    add(VectorX::Constant(matrix.cols(), kPivotShift * diagonal / n));
+  }
+  constraints_ = constraints;
+  const auto m = static_cast<int>(constraints.cols());
+  index_ = factor_.negative_pivots();
+  if (m == 0) {
+    return true;
+  }
+  inverse_constraints_ = factor_.solve(constraints_);
+  Eigen::MatrixXd schur = constraints_.transpose() * inverse_constraints_;
+  schur = 0.5 * (schur + schur.transpose()).eval();
+  // Columns of different size (volume gradients, translations): scale first.
+  const VectorX scale = constraints_.colwise().norm().cwiseMax(1e-300);
+  const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * schur *
+                                 scale.cwiseInverse().asDiagonal();
+  if (!scaled.allFinite()) {
+    return false;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  VectorX inverse = eigen.eigenvalues();
+  const double largest = inverse.cwiseAbs().maxCoeff();
+  int positive = 0;
+  for (double& value : inverse) {
+    positive += value > 0.0 ? 1 : 0;
+    value = std::abs(value) > 1e-14 * largest ? 1.0 / value : 0.0;
+  }
+  schur_inverse_ = scale.cwiseInverse().asDiagonal() *
+                   (eigen.eigenvectors() * inverse.asDiagonal() *
+                    eigen.eigenvectors().transpose()) *
+                   scale.cwiseInverse().asDiagonal();
+  index_ += positive - m;
+  return true;
+}
+
+ConstrainedHessian::Step ConstrainedHessian::solve(
+    const VectorX& residual, const VectorX& missing) const {
+  Step step;
+  const VectorX plain = factor_.solve(residual);
+  step.dh = -plain;
+  step.dp.resize(constraints_.cols());
+  if (constraints_.cols() > 0) {
+    step.dp = schur_inverse_ * (missing + constraints_.transpose() * plain);
+    step.dh += inverse_constraints_ * step.dp;
+    // One correction keeps the constraint to rounding.
+    const VectorX left = missing - constraints_.transpose() * step.dh;
+    const VectorX more = schur_inverse_ * left;
+    step.dp += more;
+    step.dh += inverse_constraints_ * more;
+  }
+  return step;
+}
+
+VectorX ConstrainedHessian::constrained_inverse(const VectorX& right) const {
+  VectorX result = factor_.solve(right);
+  if (constraints_.cols() > 0) {
+    result -= inverse_constraints_ *
+              (schur_inverse_ * (constraints_.transpose() * result));
+  }
+  return result;
+}
+
+LowestMode ConstrainedHessian::lowest_mode(const VectorX& metric) const {
+  // Symmetric form: with D = sqrt(metric), D P D has eigenvalues 1 / lambda,
+  // where P is the inverse on the constraint space.
+  const Eigen::Index n = metric.size();
+  LowestMode result;
+  if (n == 0) {
+    return result;
+  }
+  const VectorX root = metric.cwiseMax(1e-300).cwiseSqrt();
+  const int steps = static_cast<int>(std::min<Eigen::Index>(kLanczosSteps, n));
+  Eigen::MatrixXd basis(n, steps);
+  Eigen::MatrixXd small = Eigen::MatrixXd::Zero(steps, steps);
+  const auto apply = [&](const VectorX& v) -> VectorX {
+    return root.cwiseProduct(constrained_inverse(root.cwiseProduct(v)));
+  };
+  // Ritz values ascend: with `index_` negative eigenvalues the lowest lambda
+  // belongs to the index_-th of them, else to the largest value.
+  const auto pick = [&](const Eigen::MatrixXd& upper) {
+    const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
+    const Eigen::Index size = upper.cols();
+    const Eigen::Index at =
+        index_ > 0 ? std::min<Eigen::Index>(index_, size) - 1 : size - 1;
+    return std::pair<double, VectorX>(eigen.eigenvalues()[at],
+                                      eigen.eigenvectors().col(at));
+  };
+  VectorX v = apply(start_vector(n));
+  int built = 0;
+  double scale = 0.0;
+  double theta = 0.0;
+  VectorX ritz;
+  for (; built < steps; ++built) {
+    for (int pass = 0; pass < 2 && built > 0; ++pass) {
+      v -= basis.leftCols(built) * (basis.leftCols(built).transpose() * v);
+    }
+    const double length = v.norm();
+    if (!(length > 1e-12 * scale)) {
+      break;
+    }
+    basis.col(built) = v / length;
+    v = apply(basis.col(built));
+    scale = std::max(scale, v.norm());
+    small.col(built).head(built + 1) =
+        basis.leftCols(built + 1).transpose() * v;
+    if ((built + 1) % kLanczosCheck == 0) {
+      const double before = theta;
+      std::tie(theta, ritz) = pick(small.topLeftCorner(built + 1, built + 1));
+      if (std::abs(theta - before) <= kLanczosAccuracy * std::abs(theta)) {
+        ++built;
+        break;
+      }
+    }
+  }
+  if (built == 0) {
+    return result;
+  }
+  std::tie(theta, ritz) = pick(small.topLeftCorner(built, built));
+  result.eigenvalue = theta != 0.0 ? 1.0 / theta : 0.0;
+  result.mode = (basis.leftCols(built) * ritz).cwiseQuotient(root);
+  Eigen::Index at = 0;
+  const double largest = result.mode.cwiseAbs().maxCoeff(&at);
+  if (largest > 0.0) {
+    result.mode /= result.mode[at];
+  }
+  return result;
+}
+
+}  // namespace meniscus

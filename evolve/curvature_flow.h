@@ -1,0 +1,29 @@
+/// Implicit mean curvature flow at given volumes: what brings a raw, kinked
+/// start near to equilibrium, where Newton takes over.
+#pragma once
+
+#include "core/monitor.h"
+#include "evolve/energy.h"
+
+namespace meniscus {
+
+struct FlowOptions {
+  int max_steps = 30;
+  double smoothing = 3.0;       // first step smooths over this many edges
+  double energy_change = 1e-4;  // stop: relative change of energy per step
+  Monitor* monitor = nullptr;
+};
+
+struct FlowReport {
+  int steps = 0;
+  bool settled = false;  // volumes reached and the energy at rest
+};
+
+/// Steps (M / tau + L) dx = -dE/dx + sum p dV/dx with L the cotangent
+/// Laplacian of the current film (Pinkall, Polthier 1993; Desbrun et al.
+/// 1999) and pressures such that the volumes come nearer to the targets by at
+/// most 15 % a step. tau grows while the energy falls and shrinks otherwise.
+/// Vertices move in all directions; remesh afterwards. Deterministic.
+FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options);
+
+}  // namespace meniscus

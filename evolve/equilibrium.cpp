@@ -1,0 +1,154 @@
+#include "evolve/equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "evolve/neck.h"
+#include "evolve/newton.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kUnresolved = 2.0;  // neck below this many edges: pinching
+
+std::string place(const Vec3& p) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
+}
+
+constexpr const char* kAdvice =
+    "a larger volume, shorter arms or larger rims would help";
+
+FilmReport report_of(const FilmEnergy& energy, const FilmTargets& targets,
+                     const NewtonResult& found, double bound) {
+  FilmReport report;
+  report.vertices = static_cast<int>(found.points.size());
+  report.facets = static_cast<int>(energy.facets().size());
+  report.energy = energy.value(found.points, targets.tension);
+  report.area = energy.area(found.points);
+  report.residual = found.residual;
+  report.residual_bound = bound;
+  report.min_eigenvalue = found.min_eigenvalue;
+  report.index = found.index;
+  report.iterations = found.iterations;
+  const VectorX volumes = energy.volumes(found.points);
+  for (int b = 0; b < energy.bodies(); ++b) {
+    const ComplexBody& body = targets.bodies[b];
+    report.bodies.push_back({body.name, volumes[b],
+                             body.volume.value_or(volumes[b]),
+                             found.pressure[b]});
+  }
+  return report;
+}
+
+FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
+                 const FilmTargets& targets, const Points& base,
+                 const Points& directions, const VectorX& start,
+                 const SettleOptions& options, DirectionRule rule) {
+  const Timer timer;
+  const double tension =
+      *std::max_element(targets.tension.begin(), targets.tension.end());
+  NewtonOptions newton{.rule = rule,
+                       .aim = NewtonAim::Minimum,
+                       .residual_bound = options.residual_factor * tension *
+                                         energy.mean_edge(base),
+                       .volume_tolerance = options.volume_tolerance,
+                       .max_iterations = options.max_iterations,
+                       .monitor = options.monitor};
+  NewtonResult found =
+      FilmNewton(energy, targets, newton).run(base, directions, start);
+  if (!found.converged) {
+    newton.aim = NewtonAim::Equilibrium;
+    newton.max_iterations = std::min(20, options.max_iterations);
+    NewtonResult saddle =
+        FilmNewton(energy, targets, newton).run(base, directions, start);
+    saddle.iterations += found.iterations;
+    if (saddle.converged) {
+      found = std::move(saddle);
+    }
+  }
+  FilmState state;
+  state.report = report_of(energy, targets, found, newton.residual_bound);
+  state.points = std::move(found.points);
+  state.heights = std::move(found.heights);
+  judge(energy, complex, state, found.converged ? "" : found.reason,
+        found.mode_position);
+  state.report.seconds = timer.seconds();
+  return state;
+}
+
+}  // namespace
+
+void judge(const FilmEnergy& energy, const FilmComplex& complex,
+           FilmState& state, const std::string& reason,
+           const Vec3& mode_position) {
+  FilmReport& report = state.report;
+  const bool finite = std::all_of(state.points.begin(), state.points.end(),
+                                  [](const Vec3& p) { return p.allFinite(); });
+  const Neck neck =
+      finite ? narrowest_neck(energy, state.points, complex.mesh.facet_label)
+             : Neck{};
+  report.smallest_neck = neck.width;
+  report.neck_position = neck.position;
+  const double edge = finite ? energy.mean_edge(state.points) : 0.0;
+  const bool thin = neck.surface >= 0 && neck.width < kUnresolved * edge;
+  const auto name = [&](int s) { return complex.surfaces[s].name; };
+  const std::string where =
+      neck.surface < 0
+          ? std::string("no neck could be measured")
+          : fmt::format("neck of width {:.4g} at {} between '{}' and '{}'",
+                        neck.width, place(neck.position), name(neck.surface),
+                        name(neck.opposite));
+  const auto fail = [&](FailureKind kind, const std::string& verdict) {
+    report.verdict = verdict;
+    state.failure = Failure{kind, verdict};
+  };
+  state.failure.reset();
+  if (!reason.empty() && thin) {
+    fail(FailureKind::FilmPinched,
+         fmt::format("pinching: {}; {} (after {} steps, {})", where, kAdvice,
+                     report.iterations, reason));
+  } else if (!reason.empty()) {
+    fail(FailureKind::FilmNotFound,
+         fmt::format("no equilibrium of this topology found after {} steps "
+                     "({}; residual {:.3g}, bound {:.3g}); {}; {}",
+                     report.iterations, reason, report.residual,
+                     report.residual_bound, where, kAdvice));
+  } else if (report.index > 0) {
+    fail(FailureKind::FilmUnstable,
+         fmt::format("unstable: index {}, lowest eigenvalue {:.4g}, its mode "
+                     "is largest at {}; {}; {}",
+                     report.index, report.min_eigenvalue, place(mode_position),
+                     where, kAdvice));
+  } else if (thin) {
+    fail(FailureKind::FilmPinched,
+         fmt::format("pinching: {}, under {} edges of {:.3g}; {}", where,
+                     kUnresolved, edge, kAdvice));
+  } else {
+    report.verdict = "stable";
+  }
+}
+
+FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,
+                       const FilmTargets& targets, const Points& base,
+                       const Points& directions, const VectorX& start,
+                       const SettleOptions& options) {
+  return settle(energy, complex, targets, base, directions, start, options,
+                DirectionRule::Fixed);
+}
+
+FilmState settle_in_normals(const FilmEnergy& energy,
+                            const FilmComplex& complex,
+                            const FilmTargets& targets, const Points& start,
+                            const SettleOptions& options) {
+  FilmState state =
+      settle(energy, complex, targets, start, energy.normals(start), {},
+             options, DirectionRule::CurrentNormals);
+  state.heights = VectorX::Zero(energy.unknowns());
+  return state;
+}
+
+}  // namespace meniscus

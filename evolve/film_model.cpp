@@ -1,0 +1,256 @@
+#include "evolve/film_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "evolve/carry.h"
+#include "evolve/equilibrium.h"
+#include "evolve/find_equilibrium.h"
+#include "evolve/grooming.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr int kHalvings = 1;  // the start is this many times coarser
+
+/// Steps from the reference to a design: first in one, then in parts, which
+/// are fixed so that the film depends on the design alone.
+constexpr std::array<int, 2> kParts = {1, 4};
+
+FilmTargets blend(const FilmTargets& from, const FilmTargets& to, double t) {
+  FilmTargets result = to;
+  const auto mix = [t](double a, double b) { return a + t * (b - a); };
+  for (std::size_t s = 0; s < to.tension.size(); ++s) {
+    result.tension[s] = mix(from.tension[s], to.tension[s]);
+  }
+  for (std::size_t b = 0; b < to.bodies.size(); ++b) {
+    if (to.bodies[b].volume && from.bodies[b].volume) {
+      result.bodies[b].volume =
+          mix(*from.bodies[b].volume, *to.bodies[b].volume);
+    }
+    if (to.bodies[b].pressure || from.bodies[b].pressure) {
+      result.bodies[b].pressure = mix(from.bodies[b].pressure.value_or(0.0),
+                                      to.bodies[b].pressure.value_or(0.0));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+struct FilmModel::Impl {
+  FilmComplex complex;        // finest level, at the reference film
+  std::vector<Edge> parents;  // of the first refinement's new vertices
+  int corner_count = 0;       // vertices of the meshed level
+  SurfaceMesh meshed;         // facets and labels of the meshed level
+  std::optional<FilmEnergy> energy;
+  std::optional<Carry> carry;
+  FilmTargets targets;
+  FilmState reference;
+  std::vector<Edge> edges;            // of the meshed level
+  std::vector<Triangle> facet_edges;  // per meshed facet
+  std::vector<int> mid_vertex;        // per edge: fine vertex, -1 for straight
+
+  FilmTargets targets_of_system(const FilmSystem& system) const;
+  std::vector<Curve> curves_of_system(const FilmSystem& system) const;
+  void list_mid_sides();
+  FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,
+                            int parts, const SettleOptions& options) const;
+};
+
+FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
+  FilmTargets result = targets;
+  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    if (!complex.surfaces[s].liquid) {
+      continue;
+    }
+    const auto film = std::find_if(
+        system.films.begin(), system.films.end(),
+        [&](const FilmSpec& f) { return f.name == complex.surfaces[s].name; });
+    if (film == system.films.end()) {
+      throw InvalidInput(
+          fmt::format("the design has no film '{}', which its model has",
+                      complex.surfaces[s].name));
+    }
+    result.tension[s] = film->tension;
+  }
+  for (ComplexBody& body : result.bodies) {
+    const auto spec =
+        std::find_if(system.bodies.begin(), system.bodies.end(),
+                     [&](const BodySpec& b) { return b.name == body.name; });
+    if (spec == system.bodies.end() ||
+        spec->volume.has_value() != body.volume.has_value()) {
+      throw InvalidInput(
+          fmt::format("the design must give body '{}' a {}, as its model does",
+                      body.name, body.volume ? "volume" : "pressure"));
+    }
+    body.volume = spec->volume;
+    body.pressure = spec->pressure;
+  }
+  return result;
+}
+
+std::vector<Curve> FilmModel::Impl::curves_of_system(
+    const FilmSystem& system) const {
+  std::vector<Curve> result;
+  for (const Curve& curve : complex.curves) {
+    const auto same =
+        std::find_if(system.curves.begin(), system.curves.end(),
+                     [&](const Curve& c) { return c.name == curve.name; });
+    if (same == system.curves.end() ||
+        same->shape.index() != curve.shape.index()) {
+      throw InvalidInput(fmt::format(
+          "the design has no curve '{}' of its model's kind", curve.name));
+    }
+    validate(*same);
+    result.push_back(*same);
+  }
+  return result;
+}
+
+void FilmModel::Impl::list_mid_sides() {
+  list_edges(meshed.facets, edges, facet_edges);
+  std::map<Edge, int> fine;
+  for (std::size_t k = 0; k < parents.size(); ++k) {
+    const Edge& e = parents[k];
+    fine[{std::min(e[0], e[1]), std::max(e[0], e[1])}] =
+        corner_count + static_cast<int>(k);
+  }
+  for (const Edge& e : edges) {
+    const auto at = fine.find(e);
+    const bool curved = at != fine.end() &&
+                        complex.vertices[at->second].kind != VertexKind::InCap;
+    mid_vertex.push_back(curved ? at->second : -1);
+  }
+}
+
+FilmState FilmModel::Impl::settle_in_parts(const Points& moves,
+                                           const FilmTargets& goal, int parts,
+                                           const SettleOptions& options) const {
+  FilmState state;
+  int iterations = 0;
+  for (int part = 1; part <= parts; ++part) {
+    const double t = static_cast<double>(part) / parts;
+    const Points base = carry->at(moves, t);
+    state = settle_along(*energy, complex,
+                         part == parts ? goal : blend(targets, goal, t), base,
+                         energy->normals(base), state.heights, options);
+    iterations += state.report.iterations;
+    if (state.failure) {
+      break;
+    }
+  }
+  state.report.iterations = iterations;
+  return state;
+}
+
+FilmModel::FilmModel(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FilmModel::FilmModel(FilmModel&&) noexcept = default;
+FilmModel& FilmModel::operator=(FilmModel&&) noexcept = default;
+FilmModel::~FilmModel() = default;
+
+FilmModel FilmModel::freeze(const FilmSystem& initial,
+                            const FilmModelOptions& options) {
+  if (!(options.edge > 0.0) || !std::isfinite(options.edge)) {
+    throw InvalidInput(fmt::format(
+        "the film's edge length must be above 0, found {}", options.edge));
+  }
+  if (options.refinements < 0 || options.refinements > 6) {
+    throw InvalidInput(
+        fmt::format("the film's refinements must be 0 to 6, found {}",
+                    options.refinements));
+  }
+  const Timer timer;
+  auto impl = std::make_unique<Impl>();
+  SettleOptions settle{.monitor = options.monitor};
+  impl->complex = build_start(initial, options.edge * std::exp2(kHalvings));
+  impl->reference = find_equilibrium(
+      impl->complex,
+      {.edge = options.edge, .halvings = kHalvings, .settle = settle});
+  impl->meshed = impl->complex.mesh;
+  impl->corner_count = static_cast<int>(impl->complex.mesh.points.size());
+  for (int level = 0; level < options.refinements; ++level) {
+    Refinement finer = refine(impl->complex);
+    impl->complex = std::move(finer.complex);
+    if (level == 0) {
+      impl->parents = std::move(finer.parents);
+    }
+    if (!impl->reference.failure) {
+      const FilmEnergy energy(impl->complex);
+      impl->reference =
+          settle_in_normals(energy, impl->complex, targets_of(impl->complex),
+                            impl->complex.mesh.points, settle);
+      impl->complex.mesh.points = impl->reference.points;
+    }
+  }
+  impl->list_mid_sides();
+  impl->energy.emplace(impl->complex);
+  impl->carry.emplace(impl->complex);
+  impl->targets = targets_of(impl->complex);
+  FilmModel model(std::move(impl));
+  if (!model.impl_->reference.failure) {
+    model.impl_->reference = model.settle(initial, settle);
+  } else if (model.impl_->reference.points.size() !=
+             model.impl_->complex.mesh.points.size()) {
+    model.impl_->reference.points = model.impl_->complex.mesh.points;
+    model.impl_->reference.heights =
+        VectorX::Zero(model.impl_->energy->unknowns());
+  }
+  model.impl_->reference.report.seconds = timer.seconds();
+  return model;
+}
+
+const FilmState& FilmModel::reference() const { return impl_->reference; }
+
+FilmState FilmModel::settle(const FilmSystem& system,
+                            const SettleOptions& options) const {
+  const Timer timer;
+  const FilmTargets goal = impl_->targets_of_system(system);
+  const Points moves = impl_->carry->rim_moves(impl_->curves_of_system(system));
+  FilmState state;
+  int iterations = 0;
+  for (const int parts : kParts) {
+    FilmState found = impl_->settle_in_parts(moves, goal, parts, options);
+    iterations += found.report.iterations;
+    if (parts == kParts.front() || !found.failure) {
+      state = std::move(found);
+    }
+    if (!state.failure) {
+      break;
+    }
+  }
+  state.report.iterations = iterations;
+  state.report.seconds = timer.seconds();
+  return state;
+}
+
+QuadraticSurface FilmModel::surface(const Points& points) const {
+  QuadraticSurface result;
+  result.base.facets = impl_->meshed.facets;
+  result.base.facet_label = impl_->meshed.facet_label;
+  result.base.labels = impl_->meshed.labels;
+  result.base.points.assign(points.begin(),
+                            points.begin() + impl_->corner_count);
+  result.edges = impl_->edges;
+  result.facet_edges = impl_->facet_edges;
+  for (std::size_t e = 0; e < impl_->edges.size(); ++e) {
+    const int v = impl_->mid_vertex[e];
+    result.mid.push_back(v >= 0 ? points[v]
+                                : 0.5 * (points[impl_->edges[e][0]] +
+                                         points[impl_->edges[e][1]]));
+  }
+  return result;
+}
+
+SurfaceMesh FilmModel::fine_mesh(const Points& points) const {
+  SurfaceMesh mesh = impl_->complex.mesh;
+  mesh.points = points;
+  return mesh;
+}
+
+}  // namespace meniscus

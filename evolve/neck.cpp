@@ -1,0 +1,230 @@
+#include "evolve/neck.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kFacing = 0.5;  // cosine between line and facet normal
+constexpr int kLeaf = 4;
+
+/// Bounding volume tree over facets, split at the median of the longest axis.
+class FacetTree {
+ public:
+  FacetTree(const std::vector<Triangle>& facets, const Points& points)
+      : facets_(facets), points_(points) {
+    ids_.resize(facets.size());
+    centers_.resize(facets.size());
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      ids_[f] = static_cast<int>(f);
+      const Triangle& t = facets[f];
+      centers_[f] = (points[t[0]] + points[t[1]] + points[t[2]]) / 3.0;
+    }
+    if (!ids_.empty()) {
+      build(0, static_cast<int>(ids_.size()));
+    }
+  }
+
+  /// Nearest hit of origin + t direction with 0 < t < limit on a facet that
+  /// accept(facet) admits; returns the facet or -1, and t in `limit`.
+  template <typename Accept>
+  int first_hit(const Vec3& origin, const Vec3& direction, double& limit,
+                const Accept& accept) const {
+    int best = -1;
+    if (nodes_.empty()) {
+      return best;
+    }
+    // No infinity, so that a line in a box's own plane gives 0 and not NaN.
+    const Vec3 inverse = direction.unaryExpr([](double d) {
+      return 1.0 / (std::abs(d) > 1e-200 ? d : std::copysign(1e-200, d));
+    });
+    std::array<int, 64> stack{};
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+      const Node& node = nodes_[stack[--top]];
+      if (!node.box_hit(origin, inverse, limit)) {
+        continue;
+      }
+      if (node.left < 0) {
+        for (int k = node.first; k < node.last; ++k) {
+          const double t = hit(ids_[k], origin, direction);
+          if (t > 0.0 && t < limit && accept(ids_[k])) {
+            limit = t;
+            best = ids_[k];
+          }
+        }
+      } else {
+        // The near half last, so that it comes off the stack first.
+        const bool forward = direction[node.axis] > 0.0;
+        stack[top++] = forward ? node.right : node.left;
+        stack[top++] = forward ? node.left : node.right;
+      }
+    }
+    return best;
+  }
+
+ private:
+  struct Node {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+    Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
+    int first = 0;
+    int last = 0;
+    int left = -1;
+    int right = -1;
+    int axis = 0;
+
+    bool box_hit(const Vec3& origin, const Vec3& inverse, double limit) const {
+      double enter = 0.0;
+      double leave = limit;
+      for (int k = 0; k < 3; ++k) {
+        const double a = (low[k] - origin[k]) * inverse[k];
+        const double b = (high[k] - origin[k]) * inverse[k];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+      }
+      return enter <= leave * (1.0 + 1e-12);
+    }
+  };
+
+  int build(int first, int last) {
+    const int at = static_cast<int>(nodes_.size());
+    nodes_.emplace_back();
+    Node node;
+    node.first = first;
+    node.last = last;
+    for (int k = first; k < last; ++k) {
+      for (const int v : facets_[ids_[k]]) {
+        node.low = node.low.cwiseMin(points_[v]);
+        node.high = node.high.cwiseMax(points_[v]);
+      }
+    }
+    if (last - first > kLeaf) {
+      Eigen::Index axis = 0;
+      (node.high - node.low).maxCoeff(&axis);
+      const int middle = (first + last) / 2;
+      std::nth_element(ids_.begin() + first, ids_.begin() + middle,
+                       ids_.begin() + last, [&](int a, int b) {
+                         const double x = centers_[a][axis];
+                         const double y = centers_[b][axis];
+                         return x < y || (x == y && a < b);
+                       });
+      node.axis = static_cast<int>(axis);
+      node.left = build(first, middle);
+      node.right = build(middle, last);
+    }
+    nodes_[at] = node;
+    return at;
+  }
+
+  /// Moeller and Trumbore (1997); negative for a miss.
+  double hit(int facet, const Vec3& origin, const Vec3& direction) const {
+    const Triangle& t = facets_[facet];
+    const Vec3& a = points_[t[0]];
+    const Vec3 e1 = points_[t[1]] - a;
+    const Vec3 e2 = points_[t[2]] - a;
+    const Vec3 p = direction.cross(e2);
+    const double det = e1.dot(p);
+    if (det == 0.0) {
+      return -1.0;
+    }
+    constexpr double kEdge = 1e-9;  // so that no line slips between facets
+    const Vec3 s = origin - a;
+    const double u = s.dot(p) / det;
+    const Vec3 q = s.cross(e1);
+    const double v = direction.dot(q) / det;
+    if (!(u >= -kEdge && v >= -kEdge && u + v <= 1.0 + kEdge)) {
+      return -1.0;
+    }
+    return e2.dot(q) / det;
+  }
+
+  const std::vector<Triangle>& facets_;
+  const Points& points_;
+  std::vector<int> ids_;
+  Points centers_;
+  std::vector<Node> nodes_;
+};
+
+/// Along which sides of each unknown's normal a body lies: bit 1 against the
+/// normal, bit 2 along it; both for a film without a body.
+std::vector<int> open_sides(const FilmEnergy& energy,
+                            std::vector<int>& label_of_unknown,
+                            const std::vector<int>& facet_label,
+                            std::size_t point_count) {
+  std::vector<int> sides_of_vertex(point_count, 0);
+  std::vector<int> label_of_vertex(point_count, -1);
+  for (std::size_t f = 0; f < energy.facets().size(); ++f) {
+    if (!energy.is_liquid(static_cast<int>(f))) {
+      continue;
+    }
+    int sides = 0;
+    for (int b = 0; b < energy.bodies(); ++b) {
+      const int side = energy.side(static_cast<int>(f), b);
+      sides |= side > 0 ? 1 : (side < 0 ? 2 : 0);
+    }
+    for (const int v : energy.facets()[f]) {
+      sides_of_vertex[v] |= sides != 0 ? sides : 3;
+      label_of_vertex[v] = facet_label[f];
+    }
+  }
+  std::vector<int> sides;
+  label_of_unknown.clear();
+  for (const int v : energy.vertices()) {
+    sides.push_back(sides_of_vertex[v]);
+    label_of_unknown.push_back(label_of_vertex[v]);
+  }
+  return sides;
+}
+
+}  // namespace
+
+Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
+                    const std::vector<int>& facet_label) {
+  const std::vector<Triangle>& facets = energy.facets();
+  const FacetTree tree(facets, points);
+  const Points normals = energy.normals(points);
+  std::vector<int> labels;
+  const std::vector<int> sides =
+      open_sides(energy, labels, facet_label, points.size());
+  Neck neck;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < energy.unknowns(); ++i) {
+    const int v = energy.vertices()[i];
+    for (const int bit : {1, 2}) {
+      if ((sides[i] & bit) == 0 || normals[i].isZero()) {
+        continue;
+      }
+      const Vec3 direction = bit == 1 ? Vec3(-normals[i]) : normals[i];
+      double length = least;
+      const auto accept = [&](int f) {
+        const Triangle& t = facets[f];
+        return t[0] != v && t[1] != v && t[2] != v;
+      };
+      const int f = tree.first_hit(points[v], direction, length, accept);
+      if (f < 0 || !energy.is_liquid(f)) {
+        continue;
+      }
+      const Triangle& t = facets[f];
+      const Vec3 normal = (points[t[1]] - points[t[0]])
+                              .cross(points[t[2]] - points[t[0]])
+                              .normalized();
+      if (std::abs(normal.dot(direction)) > kFacing) {
+        least = length;
+        neck.width = length;
+        neck.position = points[v] + 0.5 * length * direction;
+        neck.surface = labels[i];
+        neck.opposite = facet_label[f];
+      }
+    }
+  }
+  return neck;
+}
+
+}  // namespace meniscus
