@@ -1,6 +1,7 @@
 #include <cmath>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "optimize/problem.h"
@@ -197,7 +198,7 @@ TEST(Match, RankOneUpdatesSaveDifferences) {
                     {}};
   std::vector<Variable> variables;
   for (int i = 0; i < n; ++i) {
-    variables.push_back({"v" + std::to_string(i), 0.0, -1.0, 1.0});
+    variables.push_back({fmt::format("v{}", i), 0.0, -1.0, 1.0});
   }
   const MatchReport report =
       match(variables, recorder.function(), {.tolerance = 1e-6});
