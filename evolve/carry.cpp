@@ -44,7 +44,7 @@ Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind) {
       laplace.inner.coeffRef(i, i) += kHold * sum / count;
     }
   }
-  extension.outer = std::move(laplace.outer);
+  extension.outer.swap(laplace.outer);
   extension.factor.emplace(laplace.inner, FactorKind::Cholesky);
   if (!extension.factor->factorize(laplace.inner)) {
     throw MeshError(

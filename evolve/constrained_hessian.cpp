@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include <Eigen/Dense>
 
@@ -23,6 +22,63 @@ VectorX start_vector(Eigen::Index n) {
     v[i] = 0.25 + (phase - std::floor(phase));
   }
   return v;
+}
+
+struct RitzPair {
+  double value = 0.0;
+  VectorX vector;
+};
+
+/// The eigenvalue of a symmetric operator that is largest, or when `negative`
+/// of them are below zero, the negative one nearest to zero: both the inverse
+/// of a Hessian's lowest eigenvalue.
+RitzPair pick(const Eigen::MatrixXd& upper, int negative) {
+  const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
+  const Eigen::Index last = upper.cols() - 1;
+  const Eigen::Index at =
+      negative > 0 ? std::min<Eigen::Index>(negative - 1, last) : last;
+  return {eigen.eigenvalues()[at], eigen.eigenvectors().col(at)};
+}
+
+/// Lanczos with full orthogonalisation from a fixed start vector.
+template <typename Operator>
+RitzPair lanczos(const Operator& apply, Eigen::Index n, int negative) {
+  const auto steps = std::min<Eigen::Index>(kLanczosSteps, n);
+  Eigen::MatrixXd basis(n, steps);
+  Eigen::MatrixXd small = Eigen::MatrixXd::Zero(steps, steps);
+  VectorX v = n > 0 ? apply(start_vector(n)) : VectorX();
+  RitzPair found;
+  double scale = 0.0;
+  Eigen::Index built = 0;
+  while (built < steps) {
+    for (int pass = 0; pass < 2 && built > 0; ++pass) {
+      v -= basis.leftCols(built) * (basis.leftCols(built).transpose() * v);
+    }
+    const double length = v.norm();
+    if (!(length > 1e-12 * scale)) {
+      break;
+    }
+    basis.col(built) = v / length;
+    v = apply(basis.col(built));
+    scale = std::max(scale, v.norm());
+    small.col(built).head(built + 1) =
+        basis.leftCols(built + 1).transpose() * v;
+    ++built;
+    if (built % kLanczosCheck == 0) {
+      const double before = found.value;
+      found = pick(small.topLeftCorner(built, built), negative);
+      if (std::abs(found.value - before) <=
+          kLanczosAccuracy * std::abs(found.value)) {
+        break;
+      }
+    }
+  }
+  if (built > 0) {
+    found = pick(small.topLeftCorner(built, built), negative);
+    found.vector = basis.leftCols(built) * found.vector;
+  }
+  return found;
 }
 
 }  // namespace
@@ -119,65 +175,19 @@ VectorX ConstrainedHessian::constrained_inverse(const VectorX& right) const {
 LowestMode ConstrainedHessian::lowest_mode(const VectorX& metric) const {
   // Symmetric form: with D = sqrt(metric), D P D has eigenvalues 1 / lambda,
   // where P is the inverse on the constraint space.
-  const Eigen::Index n = metric.size();
   LowestMode result;
-  if (n == 0) {
-    return result;
-  }
   const VectorX root = metric.cwiseMax(1e-300).cwiseSqrt();
-  const int steps = static_cast<int>(std::min<Eigen::Index>(kLanczosSteps, n));
-  Eigen::MatrixXd basis(n, steps);
-  Eigen::MatrixXd small = Eigen::MatrixXd::Zero(steps, steps);
   const auto apply = [&](const VectorX& v) -> VectorX {
     return root.cwiseProduct(constrained_inverse(root.cwiseProduct(v)));
   };
-  // Ritz values ascend: with `index_` negative eigenvalues the lowest lambda
-  // belongs to the index_-th of them, else to the largest value.
-  const auto pick = [&](const Eigen::MatrixXd& upper) {
-    const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
-    const Eigen::Index size = upper.cols();
-    const Eigen::Index at =
-        index_ > 0 ? std::min<Eigen::Index>(index_, size) - 1 : size - 1;
-    return std::pair<double, VectorX>(eigen.eigenvalues()[at],
-                                      eigen.eigenvectors().col(at));
-  };
-  VectorX v = apply(start_vector(n));
-  int built = 0;
-  double scale = 0.0;
-  double theta = 0.0;
-  VectorX ritz;
-  for (; built < steps; ++built) {
-    for (int pass = 0; pass < 2 && built > 0; ++pass) {
-      v -= basis.leftCols(built) * (basis.leftCols(built).transpose() * v);
-    }
-    const double length = v.norm();
-    if (!(length > 1e-12 * scale)) {
-      break;
-    }
-    basis.col(built) = v / length;
-    v = apply(basis.col(built));
-    scale = std::max(scale, v.norm());
-    small.col(built).head(built + 1) =
-        basis.leftCols(built + 1).transpose() * v;
-    if ((built + 1) % kLanczosCheck == 0) {
-      const double before = theta;
-      std::tie(theta, ritz) = pick(small.topLeftCorner(built + 1, built + 1));
-      if (std::abs(theta - before) <= kLanczosAccuracy * std::abs(theta)) {
-        ++built;
-        break;
-      }
-    }
-  }
-  if (built == 0) {
+  const RitzPair found = lanczos(apply, metric.size(), index_);
+  if (found.value == 0.0) {
     return result;
   }
-  std::tie(theta, ritz) = pick(small.topLeftCorner(built, built));
-  result.eigenvalue = theta != 0.0 ? 1.0 / theta : 0.0;
-  result.mode = (basis.leftCols(built) * ritz).cwiseQuotient(root);
+  result.eigenvalue = 1.0 / found.value;
+  result.mode = found.vector.cwiseQuotient(root);
   Eigen::Index at = 0;
-  const double largest = result.mode.cwiseAbs().maxCoeff(&at);
-  if (largest > 0.0) {
+  if (result.mode.cwiseAbs().maxCoeff(&at) > 0.0) {
     result.mode /= result.mode[at];
   }
   return result;

@@ -117,6 +117,7 @@ void FilmEnergy::find_floating(const FilmComplex& complex) {
 void FilmEnergy::build_pattern() {
   const int n = unknowns();
   std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(n) + 6 * facets_.size());
   for (int i = 0; i < n; ++i) {
     entries.emplace_back(i, i, 0.0);
   }

@@ -56,6 +56,7 @@ LaplaceSystem cotan_laplacian(const SurfaceMesh& mesh,
   }
   std::vector<Eigen::Triplet<double>> inner;
   std::vector<Eigen::Triplet<double>> outer;
+  inner.reserve(static_cast<std::size_t>(unknowns) + 3 * edges.size());
   for (int i = 0; i < unknowns; ++i) {
     inner.emplace_back(i, i, 0.0);
   }
