@@ -6,6 +6,8 @@
 #include <iterator>
 #include <vtkObject.h>
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 #include "report/render_views.h"
 
@@ -23,8 +25,9 @@ void draw_one(const PictureJob& job) {
     line = draw_part(panel, job, load_surface(job.part_surface), layout);
   } else {
     layout.model = {0.05, 0.05, 0.95, 0.87};
-    draw_film(panel, job, load_surface(job.film), layout);
+    draw_film(panel, job, load_surface(job.film));
   }
+  panel.fit_camera(job.view, layout.model);
   panel.add_text(0.025, 1.0 - 2.2 * layout.text / job.height, job.title,
                  {.size = layout.text * 3 / 2, .bold = true});
   panel.add_text(0.025, 1.0 - 4.0 * layout.text / job.height, line,
@@ -40,17 +43,32 @@ void draw_overview(const PictureJob& job) {
   Panel film({0, 0, 1.0 / 3, 1}, job.width, job.height);
   Panel mesh({1.0 / 3, 0, 2.0 / 3, 1}, job.width, job.height);
   Panel part({2.0 / 3, 0, 1, 1}, job.width, job.height);
-  const PictureSurface stressed = load_surface(job.part_surface);
-  draw_film(film, job, load_surface(job.film), layout);
+  const PictureSurface surface = load_surface(job.film);
   const PictureTets tets = load_tets(job.part);
-  draw_cut_mesh(mesh, job, tets, layout);
-  draw_part(part, job, stressed, layout);
-  const TextStyle caption{
-      .size = layout.text * 5 / 4, .bold = true, .justify = Justify::Centre};
-  const double y = 1.0 - 2.2 * layout.text / job.height;
-  film.add_text(0.5, y, "Liquid film", caption);
-  mesh.add_text(0.5, y, "Solid, cut open", caption);
-  part.add_text(0.5, y, "Stress under load", caption);
+  draw_film(film, job, surface);
+  draw_cut_mesh(mesh, job, tets);
+  draw_part(part, job, load_surface(job.part_surface), layout);
+  const auto caption = [&](Panel& panel, const std::string& title,
+                           const std::string& line) {
+    const double row = layout.text / static_cast<double>(job.height);
+    panel.add_text(0.5, 1.0 - 2.0 * row, title,
+                   {.size = layout.text * 5 / 4,
+                    .bold = true,
+                    .justify = Justify::Centre});
+    panel.add_text(
+        0.5, 1.0 - 3.5 * row, line,
+        {.size = layout.text, .colour = kGrey, .justify = Justify::Centre});
+    // One scale and one eye for all three.
+    if (&panel != &part) {
+      panel.show(part.shown());
+    }
+    panel.fit_camera(job.view, layout.model);
+  };
+  caption(film, "Liquid film",
+          fmt::format("{} facets at rest", surface.mesh.facets.size()));
+  caption(mesh, "Solid, cut open",
+          fmt::format("{} tetrahedra", tets.corners.size()));
+  caption(part, "Stress under load", "deflection exaggerated");
   save_picture({&film, &mesh, &part}, job.width, job.height, job.output);
 }
 

@@ -26,6 +26,7 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkWindowToImageFilter.h>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <vtkActor2D.h>
 #include <vtkBillboardTextActor3D.h>
@@ -46,8 +47,8 @@ constexpr double kCreaseAngle = 50.0;  // sharper is drawn as a crease [deg]
 void set_colour(vtkProperty* property, const SurfaceStyle& style) {
   property->SetColor(style.colour[0], style.colour[1], style.colour[2]);
   property->SetOpacity(style.opacity);
-  property->SetAmbient(0.10);
-  property->SetDiffuse(0.90);
+  property->SetAmbient(style.ambient);
+  property->SetDiffuse(1.0 - 0.5 * style.ambient);
   property->SetSpecular(style.specular);
   property->SetSpecularPower(40.0);
   if (style.flat) {

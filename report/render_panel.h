@@ -36,6 +36,7 @@ struct SurfaceStyle {
   Colour colour = {0.8, 0.8, 0.8};
   double opacity = 1.0;
   double specular = 0.25;
+  double ambient = 0.15;  // light from everywhere, 0..1
   bool flat = false;
   bool edges = false;  // thin lines along facets
   Colour edge_colour = {0.2, 0.25, 0.3};
@@ -77,6 +78,7 @@ class Panel {
 
   /// Points that must be seen.
   void show(const Points& points);
+  const Points& shown() const { return shown_; }
   /// Looks from `view` (from the model to the eye), z up, all shown points
   /// inside `box`.
   void fit_camera(const Vec3& view, const Box& box);

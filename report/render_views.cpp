@@ -1,5 +1,6 @@
 #include "report/render_views.h"
 
+#include <set>
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -97,13 +98,14 @@ SurfaceMesh ground_block(const SurfaceMesh& mesh, const std::string& name,
     add(t[0] + count, t[1] + count, t[2] + count, 0);
     add(t[0], t[2], t[1], 1);
   }
-  const std::vector<Edge> rim = rim_edges(only);
+  const std::vector<Edge> edges = rim_edges(only);
+  const std::set<Edge> rim(edges.begin(), edges.end());
   for (const Triangle& t : only.facets) {
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = t[k];
       const int b = t[(k + 1) % 3];
       const Edge key{std::min(a, b), std::max(a, b)};
-      if (std::find(rim.begin(), rim.end(), key) != rim.end()) {
+      if (rim.count(key) != 0) {
         add(a, b, b + count, 2);
         add(a, b + count, a + count, 2);
       }
@@ -181,8 +183,8 @@ std::string with_unit(double value, const std::string& unit) {
 
 }  // namespace
 
-void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film,
-               const ViewLayout& layout) {
+void draw_film(Panel& panel, const PictureJob& job,
+               const PictureSurface& film) {
   const SurfaceMesh& mesh = film.mesh;
   const double diagonal = bounding_diagonal(mesh.points);
   const Vec3 eye = job.view.normalized();
@@ -226,11 +228,10 @@ void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film,
   panel.add_tubes(mesh.points, rim_edges(mesh), 0.0045 * diagonal,
                   {0.07, 0.20, 0.42});
   panel.show(mesh.points);
-  panel.fit_camera(job.view, layout.model);
 }
 
-void draw_cut_mesh(Panel& panel, const PictureJob& job, const PictureTets& tets,
-                   const ViewLayout& layout) {
+void draw_cut_mesh(Panel& panel, const PictureJob& job,
+                   const PictureTets& tets) {
   // The cut faces the eye and stays upright: what stands before it goes.
   const Vec3 flat(0.0, job.view.y(), 0.0);
   const Vec3 normal = flat.norm() > 0.1 * job.view.norm()
@@ -241,6 +242,7 @@ void draw_cut_mesh(Panel& panel, const PictureJob& job, const PictureTets& tets,
   style.flat = true;
   style.edges = true;
   style.specular = 0.0;
+  style.ambient = 0.3;
   style.edge_width = 0.6;
   style.colour = {0.62, 0.73, 0.84};
   style.edge_colour = {0.22, 0.33, 0.46};
@@ -249,7 +251,6 @@ void draw_cut_mesh(Panel& panel, const PictureJob& job, const PictureTets& tets,
   style.edge_colour = {0.50, 0.34, 0.12};
   panel.add_surface(shade(mesh, {0, 1}).data, style);
   panel.show(tets.nodes);
-  panel.fit_camera(job.view, layout.model);
 }
 
 std::string draw_part(Panel& panel, const PictureJob& job,
@@ -280,7 +281,7 @@ std::string draw_part(Panel& panel, const PictureJob& job,
         viridis(part.von_mises[static_cast<std::size_t>(id)] / top);
     colours.push_back({c[0], c[1], c[2], 1.0});
   }
-  panel.add_coloured(shaded.data, colours, {.specular = 0.15});
+  panel.add_coloured(shaded.data, colours, {.specular = 0.15, .ambient = 0.4});
   panel.add_tubes(moved.points, rim_edges(moved), 0.0016 * diagonal, kInk);
   panel.add_surface(shade(rest, every_label(rest)).data,
                     {.colour = {0.45, 0.5, 0.58}, .opacity = 0.10});
@@ -290,16 +291,15 @@ std::string draw_part(Panel& panel, const PictureJob& job,
   panel.show(moved.points);
   draw_supports(panel, job, rest, diagonal);
   draw_loads(panel, job, moved, diagonal, layout.text);
-  panel.fit_camera(job.view, layout.model);
   const std::string unit =
       part.stress_unit.empty() ? "" : fmt::format(" [{}]", part.stress_unit);
   panel.add_colour_bar(layout.bar, "von Mises stress" + unit, top, step,
                        layout.text);
   const double peak =
       *std::max_element(part.von_mises.begin(), part.von_mises.end());
-  return fmt::format("deflection drawn x {:g} (largest {}), peak stress {}",
-                     factor, with_unit(largest, part.length_unit),
-                     with_unit(peak, part.stress_unit));
+  return fmt::format(
+      "deflection drawn \u00d7 {:g} (largest {}), peak stress {}", factor,
+      with_unit(largest, part.length_unit), with_unit(peak, part.stress_unit));
 }
 
 }  // namespace meniscus

@@ -1,4 +1,5 @@
-/// The views that pictures are made of.
+/// The views that pictures are made of. Each adds to a panel what is to be
+/// seen; the caller then fits the camera.
 #pragma once
 
 #include "report/picture_job.h"
@@ -16,12 +17,11 @@ struct ViewLayout {
 
 /// Films translucent, the more opaque the flatter the eye looks at them;
 /// solids opaque; rims as tubes.
-void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film,
-               const ViewLayout& layout);
+void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film);
 
 /// The near half taken away, element by element.
-void draw_cut_mesh(Panel& panel, const PictureJob& job, const PictureTets& tets,
-                   const ViewLayout& layout);
+void draw_cut_mesh(Panel& panel, const PictureJob& job,
+                   const PictureTets& tets);
 
 /// Deflected by a round factor, coloured by von Mises stress, with the shape
 /// at rest, supports, loads and a colour bar. Returns one line that states
