@@ -1,6 +1,8 @@
 #include "report/picture.h"
 
+#include <array>
 #include <cstdlib>
+#include <optional>
 #include <set>
 #include <vtkImageData.h>
 #include <vtkNew.h>
