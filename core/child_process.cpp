@@ -166,7 +166,10 @@ int lifted(Descriptor& fd) {
   return fd.get();
 }
 
-void start(const ChildOptions& options, Started& started) {
+enum class ErrorStream { Captured, Discarded };
+
+void start(const ChildOptions& options, ErrorStream error_stream,
+           Started& started) {
   if (options.argv.empty()) {
     throw InvalidInput("a helper program needs a name: argv is empty");
   }
@@ -182,6 +185,9 @@ void start(const ChildOptions& options, Started& started) {
   const std::vector<char*> environment = pointers(variables);
   InputSocket input;
   Pipe output, error, report;
+  if (error_stream == ErrorStream::Discarded) {
+    error.write.reset(::open("/dev/null", O_WRONLY | O_CLOEXEC));
+  }
   Launch launch{};
   launch.program = program->c_str();
   launch.folder = options.folder.empty() ? nullptr : options.folder.c_str();
@@ -295,7 +301,7 @@ ChildResult run_child(const ChildOptions& options) {
   const auto begin = Clock::now();
   ChildResult result;
   Started child;
-  start(options, child);
+  start(options, ErrorStream::Captured, child);
   std::string_view rest = options.input;
   if (rest.empty()) {
     child.input.reset();
@@ -351,7 +357,7 @@ BackgroundChild::BackgroundChild(const ChildOptions& options, double grace)
   ChildOptions plain = options;
   plain.memory_limit.reset();
   Started child;
-  start(plain, child);
+  start(plain, ErrorStream::Discarded, child);
   process_ = child.process;
   output_ = child.output.release();
 }

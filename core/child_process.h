@@ -53,7 +53,8 @@ ChildResult run_child(const ChildOptions& options);
 std::string describe_end(const ChildResult& result);
 
 /// A child that runs beside its caller (a virtual display); its destructor
-/// ends it: SIGTERM, after `grace` seconds SIGKILL. No input, no limits.
+/// ends it: SIGTERM, after `grace` seconds SIGKILL. No input, no limits; its
+/// stderr is discarded.
 class BackgroundChild {
  public:
   /// Throws IoError when the program cannot be started.

@@ -31,6 +31,15 @@ struct ResidualAnswer {
 };
 using ResidualFunction = std::function<ResidualAnswer(const VectorX& x)>;
 
+/// Why a point is asked for.
+enum class EvaluationPhase {
+  Start,       // the initial point
+  Probe,       // the initial point failed: looking for one that does not
+  Difference,  // neighbour for a finite difference
+  Step         // the method's proposal
+};
+const char* name_of(EvaluationPhase phase);
+
 enum class Termination {
   Converged,    // every mismatch within tolerance
   Stalled,      // the method found a minimum that misses the tolerance
@@ -43,10 +52,12 @@ const char* name_of(Termination termination);
 struct MatchOptions {
   std::string method = "ceres";  // or NLopt's: "bobyqa", "cobyla", "sbplx", ...
   double tolerance = 1e-3;       // largest mismatch accepted
-  int max_evaluations = 100;     // finite-difference ones included
+  int max_evaluations = 100;     // finite-difference ones included, >= 1
   double time_limit = 0.0;       // [s], 0: none
   double difference_step = 1e-3;  // x (upper - lower), for finite differences
   Monitor* monitor = nullptr;
+  /// Told before each call of the function what the call is for; optional.
+  std::function<void(EvaluationPhase)> announce = {};
 };
 
 struct MatchReport {
@@ -61,8 +72,16 @@ struct MatchReport {
   Eigen::MatrixXd jacobian;  // last known at or near `best`, may be empty
 };
 
-/// Dispatches on options.method; throws InvalidInput for an unknown one (the
-/// message lists those there are) and for bad bounds or start.
+/// Moves the variables until every mismatch is within tolerance, or says why
+/// that cannot be had. Dispatches on options.method; throws InvalidInput for
+/// an unknown one (the message lists those there are) and for bad bounds or
+/// start.
+///
+/// The function is never asked twice for the same x and never outside the
+/// bounds; points come in a fixed order on the calling thread. A failed point
+/// is counted and stepped back from; a NaN or infinite answer counts as failed
+/// (NotANumber). What the function throws ends the match and reaches the
+/// caller, and so does Interrupted once the monitor asks to stop.
 MatchReport match(const std::vector<Variable>& variables,
                   const ResidualFunction& function,
                   const MatchOptions& options);

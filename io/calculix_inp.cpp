@@ -1,0 +1,356 @@
+#include "io/calculix_inp.h"
+
+#include <cctype>
+#include <iterator>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+
+namespace meniscus {
+
+namespace {
+
+using Out = std::back_insert_iterator<fmt::memory_buffer>;
+
+constexpr std::size_t kNameLength = 60;  // CalculiX reads 80
+
+std::string plain_name(const std::string& name) {
+  std::string result;
+  for (const char c : name.substr(0, kNameLength)) {
+    const auto u = static_cast<unsigned char>(c);
+    result += u < 128 && (std::isalnum(u) != 0)
+                  ? static_cast<char>(std::toupper(u))
+                  : '_';
+  }
+  if (result.empty() ||
+      std::isalpha(static_cast<unsigned char>(result[0])) == 0) {
+    result.insert(0, "S_");
+  }
+  return result;
+}
+
+/// Distinct deck names for the given ones, in order.
+std::vector<std::string> deck_names(const std::vector<std::string>& names) {
+  std::set<std::string> taken = {"NALL", "EALL"};
+  std::vector<std::string> result;
+  for (const std::string& name : names) {
+    const std::string base = plain_name(name);
+    std::string candidate = base;
+    for (int i = 2; !taken.insert(candidate).second; ++i) {
+      candidate = fmt::format("{}_{}", base, i);
+    }
+    result.push_back(candidate);
+  }
+  return result;
+}
+
+/// One line, so that a title cannot smuggle in keywords.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  return text;
+}
+
+void write_ids(Out out, const std::vector<int>& ids) {
+  constexpr std::size_t kPerLine = 12;  // CalculiX reads at most 16
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const bool last = i + 1 == ids.size() || i % kPerLine == kPerLine - 1;
+    fmt::format_to(out, "{}{}", ids[i] + 1, last ? "\n" : ", ");
+  }
+}
+
+class DeckWriter {
+ public:
+  DeckWriter(const TetMesh& mesh, const CalculixDeck& deck)
+      : mesh_(mesh), deck_(deck), names_(deck_names(mesh.labels)) {
+    std::vector<std::string> materials;
+    for (const DeckMaterial& material : deck.materials) {
+      materials.push_back(material.name);
+    }
+    material_names_ = deck_names(materials);
+  }
+
+  std::string text() {
+    check();
+    head();
+    nodes();
+    elements();
+    surfaces();
+    supported_sets();
+    materials();
+    for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
+      step(deck_.steps[s], s);
+    }
+    return fmt::to_string(buffer_);
+  }
+
+ private:
+  Out out() { return std::back_inserter(buffer_); }
+
+  int label(const std::string& surface, const DeckStep& step) const {
+    const int id = mesh_.label_of(surface);
+    if (id < 0) {
+      throw InvalidInput(fmt::format(
+          "step '{}' of the deck names the surface '{}'; the mesh has: {}",
+          step.name, surface, fmt::join(mesh_.labels, ", ")));
+    }
+    return id;
+  }
+
+  void check() const {
+    const int regions =
+        mesh_.element_region.empty()
+            ? 0
+            : 1 + *std::max_element(mesh_.element_region.begin(),
+                                    mesh_.element_region.end());
+    if (static_cast<int>(deck_.materials.size()) != regions) {
+      throw InvalidInput(fmt::format(
+          "the deck has {} materials for {} regions; give one per region",
+          deck_.materials.size(), regions));
+    }
+    for (const DeckStep& step : deck_.steps) {
+      const auto size = static_cast<std::size_t>(step.nodal_forces.size());
+      if (size != 0 && size != 3 * mesh_.nodes.size()) {
+        throw InvalidInput(fmt::format(
+            "step '{}' of the deck has {} nodal forces; {} nodes need {}",
+            step.name, size, mesh_.nodes.size(), 3 * mesh_.nodes.size()));
+      }
+      if (step.supports.empty()) {
+        throw InvalidInput(fmt::format(
+            "step '{}' of the deck has no support; fix a surface", step.name));
+      }
+      for (const DeckSupport& support : step.supports) {
+        check_support(support, step);
+      }
+    }
+  }
+
+  void check_support(const DeckSupport& support, const DeckStep& step) const {
+    const std::vector<int> nodes = nodes_of(support, step);
+    const int count = static_cast<int>(mesh_.nodes.size());
+    if (nodes.empty()) {
+      throw InvalidInput(
+          fmt::format("step '{}' of the deck fixes no node of '{}'", step.name,
+                      support.surface));
+    }
+    for (const int node : nodes) {
+      if (node < 0 || node >= count) {
+        throw InvalidInput(fmt::format(
+            "step '{}' of the deck fixes node {}; the mesh has {} nodes",
+            step.name, node, count));
+      }
+    }
+  }
+
+  void head() {
+    for (const std::string& comment : deck_.comments) {
+      fmt::format_to(out(), "** {}\n", one_line(comment));
+    }
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      fmt::format_to(out(), "** surface '{}' is NSET {}\n",
+                     one_line(mesh_.labels[i]), names_[i]);
+    }
+    for (std::size_t i = 0; i < material_names_.size(); ++i) {
+      fmt::format_to(out(), "** region {} is of '{}', MATERIAL {}\n", i,
+                     one_line(deck_.materials[i].name), material_names_[i]);
+    }
+  }
+
+  void nodes() {
+    // CalculiX reads 20 characters of a number: not more digits than these.
+    fmt::format_to(out(), "*NODE, NSET=NALL\n");
+    for (std::size_t i = 0; i < mesh_.nodes.size(); ++i) {
+      const Vec3& x = mesh_.nodes[i];
+      fmt::format_to(out(), "{}, {:.12e}, {:.12e}, {:.12e}\n", i + 1, x.x(),
+                     x.y(), x.z());
+    }
+  }
+
+  void elements() {
+    const char* type = mesh_.order == 1 ? "C3D4" : "C3D10";
+    for (std::size_t r = 0; r < deck_.materials.size(); ++r) {
+      fmt::format_to(out(), "*ELEMENT, TYPE={}, ELSET=REGION_{}\n", type, r);
+      for (int e = 0; e < mesh_.element_count(); ++e) {
+        if (mesh_.element_region[static_cast<std::size_t>(e)] !=
+            static_cast<int>(r)) {
+          continue;
+        }
+        fmt::format_to(out(), "{}", e + 1);
+        for (const int node : mesh_.element(e)) {
+          fmt::format_to(out(), ", {}", node + 1);
+        }
+        fmt::format_to(out(), "\n");
+      }
+    }
+  }
+
+  std::vector<int> surface_nodes(int id) const {
+    std::vector<int> ids;
+    for (int f = 0; f < mesh_.face_count(); ++f) {
+      if (mesh_.face_label[static_cast<std::size_t>(f)] == id) {
+        const auto face = mesh_.face(f);
+        ids.insert(ids.end(), face.begin(), face.end());
+      }
+    }
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    return ids;
+  }
+
+  void surfaces() {
+    for (std::size_t s = 0; s < names_.size(); ++s) {
+      const std::vector<int> ids = surface_nodes(static_cast<int>(s));
+      if (!ids.empty()) {
+        fmt::format_to(out(), "*NSET, NSET={}\n", names_[s]);
+        write_ids(out(), ids);
+      }
+    }
+  }
+
+  void materials() {
+    for (std::size_t r = 0; r < deck_.materials.size(); ++r) {
+      const DeckMaterial& material = deck_.materials[r];
+      fmt::format_to(out(), "*MATERIAL, NAME={}\n*ELASTIC\n{:.12e}, {:.12e}\n",
+                     material_names_[r], material.youngs_modulus,
+                     material.poisson_ratio);
+      if (material.density > 0.0) {
+        fmt::format_to(out(), "*DENSITY\n{:.12e}\n", material.density);
+      }
+      fmt::format_to(out(), "*SOLID SECTION, ELSET=REGION_{}, MATERIAL={}\n", r,
+                     material_names_[r]);
+    }
+  }
+
+  std::vector<int> nodes_of(const DeckSupport& support,
+                            const DeckStep& step) const {
+    if (support.surface.empty()) {
+      return support.nodes;
+    }
+    return surface_nodes(label(support.surface, step));
+  }
+
+  /// Sets belong to the model: CalculiX takes none after the first step.
+  void supported_sets() {
+    for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
+      std::set<int> nodes;
+      for (const DeckSupport& support : deck_.steps[s].supports) {
+        const std::vector<int> ids = nodes_of(support, deck_.steps[s]);
+        nodes.insert(ids.begin(), ids.end());
+      }
+      fmt::format_to(out(), "*NSET, NSET={}\n", supported_name(s));
+      write_ids(out(), {nodes.begin(), nodes.end()});
+    }
+  }
+
+  void boundary(const DeckStep& step) {
+    fmt::format_to(out(), "*BOUNDARY, OP=NEW\n");
+    for (const DeckSupport& support : step.supports) {
+      std::vector<std::string> targets;
+      if (support.surface.empty()) {
+        for (const int node : support.nodes) {
+          targets.push_back(std::to_string(node + 1));
+        }
+      } else {
+        const int id = label(support.surface, step);
+        targets.push_back(names_[static_cast<std::size_t>(id)]);
+      }
+      const std::array<bool, 3> fixed = {support.fix_x, support.fix_y,
+                                         support.fix_z};
+      for (const std::string& target : targets) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          if (fixed[c]) {
+            fmt::format_to(out(), "{}, {}, {}\n", target, c + 1, c + 1);
+          }
+        }
+      }
+    }
+  }
+
+  void forces(const DeckStep& step) {
+    if (step.nodal_forces.size() != 0) {
+      fmt::format_to(out(), "*CLOAD, OP=NEW\n");
+      for (Eigen::Index i = 0; i < step.nodal_forces.size(); ++i) {
+        if (step.nodal_forces[i] != 0.0) {
+          fmt::format_to(out(), "{}, {}, {:.12e}\n", i / 3 + 1, i % 3 + 1,
+                         step.nodal_forces[i]);
+        }
+      }
+    }
+    if (!step.pressures.empty()) {
+      fmt::format_to(out(), "*DLOAD, OP=NEW\n");
+    }
+    for (const DeckPressure& load : step.pressures) {
+      const int id = label(load.surface, step);
+      for (int f = 0; f < mesh_.face_count(); ++f) {
+        if (mesh_.face_label[static_cast<std::size_t>(f)] == id) {
+          fmt::format_to(out(), "{}, P{}, {:.12e}\n",
+                         mesh_.face_element[static_cast<std::size_t>(f)] + 1,
+                         face_number(f), load.pressure);
+        }
+      }
+    }
+  }
+
+  int face_number(int f) const {
+    const auto face = mesh_.face(f);
+    const auto element =
+        mesh_.element(mesh_.face_element[static_cast<std::size_t>(f)]);
+    for (int corner = 0; corner < 4; ++corner) {
+      if (std::find(face.begin(), face.begin() + 3, element[corner]) ==
+          face.begin() + 3) {
+        return calculix_face(corner);
+      }
+    }
+    throw MeshError(fmt::format(
+        "boundary face {} does not belong to the element {} behind it", f,
+        mesh_.face_element[static_cast<std::size_t>(f)]));
+  }
+
+  void step(const DeckStep& step, std::size_t number) {
+    fmt::format_to(out(), "** load case '{}'\n*STEP\n*STATIC, SOLVER={}\n",
+                   one_line(step.name), deck_.solver);
+    boundary(step);
+    forces(step);
+    if (deck_.output != DeckOutput::Print) {
+      fmt::format_to(out(), "*NODE FILE\nU, RF\n*EL FILE\nS\n");
+    }
+    if (deck_.output != DeckOutput::Viewer) {
+      fmt::format_to(out(),
+                     "*NODE PRINT, NSET=NALL\nU\n"
+                     "*NODE PRINT, NSET={}, TOTALS=ONLY\nRF\n",
+                     supported_name(number));
+    }
+    fmt::format_to(out(), "*END STEP\n");
+  }
+
+  static std::string supported_name(std::size_t step) {
+    return fmt::format("SUPPORTED_{}", step + 1);
+  }
+
+  const TetMesh& mesh_;
+  const CalculixDeck& deck_;
+  std::vector<std::string> names_, material_names_;
+  fmt::memory_buffer buffer_;
+};
+
+}  // namespace
+
+int calculix_face(int opposite_corner) {
+  constexpr std::array<int, 4> kFace = {3, 4, 2, 1};
+  return kFace.at(static_cast<std::size_t>(opposite_corner));
+}
+
+std::string calculix_deck(const TetMesh& mesh, const CalculixDeck& deck) {
+  return DeckWriter(mesh, deck).text();
+}
+
+void write_calculix_inp(const std::filesystem::path& path, const TetMesh& mesh,
+                        const CalculixDeck& deck) {
+  write_file(path, calculix_deck(mesh, deck));
+}
+
+}  // namespace meniscus

@@ -1,0 +1,21 @@
+/// Binary STL: facets and their normals, no names, no unit of its own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/surface_mesh.h"
+
+namespace meniscus {
+
+struct StlOptions {
+  std::string name;  // goes, shortened, into the 80-byte header
+  std::string unit;  // of the coordinates, into the header: "mm"
+};
+
+/// Coordinates become 32-bit floats. Throws InvalidInput (no facets, a bad
+/// point id, a coordinate that is not finite or too large) and IoError.
+void write_stl(const std::filesystem::path& path, const SurfaceMesh& mesh,
+               const StlOptions& options = {});
+
+}  // namespace meniscus

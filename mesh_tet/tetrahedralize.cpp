@@ -1,0 +1,263 @@
+#include "mesh_tet/tetrahedralize.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "mesh_tet/smooth_tets.h"
+#include "mesh_tet/surface_fit.h"
+#include "mesh_tet/tet_boundary.h"
+#include "mesh_tet/tetgen_child.h"
+
+namespace meniscus {
+
+namespace {
+
+/// The mesh has the surface's volume up to rounding; more is a wrong mesh.
+constexpr double kVolumeTolerance = 1e-9;
+
+/// TetGen's working memory and time beyond this would exceed any limit.
+constexpr double kMostElements = 2e8;
+
+Failure surface_failure(const std::string& message) {
+  return {FailureKind::SurfaceInvalid, message};
+}
+
+Failure meshing_failure(const std::string& message) {
+  return {FailureKind::MeshingFailed, message};
+}
+
+void check(const TetrahedralizeOptions& options) {
+  const auto require = [](bool good, const char* name, double value,
+                          const char* bound) {
+    if (!good) {
+      throw InvalidInput(
+          fmt::format("tetrahedralize: {} is {}, must be finite and {}", name,
+                      value, bound));
+    }
+  };
+  const auto positive = [&](const char* name, double value) {
+    require(std::isfinite(value) && value > 0.0, name, value, "positive");
+  };
+  positive("edge", options.edge.value_or(1.0));
+  positive("time_limit", options.time_limit);
+  positive("memory_limit", options.memory_limit);
+  require(std::isfinite(options.radius_edge_ratio) &&
+              options.radius_edge_ratio >= 1.0,
+          "radius_edge_ratio", options.radius_edge_ratio, "at least 1");
+}
+
+/// Maps the surface to an edge of about 1 around the origin, by a power of
+/// two: TetGen's absolute constants then suit any unit of length.
+struct Frame {
+  Vec3 center;
+  double scale;
+
+  Frame(const Points& points, double edge)
+      : scale(std::exp2(-std::round(std::log2(edge)))) {
+    Vec3 low = points.front();
+    Vec3 high = points.front();
+    for (const Vec3& p : points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    center = 0.5 * low + 0.5 * high;
+  }
+  Vec3 into(const Vec3& p) const { return scale * (p - center); }
+  Vec3 back(const Vec3& p) const { return p / scale + center; }
+};
+
+/// Elements from TetGen's, every volume positive. Its corners are ordered
+/// the other way round.
+std::string take_elements(const TetgenOutput& output, TetMesh& mesh) {
+  mesh.elements = output.elements;
+  for (std::size_t e = 0; e < mesh.elements.size(); e += 4) {
+    int* ids = mesh.elements.data() + e;
+    const auto volume = [&] {
+      return tet_volume({output.nodes[ids[0]], output.nodes[ids[1]],
+                         output.nodes[ids[2]], output.nodes[ids[3]]});
+    };
+    if (volume() < 0.0) {
+      std::swap(ids[0], ids[1]);
+    }
+    if (!(volume() > 0.0)) {
+      return fmt::format("element {} is flat", e / 4);
+    }
+  }
+  mesh.element_region.assign(mesh.elements.size() / 4, 0);
+  return {};
+}
+
+/// Surface points first and unchanged, inner nodes mapped back.
+std::string take_nodes(const SurfaceMesh& surface, const Frame& frame,
+                       const TetgenOutput& output, TetMesh& mesh) {
+  const std::size_t count = surface.points.size();
+  if (output.nodes.size() < count) {
+    return fmt::format("only {} of the {} surface points are left",
+                       output.nodes.size(), count);
+  }
+  for (std::size_t n = 0; n < count; ++n) {
+    if (output.nodes[n] != frame.into(surface.points[n])) {
+      return fmt::format("surface point {} was moved", n);
+    }
+  }
+  mesh.nodes = surface.points;
+  for (std::size_t n = count; n < output.nodes.size(); ++n) {
+    mesh.nodes.push_back(frame.back(output.nodes[n]));
+  }
+  mesh.corner_count = static_cast<int>(mesh.nodes.size());
+  return {};
+}
+
+std::string check_volume(const TetMesh& mesh, double expected) {
+  double volume = 0.0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const double v = corner_volume(mesh, e);
+    if (!(v > 0.0)) {
+      return fmt::format("element {} has no volume", e);
+    }
+    volume += v;
+  }
+  if (!(std::abs(volume - expected) <= kVolumeTolerance * expected)) {
+    return fmt::format("the mesh has volume {:.12g}, the surface {:.12g}",
+                       volume, expected);
+  }
+  return {};
+}
+
+/// The mesh from TetGen's answer; returns why it is none, or nothing.
+std::string find_fault(const SurfaceMesh& surface, const Frame& frame,
+                       const TetgenOutput& output, double volume,
+                       TetMesh& mesh) {
+  if (output.elements.empty()) {
+    return "it has no elements";
+  }
+  std::string fault = take_elements(output, mesh);
+  if (fault.empty()) {
+    fault = take_nodes(surface, frame, output, mesh);
+  }
+  if (fault.empty()) {
+    fault = attach_surface(surface, mesh);
+  }
+  return fault.empty() ? check_volume(mesh, volume) : fault;
+}
+
+std::optional<Failure> check_surface_points(const SurfaceMesh& surface) {
+  if (!flat(surface.points).allFinite()) {
+    return surface_failure("a surface point is not finite");
+  }
+  std::vector<char> used(surface.points.size(), 0);
+  for (const Triangle& t : surface.facets) {
+    for (const int p : t) {
+      if (p < 0 || p >= static_cast<int>(used.size())) {
+        return surface_failure(
+            fmt::format("a facet has corner {} of {} points", p, used.size()));
+      }
+      used[p] = 1;
+    }
+  }
+  for (std::size_t p = 0; p < used.size(); ++p) {
+    if (used[p] == 0) {
+      return surface_failure(
+          fmt::format("surface point {} belongs to no facet; drop it", p));
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Failure> run(const SurfaceMesh& surface,
+                           const TetrahedralizeOptions& options,
+                           Tetrahedralization& result) {
+  if (surface.facets.empty() ||
+      surface.facet_label.size() != surface.facets.size()) {
+    return surface_failure(
+        fmt::format("the surface has {} facets and {} facet labels",
+                    surface.facets.size(), surface.facet_label.size()));
+  }
+  if (auto failure = check_surface_points(surface)) {
+    return failure;
+  }
+  const SurfaceFit fit = fit_surface(surface);
+  if (!fit.problem.empty()) {
+    return surface_failure(fit.problem);
+  }
+  if (!(fit.volume > 0.0)) {
+    return surface_failure(
+        fmt::format("the surface encloses the volume {:.6g}, which cannot be "
+                    "filled; are its facets inside out?",
+                    fit.volume));
+  }
+  const double edge = options.edge.value_or(mean_edge_length(surface));
+  const double bound =
+      kVolumeFactor * edge * edge * edge / (6.0 * std::numbers::sqrt2);
+  if (fit.volume / bound > kMostElements) {
+    return meshing_failure(fmt::format(
+        "elements of edge {:.6g} in a volume of {:.6g} would be more than "
+        "{:.0e}; enlarge the edge",
+        edge, fit.volume, kMostElements));
+  }
+  const Frame frame(surface.points, edge);
+  Points points;
+  points.reserve(surface.points.size());
+  for (const Vec3& p : surface.points) {
+    points.push_back(frame.into(p));
+  }
+  TetgenInput input{&points, &surface.facets, {}, {}};
+  for (const Vec3& p : fit.cavities) {
+    input.holes.push_back(frame.into(p));
+  }
+  input.switches = fmt::format("pYQq{:.6f}a{:.12f}", options.radius_edge_ratio,
+                               bound * std::pow(frame.scale, 3));
+  const Timer timer;
+  const TetgenOutput output = run_tetgen(
+      input, {options.time_limit, options.memory_limit, options.monitor});
+  result.tetgen_seconds = timer.seconds();
+  if (output.failure) {
+    return meshing_failure(*output.failure);
+  }
+  const std::string fault =
+      find_fault(surface, frame, output, fit.volume, result.mesh);
+  if (!fault.empty()) {
+    return meshing_failure(fmt::format(
+        "TetGen's mesh cannot be used: {}; try another element edge", fault));
+  }
+  SmoothOptions smooth;
+  smooth.below_deg = options.improve_below_deg;
+  smooth_inner_nodes(result.mesh, static_cast<int>(surface.points.size()),
+                     smooth);
+  result.quality = tet_quality(result.mesh);
+  if (result.quality.min_dihedral_deg < kLeastDihedralDeg) {
+    const Vec3& at =
+        result.mesh.nodes[result.mesh.element(result.quality.worst_element)[0]];
+    return meshing_failure(fmt::format(
+        "the best mesh has a dihedral angle of {:.3g} degrees near ({:.6g}, "
+        "{:.6g}, {:.6g}), the least is {}; remesh the surface more evenly "
+        "there, or change the element edge",
+        result.quality.min_dihedral_deg, at.x(), at.y(), at.z(),
+        kLeastDihedralDeg));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Tetrahedralization tetrahedralize(const SurfaceMesh& surface,
+                                  const TetrahedralizeOptions& options) {
+  check(options);
+  const Timer timer;
+  Tetrahedralization result;
+  if (options.monitor != nullptr) {
+    throw_if_stopped(*options.monitor, "mesh");
+  }
+  result.failure = run(surface, options, result);
+  if (result.failure) {
+    result.mesh = {};
+    result.quality = {};
+  }
+  result.seconds = timer.seconds();
+  return result;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,191 @@
+#include "optimize/check_gradient.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace meniscus {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class Sweep {
+ public:
+  Sweep(const std::vector<Variable>& variables, const VectorFunction& function,
+        Monitor& monitor)
+      : variables_(variables), function_(function), monitor_(monitor) {
+    x_.resize(static_cast<Eigen::Index>(variables.size()));
+    for (std::size_t j = 0; j < variables.size(); ++j) {
+      x_[static_cast<Eigen::Index>(j)] = variables[j].initial;
+    }
+    const VectorAnswer answer = ask(x_);
+    if (answer.failure) {
+      throw InvalidInput(
+          fmt::format("gradient check: the initial values cannot be evaluated "
+                      "({}: {}); start from a design that works",
+                      name_of(answer.failure->kind), answer.failure->message));
+    }
+    centre_ = answer.values;
+  }
+
+  // d values / d x_j with step h; NaN when a point fails.
+  VectorX difference(Eigen::Index j, double h) {
+    const Variable& variable = variables_[static_cast<std::size_t>(j)];
+    if (x_[j] + h <= variable.upper && x_[j] - h >= variable.lower) {
+      return (at(j, h) - at(j, -h)) / (2.0 * h);
+    }
+    const double s = x_[j] + 2.0 * h <= variable.upper ? h : -h;
+    return (4.0 * at(j, s) - 3.0 * centre_ - at(j, 2.0 * s)) / (2.0 * s);
+  }
+
+  const VectorX& centre() const { return centre_; }
+  int evaluations() const { return evaluations_; }
+
+ private:
+  VectorAnswer ask(const VectorX& x) {
+    throw_if_stopped(monitor_, "gradient check");
+    ++evaluations_;
+    return function_(x);
+  }
+
+  VectorX at(Eigen::Index j, double h) {
+    VectorX x = x_;
+    x[j] += h;
+    const VectorAnswer answer = ask(x);
+    if (answer.failure || answer.values.size() != centre_.size()) {
+      return VectorX::Constant(centre_.size(), kNaN);
+    }
+    return answer.values;
+  }
+
+  const std::vector<Variable>& variables_;
+  const VectorFunction& function_;
+  Monitor& monitor_;
+  VectorX x_;
+  VectorX centre_;
+  int evaluations_ = 0;
+};
+
+void check_input(const std::vector<Variable>& variables,
+                 const std::vector<std::string>& responses,
+                 const Eigen::MatrixXd& given,
+                 const GradientCheckOptions& options) {
+  if (given.rows() != static_cast<Eigen::Index>(responses.size()) ||
+      given.cols() != static_cast<Eigen::Index>(variables.size())) {
+    throw InvalidInput(fmt::format(
+        "gradient check: the given derivatives are {} x {}, expected {} "
+        "responses x {} variables",
+        given.rows(), given.cols(), responses.size(), variables.size()));
+  }
+  const bool steps_fit =
+      options.steps.size() >= 2 &&
+      std::all_of(options.steps.begin(), options.steps.end(),
+                  [](double h) { return h > 0.0 && h <= 0.25; });
+  if (!steps_fit) {
+    throw InvalidInput(
+        "gradient check: give at least two steps, each in (0, 0.25] of the "
+        "variable's range");
+  }
+  for (const Variable& variable : variables) {
+    if (!(variable.lower < variable.upper)) {
+      throw InvalidInput(fmt::format(
+          "gradient check: design variable '{}' has bounds [{}, {}]; the lower "
+          "must be below the upper",
+          variable.name, variable.lower, variable.upper));
+    }
+  }
+}
+
+// The plateau: where two neighbours of the sweep differ least.
+void choose_step(const std::vector<double>& steps, double range,
+                 GradientCheckRow& row) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k + 1 < row.differences.size(); ++k) {
+    const double gap = std::abs(row.differences[k] - row.differences[k + 1]);
+    if (gap < least) {  // false for NaN
+      least = gap;
+      row.difference = row.differences[k + 1];
+      row.step = steps[k + 1] * range;
+    }
+  }
+}
+
+void judge(double value, double range, double tolerance,
+           GradientCheckRow& row) {
+  row.error = std::abs(row.given - row.difference);
+  row.allowed =
+      tolerance * std::max(std::abs(row.given), std::abs(value) / range);
+  row.passed = row.error <= row.allowed;  // false for NaN
+}
+
+void summarise(GradientCheckReport& report) {
+  const GradientCheckRow* worst = nullptr;
+  double worst_excess = 0.0;
+  for (const GradientCheckRow& row : report.rows) {
+    const double excess = row.error <= row.allowed ? 0.0
+                          : std::isfinite(row.error)
+                              ? row.error - row.allowed
+                              : std::numeric_limits<double>::infinity();
+    if (!row.passed && (worst == nullptr || excess > worst_excess)) {
+      worst = &row;
+      worst_excess = excess;
+    }
+  }
+  report.passed = worst == nullptr;
+  report.message =
+      report.passed
+          ? fmt::format("all {} derivatives agree with central differences",
+                        report.rows.size())
+          : fmt::format(
+                "d {} / d {}: given {:.8g}, by differences {:.8g} "
+                "(step {:.3g}); they differ by {:.2g}, allowed {:.2g}",
+                worst->response, worst->variable, worst->given,
+                worst->difference, worst->step, worst->error, worst->allowed);
+}
+
+}  // namespace
+
+GradientCheckReport check_gradient(const std::vector<Variable>& variables,
+                                   const std::vector<std::string>& responses,
+                                   const VectorFunction& function,
+                                   const Eigen::MatrixXd& given,
+                                   const GradientCheckOptions& options) {
+  check_input(variables, responses, given, options);
+  Monitor& monitor =
+      options.monitor != nullptr ? *options.monitor : silent_monitor();
+  Sweep sweep(variables, function, monitor);
+  if (sweep.centre().size() != given.rows()) {
+    throw InvalidInput(fmt::format(
+        "gradient check: the function answers with {} values, expected {}",
+        sweep.centre().size(), given.rows()));
+  }
+
+  GradientCheckReport report;
+  report.rows.resize(responses.size() * variables.size());
+  for (std::size_t j = 0; j < variables.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    const double range = variables[j].upper - variables[j].lower;
+    std::vector<VectorX> sweep_values;
+    for (const double h : options.steps) {
+      sweep_values.push_back(sweep.difference(column, h * range));
+    }
+    for (std::size_t i = 0; i < responses.size(); ++i) {
+      const auto line = static_cast<Eigen::Index>(i);
+      GradientCheckRow& row = report.rows[i * variables.size() + j];
+      row.response = responses[i];
+      row.variable = variables[j].name;
+      row.given = given(line, column);
+      for (const VectorX& values : sweep_values) {
+        row.differences.push_back(values[line]);
+      }
+      choose_step(options.steps, range, row);
+      judge(sweep.centre()[line], range, options.tolerance, row);
+    }
+  }
+  report.evaluations = sweep.evaluations();
+  summarise(report);
+  return report;
+}
+
+}  // namespace meniscus

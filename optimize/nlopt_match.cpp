@@ -1,0 +1,119 @@
+#include "optimize/nlopt_match.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlopt.hpp>
+
+namespace meniscus {
+namespace {
+
+// A first step of a tenth of the range sees past rounding and stays well
+// inside the bounds (BOBYQA needs them two steps apart).
+constexpr double kFirstStep = 0.1;
+// Below these the proposals no longer differ in any figure that matters.
+constexpr double kStepTolerance = 1e-8;  // x range
+constexpr double kCostTolerance = 1e-10;
+
+struct Method {
+  std::string name;
+  nlopt::algorithm algorithm;
+};
+
+const std::vector<Method>& methods() {
+  static const std::vector<Method> table = {
+      {"bobyqa", nlopt::LN_BOBYQA},     {"cobyla", nlopt::LN_COBYLA},
+      {"direct_l", nlopt::GN_DIRECT_L}, {"neldermead", nlopt::LN_NELDERMEAD},
+      {"sbplx", nlopt::LN_SBPLX},
+  };
+  return table;
+}
+
+nlopt::algorithm algorithm_of(const std::string& name) {
+  for (const Method& method : methods()) {
+    if (method.name == name) {
+      return method.algorithm;
+    }
+  }
+  throw InvalidInput("match: NLopt method '" + name + "' is not known");
+}
+
+struct Context {
+  MatchEvaluator* evaluator = nullptr;
+  nlopt::opt* optimizer = nullptr;
+};
+
+// Called from C: nothing may be thrown here.
+double objective(unsigned n, const double* x, double* /*gradient*/,
+                 void* data) {
+  const Context& context = *static_cast<Context*>(data);
+  MatchEvaluator& evaluator = *context.evaluator;
+  const ResidualAnswer* answer = evaluator.evaluate(
+      Eigen::Map<const VectorX>(x, n), EvaluationPhase::Step);
+  const double penalty = 2.0 * evaluator.worst_cost();
+  if (answer == nullptr) {
+    context.optimizer->force_stop();
+    return penalty;
+  }
+  return answer->failure ? penalty : cost_of(*answer);
+}
+
+std::vector<double> to_vector(const VectorX& x) {
+  return {x.data(), x.data() + x.size()};
+}
+
+const char* words(nlopt::result result) {
+  switch (result) {
+    case nlopt::FTOL_REACHED:
+      return "the cost no longer changes";
+    case nlopt::XTOL_REACHED:
+      return "the steps are too small to matter";
+    case nlopt::ROUNDOFF_LIMITED:
+      return "rounding limits further progress";
+    default:
+      return "the method ended by itself";
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& nlopt_match_methods() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const Method& method : methods()) {
+      list.push_back(method.name);
+    }
+    return list;
+  }();
+  return names;
+}
+
+BackendResult nlopt_match(MatchEvaluator& evaluator, const VectorX& start,
+                          const std::string& method) {
+  nlopt::opt optimizer(algorithm_of(method),
+                       static_cast<unsigned>(evaluator.size()));
+  Context context{&evaluator, &optimizer};
+  optimizer.set_min_objective(objective, &context);
+  optimizer.set_lower_bounds(to_vector(evaluator.lower()));
+  optimizer.set_upper_bounds(to_vector(evaluator.upper()));
+  optimizer.set_initial_step(to_vector(kFirstStep * evaluator.ranges()));
+  optimizer.set_xtol_abs(to_vector(kStepTolerance * evaluator.ranges()));
+  optimizer.set_ftol_rel(kCostTolerance);
+
+  BackendResult result;
+  std::vector<double> x = to_vector(start);
+  double cost = 0.0;
+  try {
+    result.message = words(optimizer.optimize(x, cost));
+  } catch (const nlopt::forced_stop&) {
+    result.message = "stopped";
+  } catch (const nlopt::roundoff_limited&) {
+    result.message = words(nlopt::ROUNDOFF_LIMITED);
+  } catch (const std::exception& error) {
+    result.message = fmt::format("NLopt gave up: {}", error.what());
+  }
+  result.iterations = optimizer.get_numevals();
+  return result;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,99 @@
+/// The study database of one results folder, FOLDER/study.sqlite: every
+/// evaluation, on disk before the next one begins.
+///
+/// SQLite in WAL mode with synchronous = FULL: a commit is in the log and the
+/// log is flushed to the disk when append() returns, so neither kill -9 nor a
+/// power cut loses a finished evaluation (NORMAL would survive the kill but
+/// not the power cut). After a clean end it is one plain file again.
+///
+/// Numbers that must come back with the same bits (inputs, responses,
+/// gradient) are stored as little-endian IEEE doubles, not as text.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "core/types.h"
+
+namespace meniscus {
+
+struct StudyMeta {
+  int schema_version = 0;       // set by the store
+  std::string program_version;  // that began the study
+  std::string case_hash;        // of all that the evaluations depend on
+  std::string case_text;        // the case file, word for word
+  std::string created;          // UTC, "2026-01-31T12:00:00Z"; set by the store
+};
+
+struct EvaluationRecord {
+  int number = 0;              // from 1; set by append()
+  std::string model = "base";  // names the frozen model, when a study has more
+  std::string phase;           // why: "start", "difference", "step", ...
+  std::vector<std::string> input_names;
+  VectorX inputs;  // design variables
+  std::vector<std::string> response_names;
+  VectorX responses;               // empty when there is a failure
+  Eigen::MatrixXd gradient;        // d response_i / d input_j, may be empty
+  std::optional<double> mismatch;  // the largest, for people and history.csv
+  std::optional<Failure> failure;
+  std::string figures = "{}";  // of film, mesh and elasticity, JSON text
+  std::vector<std::pair<std::string, double>> seconds;  // by stage [s]
+};
+
+struct StudyStoreOptions {
+  double busy_timeout = 5.0;  // [s] to wait for a lock on the database
+};
+
+/// Messages of IoError: full disk, damaged file (which is left as it is),
+/// locked database. InvalidInput: folder in use by another run, database of
+/// another schema version or another program, study of another case.
+class StudyStore {
+ public:
+  /// An empty study. One that is there already is not lost: it is renamed to
+  /// study-1.sqlite, study-2.sqlite, ... (the first free number).
+  /// Locks the folder against other runs for as long as the store lives.
+  static StudyStore start(const std::string& folder, const StudyMeta& meta,
+                          const StudyStoreOptions& options = {});
+
+  /// Goes on with the study in the folder, which must be of the same case
+  /// hash; an empty one when there is none. Locks the folder likewise.
+  /// Replay is by find(): an evaluation is a pure function of its key.
+  static StudyStore resume(const std::string& folder, const StudyMeta& meta,
+                           const StudyStoreOptions& options = {});
+
+  /// To look at, also while a run is writing; append() throws InvalidInput.
+  static StudyStore read(const std::string& folder,
+                         const StudyStoreOptions& options = {});
+
+  ~StudyStore();
+  StudyStore(StudyStore&&) noexcept;
+  StudyStore& operator=(StudyStore&&) noexcept;
+
+  /// As stored; program_version may be another one than this program's, and
+  /// then bits may differ: a caller that resumes should warn.
+  const StudyMeta& meta() const;
+
+  /// Commits the record and returns its number.
+  int append(const EvaluationRecord& record);
+
+  /// The first record of this case hash, model and exact bits of inputs.
+  std::optional<EvaluationRecord> find(const std::string& model,
+                                       const VectorX& inputs) const;
+
+  int size() const;
+  std::vector<EvaluationRecord> all() const;  // by number
+
+ private:
+  struct Impl;
+  explicit StudyStore(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The kind that name_of() writes as `name`; throws IoError for no kind.
+FailureKind failure_kind_of(const std::string& name);
+
+}  // namespace meniscus

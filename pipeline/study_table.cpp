@@ -1,0 +1,131 @@
+#include "pipeline/study_table.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace meniscus {
+namespace {
+
+using Row = std::vector<std::string>;
+
+void add_new(const std::vector<std::string>& names, Row& columns) {
+  for (const std::string& name : names) {
+    if (std::find(columns.begin(), columns.end(), name) == columns.end()) {
+      columns.push_back(name);
+    }
+  }
+}
+
+std::optional<double> value_of(const std::string& name,
+                               const std::vector<std::string>& names,
+                               const VectorX& values) {
+  const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+  return at < values.size() ? std::optional(values[at]) : std::nullopt;
+}
+
+// Head line and one line per record; `number` writes a double.
+template <typename Number>
+std::vector<Row> table(const std::vector<EvaluationRecord>& records,
+                       const Number& number) {
+  Row inputs;
+  Row responses;
+  for (const EvaluationRecord& record : records) {
+    add_new(record.input_names, inputs);
+    add_new(record.response_names, responses);
+  }
+  const auto cell = [&number](const std::optional<double>& value) {
+    return value ? number(*value) : std::string();
+  };
+  Row head = {"evaluation"};
+  head.insert(head.end(), inputs.begin(), inputs.end());
+  head.insert(head.end(), responses.begin(), responses.end());
+  for (const char* name : {"mismatch", "status", "seconds", "phase"}) {
+    head.emplace_back(name);
+  }
+  std::vector<Row> rows = {head};
+  for (const EvaluationRecord& record : records) {
+    Row row = {std::to_string(record.number)};
+    for (const std::string& name : inputs) {
+      row.push_back(cell(value_of(name, record.input_names, record.inputs)));
+    }
+    for (const std::string& name : responses) {
+      row.push_back(
+          cell(value_of(name, record.response_names, record.responses)));
+    }
+    const double seconds = std::accumulate(
+        record.seconds.begin(), record.seconds.end(), 0.0,
+        [](double sum, const auto& stage) { return sum + stage.second; });
+    row.push_back(cell(record.mismatch));
+    row.emplace_back(record.failure ? name_of(record.failure->kind) : "ok");
+    row.push_back(number(seconds));
+    row.push_back(record.phase);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string quoted(const std::string& cell) {
+  if (cell.find_first_of(",\"\r\n") == std::string::npos) {
+    return cell;
+  }
+  std::string text = "\"";
+  for (const char c : cell) {
+    text += c == '"' ? "\"\"" : std::string(1, c);
+  }
+  return text + "\"";
+}
+
+// Characters of UTF-8 text as a terminal counts them, near enough.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+}  // namespace
+
+std::string history_csv(const std::vector<EvaluationRecord>& records) {
+  std::vector<Row> rows =
+      table(records, [](double value) { return fmt::format("{}", value); });
+  rows[0].emplace_back("message");
+  std::string text;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i > 0) {
+      const std::optional<Failure>& failure = records[i - 1].failure;
+      rows[i].push_back(failure ? failure->message : "");
+    }
+    for (std::size_t j = 0; j < rows[i].size(); ++j) {
+      text += (j == 0 ? "" : ",") + quoted(rows[i][j]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string study_table_text(const std::vector<EvaluationRecord>& records) {
+  const std::vector<Row> rows =
+      table(records, [](double value) { return fmt::format("{:.6g}", value); });
+  std::vector<std::size_t> widths(rows[0].size(), 0);
+  for (const Row& row : rows) {
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      widths[j] = std::max(widths[j], width_of(row[j]));
+    }
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      text += (j == 0 ? "" : "  ") +
+              std::string(widths[j] - width_of(row[j]), ' ') + row[j];
+    }
+    text += '\n';
+  }
+  for (const EvaluationRecord& record : records) {
+    if (record.failure) {
+      text += fmt::format("{}: {}\n", record.number, record.failure->message);
+    }
+  }
+  return text;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,47 @@
+/// What a picture shows, as handed from the program to its helper.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+namespace meniscus {
+
+enum class PictureKind {
+  Part,     // the deflected part coloured by von Mises stress
+  Film,     // the liquid films with their rims and caps
+  Overview  // film, cut mesh and stressed part side by side
+};
+
+/// An arrow on a loaded surface.
+struct PictureLoad {
+  std::string surface;
+  Vec3 direction = Vec3::Zero();  // its length is relative to the others'
+  std::string label;              // "40 kN"
+};
+
+/// Paths are UTF-8. Part needs `part_surface` with the point fields
+/// `displacement` and `von_mises` and the cell data `surface`; Film needs
+/// `film`; Overview needs both and `part`.
+struct PictureJob {
+  PictureKind kind = PictureKind::Part;
+  std::string output;                 // PNG, replaced whole
+  std::string part;                   // part.vtu
+  std::string part_surface;           // part_surface.vtp
+  std::string film;                   // film.vtp
+  std::string title;                  // one line, may be empty
+  int width = 1600;                   // [pixel], 200 to 8000
+  int height = 1000;                  // [pixel], 200 to 8000
+  std::vector<std::string> supports;  // surfaces that are held
+  std::vector<std::string> solids;    // of the film: caps, plates
+  std::vector<PictureLoad> loads;
+  Vec3 view = Vec3(0.42, -1.0, 0.50);  // from the part to the eye; z is up
+  bool facet_edges = false;            // Film: thin lines along facets
+};
+
+/// Jobs as one JSON text and back; the latter throws InvalidInput.
+std::string to_json(const std::vector<PictureJob>& jobs);
+std::vector<PictureJob> picture_jobs_from_json(const std::string& text);
+
+}  // namespace meniscus

@@ -1,0 +1,305 @@
+#include "report/render_views.h"
+
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kShownDeflection = 0.06;  // x bounding-box diagonal, at most
+constexpr double kArrowLength = 0.20;      // x diagonal, of the largest load
+constexpr double kRobustPart = 0.998;      // of the nodes lie below the bar's
+                                           // top: corners peak without limit
+constexpr Colour kLoadColour = {0.80, 0.18, 0.22};
+constexpr Colour kGroundColour = {0.42, 0.45, 0.50};
+constexpr Colour kInk = {0.13, 0.16, 0.20};
+
+std::vector<char> every_label(const SurfaceMesh& mesh) {
+  return std::vector<char>(mesh.labels.size(), 1);
+}
+
+std::vector<char> labels_among(const SurfaceMesh& mesh,
+                               const std::vector<std::string>& names) {
+  std::vector<char> use(mesh.labels.size(), 0);
+  for (std::size_t l = 0; l < use.size(); ++l) {
+    use[l] = static_cast<char>(
+        std::find(names.begin(), names.end(), mesh.labels[l]) != names.end());
+  }
+  return use;
+}
+
+/// Middle and mean normal (unit) of one surface.
+struct Patch {
+  Vec3 centre = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();
+  bool found = false;
+};
+
+Patch patch_of(const SurfaceMesh& mesh, const std::string& name) {
+  Patch patch;
+  const int label = mesh.label_of(name);
+  double area = 0.0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (label < 0 || mesh.facet_label[f] != label) {
+      continue;
+    }
+    const Vec3 n = area_vector2(mesh, static_cast<int>(f));
+    for (const int id : mesh.facets[f]) {
+      patch.centre += n.norm() / 3 * mesh.points[static_cast<std::size_t>(id)];
+    }
+    patch.normal += n;
+    area += n.norm();
+  }
+  patch.found = area > 0.0;
+  if (patch.found) {
+    patch.centre /= area;
+    patch.normal.normalize();
+  }
+  return patch;
+}
+
+/// A block on which the surface stands, a little wider than it.
+SurfaceMesh ground_block(const SurfaceMesh& mesh, const std::string& name,
+                         double diagonal) {
+  constexpr double kWider = 1.14;
+  const Patch patch = patch_of(mesh, name);
+  const double gap = 0.001 * diagonal;
+  const double thickness = 0.035 * diagonal;
+  SurfaceMesh block;
+  block.labels = {"bottom", "top", "wall"};
+  SurfaceMesh only;
+  only.labels = {"surface"};
+  const int label = mesh.label_of(name);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (mesh.facet_label[f] == label) {
+      only.facets.push_back(mesh.facets[f]);
+      only.facet_label.push_back(0);
+    }
+  }
+  const int count = static_cast<int>(mesh.points.size());
+  for (const double depth : {gap, thickness}) {
+    for (const Vec3& p : mesh.points) {
+      block.points.push_back(patch.centre + kWider * (p - patch.centre) +
+                             depth * patch.normal);
+    }
+  }
+  const auto add = [&](int a, int b, int c, int which) {
+    block.facets.push_back({a, b, c});
+    block.facet_label.push_back(which);
+  };
+  for (const Triangle& t : only.facets) {
+    add(t[0] + count, t[1] + count, t[2] + count, 0);
+    add(t[0], t[2], t[1], 1);
+  }
+  const std::vector<Edge> rim = rim_edges(only);
+  for (const Triangle& t : only.facets) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = t[k];
+      const int b = t[(k + 1) % 3];
+      const Edge key{std::min(a, b), std::max(a, b)};
+      if (std::find(rim.begin(), rim.end(), key) != rim.end()) {
+        add(a, b, b + count, 2);
+        add(a, b + count, a + count, 2);
+      }
+    }
+  }
+  return block;
+}
+
+void draw_supports(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
+                   double diagonal) {
+  for (const std::string& name : job.supports) {
+    if (patch_of(mesh, name).found) {
+      const SurfaceMesh block = ground_block(mesh, name, diagonal);
+      SurfaceStyle style;
+      style.colour = kGroundColour;
+      const ShadedSurface shaded = shade(block, every_label(block));
+      panel.add_surface(shaded.data, style);
+      Points seen;
+      for (const int id : shaded.source) {
+        seen.push_back(block.points[static_cast<std::size_t>(id)]);
+      }
+      panel.show(seen);
+    }
+  }
+}
+
+void draw_loads(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
+                double diagonal, int text) {
+  double largest = 0.0;
+  for (const PictureLoad& load : job.loads) {
+    largest = std::max(largest, load.direction.norm());
+  }
+  for (const PictureLoad& load : job.loads) {
+    const Patch patch = patch_of(mesh, load.surface);
+    if (!patch.found || load.direction.norm() == 0.0) {
+      continue;
+    }
+    const Vec3 along = load.direction.normalized();
+    // Small loads stay visible: an arrow is at least half the largest.
+    const double length =
+        kArrowLength * diagonal * (0.5 + 0.5 * load.direction.norm() / largest);
+    const double gap = 0.008 * diagonal;
+    const bool presses = along.dot(patch.normal) < 0.0;
+    const Vec3 tip = patch.centre + (presses ? -gap : gap + length) * along;
+    const Vec3 tail = tip - length * along;
+    panel.add_arrow(tail, tip, kLoadColour);
+    if (!load.label.empty()) {
+      const Vec3 at = (presses ? tail : tip) + Vec3(0, 0, gap);
+      panel.add_label(at, load.label,
+                      {.size = text,
+                       .colour = kLoadColour,
+                       .bold = true,
+                       .justify = Justify::Centre});
+      panel.show({at + Vec3(0, 0, 0.05 * diagonal)});
+    }
+  }
+}
+
+/// Top of the colour bar and distance of its ticks.
+std::pair<double, double> bar_range(std::vector<double> values) {
+  const auto at = static_cast<std::ptrdiff_t>(
+      kRobustPart * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  const double robust = values[static_cast<std::size_t>(at)];
+  if (!(robust > 0.0) || !std::isfinite(robust)) {
+    return {1.0, 0.5};
+  }
+  const double step = round_down_nice(robust / 3.0);
+  return {step * std::ceil(robust / step * (1 - 1e-9)), step};
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+}  // namespace
+
+void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film,
+               const ViewLayout& layout) {
+  const SurfaceMesh& mesh = film.mesh;
+  const double diagonal = bounding_diagonal(mesh.points);
+  const Vec3 eye = job.view.normalized();
+  const std::vector<char> solid = labels_among(mesh, job.solids);
+  std::vector<char> liquid(solid.size());
+  for (std::size_t l = 0; l < solid.size(); ++l) {
+    liquid[l] = static_cast<char>(solid[l] == 0);
+  }
+  const ShadedSurface skin = shade(mesh, liquid);
+  if (skin.data->GetNumberOfPoints() > 0) {
+    // Light passes a film best where it falls straight through: opacity and
+    // tint follow the angle to the eye (Schlick's curve, exaggerated).
+    constexpr Colour kStraight = {0.36, 0.70, 0.93};
+    constexpr Colour kGrazing = {0.06, 0.27, 0.62};
+    auto* normals = skin.data->GetPointData()->GetNormals();
+    std::vector<std::array<double, 4>> colours;
+    for (vtkIdType i = 0; i < skin.data->GetNumberOfPoints(); ++i) {
+      Vec3 n;
+      normals->GetTuple(i, n.data());
+      const double g = std::pow(1.0 - std::abs(n.dot(eye)), 2.0);
+      auto& c = colours.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        c[k] = (1 - g) * kStraight[k] + g * kGrazing[k];
+      }
+      c[3] = 0.38 + 0.52 * g;
+    }
+    SurfaceStyle style;
+    style.specular = 0.7;
+    style.edges = job.facet_edges;
+    style.edge_colour = {0.10, 0.30, 0.55};
+    style.edge_width = 0.5;
+    panel.add_coloured(skin.data, colours, style);
+  }
+  SurfaceStyle cap;
+  cap.colour = {0.96, 0.68, 0.28};
+  cap.opacity = 0.95;
+  const ShadedSurface caps = shade(mesh, solid);
+  if (caps.data->GetNumberOfPoints() > 0) {
+    panel.add_surface(caps.data, cap);
+  }
+  panel.add_tubes(mesh.points, rim_edges(mesh), 0.0045 * diagonal,
+                  {0.07, 0.20, 0.42});
+  panel.show(mesh.points);
+  panel.fit_camera(job.view, layout.model);
+}
+
+void draw_cut_mesh(Panel& panel, const PictureJob& job, const PictureTets& tets,
+                   const ViewLayout& layout) {
+  // The cut faces the eye and stays upright: what stands before it goes.
+  const Vec3 flat(0.0, job.view.y(), 0.0);
+  const Vec3 normal = flat.norm() > 0.1 * job.view.norm()
+                          ? flat.normalized()
+                          : job.view.normalized();
+  const SurfaceMesh mesh = cut_open(tets, normal);
+  SurfaceStyle style;
+  style.flat = true;
+  style.edges = true;
+  style.specular = 0.0;
+  style.edge_width = 0.6;
+  style.colour = {0.62, 0.73, 0.84};
+  style.edge_colour = {0.22, 0.33, 0.46};
+  panel.add_surface(shade(mesh, {1, 0}).data, style);
+  style.colour = {0.97, 0.80, 0.52};
+  style.edge_colour = {0.50, 0.34, 0.12};
+  panel.add_surface(shade(mesh, {0, 1}).data, style);
+  panel.show(tets.nodes);
+  panel.fit_camera(job.view, layout.model);
+}
+
+std::string draw_part(Panel& panel, const PictureJob& job,
+                      const PictureSurface& part, const ViewLayout& layout) {
+  const SurfaceMesh& rest = part.mesh;
+  if (part.displacement.empty() || part.von_mises.empty()) {
+    throw InvalidInput(
+        fmt::format("'{}' has no point data 'displacement' and 'von_mises'",
+                    job.part_surface));
+  }
+  const double diagonal = bounding_diagonal(rest.points);
+  double largest = 0.0;
+  for (const Vec3& u : part.displacement) {
+    largest = std::max(largest, u.norm());
+  }
+  const double factor =
+      largest > 0.0 ? round_down_nice(kShownDeflection * diagonal / largest)
+                    : 1.0;
+  SurfaceMesh moved = rest;
+  for (std::size_t i = 0; i < moved.points.size(); ++i) {
+    moved.points[i] += factor * part.displacement[i];
+  }
+  const auto [top, step] = bar_range(part.von_mises);
+  const ShadedSurface shaded = shade(moved, every_label(moved));
+  std::vector<std::array<double, 4>> colours;
+  for (const int id : shaded.source) {
+    const Colour c =
+        viridis(part.von_mises[static_cast<std::size_t>(id)] / top);
+    colours.push_back({c[0], c[1], c[2], 1.0});
+  }
+  panel.add_coloured(shaded.data, colours, {.specular = 0.15});
+  panel.add_tubes(moved.points, rim_edges(moved), 0.0016 * diagonal, kInk);
+  panel.add_surface(shade(rest, every_label(rest)).data,
+                    {.colour = {0.45, 0.5, 0.58}, .opacity = 0.10});
+  panel.add_tubes(rest.points, rim_edges(rest), 0.0013 * diagonal,
+                  {0.5, 0.54, 0.6}, 0.6);
+  panel.show(rest.points);
+  panel.show(moved.points);
+  draw_supports(panel, job, rest, diagonal);
+  draw_loads(panel, job, moved, diagonal, layout.text);
+  panel.fit_camera(job.view, layout.model);
+  const std::string unit =
+      part.stress_unit.empty() ? "" : fmt::format(" [{}]", part.stress_unit);
+  panel.add_colour_bar(layout.bar, "von Mises stress" + unit, top, step,
+                       layout.text);
+  const double peak =
+      *std::max_element(part.von_mises.begin(), part.von_mises.end());
+  return fmt::format("deflection drawn x {:g} (largest {}), peak stress {}",
+                     factor, with_unit(largest, part.length_unit),
+                     with_unit(peak, part.stress_unit));
+}
+
+}  // namespace meniscus

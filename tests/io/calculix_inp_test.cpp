@@ -1,0 +1,93 @@
+#include "io/calculix_inp.h"
+
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/support/shapes.h"
+
+namespace meniscus {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TetMesh brick() {
+  return shapes::straight_quadratic(
+      shapes::sheared(shapes::brick(Vec3(1e-3, 2e7, 3), 2, 1, 1), 0.1));
+}
+
+CalculixDeck deck() {
+  CalculixDeck deck;
+  deck.materials = {{"steel", 210000.0, 0.3, 7.85e-9}};
+  deck.steps = {{"service", {{"z0", {}, true, true, true}}, {}, {{"z1", 2}}}};
+  return deck;
+}
+
+// CalculiX reads 20 characters of every number and 132 of a line.
+TEST(CalculixInp, KeepsFieldsAndLinesShort) {
+  std::istringstream lines(calculix_deck(brick(), deck()));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("*")) {
+      continue;
+    }
+    EXPECT_LE(line.size(), 132u);
+    std::istringstream fields(line);
+    for (std::string field; std::getline(fields, field, ',');) {
+      field.erase(0, field.find_first_not_of(' '));
+      EXPECT_LE(field.size(), 20u) << line;
+    }
+  }
+}
+
+TEST(CalculixInp, MakesNamesThatCalculixTakesAndKeepsThemApart) {
+  TetMesh mesh = brick();
+  mesh.labels = {"left pad", "Left_Pad", "größe", "1st", "z0", "z1"};
+  CalculixDeck input = deck();
+  input.comments = {"title\n*NODE, in a title"};
+  const std::string text = calculix_deck(mesh, input);
+  EXPECT_THAT(text, HasSubstr("*NSET, NSET=LEFT_PAD\n"));
+  EXPECT_THAT(text, HasSubstr("*NSET, NSET=LEFT_PAD_2\n"));
+  EXPECT_THAT(text, HasSubstr("*NSET, NSET=GR____E\n"));
+  EXPECT_THAT(text, HasSubstr("*NSET, NSET=S_1ST\n"));
+  EXPECT_THAT(text, HasSubstr("surface 'größe' is NSET GR____E"));
+  EXPECT_THAT(text, Not(HasSubstr("\n*NODE, in")));
+}
+
+TEST(CalculixInp, IsTheSameEveryTime) {
+  EXPECT_EQ(calculix_deck(brick(), deck()), calculix_deck(brick(), deck()));
+}
+
+template <class Change>
+std::string refusal(const Change& change) {
+  CalculixDeck input = deck();
+  change(input);
+  try {
+    calculix_deck(brick(), input);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CalculixInp, NamesWhatDoesNotFit) {
+  EXPECT_THAT(refusal([](auto& d) { d.steps[0].pressures[0].surface = "lid"; }),
+              testing::AllOf(HasSubstr("'lid'"), HasSubstr("x0, x1")));
+  EXPECT_THAT(refusal([](auto& d) { d.steps[0].supports[0].surface = "lid"; }),
+              HasSubstr("'lid'"));
+  EXPECT_THAT(refusal([](auto& d) { d.steps[0].supports.clear(); }),
+              HasSubstr("no support"));
+  EXPECT_THAT(refusal([](auto& d) {
+                d.steps[0].supports[0] = {"", {7777}, true, true, true};
+              }),
+              HasSubstr("7777"));
+  EXPECT_THAT(refusal([](auto& d) { d.materials.clear(); }),
+              HasSubstr("0 materials for 1 regions"));
+  EXPECT_THAT(refusal([](auto& d) { d.steps[0].nodal_forces.resize(5); }),
+              HasSubstr("5 nodal forces"));
+}
+
+}  // namespace
+}  // namespace meniscus

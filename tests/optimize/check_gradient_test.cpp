@@ -1,0 +1,84 @@
+#include "optimize/check_gradient.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+namespace meniscus {
+namespace {
+
+using testing::HasSubstr;
+
+const std::vector<Variable> kVariables = {{"a", 0.7, 0.0, 2.0},
+                                          {"b", 1.0, -1.0, 1.0}};
+const std::vector<std::string> kResponses = {"wave", "product"};
+
+VectorAnswer evaluate(const VectorX& x) {
+  VectorAnswer answer;
+  answer.values.resize(2);
+  answer.values << std::sin(x[0]) + std::exp(x[1]), x[0] * x[1];
+  return answer;
+}
+
+Eigen::MatrixXd exact() {
+  Eigen::MatrixXd jacobian(2, 2);
+  jacobian << std::cos(0.7), std::exp(1.0), 1.0, 0.7;
+  return jacobian;
+}
+
+TEST(CheckGradient, PassesTheExactOneAlsoAtABound) {
+  const GradientCheckReport report =
+      check_gradient(kVariables, kResponses, evaluate, exact());
+  EXPECT_TRUE(report.passed) << report.message;
+  ASSERT_EQ(report.rows.size(), 4U);
+  EXPECT_EQ(report.rows[1].response, "wave");
+  EXPECT_EQ(report.rows[1].variable, "b");
+  EXPECT_EQ(report.evaluations, 1 + 2 * 2 * 7);
+  // Rounding of a second difference at the best step, with a wide margin.
+  EXPECT_LT(report.rows[1].error, 1e-8);
+}
+
+TEST(CheckGradient, NamesTheWrongOne) {
+  Eigen::MatrixXd wrong = exact();
+  wrong(1, 0) *= 1.0 + 1e-3;
+  const GradientCheckReport report =
+      check_gradient(kVariables, kResponses, evaluate, wrong);
+  EXPECT_FALSE(report.passed);
+  EXPECT_FALSE(report.rows[2].passed);
+  EXPECT_TRUE(report.rows[0].passed);
+  EXPECT_THAT(report.message, HasSubstr("d product / d a"));
+}
+
+TEST(CheckGradient, NeighboursThatFailDoNotPass) {
+  const auto function = [](const VectorX& x) {
+    VectorAnswer answer = evaluate(x);
+    if (x[0] != 0.7) {
+      answer.failure = Failure{FailureKind::FilmPinched, "neck"};
+    }
+    return answer;
+  };
+  const GradientCheckReport report =
+      check_gradient(kVariables, kResponses, function, exact());
+  EXPECT_FALSE(report.rows[0].passed);
+  EXPECT_TRUE(std::isnan(report.rows[0].difference));
+  EXPECT_TRUE(report.rows[1].passed);
+}
+
+TEST(CheckGradient, RefusesWrongSizesAndFailingCentre) {
+  EXPECT_THROW(
+      check_gradient(kVariables, kResponses, evaluate, Eigen::MatrixXd(1, 2)),
+      InvalidInput);
+  EXPECT_THROW(check_gradient(kVariables, kResponses, evaluate, exact(),
+                              {.steps = {1e-3}}),
+               InvalidInput);
+  const auto failing = [](const VectorX&) {
+    VectorAnswer answer;
+    answer.failure = Failure{FailureKind::FilmPinched, "neck"};
+    return answer;
+  };
+  EXPECT_THROW(check_gradient(kVariables, kResponses, failing, exact()),
+               InvalidInput);
+}
+
+}  // namespace
+}  // namespace meniscus

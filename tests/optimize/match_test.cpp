@@ -1,0 +1,229 @@
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "optimize/problem.h"
+
+namespace meniscus {
+namespace {
+
+using testing::HasSubstr;
+
+// Answers r as residuals and |r| as mismatch, and remembers every point.
+struct Recorder {
+  std::function<VectorX(const VectorX&)> residuals;
+  std::vector<VectorX> points;
+
+  ResidualFunction function() {
+    return [this](const VectorX& x) {
+      points.push_back(x);
+      ResidualAnswer answer;
+      answer.residuals = residuals(x);
+      answer.mismatch = answer.residuals.cwiseAbs();
+      return answer;
+    };
+  }
+};
+
+VectorX one(double value) { return VectorX::Constant(1, value); }
+VectorX two(double a, double b) {
+  VectorX values(2);
+  values << a, b;
+  return values;
+}
+
+// The shape of the two-arm bracket's residual: two deflections that fall and
+// rise smoothly with the support's position, mismatch relative to their mean.
+double bracket_mismatch(double x, double left, double right) {
+  const double a = left * (1.0 + x / 150.0 + x * x / 40000.0);
+  const double b = right * (1.0 - x / 150.0 + x * x / 40000.0);
+  return (a - b) / (0.5 * (std::abs(a) + std::abs(b)));
+}
+
+const std::vector<Variable> kSupport = {{"support_x", 0.0, -40.0, 40.0}};
+const std::vector<Variable> kRosenbrock = {{"x", -1.2, -2.0, 2.0},
+                                           {"y", 1.0, -2.0, 2.0}};
+
+VectorX rosenbrock(const VectorX& x) {
+  return two(10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]);
+}
+
+TEST(Match, BracketConvergesInFewEvaluations) {
+  for (const double right : {1.29, 1.5, 1.55, 0.67}) {
+    Recorder recorder{[right](const VectorX& x) {
+                        return one(bracket_mismatch(x[0], 1.0, right));
+                      },
+                      {}};
+    const double before = std::abs(bracket_mismatch(0.0, 1.0, right));
+    ASSERT_GT(before, 0.25);
+    const MatchReport report = match(kSupport, recorder.function(), {});
+    EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+    EXPECT_LE(report.answer.mismatch[0], 1e-3);
+    EXPECT_LE(report.evaluations, 6) << right;
+    EXPECT_EQ(report.evaluations, static_cast<int>(recorder.points.size()));
+    EXPECT_THAT(report.message, HasSubstr("support_x = "));
+  }
+}
+
+TEST(Match, EqualLoadsAreMatchedAtTheStart) {
+  Recorder recorder{
+      [](const VectorX& x) { return one(bracket_mismatch(x[0], 1.0, 1.0)); },
+      {}};
+  const MatchReport report = match(kSupport, recorder.function(), {});
+  EXPECT_EQ(report.termination, Termination::Converged);
+  EXPECT_EQ(report.evaluations, 1);
+  EXPECT_EQ(report.best[0], 0.0);
+}
+
+TEST(Match, LinearResidualsTakeOneStep) {
+  Eigen::Matrix3d matrix;
+  matrix << 4, 1, 0, 1, 3, -1, 0, 2, 5;
+  const Eigen::Vector3d solution(0.3, -0.4, 0.7);
+  Recorder recorder{
+      [&](const VectorX& x) -> VectorX { return matrix * (x - solution); }, {}};
+  const std::vector<Variable> variables = {
+      {"a", 0, -1, 1}, {"b", 0, -1, 1}, {"c", 0, -1, 1}};
+  // Forward differences of a linear map err by rounding / step only.
+  const MatchReport report =
+      match(variables, recorder.function(), {.tolerance = 1e-7});
+  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  EXPECT_EQ(report.evaluations, 1 + 3 + 1);
+  EXPECT_LT((report.best - solution).norm(), 1e-7);
+  EXPECT_LT((report.jacobian - matrix).norm(), 1e-9);
+}
+
+TEST(Match, UsesTheFunctionsOwnJacobian) {
+  int calls = 0;
+  const auto function = [&calls](const VectorX& x) {
+    ++calls;
+    ResidualAnswer answer;
+    answer.residuals = rosenbrock(x);
+    answer.mismatch = answer.residuals.cwiseAbs();
+    answer.jacobian = Eigen::MatrixXd(2, 2);
+    *answer.jacobian << -20.0 * x[0], 10.0, -1.0, 0.0;
+    return answer;
+  };
+  const MatchReport report = match(kRosenbrock, function, {.tolerance = 1e-9});
+  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  EXPECT_LT((report.best - two(1, 1)).norm(), 1e-8);
+  EXPECT_LE(calls, 40);
+}
+
+class EveryMethod : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryMethod, FindsRosenbrocksMinimum) {
+  Recorder recorder{rosenbrock, {}};
+  const MatchReport report = match(
+      kRosenbrock, recorder.function(),
+      {.method = GetParam(), .tolerance = 1e-3, .max_evaluations = 20000});
+  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  EXPECT_LT((report.best - two(1, 1)).cwiseAbs().maxCoeff(), 4e-3);
+}
+
+TEST_P(EveryMethod, AsksTheSamePointsTwiceOverAndNoneTwice) {
+  Recorder first{rosenbrock, {}};
+  Recorder second{rosenbrock, {}};
+  const MatchOptions options{.method = GetParam(), .max_evaluations = 60};
+  const MatchReport a = match(kRosenbrock, first.function(), options);
+  const MatchReport b = match(kRosenbrock, second.function(), options);
+  EXPECT_EQ(first.points, second.points);  // bit for bit
+  EXPECT_EQ(a.best, b.best);
+  EXPECT_EQ(a.message, b.message);
+  for (std::size_t i = 0; i < first.points.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_NE(first.points[i], first.points[j]) << i << " " << j;
+    }
+  }
+}
+
+TEST_P(EveryMethod, StaysInsideTheBoundsAndNamesTheOneReached) {
+  Recorder recorder{[](const VectorX& x) { return two(x[0] - 5.0, x[1]); }, {}};
+  const std::vector<Variable> variables = {{"reach", 1.0, 0.0, 3.0},
+                                           {"other", 0.4, -1.0, 1.0}};
+  const MatchReport report =
+      match(variables, recorder.function(),
+            {.method = GetParam(), .max_evaluations = 3000});
+  for (const VectorX& x : recorder.points) {
+    EXPECT_TRUE(x[0] >= 0.0 && x[0] <= 3.0 && x[1] >= -1.0 && x[1] <= 1.0);
+  }
+  if (GetParam() == std::string("direct_l")) {
+    return;  // it samples centres of boxes and never stands on a bound
+  }
+  EXPECT_EQ(report.termination, Termination::AtBound) << report.message;
+  EXPECT_EQ(report.best[0], 3.0);
+  EXPECT_NEAR(report.best[1], 0.0, 1e-3);
+  EXPECT_THAT(report.message, HasSubstr("reach at its upper bound 3"));
+  EXPECT_THAT(report.message, HasSubstr("Widen"));
+}
+
+TEST_P(EveryMethod, ReachesTheSameAnswerInOneDimension) {
+  const auto function = [](const VectorX& x) {
+    return one(bracket_mismatch(x[0], 1.0, 1.5));
+  };
+  Recorder reference{function, {}};
+  Recorder recorder{function, {}};
+  const MatchOptions options{.method = GetParam(), .tolerance = 1e-6};
+  const MatchReport expected =
+      match(kSupport, reference.function(), {.tolerance = 1e-9});
+  const MatchReport report = match(kSupport, recorder.function(), options);
+  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  // mismatch per mm is about 1/75 there
+  EXPECT_NEAR(report.best[0], expected.best[0], 2e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
+                         testing::Values("ceres", "bobyqa", "cobyla", "sbplx",
+                                         "neldermead", "direct_l"));
+
+TEST(Match, MoreVariablesThanTargetsIsSolved) {
+  Recorder recorder{
+      [](const VectorX& x) { return one(x[0] + 2.0 * x[1] - 1.0); }, {}};
+  const std::vector<Variable> variables = {{"a", 0, -1, 1}, {"b", 0, -1, 1}};
+  const MatchReport report =
+      match(variables, recorder.function(), {.tolerance = 1e-8});
+  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+}
+
+TEST(Match, RankOneUpdatesSaveDifferences) {
+  const int n = 10;
+  Recorder recorder{[n](const VectorX& x) -> VectorX {
+                      VectorX r(n);
+                      for (int i = 0; i < n; ++i) {
+                        r[i] = x[i] + 0.1 * x[(i + 1) % n] * x[i] - 0.5;
+                      }
+                      return r;
+                    },
+                    {}};
+  std::vector<Variable> variables;
+  for (int i = 0; i < n; ++i) {
+    variables.push_back({fmt::format("v{}", i), 0.0, -1.0, 1.0});
+  }
+  const MatchReport report =
+      match(variables, recorder.function(), {.tolerance = 1e-6});
+  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  // One Jacobian by differences costs 10; fresh ones each step would need 4.
+  EXPECT_LE(report.evaluations, 1 + n + 10);
+}
+
+TEST(Match, StartOnTheUpperBoundDifferencesInwards) {
+  Recorder recorder{[](const VectorX& x) { return one(x[0] - 0.25); }, {}};
+  const MatchReport report =
+      match({{"x", 1.0, 0.0, 1.0}}, recorder.function(), {});
+  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  EXPECT_EQ(recorder.points[1][0], 1.0 - 1e-3);
+}
+
+TEST(Match, AMinimumThatMissesTheToleranceIsStalled) {
+  Recorder recorder{[](const VectorX& x) { return two(x[0] - 1.0, x[0] + 1); },
+                    {}};
+  const MatchReport report =
+      match({{"x", 0.5, -3.0, 3.0}}, recorder.function(), {});
+  EXPECT_EQ(report.termination, Termination::Stalled) << report.message;
+  EXPECT_NEAR(report.best[0], 0.0, 1e-6);
+  EXPECT_LE(report.evaluations, 12);
+}
+
+}  // namespace
+}  // namespace meniscus

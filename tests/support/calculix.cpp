@@ -1,0 +1,74 @@
+#include "tests/support/calculix.h"
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/child_process.h"
+#include "core/find_program.h"
+#include "tests/support/temp_folder.h"
+
+namespace meniscus {
+
+bool have_calculix() { return find_program("ccx").has_value(); }
+
+std::vector<CalculixStep> run_calculix(const std::string& deck,
+                                       int node_count) {
+  const TempFolder folder;
+  std::ofstream(folder / "job.inp") << deck;
+  ChildOptions options;
+  options.argv = {"ccx", "-i", "job"};
+  options.folder = folder.path();
+  options.environment = {{"OMP_NUM_THREADS", "1"}};
+  options.time_limit = 300.0;
+  const ChildResult result = run_child(options);
+  std::ifstream file(folder / "job.dat");
+  std::stringstream text;
+  text << file.rdbuf();
+  const bool bad = result.output.find("*ERROR") != std::string::npos;
+  if (!result.succeeded() || bad || text.str().empty()) {
+    const std::size_t shown = std::min<std::size_t>(result.output.size(), 2000);
+    throw std::runtime_error(
+        "ccx " + describe_end(result) + ":\n" +
+        result.output.substr(result.output.size() - shown) + result.error_tail);
+  }
+  return read_calculix_dat(text.str(), node_count);
+}
+
+std::vector<CalculixStep> read_calculix_dat(const std::string& text,
+                                            int node_count) {
+  enum class Block { None, Displacement, Reaction };
+  std::vector<CalculixStep> steps;
+  Block block = Block::None;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("displacements") != std::string::npos) {
+      block = Block::Displacement;
+      steps.emplace_back().displacement = VectorX::Zero(3 * node_count);
+      continue;
+    }
+    if (line.find("total force") != std::string::npos) {
+      block = Block::Reaction;
+      continue;
+    }
+    std::istringstream numbers(line);
+    if (steps.empty() || block == Block::None) {
+      continue;
+    }
+    Vec3 v;
+    if (block == Block::Reaction) {
+      if (numbers >> v.x() >> v.y() >> v.z()) {
+        steps.back().reaction = v;
+        block = Block::None;
+      }
+      continue;
+    }
+    int node = 0;
+    if (numbers >> node >> v.x() >> v.y() >> v.z()) {
+      steps.back().displacement.segment<3>(3 * (node - 1)) = v;
+    }
+  }
+  return steps;
+}
+
+}  // namespace meniscus

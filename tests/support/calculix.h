@@ -1,0 +1,28 @@
+/// Runs CalculiX on a deck and reads what it printed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+namespace meniscus {
+
+/// One step's *NODE PRINT results.
+struct CalculixStep {
+  VectorX displacement;          // 3 per node, in node order
+  Vec3 reaction = Vec3::Zero();  // sum over the supports
+};
+
+bool have_calculix();
+
+/// Runs `ccx` (one thread) in a fresh folder. Throws std::runtime_error with
+/// the end of its output when it fails.
+std::vector<CalculixStep> run_calculix(const std::string& deck, int node_count);
+
+/// Reads the text of a .dat file with the displacement of all nodes and total
+/// forces per step.
+std::vector<CalculixStep> read_calculix_dat(const std::string& text,
+                                            int node_count);
+
+}  // namespace meniscus
