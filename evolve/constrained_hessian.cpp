@@ -163,6 +163,15 @@ ConstrainedHessian::Step ConstrainedHessian::solve(
   return step;
 }
 
+VectorX ConstrainedHessian::restore(const VectorX& missing) const {
+  return inverse_constraints_ * (schur_inverse_ * missing);
+}
+
+double ConstrainedHessian::stiffness(Eigen::Index count) const {
+  return count > 0 ? schur_inverse_.diagonal().head(count).cwiseAbs().maxCoeff()
+                   : 0.0;
+}
+
 VectorX ConstrainedHessian::constrained_inverse(const VectorX& right) const {
   VectorX result = factor_.solve(right);
   if (constraints_.cols() > 0) {

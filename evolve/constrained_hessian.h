@@ -39,6 +39,10 @@ class ConstrainedHessian {
     VectorX dp;  // one per constraint
   };
   Step solve(const VectorX& residual, const VectorX& missing) const;
+  /// The cheapest dh in the factored Hessian with B^T dh = missing.
+  VectorX restore(const VectorX& missing) const;
+  /// Largest |dp/dV| of S^-1 over the first `count` constraints.
+  double stiffness(Eigen::Index count) const;
 
   /// Lowest eigenvalue of H x = lambda diag(metric) x on the constraint space
   /// by Lanczos on the inverse, fixed start vector, full orthogonalisation.

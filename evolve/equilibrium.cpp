@@ -14,6 +14,8 @@ namespace meniscus {
 namespace {
 
 constexpr double kUnresolved = 2.0;  // neck below this many edges: pinching
+constexpr double kThinned = 0.2;     // a settled film's neck / the usual one
+constexpr double kThinning = 0.5;    // the same where no equilibrium was found
 
 std::string place(const Vec3& p) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
@@ -47,7 +49,8 @@ FilmReport report_of(const FilmEnergy& energy, const FilmTargets& targets,
 FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
                  const FilmTargets& targets, const Points& base,
                  const Points& directions, const VectorX& start,
-                 const SettleOptions& options, DirectionRule rule) {
+                 double usual_neck, const SettleOptions& options,
+                 DirectionRule rule) {
   const Timer timer;
   const double tension =
       *std::max_element(targets.tension.begin(), targets.tension.end());
@@ -74,8 +77,9 @@ FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
   state.report = report_of(energy, targets, found, newton.residual_bound);
   state.points = std::move(found.points);
   state.heights = std::move(found.heights);
-  judge(energy, complex, state, found.converged ? "" : found.reason,
-        found.mode_position);
+  judge(energy, complex,
+        {found.converged ? "" : found.reason, found.mode_position, usual_neck},
+        state);
   state.report.seconds = timer.seconds();
   return state;
 }
@@ -83,8 +87,8 @@ FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
 }  // namespace
 
 void judge(const FilmEnergy& energy, const FilmComplex& complex,
-           FilmState& state, const std::string& reason,
-           const Vec3& mode_position) {
+           const Judgement& judgement, FilmState& state) {
+  const std::string& reason = judgement.reason;
   FilmReport& report = state.report;
   const bool finite = std::all_of(state.points.begin(), state.points.end(),
                                   [](const Vec3& p) { return p.allFinite(); });
@@ -94,7 +98,10 @@ void judge(const FilmEnergy& energy, const FilmComplex& complex,
   report.smallest_neck = neck.width;
   report.neck_position = neck.position;
   const double edge = finite ? energy.mean_edge(state.points) : 0.0;
-  const bool thin = neck.surface >= 0 && neck.width < kUnresolved * edge;
+  const double least =
+      std::max(kUnresolved * edge,
+               judgement.usual_neck * (reason.empty() ? kThinned : kThinning));
+  const bool thin = neck.surface >= 0 && neck.width < least;
   const auto name = [&](int s) { return complex.surfaces[s].name; };
   const std::string where =
       neck.surface < 0
@@ -121,12 +128,12 @@ void judge(const FilmEnergy& energy, const FilmComplex& complex,
     fail(FailureKind::FilmUnstable,
          fmt::format("unstable: index {}, lowest eigenvalue {:.4g}, its mode "
                      "is largest at {}; {}; {}",
-                     report.index, report.min_eigenvalue, place(mode_position),
-                     where, kAdvice));
+                     report.index, report.min_eigenvalue,
+                     place(judgement.mode_position), where, kAdvice));
   } else if (thin) {
     fail(FailureKind::FilmPinched,
-         fmt::format("pinching: {}, under {} edges of {:.3g}; {}", where,
-                     kUnresolved, edge, kAdvice));
+         fmt::format("pinching: {}, below the {:.4g} that this film needs; {}",
+                     where, least, kAdvice));
   } else {
     report.verdict = "stable";
   }
@@ -135,9 +142,9 @@ void judge(const FilmEnergy& energy, const FilmComplex& complex,
 FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,
                        const FilmTargets& targets, const Points& base,
                        const Points& directions, const VectorX& start,
-                       const SettleOptions& options) {
-  return settle(energy, complex, targets, base, directions, start, options,
-                DirectionRule::Fixed);
+                       double usual_neck, const SettleOptions& options) {
+  return settle(energy, complex, targets, base, directions, start, usual_neck,
+                options, DirectionRule::Fixed);
 }
 
 FilmState settle_in_normals(const FilmEnergy& energy,
@@ -145,7 +152,7 @@ FilmState settle_in_normals(const FilmEnergy& energy,
                             const FilmTargets& targets, const Points& start,
                             const SettleOptions& options) {
   FilmState state =
-      settle(energy, complex, targets, start, energy.normals(start), {},
+      settle(energy, complex, targets, start, energy.normals(start), {}, 0.0,
              options, DirectionRule::CurrentNormals);
   state.heights = VectorX::Zero(energy.unknowns());
   return state;

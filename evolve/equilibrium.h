@@ -12,12 +12,14 @@ namespace meniscus {
 /// (empty: h = 0); where descent finds none, a saddle near the start is looked
 /// for, so that the failure can name it. After the stop criterion one more
 /// full step is taken: the result is converged to rounding, so that it is a
-/// smooth function of `base` and `targets`. state.failure: FilmUnstable,
-/// FilmPinched or FilmNotFound. Throws Interrupted only.
+/// smooth function of `base` and `targets`. `usual_neck`: the smallest neck of
+/// a film that is known to be sound, against which necks are judged; 0 for
+/// none. state.failure: FilmUnstable, FilmPinched or FilmNotFound. Throws
+/// Interrupted only.
 FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,
                        const FilmTargets& targets, const Points& base,
                        const Points& directions, const VectorX& start,
-                       const SettleOptions& options);
+                       double usual_neck, const SettleOptions& options);
 
 /// The same along the current vertex normals, which are taken anew at every
 /// step; `start` is the whole film. heights of the result are zero.
@@ -26,11 +28,19 @@ FilmState settle_in_normals(const FilmEnergy& energy,
                             const FilmTargets& targets, const Points& start,
                             const SettleOptions& options);
 
-/// What settle_along and settle_in_normals say of a film that is given:
-/// report.verdict and failure from residual, index, mode and necks in
-/// state.report; `converged` false says why in `reason`.
+struct Judgement {
+  std::string reason;  // why no equilibrium was reached; empty: it was
+  Vec3 mode_position = Vec3::Zero();  // where the lowest mode is largest
+  double usual_neck = 0.0;            // [length]; 0: not known
+};
+
+/// Measures the narrowest neck and says in words what was found, from the
+/// residual and the index in state.report: sets report.smallest_neck,
+/// neck_position and verdict, and state.failure. A film that settled is still
+/// called pinching when its neck is under two edges, or under a fifth of the
+/// usual one: such a film can end at a perfect residual and a positive
+/// definite Hessian.
 void judge(const FilmEnergy& energy, const FilmComplex& complex,
-           FilmState& state, const std::string& reason,
-           const Vec3& mode_position);
+           const Judgement& judgement, FilmState& state);
 
 }  // namespace meniscus

@@ -21,6 +21,9 @@ constexpr int kHalvings = 1;  // the start is this many times coarser
 /// Steps from the reference to a design: first in one, then in parts, which
 /// are fixed so that the film depends on the design alone.
 constexpr std::array<int, 2> kParts = {1, 4};
+/// One step that needs more iterations than this is checked against parts:
+/// the film may have slid to another equilibrium.
+constexpr int kManyIterations = 15;
 
 FilmTargets blend(const FilmTargets& from, const FilmTargets& to, double t) {
   FilmTargets result = to;
@@ -41,6 +44,30 @@ FilmTargets blend(const FilmTargets& from, const FilmTargets& to, double t) {
   return result;
 }
 
+/// Throws InvalidInput for numbers that no liquid can follow.
+void check_numbers(const FilmSystem& system) {
+  for (const FilmSpec& film : system.films) {
+    if (!(film.tension > 0.0) || !std::isfinite(film.tension)) {
+      throw InvalidInput(
+          fmt::format("the tension of film '{}' must be above 0, found {}",
+                      film.name, film.tension));
+    }
+  }
+  for (const BodySpec& body : system.bodies) {
+    const double volume = body.volume.value_or(1.0);
+    if (!(volume > 0.0) || !std::isfinite(volume)) {
+      throw InvalidInput(
+          fmt::format("the volume of body '{}' must be above 0, found {}",
+                      body.name, volume));
+    }
+    if (!std::isfinite(body.pressure.value_or(0.0))) {
+      throw InvalidInput(
+          fmt::format("the pressure of body '{}' must be finite, found {}",
+                      body.name, *body.pressure));
+    }
+  }
+}
+
 }  // namespace
 
 struct FilmModel::Impl {
@@ -52,6 +79,7 @@ struct FilmModel::Impl {
   std::optional<Carry> carry;
   FilmTargets targets;
   FilmState reference;
+  double usual_neck = 0.0;            // of the reference [length]
   std::vector<Edge> edges;            // of the meshed level
   std::vector<Triangle> facet_edges;  // per meshed facet
   std::vector<int> mid_vertex;        // per edge: fine vertex, -1 for straight
@@ -137,9 +165,9 @@ FilmState FilmModel::Impl::settle_in_parts(const Points& moves,
   for (int part = 1; part <= parts; ++part) {
     const double t = static_cast<double>(part) / parts;
     const Points base = carry->at(moves, t);
-    state = settle_along(*energy, complex,
-                         part == parts ? goal : blend(targets, goal, t), base,
-                         energy->normals(base), state.heights, options);
+    state = settle_along(
+        *energy, complex, part == parts ? goal : blend(targets, goal, t), base,
+        energy->normals(base), state.heights, usual_neck, options);
     iterations += state.report.iterations;
     if (state.failure) {
       break;
@@ -165,6 +193,7 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
         fmt::format("the film's refinements must be 0 to 6, found {}",
                     options.refinements));
   }
+  check_numbers(initial);
   const Timer timer;
   auto impl = std::make_unique<Impl>();
   SettleOptions settle{.monitor = options.monitor};
@@ -194,6 +223,7 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   impl->targets = targets_of(impl->complex);
   FilmModel model(std::move(impl));
   if (!model.impl_->reference.failure) {
+    model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
     model.impl_->reference = model.settle(initial, settle);
   } else if (model.impl_->reference.points.size() !=
              model.impl_->complex.mesh.points.size()) {
@@ -210,6 +240,7 @@ const FilmState& FilmModel::reference() const { return impl_->reference; }
 FilmState FilmModel::settle(const FilmSystem& system,
                             const SettleOptions& options) const {
   const Timer timer;
+  check_numbers(system);
   const FilmTargets goal = impl_->targets_of_system(system);
   const Points moves = impl_->carry->rim_moves(impl_->curves_of_system(system));
   FilmState state;
@@ -220,7 +251,7 @@ FilmState FilmModel::settle(const FilmSystem& system,
     if (parts == kParts.front() || !found.failure) {
       state = std::move(found);
     }
-    if (!state.failure) {
+    if (!state.failure && iterations <= kManyIterations) {
       break;
     }
   }

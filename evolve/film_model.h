@@ -42,7 +42,8 @@ struct FilmReport {
                                 // lumped vertex area [force/length^3]
   int index = 0;                // its number of negative eigenvalues
   int iterations = 0;
-  double smallest_neck = 0.0;  // smallest clear width across a body [length]
+  // Shortest line along an inward normal from film to film [length]; 0: none.
+  double smallest_neck = 0.0;
   Vec3 neck_position = Vec3::Zero();
   std::string verdict;  // "stable", "unstable: ...", "pinching: ..."
   std::vector<BodyState> bodies;
@@ -84,7 +85,10 @@ class FilmModel {
   const FilmState& reference() const;
 
   /// Equilibrium for another design of the same system; a pure function of
-  /// the model and `system`. A failure is in the state, not thrown.
+  /// the model and `system`, and may run in several threads. A film that is
+  /// not found is in the state's failure, not thrown. Throws InvalidInput for
+  /// names and kinds that are not the model's and for numbers that no film can
+  /// follow (radius, tension or volume not above 0, anything not finite).
   FilmState settle(const FilmSystem& system,
                    const SettleOptions& options = {}) const;
 

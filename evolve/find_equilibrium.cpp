@@ -42,7 +42,7 @@ FilmState given_up(const FilmComplex& complex, const std::string& reason,
                                    body.volume.value_or(volumes[b]),
                                    body.pressure.value_or(0.0)});
   }
-  judge(energy, complex, state, reason, Vec3::Zero());
+  judge(energy, complex, {.reason = reason}, state);
   return state;
 }
 

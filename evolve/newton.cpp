@@ -107,7 +107,7 @@ VectorX FilmNewton::residual_of(const VectorX& pressure) const {
 /// Max norm, rigid translations of floating films left out.
 double FilmNewton::residual_norm() const {
   VectorX r = residual_of(pressure_);
-  const Eigen::Index rigid = 3 * energy_.floating_count();
+  const auto rigid = Eigen::Index{3} * energy_.floating_count();
   if (rigid > 0) {
     const Eigen::MatrixXd t = constraints_.rightCols(rigid);
     const VectorX part = (t.transpose() * t).ldlt().solve(t.transpose() * r);
@@ -187,14 +187,20 @@ bool FilmNewton::search_down(const ConstrainedHessian::Step& step,
       (residual - constraints_.leftCols(held) * step.dp.head(held))
           .dot(step.dh);
   const double gap = c.squaredNorm();
-  const double penalty =
-      gap > 0.0 ? (std::max(0.0, 2.0 * plain) + std::abs(plain)) / gap : 0.0;
+  const double penalty = system_.stiffness(held) +
+                         (plain > 0.0 && gap > 0.0 ? 2.0 * plain / gap : 0.0);
   const double slope = plain - penalty * gap;
   const double start = merit(now_, pressure, penalty);
   const double fold =
       std::min(kFold, 0.9 * energy_.smallest_cosine(now_.points, directions_));
   for (double s = 1.0; s >= kShortest; s *= 0.5) {
     Trial trial = trial_at(now_.heights + s * step.dh);
+    if (held > 0) {
+      // Volumes curve away from the step; without bringing them back the
+      // merit would refuse long steps (Maratos).
+      const VectorX stray = missing(trial.volume) - (1.0 - s) * c;
+      trial = trial_at(trial.heights + system_.restore(stray));
+    }
     if (energy_.smallest_cosine(trial.points, directions_) < fold) {
       continue;
     }

@@ -150,5 +150,17 @@ TEST(FilmModel, RefusesDesignsOfAnotherSystem) {
   EXPECT_THROW(FilmModel::freeze(two_arm(0), {.edge = 0.0}), InvalidInput);
 }
 
+TEST(FilmModel, RefusesNumbersThatNoFilmCanFollow) {
+  const double nan = std::nan("");
+  EXPECT_THROW(bracket().settle(two_arm(nan)), InvalidInput);
+  EXPECT_THROW(bracket().settle(two_arm(0, nan)), InvalidInput);
+  EXPECT_THROW(bracket().settle(two_arm(0, -1.0)), InvalidInput);
+  EXPECT_THROW(bracket().settle(two_arm(0, 1.7e6, 120.0, -50.0)), InvalidInput);
+  FilmSystem slack = two_arm(0);
+  slack.films[0].tension = 0.0;
+  EXPECT_THROW(bracket().settle(slack), InvalidInput);
+  EXPECT_THROW(FilmModel::freeze(slack, {.edge = 8.0}), InvalidInput);
+}
+
 }  // namespace
 }  // namespace meniscus
