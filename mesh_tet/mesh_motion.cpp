@@ -48,6 +48,10 @@ MeshMotion::MeshMotion(const TetMesh& mesh, int surface_points)
   std::vector<Eigen::Triplet<double>> lower;
   std::vector<Eigen::Triplet<double>> across;
   lower.reserve(10 * static_cast<std::size_t>(mesh.element_count()));
+  double mean_volume = 0.0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    mean_volume += corner_volume(mesh, e) / mesh.element_count();
+  }
   for (int e = 0; e < mesh.element_count(); ++e) {
     const auto ids = mesh.element(e);
     const TetCorners x = {mesh.nodes[ids[0]], mesh.nodes[ids[1]],
@@ -62,7 +66,8 @@ MeshMotion::MeshMotion(const TetMesh& mesh, int surface_points)
       const auto& c = kTetFaces[i];
       area[i] = 0.5 * (x[c[1]] - x[c[0]]).cross(x[c[2]] - x[c[0]]);
     }
-    const double weight = 1.0 / (9.0 * volume);
+    // Stiffness times mean volume over volume.
+    const double weight = mean_volume / (9.0 * volume * volume);
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < 4; ++j) {
         const int row = ids[i] - surface_points;

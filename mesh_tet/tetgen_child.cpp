@@ -151,8 +151,9 @@ std::string describe_failure(const ChildResult& child,
     default:
       break;
   }
-  // The loader's own failure under a tiny limit has no code of ours.
-  if (child.exit_code == 127) {
+  // Too little even to load the program, whatever ends it then.
+  constexpr double kLeastMemory = 32e6;
+  if (limits.memory < kLeastMemory) {
     return fmt::format(kMemory, limits.memory / 1e6);
   }
   const std::string said = last_line(child.error_tail);

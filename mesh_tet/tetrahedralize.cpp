@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/timer.h"
-#include "mesh_tet/smooth_tets.h"
+#include "mesh_tet/improve_tets.h"
 #include "mesh_tet/surface_fit.h"
 #include "mesh_tet/tet_boundary.h"
 #include "mesh_tet/tetgen_child.h"
@@ -44,6 +44,8 @@ void check(const TetrahedralizeOptions& options) {
   positive("edge", options.edge.value_or(1.0));
   positive("time_limit", options.time_limit);
   positive("memory_limit", options.memory_limit);
+  require(options.min_dihedral_deg >= 0.0 && options.min_dihedral_deg <= 18.0,
+          "min_dihedral_deg", options.min_dihedral_deg, "in 0 to 18");
   require(std::isfinite(options.radius_edge_ratio) &&
               options.radius_edge_ratio >= 1.0,
           "radius_edge_ratio", options.radius_edge_ratio, "at least 1");
@@ -208,8 +210,11 @@ std::optional<Failure> run(const SurfaceMesh& surface,
   for (const Vec3& p : fit.cavities) {
     input.holes.push_back(frame.into(p));
   }
-  input.switches = fmt::format("pYQq{:.6f}a{:.12f}", options.radius_edge_ratio,
-                               bound * std::pow(frame.scale, 3));
+  // Y: the surface stays. O9/7o/140: flips, smoothing and new inner points
+  // against dihedral angles above 140 degrees, as far as TetGen can.
+  input.switches = fmt::format(
+      "pYQq{:.6f}/{:.3f}a{:.12f}O9/7o/140", options.radius_edge_ratio,
+      options.min_dihedral_deg, bound * std::pow(frame.scale, 3));
   const Timer timer;
   const TetgenOutput output = run_tetgen(
       input, {options.time_limit, options.memory_limit, options.monitor});
@@ -223,10 +228,12 @@ std::optional<Failure> run(const SurfaceMesh& surface,
     return meshing_failure(fmt::format(
         "TetGen's mesh cannot be used: {}; try another element edge", fault));
   }
-  SmoothOptions smooth;
-  smooth.below_deg = options.improve_below_deg;
-  smooth_inner_nodes(result.mesh, static_cast<int>(surface.points.size()),
-                     smooth);
+  const int fixed = static_cast<int>(surface.points.size());
+  result.quality = tet_quality(result.mesh);
+  if (result.quality.min_dihedral_deg < options.improve_below_deg) {
+    improve_tets(result.mesh, fixed, {.below_deg = options.improve_below_deg});
+    attach_surface(surface, result.mesh);
+  }
   result.quality = tet_quality(result.mesh);
   if (result.quality.min_dihedral_deg < kLeastDihedralDeg) {
     const Vec3& at =
