@@ -1,10 +1,12 @@
 #include "mesh_tet/tetrahedralize.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/mesh_checks.h"
 #include "core/timer.h"
 #include "mesh_tet/improve_tets.h"
 #include "mesh_tet/surface_fit.h"
@@ -146,25 +148,28 @@ std::string find_fault(const SurfaceMesh& surface, const Frame& frame,
   return fault.empty() ? check_volume(mesh, volume) : fault;
 }
 
-std::optional<Failure> check_surface_points(const SurfaceMesh& surface) {
-  if (!flat(surface.points).allFinite()) {
-    return surface_failure("a surface point is not finite");
+std::optional<Failure> find_surface_fault(const SurfaceMesh& surface) {
+  if (surface.facets.empty() ||
+      surface.facet_label.size() != surface.facets.size()) {
+    return surface_failure(
+        fmt::format("the surface has {} facets and {} facet labels",
+                    surface.facets.size(), surface.facet_label.size()));
+  }
+  const std::vector<Finding> findings = check_surface(surface);
+  if (!findings.empty()) {
+    return surface_failure(summary(findings));
   }
   std::vector<char> used(surface.points.size(), 0);
   for (const Triangle& t : surface.facets) {
     for (const int p : t) {
-      if (p < 0 || p >= static_cast<int>(used.size())) {
-        return surface_failure(
-            fmt::format("a facet has corner {} of {} points", p, used.size()));
-      }
       used[p] = 1;
     }
   }
-  for (std::size_t p = 0; p < used.size(); ++p) {
-    if (used[p] == 0) {
-      return surface_failure(
-          fmt::format("surface point {} belongs to no facet; drop it", p));
-    }
+  if (const auto unused = std::find(used.begin(), used.end(), 0);
+      unused != used.end()) {
+    return surface_failure(
+        fmt::format("surface point {} belongs to no facet; drop it",
+                    unused - used.begin()));
   }
   return std::nullopt;
 }
@@ -172,13 +177,7 @@ std::optional<Failure> check_surface_points(const SurfaceMesh& surface) {
 std::optional<Failure> run(const SurfaceMesh& surface,
                            const TetrahedralizeOptions& options,
                            Tetrahedralization& result) {
-  if (surface.facets.empty() ||
-      surface.facet_label.size() != surface.facets.size()) {
-    return surface_failure(
-        fmt::format("the surface has {} facets and {} facet labels",
-                    surface.facets.size(), surface.facet_label.size()));
-  }
-  if (auto failure = check_surface_points(surface)) {
+  if (auto failure = find_surface_fault(surface)) {
     return failure;
   }
   const SurfaceFit fit = fit_surface(surface);

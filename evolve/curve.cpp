@@ -1,0 +1,318 @@
+#include "evolve/curve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/surface_mesh.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+struct Frame {
+  Vec3 u;
+  Vec3 v;
+};
+
+// `p` turned by the smallest rotation that takes unit vector a to unit b.
+Vec3 turned(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 axis = a.cross(b);
+  const double c = a.dot(b);
+  return c * p + axis.cross(p) + axis * (axis.dot(p) / (1.0 + c));
+}
+
+// No frame is continuous on the whole sphere. This one is smooth but for one
+// normal, -(2, 3, 6)/7, which is far from the axes and the diagonals; normal
+// +z has u = +x.
+Frame frame_of(const Vec3& normal) {
+  const Vec3 n = normal.normalized();
+  const Vec3 pole = Vec3(2.0, 3.0, 6.0) / 7.0;
+  const Vec3 start = turned(Vec3::UnitX(), Vec3::UnitZ(), pole);
+  Vec3 u = Vec3::UnitX();
+  if (1.0 + pole.dot(n) > 1e-14) {
+    u = turned(start, pole, n);
+  }
+  u = (u - u.dot(n) * n).normalized();
+  return {u, n.cross(u)};
+}
+
+Frame frame_of(const Vec3& normal, const Vec3& axis) {
+  const Vec3 n = normal.normalized();
+  const Vec3 u = (axis - axis.dot(n) * n).normalized();
+  return {u, n.cross(u)};
+}
+
+// A curve as parts of equal share in t; within a part s runs from 0 to 1.
+int part_count(const CurveShape& shape) {
+  if (const auto* r = std::get_if<Rectangle>(&shape)) {
+    return r->corner_radius > 0.0 ? 8 : 4;
+  }
+  if (const auto* p = std::get_if<Polygon>(&shape)) {
+    return static_cast<int>(p->points.size());
+  }
+  return 1;
+}
+
+Vec3 point_on(const Circle& c, int /*part*/, double s) {
+  const Frame f = frame_of(c.normal);
+  const double a = 2.0 * kPi * s;
+  return c.center + c.radius * (std::cos(a) * f.u + std::sin(a) * f.v);
+}
+
+Vec3 point_on(const Ellipse& e, int /*part*/, double s) {
+  const Frame f = frame_of(e.normal, e.axis);
+  const double a = 2.0 * kPi * s;
+  return e.center + e.radius_1 * std::cos(a) * f.u +
+         e.radius_2 * std::sin(a) * f.v;
+}
+
+// Parts: right side, arc, top, arc, left, arc, bottom, arc; without corner
+// radius only the sides.
+Vec3 point_on(const Rectangle& r, int part, double s) {
+  const Frame f = frame_of(r.normal, r.axis);
+  const double x = 0.5 * r.width - r.corner_radius;
+  const double y = 0.5 * r.height - r.corner_radius;
+  const bool round = r.corner_radius > 0.0;
+  const int side = round ? part / 2 : part;
+  constexpr std::array<std::array<double, 2>, 5> kCorner = {
+      {{1, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+  const auto& from = kCorner[side];
+  const auto& to = kCorner[side + 1];
+  const bool arc = round && part % 2 == 1;
+  const double a = 0.5 * kPi * (side + (arc ? s : 0.0));
+  const double w = arc ? 1.0 : s;
+  const double px = x * ((1.0 - w) * from[0] + w * to[0]);
+  const double py = y * ((1.0 - w) * from[1] + w * to[1]);
+  return r.center + (px + r.corner_radius * std::cos(a)) * f.u +
+         (py + r.corner_radius * std::sin(a)) * f.v;
+}
+
+Vec3 point_on(const Polygon& p, int part, double s) {
+  const std::size_t next = (part + 1) % p.points.size();
+  return (1.0 - s) * p.points[part] + s * p.points[next];
+}
+
+// Arclength of an ellipse from angle 0 at equal steps of the angle: 5-point
+// Gauss on each step, exact to rounding for any usual ratio of radii.
+std::vector<double> ellipse_lengths(const Ellipse& e) {
+  constexpr int kSteps = 2048;
+  constexpr std::array<double, 5> kAt = {-0.906179845938664, -0.538469310105683,
+                                         0.0, 0.538469310105683,
+                                         0.906179845938664};
+  constexpr std::array<double, 5> kWeight = {
+      0.236926885056189, 0.478628670499366, 0.568888888888889,
+      0.478628670499366, 0.236926885056189};
+  const double h = 2.0 * kPi / kSteps;
+  std::vector<double> lengths(kSteps + 1, 0.0);
+  for (int i = 0; i < kSteps; ++i) {
+    double sum = 0.0;
+    for (std::size_t g = 0; g < kAt.size(); ++g) {
+      const double a = h * (i + 0.5 + 0.5 * kAt[g]);
+      sum += kWeight[g] *
+             std::hypot(e.radius_1 * std::sin(a), e.radius_2 * std::cos(a));
+    }
+    lengths[i + 1] = lengths[i] + 0.5 * h * sum;
+  }
+  return lengths;
+}
+
+double part_length(const CurveShape& shape, int part) {
+  if (const auto* c = std::get_if<Circle>(&shape)) {
+    return 2.0 * kPi * c->radius;
+  }
+  if (const auto* e = std::get_if<Ellipse>(&shape)) {
+    return ellipse_lengths(*e).back();
+  }
+  if (const auto* r = std::get_if<Rectangle>(&shape)) {
+    const bool round = r->corner_radius > 0.0;
+    if (round && part % 2 == 1) {
+      return 0.5 * kPi * r->corner_radius;
+    }
+    const int side = round ? part / 2 : part;
+    return (side % 2 == 0 ? r->height : r->width) - 2.0 * r->corner_radius;
+  }
+  const Points& points = std::get<Polygon>(shape).points;
+  return (points[(part + 1) % points.size()] - points[part]).norm();
+}
+
+std::vector<double> sample_ellipse(const Ellipse& e, int pieces) {
+  const std::vector<double> lengths = ellipse_lengths(e);
+  const double step = 1.0 / static_cast<double>(lengths.size() - 1);
+  std::vector<double> result;
+  std::size_t at = 0;
+  for (int i = 0; i < pieces; ++i) {
+    const double wanted = lengths.back() * i / pieces;
+    while (lengths[at + 1] <= wanted) {
+      ++at;
+    }
+    const double share =
+        (wanted - lengths[at]) / (lengths[at + 1] - lengths[at]);
+    result.push_back(step * (static_cast<double>(at) + share));
+  }
+  return result;
+}
+
+// Pieces per part: about `edge` long, at least one, an even number in all.
+std::vector<int> pieces_per_part(const std::vector<double>& lengths,
+                                 double edge, int least) {
+  double total = 0.0;
+  for (const double length : lengths) {
+    total += length;
+  }
+  const double size = std::min(edge, total / least);
+  std::vector<int> pieces;
+  int sum = 0;
+  for (const double length : lengths) {
+    pieces.push_back(std::max(1, static_cast<int>(std::lround(length / size))));
+    sum += pieces.back();
+  }
+  while (sum < least || sum % 2 != 0) {
+    std::size_t coarsest = 0;
+    for (std::size_t i = 1; i < lengths.size(); ++i) {
+      if (lengths[i] / pieces[i] >
+          (1.0 + 1e-9) * lengths[coarsest] / pieces[coarsest]) {
+        coarsest = i;
+      }
+    }
+    ++pieces[coarsest];
+    ++sum;
+  }
+  return pieces;
+}
+
+[[noreturn]] void refuse(const Curve& curve, const std::string& what) {
+  throw InvalidInput(fmt::format("curve '{}': {}", curve.name, what));
+}
+
+void require_positive(const Curve& curve, const char* name, double value) {
+  if (!std::isfinite(value) || value <= 0.0) {
+    refuse(curve, fmt::format("{} is {}, must be above 0", name, value));
+  }
+}
+
+void require_finite(const Curve& curve, const char* name, const Vec3& value) {
+  if (!value.allFinite()) {
+    refuse(curve, fmt::format("{} is ({}, {}, {}), must be finite", name,
+                              value.x(), value.y(), value.z()));
+  }
+}
+
+void require_direction(const Curve& curve, const char* name,
+                       const Vec3& value) {
+  require_finite(curve, name, value);
+  if (!(value.stableNorm() > 0.0)) {
+    refuse(curve, fmt::format("{} is zero; give a direction", name));
+  }
+}
+
+void require_axis(const Curve& curve, const Vec3& axis, const Vec3& normal) {
+  require_direction(curve, "axis", axis);
+  if (axis.normalized().cross(normal.normalized()).norm() < 1e-9) {
+    refuse(curve, "axis is parallel to normal; give a direction in the plane");
+  }
+}
+
+void validate_shape(const Curve& curve, const Circle& c) {
+  require_finite(curve, "center", c.center);
+  require_direction(curve, "normal", c.normal);
+  require_positive(curve, "radius", c.radius);
+}
+
+void validate_shape(const Curve& curve, const Ellipse& e) {
+  require_finite(curve, "center", e.center);
+  require_direction(curve, "normal", e.normal);
+  require_axis(curve, e.axis, e.normal);
+  require_positive(curve, "radius_1", e.radius_1);
+  require_positive(curve, "radius_2", e.radius_2);
+}
+
+void validate_shape(const Curve& curve, const Rectangle& r) {
+  require_finite(curve, "center", r.center);
+  require_direction(curve, "normal", r.normal);
+  require_axis(curve, r.axis, r.normal);
+  require_positive(curve, "width", r.width);
+  require_positive(curve, "height", r.height);
+  const double most = 0.5 * std::min(r.width, r.height);
+  if (!std::isfinite(r.corner_radius) || r.corner_radius < 0.0 ||
+      r.corner_radius > most * (1.0 - 1e-9)) {
+    refuse(curve, fmt::format("corner_radius is {}, must be 0 or more and "
+                              "below half the shorter side, {}",
+                              r.corner_radius, most));
+  }
+}
+
+void validate_shape(const Curve& curve, const Polygon& p) {
+  if (p.points.size() < 3) {
+    refuse(curve, fmt::format("polygon has {} points, must have 3 or more",
+                              p.points.size()));
+  }
+  for (std::size_t i = 0; i < p.points.size(); ++i) {
+    require_finite(curve, "a point", p.points[i]);
+  }
+  const double size = bounding_diagonal(p.points);
+  for (std::size_t i = 0; i < p.points.size(); ++i) {
+    const std::size_t next = (i + 1) % p.points.size();
+    if ((p.points[next] - p.points[i]).norm() <= 1e-12 * size) {
+      refuse(curve, fmt::format("points {} and {} are equal at ({}, {}, {}); "
+                                "the polygon closes by itself",
+                                i, next, p.points[i].x(), p.points[i].y(),
+                                p.points[i].z()));
+    }
+  }
+}
+
+}  // namespace
+
+void validate(const Curve& curve) {
+  std::visit([&](const auto& shape) { validate_shape(curve, shape); },
+             curve.shape);
+}
+
+Vec3 point_at(const CurveShape& shape, double t) {
+  const int parts = part_count(shape);
+  const double along = (t - std::floor(t)) * parts;
+  const int part = std::min(static_cast<int>(along), parts - 1);
+  return std::visit(
+      [&](const auto& s) { return point_on(s, part, along - part); }, shape);
+}
+
+double length_of(const CurveShape& shape) {
+  double sum = 0.0;
+  for (int part = 0; part < part_count(shape); ++part) {
+    sum += part_length(shape, part);
+  }
+  return sum;
+}
+
+std::vector<double> sample_parameters(const CurveShape& shape, double edge,
+                                      int least) {
+  if (!std::isfinite(edge) || edge <= 0.0) {
+    throw InvalidInput(fmt::format("edge length is {}, must be above 0", edge));
+  }
+  const int parts = part_count(shape);
+  std::vector<double> lengths;
+  for (int part = 0; part < parts; ++part) {
+    lengths.push_back(part_length(shape, part));
+  }
+  const std::vector<int> pieces = pieces_per_part(lengths, edge, least);
+  if (const auto* e = std::get_if<Ellipse>(&shape)) {
+    return sample_ellipse(*e, pieces.front());
+  }
+  std::vector<double> result;
+  for (int part = 0; part < parts; ++part) {
+    for (int i = 0; i < pieces[part]; ++i) {
+      result.push_back((part + static_cast<double>(i) / pieces[part]) / parts);
+    }
+  }
+  return result;
+}
+
+}  // namespace meniscus

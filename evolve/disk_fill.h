@@ -1,0 +1,20 @@
+/// Fills a closed curve with triangles.
+#pragma once
+
+#include "core/surface_mesh.h"
+
+namespace meniscus {
+
+/// Newell's area vector of a closed polygon: its area times its normal,
+/// counter-clockwise seen from the tip; of the shadow when not planar.
+Vec3 polygon_area_vector(const Points& rim);
+
+/// Isotropic triangles of about `edge` inside the simple polygon `rim`
+/// (planar, or one whose shadow along its area vector is simple): the rim
+/// points come first with their numbers, no other lies on the rim, and facets
+/// run along it in its direction. No labels. Throws MeshError when the rim
+/// crosses itself.
+/// Ear clipping, then isotropic remeshing (Botsch and Kobbelt 2004).
+SurfaceMesh fill_disk(const Points& rim, double edge);
+
+}  // namespace meniscus

@@ -1,0 +1,125 @@
+#include "evolve/loft.h"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "evolve/disk_fill.h"
+
+namespace meniscus {
+
+namespace {
+
+Vec3 centre_of(const Points& points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : points) {
+    sum += p;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+// Share of the length from point 0 to each point, and 1 at the end.
+std::vector<double> shares(const Points& points) {
+  std::vector<double> along = {0.0};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3& next = points[(i + 1) % points.size()];
+    along.push_back(along.back() + (next - points[i]).norm());
+  }
+  const double total = along.back();
+  for (double& a : along) {
+    a /= total;
+  }
+  return along;
+}
+
+Vec3 point_at_share(const Points& points, const std::vector<double>& along,
+                    double share, std::size_t& hint) {
+  while (along[hint + 1] < share) {
+    ++hint;
+  }
+  const double w = (share - along[hint]) / (along[hint + 1] - along[hint]);
+  return (1.0 - w) * points[hint] + w * points[(hint + 1) % points.size()];
+}
+
+// Do both curves turn the same way around the band? Seen along the line of
+// centres; where that lies in a curve's plane, by their normals.
+bool same_way(const Vec3& low_area, const Vec3& high_area, const Vec3& line) {
+  const double seen_low = low_area.normalized().dot(line);
+  const double seen_high = high_area.normalized().dot(line);
+  const double least = 1e-6 * line.norm();
+  if (std::abs(seen_low) > least && std::abs(seen_high) > least) {
+    return (seen_low > 0.0) == (seen_high > 0.0);
+  }
+  return low_area.dot(high_area) >= 0.0;
+}
+
+// The rotation that brings the curves' planes together, so that a bend does
+// not count as a twist.
+Mat3 turn_between(const Vec3& from, const Vec3& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+}  // namespace
+
+std::vector<Triangle> loft_band(const Points& low, const Points& high) {
+  const int n = static_cast<int>(low.size());
+  const int m = static_cast<int>(high.size());
+  const Vec3 low_centre = centre_of(low);
+  const Vec3 high_centre = centre_of(high);
+  const Vec3 low_area = polygon_area_vector(low);
+  const Vec3 high_area = polygon_area_vector(high);
+  const bool forward = same_way(low_area, high_area, high_centre - low_centre);
+  const Mat3 turn =
+      turn_between(low_area, forward ? high_area : Vec3(-high_area));
+  Points turned;
+  for (const Vec3& p : low) {
+    turned.push_back(turn * (p - low_centre) + high_centre);
+  }
+  const std::vector<double> low_along = shares(low);
+  // Every start on `high`, the least sum of squared distances wins.
+  double best = std::numeric_limits<double>::infinity();
+  std::vector<int> order;
+  std::vector<double> order_along;
+  for (int start = 0; start < m; ++start) {
+    std::vector<int> ids;
+    Points path;
+    for (int j = 0; j < m; ++j) {
+      ids.push_back(((forward ? start + j : start - j) % m + m) % m);
+      path.push_back(high[ids.back()]);
+    }
+    const std::vector<double> along = shares(path);
+    std::size_t hint = 0;
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) {
+      sum += (point_at_share(path, along, low_along[i], hint) - turned[i])
+                 .squaredNorm();
+    }
+    if (sum < best * (1.0 - 1e-9)) {
+      best = sum;
+      order = ids;
+      order_along = along;
+    }
+  }
+  std::vector<Triangle> facets;
+  int i = 0;
+  int j = 0;
+  while (i < n || j < m) {
+    const int a = i % n;
+    const int b = n + order[j % m];
+    // Advance on the side whose next piece has its middle first.
+    const bool on_low =
+        j == m || (i < n && low_along[i] + low_along[i + 1] <=
+                                order_along[j] + order_along[j + 1] + 1e-12);
+    if (on_low) {
+      facets.push_back({a, (i + 1) % n, b});
+      ++i;
+    } else {
+      facets.push_back({a, n + order[(j + 1) % m], b});
+      ++j;
+    }
+  }
+  return facets;
+}
+
+}  // namespace meniscus

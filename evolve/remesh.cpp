@@ -1,0 +1,61 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/grooming.h"
+#include "evolve/rims.h"
+#include "evolve/surface_editor.h"
+
+namespace meniscus {
+
+namespace {
+
+SurfaceEditor editor_of(const FilmComplex& complex) {
+  EditLimits limits;
+  for (const ComplexVertex& v : complex.vertices) {
+    limits.held.push_back(v.kind == VertexKind::Free ? 0 : 1);
+  }
+  for (const int label : complex.mesh.facet_label) {
+    limits.frozen.push_back(complex.surfaces[label].liquid ? 0 : 1);
+  }
+  limits.rim_next = rim_neighbours(complex);
+  return {complex.mesh, std::move(limits)};
+}
+
+void take_back(const SurfaceEditor& editor, FilmComplex& complex) {
+  std::vector<int> origin;
+  complex.mesh = editor.finish(&origin);
+  std::vector<ComplexVertex> vertices;
+  for (const int old : origin) {
+    vertices.push_back(old < 0 ? ComplexVertex{} : complex.vertices[old]);
+  }
+  complex.vertices = std::move(vertices);
+}
+
+}  // namespace
+
+void remesh_films(FilmComplex& complex, const RemeshOptions& options) {
+  if (!std::isfinite(options.edge) || options.edge <= 0.0) {
+    throw InvalidInput(
+        fmt::format("edge length is {}, must be above 0", options.edge));
+  }
+  SurfaceEditor editor = editor_of(complex);
+  make_isotropic(editor, options.edge, options.passes);
+  take_back(editor, complex);
+}
+
+int equiangulate(FilmComplex& complex) {
+  SurfaceEditor editor = editor_of(complex);
+  const int flips = editor.flip_all();
+  take_back(editor, complex);
+  return flips;
+}
+
+void average_vertices(FilmComplex& complex) {
+  SurfaceEditor editor = editor_of(complex);
+  editor.average();
+  take_back(editor, complex);
+}
+
+}  // namespace meniscus

@@ -1,0 +1,14 @@
+/// Rims of a complex: the chains of vertices along its curves.
+#pragma once
+
+#include <vector>
+
+#include "evolve/film_complex.h"
+
+namespace meniscus {
+
+/// Per vertex the next vertex on its curve in the order of t, the last one's
+/// being the first; -1 off the curves.
+std::vector<int> rim_neighbours(const FilmComplex& complex);
+
+}  // namespace meniscus

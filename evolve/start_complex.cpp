@@ -1,0 +1,415 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/body_sides.h"
+#include "evolve/disk_fill.h"
+#include "evolve/grooming.h"
+#include "evolve/hull.h"
+#include "evolve/loft.h"
+
+namespace meniscus {
+
+namespace {
+
+// A point may be this far off a plane or a straight line [curve's size].
+constexpr double kFlatness = 1e-9;
+
+struct Rim {
+  int curve = 0;
+  int first = 0;  // id of its first point; the others follow
+  int count = 0;
+};
+
+class StartBuilder {
+ public:
+  StartBuilder(const FilmSystem& system, double edge)
+      : system_(system), edge_(edge) {}
+
+  FilmComplex build() {
+    check_names();
+    result_.curves = system_.curves;
+    for (const FilmSpec& film : system_.films) {
+      for (const std::string& name : film.curves) {
+        rim_of(name, film.name);
+      }
+    }
+    for (const CapSpec& cap : system_.caps) {
+      rim_of(cap.curve, cap.name);
+    }
+    for (const FilmSpec& film : system_.films) {
+      add_film(film);
+    }
+    for (const CapSpec& cap : system_.caps) {
+      add_cap(cap);
+    }
+    for (const BodySpec& body : system_.bodies) {
+      add_body(body);
+    }
+    for (const CapSpec& cap : system_.caps) {
+      require_body(cap.name);
+    }
+    orient_bodies(result_);
+    return std::move(result_);
+  }
+
+ private:
+  void check_names() const {
+    std::set<std::string> names;
+    for (const Curve& curve : system_.curves) {
+      validate(curve);
+      if (!names.insert(curve.name).second) {
+        throw InvalidInput(
+            fmt::format("two curves are named '{}'; rename one", curve.name));
+      }
+    }
+    names.clear();
+    const auto add = [&](const std::string& name) {
+      if (!names.insert(name).second) {
+        throw InvalidInput(
+            fmt::format("two surfaces are named '{}'; rename one", name));
+      }
+    };
+    for (const FilmSpec& film : system_.films) {
+      add(film.name);
+      if (!std::isfinite(film.tension) || film.tension <= 0.0) {
+        throw InvalidInput(
+            fmt::format("film '{}': tension is {}, must be "
+                        "above 0",
+                        film.name, film.tension));
+      }
+    }
+    for (const CapSpec& cap : system_.caps) {
+      add(cap.name);
+    }
+  }
+
+  // The rim of a curve, its points made at first use.
+  const Rim& rim_of(const std::string& curve_name, const std::string& user) {
+    const auto known = rims_.find(curve_name);
+    if (known != rims_.end()) {
+      return known->second;
+    }
+    const auto found =
+        std::find_if(system_.curves.begin(), system_.curves.end(),
+                     [&](const Curve& c) { return c.name == curve_name; });
+    if (found == system_.curves.end()) {
+      throw InvalidInput(
+          fmt::format("surface '{}' names the curve '{}', which "
+                      "does not exist",
+                      user, curve_name));
+    }
+    Rim rim;
+    rim.curve = static_cast<int>(found - system_.curves.begin());
+    rim.first = static_cast<int>(result_.mesh.points.size());
+    for (const double t : sample_parameters(found->shape, edge_)) {
+      result_.mesh.points.push_back(point_at(found->shape, t));
+      result_.vertices.push_back({VertexKind::OnCurve, rim.curve, t});
+      ++rim.count;
+    }
+    return rims_.emplace(curve_name, rim).first->second;
+  }
+
+  Points points_of(const Rim& rim) const {
+    const auto first = result_.mesh.points.begin() + rim.first;
+    return {first, first + rim.count};
+  }
+
+  int add_surface(const ComplexSurface& surface) {
+    result_.surfaces.push_back(surface);
+    result_.mesh.labels.push_back(surface.name);
+    return static_cast<int>(result_.surfaces.size()) - 1;
+  }
+
+  void add_facet(const Triangle& corners, int label) {
+    result_.mesh.facets.push_back(corners);
+    result_.mesh.facet_label.push_back(label);
+  }
+
+  void add_film(const FilmSpec& film) {
+    const int label = add_surface({film.name, true, film.tension});
+    std::set<std::string> used;
+    for (const std::string& name : film.curves) {
+      if (!used.insert(name).second) {
+        throw InvalidInput(fmt::format("film '{}' names the curve '{}' twice",
+                                       film.name, name));
+      }
+    }
+    switch (film.kind) {
+      case FilmKind::Branch:
+        add_branch(film, label);
+        break;
+      case FilmKind::Loft:
+        add_loft(film, label);
+        break;
+      case FilmKind::Disk:
+        require_curves(film, 1);
+        fill(rim_of(film.curves[0], film.name), label, VertexKind::Free);
+        break;
+    }
+  }
+
+  static void require_curves(const FilmSpec& film, std::size_t count) {
+    if (film.curves.size() != count) {
+      throw InvalidInput(
+          fmt::format("film '{}' has {} curves, its kind needs {}", film.name,
+                      film.curves.size(), count));
+    }
+  }
+
+  void add_loft(const FilmSpec& film, int label) {
+    require_curves(film, 2);
+    const Rim low = rim_of(film.curves[0], film.name);
+    const Rim high = rim_of(film.curves[1], film.name);
+    for (Triangle t : loft_band(points_of(low), points_of(high))) {
+      for (int& v : t) {
+        v += v < low.count ? low.first : high.first - low.count;
+      }
+      add_facet(t, label);
+    }
+  }
+
+  void fill(const Rim& rim, int label, VertexKind kind) {
+    const SurfaceMesh disk = fill_disk(points_of(rim), edge_);
+    const int first_inner = static_cast<int>(result_.mesh.points.size());
+    for (std::size_t i = rim.count; i < disk.points.size(); ++i) {
+      result_.mesh.points.push_back(disk.points[i]);
+      result_.vertices.push_back({kind, -1, 0.0});
+    }
+    for (Triangle t : disk.facets) {
+      for (int& v : t) {
+        v += v < rim.count ? rim.first : first_inner - rim.count;
+      }
+      add_facet(t, label);
+    }
+  }
+
+  void add_cap(const CapSpec& cap) {
+    const Rim rim = rim_of(cap.curve, cap.name);
+    const Points points = points_of(rim);
+    const Vec3 normal = polygon_area_vector(points).normalized();
+    const double size = bounding_diagonal(points);
+    for (const Vec3& p : points) {
+      const double off = std::abs(normal.dot(p - points[0]));
+      if (!(off <= kFlatness * size)) {
+        throw InvalidInput(fmt::format(
+            "cap '{}': curve '{}' is not planar, ({:.6g}, {:.6g}, {:.6g}) is "
+            "{:.3g} off its plane; use a film of kind disk or a planar curve",
+            cap.name, cap.curve, p.x(), p.y(), p.z(), off));
+      }
+    }
+    fill(rim, add_surface({cap.name, false, 0.0}), VertexKind::InCap);
+  }
+
+  void add_branch(const FilmSpec& film, int label);
+  void keep_hull_facets(const FilmSpec& film, const std::vector<Rim>& rims,
+                        const Points& points, std::vector<Triangle>& facets);
+
+  void add_body(const BodySpec& body) {
+    ComplexBody made{body.name, {}, body.volume, body.pressure};
+    if (body.volume && body.pressure) {
+      throw InvalidInput(
+          fmt::format("body '{}' has both volume and pressure; "
+                      "give one of them",
+                      body.name));
+    }
+    if (body.volume && !(std::isfinite(*body.volume) && *body.volume > 0.0)) {
+      throw InvalidInput(fmt::format("body '{}': volume is {}, must be above 0",
+                                     body.name, *body.volume));
+    }
+    if (body.enclosed_by.empty()) {
+      throw InvalidInput(fmt::format(
+          "body '{}' is enclosed by nothing; list its films and caps",
+          body.name));
+    }
+    for (const std::string& name : body.enclosed_by) {
+      const int surface = result_.mesh.label_of(name);
+      if (surface < 0) {
+        throw InvalidInput(
+            fmt::format("body '{}' is enclosed by '{}', which "
+                        "is neither a film nor a cap",
+                        body.name, name));
+      }
+      const bool twice =
+          std::any_of(made.sides.begin(), made.sides.end(),
+                      [&](const BodySide& s) { return s.surface == surface; });
+      if (twice) {
+        throw InvalidInput(
+            fmt::format("body '{}' lists '{}' twice", body.name, name));
+      }
+      made.sides.push_back({surface, 1});
+    }
+    result_.bodies.push_back(std::move(made));
+  }
+
+  void require_body(const std::string& surface) const {
+    for (const BodySpec& body : system_.bodies) {
+      if (std::find(body.enclosed_by.begin(), body.enclosed_by.end(),
+                    surface) != body.enclosed_by.end()) {
+        return;
+      }
+    }
+    throw InvalidInput(
+        fmt::format("cap '{}' encloses nothing; add it to a "
+                    "body's enclosed_by or remove it",
+                    surface));
+  }
+
+  const FilmSystem& system_;
+  double edge_;
+  FilmComplex result_;
+  std::map<std::string, Rim> rims_;
+};
+
+void StartBuilder::add_branch(const FilmSpec& film, int label) {
+  if (film.curves.size() < 2) {
+    throw InvalidInput(
+        fmt::format("film '{}' has {} curves, a branch needs 2 "
+                    "or more; use kind disk for one",
+                    film.name, film.curves.size()));
+  }
+  std::vector<Rim> rims;
+  Points points;
+  for (const std::string& name : film.curves) {
+    rims.push_back(rim_of(name, film.name));
+    const Points rim = points_of(rims.back());
+    points.insert(points.end(), rim.begin(), rim.end());
+  }
+  std::vector<Triangle> facets;
+  try {
+    facets = convex_hull(points);
+  } catch (const MeshError& error) {
+    throw InvalidInput(fmt::format("film '{}': {}", film.name, error.what()));
+  }
+  keep_hull_facets(film, rims, points, facets);
+  std::vector<int> ids;
+  for (const Rim& rim : rims) {
+    for (int i = 0; i < rim.count; ++i) {
+      ids.push_back(rim.first + i);
+    }
+  }
+  for (const Triangle& t : facets) {
+    add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
+  }
+}
+
+// Drops the caps, puts points of straight sides back in (the hull knows only
+// corners) and makes sure that what is left ends exactly at the curves.
+void StartBuilder::keep_hull_facets(const FilmSpec& film,
+                                    const std::vector<Rim>& rims,
+                                    const Points& points,
+                                    std::vector<Triangle>& facets) {
+  std::vector<int> rim_of_point;
+  for (std::size_t r = 0; r < rims.size(); ++r) {
+    rim_of_point.insert(rim_of_point.end(), rims[r].count, static_cast<int>(r));
+  }
+  std::erase_if(facets, [&](const Triangle& t) {
+    return rim_of_point[t[0]] == rim_of_point[t[1]] &&
+           rim_of_point[t[0]] == rim_of_point[t[2]];
+  });
+  std::map<Edge, int> side;  // directed edge -> facet
+  const auto list = [&](int f) {
+    for (int k = 0; k < 3; ++k) {
+      side[{facets[f][k], facets[f][(k + 1) % 3]}] = f;
+    }
+  };
+  for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+    list(f);
+  }
+  const auto off_hull = [&](std::size_t r, int point) {
+    const Vec3& p = points[point];
+    return InvalidInput(fmt::format(
+        "film '{}': curve '{}' is off the convex hull of the film's curves "
+        "near ({:.6g}, {:.6g}, {:.6g}); a branch film starts from that hull: "
+        "move or turn the curve, make it convex, or use films of another kind",
+        film.name, film.curves[r], p.x(), p.y(), p.z()));
+  };
+  std::size_t border = 0;
+  int first = 0;
+  for (std::size_t r = 0; r < rims.size(); ++r) {
+    const int n = rims[r].count;
+    std::vector<char> on_hull(n, 0);
+    for (const Triangle& t : facets) {
+      for (const int v : t) {
+        if (rim_of_point[v] == static_cast<int>(r)) {
+          on_hull[v - first] = 1;
+        }
+      }
+    }
+    int start = 0;
+    while (start < n && on_hull[start] == 0) {
+      ++start;
+    }
+    if (start == n) {
+      throw off_hull(r, first);
+    }
+    for (int i = start; i < start + n;) {
+      int j = i + 1;
+      while (on_hull[j % n] == 0) {
+        ++j;
+      }
+      const int a = first + i % n;
+      const int b = first + j % n;
+      const bool backward = side.count({b, a}) > 0;
+      const auto at = side.find(backward ? Edge{b, a} : Edge{a, b});
+      if (a == b || at == side.end() || (backward && side.count({a, b}) > 0)) {
+        throw off_hull(r, first + (i + 1) % n);
+      }
+      // Cut the facet at the edge into a fan over the points in between.
+      const int f = at->second;
+      const Triangle t = facets[f];
+      const int apex = t[0] + t[1] + t[2] - a - b;
+      const Vec3 along = (points[b] - points[a]).normalized();
+      for (int k = i; k < j; ++k) {
+        const int from = first + k % n;
+        const int to = first + (k + 1) % n;
+        const Vec3 off = points[to] - points[a];
+        if ((off - along * along.dot(off)).norm() >
+            1e3 * kFlatness * bounding_diagonal(points)) {
+          throw off_hull(r, to);
+        }
+        const Triangle piece =
+            backward ? Triangle{to, from, apex} : Triangle{from, to, apex};
+        const int id = k == i ? f : static_cast<int>(facets.size());
+        if (k == i) {
+          facets[f] = piece;
+        } else {
+          facets.push_back(piece);
+        }
+        list(id);
+      }
+      if (j - i > 1) {
+        side.erase(backward ? Edge{b, a} : Edge{a, b});
+      }
+      border += j - i;
+      i = j;
+    }
+    first += n;
+  }
+  std::size_t open = 0;
+  for (const auto& [edge, f] : side) {
+    open += side.count({edge[1], edge[0]}) == 0 ? 1 : 0;
+  }
+  if (open != border) {
+    throw InvalidInput(fmt::format(
+        "film '{}': its convex hull is open away from its curves; a curve is "
+        "not planar or not convex: use films of another kind",
+        film.name));
+  }
+}
+
+}  // namespace
+
+FilmComplex build_start(const FilmSystem& system, double edge) {
+  if (!std::isfinite(edge) || edge <= 0.0) {
+    throw InvalidInput(fmt::format("edge length is {}, must be above 0", edge));
+  }
+  return StartBuilder(system, edge).build();
+}
+
+}  // namespace meniscus
