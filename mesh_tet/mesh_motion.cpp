@@ -24,27 +24,14 @@ Table rows_of(const Points& points) {
   return rows;
 }
 
-}  // namespace
-
-struct MeshMotion::Impl {
-  Points reference;
-  int surface = 0;
-  SparseMatrix coupling;  // K_is: rows inner nodes, columns surface points
-  std::unique_ptr<SymmetricFactor> inner;  // K_ii; none without inner nodes
+struct Stiffness {
+  SparseMatrix inner;   // K_ii, lower triangle
+  SparseMatrix across;  // K_is: rows inner nodes, columns surface points
 };
 
-MeshMotion::MeshMotion(const TetMesh& mesh, int surface_points)
-    : impl_(std::make_unique<Impl>()) {
-  const int nodes = static_cast<int>(mesh.nodes.size());
-  if (mesh.order != 1 || surface_points < 0 || surface_points > nodes) {
-    throw MeshError(fmt::format(
-        "mesh motion needs a four-node mesh with its surface points first; "
-        "found order {}, {} nodes, {} surface points",
-        mesh.order, nodes, surface_points));
-  }
-  impl_->reference = mesh.nodes;
-  impl_->surface = surface_points;
-  const int inner = nodes - surface_points;
+/// Of the Laplacian with conductivity mean volume / volume.
+Stiffness assemble(const TetMesh& mesh, int surface_points) {
+  const int inner = static_cast<int>(mesh.nodes.size()) - surface_points;
   std::vector<Eigen::Triplet<double>> lower;
   std::vector<Eigen::Triplet<double>> across;
   lower.reserve(10 * static_cast<std::size_t>(mesh.element_count()));
@@ -66,7 +53,6 @@ MeshMotion::MeshMotion(const TetMesh& mesh, int surface_points)
       const auto& c = kTetFaces[i];
       area[i] = 0.5 * (x[c[1]] - x[c[0]]).cross(x[c[2]] - x[c[0]]);
     }
-    // Stiffness times mean volume over volume.
     const double weight = mean_volume / (9.0 * volume * volume);
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < 4; ++j) {
@@ -81,16 +67,41 @@ MeshMotion::MeshMotion(const TetMesh& mesh, int surface_points)
       }
     }
   }
-  impl_->coupling.resize(inner, surface_points);
-  impl_->coupling.setFromTriplets(across.begin(), across.end());
-  if (inner == 0) {
+  Stiffness stiffness{SparseMatrix(inner, inner),
+                      SparseMatrix(inner, surface_points)};
+  stiffness.inner.setFromTriplets(lower.begin(), lower.end());
+  stiffness.across.setFromTriplets(across.begin(), across.end());
+  return stiffness;
+}
+
+}  // namespace
+
+struct MeshMotion::Impl {
+  Points reference;
+  int surface = 0;
+  SparseMatrix coupling;  // K_is: rows inner nodes, columns surface points
+  std::unique_ptr<SymmetricFactor> inner;  // K_ii; none without inner nodes
+};
+
+MeshMotion::MeshMotion(const TetMesh& mesh, int surface_points)
+    : impl_(std::make_unique<Impl>()) {
+  const int nodes = static_cast<int>(mesh.nodes.size());
+  if (mesh.order != 1 || surface_points < 0 || surface_points > nodes) {
+    throw MeshError(fmt::format(
+        "mesh motion needs a four-node mesh with its surface points first; "
+        "found order {}, {} nodes, {} surface points",
+        mesh.order, nodes, surface_points));
+  }
+  impl_->reference = mesh.nodes;
+  impl_->surface = surface_points;
+  Stiffness stiffness = assemble(mesh, surface_points);
+  impl_->coupling = std::move(stiffness.across);
+  if (nodes == surface_points) {
     return;
   }
-  SparseMatrix matrix(inner, inner);
-  matrix.setFromTriplets(lower.begin(), lower.end());
   impl_->inner =
-      std::make_unique<SymmetricFactor>(matrix, FactorKind::Cholesky);
-  if (!impl_->inner->factorize(matrix)) {
+      std::make_unique<SymmetricFactor>(stiffness.inner, FactorKind::Cholesky);
+  if (!impl_->inner->factorize(stiffness.inner)) {
     throw MeshError(fmt::format(
         "mesh motion: node {} cannot be tied to the surface; is it part of "
         "any element?",

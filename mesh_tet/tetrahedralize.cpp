@@ -174,6 +174,57 @@ std::optional<Failure> find_surface_fault(const SurfaceMesh& surface) {
   return std::nullopt;
 }
 
+/// TetGen's switches. Y: the surface stays. O9/7o/140: flips, smoothing and
+/// new inner points against dihedral angles above 140 degrees, as far as
+/// TetGen can.
+std::string make_switches(const TetrahedralizeOptions& options,
+                          double largest_volume) {
+  return fmt::format("pYQq{:.6f}/{:.3f}a{:.12f}O9/7o/140",
+                     options.radius_edge_ratio, options.min_dihedral_deg,
+                     largest_volume);
+}
+
+TetgenOutput fill(const SurfaceMesh& surface, const SurfaceFit& fit,
+                  const Frame& frame, const std::string& switches,
+                  const TetrahedralizeOptions& options) {
+  Points points;
+  points.reserve(surface.points.size());
+  for (const Vec3& p : surface.points) {
+    points.push_back(frame.into(p));
+  }
+  TetgenInput input{&points, &surface.facets, {}, switches};
+  for (const Vec3& p : fit.cavities) {
+    input.holes.push_back(frame.into(p));
+  }
+  return run_tetgen(
+      input, {options.time_limit, options.memory_limit, options.monitor});
+}
+
+/// Mends the worst elements; refuses a mesh that stays too poor.
+std::optional<Failure> finish(const SurfaceMesh& surface,
+                              const TetrahedralizeOptions& options,
+                              TetMesh& mesh, TetQuality& quality) {
+  quality = tet_quality(mesh);
+  if (quality.min_dihedral_deg < options.improve_below_deg) {
+    improve_tets(mesh, static_cast<int>(surface.points.size()),
+                 {.below_deg = options.improve_below_deg});
+    const std::string fault = attach_surface(surface, mesh);
+    if (!fault.empty()) {
+      throw MeshError(fmt::format("improving elements broke one: {}", fault));
+    }
+    quality = tet_quality(mesh);
+  }
+  if (quality.min_dihedral_deg >= kLeastDihedralDeg) {
+    return std::nullopt;
+  }
+  const Vec3& at = mesh.nodes[mesh.element(quality.worst_element)[0]];
+  return meshing_failure(fmt::format(
+      "the best mesh has a dihedral angle of {:.3g} degrees near ({:.6g}, "
+      "{:.6g}, {:.6g}), the least is {}; remesh the surface more evenly "
+      "there, or change the element edge",
+      quality.min_dihedral_deg, at.x(), at.y(), at.z(), kLeastDihedralDeg));
+}
+
 std::optional<Failure> run(const SurfaceMesh& surface,
                            const TetrahedralizeOptions& options,
                            Tetrahedralization& result) {
@@ -200,23 +251,10 @@ std::optional<Failure> run(const SurfaceMesh& surface,
         edge, fit.volume, kMostElements));
   }
   const Frame frame(surface.points, edge);
-  Points points;
-  points.reserve(surface.points.size());
-  for (const Vec3& p : surface.points) {
-    points.push_back(frame.into(p));
-  }
-  TetgenInput input{&points, &surface.facets, {}, {}};
-  for (const Vec3& p : fit.cavities) {
-    input.holes.push_back(frame.into(p));
-  }
-  // Y: the surface stays. O9/7o/140: flips, smoothing and new inner points
-  // against dihedral angles above 140 degrees, as far as TetGen can.
-  input.switches = fmt::format(
-      "pYQq{:.6f}/{:.3f}a{:.12f}O9/7o/140", options.radius_edge_ratio,
-      options.min_dihedral_deg, bound * std::pow(frame.scale, 3));
   const Timer timer;
-  const TetgenOutput output = run_tetgen(
-      input, {options.time_limit, options.memory_limit, options.monitor});
+  const TetgenOutput output =
+      fill(surface, fit, frame,
+           make_switches(options, bound * std::pow(frame.scale, 3)), options);
   result.tetgen_seconds = timer.seconds();
   if (output.failure) {
     return meshing_failure(*output.failure);
@@ -227,24 +265,7 @@ std::optional<Failure> run(const SurfaceMesh& surface,
     return meshing_failure(fmt::format(
         "TetGen's mesh cannot be used: {}; try another element edge", fault));
   }
-  const int fixed = static_cast<int>(surface.points.size());
-  result.quality = tet_quality(result.mesh);
-  if (result.quality.min_dihedral_deg < options.improve_below_deg) {
-    improve_tets(result.mesh, fixed, {.below_deg = options.improve_below_deg});
-    attach_surface(surface, result.mesh);
-  }
-  result.quality = tet_quality(result.mesh);
-  if (result.quality.min_dihedral_deg < kLeastDihedralDeg) {
-    const Vec3& at =
-        result.mesh.nodes[result.mesh.element(result.quality.worst_element)[0]];
-    return meshing_failure(fmt::format(
-        "the best mesh has a dihedral angle of {:.3g} degrees near ({:.6g}, "
-        "{:.6g}, {:.6g}), the least is {}; remesh the surface more evenly "
-        "there, or change the element edge",
-        result.quality.min_dihedral_deg, at.x(), at.y(), at.z(),
-        kLeastDihedralDeg));
-  }
-  return std::nullopt;
+  return finish(surface, options, result.mesh, result.quality);
 }
 
 }  // namespace
