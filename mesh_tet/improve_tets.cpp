@@ -172,6 +172,12 @@ class Improver {
     });
   }
 
+  /// Corner `old_node` of element e becomes `new_node`.
+  void exchange(int e, int old_node, int new_node) {
+    int* ids = &mesh_.elements[4 * static_cast<std::size_t>(e)];
+    std::replace(ids, ids + 4, old_node, new_node);
+  }
+
   /// A node in the middle of edge a-b, moved to its best place; undone when
   /// the worst element around is not better than before.
   bool split(int a, int b) {
@@ -196,16 +202,14 @@ class Improver {
         const int id = mesh_.elements[4 * e + k];
         mesh_.elements.push_back(id == a ? node : id);
       }
-      std::replace(mesh_.elements.begin() + 4 * e,
-                   mesh_.elements.begin() + 4 * e + 4, b, node);
+      exchange(e, b, node);
       star_[node].push_back(e);
       star_[node].push_back(copy);
     }
     improve(node);
     if (star_quality(node) <= kGain * before) {
       for (const int e : around) {
-        std::replace(mesh_.elements.begin() + 4 * e,
-                     mesh_.elements.begin() + 4 * e + 4, node, b);
+        exchange(e, node, b);
       }
       mesh_.nodes.pop_back();
       star_.pop_back();

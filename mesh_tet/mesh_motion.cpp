@@ -95,7 +95,7 @@ MeshMotion::MeshMotion(const TetMesh& mesh, int surface_points)
   impl_->reference = mesh.nodes;
   impl_->surface = surface_points;
   Stiffness stiffness = assemble(mesh, surface_points);
-  impl_->coupling = std::move(stiffness.across);
+  impl_->coupling.swap(stiffness.across);
   if (nodes == surface_points) {
     return;
   }

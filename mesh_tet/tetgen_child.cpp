@@ -22,8 +22,7 @@ std::string find_tetgen() {
   if (const auto found = find_helper(kHelper, kVariable)) {
     return found->string();
   }
-  const std::string installed =
-      fmt::format("{}/{}", MENISCUS_HELPER_FOLDER, kHelper);
+  std::string installed = fmt::format("{}/{}", MENISCUS_HELPER_FOLDER, kHelper);
   const char* set = std::getenv(kVariable);
   if (set != nullptr && *set != '\0') {
     throw IoError(fmt::format(
