@@ -24,6 +24,56 @@ Table rows_of(const Points& points) {
   return rows;
 }
 
+struct Stiffness {
+  SparseMatrix inner;   // K_ii, lower triangle
+  SparseMatrix across;  // K_is: rows inner nodes, columns surface points
+};
+
+/// Of the Laplacian with conductivity mean volume / volume.
+Stiffness assemble(const TetMesh& mesh, int surface_points) {
+  const int inner = static_cast<int>(mesh.nodes.size()) - surface_points;
+  std::vector<Eigen::Triplet<double>> lower;
+  std::vector<Eigen::Triplet<double>> across;
+  lower.reserve(10 * static_cast<std::size_t>(mesh.element_count()));
+  double mean_volume = 0.0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    mean_volume += corner_volume(mesh, e) / mesh.element_count();
+  }
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto ids = mesh.element(e);
+    const TetCorners x = {mesh.nodes[ids[0]], mesh.nodes[ids[1]],
+                          mesh.nodes[ids[2]], mesh.nodes[ids[3]]};
+    const double volume = tet_volume(x);
+    if (!(volume > 0.0)) {
+      throw MeshError(fmt::format(
+          "mesh motion: reference element {} has volume {:.6g}", e, volume));
+    }
+    std::array<Vec3, 4> area;  // gradient of shape function i: -area_i / 3 V
+    for (int i = 0; i < 4; ++i) {
+      const auto& c = kTetFaces[i];
+      area[i] = 0.5 * (x[c[1]] - x[c[0]]).cross(x[c[2]] - x[c[0]]);
+    }
+    const double weight = mean_volume / (9.0 * volume * volume);
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        const int row = ids[i] - surface_points;
+        const int column = ids[j] - surface_points;
+        const double value = weight * area[i].dot(area[j]);
+        if (row >= 0 && column >= 0 && row >= column) {
+          lower.emplace_back(row, column, value);
+        } else if (row >= 0 && column < 0) {
+          across.emplace_back(row, ids[j], value);
+        }
+      }
+    }
+  }
+  Stiffness stiffness{SparseMatrix(inner, inner),
+                      SparseMatrix(inner, surface_points)};
+  stiffness.inner.setFromTriplets(lower.begin(), lower.end());
+  stiffness.across.setFromTriplets(across.begin(), across.end());
+  return stiffness;
+}
+
 }  // namespace
 
 struct MeshMotion::Impl {
@@ -44,48 +94,14 @@ MeshMotion::MeshMotion(const TetMesh& mesh, int surface_points)
   }
   impl_->reference = mesh.nodes;
   impl_->surface = surface_points;
-  const int inner = nodes - surface_points;
-  std::vector<Eigen::Triplet<double>> lower;
-  std::vector<Eigen::Triplet<double>> across;
-  lower.reserve(10 * static_cast<std::size_t>(mesh.element_count()));
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const auto ids = mesh.element(e);
-    const TetCorners x = {mesh.nodes[ids[0]], mesh.nodes[ids[1]],
-                          mesh.nodes[ids[2]], mesh.nodes[ids[3]]};
-    const double volume = tet_volume(x);
-    if (!(volume > 0.0)) {
-      throw MeshError(fmt::format(
-          "mesh motion: reference element {} has volume {:.6g}", e, volume));
-    }
-    std::array<Vec3, 4> area;  // gradient of shape function i: -area_i / 3 V
-    for (int i = 0; i < 4; ++i) {
-      const auto& c = kTetFaces[i];
-      area[i] = 0.5 * (x[c[1]] - x[c[0]]).cross(x[c[2]] - x[c[0]]);
-    }
-    const double weight = 1.0 / (9.0 * volume);
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) {
-        const int row = ids[i] - surface_points;
-        const int column = ids[j] - surface_points;
-        const double value = weight * area[i].dot(area[j]);
-        if (row >= 0 && column >= 0 && row >= column) {
-          lower.emplace_back(row, column, value);
-        } else if (row >= 0 && column < 0) {
-          across.emplace_back(row, ids[j], value);
-        }
-      }
-    }
-  }
-  impl_->coupling.resize(inner, surface_points);
-  impl_->coupling.setFromTriplets(across.begin(), across.end());
-  if (inner == 0) {
+  Stiffness stiffness = assemble(mesh, surface_points);
+  impl_->coupling.swap(stiffness.across);
+  if (nodes == surface_points) {
     return;
   }
-  SparseMatrix matrix(inner, inner);
-  matrix.setFromTriplets(lower.begin(), lower.end());
   impl_->inner =
-      std::make_unique<SymmetricFactor>(matrix, FactorKind::Cholesky);
-  if (!impl_->inner->factorize(matrix)) {
+      std::make_unique<SymmetricFactor>(stiffness.inner, FactorKind::Cholesky);
+  if (!impl_->inner->factorize(stiffness.inner)) {
     throw MeshError(fmt::format(
         "mesh motion: node {} cannot be tied to the surface; is it part of "
         "any element?",

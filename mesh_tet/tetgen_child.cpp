@@ -22,8 +22,7 @@ std::string find_tetgen() {
   if (const auto found = find_helper(kHelper, kVariable)) {
     return found->string();
   }
-  const std::string installed =
-      fmt::format("{}/{}", MENISCUS_HELPER_FOLDER, kHelper);
+  std::string installed = fmt::format("{}/{}", MENISCUS_HELPER_FOLDER, kHelper);
   const char* set = std::getenv(kVariable);
   if (set != nullptr && *set != '\0') {
     throw IoError(fmt::format(
@@ -151,8 +150,9 @@ std::string describe_failure(const ChildResult& child,
     default:
       break;
   }
-  // The loader's own failure under a tiny limit has no code of ours.
-  if (child.exit_code == 127) {
+  // Too little even to load the program, whatever ends it then.
+  constexpr double kLeastMemory = 32e6;
+  if (limits.memory < kLeastMemory) {
     return fmt::format(kMemory, limits.memory / 1e6);
   }
   const std::string said = last_line(child.error_tail);

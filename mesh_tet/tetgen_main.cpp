@@ -136,7 +136,7 @@ void fill(Surface& surface, int out) {
 /// TetGen reports errors by throwing an int, but frees its memory before and
 /// once more while unwinding, so a handler would never be reached. Its code
 /// is taken here, where it is thrown; everything else goes on as usual.
-extern "C" void __cxa_throw(  // NOLINT(bugprone-reserved-identifier)
+extern "C" void __cxa_throw(  // NOLINT: the runtime's own name
     void* thrown, void* type, void (*destroy)(void*)) {
   if (*static_cast<std::type_info*>(type) == typeid(int)) {
     int code = 0;

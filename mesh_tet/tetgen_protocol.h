@@ -32,12 +32,10 @@ struct Reply {
 /// Exit codes of the helper. TetGen's own codes are added to kTetgenCode: 1
 /// memory, 2 internal, 3 self-intersection, 4 feature too small, 5 facets too
 /// close, 10 input.
-enum ExitCode : int {
-  kDone = 0,
-  kBadRequest = 3,
-  kOutOfMemory = 4,
-  kNotDelivered = 5,
-  kTetgenCode = 20
-};
+inline constexpr int kDone = 0;
+inline constexpr int kBadRequest = 3;
+inline constexpr int kOutOfMemory = 4;
+inline constexpr int kNotDelivered = 5;
+inline constexpr int kTetgenCode = 20;
 
 }  // namespace meniscus::tetgen

@@ -1,12 +1,14 @@
 #include "mesh_tet/tetrahedralize.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/mesh_checks.h"
 #include "core/timer.h"
-#include "mesh_tet/smooth_tets.h"
+#include "mesh_tet/improve_tets.h"
 #include "mesh_tet/surface_fit.h"
 #include "mesh_tet/tet_boundary.h"
 #include "mesh_tet/tetgen_child.h"
@@ -44,6 +46,8 @@ void check(const TetrahedralizeOptions& options) {
   positive("edge", options.edge.value_or(1.0));
   positive("time_limit", options.time_limit);
   positive("memory_limit", options.memory_limit);
+  require(options.min_dihedral_deg >= 0.0 && options.min_dihedral_deg <= 18.0,
+          "min_dihedral_deg", options.min_dihedral_deg, "in 0 to 18");
   require(std::isfinite(options.radius_edge_ratio) &&
               options.radius_edge_ratio >= 1.0,
           "radius_edge_ratio", options.radius_edge_ratio, "at least 1");
@@ -144,39 +148,87 @@ std::string find_fault(const SurfaceMesh& surface, const Frame& frame,
   return fault.empty() ? check_volume(mesh, volume) : fault;
 }
 
-std::optional<Failure> check_surface_points(const SurfaceMesh& surface) {
-  if (!flat(surface.points).allFinite()) {
-    return surface_failure("a surface point is not finite");
-  }
-  std::vector<char> used(surface.points.size(), 0);
-  for (const Triangle& t : surface.facets) {
-    for (const int p : t) {
-      if (p < 0 || p >= static_cast<int>(used.size())) {
-        return surface_failure(
-            fmt::format("a facet has corner {} of {} points", p, used.size()));
-      }
-      used[p] = 1;
-    }
-  }
-  for (std::size_t p = 0; p < used.size(); ++p) {
-    if (used[p] == 0) {
-      return surface_failure(
-          fmt::format("surface point {} belongs to no facet; drop it", p));
-    }
-  }
-  return std::nullopt;
-}
-
-std::optional<Failure> run(const SurfaceMesh& surface,
-                           const TetrahedralizeOptions& options,
-                           Tetrahedralization& result) {
+std::optional<Failure> find_surface_fault(const SurfaceMesh& surface) {
   if (surface.facets.empty() ||
       surface.facet_label.size() != surface.facets.size()) {
     return surface_failure(
         fmt::format("the surface has {} facets and {} facet labels",
                     surface.facets.size(), surface.facet_label.size()));
   }
-  if (auto failure = check_surface_points(surface)) {
+  const std::vector<Finding> findings = check_surface(surface);
+  if (!findings.empty()) {
+    return surface_failure(summary(findings));
+  }
+  std::vector<char> used(surface.points.size(), 0);
+  for (const Triangle& t : surface.facets) {
+    for (const int p : t) {
+      used[p] = 1;
+    }
+  }
+  if (const auto unused = std::find(used.begin(), used.end(), 0);
+      unused != used.end()) {
+    return surface_failure(
+        fmt::format("surface point {} belongs to no facet; drop it",
+                    unused - used.begin()));
+  }
+  return std::nullopt;
+}
+
+/// TetGen's switches. Y: the surface stays. O9/7o/140: flips, smoothing and
+/// new inner points against dihedral angles above 140 degrees, as far as
+/// TetGen can.
+std::string make_switches(const TetrahedralizeOptions& options,
+                          double largest_volume) {
+  return fmt::format("pYQq{:.6f}/{:.3f}a{:.12f}O9/7o/140",
+                     options.radius_edge_ratio, options.min_dihedral_deg,
+                     largest_volume);
+}
+
+TetgenOutput fill(const SurfaceMesh& surface, const SurfaceFit& fit,
+                  const Frame& frame, const std::string& switches,
+                  const TetrahedralizeOptions& options) {
+  Points points;
+  points.reserve(surface.points.size());
+  for (const Vec3& p : surface.points) {
+    points.push_back(frame.into(p));
+  }
+  TetgenInput input{&points, &surface.facets, {}, switches};
+  for (const Vec3& p : fit.cavities) {
+    input.holes.push_back(frame.into(p));
+  }
+  return run_tetgen(
+      input, {options.time_limit, options.memory_limit, options.monitor});
+}
+
+/// Mends the worst elements; refuses a mesh that stays too poor.
+std::optional<Failure> finish(const SurfaceMesh& surface,
+                              const TetrahedralizeOptions& options,
+                              TetMesh& mesh, TetQuality& quality) {
+  quality = tet_quality(mesh);
+  if (quality.min_dihedral_deg < options.improve_below_deg) {
+    improve_tets(mesh, static_cast<int>(surface.points.size()),
+                 {.below_deg = options.improve_below_deg});
+    const std::string fault = attach_surface(surface, mesh);
+    if (!fault.empty()) {
+      throw MeshError(fmt::format("improving elements broke one: {}", fault));
+    }
+    quality = tet_quality(mesh);
+  }
+  if (quality.min_dihedral_deg >= kLeastDihedralDeg) {
+    return std::nullopt;
+  }
+  const Vec3& at = mesh.nodes[mesh.element(quality.worst_element)[0]];
+  return meshing_failure(fmt::format(
+      "the best mesh has a dihedral angle of {:.3g} degrees near ({:.6g}, "
+      "{:.6g}, {:.6g}), the least is {}; remesh the surface more evenly "
+      "there, or change the element edge",
+      quality.min_dihedral_deg, at.x(), at.y(), at.z(), kLeastDihedralDeg));
+}
+
+std::optional<Failure> run(const SurfaceMesh& surface,
+                           const TetrahedralizeOptions& options,
+                           Tetrahedralization& result) {
+  if (auto failure = find_surface_fault(surface)) {
     return failure;
   }
   const SurfaceFit fit = fit_surface(surface);
@@ -199,20 +251,10 @@ std::optional<Failure> run(const SurfaceMesh& surface,
         edge, fit.volume, kMostElements));
   }
   const Frame frame(surface.points, edge);
-  Points points;
-  points.reserve(surface.points.size());
-  for (const Vec3& p : surface.points) {
-    points.push_back(frame.into(p));
-  }
-  TetgenInput input{&points, &surface.facets, {}, {}};
-  for (const Vec3& p : fit.cavities) {
-    input.holes.push_back(frame.into(p));
-  }
-  input.switches = fmt::format("pYQq{:.6f}a{:.12f}", options.radius_edge_ratio,
-                               bound * std::pow(frame.scale, 3));
   const Timer timer;
-  const TetgenOutput output = run_tetgen(
-      input, {options.time_limit, options.memory_limit, options.monitor});
+  const TetgenOutput output =
+      fill(surface, fit, frame,
+           make_switches(options, bound * std::pow(frame.scale, 3)), options);
   result.tetgen_seconds = timer.seconds();
   if (output.failure) {
     return meshing_failure(*output.failure);
@@ -223,22 +265,7 @@ std::optional<Failure> run(const SurfaceMesh& surface,
     return meshing_failure(fmt::format(
         "TetGen's mesh cannot be used: {}; try another element edge", fault));
   }
-  SmoothOptions smooth;
-  smooth.below_deg = options.improve_below_deg;
-  smooth_inner_nodes(result.mesh, static_cast<int>(surface.points.size()),
-                     smooth);
-  result.quality = tet_quality(result.mesh);
-  if (result.quality.min_dihedral_deg < kLeastDihedralDeg) {
-    const Vec3& at =
-        result.mesh.nodes[result.mesh.element(result.quality.worst_element)[0]];
-    return meshing_failure(fmt::format(
-        "the best mesh has a dihedral angle of {:.3g} degrees near ({:.6g}, "
-        "{:.6g}, {:.6g}), the least is {}; remesh the surface more evenly "
-        "there, or change the element edge",
-        result.quality.min_dihedral_deg, at.x(), at.y(), at.z(),
-        kLeastDihedralDeg));
-  }
-  return std::nullopt;
+  return finish(surface, options, result.mesh, result.quality);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace meniscus {
 
 /// Largest volume of an element over that of the regular tetrahedron of the
 /// target edge, edge^3 / (6 sqrt 2). Elements stay below the bound, on the
-/// average at about half of it; 2.1 makes the average the regular one.
+/// average at less than half of it; 2.1 makes the average the regular one.
 inline constexpr double kVolumeFactor = 2.1;
 
 /// Meshes whose smallest dihedral angle is below this are refused [degree]:
@@ -24,9 +24,12 @@ inline constexpr double kVolumeFactor = 2.1;
 inline constexpr double kLeastDihedralDeg = 1.0;
 
 struct TetrahedralizeOptions {
-  std::optional<double> edge;       // target edge inside [length], positive;
+  std::optional<double> edge =
+      std::nullopt;                 // target edge inside [length], positive;
                                     // automatic: the surface's mean edge
   double radius_edge_ratio = 1.4;   // TetGen's quality bound, at least 1
+  double min_dihedral_deg = 15.0;   // TetGen's aim, 0 to 18; not reached
+                                    // where the surface does not allow it
   double improve_below_deg = 10.0;  // inner nodes around elements with smaller
                                     // dihedral angles are moved to enlarge them
   double time_limit = 300.0;        // of the child [s]

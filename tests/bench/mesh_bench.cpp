@@ -1,0 +1,112 @@
+// Seconds of tet meshing, quadratic elements and mesh motion.
+#include <cmath>
+#include <numbers>
+
+#include <benchmark/benchmark.h>
+
+#include "mesh_tet/mesh_motion.h"
+#include "mesh_tet/quadratic.h"
+#include "mesh_tet/tetrahedralize.h"
+#include "tests/support/shapes.h"
+
+namespace {
+
+using namespace meniscus;
+
+constexpr double kVolume = 1.7e6;  // of the two-arm bracket [mm^3]
+
+SurfaceMesh ball(int levels) {
+  return shapes::sphere(std::cbrt(kVolume * 3.0 / (4.0 * std::numbers::pi)),
+                        levels);
+}
+
+/// 5,120 facets; elements of this edge in 1/100 mm.
+void fill_bracket_volume(benchmark::State& state) {
+  const SurfaceMesh surface = ball(4);
+  Tetrahedralization result;
+  for (auto _ : state) {
+    result = tetrahedralize(
+        surface, {.edge = static_cast<double>(state.range(0)) / 100.0});
+  }
+  state.counters["tets"] = result.mesh.element_count();
+  state.counters["min_dihedral"] = result.quality.min_dihedral_deg;
+  state.counters["tetgen_s"] = result.tetgen_seconds;
+}
+BENCHMARK(fill_bracket_volume)
+    ->Arg(485)
+    ->Arg(870)
+    ->Arg(1380)
+    ->Unit(benchmark::kMillisecond);
+
+/// 20,480 facets, elements of the surface's own size and coarser.
+void fill_fine_surface(benchmark::State& state) {
+  const SurfaceMesh surface = ball(5);
+  Tetrahedralization result;
+  for (auto _ : state) {
+    result = tetrahedralize(
+        surface, {.edge = static_cast<double>(state.range(0)) / 100.0});
+  }
+  state.counters["tets"] = result.mesh.element_count();
+  state.counters["min_dihedral"] = result.quality.min_dihedral_deg;
+}
+BENCHMARK(fill_fine_surface)->Arg(485)->Arg(285)->Unit(benchmark::kMillisecond);
+
+struct Model {
+  SurfaceMesh surface = ball(4);
+  TetMesh mesh = tetrahedralize(surface, {.edge = 4.85}).mesh;
+};
+
+const Model& model() {
+  static const Model kModel;
+  return kModel;
+}
+
+void motion_setup(benchmark::State& state) {
+  const Model& m = model();
+  for (auto _ : state) {
+    const MeshMotion motion(m.mesh, static_cast<int>(m.surface.points.size()));
+    benchmark::DoNotOptimize(&motion);
+  }
+}
+BENCHMARK(motion_setup)->Unit(benchmark::kMillisecond);
+
+void motion_move(benchmark::State& state) {
+  const Model& m = model();
+  const MeshMotion motion(m.mesh, static_cast<int>(m.surface.points.size()));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(motion.move(m.surface.points));
+  }
+}
+BENCHMARK(motion_move)->Unit(benchmark::kMillisecond);
+
+QuadraticSurface curved(const SurfaceMesh& base) {
+  QuadraticSurface surface;
+  surface.base = base;
+  list_edges(base.facets, surface.edges, surface.facet_edges);
+  for (const Edge& e : surface.edges) {
+    surface.mid.push_back(base.points[e[0]].norm() *
+                          (base.points[e[0]] + base.points[e[1]]).normalized());
+  }
+  return surface;
+}
+
+void quadratic_make(benchmark::State& state) {
+  const QuadraticSurface surface = curved(model().surface);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(make_quadratic(model().mesh, surface));
+  }
+}
+BENCHMARK(quadratic_make)->Unit(benchmark::kMillisecond);
+
+void quadratic_move_and_check(benchmark::State& state) {
+  const QuadraticSurface surface = curved(model().surface);
+  std::vector<char> curve;
+  TetMesh mesh = make_quadratic(model().mesh, surface, &curve);
+  for (auto _ : state) {
+    move_quadratic(mesh, model().mesh.nodes, surface, curve);
+    benchmark::DoNotOptimize(find_inverted(mesh));
+  }
+}
+BENCHMARK(quadratic_move_and_check)->Unit(benchmark::kMillisecond);
+
+}  // namespace

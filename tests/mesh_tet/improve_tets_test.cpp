@@ -1,0 +1,69 @@
+#include "mesh_tet/improve_tets.h"
+
+#include <gtest/gtest.h>
+
+#include "mesh_tet/tet_quality.h"
+#include "mesh_tet/tetrahedralize.h"
+#include "tests/support/shapes.h"
+
+namespace meniscus {
+
+namespace {
+
+TEST(ImproveTets, MovesADisplacedNodeBack) {
+  TetMesh mesh = shapes::brick(Vec3::Ones(), 2, 2, 2);
+  const Points before = mesh.nodes;
+  int inner = -1;
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    if (mesh.nodes[n] == Vec3(0.5, 0.5, 0.5)) {
+      inner = static_cast<int>(n);
+    }
+  }
+  ASSERT_GE(inner, 0);
+  // The only free node must be the last: exchange it with the last one.
+  const int last = static_cast<int>(mesh.nodes.size()) - 1;
+  const auto exchange = [&](std::vector<int>& ids) {
+    for (int& id : ids) {
+      id = id == inner ? last : id == last ? inner : id;
+    }
+  };
+  exchange(mesh.elements);
+  exchange(mesh.faces);
+  std::swap(mesh.nodes[inner], mesh.nodes[last]);
+  const Points straight = mesh.nodes;
+  mesh.nodes[last] = Vec3(0.95, 0.93, 0.9);
+  const double poor = tet_quality(mesh).min_dihedral_deg;
+  improve_tets(mesh, last, {.below_deg = 30.0, .rounds = 1});
+  EXPECT_GT(tet_quality(mesh).min_dihedral_deg, 2.0 * poor);
+  for (int n = 0; n < last; ++n) {
+    EXPECT_EQ(mesh.nodes[n], straight[n]);
+  }
+}
+
+TEST(ImproveTets, StretchedSurfaceBecomesUsable) {
+  // TetGen alone leaves angles of 0.4 degrees between surface points here.
+  SurfaceMesh surface = shapes::sphere(1.0, 3);
+  for (Vec3& p : surface.points) {
+    const double arm = 0.6 + 0.8 * p.x() * p.x();
+    p = Vec3(150 * p.x(), 45 * arm * p.y(),
+             35 * arm * p.z() + 72 * p.x() * p.x());
+  }
+  const auto result = tetrahedralize(surface);
+  ASSERT_FALSE(result.failure) << result.failure->message;
+  // Refused without improvement, or worse.
+  const auto raw = tetrahedralize(surface, {.improve_below_deg = 0.0});
+  if (!raw.failure) {
+    EXPECT_GT(result.quality.min_dihedral_deg,
+              1.5 * raw.quality.min_dihedral_deg);
+  }
+  const double volume = enclosed_volume(surface);
+  double sum = 0.0;
+  for (int e = 0; e < result.mesh.element_count(); ++e) {
+    sum += corner_volume(result.mesh, e);
+  }
+  EXPECT_NEAR(sum, volume, 1e-12 * volume);
+}
+
+}  // namespace
+
+}  // namespace meniscus
