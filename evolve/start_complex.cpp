@@ -175,7 +175,13 @@ class StartBuilder {
   }
 
   void fill(const Rim& rim, int label, VertexKind kind) {
-    const SurfaceMesh disk = fill_disk(points_of(rim), edge_);
+    SurfaceMesh disk;
+    try {
+      disk = fill_disk(points_of(rim), edge_);
+    } catch (const MeshError& error) {
+      throw InvalidInput(fmt::format(
+          "curve '{}': {}", system_.curves[rim.curve].name, error.what()));
+    }
     const int first_inner = static_cast<int>(result_.mesh.points.size());
     for (std::size_t i = rim.count; i < disk.points.size(); ++i) {
       result_.mesh.points.push_back(disk.points[i]);

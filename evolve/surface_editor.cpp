@@ -246,7 +246,7 @@ bool SurfaceEditor::can_collapse(int gone, int kept, const Vec3& place,
       const Vec3 old = normal2(f);
       before = std::min(before,
                         smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
-                                       mesh_.points[t[2]]));
+                                         mesh_.points[t[2]]));
       if (dies) {
         continue;
       }
@@ -412,9 +412,9 @@ void SurfaceEditor::average() {
       double least = 2.0;
       for (const int f : star_[v]) {
         const Triangle& t = mesh_.facets[f];
-        least = std::min(least,
-                         smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
-                                        mesh_.points[t[2]]));
+        least = std::min(
+            least, smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
+                                    mesh_.points[t[2]]));
         if (!(normal2(f).dot(normal) > 0.0)) {
           least = -1.0;
         }
