@@ -199,6 +199,15 @@ void SurfaceEditor::split_above(double limit) {
     if (!free_pair(a, b, pair)) {
       continue;
     }
+    // Longer sides that are still there are borders: halving beside them
+    // would go on for ever.
+    double longest = 0.0;
+    for (const int v : {pair.left_corner, pair.right_corner}) {
+      longest = std::max({longest, length(a, v), length(b, v)});
+    }
+    if (longest > (1.0 + 1e-12) * l) {
+      continue;
+    }
     const int m = split(a, b, pair);
     for (const int v : {a, b, pair.left_corner, pair.right_corner}) {
       push(v, m);

@@ -151,6 +151,15 @@ TEST(Remesh, KeepsATripleLineAwayFromCurves) {
   EXPECT_EQ(std::count(count.begin(), count.end(), 3), kLine - 1);
 }
 
+TEST(Remesh, EndsWhereRimsAreMuchCoarserOrFinerThanTheEdge) {
+  for (const double edge : {0.05, 2.0}) {
+    FilmComplex complex = build_start(systems::strut(), 0.4);
+    remesh_films(complex, {.edge = edge});
+    check_complex(complex);
+    EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);
+  }
+}
+
 TEST(Equiangulate, RaisesTheSmallestAngleAndEnds) {
   FilmComplex complex = build_start(systems::cylinder(1.0), 0.3);
   remesh_films(complex, {.edge = 0.3, .passes = 1});
