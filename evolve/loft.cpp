@@ -57,6 +57,9 @@ bool same_way(const Vec3& low_area, const Vec3& high_area, const Vec3& line) {
 // The rotation that brings the curves' planes together, so that a bend does
 // not count as a twist.
 Mat3 turn_between(const Vec3& from, const Vec3& to) {
+  if (!(from.norm() > 0.0) || !(to.norm() > 0.0)) {
+    return Mat3::Identity();  // a curve whose shadows cancel (a figure eight)
+  }
   return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
 }
 
@@ -95,7 +98,7 @@ std::vector<Triangle> loft_band(const Points& low, const Points& high) {
       sum += (point_at_share(path, along, low_along[i], hint) - turned[i])
                  .squaredNorm();
     }
-    if (sum < best * (1.0 - 1e-9)) {
+    if (order.empty() || sum < best * (1.0 - 1e-9)) {
       best = sum;
       order = ids;
       order_along = along;

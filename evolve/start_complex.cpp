@@ -26,6 +26,104 @@ struct Rim {
   int count = 0;
 };
 
+// Joins hull facets to rims: the hull knows only corners, the points inside
+// straight sides are put back into the facets along them.
+class RimStitcher {
+ public:
+  RimStitcher(const Points& points, std::vector<Triangle>& facets)
+      : points_(points),
+        facets_(facets),
+        reach_(1e3 * kFlatness * bounding_diagonal(points)),
+        used_(points.size(), 0) {
+    for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+      list(f);
+      for (const int v : facets[f]) {
+        used_[v] = 1;
+      }
+    }
+  }
+
+  // Returns a point that is off the hull, or -1 when the facets end at every
+  // piece of the rim first, first + 1, ... of n points.
+  int stitch(int first, int n) {
+    int start = 0;
+    while (start < n && used_[first + start] == 0) {
+      ++start;
+    }
+    if (start == n) {
+      return first;
+    }
+    for (int i = start; i < start + n;) {
+      std::vector<int> chain = {first + i % n};
+      do {
+        ++i;
+        chain.push_back(first + i % n);
+      } while (used_[chain.back()] == 0);
+      const int off = stitch_side(chain);
+      if (off >= 0) {
+        return off;
+      }
+    }
+    return -1;
+  }
+
+  std::size_t open_edges() const {
+    return std::count_if(side_.begin(), side_.end(), [&](const auto& s) {
+      return side_.count({s.first[1], s.first[0]}) == 0;
+    });
+  }
+
+ private:
+  void list(int f) {
+    for (int k = 0; k < 3; ++k) {
+      side_[{facets_[f][k], facets_[f][(k + 1) % 3]}] = f;
+    }
+  }
+
+  // Cuts the facet along the chain's ends into a fan over its points.
+  int stitch_side(const std::vector<int>& chain) {
+    const int a = chain.front();
+    const int b = chain.back();
+    const bool backward = side_.count({b, a}) > 0;
+    const Edge edge = backward ? Edge{b, a} : Edge{a, b};
+    const auto at = side_.find(edge);
+    if (a == b || at == side_.end() || side_.count({edge[1], edge[0]}) > 0) {
+      return chain[1];
+    }
+    const int f = at->second;
+    const Triangle t = facets_[f];
+    const int apex = t[0] + t[1] + t[2] - a - b;
+    const Vec3 along = (points_[b] - points_[a]).normalized();
+    for (const int v : chain) {
+      const Vec3 off = points_[v] - points_[a];
+      if ((off - along * along.dot(off)).norm() > reach_) {
+        return v;
+      }
+    }
+    if (chain.size() > 2) {
+      side_.erase(at);
+    }
+    for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+      const Triangle piece = backward ? Triangle{chain[k + 1], chain[k], apex}
+                                      : Triangle{chain[k], chain[k + 1], apex};
+      const int id = k == 0 ? f : static_cast<int>(facets_.size());
+      if (k == 0) {
+        facets_[f] = piece;
+      } else {
+        facets_.push_back(piece);
+      }
+      list(id);
+    }
+    return -1;
+  }
+
+  const Points& points_;
+  std::vector<Triangle>& facets_;
+  double reach_;
+  std::vector<char> used_;    // per point: a hull corner
+  std::map<Edge, int> side_;  // directed edge -> facet
+};
+
 class StartBuilder {
  public:
   StartBuilder(const FilmSystem& system, double edge)
@@ -175,7 +273,13 @@ class StartBuilder {
   }
 
   void fill(const Rim& rim, int label, VertexKind kind) {
-    const SurfaceMesh disk = fill_disk(points_of(rim), edge_);
+    SurfaceMesh disk;
+    try {
+      disk = fill_disk(points_of(rim), edge_);
+    } catch (const MeshError& error) {
+      throw InvalidInput(fmt::format(
+          "curve '{}': {}", system_.curves[rim.curve].name, error.what()));
+    }
     const int first_inner = static_cast<int>(result_.mesh.points.size());
     for (std::size_t i = rim.count; i < disk.points.size(); ++i) {
       result_.mesh.points.push_back(disk.points[i]);
@@ -298,8 +402,7 @@ void StartBuilder::add_branch(const FilmSpec& film, int label) {
   }
 }
 
-// Drops the caps, puts points of straight sides back in (the hull knows only
-// corners) and makes sure that what is left ends exactly at the curves.
+// Drops the caps and makes sure that what is left ends exactly at the curves.
 void StartBuilder::keep_hull_facets(const FilmSpec& film,
                                     const std::vector<Rim>& rims,
                                     const Points& points,
@@ -312,90 +415,24 @@ void StartBuilder::keep_hull_facets(const FilmSpec& film,
     return rim_of_point[t[0]] == rim_of_point[t[1]] &&
            rim_of_point[t[0]] == rim_of_point[t[2]];
   });
-  std::map<Edge, int> side;  // directed edge -> facet
-  const auto list = [&](int f) {
-    for (int k = 0; k < 3; ++k) {
-      side[{facets[f][k], facets[f][(k + 1) % 3]}] = f;
-    }
-  };
-  for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
-    list(f);
-  }
-  const auto off_hull = [&](std::size_t r, int point) {
-    const Vec3& p = points[point];
-    return InvalidInput(fmt::format(
-        "film '{}': curve '{}' is off the convex hull of the film's curves "
-        "near ({:.6g}, {:.6g}, {:.6g}); a branch film starts from that hull: "
-        "move or turn the curve, make it convex, or use films of another kind",
-        film.name, film.curves[r], p.x(), p.y(), p.z()));
-  };
+  RimStitcher stitcher(points, facets);
   std::size_t border = 0;
   int first = 0;
   for (std::size_t r = 0; r < rims.size(); ++r) {
-    const int n = rims[r].count;
-    std::vector<char> on_hull(n, 0);
-    for (const Triangle& t : facets) {
-      for (const int v : t) {
-        if (rim_of_point[v] == static_cast<int>(r)) {
-          on_hull[v - first] = 1;
-        }
-      }
+    const int off = stitcher.stitch(first, rims[r].count);
+    if (off >= 0) {
+      const Vec3& p = points[off];
+      throw InvalidInput(fmt::format(
+          "film '{}': curve '{}' is off the convex hull of the film's curves "
+          "near ({:.6g}, {:.6g}, {:.6g}); a branch film starts from that hull: "
+          "move or turn the curve, make it convex, or use films of another "
+          "kind",
+          film.name, film.curves[r], p.x(), p.y(), p.z()));
     }
-    int start = 0;
-    while (start < n && on_hull[start] == 0) {
-      ++start;
-    }
-    if (start == n) {
-      throw off_hull(r, first);
-    }
-    for (int i = start; i < start + n;) {
-      int j = i + 1;
-      while (on_hull[j % n] == 0) {
-        ++j;
-      }
-      const int a = first + i % n;
-      const int b = first + j % n;
-      const bool backward = side.count({b, a}) > 0;
-      const auto at = side.find(backward ? Edge{b, a} : Edge{a, b});
-      if (a == b || at == side.end() || (backward && side.count({a, b}) > 0)) {
-        throw off_hull(r, first + (i + 1) % n);
-      }
-      // Cut the facet at the edge into a fan over the points in between.
-      const int f = at->second;
-      const Triangle t = facets[f];
-      const int apex = t[0] + t[1] + t[2] - a - b;
-      const Vec3 along = (points[b] - points[a]).normalized();
-      for (int k = i; k < j; ++k) {
-        const int from = first + k % n;
-        const int to = first + (k + 1) % n;
-        const Vec3 off = points[to] - points[a];
-        if ((off - along * along.dot(off)).norm() >
-            1e3 * kFlatness * bounding_diagonal(points)) {
-          throw off_hull(r, to);
-        }
-        const Triangle piece =
-            backward ? Triangle{to, from, apex} : Triangle{from, to, apex};
-        const int id = k == i ? f : static_cast<int>(facets.size());
-        if (k == i) {
-          facets[f] = piece;
-        } else {
-          facets.push_back(piece);
-        }
-        list(id);
-      }
-      if (j - i > 1) {
-        side.erase(backward ? Edge{b, a} : Edge{a, b});
-      }
-      border += j - i;
-      i = j;
-    }
-    first += n;
+    border += rims[r].count;
+    first += rims[r].count;
   }
-  std::size_t open = 0;
-  for (const auto& [edge, f] : side) {
-    open += side.count({edge[1], edge[0]}) == 0 ? 1 : 0;
-  }
-  if (open != border) {
+  if (stitcher.open_edges() != border) {
     throw InvalidInput(fmt::format(
         "film '{}': its convex hull is open away from its curves; a curve is "
         "not planar or not convex: use films of another kind",

@@ -199,6 +199,15 @@ void SurfaceEditor::split_above(double limit) {
     if (!free_pair(a, b, pair)) {
       continue;
     }
+    // Longer sides that are still there are borders: halving beside them
+    // would go on for ever.
+    double longest = 0.0;
+    for (const int v : {pair.left_corner, pair.right_corner}) {
+      longest = std::max({longest, length(a, v), length(b, v)});
+    }
+    if (longest > (1.0 + 1e-12) * l) {
+      continue;
+    }
     const int m = split(a, b, pair);
     for (const int v : {a, b, pair.left_corner, pair.right_corner}) {
       push(v, m);
@@ -246,7 +255,7 @@ bool SurfaceEditor::can_collapse(int gone, int kept, const Vec3& place,
       const Vec3 old = normal2(f);
       before = std::min(before,
                         smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
-                                       mesh_.points[t[2]]));
+                                         mesh_.points[t[2]]));
       if (dies) {
         continue;
       }
@@ -412,9 +421,9 @@ void SurfaceEditor::average() {
       double least = 2.0;
       for (const int f : star_[v]) {
         const Triangle& t = mesh_.facets[f];
-        least = std::min(least,
-                         smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
-                                        mesh_.points[t[2]]));
+        least = std::min(
+            least, smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
+                                    mesh_.points[t[2]]));
         if (!(normal2(f).dot(normal) > 0.0)) {
           least = -1.0;
         }

@@ -1,1 +1,210 @@
+#include "evolve/curve.h"
+
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace meniscus {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kRounding = 1e-13;  // some operations on numbers near 1
+
+Rectangle rounded() {
+  Rectangle r;
+  r.width = 4.0;
+  r.height = 2.0;
+  r.corner_radius = 0.5;
+  return r;
+}
+
+std::vector<CurveShape> all_shapes() {
+  Ellipse ellipse;
+  ellipse.radius_1 = 3.0;
+  ellipse.radius_2 = 0.7;
+  ellipse.normal = Vec3(1, 2, 2);
+  Rectangle sharp;
+  sharp.width = 3.0;
+  return {Circle{Vec3(1, 2, 3), Vec3(0, -3, 1), 2.0}, ellipse, rounded(), sharp,
+          Polygon{{{0, 0, 0}, {4, 0, 0}, {4, 1, 0.5}, {0, 2, 0}}}};
+}
+
+std::string refusal(const CurveShape& shape) {
+  try {
+    validate({"rim", shape});
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Curve, CircleHasItsRadiusPlaneAndDirection) {
+  const Circle c{Vec3(1, 2, 3), Vec3(2, -1, 4), 2.5};
+  const Vec3 n = c.normal.normalized();
+  for (int i = 0; i < 16; ++i) {
+    const double t = i / 16.0;
+    const Vec3 r = point_at(c, t) - c.center;
+    EXPECT_NEAR(r.norm(), 2.5, kRounding * 10);
+    EXPECT_NEAR(r.dot(n), 0.0, kRounding * 10);
+    const Vec3 next = point_at(c, t + 1.0 / 16) - c.center;
+    EXPECT_GT(r.cross(next).dot(n), 0.0);
+  }
+  EXPECT_LT((point_at(Circle{}, 0.0) - Vec3(1, 0, 0)).norm(), kRounding);
+  EXPECT_NEAR(length_of(c), 5.0 * kPi, kRounding * 100);
+}
+
+TEST(Curve, CircleFrameMovesLittleWhereTheNormalMovesLittle) {
+  // The frame turns fast near its one bad normal only: within a bound of
+  // 2 / distance elsewhere (stereographic projection).
+  const Vec3 bad = -Vec3(2, 3, 6) / 7.0;
+  std::mt19937 random(3);
+  std::normal_distribution<double> at;
+  constexpr double kStep = 1e-6;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 n = Vec3(at(random), at(random), at(random)).normalized();
+    const Vec3 d = kStep * n.unitOrthogonal();
+    const double distance = (n - bad).norm();
+    if (distance < 0.01) {
+      continue;
+    }
+    const Vec3 p = point_at(Circle{Vec3::Zero(), n, 1.0}, 0.0);
+    const Vec3 q = point_at(Circle{Vec3::Zero(), n + d, 1.0}, 0.0);
+    EXPECT_LT((p - q).norm(), (2.0 + 4.0 / distance) * kStep);
+  }
+  for (const Vec3& n : {bad, Vec3(-bad), Vec3(1, 0, 0), Vec3(0, 0, -1)}) {
+    EXPECT_TRUE(point_at(Circle{Vec3::Zero(), n, 1.0}, 0.3).allFinite());
+  }
+}
+
+TEST(Curve, EveryShapeRunsRoundOnceWithItsOwnLength) {
+  constexpr int kSteps = 20000;
+  constexpr double kChord = 1e-6;  // relative error of the chords' sum
+  for (const CurveShape& shape : all_shapes()) {
+    double length = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+      length += (point_at(shape, (i + 1.0) / kSteps) -
+                 point_at(shape, static_cast<double>(i) / kSteps))
+                    .norm();
+    }
+    EXPECT_NEAR(length / length_of(shape), 1.0, kChord);
+    EXPECT_LT((point_at(shape, 1.0) - point_at(shape, 0.0)).norm(), kRounding);
+  }
+}
+
+TEST(Curve, EllipseLengthAgreesWithTheCircleAndRamanujan) {
+  Ellipse e;
+  e.radius_1 = e.radius_2 = 2.0;
+  EXPECT_NEAR(length_of(e), 4.0 * kPi, 1e-12);
+  e.radius_1 = 3.0;
+  const double h = 1.0 / 25.0;  // ((a - b) / (a + b))^2
+  const double ramanujan =
+      kPi * 5.0 * (1.0 + 3.0 * h / (10.0 + std::sqrt(4.0 - 3.0 * h)));
+  EXPECT_NEAR(length_of(e), ramanujan, 1e-8);  // the formula's own error
+}
+
+TEST(Curve, RectangleHasItsSidesAndCorners) {
+  const Rectangle r = rounded();
+  Vec3 low = Vec3::Constant(9);
+  Vec3 high = Vec3::Constant(-9);
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3 p = point_at(r, i / 4000.0);
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+    const double x = std::max(std::abs(p.x()) - 1.5, 0.0);
+    const double y = std::max(std::abs(p.y()) - 0.5, 0.0);
+    EXPECT_NEAR(std::hypot(x, y), 0.5, 1e-12);
+  }
+  EXPECT_LT((high - Vec3(2, 1, 0)).norm() + (low + Vec3(2, 1, 0)).norm(),
+            1e-12);
+  EXPECT_NEAR(length_of(r), 2 * 3 + 2 * 1 + kPi, 1e-12);
+}
+
+TEST(Curve, SamplesAreEvenEqualAndKeepCorners) {
+  for (const CurveShape& shape : all_shapes()) {
+    for (const double edge : {10.0, 0.5, 0.11}) {
+      const std::vector<double> t = sample_parameters(shape, edge);
+      EXPECT_EQ(t.size() % 2, 0U);
+      EXPECT_GE(t.size(), 12U);
+      EXPECT_EQ(t.front(), 0.0);
+      for (std::size_t i = 0; i < t.size(); ++i) {
+        EXPECT_LT(t[i], i + 1 < t.size() ? t[i + 1] : 1.0);
+        const Vec3 chord = point_at(shape, i + 1 < t.size() ? t[i + 1] : 1.0) -
+                           point_at(shape, t[i]);
+        EXPECT_LT(chord.norm(), 1.6 * edge);
+      }
+    }
+  }
+  const CurveShape sharp = all_shapes()[3];
+  const std::vector<double> t = sample_parameters(sharp, 0.3);
+  for (const double corner : {0.25, 0.5, 0.75}) {
+    EXPECT_NE(std::find(t.begin(), t.end(), corner), t.end());
+  }
+  EXPECT_EQ(sample_parameters(Circle{}, 2.0 * kPi / 41.0).size(), 42U);
+}
+
+TEST(Curve, SamplesOfAnEllipseAreEqualInLength) {
+  const CurveShape shape = all_shapes()[1];
+  const std::vector<double> t = sample_parameters(shape, 0.01);
+  const double piece = length_of(shape) / static_cast<double>(t.size());
+  for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+    const double chord =
+        (point_at(shape, t[i + 1]) - point_at(shape, t[i])).norm();
+    EXPECT_NEAR(chord / piece, 1.0, 1e-3);  // chord against arc at the tips
+  }
+}
+
+TEST(Curve, PointsAreSmoothInTheNumbersAtFixedParameter) {
+  // Second differences fall with the square of the step.
+  const auto second = [](double t, double h) {
+    const auto at = [&](double w) {
+      Rectangle r = rounded();
+      r.width += w;
+      r.corner_radius += 0.2 * w;
+      r.normal = Vec3(w, 2 * w, 1);
+      return point_at(r, t);
+    };
+    return (at(h) + at(-h) - 2.0 * at(0.0)).norm();
+  };
+  for (const double t : {0.05, 0.2, 0.31, 0.47, 0.9}) {
+    EXPECT_LT(second(t, 1e-3), 1e-4);
+    EXPECT_NEAR(second(t, 2e-3) / second(t, 1e-3), 4.0, 0.1);
+  }
+}
+
+TEST(Curve, RefusesWhatIsNoCurveAndSaysWhy) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(refusal(Circle{}), "");
+  for (const double radius : {0.0, -1.0, nan, inf}) {
+    EXPECT_THAT(refusal(Circle{Vec3::Zero(), Vec3::UnitZ(), radius}),
+                HasSubstr("curve 'rim': radius is"));
+  }
+  EXPECT_THAT(refusal(Circle{Vec3::Zero(), Vec3::Zero(), 1.0}),
+              HasSubstr("normal is zero"));
+  EXPECT_THAT(refusal(Circle{Vec3(0, nan, 0), Vec3::UnitZ(), 1.0}),
+              HasSubstr("center is (0, nan, 0)"));
+  Ellipse ellipse;
+  ellipse.axis = Vec3(0, 0, -2);
+  EXPECT_THAT(refusal(ellipse), HasSubstr("parallel to normal"));
+  Rectangle r = rounded();
+  r.corner_radius = 1.0;
+  EXPECT_THAT(refusal(r), HasSubstr("corner_radius is 1"));
+  r.corner_radius = -0.1;
+  EXPECT_THAT(refusal(r), HasSubstr("corner_radius is -0.1"));
+  EXPECT_THAT(refusal(Polygon{{{0, 0, 0}, {1, 0, 0}}}),
+              HasSubstr("2 points, must have 3"));
+  EXPECT_THAT(refusal(Polygon{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}}}),
+              HasSubstr("points 3 and 0 are equal"));
+  EXPECT_THROW(sample_parameters(Circle{}, 0.0), InvalidInput);
+  EXPECT_THROW(sample_parameters(Circle{}, nan), InvalidInput);
+}
+
+}  // namespace
+}  // namespace meniscus

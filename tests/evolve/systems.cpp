@@ -124,6 +124,28 @@ int euler_characteristic(const SurfaceMesh& mesh) {
          static_cast<int>(mesh.facets.size());
 }
 
+int open_edges(const SurfaceMesh& mesh) {
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(mesh.facets, edges, facet_edges);
+  std::vector<int> count(edges.size(), 0);
+  for (const Triangle& t : facet_edges) {
+    for (const int e : t) {
+      ++count[e];
+    }
+  }
+  return static_cast<int>(std::count(count.begin(), count.end(), 1));
+}
+
+double smallest_angle_deg(const SurfaceMesh& mesh) {
+  double least = 180.0;
+  for (const Triangle& t : mesh.facets) {
+    least = std::min(least, smallest_angle(mesh.points[t[0]], mesh.points[t[1]],
+                                           mesh.points[t[2]]));
+  }
+  return least * 180.0 / std::numbers::pi;
+}
+
 bool identical(const FilmComplex& a, const FilmComplex& b) {
   const auto same_points = [](const Points& p, const Points& q) {
     return p.size() == q.size() &&

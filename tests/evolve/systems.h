@@ -35,6 +35,12 @@ Quality quality(const FilmComplex& complex, Part part);
 /// Vertices - edges + facets of what is used.
 int euler_characteristic(const SurfaceMesh& mesh);
 
+/// Edges with one facet.
+int open_edges(const SurfaceMesh& mesh);
+
+/// Of all facets [deg].
+double smallest_angle_deg(const SurfaceMesh& mesh);
+
 /// Equal in every bit.
 bool identical(const FilmComplex& a, const FilmComplex& b);
 
