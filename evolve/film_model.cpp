@@ -197,13 +197,18 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   const Timer timer;
   auto impl = std::make_unique<Impl>();
   SettleOptions settle{.monitor = options.monitor};
+  Monitor& monitor =
+      options.monitor != nullptr ? *options.monitor : silent_monitor();
+  monitor.progress({"film", "building the start", 0.0});
   impl->complex = build_start(initial, options.edge * std::exp2(kHalvings));
+  monitor.progress({"film", "settling the raw start", 0.1});
   impl->reference = find_equilibrium(
       impl->complex,
       {.edge = options.edge, .halvings = kHalvings, .settle = settle});
   impl->meshed = impl->complex.mesh;
   impl->corner_count = static_cast<int>(impl->complex.mesh.points.size());
   for (int level = 0; level < options.refinements; ++level) {
+    monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
     Refinement finer = refine(impl->complex);
     impl->complex = std::move(finer.complex);
     if (level == 0) {
@@ -254,6 +259,14 @@ FilmState FilmModel::settle(const FilmSystem& system,
     if (!state.failure && iterations <= kManyIterations) {
       break;
     }
+  }
+  const bool moved = std::any_of(moves.begin(), moves.end(),
+                                 [](const Vec3& m) { return !m.isZero(0.0); });
+  if (moved && state.failure &&
+      state.failure->kind == FailureKind::FilmNotFound) {
+    state.failure->message +=
+        "; a model frozen nearer to this design may reach further";
+    state.report.verdict = state.failure->message;
   }
   state.report.iterations = iterations;
   state.report.seconds = timer.seconds();
