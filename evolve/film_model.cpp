@@ -215,19 +215,22 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
       impl->parents = std::move(finer.parents);
     }
     if (!impl->reference.failure) {
-      const FilmEnergy energy(impl->complex);
-      impl->reference =
-          settle_in_normals(energy, impl->complex, targets_of(impl->complex),
-                            impl->complex.mesh.points, settle);
+      impl->energy.emplace(impl->complex);
+      impl->reference = settle_in_normals(*impl->energy, impl->complex,
+                                          targets_of(impl->complex),
+                                          impl->complex.mesh.points, settle);
       impl->complex.mesh.points = impl->reference.points;
     }
   }
   impl->list_mid_sides();
-  impl->energy.emplace(impl->complex);
-  impl->carry.emplace(impl->complex);
+  if (impl->reference.failure || !impl->energy) {
+    impl->energy.emplace(impl->complex);
+  }
   impl->targets = targets_of(impl->complex);
   FilmModel model(std::move(impl));
   if (!model.impl_->reference.failure) {
+    model.impl_->carry.emplace(model.impl_->complex,
+                               model.impl_->energy->order());
     model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
     model.impl_->reference = model.settle(initial, settle);
   } else if (model.impl_->reference.points.size() !=
@@ -246,6 +249,12 @@ FilmState FilmModel::settle(const FilmSystem& system,
                             const SettleOptions& options) const {
   const Timer timer;
   check_numbers(system);
+  if (!impl_->carry) {
+    throw InvalidInput(
+        "this film model cannot be used: no film was found at its initial "
+        "design (" +
+        impl_->reference.report.verdict + ")");
+  }
   const FilmTargets goal = impl_->targets_of_system(system);
   const Points moves = impl_->carry->rim_moves(impl_->curves_of_system(system));
   FilmState state;

@@ -130,6 +130,7 @@ TEST(FilmModel, SlenderArmsFailWithTheNeck) {
       FilmModel::freeze(two_arm(0, 0.9e6, 220.0, 25.0), {.edge = 10.0});
   ASSERT_TRUE(model.reference().failure);
   EXPECT_THAT(model.reference().failure->message, testing::HasSubstr("neck"));
+  EXPECT_THROW(model.settle(two_arm(0, 0.9e6, 220.0, 25.0)), InvalidInput);
 }
 
 TEST(FilmModel, CatenoidHasItsLimit) {
