@@ -91,8 +91,8 @@ std::string bring_near_by_levels(FilmComplex& complex,
       }
       remesh_films(complex, {.edge = *edge});
     }
-    const std::string reason = bring_near(complex, edge, options.max_rounds,
-                                          steps, options.settle.monitor);
+    std::string reason = bring_near(complex, edge, options.max_rounds, steps,
+                                    options.settle.monitor);
     if (!reason.empty()) {
       return reason;
     }
