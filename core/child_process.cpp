@@ -1,5 +1,7 @@
 #include "core/child_process.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>

@@ -11,7 +11,7 @@ namespace meniscus {
 
 namespace {
 
-// Smallest gain of a flip [rad]: keeps rounding from flipping for ever.
+// Smallest gain of a flip [tangent]: keeps rounding from flipping for ever.
 constexpr double kLeastGain = 1e-7;
 // The two diagonals of a flip may be this far apart, x the shorter one: the
 // surface of a coarse circle of 12 pieces needs 0.13.
@@ -21,22 +21,29 @@ const double kFlatCosine = std::cos(0.6);
 // A collapse may turn a facet up to this much, and leave no smaller angle
 // than this unless the facets around were worse.
 const double kTurnCosine = std::cos(0.6);
-constexpr double kLeastAngle = 0.2;
+constexpr double kLeastTangent = 0.2;
+// Averaging may lower the worst angle around a vertex to this.
+constexpr double kGoodTangent = 0.7;
 
 using QueuedEdge = std::tuple<double, int, int>;  // key, first id, second id
+
+// Tangent of a triangle's smallest angle (at most 60 degrees): orders shapes
+// as the angle does, for less work.
+double smallest_tangent(const Vec3& a, const Vec3& b, const Vec3& c) {
+  // It lies opposite the shortest side.
+  const Vec3 ab = b - a;
+  const Vec3 bc = c - b;
+  const double la = bc.squaredNorm();
+  const double lb = (a - c).squaredNorm();
+  const double lc = ab.squaredNorm();
+  const double below = 0.5 * (la + lb + lc) - std::min({la, lb, lc});
+  return below > 0.0 ? ab.cross(bc).norm() / below : 0.0;
+}
 
 }  // namespace
 
 double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  // It lies opposite the shortest side.
-  const Vec3 ab = b - a;
-  const Vec3 bc = c - b;
-  const Vec3 ca = a - c;
-  const double la = bc.squaredNorm();
-  const double lb = ca.squaredNorm();
-  const double lc = ab.squaredNorm();
-  const double shortest = std::min({la, lb, lc});
-  return std::atan2(ab.cross(bc).norm(), 0.5 * (la + lb + lc) - shortest);
+  return std::atan(smallest_tangent(a, b, c));
 }
 
 SurfaceEditor::SurfaceEditor(SurfaceMesh mesh, EditLimits limits)
@@ -217,8 +224,8 @@ bool SurfaceEditor::link_allows(int gone, int kept, const Pair& pair) const {
 
 bool SurfaceEditor::can_collapse(int gone, int kept, const Vec3& place,
                                  double longest) const {
-  double before = kLeastAngle;
-  double after = kLeastAngle;
+  double before = kLeastTangent;
+  double after = kLeastTangent;
   for (const int end : {gone, kept}) {
     const int other = end == gone ? kept : gone;
     if (end == kept && limits_.held[kept] != 0) {
@@ -238,7 +245,7 @@ bool SurfaceEditor::can_collapse(int gone, int kept, const Vec3& place,
       }
       const Vec3 old = normal2(f);
       before = std::min(before,
-                        smallest_angle(mesh_.points[t[0]], mesh_.points[t[1]],
+                        smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
                                        mesh_.points[t[2]]));
       if (dies) {
         continue;
@@ -248,7 +255,7 @@ bool SurfaceEditor::can_collapse(int gone, int kept, const Vec3& place,
       if (!(old.dot(now) > kTurnCosine * bound)) {
         return false;
       }
-      after = std::min(after, smallest_angle(p[0], p[1], p[2]));
+      after = std::min(after, smallest_tangent(p[0], p[1], p[2]));
     }
   }
   return after >= before;
@@ -300,11 +307,9 @@ void SurfaceEditor::collapse_below(double limit, double longest) {
     }
     collapse(gone, kept, place, pair);
     for (const int f : star_[kept]) {
-      for (const int v : mesh_.facets[f]) {
-        if (v != kept && limits_.frozen[f] == 0) {
-          push(v, kept);
-        }
-      }
+      const Triangle& t = mesh_.facets[f];
+      const int k = t[0] == kept ? 0 : t[1] == kept ? 1 : 2;
+      push(kept, t[(k + 1) % 3]);
     }
   }
 }
@@ -317,9 +322,9 @@ bool SurfaceEditor::should_flip(int a, int b, const Pair& pair) const {
   const Vec3& pc = mesh_.points[c];
   const Vec3& pd = mesh_.points[d];
   const double now =
-      std::min(smallest_angle(pa, pb, pc), smallest_angle(pb, pa, pd));
+      std::min(smallest_tangent(pa, pb, pc), smallest_tangent(pb, pa, pd));
   const double then =
-      std::min(smallest_angle(pc, pd, pb), smallest_angle(pd, pc, pa));
+      std::min(smallest_tangent(pc, pd, pb), smallest_tangent(pd, pc, pa));
   if (!(then > now + kLeastGain) || is_rim(c, d) || has_edge(c, d)) {
     return false;
   }
@@ -404,11 +409,11 @@ void SurfaceEditor::average() {
     move -= normal.dot(move) * normal;
     const Vec3 old = mesh_.points[v];
     const auto worst = [&] {
-      double least = 4.0;
+      double least = 2.0;
       for (const int f : star_[v]) {
         const Triangle& t = mesh_.facets[f];
         least = std::min(least,
-                         smallest_angle(mesh_.points[t[0]], mesh_.points[t[1]],
+                         smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
                                         mesh_.points[t[2]]));
         if (!(normal2(f).dot(normal) > 0.0)) {
           least = -1.0;
@@ -416,7 +421,7 @@ void SurfaceEditor::average() {
       }
       return least;
     };
-    const double before = std::min(worst(), 0.6);
+    const double before = std::min(worst(), kGoodTangent);
     for (int trial = 0; trial < 3; ++trial) {
       mesh_.points[v] = old + move;
       if (worst() >= before) {

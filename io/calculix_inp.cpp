@@ -1,5 +1,6 @@
 #include "io/calculix_inp.h"
 
+#include <algorithm>
 #include <cctype>
 #include <iterator>
 #include <set>

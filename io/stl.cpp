@@ -1,5 +1,6 @@
 #include "io/stl.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>

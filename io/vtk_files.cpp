@@ -1,5 +1,6 @@
 #include "io/vtk_files.h"
 
+#include <algorithm>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>

@@ -124,8 +124,8 @@ void conclude_stalled(const MatchEvaluator& evaluator,
   } else if (!bounds.empty()) {
     report.termination = Termination::AtBound;
     report.message = fmt::format(
-        "the best design within the bounds misses the tolerance: "
-        "{}, {}. Widen the bounds or free another variable",
+        "the best design found stands at a bound: {}, {}. Widen the "
+        "bounds or free another variable",
         figures, bounds);
   } else {
     report.message = fmt::format(

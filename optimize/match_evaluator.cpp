@@ -215,7 +215,7 @@ void MatchEvaluator::account(const VectorX& x, const ResidualAnswer& answer) {
     ++failed_;
     last_failure_ = *answer.failure;
     monitor_.log(
-        Severity::Info,
+        Severity::Debug,
         fmt::format("evaluation {} at {} failed ({}): {}", evaluations_,
                     describe(x), name_of(answer.failure->kind),
                     answer.failure->message));

@@ -14,25 +14,30 @@ constexpr double kFirstStep = 0.1;
 // Below these the proposals no longer differ in any figure that matters.
 constexpr double kStepTolerance = 1e-8;  // x range
 constexpr double kCostTolerance = 1e-10;
+// A restart that leaves more than this part of the cost was the last.
+constexpr double kGain = 0.99;
 
 struct Method {
   std::string name;
   nlopt::algorithm algorithm;
+  bool restarts;  // its simplex can collapse against a bound: begin it again
 };
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> table = {
-      {"bobyqa", nlopt::LN_BOBYQA},     {"cobyla", nlopt::LN_COBYLA},
-      {"direct_l", nlopt::GN_DIRECT_L}, {"neldermead", nlopt::LN_NELDERMEAD},
-      {"sbplx", nlopt::LN_SBPLX},
+      {"bobyqa", nlopt::LN_BOBYQA, false},
+      {"cobyla", nlopt::LN_COBYLA, false},
+      {"direct_l", nlopt::GN_DIRECT_L, false},
+      {"neldermead", nlopt::LN_NELDERMEAD, true},
+      {"sbplx", nlopt::LN_SBPLX, true},
   };
   return table;
 }
 
-nlopt::algorithm algorithm_of(const std::string& name) {
+const Method& method_of(const std::string& name) {
   for (const Method& method : methods()) {
     if (method.name == name) {
-      return method.algorithm;
+      return method;
     }
   }
   throw InvalidInput("match: NLopt method '" + name + "' is not known");
@@ -75,22 +80,9 @@ const char* words(nlopt::result result) {
   }
 }
 
-}  // namespace
-
-const std::vector<std::string>& nlopt_match_methods() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> list;
-    for (const Method& method : methods()) {
-      list.push_back(method.name);
-    }
-    return list;
-  }();
-  return names;
-}
-
-BackendResult nlopt_match(MatchEvaluator& evaluator, const VectorX& start,
-                          const std::string& method) {
-  nlopt::opt optimizer(algorithm_of(method),
+BackendResult run_once(MatchEvaluator& evaluator, const VectorX& start,
+                       const Method& method) {
+  nlopt::opt optimizer(method.algorithm,
                        static_cast<unsigned>(evaluator.size()));
   Context context{&evaluator, &optimizer};
   optimizer.set_min_objective(objective, &context);
@@ -113,6 +105,34 @@ BackendResult nlopt_match(MatchEvaluator& evaluator, const VectorX& start,
     result.message = fmt::format("NLopt gave up: {}", error.what());
   }
   result.iterations = optimizer.get_numevals();
+  return result;
+}
+
+}  // namespace
+
+const std::vector<std::string>& nlopt_match_methods() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const Method& method : methods()) {
+      list.push_back(method.name);
+    }
+    return list;
+  }();
+  return names;
+}
+
+BackendResult nlopt_match(MatchEvaluator& evaluator, const VectorX& start,
+                          const std::string& method_name) {
+  const Method& method = method_of(method_name);
+  BackendResult result = run_once(evaluator, start, method);
+  while (method.restarts && evaluator.halt() == MatchEvaluator::Halt::None) {
+    const double before = cost_of(evaluator.best_answer());
+    const BackendResult again = run_once(evaluator, evaluator.best(), method);
+    result.iterations += again.iterations;
+    if (cost_of(evaluator.best_answer()) >= kGain * before) {
+      break;
+    }
+  }
   return result;
 }
 

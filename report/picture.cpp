@@ -1,7 +1,10 @@
 #include "report/picture.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 

@@ -1,5 +1,7 @@
 #include "report/picture_job.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"

@@ -36,7 +36,7 @@ struct PictureJob {
   std::vector<std::string> supports;  // surfaces that are held
   std::vector<std::string> solids;    // of the film: caps, plates
   std::vector<PictureLoad> loads;
-  Vec3 view = Vec3(0.42, -1.0, 0.50);  // from the part to the eye; z is up
+  Vec3 view = Vec3(0.26, -1.0, 0.62);  // from the part to the eye; z is up
   bool facet_edges = false;            // Film: thin lines along facets
 };
 

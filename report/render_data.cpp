@@ -1,5 +1,6 @@
 #include "report/render_data.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <vtkCell.h>

@@ -1,18 +1,42 @@
 /// meniscus-render: draws the picture jobs that come as JSON on stdin. Needs a
 /// display; the program that starts it sees to that (report/picture.h). Exit
 /// code 0: all drawn; 1: stderr says what is missing; 2: no valid jobs.
+#include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <iostream>
 #include <iterator>
+#include <string>
+#include <vector>
 #include <vtkObject.h>
+
+#include <fmt/format.h>
 
 #include "core/error.h"
 #include "report/render_views.h"
+#include "report/save_picture.h"
 
 namespace meniscus {
 namespace {
 
 constexpr Colour kGrey = {0.38, 0.42, 0.48};
+
+std::string with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+/// 12,345
+std::string grouped(std::size_t count) {
+  const std::string digits = std::to_string(count);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) {
+      text += ',';
+    }
+    text += digits[i];
+  }
+  return text;
+}
 
 void draw_one(const PictureJob& job) {
   Panel panel({0, 0, 1, 1}, job.width, job.height);
@@ -20,11 +44,17 @@ void draw_one(const PictureJob& job) {
   layout.text = std::max(12, job.height / 42);
   std::string line;
   if (job.kind == PictureKind::Part) {
-    line = draw_part(panel, job, load_surface(job.part_surface), layout);
+    const PictureSurface part = load_surface(job.part_surface);
+    const PartFigures figures = draw_part(panel, job, part, layout);
+    line = fmt::format(
+        "deflection drawn \u00d7 {:g} (largest {}), peak stress {}",
+        figures.factor, with_unit(figures.largest, part.length_unit),
+        with_unit(figures.peak, part.stress_unit));
   } else {
     layout.model = {0.05, 0.05, 0.95, 0.87};
-    draw_film(panel, job, load_surface(job.film), layout);
+    draw_film(panel, job, load_surface(job.film));
   }
+  panel.fit_camera(job.view, layout.model);
   panel.add_text(0.025, 1.0 - 2.2 * layout.text / job.height, job.title,
                  {.size = layout.text * 3 / 2, .bold = true});
   panel.add_text(0.025, 1.0 - 4.0 * layout.text / job.height, line,
@@ -35,22 +65,48 @@ void draw_one(const PictureJob& job) {
 void draw_overview(const PictureJob& job) {
   ViewLayout layout;
   layout.text = std::max(11, job.height / 30);
-  layout.model = {0.04, 0.22, 0.96, 0.86};
+  layout.model = {0.02, 0.22, 0.98, 0.86};
   layout.bar = {0.15, 0.105, 0.85, 0.13};
   Panel film({0, 0, 1.0 / 3, 1}, job.width, job.height);
   Panel mesh({1.0 / 3, 0, 2.0 / 3, 1}, job.width, job.height);
   Panel part({2.0 / 3, 0, 1, 1}, job.width, job.height);
-  const PictureSurface stressed = load_surface(job.part_surface);
-  draw_film(film, job, load_surface(job.film), layout);
+  const PictureSurface surface = load_surface(job.film);
   const PictureTets tets = load_tets(job.part);
-  draw_cut_mesh(mesh, job, tets, layout);
-  draw_part(part, job, stressed, layout);
-  const TextStyle caption{
-      .size = layout.text * 5 / 4, .bold = true, .justify = Justify::Centre};
-  const double y = 1.0 - 2.2 * layout.text / job.height;
-  film.add_text(0.5, y, "Liquid film", caption);
-  mesh.add_text(0.5, y, "Solid, cut open", caption);
-  part.add_text(0.5, y, "Stress under load", caption);
+  draw_film(film, job, surface);
+  draw_cut_mesh(mesh, job, tets);
+  const PartFigures figures =
+      draw_part(part, job, load_surface(job.part_surface), layout);
+  const auto caption = [&](Panel& panel, const std::string& title,
+                           const std::string& line) {
+    const double row = layout.text / static_cast<double>(job.height);
+    panel.add_text(0.5, 1.0 - 2.0 * row, title,
+                   {.size = layout.text * 5 / 4,
+                    .bold = true,
+                    .justify = Justify::Centre});
+    panel.add_text(
+        0.5, 1.0 - 3.5 * row, line,
+        {.size = layout.text, .colour = kGrey, .justify = Justify::Centre});
+    // One scale and one eye for all three.
+    if (&panel != &part) {
+      panel.show(part.shown());
+    }
+    panel.fit_camera(job.view, layout.model);
+  };
+  caption(
+      film, "Liquid film",
+      fmt::format("{} facets at rest", grouped(surface.mesh.facets.size())));
+  caption(mesh, "Solid, cut open",
+          fmt::format("{} tetrahedra", grouped(tets.corners.size())));
+  caption(part, "Stress under load",
+          fmt::format("deflection \u00d7 {:g}", figures.factor));
+  film.add_legend(layout.bar.bottom,
+                  {{kFilmColour, "film"},
+                   {kCapColour, "cap"},
+                   {kRimColour, "boundary curve"}},
+                  layout.text);
+  mesh.add_legend(layout.bar.bottom,
+                  {{kOutsideColour, "surface"}, {kInsideColour, "inside"}},
+                  layout.text);
   save_picture({&film, &mesh, &part}, job.width, job.height, job.output);
 }
 

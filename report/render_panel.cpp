@@ -1,31 +1,27 @@
 #include "report/render_panel.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
+#include <utility>
 #include <vtkActor.h>
 #include <vtkArrowSource.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
-#include <vtkDoubleArray.h>
-#include <vtkImageData.h>
-#include <vtkLight.h>
 #include <vtkLightKit.h>
-#include <vtkLine.h>
 #include <vtkNew.h>
-#include <vtkPNGWriter.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
-#include <vtkRenderWindow.h>
 #include <vtkStripper.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 #include <vtkTubeFilter.h>
 #include <vtkUnsignedCharArray.h>
-#include <vtkWindowToImageFilter.h>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <vtkActor2D.h>
 #include <vtkBillboardTextActor3D.h>
@@ -33,21 +29,17 @@
 #include <vtkPolyDataMapper2D.h>
 #include <vtkProperty2D.h>
 
-#include "core/error.h"
-#include "io/atomic_file.h"
-
 namespace meniscus {
 
 namespace {
 
-constexpr double kViewAngle = 20.0;    // vertical [deg]: mild perspective
-constexpr double kCreaseAngle = 50.0;  // sharper is drawn as a crease [deg]
+constexpr double kViewAngle = 20.0;  // vertical [deg]: mild perspective
 
 void set_colour(vtkProperty* property, const SurfaceStyle& style) {
   property->SetColor(style.colour[0], style.colour[1], style.colour[2]);
   property->SetOpacity(style.opacity);
-  property->SetAmbient(0.10);
-  property->SetDiffuse(0.90);
+  property->SetAmbient(style.ambient);
+  property->SetDiffuse(1.0 - 0.5 * style.ambient);
   property->SetSpecular(style.specular);
   property->SetSpecularPower(40.0);
   if (style.flat) {
@@ -55,6 +47,7 @@ void set_colour(vtkProperty* property, const SurfaceStyle& style) {
   } else {
     property->SetInterpolationToPhong();
   }
+  property->SetBackfaceCulling(style.only_front ? 1 : 0);
   if (style.edges) {
     property->EdgeVisibilityOn();
     property->SetEdgeColor(style.edge_colour[0], style.edge_colour[1],
@@ -83,88 +76,45 @@ void set_text(vtkTextProperty* property, const TextStyle& style) {
   property->SetVerticalJustificationToBottom();
 }
 
+struct FlatBox {
+  Box place;  // fractions of the panel
+  Colour colour;
+};
+
 unsigned char to_byte(double value) {
   return static_cast<unsigned char>(
       std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
 }
 
-}  // namespace
-
-Colour viridis(double t) {
-  constexpr std::array<std::array<double, 3>, 11> kStops = {{{68, 1, 84},
-                                                             {72, 36, 117},
-                                                             {65, 68, 135},
-                                                             {53, 95, 141},
-                                                             {42, 120, 142},
-                                                             {33, 145, 140},
-                                                             {34, 168, 132},
-                                                             {68, 191, 112},
-                                                             {122, 209, 81},
-                                                             {189, 223, 38},
-                                                             {253, 231, 37}}};
-  const double at = std::clamp(t, 0.0, 1.0) * (kStops.size() - 1);
-  const auto low = std::min(static_cast<std::size_t>(at), kStops.size() - 2);
-  const double part = at - static_cast<double>(low);
-  Colour colour;
-  for (std::size_t c = 0; c < 3; ++c) {
-    colour[c] =
-        ((1 - part) * kStops[low][c] + part * kStops[low + 1][c]) / 255.0;
-  }
-  return colour;
-}
-
-double round_down_nice(double value) {
-  const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * power <= value) {
-      return factor * power;
-    }
-  }
-  return power;
-}
-
-ShadedSurface shade(const SurfaceMesh& mesh,
-                    const std::vector<char>& use_label) {
-  ShadedSurface result;
+vtkSmartPointer<vtkActor2D> flat_boxes(const std::vector<FlatBox>& boxes,
+                                       double width, double height) {
   vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> cells;
-  vtkNew<vtkDoubleArray> sources;  // survives the filter, which splits too
-  sources->SetName("source");
-  std::map<std::array<int, 2>, vtkIdType> ids;  // (label, point)
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    const int label = mesh.facet_label[f];
-    if (use_label[static_cast<std::size_t>(label)] == 0) {
-      continue;
+  vtkNew<vtkUnsignedCharArray> colours;
+  colours->SetNumberOfComponents(3);
+  for (const auto& [at, colour] : boxes) {
+    cells->InsertNextCell(4);
+    for (const auto& [x, y] :
+         {std::pair(at.left, at.bottom), std::pair(at.right, at.bottom),
+          std::pair(at.right, at.top), std::pair(at.left, at.top)}) {
+      cells->InsertCellPoint(
+          points->InsertNextPoint(x * width, y * height, 0.0));
     }
-    cells->InsertNextCell(3);
-    for (const int point : mesh.facets[f]) {
-      const auto [at, added] =
-          ids.emplace(std::array<int, 2>{label, point}, ids.size());
-      if (added) {
-        points->InsertNextPoint(
-            mesh.points[static_cast<std::size_t>(point)].data());
-        sources->InsertNextValue(point);
-      }
-      cells->InsertCellPoint(at->second);
-    }
+    colours->InsertNextTuple3(to_byte(colour[0]), to_byte(colour[1]),
+                              to_byte(colour[2]));
   }
   vtkNew<vtkPolyData> data;
   data->SetPoints(points);
   data->SetPolys(cells);
-  data->GetPointData()->AddArray(sources);
-  vtkNew<vtkPolyDataNormals> normals;
-  normals->SetInputData(data);
-  normals->SetFeatureAngle(kCreaseAngle);
-  normals->ConsistencyOff();
-  normals->Update();
-  result.data = normals->GetOutput();
-  auto* kept = result.data->GetPointData()->GetArray("source");
-  for (vtkIdType i = 0; i < result.data->GetNumberOfPoints(); ++i) {
-    result.source.push_back(static_cast<int>(kept->GetComponent(i, 0)));
-  }
-  return result;
+  data->GetCellData()->SetScalars(colours);
+  vtkNew<vtkPolyDataMapper2D> mapper;
+  mapper->SetInputData(data);
+  auto actor = vtkSmartPointer<vtkActor2D>::New();
+  actor->SetMapper(mapper);
+  return actor;
 }
+
+}  // namespace
 
 Panel::Panel(const Box& place, int picture_width, int picture_height)
     : renderer_(vtkSmartPointer<vtkRenderer>::New()),
@@ -172,9 +122,6 @@ Panel::Panel(const Box& place, int picture_width, int picture_height)
       height_((place.top - place.bottom) * picture_height) {
   renderer_->SetViewport(place.left, place.bottom, place.right, place.top);
   renderer_->SetBackground(1.0, 1.0, 1.0);
-  renderer_->UseDepthPeelingOn();
-  renderer_->SetMaximumNumberOfPeels(8);
-  renderer_->SetOcclusionRatio(0.0);
   renderer_->AutomaticLightCreationOff();
   vtkNew<vtkLightKit> lights;
   lights->SetKeyLightIntensity(0.95);
@@ -313,38 +260,21 @@ void Panel::add_text(double x, double y, const std::string& text,
 void Panel::add_colour_bar(const Box& place, const std::string& title,
                            double top, double step, int text_size) {
   constexpr int kCells = 256;
-  const double w = width_ * kSupersampling;
-  const double h = height_ * kSupersampling;
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkUnsignedCharArray> colours;
-  colours->SetNumberOfComponents(3);
-  const auto quad = [&](double x0, double y0, double x1, double y1,
-                        const Colour& colour) {
-    const vtkIdType first = points->GetNumberOfPoints();
-    points->InsertNextPoint(x0 * w, y0 * h, 0);
-    points->InsertNextPoint(x1 * w, y0 * h, 0);
-    points->InsertNextPoint(x1 * w, y1 * h, 0);
-    points->InsertNextPoint(x0 * w, y1 * h, 0);
-    const std::array<vtkIdType, 4> ids = {first, first + 1, first + 2,
-                                          first + 3};
-    cells->InsertNextCell(4, ids.data());
-    colours->InsertNextTuple3(to_byte(colour[0]), to_byte(colour[1]),
-                              to_byte(colour[2]));
-  };
+  std::vector<FlatBox> boxes;
   const double width = place.right - place.left;
   for (int i = 0; i < kCells; ++i) {
-    quad(place.left + width * i / kCells, place.bottom,
-         place.left + width * (i + 1) / kCells, place.top,
-         viridis((i + 0.5) / kCells));
+    boxes.push_back({{place.left + width * i / kCells, place.bottom,
+                      place.left + width * (i + 1) / kCells, place.top},
+                     viridis((i + 0.5) / kCells)});
   }
-  const Colour ink = TextStyle{}.colour;
-  TextStyle tick_style{.size = text_size, .justify = Justify::Centre};
+  const TextStyle tick_style{.size = text_size, .justify = Justify::Centre};
   const double thick = 1.0 / width_;
   const double tick_height = 0.35 * text_size / height_;
   for (int i = 0; i * step <= top * (1 + 1e-9); ++i) {
     const double x = place.left + width * std::min(1.0, i * step / top);
-    quad(x - thick, place.bottom - tick_height, x + thick, place.bottom, ink);
+    boxes.push_back(
+        {{x - thick, place.bottom - tick_height, x + thick, place.bottom},
+         tick_style.colour});
     add_text(x, place.bottom - tick_height - 1.25 * text_size / height_,
              fmt::format("{:.6g}", i * step), tick_style);
   }
@@ -352,15 +282,37 @@ void Panel::add_colour_bar(const Box& place, const std::string& title,
   title_style.bold = true;
   add_text(0.5 * (place.left + place.right),
            place.top + 0.4 * text_size / height_, title, title_style);
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  data->SetPolys(cells);
-  data->GetCellData()->SetScalars(colours);
-  vtkNew<vtkPolyDataMapper2D> mapper;
-  mapper->SetInputData(data);
-  vtkNew<vtkActor2D> actor;
-  actor->SetMapper(mapper);
-  renderer_->AddActor2D(actor);
+  renderer_->AddActor2D(
+      flat_boxes(boxes, width_ * kSupersampling, height_ * kSupersampling));
+}
+
+void Panel::add_legend(double y, const std::vector<Key>& keys, int text_size) {
+  std::vector<FlatBox> boxes;
+  const double side = 0.8 * text_size;
+  double total = 0.0;  // a letter is about half as wide as high
+  const auto width_of = [&](const Key& key) {
+    return 2.0 * side + text_size * (1.0 + 0.5 * double(key.name.size()));
+  };
+  for (const Key& key : keys) {
+    total += width_of(key);
+  }
+  double x = 0.5 * (width_ - total + text_size);
+  for (const Key& key : keys) {
+    boxes.push_back(
+        {{x / width_, y, (x + side) / width_, y + side / height_}, key.colour});
+    add_text((x + 1.5 * side) / width_, y - 0.15 * text_size / height_,
+             key.name, {.size = text_size});
+    x += width_of(key);
+  }
+  renderer_->AddActor2D(
+      flat_boxes(boxes, width_ * kSupersampling, height_ * kSupersampling));
+}
+
+void Panel::sort_layers() {
+  constexpr int kPeels = 4;  // two layers each
+  renderer_->UseDepthPeelingOn();
+  renderer_->SetMaximumNumberOfPeels(kPeels);
+  renderer_->SetOcclusionRatio(0.0);
 }
 
 void Panel::show(const Points& points) {
@@ -408,56 +360,6 @@ void Panel::fit_camera(const Vec3& view, const Box& box) {
   camera->SetPosition(eye.data());
   camera->SetViewUp(up.data());
   renderer_->ResetCameraClippingRange();
-}
-
-void save_picture(const std::vector<Panel*>& panels, int width, int height,
-                  const std::string& path) {
-  vtkNew<vtkRenderWindow> window;
-  window->SetOffScreenRendering(1);
-  window->SetMultiSamples(0);  // supersampling smooths text and lines as well
-  window->SetAlphaBitPlanes(1);
-  window->SetSize(width * kSupersampling, height * kSupersampling);
-  for (Panel* panel : panels) {
-    window->AddRenderer(panel->renderer());
-  }
-  window->Render();
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(window);
-  grab->SetInputBufferTypeToRGB();
-  grab->ReadFrontBufferOff();
-  grab->ShouldRerenderOff();
-  grab->Update();
-  vtkImageData* large = grab->GetOutput();
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(width, height, 1);
-  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  const auto* from =
-      static_cast<const unsigned char*>(large->GetScalarPointer());
-  auto* to = static_cast<unsigned char*>(image->GetScalarPointer());
-  constexpr int s = kSupersampling;
-  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(width) * s * 3;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        int sum = s * s / 2;
-        for (int i = 0; i < s * s; ++i) {
-          sum += from[(y * s + i / s) * row + (x * s + i % s) * 3 + c];
-        }
-        *to++ = static_cast<unsigned char>(sum / (s * s));
-      }
-    }
-  }
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(image);
-  writer->WriteToMemoryOn();
-  writer->SetCompressionLevel(9);
-  writer->Write();
-  vtkUnsignedCharArray* bytes = writer->GetResult();
-  if (bytes == nullptr || bytes->GetNumberOfValues() == 0) {
-    throw IoError(fmt::format("cannot encode the picture '{}'", path));
-  }
-  write_file(path, {reinterpret_cast<const char*>(bytes->GetPointer(0)),
-                    static_cast<std::size_t>(bytes->GetNumberOfValues())});
 }
 
 }  // namespace meniscus

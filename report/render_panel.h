@@ -9,12 +9,11 @@
 #include <vtkSmartPointer.h>
 
 #include "core/surface_mesh.h"
+#include "report/colour_map.h"
 
 class vtkPolyData;
 
 namespace meniscus {
-
-using Colour = std::array<double, 3>;  // red, green, blue, 0..1
 
 inline constexpr int kSupersampling = 2;
 
@@ -36,20 +35,13 @@ struct SurfaceStyle {
   Colour colour = {0.8, 0.8, 0.8};
   double opacity = 1.0;
   double specular = 0.25;
+  double ambient = 0.15;  // light from everywhere, 0..1
   bool flat = false;
-  bool edges = false;  // thin lines along facets
+  bool only_front = false;  // facets that face the eye
+  bool edges = false;       // thin lines along facets
   Colour edge_colour = {0.2, 0.25, 0.3};
   double edge_width = 1.0;  // [pixel]
 };
-
-/// Points are split between surfaces, so that shading is smooth inside each
-/// and crisp at its rim; `source` gives the mesh's point of each.
-struct ShadedSurface {
-  vtkSmartPointer<vtkPolyData> data;
-  std::vector<int> source;
-};
-ShadedSurface shade(const SurfaceMesh& mesh,
-                    const std::vector<char>& use_label);
 
 class Panel {
  public:
@@ -75,8 +67,19 @@ class Panel {
   void add_colour_bar(const Box& place, const std::string& title, double top,
                       double step, int text_size);
 
+  /// A row of colours with their names, over the panel's width.
+  struct Key {
+    Colour colour;
+    std::string name;
+  };
+  void add_legend(double y, const std::vector<Key>& keys, int text_size);
+
+  /// Blends several translucent layers in their true order; costs time.
+  void sort_layers();
+
   /// Points that must be seen.
   void show(const Points& points);
+  const Points& shown() const { return shown_; }
   /// Looks from `view` (from the model to the eye), z up, all shown points
   /// inside `box`.
   void fit_camera(const Vec3& view, const Box& box);
@@ -86,16 +89,5 @@ class Panel {
   double width_, height_;  // [final pixel]
   Points shown_;
 };
-
-/// The panels as a PNG file. Throws IoError.
-void save_picture(const std::vector<Panel*>& panels, int width, int height,
-                  const std::string& path);
-
-/// Viridis at t in 0..1: dark to bright, even steps to the eye, safe for the
-/// colour-blind (Smith and van der Walt, 2015).
-Colour viridis(double t);
-
-/// 1, 2 or 5 times a power of ten: the largest not above `value` > 0.
-double round_down_nice(double value);
 
 }  // namespace meniscus

@@ -1,5 +1,12 @@
 #include "report/render_views.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -7,13 +14,14 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "report/shaded_surface.h"
 
 namespace meniscus {
 
 namespace {
 
 constexpr double kShownDeflection = 0.06;  // x bounding-box diagonal, at most
-constexpr double kArrowLength = 0.20;      // x diagonal, of the largest load
+constexpr double kArrowLength = 0.17;      // x diagonal, of the largest load
 constexpr double kRobustPart = 0.998;      // of the nodes lie below the bar's
                                            // top: corners peak without limit
 constexpr Colour kLoadColour = {0.80, 0.18, 0.22};
@@ -97,13 +105,14 @@ SurfaceMesh ground_block(const SurfaceMesh& mesh, const std::string& name,
     add(t[0] + count, t[1] + count, t[2] + count, 0);
     add(t[0], t[2], t[1], 1);
   }
-  const std::vector<Edge> rim = rim_edges(only);
+  const std::vector<Edge> edges = rim_edges(only);
+  const std::set<Edge> rim(edges.begin(), edges.end());
   for (const Triangle& t : only.facets) {
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = t[k];
       const int b = t[(k + 1) % 3];
       const Edge key{std::min(a, b), std::max(a, b)};
-      if (std::find(rim.begin(), rim.end(), key) != rim.end()) {
+      if (rim.count(key) != 0) {
         add(a, b, b + count, 2);
         add(a, b + count, a + count, 2);
       }
@@ -175,14 +184,11 @@ std::pair<double, double> bar_range(std::vector<double> values) {
   return {step * std::ceil(robust / step * (1 - 1e-9)), step};
 }
 
-std::string with_unit(double value, const std::string& unit) {
-  return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
-}
-
 }  // namespace
 
-void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film,
-               const ViewLayout& layout) {
+void draw_film(Panel& panel, const PictureJob& job,
+               const PictureSurface& film) {
+  panel.sort_layers();
   const SurfaceMesh& mesh = film.mesh;
   const double diagonal = bounding_diagonal(mesh.points);
   const Vec3 eye = job.view.normalized();
@@ -195,7 +201,6 @@ void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film,
   if (skin.data->GetNumberOfPoints() > 0) {
     // Light passes a film best where it falls straight through: opacity and
     // tint follow the angle to the eye (Schlick's curve, exaggerated).
-    constexpr Colour kStraight = {0.36, 0.70, 0.93};
     constexpr Colour kGrazing = {0.06, 0.27, 0.62};
     auto* normals = skin.data->GetPointData()->GetNormals();
     std::vector<std::array<double, 4>> colours;
@@ -205,9 +210,9 @@ void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film,
       const double g = std::pow(1.0 - std::abs(n.dot(eye)), 2.0);
       auto& c = colours.emplace_back();
       for (std::size_t k = 0; k < 3; ++k) {
-        c[k] = (1 - g) * kStraight[k] + g * kGrazing[k];
+        c[k] = (1 - g) * kFilmColour[k] + g * kGrazing[k];
       }
-      c[3] = 0.38 + 0.52 * g;
+      c[3] = 0.30 + 0.60 * g;
     }
     SurfaceStyle style;
     style.specular = 0.7;
@@ -217,20 +222,18 @@ void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film,
     panel.add_coloured(skin.data, colours, style);
   }
   SurfaceStyle cap;
-  cap.colour = {0.96, 0.68, 0.28};
+  cap.colour = kCapColour;
   cap.opacity = 0.95;
   const ShadedSurface caps = shade(mesh, solid);
   if (caps.data->GetNumberOfPoints() > 0) {
     panel.add_surface(caps.data, cap);
   }
-  panel.add_tubes(mesh.points, rim_edges(mesh), 0.0045 * diagonal,
-                  {0.07, 0.20, 0.42});
+  panel.add_tubes(mesh.points, rim_edges(mesh), 0.0045 * diagonal, kRimColour);
   panel.show(mesh.points);
-  panel.fit_camera(job.view, layout.model);
 }
 
-void draw_cut_mesh(Panel& panel, const PictureJob& job, const PictureTets& tets,
-                   const ViewLayout& layout) {
+void draw_cut_mesh(Panel& panel, const PictureJob& job,
+                   const PictureTets& tets) {
   // The cut faces the eye and stays upright: what stands before it goes.
   const Vec3 flat(0.0, job.view.y(), 0.0);
   const Vec3 normal = flat.norm() > 0.1 * job.view.norm()
@@ -241,18 +244,18 @@ void draw_cut_mesh(Panel& panel, const PictureJob& job, const PictureTets& tets,
   style.flat = true;
   style.edges = true;
   style.specular = 0.0;
+  style.ambient = 0.3;
   style.edge_width = 0.6;
-  style.colour = {0.62, 0.73, 0.84};
+  style.colour = kOutsideColour;
   style.edge_colour = {0.22, 0.33, 0.46};
   panel.add_surface(shade(mesh, {1, 0}).data, style);
-  style.colour = {0.97, 0.80, 0.52};
+  style.colour = kInsideColour;
   style.edge_colour = {0.50, 0.34, 0.12};
   panel.add_surface(shade(mesh, {0, 1}).data, style);
   panel.show(tets.nodes);
-  panel.fit_camera(job.view, layout.model);
 }
 
-std::string draw_part(Panel& panel, const PictureJob& job,
+PartFigures draw_part(Panel& panel, const PictureJob& job,
                       const PictureSurface& part, const ViewLayout& layout) {
   const SurfaceMesh& rest = part.mesh;
   if (part.displacement.empty() || part.von_mises.empty()) {
@@ -280,26 +283,23 @@ std::string draw_part(Panel& panel, const PictureJob& job,
         viridis(part.von_mises[static_cast<std::size_t>(id)] / top);
     colours.push_back({c[0], c[1], c[2], 1.0});
   }
-  panel.add_coloured(shaded.data, colours, {.specular = 0.15});
+  panel.add_coloured(shaded.data, colours, {.specular = 0.15, .ambient = 0.4});
   panel.add_tubes(moved.points, rim_edges(moved), 0.0016 * diagonal, kInk);
-  panel.add_surface(shade(rest, every_label(rest)).data,
-                    {.colour = {0.45, 0.5, 0.58}, .opacity = 0.10});
+  panel.add_surface(
+      shade(rest, every_label(rest)).data,
+      {.colour = {0.45, 0.5, 0.58}, .opacity = 0.13, .only_front = true});
   panel.add_tubes(rest.points, rim_edges(rest), 0.0013 * diagonal,
-                  {0.5, 0.54, 0.6}, 0.6);
+                  {0.66, 0.69, 0.73});
   panel.show(rest.points);
   panel.show(moved.points);
   draw_supports(panel, job, rest, diagonal);
   draw_loads(panel, job, moved, diagonal, layout.text);
-  panel.fit_camera(job.view, layout.model);
   const std::string unit =
       part.stress_unit.empty() ? "" : fmt::format(" [{}]", part.stress_unit);
   panel.add_colour_bar(layout.bar, "von Mises stress" + unit, top, step,
                        layout.text);
-  const double peak =
-      *std::max_element(part.von_mises.begin(), part.von_mises.end());
-  return fmt::format("deflection drawn x {:g} (largest {}), peak stress {}",
-                     factor, with_unit(largest, part.length_unit),
-                     with_unit(peak, part.stress_unit));
+  return {factor, largest,
+          *std::max_element(part.von_mises.begin(), part.von_mises.end())};
 }
 
 }  // namespace meniscus

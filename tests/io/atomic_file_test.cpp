@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <iterator>
 #include <unistd.h>
 
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
 #include "io/vtk_files.h"
 
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <vtkCell.h>

@@ -61,7 +61,7 @@ TEST(Match, BracketConvergesInFewEvaluations) {
     const MatchReport report = match(kSupport, recorder.function(), {});
     EXPECT_EQ(report.termination, Termination::Converged) << report.message;
     EXPECT_LE(report.answer.mismatch[0], 1e-3);
-    EXPECT_LE(report.evaluations, 6) << right;
+    EXPECT_LE(report.evaluations, 4) << right;
     EXPECT_EQ(report.evaluations, static_cast<int>(recorder.points.size()));
     EXPECT_THAT(report.message, HasSubstr("support_x = "));
   }
@@ -159,8 +159,9 @@ TEST_P(EveryMethod, StaysInsideTheBoundsAndNamesTheOneReached) {
 }
 
 TEST_P(EveryMethod, ReachesTheSameAnswerInOneDimension) {
+  // 1.55: near a bound, where a simplex can collapse
   const auto function = [](const VectorX& x) {
-    return one(bracket_mismatch(x[0], 1.0, 1.5));
+    return one(bracket_mismatch(x[0], 1.0, 1.55));
   };
   Recorder reference{function, {}};
   Recorder recorder{function, {}};

@@ -1,5 +1,6 @@
 #include "tests/support/calculix.h"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>

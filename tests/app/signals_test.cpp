@@ -1,0 +1,69 @@
+#include "app/signals.h"
+
+#include <csignal>
+#include <functional>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+namespace meniscus {
+namespace {
+
+// How a child process that does this ends, as waitpid tells it. A child,
+// because the handlers and the flag belong to the whole process.
+int status_of(const std::function<void()>& action) {
+  const pid_t child = fork();
+  if (child == 0) {
+    action();
+    _exit(99);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+int exit_code_of(const std::function<void()>& action) {
+  const int status = status_of(action);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Signals, TheFirstSetsTheFlag) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    EXPECT_EQ(exit_code_of([signal] {
+                catch_stop_signals();
+                const bool none = stop_signal() == 0;
+                raise(signal);
+                _exit(none && stop_signal() == signal ? 7 : 1);
+              }),
+              7);
+  }
+}
+
+TEST(Signals, TheSecondEndsTheProcess) {
+  EXPECT_EQ(exit_code_of([] {
+              catch_stop_signals();
+              raise(SIGTERM);
+              raise(SIGINT);
+            }),
+            130);
+}
+
+TEST(Signals, WhatWasIgnoredStaysIgnored) {
+  EXPECT_EQ(exit_code_of([] {
+              std::signal(SIGHUP, SIG_IGN);
+              catch_stop_signals();
+              raise(SIGHUP);
+              _exit(stop_signal() == 0 ? 7 : 1);
+            }),
+            7);
+}
+
+TEST(Signals, HaveNames) {
+  EXPECT_STREQ(name_of_signal(SIGINT), "Ctrl-C");
+  EXPECT_STREQ(name_of_signal(SIGTERM), "SIGTERM");
+  EXPECT_STREQ(name_of_signal(SIGHUP), "SIGHUP");
+}
+
+}  // namespace
+}  // namespace meniscus

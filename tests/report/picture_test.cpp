@@ -1,0 +1,217 @@
+#include "report/picture.h"
+
+#include <array>
+#include <cstdlib>
+#include <optional>
+#include <set>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPNGReader.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/find_program.h"
+#include "io/atomic_file.h"
+#include "io/vtk_files.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
+
+namespace meniscus {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A bent bar on z0, loaded on z1, as a run leaves it, and jobs for it.
+class PictureTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const TetMesh mesh =
+        shapes::straight_quadratic(shapes::brick(Vec3(20, 10, 60), 2, 1, 6));
+    MeshFields fields;
+    fields.points = {{"displacement", "mm", 3, {}},
+                     {"von_mises", "MPa", 1, {}}};
+    Field& u = fields.points[0];
+    Field& s = fields.points[1];
+    for (const Vec3& p : mesh.nodes) {
+      u.values.insert(u.values.end(), {1e-4 * p.z() * p.z(), 0.0, 0.0});
+      s.values.push_back(200.0 * (1.0 - p.z() / 60.0));
+    }
+    write_vtu(folder_ / "part.vtu", mesh, fields);
+    write_boundary_vtp(folder_ / "part_surface.vtp", mesh, fields);
+    write_vtp(folder_ / "film.vtp", boundary_surface(mesh).mesh);
+  }
+
+  void TearDown() override { ::unsetenv("MENISCUS_RENDER"); }
+
+  PictureJob job(PictureKind kind, const std::string& name) const {
+    PictureJob job;
+    job.kind = kind;
+    job.output = (folder_ / name).string();
+    job.part = (folder_ / "part.vtu").string();
+    job.part_surface = (folder_ / "part_surface.vtp").string();
+    job.film = (folder_ / "film.vtp").string();
+    job.title = "Träger";
+    job.width = 400;
+    job.height = 300;
+    job.supports = {"z0"};
+    job.solids = {"z0", "z1"};
+    job.loads = {{"z1", Vec3(100, 0, 0), "100 N"}};
+    return job;
+  }
+
+  /// Pretends that `value` is all that a variable holds, until it goes.
+  class Variable {
+   public:
+    Variable(const char* name, const char* value) : name_(name) {
+      if (const char* old = std::getenv(name); old != nullptr) {
+        old_ = old;
+      }
+      if (value != nullptr) {
+        ::setenv(name, value, 1);
+      } else {
+        ::unsetenv(name);
+      }
+    }
+    ~Variable() {
+      if (old_) {
+        ::setenv(name_, old_->c_str(), 1);
+      } else {
+        ::unsetenv(name_);
+      }
+    }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+   private:
+    const char* name_;
+    std::optional<std::string> old_;
+  };
+
+  TempFolder folder_;
+};
+
+void expect_picture(const std::string& path, int width, int height) {
+  ASSERT_TRUE(fs::exists(path)) << path;
+  vtkNew<vtkPNGReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  vtkImageData* image = reader->GetOutput();
+  ASSERT_EQ(image->GetDimensions()[0], width);
+  ASSERT_EQ(image->GetDimensions()[1], height);
+  std::set<std::array<int, 3>> colours;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto* p =
+          static_cast<const unsigned char*>(image->GetScalarPointer(x, y, 0));
+      colours.insert({p[0], p[1], p[2]});
+    }
+  }
+  // White paper, ink and grey alone stay below; shading and colour map do not.
+  EXPECT_GT(colours.size(), 500u);
+}
+
+TEST_F(PictureTest, DrawsAllKinds) {
+  if (!find_program("Xvfb")) {
+    GTEST_SKIP() << "Xvfb is not installed";
+  }
+  // Neither a display nor a home folder is needed.
+  const Variable display("DISPLAY", nullptr);
+  const Variable home("HOME", nullptr);
+  std::vector<PictureJob> jobs = {job(PictureKind::Part, "part größe.png"),
+                                  job(PictureKind::Film, "film.png"),
+                                  job(PictureKind::Overview, "overview.png")};
+  jobs[1].facet_edges = true;
+  jobs[2].width = 900;
+  EXPECT_THAT(render_pictures(jobs), IsEmpty());
+  expect_picture(jobs[0].output, 400, 300);
+  expect_picture(jobs[1].output, 400, 300);
+  expect_picture(jobs[2].output, 900, 300);
+}
+
+TEST_F(PictureTest, OneBadJobDoesNotStopTheNext) {
+  if (!find_program("Xvfb")) {
+    GTEST_SKIP() << "Xvfb is not installed";
+  }
+  std::vector<PictureJob> jobs = {job(PictureKind::Part, "a.png"),
+                                  job(PictureKind::Film, "b.png")};
+  jobs[0].part_surface = (folder_ / "absent.vtp").string();
+  EXPECT_THAT(
+      render_pictures(jobs),
+      ElementsAre(testing::AllOf(HasSubstr("a.png"), HasSubstr("absent.vtp"))));
+  EXPECT_FALSE(fs::exists(jobs[0].output));
+  EXPECT_TRUE(fs::exists(jobs[1].output));
+}
+
+TEST_F(PictureTest, WarnsWithoutAnyDisplay) {
+  const Variable display("DISPLAY", nullptr);
+  const Variable path("PATH", "/nonexistent");
+  EXPECT_THAT(render_pictures({job(PictureKind::Part, "a.png")}),
+              ElementsAre(HasSubstr("xvfb")));
+  EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+// VTK aborts its process here; ours goes on.
+TEST_F(PictureTest, WarnsWhenTheDisplayIsUnusable) {
+  const Variable display("DISPLAY", ":47111");
+  const Variable path("PATH", "/nonexistent");
+  EXPECT_THAT(render_pictures({job(PictureKind::Part, "a.png")}),
+              ElementsAre(HasSubstr("pictures are missing")));
+  EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+TEST_F(PictureTest, WarnsWhenTheHelperIsMissingOrFailsOrHangs) {
+  const std::vector<PictureJob> jobs = {job(PictureKind::Part, "a.png")};
+  ::setenv("MENISCUS_RENDER", "/nonexistent/render", 1);
+  EXPECT_THAT(render_pictures(jobs), ElementsAre(HasSubstr("MENISCUS_RENDER")));
+  ::setenv("MENISCUS_RENDER", "/bin/false", 1);
+  EXPECT_EQ(render_pictures(jobs).size(), 1u);
+  const fs::path hanging = folder_ / "hanging";
+  write_file(hanging, "#!/bin/sh\nsleep 60\n");
+  fs::permissions(hanging, fs::perms::owner_all);
+  ::setenv("MENISCUS_RENDER", hanging.c_str(), 1);
+  EXPECT_THAT(render_pictures(jobs, {.time_limit = 0.3}),
+              ElementsAre(HasSubstr("time limit")));
+}
+
+TEST_F(PictureTest, StopsOnRequest) {
+  struct Stopper : Monitor {
+    bool stop_requested() const override { return true; }
+  } stopper;
+  const fs::path hanging = folder_ / "hanging";
+  write_file(hanging, "#!/bin/sh\nsleep 60\n");
+  fs::permissions(hanging, fs::perms::owner_all);
+  ::setenv("MENISCUS_RENDER", hanging.c_str(), 1);
+  if (find_program("Xvfb")) {
+    EXPECT_THROW(render_pictures({job(PictureKind::Part, "a.png")},
+                                 {.monitor = &stopper}),
+                 Interrupted);
+  }
+}
+
+TEST(PictureJobs, SurviveTheirJson) {
+  PictureJob job;
+  job.kind = PictureKind::Film;
+  job.output = "größe \"x\".png";
+  job.loads = {{"pad", Vec3(0.1, -2, 3), "5 N"}};
+  job.view = Vec3(1, 2, 3);
+  job.facet_edges = true;
+  const auto jobs = picture_jobs_from_json(to_json({job}));
+  ASSERT_EQ(jobs.size(), 1u);
+  EXPECT_EQ(jobs[0].kind, job.kind);
+  EXPECT_EQ(jobs[0].output, job.output);
+  EXPECT_EQ(jobs[0].loads.at(0).direction, job.loads[0].direction);
+  EXPECT_EQ(jobs[0].view, job.view);
+  EXPECT_TRUE(jobs[0].facet_edges);
+  EXPECT_THROW(picture_jobs_from_json("{"), InvalidInput);
+  EXPECT_THROW(picture_jobs_from_json("[{\"kind\":\"cube\",\"output\":\"\"}]"),
+               InvalidInput);
+  EXPECT_THROW(picture_jobs_from_json("[{\"output\":\"\"}]"), InvalidInput);
+}
+
+}  // namespace
+}  // namespace meniscus
