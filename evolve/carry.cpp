@@ -4,14 +4,8 @@
 
 namespace meniscus {
 
-namespace {
-
-// Holds vertices that no rim reaches; too small to be felt by any other.
-constexpr double kHold = 1e-12;  // x mean weight
-
-}  // namespace
-
-Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind) {
+Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind,
+                               const std::vector<int>& order) {
   Extension extension;
   std::vector<int> unknown_of(reference.vertices.size(), -1);
   for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
@@ -32,20 +26,13 @@ Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind) {
   LaplaceSystem laplace =
       cotan_laplacian(reference.mesh, weight, unknown_of, count,
                       film ? CotanWeights::Clamped : CotanWeights::Exact);
-  double sum = 0.0;
-  for (int i = 0; i < count; ++i) {
-    sum += laplace.inner.coeff(i, i);
-  }
-  const bool held = laplace.outer.nonZeros() > 0;
-  for (int i = 0; i < count; ++i) {
-    if (!held) {
-      laplace.inner.coeffRef(i, i) += sum / count;
-    } else if (film) {
-      laplace.inner.coeffRef(i, i) += kHold * sum / count;
-    }
+  if (laplace.outer.nonZeros() == 0) {
+    // No rim reaches these vertices: they stay.
+    laplace.inner.setIdentity();
   }
   extension.outer.swap(laplace.outer);
-  extension.factor.emplace(laplace.inner, FactorKind::Cholesky);
+  laplace.inner.makeCompressed();
+  extension.factor.emplace(laplace.inner, FactorKind::Cholesky, order);
   if (!extension.factor->factorize(laplace.inner)) {
     throw MeshError(
         "the reference film cannot be carried: its Laplacian is singular at "
@@ -55,11 +42,11 @@ Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind) {
   return extension;
 }
 
-Carry::Carry(const FilmComplex& reference)
+Carry::Carry(const FilmComplex& reference, const std::vector<int>& film_order)
     : reference_(reference.mesh.points),
       kinds_(reference.vertices),
-      films_(extend(reference, VertexKind::Free)),
-      caps_(extend(reference, VertexKind::InCap)) {}
+      films_(extend(reference, VertexKind::Free, film_order)),
+      caps_(extend(reference, VertexKind::InCap, {})) {}
 
 Points Carry::rim_moves(const std::vector<Curve>& curves) const {
   Points moves(reference_.size(), Vec3::Zero());

@@ -16,7 +16,9 @@ namespace meniscus {
 /// Immutable after construction; at() may run in several threads.
 class Carry {
  public:
-  explicit Carry(const FilmComplex& reference);
+  /// `film_order`: elimination order of the free vertices, as FilmEnergy has
+  /// found it. Throws MeshError for a film whose Laplacian is singular.
+  Carry(const FilmComplex& reference, const std::vector<int>& film_order);
 
   /// Moves of the rim vertices from the reference to `curves` (same order as
   /// the complex's curves); zero at all other vertices.
@@ -32,7 +34,8 @@ class Carry {
     SparseMatrix outer;
     std::optional<SymmetricFactor> factor;
   };
-  static Extension extend(const FilmComplex& reference, VertexKind kind);
+  static Extension extend(const FilmComplex& reference, VertexKind kind,
+                          const std::vector<int>& order);
   static void apply(const Extension& extension, const Points& moves,
                     Points& result);
 

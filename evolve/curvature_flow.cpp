@@ -38,6 +38,8 @@ class Flow {
     }
   }
 
+  bool has_unknowns() const { return energy_.unknowns() > 0; }
+
   bool at_volume() const {
     const VectorX v = energy_.volumes(complex_.mesh.points);
     return std::all_of(held_.begin(), held_.end(), [&](int b) {
@@ -173,6 +175,10 @@ class Flow {
 FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
   Flow flow(complex, options);
   FlowReport report;
+  if (!flow.has_unknowns()) {
+    report.settled = true;
+    return report;
+  }
   double energy = flow.energy();
   for (; report.steps < options.max_steps; ++report.steps) {
     if (options.monitor != nullptr) {

@@ -197,32 +197,40 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   const Timer timer;
   auto impl = std::make_unique<Impl>();
   SettleOptions settle{.monitor = options.monitor};
+  Monitor& monitor =
+      options.monitor != nullptr ? *options.monitor : silent_monitor();
+  monitor.progress({"film", "building the start", 0.0});
   impl->complex = build_start(initial, options.edge * std::exp2(kHalvings));
+  monitor.progress({"film", "settling the raw start", 0.1});
   impl->reference = find_equilibrium(
       impl->complex,
       {.edge = options.edge, .halvings = kHalvings, .settle = settle});
   impl->meshed = impl->complex.mesh;
   impl->corner_count = static_cast<int>(impl->complex.mesh.points.size());
   for (int level = 0; level < options.refinements; ++level) {
+    monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
     Refinement finer = refine(impl->complex);
     impl->complex = std::move(finer.complex);
     if (level == 0) {
       impl->parents = std::move(finer.parents);
     }
     if (!impl->reference.failure) {
-      const FilmEnergy energy(impl->complex);
-      impl->reference =
-          settle_in_normals(energy, impl->complex, targets_of(impl->complex),
-                            impl->complex.mesh.points, settle);
+      impl->energy.emplace(impl->complex);
+      impl->reference = settle_in_normals(*impl->energy, impl->complex,
+                                          targets_of(impl->complex),
+                                          impl->complex.mesh.points, settle);
       impl->complex.mesh.points = impl->reference.points;
     }
   }
   impl->list_mid_sides();
-  impl->energy.emplace(impl->complex);
-  impl->carry.emplace(impl->complex);
+  if (impl->reference.failure || !impl->energy) {
+    impl->energy.emplace(impl->complex);
+  }
   impl->targets = targets_of(impl->complex);
   FilmModel model(std::move(impl));
   if (!model.impl_->reference.failure) {
+    model.impl_->carry.emplace(model.impl_->complex,
+                               model.impl_->energy->order());
     model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
     model.impl_->reference = model.settle(initial, settle);
   } else if (model.impl_->reference.points.size() !=
@@ -241,6 +249,12 @@ FilmState FilmModel::settle(const FilmSystem& system,
                             const SettleOptions& options) const {
   const Timer timer;
   check_numbers(system);
+  if (!impl_->carry) {
+    throw InvalidInput(
+        "this film model cannot be used: no film was found at its initial "
+        "design (" +
+        impl_->reference.report.verdict + ")");
+  }
   const FilmTargets goal = impl_->targets_of_system(system);
   const Points moves = impl_->carry->rim_moves(impl_->curves_of_system(system));
   FilmState state;
@@ -254,6 +268,14 @@ FilmState FilmModel::settle(const FilmSystem& system,
     if (!state.failure && iterations <= kManyIterations) {
       break;
     }
+  }
+  const bool moved = std::any_of(moves.begin(), moves.end(),
+                                 [](const Vec3& m) { return !m.isZero(0.0); });
+  if (moved && state.failure &&
+      state.failure->kind == FailureKind::FilmNotFound) {
+    state.failure->message +=
+        "; a model frozen nearer to this design may reach further";
+    state.report.verdict = state.failure->message;
   }
   state.report.iterations = iterations;
   state.report.seconds = timer.seconds();

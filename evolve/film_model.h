@@ -87,8 +87,9 @@ class FilmModel {
   /// Equilibrium for another design of the same system; a pure function of
   /// the model and `system`, and may run in several threads. A film that is
   /// not found is in the state's failure, not thrown. Throws InvalidInput for
-  /// names and kinds that are not the model's and for numbers that no film can
-  /// follow (radius, tension or volume not above 0, anything not finite).
+  /// names and kinds that are not the model's, for numbers that no film can
+  /// follow (radius, tension or volume not above 0, anything not finite), and
+  /// for a model that has no film at its initial design.
   FilmState settle(const FilmSystem& system,
                    const SettleOptions& options = {}) const;
 

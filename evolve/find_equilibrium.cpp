@@ -1,9 +1,11 @@
 #include "evolve/find_equilibrium.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "core/timer.h"
 #include "evolve/curvature_flow.h"
 #include "evolve/grooming.h"
@@ -15,6 +17,13 @@ namespace {
 
 constexpr int kFlowSteps = 8;     // between remeshings
 constexpr int kPolishRounds = 2;  // of averaging and Newton at the end
+
+bool has_free_vertex(const FilmComplex& complex) {
+  return std::any_of(complex.vertices.begin(), complex.vertices.end(),
+                     [](const ComplexVertex& vertex) {
+                       return vertex.kind == VertexKind::Free;
+                     });
+}
 
 bool pinches(const FilmComplex& complex, double edge) {
   const FilmEnergy energy(complex);
@@ -68,26 +77,37 @@ std::string bring_near(FilmComplex& complex, std::optional<double> edge,
   return "";
 }
 
-}  // namespace
-
-FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options) {
-  const Timer timer;
-  int steps = 0;
-  const int halvings = options.edge ? options.halvings : 0;
-  for (int level = halvings; level >= 0; --level) {
+/// Coarse to fine over the edges edge x 2^k, k = levels..0. Empty when the
+/// film came near rest; else why not.
+std::string bring_near_by_levels(FilmComplex& complex,
+                                 const FindOptions& options, int levels,
+                                 int& steps) {
+  for (int level = levels; level >= 0; --level) {
     std::optional<double> edge;
     if (options.edge) {
       edge = *options.edge * std::exp2(level);
-      if (level < halvings) {
+      if (level < levels) {
         complex = refine(complex).complex;
       }
       remesh_films(complex, {.edge = *edge});
     }
-    const std::string reason = bring_near(complex, edge, options.max_rounds,
-                                          steps, options.settle.monitor);
+    std::string reason = bring_near(complex, edge, options.max_rounds, steps,
+                                    options.settle.monitor);
     if (!reason.empty()) {
-      return given_up(complex, reason, steps);
+      return reason;
     }
+  }
+  return "";
+}
+
+/// Newton, and vertex averaging so that facets are good where the film is.
+FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
+                            int& steps) {
+  if (!has_free_vertex(complex)) {
+    throw InvalidInput(fmt::format(
+        "the film has no vertex between its curves at a mean edge of {:.4g}; "
+        "use a shorter edge",
+        mean_edge_length(complex.mesh)));
   }
   FilmState state;
   for (int round = 0; round <= kPolishRounds; ++round) {
@@ -99,12 +119,32 @@ FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options) {
     state = settle_in_normals(energy, complex, targets_of(complex),
                               complex.mesh.points, options.settle);
     steps += state.report.iterations;
+    complex.mesh.points = state.points;
     if (state.failure || !options.edge) {
       break;
     }
-    complex.mesh.points = state.points;
   }
-  complex.mesh.points = state.points;
+  return state;
+}
+
+}  // namespace
+
+FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options) {
+  const Timer timer;
+  int steps = 0;
+  const int levels = options.edge ? options.halvings : 0;
+  FilmComplex raw = complex;
+  std::string reason = bring_near_by_levels(complex, options, levels, steps);
+  if (!reason.empty() && levels > 0) {
+    // A coarse film pinches earlier: the same without the coarse levels.
+    for (int level = 0; level < levels; ++level) {
+      raw = refine(raw).complex;
+    }
+    complex = std::move(raw);
+    reason = bring_near_by_levels(complex, options, 0, steps);
+  }
+  FilmState state = reason.empty() ? settle_and_polish(complex, options, steps)
+                                   : given_up(complex, reason, steps);
   state.report.iterations = steps;
   state.report.seconds = timer.seconds();
   return state;

@@ -18,7 +18,8 @@ struct FindOptions {
 /// at its volumes, nested refinement, remeshing to the next edge, and Newton
 /// along current normals at the end. `complex` becomes the settled film. The
 /// state's failure tells when there is none: FilmPinched, FilmUnstable,
-/// FilmNotFound, in a bounded number of steps. Throws Interrupted.
+/// FilmNotFound, in a bounded number of steps. Throws InvalidInput when the
+/// edge is so long that no vertex is free, and Interrupted.
 FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options);
 
 }  // namespace meniscus

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/evolve/film_systems.h"
+#include "tests/evolve/systems.h"
 
 namespace meniscus {
 namespace {
@@ -121,6 +122,7 @@ TEST(FilmModel, ThinDesignFailsCleanly) {
 TEST(FilmModel, SettledButPinchedFilmIsRecognised) {
   const FilmState state = bracket().settle(two_arm(40, 1.55e6));
   ASSERT_TRUE(state.failure) << state.report.verdict;
+  EXPECT_EQ(state.failure->kind, FailureKind::FilmPinched);
 }
 
 TEST(FilmModel, SlenderArmsFailWithTheNeck) {
@@ -128,6 +130,7 @@ TEST(FilmModel, SlenderArmsFailWithTheNeck) {
       FilmModel::freeze(two_arm(0, 0.9e6, 220.0, 25.0), {.edge = 10.0});
   ASSERT_TRUE(model.reference().failure);
   EXPECT_THAT(model.reference().failure->message, testing::HasSubstr("neck"));
+  EXPECT_THROW(model.settle(two_arm(0, 0.9e6, 220.0, 25.0)), InvalidInput);
 }
 
 TEST(FilmModel, CatenoidHasItsLimit) {
@@ -137,6 +140,71 @@ TEST(FilmModel, CatenoidHasItsLimit) {
   const FilmModel beyond =
       FilmModel::freeze(systems::catenoid(1.34), {.edge = 0.1});
   EXPECT_TRUE(beyond.reference().failure);
+}
+
+/// Asks to stop from the first look on.
+class Impatient : public Monitor {
+ public:
+  bool stop_requested() const override { return true; }
+};
+
+TEST(FilmModel, StopsWhenAsked) {
+  Impatient monitor;
+  EXPECT_THROW(
+      FilmModel::freeze(two_arm(0), {.edge = 8.0, .monitor = &monitor}),
+      Interrupted);
+  EXPECT_THROW(bracket().settle(two_arm(5), {.monitor = &monitor}),
+               Interrupted);
+}
+
+TEST(FilmModel, RefusesAnEdgeThatLeavesNoFreeVertex) {
+  EXPECT_THROW(FilmModel::freeze(systems::catenoid(0.05), {.edge = 1.0}),
+               InvalidInput);
+}
+
+// The skin's hull holds about 1.9e6: half and twice of it.
+TEST(FilmModel, StartsFarFromTheTargetVolume) {
+  for (const double volume : {1.25e6, 3.8e6}) {
+    const FilmModel model =
+        FilmModel::freeze(two_arm(0, volume), {.edge = 8.0});
+    ASSERT_FALSE(model.reference().failure) << model.reference().report.verdict;
+    EXPECT_NEAR(model.reference().report.bodies[0].volume, volume,
+                1e-10 * volume);
+  }
+}
+
+FilmSystem strut(double volume) {
+  FilmSystem system = systems::strut();
+  system.bodies[0].pressure.reset();
+  system.bodies[0].volume = volume;
+  return system;
+}
+
+// Square of side 2 to a circle of radius 0.6, 4 higher and 0.8 aside
+// (reference.md): area 26.89002, pressure 1.0771 at V = 14; none at 12.5.
+TEST(FilmModel, StrutAtSecondOrder) {
+  std::vector<double> error;
+  for (const double edge : {0.3, 0.15}) {
+    const FilmModel model = FilmModel::freeze(strut(14.0), {.edge = edge});
+    ASSERT_FALSE(model.reference().failure) << model.reference().report.verdict;
+    error.push_back(model.reference().report.area - 26.89002);
+    EXPECT_NEAR(model.reference().report.bodies[0].pressure, 1.0771, 0.005);
+  }
+  EXPECT_GT(std::log2(std::abs(error[0] / error[1])), 1.6);
+  EXPECT_FALSE(
+      FilmModel::freeze(strut(13.0), {.edge = 0.2}).reference().failure);
+  EXPECT_TRUE(
+      FilmModel::freeze(strut(12.5), {.edge = 0.2}).reference().failure);
+}
+
+// A mirror-symmetric saddle that settles to rounding: only the index tells.
+TEST(FilmModel, SymmetricSaddleIsUnstable) {
+  const FilmState state = bracket().settle(two_arm(0, 1.1e6));
+  ASSERT_TRUE(state.failure);
+  EXPECT_EQ(state.failure->kind, FailureKind::FilmUnstable);
+  EXPECT_EQ(state.report.index, 1);
+  EXPECT_LE(state.report.residual, state.report.residual_bound);
+  EXPECT_THAT(state.failure->message, testing::HasSubstr("mode is largest at"));
 }
 
 TEST(FilmModel, RefusesDesignsOfAnotherSystem) {
