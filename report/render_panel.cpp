@@ -243,6 +243,7 @@ void Panel::add_label(const Vec3& at, const std::string& text,
   actor->SetInput(text.c_str());
   actor->SetPosition(at.x(), at.y(), at.z());
   set_text(actor->GetTextProperty(), style);
+  actor->GetTextProperty()->SetVerticalJustificationToCentered();
   renderer_->AddActor(actor);
 }
 
