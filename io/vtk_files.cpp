@@ -293,6 +293,7 @@ void write_findings_vtp(const fs::path& path, const SurfaceMesh& mesh,
   finding_ids.insert(finding_ids.end(), poly_finding.begin(),
                      poly_finding.end());
   std::vector<int> kinds;
+  kinds.reserve(finding_ids.size());
   for (const int id : finding_ids) {
     kinds.push_back(
         static_cast<int>(findings[static_cast<std::size_t>(id)].kind));

@@ -243,6 +243,7 @@ void Panel::add_label(const Vec3& at, const std::string& text,
   actor->SetInput(text.c_str());
   actor->SetPosition(at.x(), at.y(), at.z());
   set_text(actor->GetTextProperty(), style);
+  actor->GetTextProperty()->SetVerticalJustificationToCentered();
   renderer_->AddActor(actor);
 }
 
@@ -261,6 +262,7 @@ void Panel::add_colour_bar(const Box& place, const std::string& title,
                            double top, double step, int text_size) {
   constexpr int kCells = 256;
   std::vector<FlatBox> boxes;
+  boxes.reserve(kCells);
   const double width = place.right - place.left;
   for (int i = 0; i < kCells; ++i) {
     boxes.push_back({{place.left + width * i / kCells, place.bottom,

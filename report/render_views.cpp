@@ -11,6 +11,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -155,18 +156,25 @@ void draw_loads(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
     const double length =
         kArrowLength * diagonal * (0.5 + 0.5 * load.direction.norm() / largest);
     const double gap = 0.008 * diagonal;
-    const bool presses = along.dot(patch.normal) < 0.0;
-    const Vec3 tip = patch.centre + (presses ? -gap : gap + length) * along;
+    // Pressing arrows end on the surface, others begin on it.
+    const bool presses = along.dot(patch.normal) < -0.05;
+    const Vec3 root = patch.centre + 2 * gap * patch.normal;
+    const Vec3 tip = presses ? Vec3(patch.centre - gap * along)
+                             : Vec3(root + length * along);
     const Vec3 tail = tip - length * along;
     panel.add_arrow(tail, tip, kLoadColour);
     if (!load.label.empty()) {
-      const Vec3 at = (presses ? tail : tip) + Vec3(0, 0, gap);
+      const Vec3 at =
+          presses ? Vec3(tail - 3 * gap * along) : Vec3(tip + 3 * gap * along);
       panel.add_label(at, load.label,
                       {.size = text,
                        .colour = kLoadColour,
                        .bold = true,
                        .justify = Justify::Centre});
-      panel.show({at + Vec3(0, 0, 0.05 * diagonal)});
+      const Vec3 aside = Vec3::UnitZ().cross(job.view).normalized();
+      const Vec3 half(0, 0, 0.03 * diagonal);
+      panel.show({at + half, at - half, at + 0.05 * diagonal * aside,
+                  at - 0.05 * diagonal * aside});
     }
   }
 }
@@ -182,6 +190,26 @@ std::pair<double, double> bar_range(std::vector<double> values) {
   }
   const double step = round_down_nice(robust / 3.0);
   return {step * std::ceil(robust / step * (1 - 1e-9)), step};
+}
+
+/// A factor that makes values up to `top` short to print, and what they are
+/// then in: 1.4e6 Pa is 1.4 [MPa].
+std::pair<double, std::string> readable_unit(double top,
+                                             const std::string& unit) {
+  if (unit == "Pa") {
+    constexpr std::array<std::pair<double, const char*>, 3> kPrefixes = {
+        {{1e9, " [GPa]"}, {1e6, " [MPa]"}, {1e3, " [kPa]"}}};
+    for (const auto& [size, name] : kPrefixes) {
+      if (top >= size) {
+        return {1.0 / size, name};
+      }
+    }
+  }
+  constexpr double kLongest = 1e5;
+  if (top >= kLongest) {
+    return {1e-3, fmt::format(" [1000 {}]", unit)};
+  }
+  return {1.0, unit.empty() ? "" : fmt::format(" [{}]", unit)};
 }
 
 }  // namespace
@@ -294,10 +322,9 @@ PartFigures draw_part(Panel& panel, const PictureJob& job,
   panel.show(moved.points);
   draw_supports(panel, job, rest, diagonal);
   draw_loads(panel, job, moved, diagonal, layout.text);
-  const std::string unit =
-      part.stress_unit.empty() ? "" : fmt::format(" [{}]", part.stress_unit);
-  panel.add_colour_bar(layout.bar, "von Mises stress" + unit, top, step,
-                       layout.text);
+  const auto [scale, unit] = readable_unit(top, part.stress_unit);
+  panel.add_colour_bar(layout.bar, "von Mises stress" + unit, top * scale,
+                       step * scale, layout.text);
   return {factor, largest,
           *std::max_element(part.von_mises.begin(), part.von_mises.end())};
 }

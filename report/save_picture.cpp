@@ -1,5 +1,6 @@
 #include "report/save_picture.h"
 
+#include <cstddef>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
@@ -45,7 +46,8 @@ void save_picture(const std::vector<Panel*>& panels, int width, int height,
       for (int c = 0; c < 3; ++c) {
         int sum = s * s / 2;
         for (int i = 0; i < s * s; ++i) {
-          sum += from[(y * s + i / s) * row + (x * s + i % s) * 3 + c];
+          const std::ptrdiff_t pixel = std::ptrdiff_t{s} * x + i % s;
+          sum += from[(std::ptrdiff_t{s} * y + i / s) * row + 3 * pixel + c];
         }
         *to++ = static_cast<unsigned char>(sum / (s * s));
       }

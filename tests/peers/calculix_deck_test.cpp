@@ -43,7 +43,7 @@ Vec3 mean_over(const TetMesh& mesh, const std::string& surface,
   for (int f = 0; f < mesh.face_count(); ++f) {
     if (mesh.face_label[f] == mesh.label_of(surface)) {
       for (const int node : mesh.face(f)) {
-        sum += u.segment<3>(3 * node);
+        sum += u.segment<3>(Eigen::Index{3} * node);
         ++count;
       }
     }

@@ -45,7 +45,8 @@ std::vector<CalculixStep> read_calculix_dat(const std::string& text,
   for (std::string line; std::getline(lines, line);) {
     if (line.find("displacements") != std::string::npos) {
       block = Block::Displacement;
-      steps.emplace_back().displacement = VectorX::Zero(3 * node_count);
+      steps.emplace_back().displacement =
+          VectorX::Zero(Eigen::Index{3} * node_count);
       continue;
     }
     if (line.find("total force") != std::string::npos) {
@@ -66,7 +67,7 @@ std::vector<CalculixStep> read_calculix_dat(const std::string& text,
     }
     int node = 0;
     if (numbers >> node >> v.x() >> v.y() >> v.z()) {
-      steps.back().displacement.segment<3>(3 * (node - 1)) = v;
+      steps.back().displacement.segment<3>(Eigen::Index{3} * (node - 1)) = v;
     }
   }
   return steps;
