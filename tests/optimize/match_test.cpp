@@ -198,6 +198,7 @@ TEST(Match, RankOneUpdatesSaveDifferences) {
                     },
                     {}};
   std::vector<Variable> variables;
+  variables.reserve(n);
   for (int i = 0; i < n; ++i) {
     variables.push_back({fmt::format("v{}", i), 0.0, -1.0, 1.0});
   }

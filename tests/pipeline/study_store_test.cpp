@@ -247,7 +247,7 @@ TEST(StudyStore, ADamagedFileIsNamedAndLeftAlone) {
       AllOf(HasSubstr("study.sqlite is damaged"), HasSubstr("left")));
   EXPECT_THROW(StudyStore::read(folder.path()), IoError);
   EXPECT_EQ(contents(file_of(folder)), garbage);
-  { StudyStore::start(folder.path(), kMeta).append(record_of(1)); }
+  EXPECT_EQ(StudyStore::start(folder.path(), kMeta).append(record_of(1)), 1);
   EXPECT_EQ(contents(folder.path() + "/study-1.sqlite"), garbage);
 }
 
@@ -269,7 +269,7 @@ TEST(StudyStore, ATruncatedFileIsNamedAndLeftAlone) {
 
 TEST(StudyStore, AnEmptyFileIsAsGoodAsNone) {
   const ScratchFolder folder("empty");
-  std::ofstream(file_of(folder), std::ios::binary);
+  std::ofstream(file_of(folder), std::ios::binary) << "";
   EXPECT_THAT(message_of<IoError>([&] { StudyStore::read(folder.path()); }),
               HasSubstr("no study yet"));
   EXPECT_EQ(StudyStore::resume(folder.path(), kMeta).append(record_of(1)), 1);
@@ -277,7 +277,7 @@ TEST(StudyStore, AnEmptyFileIsAsGoodAsNone) {
 
 TEST(StudyStore, AnotherVersionOrProgramIsRefusedByName) {
   const ScratchFolder folder("version");
-  { StudyStore::start(folder.path(), kMeta).append(record_of(1)); }
+  EXPECT_EQ(StudyStore::start(folder.path(), kMeta).append(record_of(1)), 1);
   run_sql(file_of(folder), "PRAGMA user_version = 7");
   EXPECT_THAT(message_of<InvalidInput>(
                   [&] { StudyStore::resume(folder.path(), kMeta); }),
