@@ -1,0 +1,415 @@
+#include "fea/elastic_system.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "fea/conjugate_gradients.h"
+#include "fea/equilibrium_check.h"
+#include "fea/supports.h"
+
+namespace meniscus {
+
+namespace {
+
+/// Below this many free unknowns a direct factor of a ten-node mesh is as
+/// quick as multigrid.
+constexpr int kDirectUnknowns = 20000;
+
+void check_arrays(const TetMesh& mesh) {
+  const int n = static_cast<int>(mesh.nodes.size());
+  if ((mesh.order != 1 && mesh.order != 2) || mesh.element_count() == 0 ||
+      mesh.elements.size() % mesh.nodes_per_element() != 0) {
+    throw InvalidInput(fmt::format(
+        "elasticity: a mesh of order {} with {} element entries; four-node "
+        "(order 1) or ten-node (order 2) tetrahedra are needed",
+        mesh.order, mesh.elements.size()));
+  }
+  const auto bad = [n](int id) { return id < 0 || id >= n; };
+  for (const auto* ids : {&mesh.elements, &mesh.faces}) {
+    const auto at = std::find_if(ids->begin(), ids->end(), bad);
+    if (at != ids->end()) {
+      throw InvalidInput(fmt::format(
+          "elasticity: the mesh has {} nodes, but {} {} names node {}", n,
+          ids == &mesh.elements ? "element" : "face",
+          (at - ids->begin()) / (ids == &mesh.elements
+                                     ? mesh.nodes_per_element()
+                                     : mesh.nodes_per_face()),
+          *at));
+    }
+  }
+  if (static_cast<int>(mesh.face_label.size()) != mesh.face_count()) {
+    throw InvalidInput(fmt::format("elasticity: {} faces, but labels for {}",
+                                   mesh.face_count(), mesh.face_label.size()));
+  }
+}
+
+void check_loads(const TetMesh& mesh, const LoadCase& load_case) {
+  if (!(nodal_forces(mesh, load_case).norm() > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "load case '{}' has no load: give a force or a pressure that is not 0",
+        load_case.name));
+  }
+}
+
+bool same_supports(const std::vector<Support>& a,
+                   const std::vector<Support>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Support& s, const Support& t) {
+                      return s.surface == t.surface && s.fix_x == t.fix_x &&
+                             s.fix_y == t.fix_y && s.fix_z == t.fix_z;
+                    });
+}
+
+std::string cause(CgEnd end, const CgColumn& column, int most) {
+  switch (end) {
+    case CgEnd::TooManyIterations:
+      return fmt::format(
+          "no convergence in {} iterations (relative residual {:.2e}): the "
+          "design is too far from the base design, the material too nearly "
+          "incompressible, or elements are badly shaped",
+          most, column.residual);
+    case CgEnd::NotPositive:
+      return "the stiffness matrix is not positive definite: the supports are "
+             "too weak or an element is inverted";
+    default:
+      return "the solution is not finite: check loads, material and node "
+             "positions";
+  }
+}
+
+}  // namespace
+
+ElasticSystem::ElasticSystem(const TetMesh& base,
+                             const std::vector<Material>& materials,
+                             const std::vector<LoadCase>& load_cases,
+                             const ElasticOptions& options,
+                             BlockMatrix<double>& matrix)
+    : options_(options),
+      elements_(base.elements),
+      faces_(base.faces),
+      shared_(std::make_unique<Shared>()) {
+  check_arrays(base);
+  check_materials(base, materials);
+  if (load_cases.empty()) {
+    throw InvalidInput("elasticity: no load case is given");
+  }
+  if (!(options.tolerance > 0.0) || options.max_iterations < 1) {
+    throw InvalidInput(fmt::format(
+        "elasticity: tolerance is {} and max_iterations {}; both must be above "
+        "0",
+        options.tolerance, options.max_iterations));
+  }
+  for (const Material& material : materials) {
+    lames_.push_back(lame(material));
+  }
+  if (!std::all_of(base.nodes.begin(), base.nodes.end(),
+                   [](const Vec3& x) { return x.allFinite(); })) {
+    throw MeshError("elasticity: a node position of the mesh is not finite");
+  }
+  for (const LoadCase& load_case : load_cases) {
+    supports_.push_back(load_case.supports);
+    check_loads(base, load_case);
+  }
+  order_mesh(base);
+  group_supports(base, load_cases);
+  if (const auto failure = assemble(base, matrix)) {
+    throw MeshError(failure->message);
+  }
+  build_preconditioners(base, matrix);
+}
+
+void ElasticSystem::order_mesh(const TetMesh& base) {
+  order_ = morton_order(base);
+  std::vector<int> elements;
+  std::vector<int> region;
+  elements.reserve(base.elements.size());
+  region.reserve(base.element_region.size());
+  for (const int e : order_.element) {
+    for (const int node : base.element(e)) {
+      elements.push_back(order_.to_solver[node]);
+    }
+    region.push_back(base.element_region[e]);
+  }
+  shared_->table =
+      make_element_table(static_cast<int>(base.nodes.size()),
+                         base.nodes_per_element(), elements, std::move(region));
+}
+
+void ElasticSystem::group_supports(const TetMesh& base,
+                                   const std::vector<LoadCase>& load_cases) {
+  std::vector<char> loose(base.nodes.size(), 1);  // in no element
+  for (const int node : base.elements) {
+    loose[node] = 0;
+  }
+  for (std::size_t c = 0; c < load_cases.size(); ++c) {
+    const std::vector<char> given = fixed_dofs(base, load_cases[c]);
+    check_held(base, given, load_cases[c].name);
+    std::vector<char> fixed(given.size());
+    for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
+      const std::size_t from = order_.to_mesh[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        fixed[3 * i + k] = loose[from] != 0 ? 1 : given[3 * from + k];
+      }
+    }
+    const auto found =
+        std::find_if(groups_.begin(), groups_.end(),
+                     [&](const Group& g) { return g.fixed == fixed; });
+    if (found != groups_.end()) {
+      found->cases.push_back(static_cast<int>(c));
+    } else {
+      groups_.push_back({{static_cast<int>(c)}, std::move(fixed), nullptr});
+    }
+  }
+}
+
+CornerMap ElasticSystem::corner_map(const TetMesh& base,
+                                    const std::vector<int>& coarse_of) const {
+  CornerMap map;
+  for (std::size_t i = 0; i < coarse_of.size(); ++i) {
+    if (coarse_of[i] >= 0) {
+      map.corner.push_back(static_cast<int>(i));
+    }
+  }
+  std::vector<char> seen(coarse_of.size(), 0);
+  for (const int e : order_.element) {
+    const auto ids = base.element(e);
+    for (int m = 0; m < 6; ++m) {
+      const int node = order_.to_solver[ids[4 + m]];
+      if (seen[node] == 0) {
+        seen[node] = 1;
+        map.mid.push_back(node);
+        map.ends.push_back({coarse_of[order_.to_solver[ids[kTetEdges[m][0]]]],
+                            coarse_of[order_.to_solver[ids[kTetEdges[m][1]]]]});
+      }
+    }
+  }
+  return map;
+}
+
+void ElasticSystem::build_preconditioners(const TetMesh& base,
+                                          const BlockMatrix<double>& matrix) {
+  const auto& fixed = groups_.front().fixed;
+  const auto unknowns = std::count(fixed.begin(), fixed.end(), 0);
+  multigrid_ = options_.solver == SolverKind::Multigrid ||
+               (options_.solver == SolverKind::Automatic && base.order == 2 &&
+                unknowns > kDirectUnknowns);
+  if (!multigrid_) {
+    for (Group& group : groups_) {
+      group.preconditioner =
+          make_direct(shared_->table.pattern, matrix, group.fixed);
+    }
+    return;
+  }
+  if (base.order != 2) {
+    throw InvalidInput(
+        "elasticity: the multigrid solver needs ten-node elements; choose "
+        "Automatic or Cholesky for four-node ones");
+  }
+  // Coarse nodes are numbered as the solver orders them.
+  std::vector<int> coarse_of(base.nodes.size(), -1);
+  for (int e = 0; e < base.element_count(); ++e) {
+    for (int c = 0; c < 4; ++c) {
+      coarse_of[order_.to_solver[base.element(e)[c]]] = 0;
+    }
+  }
+  int coarse_nodes = 0;
+  Points corners;
+  for (std::size_t i = 0; i < coarse_of.size(); ++i) {
+    if (coarse_of[i] == 0) {
+      coarse_of[i] = coarse_nodes++;
+      corners.push_back(base.nodes[order_.to_mesh[i]]);
+    }
+  }
+  std::vector<int> elements;
+  for (const int e : order_.element) {
+    for (int c = 0; c < 4; ++c) {
+      elements.push_back(coarse_of[order_.to_solver[base.element(e)[c]]]);
+    }
+  }
+  const ElementTable table =
+      make_element_table(coarse_nodes, 4, elements, shared_->table.region);
+  BlockMatrix<double> coarse;
+  if (const auto bad = meniscus::assemble(table, corners, lames_, coarse)) {
+    throw MeshError(fmt::format(
+        "element {}: its straight-sided corners enclose no positive volume; "
+        "improve the mesh or choose the Cholesky solver",
+        order_.element[*bad]));
+  }
+  shared_->map = corner_map(base, coarse_of);
+  shared_->smoother = make_smoother_matrix(matrix);
+  for (Group& group : groups_) {
+    group.preconditioner = make_multigrid({.pattern = &shared_->table.pattern,
+                                           .matrix = &matrix,
+                                           .smoother = &shared_->smoother,
+                                           .map = &shared_->map,
+                                           .coarse_pattern = &table.pattern,
+                                           .coarse_matrix = &coarse,
+                                           .fixed = &group.fixed});
+  }
+}
+
+void ElasticSystem::check_same(const TetMesh& mesh,
+                               const std::vector<LoadCase>& load_cases) const {
+  if (mesh.elements != elements_ || mesh.faces != faces_ ||
+      mesh.nodes.size() != order_.to_mesh.size()) {
+    throw InvalidInput(fmt::format(
+        "elasticity: the mesh ({} nodes, {} elements) is not a moved copy of "
+        "the base mesh ({} nodes)",
+        mesh.nodes.size(), mesh.element_count(), order_.to_mesh.size()));
+  }
+  if (load_cases.size() != supports_.size()) {
+    throw InvalidInput(
+        fmt::format("elasticity: {} load cases, but the base design has {}",
+                    load_cases.size(), supports_.size()));
+  }
+  for (std::size_t c = 0; c < load_cases.size(); ++c) {
+    if (!same_supports(load_cases[c].supports, supports_[c])) {
+      throw InvalidInput(fmt::format(
+          "load case '{}': its supports differ from the base design's; build "
+          "a new model for them",
+          load_cases[c].name));
+    }
+  }
+}
+
+Points ElasticSystem::solver_points(const TetMesh& mesh) const {
+  Points x;
+  x.reserve(mesh.nodes.size());
+  for (const int node : order_.to_mesh) {
+    x.push_back(mesh.nodes[node]);
+  }
+  return x;
+}
+
+VectorX ElasticSystem::to_solver(const VectorX& v) const {
+  VectorX w(v.size());
+  for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
+    w.segment<3>(static_cast<Eigen::Index>(3 * i)) =
+        v.segment<3>(3 * order_.to_mesh[i]);
+  }
+  return w;
+}
+
+VectorX ElasticSystem::to_mesh(const VectorX& v) const {
+  VectorX w(v.size());
+  for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
+    w.segment<3>(3 * order_.to_mesh[i]) =
+        v.segment<3>(static_cast<Eigen::Index>(3 * i));
+  }
+  return w;
+}
+
+std::optional<Failure> ElasticSystem::assemble(
+    const TetMesh& mesh, BlockMatrix<double>& matrix) const {
+  const Points x = solver_points(mesh);
+  const auto place = std::find_if(x.begin(), x.end(),
+                                  [](const Vec3& p) { return !p.allFinite(); });
+  if (place != x.end()) {
+    return Failure{FailureKind::NotANumber,
+                   fmt::format("node {} of the mesh is not finite",
+                               order_.to_mesh[place - x.begin()])};
+  }
+  const auto bad = meniscus::assemble(shared_->table, x, lames_, matrix);
+  if (!bad) {
+    return std::nullopt;
+  }
+  const int e = order_.element[*bad];
+  const Vec3& at = mesh.nodes[mesh.element(e)[0]];
+  return Failure{
+      FailureKind::ElementsInverted,
+      fmt::format("element {} at ({:.4g}, {:.4g}, {:.4g}) is inverted or flat: "
+                  "its Jacobian determinant is not positive",
+                  e, at.x(), at.y(), at.z())};
+}
+
+ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
+                                     const std::vector<LoadCase>& load_cases,
+                                     const BlockMatrix<double>& matrix,
+                                     const ElasticSolution* start) const {
+  const Timer timer;
+  ElasticSolution result;
+  result.displacements.resize(load_cases.size());
+  result.reactions.resize(load_cases.size());
+  result.report.solver = multigrid_ ? "p-multigrid" : "cholmod";
+  const auto& fixed = groups_.front().fixed;
+  result.report.dofs =
+      static_cast<int>(std::count(fixed.begin(), fixed.end(), 0));
+  std::vector<VectorX> f;
+  for (const LoadCase& load_case : load_cases) {
+    check_loads(mesh, load_case);
+    f.push_back(to_solver(nodal_forces(mesh, load_case)));
+  }
+  const Points x = solver_points(mesh);
+  for (const Group& group : groups_) {
+    for (std::size_t first = 0; first < group.cases.size();
+         first += kMostColumns) {
+      const std::size_t last =
+          std::min(first + kMostColumns, group.cases.size());
+      solve_columns(group,
+                    {group.cases.begin() + static_cast<std::ptrdiff_t>(first),
+                     group.cases.begin() + static_cast<std::ptrdiff_t>(last)},
+                    x, f, load_cases, matrix, start, result);
+    }
+  }
+  result.report.solve_seconds = timer.seconds();
+  return result;
+}
+
+void ElasticSystem::solve_columns(
+    const Group& group, const std::vector<int>& cases, const Points& x,
+    const std::vector<VectorX>& f, const std::vector<LoadCase>& load_cases,
+    const BlockMatrix<double>& matrix, const ElasticSolution* start,
+    ElasticSolution& result) const {
+  Monitor& monitor =
+      options_.monitor != nullptr ? *options_.monitor : silent_monitor();
+  std::vector<VectorX> right;
+  std::vector<VectorX> u;
+  for (const int c : cases) {
+    right.push_back(f[c]);
+    u.push_back(start != nullptr && !start->failure
+                    ? to_solver(start->displacements[c])
+                    : VectorX(VectorX::Zero(f[c].size())));
+  }
+  const std::vector<CgColumn> columns =
+      conjugate_gradients({.pattern = shared_->table.pattern,
+                           .matrix = matrix,
+                           .preconditioner = *group.preconditioner,
+                           .fixed = group.fixed,
+                           .tolerance = options_.tolerance,
+                           .max_iterations = options_.max_iterations,
+                           .monitor = monitor},
+                          right, u);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const int c = cases[k];
+    const VectorX internal = internal_forces(shared_->table, x, lames_, u[k]);
+    const Equilibrium equilibrium =
+        check_equilibrium({x, right[k], internal, u[k], group.fixed, matrix});
+    result.displacements[c] = to_mesh(u[k]);
+    result.reactions[c] = to_mesh(equilibrium.reactions);
+    ElasticReport& report = result.report;
+    report.iterations = columns[k].iterations;
+    report.residual = std::max(report.residual, equilibrium.residual);
+    report.reaction_imbalance =
+        std::max(report.reaction_imbalance, equilibrium.imbalance);
+    if (c == 0) {
+      report.strain_energy = equilibrium.energy;
+    }
+    if (result.failure) {
+      continue;
+    }
+    if (columns[k].end != CgEnd::Converged) {
+      result.failure = Failure{
+          FailureKind::SolverFailed,
+          fmt::format(
+              "load case '{}': {}", load_cases[c].name,
+              cause(columns[k].end, columns[k], options_.max_iterations))};
+    } else {
+      result.failure =
+          judge(equilibrium, options_.tolerance, load_cases[c].name);
+    }
+  }
+}
+
+}  // namespace meniscus

@@ -1,0 +1,81 @@
+/// The parts of ElasticModel: what a base design fixes once, and the solve.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "fea/assembly.h"
+#include "fea/elasticity.h"
+#include "fea/node_order.h"
+#include "fea/preconditioner.h"
+
+namespace meniscus {
+
+class ElasticSystem {
+ public:
+  /// Checks the input, orders the mesh, assembles the base's stiffness into
+  /// `matrix` and builds the preconditioners from it.
+  ElasticSystem(const TetMesh& base, const std::vector<Material>& materials,
+                const std::vector<LoadCase>& load_cases,
+                const ElasticOptions& options, BlockMatrix<double>& matrix);
+
+  /// Throws InvalidInput unless elements, faces, names and supports are the
+  /// base's.
+  void check_same(const TetMesh& mesh,
+                  const std::vector<LoadCase>& load_cases) const;
+
+  /// The stiffness of `mesh`, or why there is none.
+  std::optional<Failure> assemble(const TetMesh& mesh,
+                                  BlockMatrix<double>& matrix) const;
+
+  /// Solves all load cases; `start`: a solution to begin from, or null.
+  ElasticSolution solve(const TetMesh& mesh,
+                        const std::vector<LoadCase>& load_cases,
+                        const BlockMatrix<double>& matrix,
+                        const ElasticSolution* start) const;
+
+ private:
+  /// Load cases that fix the same degrees of freedom share a preconditioner.
+  struct Group {
+    std::vector<int> cases;
+    std::vector<char> fixed;  // solver's numbering
+    std::unique_ptr<Preconditioner> preconditioner;
+  };
+
+  /// What the preconditioners point to; its address never changes.
+  struct Shared {
+    ElementTable table;
+    SmootherMatrix smoother;
+    CornerMap map;
+  };
+
+  void order_mesh(const TetMesh& base);
+  void group_supports(const TetMesh& base,
+                      const std::vector<LoadCase>& load_cases);
+  void build_preconditioners(const TetMesh& base,
+                             const BlockMatrix<double>& matrix);
+  CornerMap corner_map(const TetMesh& base,
+                       const std::vector<int>& coarse_of) const;
+  void solve_columns(const Group& group, const std::vector<int>& cases,
+                     const Points& x, const std::vector<VectorX>& f,
+                     const std::vector<LoadCase>& load_cases,
+                     const BlockMatrix<double>& matrix,
+                     const ElasticSolution* start,
+                     ElasticSolution& result) const;
+  Points solver_points(const TetMesh& mesh) const;
+  VectorX to_solver(const VectorX& v) const;
+  VectorX to_mesh(const VectorX& v) const;
+
+  ElasticOptions options_;
+  std::vector<Lame> lames_;
+  std::vector<int> elements_;  // the base's, to compare
+  std::vector<int> faces_;
+  std::vector<std::vector<Support>> supports_;
+  NodeOrder order_;
+  std::unique_ptr<Shared> shared_;
+  std::vector<Group> groups_;
+  bool multigrid_ = false;
+};
+
+}  // namespace meniscus

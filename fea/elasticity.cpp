@@ -1,0 +1,59 @@
+#include "fea/elasticity.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "fea/elastic_system.h"
+
+namespace meniscus {
+
+struct ElasticModel::Impl {
+  ElasticSystem system;
+  std::vector<LoadCase> load_cases;
+  ElasticSolution base;
+};
+
+ElasticModel::ElasticModel(const TetMesh& base, std::vector<Material> materials,
+                           std::vector<LoadCase> load_cases,
+                           const ElasticOptions& options) {
+  const Timer timer;
+  BlockMatrix<double> matrix;
+  ElasticSystem system(base, materials, load_cases, options, matrix);
+  impl_.reset(new Impl{std::move(system), std::move(load_cases), {}});
+  const double seconds = timer.seconds();
+  impl_->base = impl_->system.solve(base, impl_->load_cases, matrix, nullptr);
+  impl_->base.report.setup_seconds += seconds;
+}
+
+ElasticModel::~ElasticModel() = default;
+ElasticModel::ElasticModel(ElasticModel&&) noexcept = default;
+ElasticModel& ElasticModel::operator=(ElasticModel&&) noexcept = default;
+
+const ElasticSolution& ElasticModel::base_solution() const {
+  return impl_->base;
+}
+
+ElasticSolution ElasticModel::solve(const TetMesh& mesh) const {
+  return solve(mesh, impl_->load_cases);
+}
+
+ElasticSolution ElasticModel::solve(
+    const TetMesh& mesh, const std::vector<LoadCase>& load_cases) const {
+  const Timer timer;
+  impl_->system.check_same(mesh, load_cases);
+  BlockMatrix<double> matrix;
+  ElasticSolution result;
+  if (auto failure = impl_->system.assemble(mesh, matrix)) {
+    result.report = impl_->base.report;
+    result.failure = std::move(failure);
+    return result;
+  }
+  const double seconds = timer.seconds();
+  result = impl_->system.solve(mesh, load_cases, matrix, &impl_->base);
+  result.report.setup_seconds += seconds;
+  return result;
+}
+
+}  // namespace meniscus
