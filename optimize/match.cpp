@@ -19,12 +19,11 @@ constexpr int kProbes = 10;
 constexpr double kAtBound = 1e-9;
 
 void check_method(const std::string& method) {
-  const std::vector<std::string>& names = nlopt_match_methods();
-  if (method != kCeres &&
-      std::find(names.begin(), names.end(), method) == names.end()) {
-    throw InvalidInput(
-        fmt::format("match: method '{}' is not known; there are {}, {}", method,
-                    kCeres, fmt::join(names, ", ")));
+  const std::vector<std::string> names = match_methods();
+  if (std::find(names.begin(), names.end(), method) == names.end()) {
+    throw InvalidInput(fmt::format("match: method '{}' is not known; there are "
+                                   "{}",
+                                   method, fmt::join(names, ", ")));
   }
 }
 
@@ -223,6 +222,13 @@ MatchReport match(const std::vector<Variable>& variables,
   report.jacobian = std::move(backend.jacobian);
   conclude(evaluator, backend, report);
   return report;
+}
+
+std::vector<std::string> match_methods() {
+  std::vector<std::string> names = {kCeres};
+  const std::vector<std::string>& nlopt = nlopt_match_methods();
+  names.insert(names.end(), nlopt.begin(), nlopt.end());
+  return names;
 }
 
 }  // namespace meniscus

@@ -72,6 +72,9 @@ struct MatchReport {
   Eigen::MatrixXd jacobian;  // last known at or near `best`, may be empty
 };
 
+/// The methods that MatchOptions::method may name.
+std::vector<std::string> match_methods();
+
 /// Moves the variables until every mismatch is within tolerance, or says why
 /// that cannot be had. Dispatches on options.method; throws InvalidInput for
 /// an unknown one (the message lists those there are) and for bad bounds or

@@ -1,0 +1,22 @@
+/// What the commands share: reading a case aloud, folders, the monitor.
+#pragma once
+
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/terminal_monitor.h"
+#include "pipeline/case_reader.h"
+
+namespace meniscus {
+
+/// Reads a case and prints its problems and warnings on stderr.
+CaseReading read_case_aloud(const std::string& path,
+                            const CommonArguments& common);
+
+/// `out`, or results/<case name> below the working folder.
+std::filesystem::path results_folder(const Case& input, const std::string& out);
+
+/// Options of a monitor that the stop signals stop.
+TerminalMonitorOptions monitor_options(const CommonArguments& common);
+
+}  // namespace meniscus

@@ -1,0 +1,45 @@
+/// The commands of the program: what the command line asks, and the exit code
+/// (0 done, 2 wrong input, 3 no acceptable solution, 4 internal error or full
+/// disk, 130 interrupted).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meniscus {
+
+struct CommonArguments {
+  std::vector<std::string> overrides;  // "name=value"
+  std::string out;                     // results folder; empty: results/<name>
+  std::string log;                     // JSON-lines log file; empty: none
+  bool quiet = false;
+};
+
+struct RunArguments {
+  std::string case_path;
+  CommonArguments common;
+  bool resume = false;
+  bool pictures = true;
+  int threads = 0;          // 0: OpenMP's own number
+  double time_limit = 0.0;  // [s], 0: none
+};
+
+struct ExportArguments {
+  std::string run_folder;
+  std::string format;          // "stl", "inp", "vtu"
+  std::optional<double> edge;  // [length]; the run's own when absent
+  std::string out;             // file; empty: into the run's folder
+};
+
+int new_command(const std::string& name);
+int check_command(const std::string& case_path, const CommonArguments& common);
+int run_command(const RunArguments& arguments);
+int evolve_command(const std::string& case_path, const CommonArguments& common);
+int export_command(const ExportArguments& arguments);
+int study_show_command(const std::string& folder, const std::string& csv);
+
+/// Name and version of the program and of every library in it.
+std::string version_text();
+
+}  // namespace meniscus

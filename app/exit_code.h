@@ -1,0 +1,12 @@
+/// The program's exit codes, a contract with scripts that call it.
+#pragma once
+
+namespace meniscus {
+
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitWrongInput = 2;  // found before work starts
+inline constexpr int kExitNoSolution = 3;  // infeasible, stopped, failed
+inline constexpr int kExitError = 4;       // internal error, full disk
+inline constexpr int kExitInterrupted = 130;
+
+}  // namespace meniscus

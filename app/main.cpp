@@ -1,0 +1,145 @@
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <new>
+
+#include <CLI/CLI.hpp>
+
+#include "app/commands.h"
+#include "app/exit_code.h"
+#include "core/error.h"
+
+namespace {
+
+using meniscus::CommonArguments;
+
+void add_case(CLI::App& command, std::string& path) {
+  command.add_option("CASE", path, "case file (TOML)")->required();
+}
+
+void add_overrides(CLI::App& command, CommonArguments& common) {
+  command
+      .add_option("--set", common.overrides,
+                  "override a parameter, a design variable's start or a key: "
+                  "load_left=5e4, resolution.fea=6")
+      ->type_name("NAME=VALUE");
+}
+
+void add_common(CLI::App& command, CommonArguments& common) {
+  add_overrides(command, common);
+  command.add_option("--out", common.out,
+                     "results folder (default: results/<case name>)");
+  command.add_option("--log", common.log, "write a log of JSON lines");
+  command.add_flag("--quiet", common.quiet, "errors only");
+}
+
+/// Runs a command; what escapes it becomes a message and an exit code.
+int guarded(const std::function<int()>& command) {
+  try {
+    return command();
+  } catch (const meniscus::InvalidInput& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return meniscus::kExitWrongInput;
+  } catch (const meniscus::Interrupted& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return meniscus::kExitInterrupted;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "error: not enough memory; try longer edges\n");
+    return meniscus::kExitError;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return meniscus::kExitError;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Designs load-carrying parts with liquid films.", "meniscus");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", [] { return meniscus::version_text(); });
+  app.failure_message(CLI::FailureMessage::help);
+  std::function<int()> command;
+
+  std::string name;
+  CLI::App* create = app.add_subcommand("new", "write a commented start case");
+  create->add_option("NAME", name, "folder to make, with NAME/case.toml")
+      ->required();
+  create->callback(
+      [&] { command = [&] { return meniscus::new_command(name); }; });
+
+  std::string case_path;
+  CommonArguments common;
+  CLI::App* check =
+      app.add_subcommand("check", "read and validate a case, compute nothing");
+  add_case(*check, case_path);
+  add_overrides(*check, common);
+  check->callback([&] {
+    command = [&] { return meniscus::check_command(case_path, common); };
+  });
+
+  meniscus::RunArguments run_arguments;
+  CLI::App* run = app.add_subcommand("run", "run a case's study");
+  add_case(*run, run_arguments.case_path);
+  add_common(*run, run_arguments.common);
+  run->add_flag("--resume", run_arguments.resume,
+                "go on where an earlier run in the same folder ended");
+  run->add_flag("!--no-pictures", run_arguments.pictures,
+                "leave the pictures out");
+  run->add_option("--threads", run_arguments.threads,
+                  "threads of one evaluation; results do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  run->add_option("--time-limit", run_arguments.time_limit,
+                  "stop after so many seconds and keep the best point")
+      ->check(CLI::PositiveNumber);
+  run->callback(
+      [&] { command = [&] { return meniscus::run_command(run_arguments); }; });
+
+  CLI::App* evolve =
+      app.add_subcommand("evolve", "film equilibrium of a case only");
+  add_case(*evolve, case_path);
+  add_common(*evolve, common);
+  evolve->callback([&] {
+    command = [&] { return meniscus::evolve_command(case_path, common); };
+  });
+
+  meniscus::ExportArguments export_arguments;
+  CLI::App* write =
+      app.add_subcommand("export", "write a run's part for another program");
+  write->add_option("RUN", export_arguments.run_folder, "results folder")
+      ->required();
+  write
+      ->add_option("--format", export_arguments.format,
+                   "stl (surface), inp (CalculiX), vtu (ParaView)")
+      ->required()
+      ->check(CLI::IsMember({"stl", "inp", "vtu"}));
+  write
+      ->add_option("--edge", export_arguments.edge,
+                   "settle and mesh again at this edge length")
+      ->check(CLI::PositiveNumber);
+  write->add_option("--out", export_arguments.out,
+                    "file (default: into the run's folder)");
+  write->callback([&] {
+    command = [&] { return meniscus::export_command(export_arguments); };
+  });
+
+  std::string folder;
+  std::string csv;
+  CLI::App* study = app.add_subcommand("study", "look into a study");
+  study->require_subcommand(1);
+  CLI::App* show =
+      study->add_subcommand("show", "the table of all evaluations");
+  show->add_option("DIR", folder, "results folder")->required();
+  show->add_option("--csv", csv, "write the table as CSV into this file");
+  show->callback([&] {
+    command = [&] { return meniscus::study_show_command(folder, csv); };
+  });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : meniscus::kExitWrongInput;
+  }
+  return guarded(command);
+}

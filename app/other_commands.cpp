@@ -1,0 +1,108 @@
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/case_input.h"
+#include "app/commands.h"
+#include "app/exit_code.h"
+#include "app/signals.h"
+#include "app/versions.h"
+#include "io/atomic_file.h"
+#include "io/vtk_files.h"
+#include "pipeline/new_case.h"
+#include "pipeline/results.h"
+#include "pipeline/study_table.h"
+
+namespace meniscus {
+
+namespace fs = std::filesystem;
+
+int new_command(const std::string& name) {
+  const fs::path folder = name;
+  const fs::path file = folder / "case.toml";
+  if (fs::exists(file)) {
+    std::fprintf(stderr, "%s is there already; choose another name\n",
+                 file.string().c_str());
+    return kExitWrongInput;
+  }
+  try {
+    make_folder(folder);
+    write_file(file, new_case_text(folder.filename().string()));
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+  std::printf("%s is written; run it with: meniscus run %s\n",
+              file.string().c_str(), file.string().c_str());
+  return kExitDone;
+}
+
+int check_command(const std::string& case_path, const CommonArguments& common) {
+  const CaseReading reading = read_case_aloud(case_path, common);
+  if (!reading.input) {
+    return kExitWrongInput;
+  }
+  const Case& input = *reading.input;
+  std::printf(
+      "%s: nothing wrong found: %zu curves, %zu films, %zu bodies, %zu design "
+      "variables, %zu responses\n",
+      case_path.c_str(), input.curves.size(), input.films.size(),
+      input.bodies.size(), input.design.size(), input.responses.size());
+  return kExitDone;
+}
+
+int evolve_command(const std::string& case_path,
+                   const CommonArguments& common) {
+  const CaseReading reading = read_case_aloud(case_path, common);
+  if (!reading.input) {
+    return kExitWrongInput;
+  }
+  const Case& input = *reading.input;
+  const fs::path folder = results_folder(input, common.out);
+  try {
+    make_folder(folder);
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+  catch_stop_signals();
+  TerminalMonitor monitor(monitor_options(common));
+  const EvaluatedCase numbers = evaluate(input, initial_design(input));
+  const FilmModel model = FilmModel::freeze(
+      numbers.film_system, {.edge = numbers.fea_edge,
+                            .refinements = input.resolution.refinements,
+                            .monitor = &monitor});
+  const FilmState& film = model.reference();
+  write_film(input, model.fine_mesh(film.points), folder);
+  if (!common.quiet) {
+    std::fputs(film_text(input, film.report).c_str(), stdout);
+  }
+  if (film.failure) {
+    std::fprintf(stderr, "failed: %s\n", film.failure->message.c_str());
+    return kExitNoSolution;
+  }
+  return kExitDone;
+}
+
+int study_show_command(const std::string& folder, const std::string& csv) {
+  try {
+    const StudyStore store = StudyStore::read(folder);
+    const std::vector<EvaluationRecord> records = store.all();
+    if (csv.empty()) {
+      std::fputs(study_table_text(records).c_str(), stdout);
+    } else {
+      write_file(csv, history_csv(records));
+    }
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+  return kExitDone;
+}
+
+std::string version_text() {
+  return fmt::format("meniscus {}\n{}", kProgramVersion, kLibraryVersions);
+}
+
+}  // namespace meniscus

@@ -1,0 +1,171 @@
+#include <cstdio>
+#include <filesystem>
+#include <omp.h>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "app/case_input.h"
+#include "app/commands.h"
+#include "app/draw.h"
+#include "app/exit_code.h"
+#include "app/signals.h"
+#include "app/versions.h"
+#include "core/timer.h"
+#include "io/atomic_file.h"
+#include "pipeline/results.h"
+#include "pipeline/stored_case.h"
+
+namespace meniscus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+StudyStore open_store(const Case& input, const std::string& folder,
+                      bool resume) {
+  const StudyMeta meta{.program_version = kProgramVersion,
+                       .case_hash = input.hash,
+                       .case_text = stored_case(input)};
+  return resume ? StudyStore::resume(folder, meta)
+                : StudyStore::start(folder, meta);
+}
+
+int exit_code_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::Converged:
+      return kExitDone;
+    case RunStatus::Infeasible:
+    case RunStatus::Stopped:
+    case RunStatus::Failed:
+      return kExitNoSolution;
+    case RunStatus::Error:
+      return kExitError;
+    case RunStatus::Interrupted:
+      return kExitInterrupted;
+  }
+  return kExitError;
+}
+
+/// One run from the open study to the files.
+class Run {
+ public:
+  Run(const Case& input, StudyStore& store, const RunArguments& arguments,
+      fs::path folder)
+      : input_(input),
+        store_(store),
+        arguments_(arguments),
+        folder_(std::move(folder)),
+        monitor_(monitor_options(arguments.common)) {}
+
+  int execute(const std::vector<std::string>& warnings);
+
+ private:
+  void write_all(RunResult& result, const EvaluationFields& fields);
+  int keep(RunStatus status, const std::string& reason);
+  void explain(const RunResult& result) const;
+
+  const Case& input_;
+  StudyStore& store_;
+  const RunArguments& arguments_;
+  fs::path folder_;
+  TerminalMonitor monitor_;
+};
+
+/// Meshes and pictures first, result.json last: it tells that all is there.
+void Run::write_all(RunResult& result, const EvaluationFields& fields) {
+  const Timer timer;
+  if (!fields.mesh.nodes.empty()) {
+    monitor_.progress({.stage = "output", .detail = "writing meshes"});
+    write_meshes(input_, fields, folder_);
+    if (arguments_.pictures) {
+      monitor_.progress({.stage = "output", .detail = "drawing pictures"});
+      for (std::string& warning : draw(input_, fields, folder_, monitor_)) {
+        result.warnings.push_back(std::move(warning));
+      }
+    }
+  }
+  result.output_seconds = timer.seconds();
+  result.total_seconds += result.output_seconds;
+  write_summary(input_, result, store_.all(), kProgramVersion, folder_);
+}
+
+/// The state of a run that ended early, for people and for --resume.
+int Run::keep(RunStatus status, const std::string& reason) {
+  RunResult result = result_so_far(input_, store_.all());
+  result.status = status;
+  result.message =
+      fmt::format("{}; {} finished evaluation{} kept, go on with --resume",
+                  reason, store_.size(), store_.size() == 1 ? " is" : "s are");
+  std::fprintf(stderr, "%s: %s\n", name_of(status), result.message.c_str());
+  write_summary(input_, result, store_.all(), kProgramVersion, folder_);
+  return exit_code_of(status);
+}
+
+void Run::explain(const RunResult& result) const {
+  const bool good = result.status == RunStatus::Converged;
+  if (!good) {
+    std::fprintf(stderr, "%s: %s\n", name_of(result.status),
+                 result.message.c_str());
+  }
+  if (arguments_.common.quiet) {
+    return;
+  }
+  std::fputs(result_text(input_, result).c_str(), stdout);
+  for (const std::string& warning : result.warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+  std::printf("  results in %s\n", folder_.string().c_str());
+}
+
+int Run::execute(const std::vector<std::string>& warnings) {
+  try {
+    EvaluationFields fields;
+    RunResult result = run_study(
+        input_, store_,
+        {.time_limit = arguments_.time_limit, .monitor = &monitor_}, &fields);
+    result.warnings.insert(result.warnings.begin(), warnings.begin(),
+                           warnings.end());
+    write_all(result, fields);
+    explain(result);
+    return exit_code_of(result.status);
+  } catch (const Interrupted&) {
+    return keep(RunStatus::Interrupted,
+                std::string("stopped by ") + name_of_signal(stop_signal()));
+  } catch (const IoError& error) {
+    // A full disk may well refuse this file too; the study is safe.
+    return keep(RunStatus::Error, error.what());
+  }
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+  if (arguments.threads > 0) {
+    omp_set_num_threads(arguments.threads);
+  }
+  const CaseReading reading =
+      read_case_aloud(arguments.case_path, arguments.common);
+  if (!reading.input) {
+    return kExitWrongInput;
+  }
+  const Case& input = *reading.input;
+  const fs::path folder = results_folder(input, arguments.common.out);
+  catch_stop_signals();
+  std::optional<StudyStore> store;
+  try {
+    make_folder(folder);
+    store.emplace(open_store(input, folder.string(), arguments.resume));
+    // An older result must not stand beside a study that is not its own.
+    fs::remove(folder / "result.json");
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  } catch (const fs::filesystem_error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+  return Run(input, *store, arguments, folder).execute(reading.warnings);
+}
+
+}  // namespace meniscus

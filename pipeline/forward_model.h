@@ -1,0 +1,82 @@
+/// The one forward model: design in, responses out. The command line, the
+/// optimizer and the tests call evaluate() and nothing beside it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/error.h"
+#include "core/monitor.h"
+#include "evolve/film_model.h"
+#include "fea/elasticity.h"
+#include "pipeline/case.h"
+
+namespace meniscus {
+
+struct TetFigures {
+  int nodes = 0;
+  int elements = 0;
+  double min_dihedral_deg = 0.0;  // of the straight-sided elements
+  double max_dihedral_deg = 0.0;
+};
+
+struct StageSeconds {
+  double film = 0.0;
+  double mesh = 0.0;
+  double fea = 0.0;
+};
+
+/// What one design came to. `responses` stand in the case's order and are
+/// empty when there is a failure; figures of the stages that ran are kept.
+struct Evaluation {
+  VectorX design;
+  VectorX responses;
+  std::optional<Failure> failure;
+  FilmReport film;
+  TetFigures tet;
+  ElasticReport fea;
+  StageSeconds seconds;
+};
+
+/// The fields behind an evaluation, for files and pictures.
+struct EvaluationFields {
+  SurfaceMesh film;          // at the film's own resolution
+  QuadraticSurface surface;  // as meshed
+  TetMesh mesh;              // ten-node
+  ElasticSolution solution;
+  EvaluatedCase inputs;
+};
+
+struct ForwardModelOptions {
+  double edge_factor = 1.0;  // x all edge lengths of the case's resolution
+  Monitor* monitor = nullptr;
+};
+
+class ForwardModel {
+ public:
+  /// Freezes films, tetrahedra and elasticity at the case's initial design.
+  /// When that design cannot be evaluated, failure() says why and the model
+  /// must not be used. Throws what its stages throw for wrong input.
+  explicit ForwardModel(const Case& input,
+                        const ForwardModelOptions& options = {});
+  ~ForwardModel();
+  ForwardModel(ForwardModel&&) noexcept;
+  ForwardModel& operator=(ForwardModel&&) noexcept;
+
+  const std::optional<Failure>& failure() const;
+
+  /// Figures of the freeze itself: its film report and seconds per stage.
+  const Evaluation& frozen() const;
+
+  /// A pure function of (model, design). `fields`, when given, receives the
+  /// meshes and the solution.
+  Evaluation evaluate(const VectorX& design,
+                      EvaluationFields* fields = nullptr) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace meniscus

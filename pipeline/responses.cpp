@@ -1,0 +1,50 @@
+#include "pipeline/responses.h"
+
+namespace meniscus {
+
+namespace {
+
+double value_of(const ResponseEntry& response, const Vec3& direction,
+                const ResponseInput& fields) {
+  const auto load_case = static_cast<std::size_t>(response.load_case);
+  const VectorX& u = fields.solution.displacements[load_case];
+  switch (response.kind) {
+    case ResponseKind::MeanDisplacement:
+      return mean_displacement(fields.mesh, response.surface, direction, u);
+    case ResponseKind::Mass:
+      return mesh_mass(fields.mesh, fields.numbers.materials);
+    case ResponseKind::Volume:
+      return mesh_volume(fields.mesh);
+    case ResponseKind::MaxVonMises:
+      return recover_stress(fields.mesh, fields.numbers.materials, u)
+          .max_von_mises;
+    case ResponseKind::StrainEnergy:
+      return 0.5 *
+             nodal_forces(fields.mesh, fields.numbers.load_cases[load_case])
+                 .dot(u);
+    case ResponseKind::FilmArea:
+      return fields.film.area;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+VectorX respond(const Case& input, const ResponseInput& fields) {
+  VectorX values(static_cast<Eigen::Index>(input.responses.size()));
+  for (std::size_t k = 0; k < input.responses.size(); ++k) {
+    values[static_cast<Eigen::Index>(k)] = value_of(
+        input.responses[k], fields.numbers.response_directions[k], fields);
+  }
+  return values;
+}
+
+int response_index(const Case& input, const std::string& name) {
+  int index = 0;
+  while (input.responses[static_cast<std::size_t>(index)].name != name) {
+    ++index;
+  }
+  return index;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,24 @@
+/// Responses: numbers that a case asks of an evaluated design.
+#pragma once
+
+#include "evolve/film_model.h"
+#include "pipeline/case.h"
+
+namespace meniscus {
+
+/// What a design came to, on loan to the responses.
+struct ResponseInput {
+  const EvaluatedCase& numbers;
+  const FilmReport& film;
+  const TetMesh& mesh;
+  const ElasticSolution& solution;
+};
+
+/// One value per response of the case, in its order and units. Not finite
+/// where the fields are not.
+VectorX respond(const Case& input, const ResponseInput& fields);
+
+/// Position of a response of the case; it must exist.
+int response_index(const Case& input, const std::string& name);
+
+}  // namespace meniscus

@@ -1,0 +1,363 @@
+#include "pipeline/results.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "fea/stress.h"
+#include "io/atomic_file.h"
+#include "io/stl.h"
+#include "io/vtk_files.h"
+#include "pipeline/stored_case.h"
+#include "pipeline/study_table.h"
+
+namespace meniscus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json film_json(const FilmReport& film) {
+  Json bodies = Json::object();
+  for (const BodyState& body : film.bodies) {
+    bodies[body.name] = {{"volume", body.volume}, {"pressure", body.pressure}};
+  }
+  return {{"vertices", film.vertices},
+          {"facets", film.facets},
+          {"energy", film.energy},
+          {"area", film.area},
+          {"residual", film.residual},
+          {"residual_bound", film.residual_bound},
+          {"min_eigenvalue", film.min_eigenvalue},
+          {"index", film.index},
+          {"smallest_neck", film.smallest_neck},
+          {"neck_position",
+           {film.neck_position.x(), film.neck_position.y(),
+            film.neck_position.z()}},
+          {"verdict", film.verdict},
+          {"bodies", bodies}};
+}
+
+Json tet_json(const TetFigures& tet) {
+  return {{"nodes", tet.nodes},
+          {"elements", tet.elements},
+          {"min_dihedral_deg", tet.min_dihedral_deg},
+          {"max_dihedral_deg", tet.max_dihedral_deg}};
+}
+
+Json fea_json(const ElasticReport& fea) {
+  return {{"element_order", 2},
+          {"dofs", fea.dofs},
+          {"solver", fea.solver},
+          {"iterations", fea.iterations},
+          {"residual", fea.residual},
+          {"strain_energy", fea.strain_energy},
+          {"reaction_imbalance", fea.reaction_imbalance}};
+}
+
+Json seconds_json(const StageSeconds& seconds) {
+  return {
+      {"evolve", seconds.film}, {"mesh", seconds.mesh}, {"fea", seconds.fea}};
+}
+
+/// A field of `components` values per node from what numbers them by node.
+Field node_field(const char* name, const std::string& unit, int components,
+                 const double* values, std::size_t count) {
+  return {.name = name,
+          .unit = unit,
+          .components = components,
+          .values = {values, values + count}};
+}
+
+MeshFields part_fields(const Case& input, const EvaluationFields& fields) {
+  const VectorX& u = fields.solution.displacements.front();
+  const StressField found =
+      recover_stress(fields.mesh, fields.inputs.materials, u);
+  MeshFields out;
+  out.points.push_back(node_field("displacement", input.units.length, 3,
+                                  u.data(),
+                                  static_cast<std::size_t>(u.size())));
+  Field stress{.name = "stress", .unit = input.units.pressure, .components = 6};
+  for (const auto& s : found.nodal) {
+    // xx yy zz xy yz zx: VTK's order of a symmetric tensor too.
+    stress.values.insert(stress.values.end(), s.begin(), s.end());
+  }
+  out.points.push_back(std::move(stress));
+  out.points.push_back(node_field("von_mises", input.units.pressure, 1,
+                                  found.von_mises.data(),
+                                  found.von_mises.size()));
+  out.notes = {{"title", input.title},
+               {"length_unit", input.units.length},
+               {"load_case", input.load_cases.front().name}};
+  return out;
+}
+
+Json units_json(const UnitSystem& units) {
+  return {{"system", units.name},
+          {"length", units.length},
+          {"force", units.force},
+          {"pressure", units.pressure},
+          {"mass", units.mass}};
+}
+
+Json value_map(const std::vector<std::string>& names, const VectorX& values) {
+  Json map = Json::object();
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    map[names[static_cast<std::size_t>(k)]] = values[k];
+  }
+  return map;
+}
+
+/// "12.3 mm" with `digits` significant digits.
+std::string quantity(double value, const std::string& unit, int digits = 6) {
+  const std::string number = fmt::format("{:.{}g}", value, digits);
+  return unit.empty() ? number : number + " " + unit;
+}
+
+std::string with_error(double value, const VectorX& errors, Eigen::Index k,
+                       const std::string& unit) {
+  std::string text = quantity(value, unit);
+  if (k < errors.size()) {
+    text += "  +- " + quantity(errors[k], unit, 2);
+  }
+  return text;
+}
+
+}  // namespace
+
+EvaluationRecord make_record(const Case& input, const Evaluation& evaluation) {
+  EvaluationRecord record;
+  record.input_names = design_names(input);
+  record.inputs = evaluation.design;
+  record.response_names = response_names(input);
+  record.responses = evaluation.responses;
+  record.failure = evaluation.failure;
+  record.figures = Json{{"film", film_json(evaluation.film)},
+                        {"tet", tet_json(evaluation.tet)},
+                        {"fea", fea_json(evaluation.fea)}}
+                       .dump();
+  record.seconds = {{"evolve", evaluation.seconds.film},
+                    {"mesh", evaluation.seconds.mesh},
+                    {"fea", evaluation.seconds.fea}};
+  return record;
+}
+
+Evaluation to_evaluation(const EvaluationRecord& record) {
+  Evaluation evaluation;
+  evaluation.design = record.inputs;
+  evaluation.responses = record.responses;
+  evaluation.failure = record.failure;
+  return evaluation;
+}
+
+std::string describe(const Case& input, const EvaluationRecord& record) {
+  std::string text =
+      fmt::format("evaluation {} ({}):", record.number, record.phase);
+  for (Eigen::Index k = 0; k < record.inputs.size(); ++k) {
+    text += fmt::format(" {} = {}", record.input_names[k],
+                        quantity(record.inputs[k], ""));
+  }
+  if (record.failure) {
+    return text + "; cannot evaluate here: " + record.failure->message;
+  }
+  for (Eigen::Index k = 0; k < record.responses.size(); ++k) {
+    text +=
+        fmt::format("{} {} = {}", k == 0 ? ";" : ",", record.response_names[k],
+                    quantity(record.responses[k],
+                             response_unit(input, static_cast<int>(k))));
+  }
+  if (record.mismatch) {
+    text += fmt::format("; mismatch {:.3g}", *record.mismatch);
+  }
+  return text;
+}
+
+nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
+                                   const std::string& program_version) {
+  Json json;
+  json["schema_version"] = kResultSchemaVersion;
+  json["case"] = input.title;
+  json["case_hash"] = input.hash;
+  json["program_version"] = program_version;
+  json["units"] = units_json(input.units);
+  json["status"] = name_of(result.status);
+  json["message"] = result.message;
+  Json parameters = Json::object();
+  const Evaluation* best = result.best ? &*result.best : nullptr;
+  const VectorX design = best != nullptr ? best->design : initial_design(input);
+  parameters.update(value_map(design_names(input), design));
+  for (const auto& [name, value] : parameter_values(input, design)) {
+    parameters[name] = value;
+  }
+  json["parameters"] = parameters;
+  json["objective"] = result.objective;
+  json["constraints"] = Json::object();
+  for (const Constraint& c : result.constraints) {
+    json["constraints"][c.name] = {
+        {"value", c.value}, {"bound", c.bound}, {"satisfied", c.satisfied}};
+  }
+  const std::vector<std::string> names = response_names(input);
+  json["responses"] =
+      value_map(names, best != nullptr ? best->responses : VectorX());
+  json["response_errors"] = value_map(names, result.response_errors);
+  json["parameter_errors"] =
+      value_map(design_names(input), result.design_errors);
+  if (result.start) {
+    json["start"] = {
+        {"parameters", value_map(design_names(input), result.start->design)},
+        {"responses", value_map(names, result.start->responses)}};
+  }
+  json["evaluations"] = result.evaluations;
+  json["failed_evaluations"] = result.failed_evaluations;
+  json["gradient_evaluations"] = 0;
+  if (best != nullptr) {
+    json["film"] = film_json(best->film);
+    json["tet"] = tet_json(best->tet);
+    json["fea"] = fea_json(best->fea);
+  }
+  json["seconds"] = seconds_json(result.seconds);
+  json["seconds"]["output"] = result.output_seconds;
+  json["seconds"]["total"] = result.total_seconds;
+  json["warnings"] = result.warnings;
+  return json;
+}
+
+std::string result_text(const Case& input, const RunResult& result) {
+  std::string text =
+      fmt::format("{}: {}\n", name_of(result.status), result.message);
+  if (!result.best || result.best->responses.size() == 0) {
+    return text;
+  }
+  const Evaluation& best = *result.best;
+  const std::vector<std::string> designs = design_names(input);
+  for (Eigen::Index k = 0; k < best.design.size(); ++k) {
+    text +=
+        fmt::format("  {:<20} {}\n", designs[k],
+                    with_error(best.design[k], result.design_errors, k, ""));
+  }
+  const std::vector<std::string> names = response_names(input);
+  for (Eigen::Index k = 0; k < best.responses.size(); ++k) {
+    const std::string unit = response_unit(input, static_cast<int>(k));
+    text += fmt::format(
+        "  {:<20} {}", names[k],
+        with_error(best.responses[k], result.response_errors, k, unit));
+    if (result.start && result.start->responses.size() > k) {
+      text += "   (at the start " + quantity(result.start->responses[k], unit) +
+              ")";
+    }
+    text += "\n";
+  }
+  for (const Constraint& c : result.constraints) {
+    text += fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n", c.name,
+                        c.value, c.bound);
+  }
+  text += fmt::format(
+      "  film: {}, {} facets, residual {:.1e} (bound {:.1e}), smallest "
+      "eigenvalue {:.3g}\n"
+      "  elements: {} ten-node tetrahedra, {} unknowns, dihedral angles {:.1f} "
+      "to {:.1f} degrees\n"
+      "  {} evaluations in {:.1f} s (film {:.1f}, mesh {:.1f}, elasticity "
+      "{:.1f})\n",
+      best.film.verdict, best.film.facets, best.film.residual,
+      best.film.residual_bound, best.film.min_eigenvalue, best.tet.elements,
+      best.fea.dofs, best.tet.min_dihedral_deg, best.tet.max_dihedral_deg,
+      result.evaluations, result.total_seconds, result.seconds.film,
+      result.seconds.mesh, result.seconds.fea);
+  return text;
+}
+
+RunResult result_so_far(const Case& input,
+                        const std::vector<EvaluationRecord>& records) {
+  RunResult result;
+  result.evaluations = static_cast<int>(records.size());
+  for (const EvaluationRecord& record : records) {
+    result.failed_evaluations += record.failure ? 1 : 0;
+  }
+  if (result.failed_evaluations < result.evaluations) {
+    result.start = to_evaluation(records.front());
+    result.best = to_evaluation(best_record(input, records));
+  }
+  return result;
+}
+
+std::string film_text(const Case& input, const FilmReport& film) {
+  std::string text = fmt::format(
+      "film: {}\n  {} vertices, {} facets, area {:.8g} {}, energy {:.8g} {}\n"
+      "  residual {:.2e} {} (bound {:.2e}), smallest eigenvalue {:.4g}, index "
+      "{}\n  smallest neck {:.4g} {} at ({:.4g}, {:.4g}, {:.4g})\n",
+      film.verdict, film.vertices, film.facets, film.area,
+      input.units.unit_of(Dimension::Area), film.energy,
+      input.units.unit_of(Dimension::Energy), film.residual, input.units.force,
+      film.residual_bound, film.min_eigenvalue, film.index, film.smallest_neck,
+      input.units.length, film.neck_position.x(), film.neck_position.y(),
+      film.neck_position.z());
+  for (const BodyState& body : film.bodies) {
+    text += fmt::format("  body {}: volume {:.8g} {}, pressure {:.6g} {}\n",
+                        body.name, body.volume,
+                        input.units.unit_of(Dimension::Volume), body.pressure,
+                        input.units.pressure);
+  }
+  return text;
+}
+
+void write_film(const Case& input, const SurfaceMesh& film,
+                const std::filesystem::path& folder) {
+  MeshFields fields;
+  fields.notes = {{"title", input.title}, {"length_unit", input.units.length}};
+  write_vtp(folder / "film.vtp", film, fields);
+}
+
+void write_part(const std::filesystem::path& file, const Case& input,
+                const EvaluationFields& fields) {
+  write_vtu(file, fields.mesh, part_fields(input, fields));
+}
+
+std::vector<std::string> write_meshes(const Case& input,
+                                      const EvaluationFields& fields,
+                                      const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  const auto path = [&](const std::string& name) {
+    names.push_back(name);
+    return folder / name;
+  };
+  const MeshFields part = part_fields(input, fields);
+  names.emplace_back("film.vtp");
+  write_film(input, fields.film, folder);
+  write_vtu(path("part.vtu"), fields.mesh, part);
+  write_boundary_vtp(path("part_surface.vtp"), fields.mesh, part);
+  const auto write_part_stl = [&](const SurfaceMesh& mesh, double edge) {
+    write_stl(path(stl_name(edge)), mesh,
+              {.name = input.title, .unit = input.units.length});
+  };
+  if (input.resolution.export_edges.empty()) {
+    write_part_stl(fields.film, input.resolution.film);
+  }
+  for (const double edge : input.resolution.export_edges) {
+    write_part_stl(settle_again(fields.inputs.film_system, edge), edge);
+  }
+  return names;
+}
+
+SurfaceMesh settle_again(const FilmSystem& system, double edge) {
+  const FilmModel model =
+      FilmModel::freeze(system, {.edge = edge, .refinements = 0});
+  if (model.reference().failure) {
+    throw MeshError(fmt::format("no film at edge {:g}: {}", edge,
+                                model.reference().failure->message));
+  }
+  return model.fine_mesh(model.reference().points);
+}
+
+std::string stl_name(double edge) { return fmt::format("part_{:g}.stl", edge); }
+
+void write_summary(const Case& input, const RunResult& result,
+                   const std::vector<EvaluationRecord>& records,
+                   const std::string& program_version,
+                   const std::filesystem::path& folder) {
+  write_file(folder / "history.csv", history_csv(records));
+  write_file(folder / "result.json",
+             result_json(input, result, program_version).dump(2) + "\n");
+}
+
+}  // namespace meniscus

@@ -1,0 +1,51 @@
+#include "pipeline/stored_case.h"
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/case_reader.h"
+
+namespace meniscus {
+
+std::string stored_case(const Case& input) {
+  return nlohmann::ordered_json{{"path", input.path},
+                                {"overrides", input.overrides},
+                                {"text", input.text}}
+      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+Case restore_case(const StudyMeta& meta) {
+  const auto stored = nlohmann::json::parse(meta.case_text, nullptr, false);
+  if (!stored.is_object() || !stored.contains("text")) {
+    throw IoError("the study holds no case that can be read; run it again");
+  }
+  CaseReading reading =
+      read_case_text(stored["text"], stored["path"],
+                     stored["overrides"].get<std::vector<std::string>>());
+  if (!reading.input) {
+    throw IoError("the study's case cannot be read by this version: " +
+                  reading.problems.front());
+  }
+  return *std::move(reading.input);
+}
+
+const EvaluationRecord& best_record(
+    const Case& input, const std::vector<EvaluationRecord>& records) {
+  const EvaluationRecord* best = nullptr;
+  for (const EvaluationRecord& record : records) {
+    if (record.failure) {
+      continue;
+    }
+    const bool better =
+        best == nullptr ||
+        (input.study.kind == StudyKind::Match && record.mismatch &&
+         (!best->mismatch || *record.mismatch < *best->mismatch));
+    best = better ? &record : best;
+  }
+  if (best == nullptr) {
+    throw InvalidInput(
+        "the study has no design that could be evaluated; nothing to export");
+  }
+  return *best;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,24 @@
+/// A case as the study database keeps it: path, text and overrides, so that
+/// the part can be made again from the results folder alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/case.h"
+#include "pipeline/study_store.h"
+
+namespace meniscus {
+
+/// For StudyMeta::case_text (JSON).
+std::string stored_case(const Case& input);
+
+/// The case back. Throws IoError when the study holds none that can be read.
+Case restore_case(const StudyMeta& meta);
+
+/// The incumbent of a study: the evaluated design with the least mismatch, of
+/// an analysis the first. Throws InvalidInput when there is none.
+const EvaluationRecord& best_record(
+    const Case& input, const std::vector<EvaluationRecord>& records);
+
+}  // namespace meniscus

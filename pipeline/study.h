@@ -1,0 +1,64 @@
+/// Runs a case's study from the frozen model to the answer with its error.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/monitor.h"
+#include "pipeline/case.h"
+#include "pipeline/forward_model.h"
+#include "pipeline/study_store.h"
+
+namespace meniscus {
+
+enum class RunStatus {
+  Converged,   // exit 0
+  Infeasible,  // exit 3: no acceptable design exists or was found
+  Stopped,     // exit 3: a limit was reached; best point kept
+  Failed,      // exit 3: the initial design cannot be evaluated
+  Error,       // exit 4
+  Interrupted  // exit 130
+};
+const char* name_of(RunStatus status);
+
+/// One target of the study: `value` is its relative mismatch.
+struct Constraint {
+  std::string name;
+  double value = 0.0;
+  double bound = 0.0;
+  bool satisfied = false;
+};
+
+struct RunResult {
+  RunStatus status = RunStatus::Failed;
+  std::string message;              // why it ended, in words, with figures
+  std::optional<Evaluation> start;  // the initial design
+  std::optional<Evaluation> best;
+  double objective = 0.0;  // of a match: sum of squared residuals / 2
+  std::vector<Constraint> constraints;
+  VectorX response_errors;  // estimated discretisation errors; may be empty
+  VectorX design_errors;    // of the matched variables; may be empty
+  int evaluations = 0;      // finite-difference ones included
+  int failed_evaluations = 0;
+  StageSeconds seconds;  // summed over freeze, evaluations, error estimate
+  double output_seconds = 0.0;
+  double total_seconds = 0.0;
+  std::vector<std::string> warnings;
+};
+
+struct StudyOptions {
+  double time_limit = 0.0;      // [s], 0: none
+  bool estimate_errors = true;  // one more, coarser model
+  Monitor* monitor = nullptr;
+};
+
+/// Every evaluation is in `store` before the next begins; those that the store
+/// holds already (--resume) are read and not computed. `fields`, when given,
+/// receives the meshes of the best design. Interrupted passes through, after
+/// the store has what was finished.
+RunResult run_study(const Case& input, StudyStore& store,
+                    const StudyOptions& options,
+                    EvaluationFields* fields = nullptr);
+
+}  // namespace meniscus

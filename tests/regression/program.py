@@ -1,0 +1,70 @@
+"""Runs the program as a user would, for the tests in this folder."""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else None
+CASE = ROOT / "cases" / "two_arm" / "case.toml"
+# About a thousand elements: the physics of the case in a second or two.
+COARSE = ["--set", "resolution.fea=20", "--set", "resolution.film=10"]
+
+
+class ProgramTest(unittest.TestCase):
+    """Each test gets an empty folder."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="meniscus test ü "))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def call(self, *arguments, env=None, timeout=120, **options):
+        return subprocess.run(
+            [str(PROGRAM), *map(str, arguments)], capture_output=True,
+            text=True, timeout=timeout, cwd=self.folder,
+            env={**os.environ, **(env or {})}, **options)
+
+    def start(self, *arguments, **options):
+        return subprocess.Popen(
+            [str(PROGRAM), *map(str, arguments)], stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True, cwd=self.folder, **options)
+
+    def write_case(self, *replacements, name="case.toml"):
+        """The two-arm case with text replaced; each pattern must be there."""
+        text = CASE.read_text()
+        for pattern, new in replacements:
+            text, count = re.subn(pattern, new, text, count=1,
+                                  flags=re.MULTILINE)
+            self.assertEqual(count, 1, f"no {pattern!r} in {CASE}")
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def line_of(self, path, pattern):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if re.search(pattern, line):
+                return number
+        self.fail(f"no {pattern!r} in {path}")
+        return 0
+
+    def expect(self, done, code, *patterns):
+        said = f"exit {done.returncode}\n{done.stdout}\n{done.stderr}"
+        self.assertEqual(done.returncode, code, said)
+        for pattern in patterns:
+            self.assertRegex(done.stderr + done.stdout, pattern)
+        return done
+
+    def result(self, folder):
+        return json.loads((folder / "result.json").read_text())
+
+    def assert_no_half_files(self, folder):
+        """Nothing temporary left; what is there can be read to its end."""
+        for path in folder.rglob("*"):
+            self.assertNotRegex(path.name, r"(\.tmp|\.part|~)$|^\.(?!lock)")
+            if path.suffix == ".json":
+                json.loads(path.read_text())

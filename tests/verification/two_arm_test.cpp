@@ -1,0 +1,136 @@
+/// The project's main job, as its users would check it: cases/two_arm at sizes
+/// that a test can afford.
+#include <cmath>
+#include <filesystem>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "pipeline/case_reader.h"
+#include "pipeline/forward_model.h"
+#include "pipeline/study.h"
+#include "tests/support/temp_folder.h"
+
+namespace meniscus {
+namespace {
+
+constexpr const char* kCase = MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml";
+constexpr double kSymmetry = 0.5;  // mm; what the issue of the case allows
+
+Case two_arm(std::vector<std::string> overrides) {
+  for (const char* edge : {"resolution.fea=16", "resolution.film=8"}) {
+    overrides.emplace_back(edge);
+  }
+  return read_case(kCase, overrides).input;
+}
+
+RunResult run(const std::vector<std::string>& overrides) {
+  const TempFolder folder;
+  const Case input = two_arm(overrides);
+  StudyStore store =
+      StudyStore::start(folder.path().string(), {.case_hash = input.hash});
+  return run_study(input, store, {.estimate_errors = false});
+}
+
+VectorX at(double support_x) { return VectorX::Constant(1, support_x); }
+
+TEST(TwoArm, MatchesFromAMismatchOfAQuarterTowardsTheHeavierLoad) {
+  const RunResult result = run({});
+  ASSERT_EQ(result.status, RunStatus::Converged) << result.message;
+  const VectorX& before = result.start->responses;
+  EXPECT_GT(std::abs(before[0] - before[1]),
+            0.25 * 0.5 * (std::abs(before[0]) + std::abs(before[1])));
+  const VectorX& after = result.best->responses;
+  EXPECT_LE(std::abs(after[0] - after[1]),
+            1e-3 * 0.5 * (std::abs(after[0]) + std::abs(after[1])));
+  EXPECT_GT(result.best->design[0], 0.0);  // the right arm carries more
+  EXPECT_LT(result.best->design[0], 40.0);
+  EXPECT_LE(result.evaluations, 15);
+  EXPECT_EQ(result.best->film.index, 0);
+  EXPECT_LE(result.best->film.residual, result.best->film.residual_bound);
+}
+
+TEST(TwoArm, BobyqaReachesTheAnswerOfCeres) {
+  const RunResult ceres = run({});
+  const RunResult bobyqa = run({"study.method=bobyqa"});
+  ASSERT_EQ(bobyqa.status, RunStatus::Converged) << bobyqa.message;
+  EXPECT_NEAR(bobyqa.best->design[0], ceres.best->design[0], kSymmetry);
+}
+
+TEST(TwoArm, SwappedLoadsMirrorTheAnswer) {
+  const RunResult plain = run({"study.tolerance=1e-5"});
+  const RunResult swapped =
+      run({"study.tolerance=1e-5", "load_left=60000", "load_right=40000"});
+  ASSERT_EQ(swapped.status, RunStatus::Converged) << swapped.message;
+  EXPECT_NEAR(swapped.best->design[0], -plain.best->design[0], kSymmetry);
+}
+
+TEST(TwoArm, EqualLoadsLeaveTheSupportInTheMiddle) {
+  const RunResult equal =
+      run({"study.tolerance=1e-5", "load_left=50000", "load_right=50000"});
+  ASSERT_EQ(equal.status, RunStatus::Converged) << equal.message;
+  EXPECT_NEAR(equal.best->design[0], 0.0, kSymmetry);
+}
+
+TEST(TwoArm, TheDesignMapIsSmoothAndWithoutHistory) {
+  const ForwardModel model(two_arm({}));
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  // 5 mm around the answer at this size; the objective is the residual's
+  // square, whose fourth-order fit must leave rounding only.
+  const double centre = 12.0;
+  const int samples = 11;
+  Eigen::MatrixXd powers(samples, 5);
+  VectorX objective(samples);
+  for (int k = 0; k < samples; ++k) {
+    const double s = 2.0 * k / (samples - 1) - 1.0;
+    const Evaluation e = model.evaluate(at(centre + 2.5 * s));
+    ASSERT_FALSE(e.failure) << e.failure->message;
+    const double difference = e.responses[0] - e.responses[1];
+    objective[k] = difference * difference;
+    for (int power = 0; power < 5; ++power) {
+      powers(k, power) = std::pow(s, power);
+    }
+  }
+  const VectorX fit =
+      powers * powers.colPivHouseholderQr().solve(objective).eval();
+  constexpr double kDeparture = 1e-7;
+  EXPECT_LT((fit - objective).cwiseAbs().maxCoeff(),
+            kDeparture * objective.cwiseAbs().maxCoeff());
+}
+
+TEST(TwoArm, EvaluatingABAGivesTheSameBits) {
+  const ForwardModel model(two_arm({}));
+  const VectorX first = model.evaluate(at(10.0)).responses;
+  const VectorX other = model.evaluate(at(-20.0)).responses;
+  const VectorX again = model.evaluate(at(10.0)).responses;
+  ASSERT_EQ(first.size(), 2);
+  EXPECT_TRUE(first == again);
+  EXPECT_FALSE(first == other);
+}
+
+TEST(TwoArm, TheFilmIsStableOverTheBounds) {
+  const ForwardModel model(two_arm({}));
+  for (const double x : {-40.0, -20.0, 0.0, 20.0, 40.0}) {
+    const Evaluation e = model.evaluate(at(x));
+    ASSERT_FALSE(e.failure) << x << ": " << e.failure->message;
+    EXPECT_EQ(e.film.index, 0) << x;
+    EXPECT_GT(e.film.min_eigenvalue, 0.0) << x;
+    EXPECT_LE(e.film.residual, e.film.residual_bound) << x;
+    const BodyState& body = e.film.bodies.front();
+    EXPECT_NEAR(body.volume, body.target_volume, 1e-10 * body.target_volume);
+    EXPECT_LE(e.fea.reaction_imbalance, 1e-9) << x;
+  }
+}
+
+TEST(TwoArm, TooLittleVolumeFarOutCannotBeEvaluated) {
+  const ForwardModel model(two_arm({"bodies.part.volume=1.55e6"}));
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  const Evaluation e = model.evaluate(at(40.0));
+  ASSERT_TRUE(e.failure);
+  EXPECT_TRUE(e.failure->kind == FailureKind::FilmPinched ||
+              e.failure->kind == FailureKind::FilmUnstable)
+      << e.failure->message;
+}
+
+}  // namespace
+}  // namespace meniscus
