@@ -901,9 +901,7 @@ CaseReading read_case_text(const std::string& text, const std::string& path,
       apply_override(root, override_text);
     }
     Reader(problems, result).read(root);
-    if (problems.empty()) {
-      check_case(result, problems);
-    }
+    check_case(result, problems);
     std::ostringstream canonical;
     canonical << toml::json_formatter(root);  // keys sorted, no comments
     result.hash = content_hash(canonical.str());

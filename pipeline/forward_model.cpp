@@ -97,10 +97,16 @@ void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
   monitor.progress({.stage = "fea",
                     .detail = fmt::format("{} ten-node tetrahedra",
                                           base_mesh.element_count())});
-  elasticity.emplace(base_mesh, inputs.materials, inputs.load_cases,
-                     ElasticOptions{.monitor = &monitor});
-  frozen.fea = elasticity->base_solution().report;
-  frozen.failure = elasticity->base_solution().failure;
+  try {
+    elasticity.emplace(base_mesh, inputs.materials, inputs.load_cases,
+                       ElasticOptions{.monitor = &monitor});
+    frozen.fea = elasticity->base_solution().report;
+    frozen.failure = elasticity->base_solution().failure;
+  } catch (const SolverError& error) {
+    frozen.failure = Failure{FailureKind::SolverFailed, error.what()};
+  } catch (const MeshError& error) {
+    frozen.failure = Failure{FailureKind::ElementsInverted, error.what()};
+  }
   frozen.seconds.fea = fea_timer.seconds();
 }
 
@@ -164,8 +170,7 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
   }
 
   Timer fea_timer;
-  ElasticSolution solution =
-      impl_->elasticity->solve(mesh, inputs.load_cases);
+  ElasticSolution solution = impl_->elasticity->solve(mesh, inputs.load_cases);
   result.fea = solution.report;
   result.seconds.fea = fea_timer.seconds();
   if (solution.failure) {

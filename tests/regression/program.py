@@ -10,7 +10,8 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else None
+PROGRAM = (pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 and
+           "/" in sys.argv[1] else None)
 CASE = ROOT / "cases" / "two_arm" / "case.toml"
 # About a thousand elements: the physics of the case in a second or two.
 COARSE = ["--set", "resolution.fea=20", "--set", "resolution.film=10"]
