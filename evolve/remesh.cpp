@@ -13,6 +13,8 @@ namespace {
 
 SurfaceEditor editor_of(const FilmComplex& complex) {
   EditLimits limits;
+  limits.held.reserve(complex.vertices.size());
+  limits.frozen.reserve(complex.mesh.facet_label.size());
   for (const ComplexVertex& v : complex.vertices) {
     limits.held.push_back(v.kind == VertexKind::Free ? 0 : 1);
   }
