@@ -13,13 +13,14 @@ namespace {
 
 SurfaceEditor editor_of(const FilmComplex& complex) {
   EditLimits limits;
-  limits.held.reserve(complex.vertices.size());
-  limits.frozen.reserve(complex.mesh.facet_label.size());
-  for (const ComplexVertex& v : complex.vertices) {
-    limits.held.push_back(v.kind == VertexKind::Free ? 0 : 1);
+  limits.held.resize(complex.vertices.size());
+  for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+    limits.held[v] = complex.vertices[v].kind == VertexKind::Free ? 0 : 1;
   }
-  for (const int label : complex.mesh.facet_label) {
-    limits.frozen.push_back(complex.surfaces[label].liquid ? 0 : 1);
+  limits.frozen.resize(complex.mesh.facets.size());
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    limits.frozen[f] =
+        complex.surfaces[complex.mesh.facet_label[f]].liquid ? 0 : 1;
   }
   limits.rim_next = rim_neighbours(complex);
   return {complex.mesh, std::move(limits)};
