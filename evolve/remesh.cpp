@@ -30,6 +30,7 @@ void take_back(const SurfaceEditor& editor, FilmComplex& complex) {
   std::vector<int> origin;
   complex.mesh = editor.finish(&origin);
   std::vector<ComplexVertex> vertices;
+  vertices.reserve(origin.size());
   for (const int old : origin) {
     vertices.push_back(old < 0 ? ComplexVertex{} : complex.vertices[old]);
   }
