@@ -298,9 +298,9 @@ std::vector<double> sample_parameters(const CurveShape& shape, double edge,
     throw InvalidInput(fmt::format("edge length is {}, must be above 0", edge));
   }
   const int parts = part_count(shape);
-  std::vector<double> lengths;
+  std::vector<double> lengths(parts);
   for (int part = 0; part < parts; ++part) {
-    lengths.push_back(part_length(shape, part));
+    lengths[part] = part_length(shape, part);
   }
   const std::vector<int> pieces = pieces_per_part(lengths, edge, least);
   if (const auto* e = std::get_if<Ellipse>(&shape)) {

@@ -12,6 +12,8 @@ namespace meniscus {
 
 /// All closed shapes run counter-clockwise seen from the tip of `normal`
 /// (which need not be of unit length, but not zero). Lengths in case units.
+/// A circle's t = 0 lies where its frame says: normal +z has it at +x, and the
+/// frame turns smoothly with the normal everywhere but at -(2, 3, 6)/7.
 struct Circle {
   Vec3 center = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
@@ -32,7 +34,7 @@ struct Rectangle {
   Vec3 axis = Vec3::UnitX();  // direction of `width`
   double width = 1.0;
   double height = 1.0;
-  double corner_radius = 0.0;
+  double corner_radius = 0.0;  // 0, or above and below half the shorter side
 };
 
 /// Closed polygon through `points` in order; may be non-planar.

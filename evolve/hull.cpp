@@ -27,7 +27,10 @@ class Qhull {
   Qhull& operator=(const Qhull&) = delete;
   ~Qhull() {
     state_.NOerrexit = True;
-    qh_freeqhull(&state_, qh_ALL);
+    qh_freeqhull(&state_, !qh_ALL);
+    int kept = 0;  // blocks and bytes that qhull still holds
+    int bytes = 0;
+    qh_memfreeshort(&state_, &kept, &bytes);
     if (messages_ != nullptr) {
       std::fclose(messages_);
     }

@@ -63,10 +63,16 @@ Mat3 turn_between(const Vec3& from, const Vec3& to) {
   return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
 }
 
-}  // namespace
+// The order in which to walk `high` beside `low`, and the share of the length
+// at each of its points.
+struct Walk {
+  std::vector<int> order;
+  std::vector<double> along;
+};
 
-std::vector<Triangle> loft_band(const Points& low, const Points& high) {
-  const int n = static_cast<int>(low.size());
+// Of all starts on `high` the one with the least sum of squared distances.
+Walk matched_walk(const Points& low, const std::vector<double>& low_along,
+                  const Points& high) {
   const int m = static_cast<int>(high.size());
   const Vec3 low_centre = centre_of(low);
   const Vec3 high_centre = centre_of(high);
@@ -75,50 +81,56 @@ std::vector<Triangle> loft_band(const Points& low, const Points& high) {
   const bool forward = same_way(low_area, high_area, high_centre - low_centre);
   const Mat3 turn =
       turn_between(low_area, forward ? high_area : Vec3(-high_area));
-  Points turned;
-  for (const Vec3& p : low) {
-    turned.push_back(turn * (p - low_centre) + high_centre);
-  }
-  const std::vector<double> low_along = shares(low);
-  // Every start on `high`, the least sum of squared distances wins.
-  double best = std::numeric_limits<double>::infinity();
-  std::vector<int> order;
-  std::vector<double> order_along;
+  Walk best;
+  double least = std::numeric_limits<double>::infinity();
   for (int start = 0; start < m; ++start) {
-    std::vector<int> ids;
+    Walk walk;
     Points path;
     for (int j = 0; j < m; ++j) {
-      ids.push_back(((forward ? start + j : start - j) % m + m) % m);
-      path.push_back(high[ids.back()]);
+      walk.order.push_back(((forward ? start + j : start - j) % m + m) % m);
+      path.push_back(high[walk.order.back()]);
     }
-    const std::vector<double> along = shares(path);
+    walk.along = shares(path);
     std::size_t hint = 0;
     double sum = 0.0;
-    for (int i = 0; i < n; ++i) {
-      sum += (point_at_share(path, along, low_along[i], hint) - turned[i])
+    for (std::size_t i = 0; i < low.size(); ++i) {
+      const Vec3 turned = turn * (low[i] - low_centre) + high_centre;
+      sum += (point_at_share(path, walk.along, low_along[i], hint) - turned)
                  .squaredNorm();
     }
-    if (order.empty() || sum < best * (1.0 - 1e-9)) {
-      best = sum;
-      order = ids;
-      order_along = along;
+    if (best.order.empty() || sum < least * (1.0 - 1e-9)) {
+      least = sum;
+      best = std::move(walk);
     }
   }
+  return best;
+}
+
+}  // namespace
+
+std::vector<Triangle> loft_band(const Points& low, const Points& high) {
   std::vector<Triangle> facets;
+  if (low.empty() || high.empty()) {
+    return facets;
+  }
+  const int n = static_cast<int>(low.size());
+  const int m = static_cast<int>(high.size());
+  const std::vector<double> along = shares(low);
+  const Walk walk = matched_walk(low, along, high);
   int i = 0;
   int j = 0;
   while (i < n || j < m) {
-    const int a = i % n;
-    const int b = n + order[j % m];
+    const int a = i < n ? i : 0;
+    const int b = n + walk.order[j < m ? j : 0];
     // Advance on the side whose next piece has its middle first.
     const bool on_low =
-        j == m || (i < n && low_along[i] + low_along[i + 1] <=
-                                order_along[j] + order_along[j + 1] + 1e-12);
+        j == m || (i < n && along[i] + along[i + 1] <=
+                                walk.along[j] + walk.along[j + 1] + 1e-12);
     if (on_low) {
-      facets.push_back({a, (i + 1) % n, b});
+      facets.push_back({a, i + 1 < n ? i + 1 : 0, b});
       ++i;
     } else {
-      facets.push_back({a, n + order[(j + 1) % m], b});
+      facets.push_back({a, n + walk.order[j + 1 < m ? j + 1 : 0], b});
       ++j;
     }
   }

@@ -13,11 +13,14 @@ namespace {
 
 SurfaceEditor editor_of(const FilmComplex& complex) {
   EditLimits limits;
-  for (const ComplexVertex& v : complex.vertices) {
-    limits.held.push_back(v.kind == VertexKind::Free ? 0 : 1);
+  limits.held.resize(complex.vertices.size());
+  for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+    limits.held[v] = complex.vertices[v].kind == VertexKind::Free ? 0 : 1;
   }
-  for (const int label : complex.mesh.facet_label) {
-    limits.frozen.push_back(complex.surfaces[label].liquid ? 0 : 1);
+  limits.frozen.resize(complex.mesh.facets.size());
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    limits.frozen[f] =
+        complex.surfaces[complex.mesh.facet_label[f]].liquid ? 0 : 1;
   }
   limits.rim_next = rim_neighbours(complex);
   return {complex.mesh, std::move(limits)};
@@ -27,6 +30,7 @@ void take_back(const SurfaceEditor& editor, FilmComplex& complex) {
   std::vector<int> origin;
   complex.mesh = editor.finish(&origin);
   std::vector<ComplexVertex> vertices;
+  vertices.reserve(origin.size());
   for (const int old : origin) {
     vertices.push_back(old < 0 ? ComplexVertex{} : complex.vertices[old]);
   }
