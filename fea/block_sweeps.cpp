@@ -43,8 +43,11 @@ void sweep_forward(const SweepMatrix& matrix, const float* r, float* x,
                    float* upper) {
   for (int i = 0; i < matrix.pattern->nodes; ++i) {
     relax_row<K, false>(matrix, i, r, x, upper);
-    // Rows below scatter into upper_i after this row has used the old sum.
-    std::fill_n(upper + 3L * K * i, 3 * K, 0.0F);
+    // This row has used the old sum; rows below now add the new one.
+    float* sum = upper + 3L * K * i;
+    for (int d = 0; d < 3 * K; ++d) {
+      sum[d] = -sum[d];
+    }
   }
 }
 
