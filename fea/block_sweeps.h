@@ -16,7 +16,8 @@ struct SweepMatrix {
 };
 
 /// x_i = D_i^-1 (r_i - (L x)_i - (U x)_i), i ascending, for K interleaved
-/// vectors. `upper`: U x on entry and on return.
+/// vectors. `upper`: U x on entry; U times the change of x on return, which is
+/// minus the residual.
 template <int K>
 void sweep_forward(const SweepMatrix& matrix, const float* r, float* x,
                    float* upper);

@@ -51,9 +51,10 @@ struct MultigridInput {
   const std::vector<char>* fixed;            // 3 per fine node
 };
 
-/// One V-cycle over two levels: Gauss-Seidel sweeps by 3 x 3 blocks in single
-/// precision on the ten-node mesh, a Cholesky factor of the four-node one
-/// (p-multigrid; on straight elements the coarse matrix is the Galerkin one).
+/// One V-cycle over two levels: symmetric Gauss-Seidel by 3 x 3 blocks in
+/// single precision on the ten-node mesh, a Cholesky factor of the four-node
+/// one (p-multigrid; on straight elements the coarse matrix is the Galerkin
+/// one).
 std::unique_ptr<Preconditioner> make_multigrid(const MultigridInput& input);
 
 }  // namespace meniscus
