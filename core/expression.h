@@ -1,0 +1,79 @@
+/// Arithmetic expressions over named values, as they stand in case files.
+/// Evaluated over numbers or over duals, so first and second derivatives are
+/// exact (docs/decisions/0001).
+///
+///   + - * / ^ (right associative)   comparisons < <= > >= == !=
+///   sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs
+///   min max pow sqr if(condition, then, else)
+///   pi  e  deg (= pi / 180; angles are radians)
+///
+/// abs, min, max, if and comparisons are not smooth where they switch.
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/dual.h"
+
+namespace meniscus {
+
+/// What is wrong with an expression: message and column (from 1) in its text.
+class ExpressionError : public std::runtime_error {
+ public:
+  ExpressionError(const std::string& message, int column)
+      : std::runtime_error(message), column_(column) {}
+  int column() const { return column_; }
+
+ private:
+  int column_;
+};
+
+class Expression {
+ public:
+  /// The number 0.
+  Expression() : Expression(0.0) {}
+  explicit Expression(double constant);
+
+  /// `names`: the values that may appear, by position. Throws ExpressionError:
+  /// syntax, unknown name (with the nearest known one), more than 200 levels
+  /// of nesting, longer than 10,000 characters.
+  static Expression parse(std::string_view text,
+                          const std::vector<std::string>& names);
+
+  /// Throws ExpressionError, naming operation and operands, when an operation
+  /// has no finite result.
+  double evaluate(std::span<const double> values) const;
+  Dual evaluate(std::span<const Dual> values) const;
+
+  const std::string& text() const { return text_; }
+  /// Positions of the names that appear, ascending.
+  std::vector<int> names_used() const;
+  bool is_constant() const { return names_used().empty(); }
+
+ private:
+  friend class ExpressionParser;
+  struct Instruction {
+    int operation = 0;    // index into the table of operations
+    int name = -1;        // of a name: its position
+    double number = 0.0;  // of a number
+    int column = 0;
+  };
+  template <class Scalar>
+  Scalar run(std::span<const Scalar> values) const;
+
+  std::string text_;
+  std::vector<Instruction> code_;  // postfix
+};
+
+/// Constants that every expression knows: no name of a case may be one.
+bool is_reserved_name(std::string_view name);
+
+/// The entry of `known` nearest to `name` by edit distance, or empty when none
+/// is near (more than a third of the letters differ).
+std::string nearest_name(std::string_view name,
+                         const std::vector<std::string>& known);
+
+}  // namespace meniscus
