@@ -104,18 +104,19 @@ int Run::keep(RunStatus status, const std::string& reason) {
 
 void Run::explain(const RunResult& result) const {
   const bool good = result.status == RunStatus::Converged;
-  if (!good) {
-    std::fprintf(stderr, "%s: %s\n", name_of(result.status),
+  if (!good || !arguments_.common.quiet) {
+    std::fprintf(good ? stdout : stderr, "%s: %s\n", name_of(result.status),
                  result.message.c_str());
   }
   if (arguments_.common.quiet) {
     return;
   }
   std::fputs(result_text(input_, result).c_str(), stdout);
+  std::printf("  results in %s\n", folder_.string().c_str());
+  std::fflush(stdout);
   for (const std::string& warning : result.warnings) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
-  std::printf("  results in %s\n", folder_.string().c_str());
 }
 
 int Run::execute(const std::vector<std::string>& warnings) {

@@ -132,7 +132,9 @@ void judge(const FilmEnergy& energy, const FilmComplex& complex,
                      place(judgement.mode_position), where, kAdvice));
   } else if (thin) {
     fail(FailureKind::FilmPinched,
-         fmt::format("pinching: {}, below the {:.4g} that this film needs; {}",
+         fmt::format("pinching: {}, below the {:.4g} that this film needs (two "
+                     "edges, or a fifth of its neck at the start); {}, shorter "
+                     "edges where the part is meant to be this thin",
                      where, least, kAdvice));
   } else {
     report.verdict = "stable";

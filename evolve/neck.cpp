@@ -152,35 +152,50 @@ class FacetTree {
   std::vector<Node> nodes_;
 };
 
-/// Along which sides of each unknown's normal a body lies: bit 1 against the
-/// normal, bit 2 along it; both for a film without a body.
-std::vector<int> open_sides(const FilmEnergy& energy,
-                            std::vector<int>& label_of_unknown,
-                            const std::vector<int>& facet_label,
-                            std::size_t point_count) {
-  std::vector<int> sides_of_vertex(point_count, 0);
-  std::vector<int> label_of_vertex(point_count, -1);
-  for (std::size_t f = 0; f < energy.facets().size(); ++f) {
-    if (!energy.is_liquid(static_cast<int>(f))) {
+/// Do two facets look into one chamber? Films without a body share the outside.
+bool share_body(const FilmEnergy& energy, int f, int g) {
+  bool any = false;
+  for (int b = 0; b < energy.bodies(); ++b) {
+    const bool of_f = energy.side(f, b) != 0;
+    const bool of_g = energy.side(g, b) != 0;
+    if (of_f && of_g) {
+      return true;
+    }
+    any = any || of_f || of_g;
+  }
+  return !any;
+}
+
+/// Where an unknown's vertex looks from: along which sides of its normal a
+/// body lies (bit 1 against the normal, bit 2 along it; both for a film
+/// without a body), and one of its film's facets.
+struct Outlook {
+  int sides = 0;
+  int facet = -1;
+};
+
+std::vector<Outlook> outlooks(const FilmEnergy& energy,
+                              std::size_t point_count) {
+  std::vector<Outlook> of_vertex(point_count);
+  for (int f = 0; f < static_cast<int>(energy.facets().size()); ++f) {
+    if (!energy.is_liquid(f)) {
       continue;
     }
     int sides = 0;
     for (int b = 0; b < energy.bodies(); ++b) {
-      const int side = energy.side(static_cast<int>(f), b);
+      const int side = energy.side(f, b);
       sides |= side > 0 ? 1 : (side < 0 ? 2 : 0);
     }
     for (const int v : energy.facets()[f]) {
-      sides_of_vertex[v] |= sides != 0 ? sides : 3;
-      label_of_vertex[v] = facet_label[f];
+      of_vertex[v].sides |= sides != 0 ? sides : 3;
+      of_vertex[v].facet = f;
     }
   }
-  std::vector<int> sides;
-  label_of_unknown.clear();
+  std::vector<Outlook> result;
   for (const int v : energy.vertices()) {
-    sides.push_back(sides_of_vertex[v]);
-    label_of_unknown.push_back(label_of_vertex[v]);
+    result.push_back(of_vertex[v]);
   }
-  return sides;
+  return result;
 }
 
 }  // namespace
@@ -190,22 +205,21 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
   const std::vector<Triangle>& facets = energy.facets();
   const FacetTree tree(facets, points);
   const Points normals = energy.normals(points);
-  std::vector<int> labels;
-  const std::vector<int> sides =
-      open_sides(energy, labels, facet_label, points.size());
+  const std::vector<Outlook> looks = outlooks(energy, points.size());
   Neck neck;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < energy.unknowns(); ++i) {
     const int v = energy.vertices()[i];
     for (const int bit : {1, 2}) {
-      if ((sides[i] & bit) == 0 || normals[i].isZero()) {
+      if ((looks[i].sides & bit) == 0 || normals[i].isZero()) {
         continue;
       }
       const Vec3 direction = bit == 1 ? Vec3(-normals[i]) : normals[i];
       double length = least;
       const auto accept = [&](int f) {
         const Triangle& t = facets[f];
-        return t[0] != v && t[1] != v && t[2] != v;
+        return t[0] != v && t[1] != v && t[2] != v &&
+               share_body(energy, f, looks[i].facet);
       };
       const int f = tree.first_hit(points[v], direction, length, accept);
       if (f < 0 || !energy.is_liquid(f)) {
@@ -219,7 +233,7 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
         least = length;
         neck.width = length;
         neck.position = points[v] + 0.5 * length * direction;
-        neck.surface = labels[i];
+        neck.surface = facet_label[looks[i].facet];
         neck.opposite = facet_label[f];
       }
     }

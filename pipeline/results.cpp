@@ -224,8 +224,7 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
 }
 
 std::string result_text(const Case& input, const RunResult& result) {
-  std::string text =
-      fmt::format("{}: {}\n", name_of(result.status), result.message);
+  std::string text;
   if (!result.best || result.best->responses.size() == 0) {
     return text;
   }

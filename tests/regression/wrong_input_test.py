@@ -120,14 +120,48 @@ class NoSolution(ProgramTest):
                        r"(?i)volume|shorter|larger")
 
     def test_surface_crosses_itself(self):
-        # Two discs that cut each other, with a film between their rims.
-        path = self.write_case(
-            (r"center = \[120, 0, 72\]", "center = [-90, 0, 72]"),
-            (r"(normal|axis) = .*sin\(60 ?\* ?deg\).*$(?![\s\S]*sin\(60)",
-             "normal = [-1, 0, -0.2]"))
-        done = self.call("run", path, "--out", "out", "--no-pictures", *COARSE)
-        self.assertIn(done.returncode, (2, 3), done.stderr)
-        self.assertRegex(done.stderr, "(?i)cross|hull|pinch")
+        # A peg with its own chamber that runs into the bracket.
+        path = self.write_case()
+        path.write_text(path.read_text() + """
+[curves.outer]
+kind = "circle"
+center = [0, 80, 60]
+normal = [0, 1, 0]
+radius = 15
+
+[curves.inner]
+kind = "circle"
+center = [0, 0, 60]
+normal = [0, -1, 0]
+radius = 15
+
+[films.peg]
+kind = "loft"
+curves = ["outer", "inner"]
+
+[solids.outer_pad]
+kind = "cap"
+curve = "outer"
+
+[solids.inner_pad]
+kind = "cap"
+curve = "inner"
+
+[bodies.peg_body]
+enclosed_by = ["peg", "outer_pad", "inner_pad"]
+volume = 5.6e4
+material = "aluminium"
+""")
+        self.fail_with(path, r"facet \d+ \('skin'\).*facet \d+ \('peg'\)",
+                       "move the curves",
+                       arguments=["--set", "resolution.fea=8",
+                                  "--set", "resolution.film=4"])
+
+    def test_curve_off_the_hull(self):
+        path = self.write_case((r"center = \[120, 0, 72\]",
+                                "center = [-90, 0, 72]"))
+        self.expect(self.call("run", path, "--no-pictures", *COARSE), 2,
+                    "left|right", "hull")
 
     def test_too_weak_support(self):
         path = self.write_case((r'fix = "xyz"', 'fix = "z"'))
