@@ -1,13 +1,16 @@
 /// Arithmetic expressions over named values, as they stand in case files.
 /// Evaluated over numbers or over duals, so first and second derivatives are
-/// exact (docs/decisions/0001).
+/// exact (docs/decisions/0001-expressions.md).
 ///
 ///   + - * / ^ (right associative)   comparisons < <= > >= == !=
 ///   sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs
 ///   min max pow sqr if(condition, then, else)
 ///   pi  e  deg (= pi / 180; angles are radians)
 ///
-/// abs, min, max, if and comparisons are not smooth where they switch.
+/// -2^2 is -4; 2^-1 is 0.5. A comparison is 1 or 0. Of if() only the branch
+/// that holds is evaluated. abs, min, max, if and comparisons are not smooth
+/// where they switch; derivatives there are those of the side taken (abs at 0:
+/// of the right side).
 #pragma once
 
 #include <span>
@@ -17,6 +20,7 @@
 #include <vector>
 
 #include "core/dual.h"
+#include "core/nearest_name.h"
 
 namespace meniscus {
 
@@ -31,6 +35,7 @@ class ExpressionError : public std::runtime_error {
   int column_;
 };
 
+/// Compiled once, evaluated often; a value, safe to use from several threads.
 class Expression {
  public:
   /// The number 0.
@@ -39,12 +44,14 @@ class Expression {
 
   /// `names`: the values that may appear, by position. Throws ExpressionError:
   /// syntax, unknown name (with the nearest known one), more than 200 levels
-  /// of nesting, longer than 10,000 characters.
+  /// of nesting, longer than 10,000 characters. The decimal sign is a point
+  /// whatever the locale.
   static Expression parse(std::string_view text,
                           const std::vector<std::string>& names);
 
-  /// Throws ExpressionError, naming operation and operands, when an operation
-  /// has no finite result.
+  /// `values`: one per name given to parse(). Throws ExpressionError, naming
+  /// operation and operands, when an operation has no finite result; over
+  /// duals also when it has no finite first or second derivative.
   double evaluate(std::span<const double> values) const;
   Dual evaluate(std::span<const Dual> values) const;
 
@@ -56,8 +63,8 @@ class Expression {
  private:
   friend class ExpressionParser;
   struct Instruction {
-    int operation = 0;    // index into the table of operations
-    int name = -1;        // of a name: its position
+    int operation = 0;    // expression_code::Operation
+    int index = -1;       // of a name: its position; of a jump: where to
     double number = 0.0;  // of a number
     int column = 0;
   };
@@ -68,12 +75,8 @@ class Expression {
   std::vector<Instruction> code_;  // postfix
 };
 
-/// Constants that every expression knows: no name of a case may be one.
+/// Constants, functions and the coordinates x, y, z, which expressions of a
+/// place know: no name of a case may be one.
 bool is_reserved_name(std::string_view name);
-
-/// The entry of `known` nearest to `name` by edit distance, or empty when none
-/// is near (more than a third of the letters differ).
-std::string nearest_name(std::string_view name,
-                         const std::vector<std::string>& known);
 
 }  // namespace meniscus

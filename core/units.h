@@ -43,9 +43,12 @@ std::optional<UnitSystem> unit_system(std::string_view name);
 bool looks_like_quantity(std::string_view text);
 
 /// The value of such a text in `system`, rounded to 15 digits so that decimal
-/// conversions are exact ("71.7 GPa" is 71700 MPa). Throws InvalidInput for an
-/// unknown unit or one of another dimension.
-double parse_quantity(std::string_view text, Dimension dimension,
+/// conversions are exact ("71.7 GPa" is 71700 MPa). `dimension`: the one that
+/// it must have; when left out, any but None ("20 kN" for a named number that
+/// serves wherever a force stands). Throws InvalidInput for an unknown unit,
+/// one of another dimension, a value that is not finite, and when the unit
+/// database cannot be found. Safe from several threads, in any locale.
+double parse_quantity(std::string_view text, std::optional<Dimension> dimension,
                       const UnitSystem& system);
 
 }  // namespace meniscus
