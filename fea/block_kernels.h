@@ -6,10 +6,9 @@ namespace meniscus {
 /// t += A x, the block row-major.
 template <int K, class Real>
 inline void add_block(const Real* A, const Real* x, Real* t) {
-  for (int r = 0; r < 3; ++r) {
+  for (int r = 0; r < 3; ++r, A += 3) {
     for (int k = 0; k < K; ++k) {
-      t[r * K + k] += A[3 * r] * x[k] + A[3 * r + 1] * x[K + k] +
-                      A[3 * r + 2] * x[2 * K + k];
+      t[r * K + k] += A[0] * x[k] + A[1] * x[K + k] + A[2] * x[2 * K + k];
     }
   }
 }

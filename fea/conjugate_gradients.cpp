@@ -16,16 +16,17 @@ using Sums = std::array<double, K>;
 /// Dot products of interleaved vectors, summed in pieces of fixed length.
 template <int K>
 Sums<K> dot(const Vec& a, const Vec& b) {
-  constexpr std::size_t kPiece = 4096 * K;
+  constexpr std::size_t kWidth = K;
+  constexpr std::size_t kPiece = 4096 * kWidth;
   Sums<K> total{};
   for (std::size_t first = 0; first < a.size(); first += kPiece) {
     const std::size_t last = std::min(first + kPiece, a.size());
     double sum[4][K] = {};  // four chains hide the latency of additions
     std::size_t d = first;
-    for (; d + 4 * K <= last; d += 4 * K) {
-      for (int c = 0; c < 4; ++c) {
-        for (int k = 0; k < K; ++k) {
-          sum[c][k] += a[d + c * K + k] * b[d + c * K + k];
+    for (; d + 4 * kWidth <= last; d += 4 * kWidth) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        for (std::size_t k = 0; k < kWidth; ++k) {
+          sum[c][k] += a[d + c * kWidth + k] * b[d + c * kWidth + k];
         }
       }
     }

@@ -6,6 +6,8 @@
 
 #include "core/timer.h"
 #include "fea/conjugate_gradients.h"
+#include "fea/corner_mesh.h"
+#include "fea/elastic_checks.h"
 #include "fea/equilibrium_check.h"
 #include "fea/supports.h"
 
@@ -16,51 +18,6 @@ namespace {
 /// Below this many free unknowns a direct factor of a ten-node mesh is as
 /// quick as multigrid.
 constexpr int kDirectUnknowns = 20000;
-
-void check_arrays(const TetMesh& mesh) {
-  const int n = static_cast<int>(mesh.nodes.size());
-  if ((mesh.order != 1 && mesh.order != 2) || mesh.element_count() == 0 ||
-      mesh.elements.size() % mesh.nodes_per_element() != 0) {
-    throw InvalidInput(fmt::format(
-        "elasticity: a mesh of order {} with {} element entries; four-node "
-        "(order 1) or ten-node (order 2) tetrahedra are needed",
-        mesh.order, mesh.elements.size()));
-  }
-  const auto bad = [n](int id) { return id < 0 || id >= n; };
-  for (const auto* ids : {&mesh.elements, &mesh.faces}) {
-    const auto at = std::find_if(ids->begin(), ids->end(), bad);
-    if (at != ids->end()) {
-      throw InvalidInput(fmt::format(
-          "elasticity: the mesh has {} nodes, but {} {} names node {}", n,
-          ids == &mesh.elements ? "element" : "face",
-          (at - ids->begin()) / (ids == &mesh.elements
-                                     ? mesh.nodes_per_element()
-                                     : mesh.nodes_per_face()),
-          *at));
-    }
-  }
-  if (static_cast<int>(mesh.face_label.size()) != mesh.face_count()) {
-    throw InvalidInput(fmt::format("elasticity: {} faces, but labels for {}",
-                                   mesh.face_count(), mesh.face_label.size()));
-  }
-}
-
-void check_loads(const TetMesh& mesh, const LoadCase& load_case) {
-  if (!(nodal_forces(mesh, load_case).norm() > 0.0)) {
-    throw InvalidInput(fmt::format(
-        "load case '{}' has no load: give a force or a pressure that is not 0",
-        load_case.name));
-  }
-}
-
-bool same_supports(const std::vector<Support>& a,
-                   const std::vector<Support>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const Support& s, const Support& t) {
-                      return s.surface == t.surface && s.fix_x == t.fix_x &&
-                             s.fix_y == t.fix_y && s.fix_z == t.fix_z;
-                    });
-}
 
 std::string cause(CgEnd end, const CgColumn& column, int most) {
   switch (end) {
@@ -164,30 +121,6 @@ void ElasticSystem::group_supports(const TetMesh& base,
   }
 }
 
-CornerMap ElasticSystem::corner_map(const TetMesh& base,
-                                    const std::vector<int>& coarse_of) const {
-  CornerMap map;
-  for (std::size_t i = 0; i < coarse_of.size(); ++i) {
-    if (coarse_of[i] >= 0) {
-      map.corner.push_back(static_cast<int>(i));
-    }
-  }
-  std::vector<char> seen(coarse_of.size(), 0);
-  for (const int e : order_.element) {
-    const auto ids = base.element(e);
-    for (int m = 0; m < 6; ++m) {
-      const int node = order_.to_solver[ids[4 + m]];
-      if (seen[node] == 0) {
-        seen[node] = 1;
-        map.mid.push_back(node);
-        map.ends.push_back({coarse_of[order_.to_solver[ids[kTetEdges[m][0]]]],
-                            coarse_of[order_.to_solver[ids[kTetEdges[m][1]]]]});
-      }
-    }
-  }
-  return map;
-}
-
 void ElasticSystem::build_preconditioners(const TetMesh& base,
                                           const BlockMatrix<double>& matrix) {
   const auto& fixed = groups_.front().fixed;
@@ -207,46 +140,26 @@ void ElasticSystem::build_preconditioners(const TetMesh& base,
         "elasticity: the multigrid solver needs ten-node elements; choose "
         "Automatic or Cholesky for four-node ones");
   }
-  // Coarse nodes are numbered as the solver orders them.
-  std::vector<int> coarse_of(base.nodes.size(), -1);
-  for (int e = 0; e < base.element_count(); ++e) {
-    for (int c = 0; c < 4; ++c) {
-      coarse_of[order_.to_solver[base.element(e)[c]]] = 0;
-    }
-  }
-  int coarse_nodes = 0;
-  Points corners;
-  for (std::size_t i = 0; i < coarse_of.size(); ++i) {
-    if (coarse_of[i] == 0) {
-      coarse_of[i] = coarse_nodes++;
-      corners.push_back(base.nodes[order_.to_mesh[i]]);
-    }
-  }
-  std::vector<int> elements;
-  for (const int e : order_.element) {
-    for (int c = 0; c < 4; ++c) {
-      elements.push_back(coarse_of[order_.to_solver[base.element(e)[c]]]);
-    }
-  }
-  const ElementTable table =
-      make_element_table(coarse_nodes, 4, elements, shared_->table.region);
+  CornerMesh corners = make_corner_mesh(base, order_);
   BlockMatrix<double> coarse;
-  if (const auto bad = meniscus::assemble(table, corners, lames_, coarse)) {
+  if (const auto bad =
+          meniscus::assemble(corners.table, corners.x, lames_, coarse)) {
     throw MeshError(fmt::format(
         "element {}: its straight-sided corners enclose no positive volume; "
         "improve the mesh or choose the Cholesky solver",
         order_.element[*bad]));
   }
-  shared_->map = corner_map(base, coarse_of);
+  shared_->map = std::move(corners.map);
   shared_->smoother = make_smoother_matrix(matrix);
   for (Group& group : groups_) {
-    group.preconditioner = make_multigrid({.pattern = &shared_->table.pattern,
-                                           .matrix = &matrix,
-                                           .smoother = &shared_->smoother,
-                                           .map = &shared_->map,
-                                           .coarse_pattern = &table.pattern,
-                                           .coarse_matrix = &coarse,
-                                           .fixed = &group.fixed});
+    group.preconditioner =
+        make_multigrid({.pattern = &shared_->table.pattern,
+                        .matrix = &matrix,
+                        .smoother = &shared_->smoother,
+                        .map = &shared_->map,
+                        .coarse_pattern = &corners.table.pattern,
+                        .coarse_matrix = &coarse,
+                        .fixed = &group.fixed});
   }
 }
 

@@ -55,8 +55,6 @@ class ElasticSystem {
                       const std::vector<LoadCase>& load_cases);
   void build_preconditioners(const TetMesh& base,
                              const BlockMatrix<double>& matrix);
-  CornerMap corner_map(const TetMesh& base,
-                       const std::vector<int>& coarse_of) const;
   void solve_columns(const Group& group, const std::vector<int>& cases,
                      const Points& x, const std::vector<VectorX>& f,
                      const std::vector<LoadCase>& load_cases,

@@ -15,7 +15,8 @@ struct ElasticModel::Impl {
   ElasticSolution base;
 };
 
-ElasticModel::ElasticModel(const TetMesh& base, std::vector<Material> materials,
+ElasticModel::ElasticModel(const TetMesh& base,
+                           const std::vector<Material>& materials,
                            std::vector<LoadCase> load_cases,
                            const ElasticOptions& options) {
   const Timer timer;

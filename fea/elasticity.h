@@ -58,7 +58,7 @@ class ElasticModel {
   /// unknown surface, no support, no load), MeshError (inverted element) and
   /// SolverError (supports too weak: names the free motion; memory). A base
   /// that does not converge is told in base_solution().failure.
-  ElasticModel(const TetMesh& base, std::vector<Material> materials,
+  ElasticModel(const TetMesh& base, const std::vector<Material>& materials,
                std::vector<LoadCase> load_cases,
                const ElasticOptions& options = {});
   ~ElasticModel();

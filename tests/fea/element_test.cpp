@@ -15,13 +15,14 @@ Eigen::MatrixXd dense(const ElementTable& table,
   using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   Eigen::MatrixXd A(3 * p.nodes, 3 * p.nodes);
   A.setZero();
-  for (int i = 0; i < p.nodes; ++i) {
+  for (Eigen::Index i = 0; i < p.nodes; ++i) {
     A.block<3, 3>(3 * i, 3 * i) =
         Eigen::Map<const Block>(matrix.diagonal.data() + 9L * i);
     for (int k = p.start[i]; k < p.start[i + 1]; ++k) {
       const Block b = Eigen::Map<const Block>(matrix.lower.data() + 9L * k);
-      A.block<3, 3>(3 * i, 3 * p.column[k]) = b;
-      A.block<3, 3>(3 * p.column[k], 3 * i) = b.transpose();
+      const Eigen::Index j = p.column[k];
+      A.block<3, 3>(3 * i, 3 * j) = b;
+      A.block<3, 3>(3 * j, 3 * i) = b.transpose();
     }
   }
   return A;

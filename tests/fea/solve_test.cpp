@@ -92,7 +92,7 @@ TEST_P(Solve, SameBitsForThereAndBackAndForAnyThreadCount) {
     omp_set_num_threads(threads);
     const ElasticModel model(base, {parts::steel()}, two_cases(),
                              {.solver = kind});
-    const ElasticSolution first = model.solve(moved);
+    ElasticSolution first = model.solve(moved);
     const ElasticSolution between = model.solve(base);
     const ElasticSolution again = model.solve(moved);
     EXPECT_FALSE(first.failure);

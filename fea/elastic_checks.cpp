@@ -1,0 +1,56 @@
+#include "fea/elastic_checks.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace meniscus {
+
+void check_arrays(const TetMesh& mesh) {
+  const int n = static_cast<int>(mesh.nodes.size());
+  if ((mesh.order != 1 && mesh.order != 2) || mesh.element_count() == 0 ||
+      mesh.elements.size() % mesh.nodes_per_element() != 0) {
+    throw InvalidInput(fmt::format(
+        "elasticity: a mesh of order {} with {} element entries; four-node "
+        "(order 1) or ten-node (order 2) tetrahedra are needed",
+        mesh.order, mesh.elements.size()));
+  }
+  const auto bad = [n](int id) { return id < 0 || id >= n; };
+  for (const auto* ids : {&mesh.elements, &mesh.faces}) {
+    const auto at = std::find_if(ids->begin(), ids->end(), bad);
+    if (at != ids->end()) {
+      throw InvalidInput(fmt::format(
+          "elasticity: the mesh has {} nodes, but {} {} names node {}", n,
+          ids == &mesh.elements ? "element" : "face",
+          (at - ids->begin()) / (ids == &mesh.elements
+                                     ? mesh.nodes_per_element()
+                                     : mesh.nodes_per_face()),
+          *at));
+    }
+  }
+  if (static_cast<int>(mesh.face_label.size()) != mesh.face_count()) {
+    throw InvalidInput(fmt::format("elasticity: {} faces, but labels for {}",
+                                   mesh.face_count(), mesh.face_label.size()));
+  }
+}
+
+void check_loads(const TetMesh& mesh, const LoadCase& load_case) {
+  if (!(nodal_forces(mesh, load_case).norm() > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "load case '{}' has no load: give a force or a pressure that is not 0",
+        load_case.name));
+  }
+}
+
+bool same_supports(const std::vector<Support>& a,
+                   const std::vector<Support>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Support& s, const Support& t) {
+                      return s.surface == t.surface && s.fix_x == t.fix_x &&
+                             s.fix_y == t.fix_y && s.fix_z == t.fix_z;
+                    });
+}
+
+}  // namespace meniscus

@@ -1,0 +1,20 @@
+/// What a mesh and its load cases must be before anything is computed.
+#pragma once
+
+#include <vector>
+
+#include "core/tet_mesh.h"
+#include "fea/loads.h"
+
+namespace meniscus {
+
+/// Throws InvalidInput unless the arrays of the mesh fit each other.
+void check_arrays(const TetMesh& mesh);
+
+/// Throws InvalidInput when the load case has no load on the mesh.
+void check_loads(const TetMesh& mesh, const LoadCase& load_case);
+
+bool same_supports(const std::vector<Support>& a,
+                   const std::vector<Support>& b);
+
+}  // namespace meniscus
