@@ -231,6 +231,23 @@ void check_loads(const Case& input, const EvaluatedCase& numbers,
   }
 }
 
+/// The stiffness of the frozen model belongs to its materials.
+void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
+                           const EvaluatedCase& other, CaseProblems& problems) {
+  for (std::size_t k = 0; k < initial.materials.size(); ++k) {
+    const Material& a = initial.materials[k];
+    const Material& b = other.materials[k];
+    if (a.youngs_modulus != b.youngs_modulus ||
+        a.poisson_ratio != b.poisson_ratio) {
+      problems.add(input.materials[input.bodies[k].material].line,
+                   fmt::format("materials.{}: youngs_modulus and "
+                               "poisson_ratio cannot depend on a design "
+                               "variable in this version",
+                               a.name));
+    }
+  }
+}
+
 /// The case's numbers at the initial design and, one variable at a time, at
 /// the ends of the bounds.
 void check_numbers(const Case& input, CaseProblems& problems) {
@@ -253,9 +270,11 @@ void check_numbers(const Case& input, CaseProblems& problems) {
     for (const double end : {input.design[k].lower, input.design[k].upper}) {
       VectorX design = initial;
       design[static_cast<Eigen::Index>(k)] = end;
-      if (!at(design)) {
+      const auto there = at(design);
+      if (!there) {
         return;
       }
+      check_fixed_materials(input, *numbers, *there, problems);
     }
   }
 }
