@@ -58,7 +58,7 @@ void outer_products(const TetGradients<Nodes>& g, const unsigned char* slot,
 template <int Width>
 void add_stiffness(const double (*G)[Width], int a, int b, const Lame& m,
                    double* block) {
-  const double* g0 = G[3 * a] + 3L * b;
+  const double* g0 = G[3L * a] + 3L * b;
   const double* g1 = g0 + Width;
   const double* g2 = g1 + Width;
   const double d = m.mu * (g0[0] + g1[1] + g2[2]);

@@ -200,7 +200,7 @@ VectorX ElasticSystem::to_solver(const VectorX& v) const {
   VectorX w(v.size());
   for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
     w.segment<3>(static_cast<Eigen::Index>(3 * i)) =
-        v.segment<3>(3 * order_.to_mesh[i]);
+        v.segment<3>(3L * order_.to_mesh[i]);
   }
   return w;
 }
@@ -208,7 +208,7 @@ VectorX ElasticSystem::to_solver(const VectorX& v) const {
 VectorX ElasticSystem::to_mesh(const VectorX& v) const {
   VectorX w(v.size());
   for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
-    w.segment<3>(3 * order_.to_mesh[i]) =
+    w.segment<3>(3L * order_.to_mesh[i]) =
         v.segment<3>(static_cast<Eigen::Index>(3 * i));
   }
   return w;

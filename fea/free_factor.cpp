@@ -43,13 +43,13 @@ SparseMatrix free_matrix(const BlockPattern& pattern,
           for (int c = 0; c < 3; ++c) {
             const int column = number[3 * pattern.column[b] + c];
             if (column >= 0) {
-              entry(row, column, matrix.lower[9L * b + 3 * r + c]);
+              entry(row, column, matrix.lower[9L * b + 3L * r + c]);
             }
           }
         }
         for (int c = 0; c <= r; ++c) {
           if (number[3 * i + c] >= 0) {
-            entry(row, number[3 * i + c], matrix.diagonal[9L * i + 3 * r + c]);
+            entry(row, number[3 * i + c], matrix.diagonal[9L * i + 3L * r + c]);
           }
         }
       }

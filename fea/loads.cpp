@@ -115,7 +115,7 @@ VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case) {
     const SurfaceWeights w = surface_weights(mesh, force.surface);
     const Vec3 traction = force.total / w.weights.sum();
     for (std::size_t k = 0; k < w.nodes.size(); ++k) {
-      f.segment<3>(3 * w.nodes[k]) +=
+      f.segment<3>(3L * w.nodes[k]) +=
           w.weights[static_cast<Eigen::Index>(k)] * traction;
     }
   }
@@ -124,7 +124,7 @@ VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case) {
     surface_weights(mesh, load.surface);  // refuses a surface without area
     for_face_nodes(mesh, surface_label(mesh, load.surface),
                    [&](int node, double, const Vec3& normal) {
-                     f.segment<3>(3 * node) -= load.pressure * normal;
+                     f.segment<3>(3L * node) -= load.pressure * normal;
                    });
   }
   return f;
@@ -148,7 +148,7 @@ double mean_displacement(const TetMesh& mesh, const std::string& surface,
   double sum = 0.0;
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     sum += w.weights[static_cast<Eigen::Index>(k)] *
-           displacement.segment<3>(3 * w.nodes[k]).dot(direction);
+           displacement.segment<3>(3L * w.nodes[k]).dot(direction);
   }
   return sum / (w.weights.sum() * length);
 }

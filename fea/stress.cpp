@@ -48,7 +48,7 @@ CornerStress corner_stress(const TetMesh& mesh, int e, const Lame& m,
   for (int q = 0; q < kTetPoints<Nodes>; ++q) {
     Mat3 H = Mat3::Zero();
     for (int a = 1; a < Nodes; ++a) {
-      const Vec3 du = u.segment<3>(3 * ids[a]) - u.segment<3>(3 * ids[0]);
+      const Vec3 du = u.segment<3>(3L * ids[a]) - u.segment<3>(3L * ids[0]);
       H.noalias() += du * g.gradient[q][a].transpose();
     }
     point[q] = stress_of(H, m);
@@ -107,6 +107,7 @@ StressField recover_stress(const TetMesh& mesh,
                                    displacement.size(), mesh.nodes.size()));
   }
   std::vector<Lame> lames;
+  lames.reserve(materials.size());
   for (const Material& material : materials) {
     lames.push_back(lame(material));
   }
