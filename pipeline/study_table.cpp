@@ -96,7 +96,10 @@ std::string history_csv(const std::vector<EvaluationRecord>& records) {
       rows[i].push_back(failure ? failure->message : "");
     }
     for (std::size_t j = 0; j < rows[i].size(); ++j) {
-      text += (j == 0 ? "" : ",") + quoted(rows[i][j]);
+      if (j > 0) {
+        text += ',';
+      }
+      text += quoted(rows[i][j]);
     }
     text += '\n';
   }
