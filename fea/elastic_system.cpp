@@ -17,7 +17,7 @@ namespace {
 
 /// Below this many free unknowns a direct factor of a ten-node mesh is as
 /// quick as multigrid.
-constexpr int kDirectUnknowns = 20000;
+constexpr int kDirectUnknowns = 4000;
 
 std::string cause(CgEnd end, const CgColumn& column, int most) {
   switch (end) {

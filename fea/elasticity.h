@@ -39,7 +39,7 @@ struct ElasticSolution {
 enum class SolverKind { Automatic, Cholesky, Multigrid };
 
 struct ElasticOptions {
-  /// Automatic: multigrid for ten-node meshes of more than 20,000 unknowns,
+  /// Automatic: multigrid for ten-node meshes of more than 4,000 unknowns,
   /// else Cholesky. Multigrid needs ten-node elements.
   SolverKind solver = SolverKind::Automatic;
   double tolerance = 1e-10;  // |f - K u| / |f| per load case

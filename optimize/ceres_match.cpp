@@ -1,6 +1,7 @@
 #include "optimize/ceres_match.h"
 
 #include <array>
+#include <limits>
 
 #include <ceres/ceres.h>
 
@@ -12,6 +13,12 @@ namespace {
 constexpr double kGoodStep = 0.25;
 // Relative change of cost below which nothing visible is gained.
 constexpr double kCostTolerance = 1e-9;
+// A match that cannot be met ends in a flat valley, where Ceres would wander
+// for long: it ends after this many evaluations, and some per variable,
+// without a visible gain of the best cost.
+constexpr double kVisibleGain = 1e-4;
+constexpr int kPatience = 8;
+constexpr int kPatiencePerVariable = 4;
 // Relative size of a step that only moves rounding.
 constexpr double kStepTolerance = 1e-12;
 // Large: the first step is the full Gauss-Newton step. The bounds and the
@@ -149,14 +156,31 @@ class MatchCost : public ceres::CostFunction {
 
 class StopWhenFinished : public ceres::IterationCallback {
  public:
-  explicit StopWhenFinished(const MatchCost& cost) : cost_(cost) {}
+  StopWhenFinished(const MatchCost& cost, const MatchEvaluator& evaluator)
+      : cost_(cost), evaluator_(evaluator) {}
+
   ceres::CallbackReturnType operator()(
       const ceres::IterationSummary& /*summary*/) override {
-    return cost_.finished() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+    if (cost_.finished()) {
+      return ceres::SOLVER_ABORT;
+    }
+    const double best = cost_of(evaluator_.best_answer());
+    if (!(best >= (1.0 - kVisibleGain) * gained_)) {
+      gained_ = best;
+      gained_at_ = evaluator_.evaluations();
+    }
+    const int patience =
+        kPatience + kPatiencePerVariable * static_cast<int>(evaluator_.size());
+    return evaluator_.evaluations() - gained_at_ > patience
+               ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+               : ceres::SOLVER_CONTINUE;
   }
 
  private:
   const MatchCost& cost_;
+  const MatchEvaluator& evaluator_;
+  double gained_ = std::numeric_limits<double>::infinity();
+  int gained_at_ = 0;
 };
 
 ceres::Solver::Options solver_options() {
@@ -178,6 +202,7 @@ ceres::Solver::Options solver_options() {
 const char* words(ceres::TerminationType type) {
   switch (type) {
     case ceres::CONVERGENCE:
+    case ceres::USER_SUCCESS:
       return "the cost no longer changes";
     case ceres::NO_CONVERGENCE:
       return "the iterations ran out";
@@ -196,7 +221,7 @@ BackendResult ceres_match(MatchEvaluator& evaluator, const VectorX& start) {
   // that cut |r| by kGoodStep, so this ends.
   for (bool again = true; again;) {
     MatchCost cost(evaluator);
-    StopWhenFinished callback(cost);
+    StopWhenFinished callback(cost, evaluator);
     ceres::Solver::Options options = solver_options();
     options.callbacks.push_back(&callback);
     ceres::Problem::Options ownership;

@@ -21,9 +21,10 @@ constexpr double kAtBound = 1e-9;
 void check_method(const std::string& method) {
   const std::vector<std::string> names = match_methods();
   if (std::find(names.begin(), names.end(), method) == names.end()) {
-    throw InvalidInput(fmt::format("match: method '{}' is not known; there are "
-                                   "{}",
-                                   method, fmt::join(names, ", ")));
+    throw InvalidInput(
+        fmt::format("match: method '{}' is not known; there are "
+                    "{}",
+                    method, fmt::join(names, ", ")));
   }
 }
 

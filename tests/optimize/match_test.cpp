@@ -227,5 +227,21 @@ TEST(Match, AMinimumThatMissesTheToleranceIsStalled) {
   EXPECT_LE(report.evaluations, 12);
 }
 
+TEST(Match, AValleyThatMissesTheTargetEndsSoon) {
+  // |r| is least, and not 0, at 0.31: there is nothing to be found below.
+  const std::vector<Variable> variables = {
+      {.name = "x", .initial = 0.0, .lower = -1.0, .upper = 1.0}};
+  const MatchReport report = match(
+      variables,
+      [](const VectorX& x) {
+        const VectorX r = VectorX::Constant(1, 0.1 + std::pow(x[0] - 0.31, 2));
+        return ResidualAnswer{.residuals = r, .mismatch = r.cwiseAbs()};
+      },
+      {.method = "ceres", .tolerance = 1e-3, .max_evaluations = 100});
+  EXPECT_EQ(report.termination, Termination::Stalled) << report.message;
+  EXPECT_LT(report.evaluations, 50);
+  EXPECT_NEAR(report.best[0], 0.31, 0.01);
+}
+
 }  // namespace
 }  // namespace meniscus
