@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "fea/loads.h"
-#include "io/calculix_inp.h"
 #include "io/stl.h"
-#include "io/vtk_files.h"
+#include "pipeline/calculix_export.h"
 #include "pipeline/results.h"
 #include "pipeline/stored_case.h"
 
@@ -22,43 +20,6 @@ Case at_edge(Case input, std::optional<double> edge) {
     input.resolution.film = *edge / std::exp2(input.resolution.refinements);
   }
   return input;
-}
-
-void write_deck(const fs::path& file, const Case& input,
-                const EvaluationFields& fields, const VectorX& design,
-                const std::string& program_version) {
-  CalculixDeck deck;
-  deck.comments = {"Meniscus " + program_version, "case: " + input.title,
-                   "units: " + input.units.name};
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    deck.comments.push_back(fmt::format("{} = {}", input.design[k].name,
-                                        design[static_cast<Eigen::Index>(k)]));
-  }
-  for (const Material& m : fields.inputs.materials) {
-    deck.materials.push_back({.name = m.name,
-                              .youngs_modulus = m.youngs_modulus,
-                              .poisson_ratio = m.poisson_ratio,
-                              .density = m.density});
-  }
-  for (const LoadCase& load_case : fields.inputs.load_cases) {
-    DeckStep step{.name = load_case.name};
-    for (const Support& s : load_case.supports) {
-      step.supports.push_back({.surface = s.surface,
-                               .fix_x = s.fix_x,
-                               .fix_y = s.fix_y,
-                               .fix_z = s.fix_z});
-    }
-    // CalculiX has no surface load along a given direction; it has pressure,
-    // which is written as such.
-    LoadCase forces = load_case;
-    forces.pressures.clear();
-    step.nodal_forces = nodal_forces(fields.mesh, forces);
-    for (const SurfacePressure& p : load_case.pressures) {
-      step.pressures.push_back({p.surface, p.pressure});
-    }
-    deck.steps.push_back(std::move(step));
-  }
-  write_calculix_inp(file, fields.mesh, deck);
 }
 
 }  // namespace
@@ -88,7 +49,15 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
                                 evaluation.failure->message));
   }
   if (options.format == "inp") {
-    write_deck(file, input, fields, design, options.program_version);
+    CalculixDeck deck = calculix_deck_of(input, fields.inputs, fields.mesh);
+    deck.comments.insert(deck.comments.begin(),
+                         "Meniscus " + options.program_version);
+    for (std::size_t k = 0; k < input.design.size(); ++k) {
+      deck.comments.push_back(
+          fmt::format("{} = {}", input.design[k].name,
+                      design[static_cast<Eigen::Index>(k)]));
+    }
+    write_calculix_inp(file, fields.mesh, deck);
   } else if (options.format == "vtu") {
     write_part(file, input, fields);
   } else {
