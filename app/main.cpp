@@ -33,28 +33,7 @@ void add_common(CLI::App& command, CommonArguments& common) {
   command.add_flag("--quiet", common.quiet, "errors only");
 }
 
-/// Runs a command; what escapes it becomes a message and an exit code.
-int guarded(const std::function<int()>& command) {
-  try {
-    return command();
-  } catch (const meniscus::InvalidInput& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return meniscus::kExitWrongInput;
-  } catch (const meniscus::Interrupted& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return meniscus::kExitInterrupted;
-  } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "error: not enough memory; try longer edges\n");
-    return meniscus::kExitError;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return meniscus::kExitError;
-  }
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   CLI::App app("Designs load-carrying parts with liquid films.", "meniscus");
   app.require_subcommand(1);
   app.set_version_flag("--version", [] { return meniscus::version_text(); });
@@ -141,5 +120,26 @@ int main(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? 0 : meniscus::kExitWrongInput;
   }
-  return guarded(command);
+  return command();
+}
+
+}  // namespace
+
+/// What escapes a command becomes a message and an exit code.
+int main(int argc, char** argv) {
+  try {
+    return run_program(argc, argv);
+  } catch (const meniscus::InvalidInput& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return meniscus::kExitWrongInput;
+  } catch (const meniscus::Interrupted& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return meniscus::kExitInterrupted;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "error: not enough memory; try longer edges\n");
+    return meniscus::kExitError;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return meniscus::kExitError;
+  }
 }
