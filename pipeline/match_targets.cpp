@@ -71,6 +71,30 @@ VectorX MatchTargets::mismatch(const VectorX& responses) const {
   return values;
 }
 
+VectorX MatchTargets::residual_errors(const VectorX& errors) const {
+  VectorX values(static_cast<Eigen::Index>(targets_.size()));
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    const Target& t = targets_[k];
+    const double other = t.other >= 0 ? errors[t.other] : 0.0;
+    values[static_cast<Eigen::Index>(k)] =
+        (errors[t.response] + other) / t.scale;
+  }
+  return values;
+}
+
+VectorX MatchTargets::mismatch_errors(const VectorX& responses,
+                                      const VectorX& errors) const {
+  VectorX values = residual_errors(errors);
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    const Target& t = targets_[k];
+    const double mean = t.other >= 0 ? 0.5 * (std::abs(responses[t.response]) +
+                                              std::abs(responses[t.other]))
+                                     : t.scale;
+    values[static_cast<Eigen::Index>(k)] *= mean > 0.0 ? t.scale / mean : 1.0;
+  }
+  return values;
+}
+
 std::string MatchTargets::name(Eigen::Index target) const {
   return targets_[static_cast<std::size_t>(target)].name;
 }

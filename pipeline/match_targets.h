@@ -23,6 +23,11 @@ class MatchTargets {
 
   VectorX residuals(const VectorX& responses) const;
   VectorX mismatch(const VectorX& responses) const;
+  /// Largest error of each residual, and of each mismatch, that errors of the
+  /// responses can make: errors of two responses add.
+  VectorX residual_errors(const VectorX& errors) const;
+  VectorX mismatch_errors(const VectorX& responses,
+                          const VectorX& errors) const;
   std::string name(Eigen::Index target) const;
 
  private:

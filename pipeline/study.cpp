@@ -16,9 +16,11 @@ namespace meniscus {
 namespace {
 
 constexpr const char* kModelName = "base";
-// A response's error estimate: the change when all edges double (see
-// docs/decisions/0006).
+// A response's error estimate is its change when all edges double, times a
+// factor: 1 / (2^p - 1) at the order p = 0.74 of a clamped rim
+// (docs/decisions/0006, docs/verification.md).
 constexpr double kCoarserEdges = 2.0;
+constexpr double kErrorPerChange = 1.5;
 
 void add(StageSeconds& sum, const StageSeconds& part) {
   sum.film += part.film;
@@ -189,12 +191,13 @@ void StudyRunner::estimate_errors() {
       return;
     }
     result_.response_errors =
+        kErrorPerChange *
         (there.responses - result_.best->responses).cwiseAbs();
     if (targets_ && jacobian_.size() > 0) {
-      const VectorX change = targets_->residuals(there.responses) -
-                             targets_->residuals(result_.best->responses);
-      result_.design_errors =
-          jacobian_.completeOrthogonalDecomposition().solve(change).cwiseAbs();
+      const Eigen::MatrixXd inverse =
+          jacobian_.completeOrthogonalDecomposition().pseudoInverse();
+      result_.design_errors = inverse.cwiseAbs() * targets_->residual_errors(
+                                                       result_.response_errors);
     }
   } catch (const MeshError& error) {
     result_.warnings.push_back(std::string("no error estimate: ") +
@@ -203,14 +206,18 @@ void StudyRunner::estimate_errors() {
 }
 
 void StudyRunner::warn() {
-  if (result_.design_errors.size() > 0) {
-    const VectorX of_mismatch = (jacobian_ * result_.design_errors).cwiseAbs();
-    if (of_mismatch.maxCoeff() > input_.study.tolerance) {
-      result_.warnings.push_back(fmt::format(
-          "the tolerance {:.1e} is below the mesh's own error of the mismatch, "
-          "about {:.1e}: shorten resolution.fea to trust more digits",
-          input_.study.tolerance, of_mismatch.maxCoeff()));
-    }
+  if (!targets_ || result_.response_errors.size() == 0) {
+    return;
+  }
+  const double error =
+      targets_
+          ->mismatch_errors(result_.best->responses, result_.response_errors)
+          .maxCoeff();
+  if (error > input_.study.tolerance) {
+    result_.warnings.push_back(fmt::format(
+        "the tolerance {:.1e} is below the mesh's own error of the mismatch, "
+        "about {:.1e}: shorten resolution.fea to trust more digits",
+        input_.study.tolerance, error));
   }
 }
 
