@@ -59,6 +59,8 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
     }
     write_calculix_inp(file, fields.mesh, deck);
   } else if (options.format == "vtu") {
+    fields.stress = recover_stress(fields.mesh, fields.inputs.materials,
+                                   fields.solution.displacements.front());
     write_part(file, input, fields);
   } else {
     throw InvalidInput(fmt::format(

@@ -45,6 +45,7 @@ struct EvaluationFields {
   QuadraticSurface surface;  // as meshed
   TetMesh mesh;              // ten-node
   ElasticSolution solution;
+  StressField stress;  // of the first load case; filled in once, at the end
   EvaluatedCase inputs;
 };
 

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "fea/stress.h"
 #include "io/atomic_file.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
@@ -72,21 +71,19 @@ Field node_field(const char* name, const std::string& unit, int components,
 
 MeshFields part_fields(const Case& input, const EvaluationFields& fields) {
   const VectorX& u = fields.solution.displacements.front();
-  const StressField found =
-      recover_stress(fields.mesh, fields.inputs.materials, u);
   MeshFields out;
   out.points.push_back(node_field("displacement", input.units.length, 3,
                                   u.data(),
                                   static_cast<std::size_t>(u.size())));
   Field stress{.name = "stress", .unit = input.units.pressure, .components = 6};
-  for (const auto& s : found.nodal) {
+  for (const auto& s : fields.stress.nodal) {
     // xx yy zz xy yz zx: VTK's order of a symmetric tensor too.
     stress.values.insert(stress.values.end(), s.begin(), s.end());
   }
   out.points.push_back(std::move(stress));
   out.points.push_back(node_field("von_mises", input.units.pressure, 1,
-                                  found.von_mises.data(),
-                                  found.von_mises.size()));
+                                  fields.stress.von_mises.data(),
+                                  fields.stress.von_mises.size()));
   out.notes = {{"title", input.title},
                {"length_unit", input.units.length},
                {"load_case", input.load_cases.front().name}};

@@ -9,6 +9,7 @@
 #include "core/timer.h"
 #include "optimize/problem.h"
 #include "pipeline/match_targets.h"
+#include "pipeline/part_warnings.h"
 #include "pipeline/results.h"
 
 namespace meniscus {
@@ -165,6 +166,12 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
     result_.status = RunStatus::Failed;
     result_.message = result_.best->failure->message;
     return;
+  }
+  last_fields_.stress =
+      recover_stress(last_fields_.mesh, last_fields_.inputs.materials,
+                     last_fields_.solution.displacements.front());
+  for (std::string& warning : part_warnings(input_, last_fields_)) {
+    result_.warnings.push_back(std::move(warning));
   }
   if (fields != nullptr) {
     *fields = std::move(last_fields_);

@@ -79,6 +79,20 @@ TEST(StartCase, ExportsFromTheResultsFolderAlone) {
   EXPECT_THROW(export_part(folder.path() / "none", {}), Error);
 }
 
+TEST(StartCase, WarnsWhereLinearAnalysisEnds) {
+  const TempFolder folder;
+  std::vector<std::string> overrides = kCoarse;
+  overrides.insert(overrides.end(), {"load=3e6", "study.kind=analyse"});
+  const Case input = start_case(overrides);
+  StudyStore store =
+      StudyStore::start(folder.path().string(), {.case_hash = input.hash});
+  const RunResult result = run_study(input, store, {.estimate_errors = false});
+  ASSERT_EQ(result.status, RunStatus::Converged) << result.message;
+  ASSERT_EQ(result.warnings.size(), 2u);
+  EXPECT_NE(result.warnings[0].find("above yield"), std::string::npos);
+  EXPECT_NE(result.warnings[1].find("not small"), std::string::npos);
+}
+
 TEST(MatchTargets, ScaleByTheStartAndJudgeByThePresent) {
   Case input = start_case();
   input.study.equal = {"sway", "mass"};
