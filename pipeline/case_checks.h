@@ -1,58 +1,31 @@
-/// Checks of a case beyond the form of its keys: names that refer to each
-/// other, bodies that close, numbers that make sense.
+/// Checks of a case beyond the form of its keys: parameters that depend on
+/// each other, bodies that close, numbers that make sense.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "pipeline/case.h"
+#include "pipeline/case_problems.h"
 
 namespace meniscus {
 
-/// Problems and warnings of one file, in order of line.
-class CaseProblems {
- public:
-  explicit CaseProblems(std::string path) : path_(std::move(path)) {}
+/// Sets `parameter_order`: each after those that it uses. A circle is named.
+void order_parameters(Case& input, CaseProblems& problems);
 
-  void add(int line, const std::string& message);
-  void add_text(const std::string& message);  // that names its place itself
-  void warn(int line, const std::string& message);
-  /// "there is no material 'x'; did you mean 'y'?"
-  void unknown(int line, const char* what, const std::string& name,
-               const std::vector<std::string>& known);
-  bool empty() const { return problems_.empty(); }
-  std::vector<std::string> take();  // at most 20
-  std::vector<std::string> take_warnings();
+/// Sets `refinements` and makes `film` the nearest fea / 2^k, k from 0 to 4,
+/// with a warning when it was off by more than 1 %.
+void nest_film(Resolution& resolution, SourceLine line, CaseProblems& problems);
 
- private:
-  struct Entry {
-    int line;
-    std::string text;
-  };
-  std::string path_;
-  std::vector<Entry> problems_;
-  std::vector<Entry> warnings_;
-};
+/// Bodies close: each curve of a body's surfaces bounds two of them.
+void check_bodies(const Case& input, CaseProblems& problems);
 
-void check_bounds(const DesignVariable& variable, int line,
-                  CaseProblems& problems);
+/// When nothing is wrong so far: the numbers at the initial design and at both
+/// ends of every design variable, and warnings of what serves nothing.
+void check_case(const Case& input, CaseProblems& problems);
 
-/// Sets `refinements`; film must be fea / 2^k.
-void check_nesting(Resolution& resolution, int line, CaseProblems& problems);
-
-/// A load, support or response acts on a solid surface or on a body's film.
-void check_surface_name(const Case& input, const std::string& surface, int line,
-                        CaseProblems& problems);
-
-void check_study(const Case& input, CaseProblems& problems);
-
-/// References between curves, films, solids and bodies; order of parameters
-/// (sets `parameter_order`); the numbers at the initial design and at both
-/// ends of every design variable.
-void check_case(Case& input, CaseProblems& problems);
-
-/// Study kinds of later versions.
-bool is_later_study(const std::string& kind);
+/// Films and solids.
+std::vector<std::string> surface_names(const Case& input);
 
 /// "two_arm" for "cases/two_arm/case.toml", else the file's stem.
 std::string case_name(const std::string& path);

@@ -11,16 +11,17 @@
 namespace meniscus {
 
 /// All that was found: a case when there are no problems. Each problem and
-/// warning reads "PATH:LINE: what, found, expected, try".
+/// warning reads "PATH:LINE: what, found, expected, try"; one that an override
+/// made reads "PATH: --set NAME=VALUE: ...".
 struct CaseReading {
   std::optional<Case> input;
-  std::vector<std::string> problems;
+  std::vector<std::string> problems;  // at most 20, and how many more
   std::vector<std::string> warnings;
 };
 
 /// `overrides`: "name=value" with the name of a parameter, of a design variable
 /// (its initial value) or a dotted key ("resolution.fea"); the value as it
-/// would stand in the file. At most 20 problems are listed.
+/// would stand in the file, quotes may be left out.
 CaseReading read_case_file(const std::string& path,
                            const std::vector<std::string>& overrides = {});
 

@@ -3,7 +3,7 @@
 /// written from it.
 #pragma once
 
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,25 +16,26 @@ enum class KeyType {
   Choice,  // one of `choices`
   Name,    // of something defined elsewhere in the file
   Names,   // array of names
-  Number,  // plain number
   Integer,
-  Quantity,   // number, expression or "value unit"
-  Vector,     // array of three quantities
-  Vectors,    // array of arrays of three quantities
-  Bounds,     // array of two plain numbers
-  Numbers,    // array of plain numbers
-  NumberMap,  // inline table: name = number
-  Supports,   // array of inline tables: table "support"
-  Loads       // array of inline tables: table "load"
+  Quantity,     // number, expression or "value unit"
+  Constant,     // a quantity that no design variable moves
+  Vector,       // array of three quantities
+  Vectors,      // array of arrays of three quantities
+  Bounds,       // array of two constants
+  Constants,    // array of constants
+  ConstantMap,  // inline table: response = constant, of its dimension
+  Supports,     // array of inline tables: table "support"
+  Loads         // array of inline tables: table "load"
 };
 
 struct KeySpec {
   const char* key;
   KeyType type;
-  Dimension dimension;
+  std::optional<Dimension> dimension;  // none: any
   bool required;
   const char* doc;
   const char* choices = "";  // "a|b|c"
+  const char* later = "";    // choices of later versions, refused by name
 };
 
 struct TableSpec {
@@ -48,15 +49,22 @@ struct TableSpec {
 /// All tables, in the order of the reference.
 const std::vector<TableSpec>& case_tables();
 
-/// The entry of that name; must exist.
+/// The table of that name; must exist.
 const TableSpec& case_table(const std::string& name);
+
+/// The key of that name, or nothing.
+const KeySpec* find_key(const TableSpec& table, const std::string& key);
+
+/// The parts of "a|b|c".
+std::vector<std::string> split_choices(const char* choices);
 
 /// Tables of later versions: refused by name instead of "unknown".
 bool is_later_table(const std::string& name);
 
+/// A JSON schema (draft 2020-12) of the file, for editors.
 std::string json_schema();
 
-/// The reference's tables as markdown.
+/// The reference's tables as markdown; docs/case-file.md holds them.
 std::string schema_markdown();
 
 }  // namespace meniscus

@@ -1,0 +1,131 @@
+/// What the tables of a case file hold: names checked, expressions compiled,
+/// nothing computed.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/expression.h"
+#include "evolve/film_system.h"
+#include "fea/elasticity.h"
+
+namespace meniscus {
+
+/// Where an entry stands in the case file: its line from 1; -k where the k-th
+/// override (--set) put it; 0 when not known.
+using SourceLine = int;
+
+/// A number of the case: an expression over the case's names (design variables
+/// first, then parameters), in case units.
+struct Quantity {
+  Expression expression;
+  SourceLine line = 0;
+  std::string key;  // "curves.support.radius", for messages
+};
+using QuantityVector = std::array<Quantity, 3>;
+
+struct DesignVariable {
+  std::string name;
+  double initial = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+  SourceLine line = 0;
+};
+
+struct Parameter {
+  std::string name;
+  Quantity value;
+};
+
+enum class CurveKind { Circle, Ellipse, Rectangle, Polygon };
+
+struct CurveEntry {
+  std::string name;
+  CurveKind kind = CurveKind::Circle;
+  QuantityVector center, normal, axis;
+  Quantity radius, radius_1, radius_2, width, height, corner_radius;
+  std::vector<QuantityVector> points;
+  SourceLine line = 0;
+};
+
+struct FilmEntry {
+  FilmSpec spec;  // tension filled in by evaluate()
+  Quantity tension;
+  SourceLine line = 0;
+};
+
+struct CapEntry {
+  CapSpec spec;
+  SourceLine line = 0;
+};
+
+struct BodyEntry {
+  std::string name;
+  std::vector<std::string> enclosed_by;
+  std::optional<Quantity> volume, pressure;
+  int material = 0;  // index into materials
+  SourceLine line = 0;
+  SourceLine enclosure_line = 0;  // of enclosed_by
+};
+
+struct MaterialEntry {
+  std::string name;
+  Quantity youngs_modulus, poisson_ratio, density;
+  std::optional<Quantity> yield_strength;
+  SourceLine line = 0;
+};
+
+struct LoadEntry {
+  std::string surface;
+  std::optional<QuantityVector> force;  // total, else pressure
+  std::optional<Quantity> pressure;
+};
+
+struct LoadCaseEntry {
+  std::string name;
+  std::vector<Support> supports;
+  std::vector<LoadEntry> loads;
+  SourceLine line = 0;
+};
+
+enum class ResponseKind {
+  MeanDisplacement,
+  Mass,
+  Volume,
+  MaxVonMises,
+  StrainEnergy,
+  FilmArea
+};
+
+struct ResponseEntry {
+  std::string name;
+  ResponseKind kind = ResponseKind::MeanDisplacement;
+  std::string surface;
+  QuantityVector direction;
+  int load_case = 0;  // index
+  SourceLine line = 0;
+};
+
+struct Resolution {
+  double fea = 0.0;     // edge of the meshed film [length]
+  double film = 0.0;    // edge of its nested refinement [length]
+  int refinements = 1;  // film = fea / 2^refinements
+  std::vector<double> export_edges;
+};
+
+enum class StudyKind { Analyse, Match };
+
+struct StudyEntry {
+  StudyKind kind = StudyKind::Analyse;
+  std::vector<std::string> equal;
+  std::vector<std::pair<std::string, double>> targets;
+  double tolerance = 1e-3;
+  std::string method = "ceres";
+  int max_evaluations = 100;
+  SourceLine line = 0;
+};
+
+}  // namespace meniscus

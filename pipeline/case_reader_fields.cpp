@@ -1,0 +1,356 @@
+#include "pipeline/case_reader_fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/nearest_name.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr std::size_t kShown = 40;  // characters of a text in a message
+
+const char* const kQuantity =
+    "a number, an expression in quotes or a value with a unit";
+
+}  // namespace
+
+SourceLine CaseContext::line_of(const toml::node& node) const {
+  const auto at = overridden.find(&node);
+  return at != overridden.end() ? -at->second
+                                : static_cast<int>(node.source().begin.line);
+}
+
+std::string described(const toml::node& node) {
+  if (const auto* text = node.as_string()) {
+    const std::string& value = text->get();
+    return fmt::format("the text '{}{}'", value.substr(0, kShown),
+                       value.size() > kShown ? "..." : "");
+  }
+  if (const auto* array = node.as_array()) {
+    return fmt::format("an array of {}", array->size());
+  }
+  if (node.is_number()) {
+    return fmt::format("{:g}", *node.value<double>());
+  }
+  return node.is_table()     ? "a table"
+         : node.is_boolean() ? (*node.value<bool>() ? "true" : "false")
+                             : "a date or time";
+}
+
+std::optional<Quantity> read_quantity(CaseContext& context,
+                                      const toml::node& node,
+                                      std::optional<Dimension> dimension,
+                                      const std::string& key) {
+  Quantity result{.line = context.line_of(node), .key = key};
+  const auto* text = node.as_string();
+  if (text == nullptr) {
+    const auto value = node.value<double>();
+    if (node.is_number() && value && std::isfinite(*value)) {
+      result.expression = Expression(*value);
+      return result;
+    }
+    context.problems.add(result.line, fmt::format("{} is {}; expected {}", key,
+                                                  described(node), kQuantity));
+    return std::nullopt;
+  }
+  try {
+    result.expression =
+        looks_like_quantity(text->get())
+            ? Expression(parse_quantity(text->get(), dimension, context.units))
+            : Expression::parse(text->get(), context.names);
+    for (const int name : result.expression.names_used()) {
+      context.used[static_cast<std::size_t>(name)] = 1;
+    }
+    return result;
+  } catch (const ExpressionError& error) {
+    context.problems.add(
+        result.line, fmt::format("{}: {} at character {}", key, error.what(),
+                                 error.column()));
+  } catch (const InvalidInput& error) {
+    context.problems.add(result.line, fmt::format("{}: {}", key, error.what()));
+  }
+  return std::nullopt;
+}
+
+std::optional<double> read_constant(CaseContext& context,
+                                    const toml::node& node,
+                                    std::optional<Dimension> dimension,
+                                    const std::string& key) {
+  const auto quantity = read_quantity(context, node, dimension, key);
+  if (!quantity) {
+    return std::nullopt;
+  }
+  std::vector<double> values(context.names.size(), 0.0);
+  for (const int name : quantity->expression.names_used()) {
+    const auto k = static_cast<std::size_t>(name);
+    if (k >= context.constants.size() || !context.constants[k]) {
+      context.problems.add(
+          quantity->line,
+          fmt::format("{} depends on '{}', which a design variable moves or "
+                      "which has no value; expected a number that is the same "
+                      "for every design",
+                      key, context.names[k]));
+      return std::nullopt;
+    }
+    values[k] = *context.constants[k];
+  }
+  try {
+    return quantity->expression.evaluate(values);
+  } catch (const ExpressionError& error) {
+    context.problems.add(quantity->line,
+                         fmt::format("{}: {}", key, error.what()));
+    return std::nullopt;
+  }
+}
+
+CaseTable::CaseTable(CaseContext& context, const toml::table& table,
+                     const TableSpec& spec, std::string name, std::string path)
+    : context_(&context),
+      table_(&table),
+      spec_(&spec),
+      name_(std::move(name)),
+      path_(std::move(path)) {
+  std::vector<std::string> known;
+  for (const KeySpec& key : spec.keys) {
+    known.emplace_back(key.key);
+    if (key.required && !table.contains(key.key)) {
+      context.problems.add(line(), fmt::format("{} has no '{}' ({}); add it",
+                                               path_, key.key, key.doc));
+    }
+  }
+  for (const auto& [key, node] : table) {
+    const std::string found(key.str());
+    if (find_key(spec, found) == nullptr) {
+      context.problems.add(context.line_of(node),
+                           fmt::format("unknown key '{}' in {}{}", found, path_,
+                                       advice(found, known)));
+    }
+  }
+}
+
+SourceLine CaseTable::line(const char* key) const {
+  const toml::node* node = table_->get(key);
+  return node == nullptr ? line() : context_->line_of(*node);
+}
+
+std::vector<std::string> CaseTable::keys() const {
+  std::vector<std::string> found;
+  for (const auto& [key, node] : *table_) {
+    found.emplace_back(key.str());
+  }
+  return found;
+}
+
+void CaseTable::note(const char* key, const std::string& expected) const {
+  context_->problems.add(line(key),
+                         fmt::format("{}.{} is {}; expected {}", path_, key,
+                                     described(*node(key)), expected));
+}
+
+std::optional<Dimension> CaseTable::dimension(const char* key) const {
+  return find_key(*spec_, key)->dimension;
+}
+
+std::optional<std::string> CaseTable::text(const char* key) const {
+  if (!has(key)) {
+    return std::nullopt;
+  }
+  if (const auto* value = node(key)->as_string()) {
+    return value->get();
+  }
+  note(key, "text in quotes");
+  return std::nullopt;
+}
+
+std::optional<std::string> CaseTable::choice(const char* key) const {
+  const auto value = text(key);
+  if (!value) {
+    return value;
+  }
+  const KeySpec& spec = *find_key(*spec_, key);
+  const auto among = [&](const char* list) {
+    const std::vector<std::string> choices = split_choices(list);
+    return std::find(choices.begin(), choices.end(), *value) != choices.end();
+  };
+  if (among(spec.choices)) {
+    return value;
+  }
+  const std::vector<std::string> choices = split_choices(spec.choices);
+  const std::string near = nearest_name(*value, choices);
+  const std::string expected =
+      near.empty() ? fmt::format("expected one of {}", fmt::join(choices, ", "))
+                   : fmt::format("did you mean '{}'?", near);
+  if (among(spec.later)) {
+    context_->problems.add(
+        line(key), fmt::format("{}.{} '{}' is not available in this version; "
+                               "expected one of {}",
+                               path_, key, *value, fmt::join(choices, ", ")));
+  } else {
+    context_->problems.add(line(key),
+                           fmt::format("{}.{} is {}; {}", path_, key,
+                                       described(*node(key)), expected));
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> CaseTable::names(const char* key) const {
+  std::vector<std::string> result;
+  if (!has(key)) {
+    return result;
+  }
+  const toml::array* array = node(key)->as_array();
+  bool good = array != nullptr && !array->empty();
+  for (std::size_t k = 0; good && k < array->size(); ++k) {
+    const auto* name = array->get(k)->as_string();
+    good = name != nullptr;
+    if (good) {
+      result.push_back(name->get());
+    }
+  }
+  if (!good) {
+    note(key, "names: [\"a\", \"b\"]");
+    result.clear();
+  }
+  return result;
+}
+
+std::optional<int> CaseTable::positive_integer(const char* key) const {
+  if (!has(key)) {
+    return std::nullopt;
+  }
+  const auto value = node(key)->value_exact<std::int64_t>();
+  if (value && *value >= 1 && *value <= std::numeric_limits<int>::max()) {
+    return static_cast<int>(*value);
+  }
+  note(key, "a whole number above 0");
+  return std::nullopt;
+}
+
+std::optional<Quantity> CaseTable::quantity(const char* key) const {
+  if (!has(key)) {
+    return std::nullopt;
+  }
+  return read_quantity(*context_, *node(key), dimension(key),
+                       fmt::format("{}.{}", path_, key));
+}
+
+std::optional<double> CaseTable::constant(const char* key) const {
+  if (!has(key)) {
+    return std::nullopt;
+  }
+  return read_constant(*context_, *node(key), dimension(key),
+                       fmt::format("{}.{}", path_, key));
+}
+
+std::vector<double> CaseTable::constants(const char* key) const {
+  std::vector<double> result;
+  if (!has(key)) {
+    return result;
+  }
+  const bool pair = find_key(*spec_, key)->type == KeyType::Bounds;
+  const toml::array* array = node(key)->as_array();
+  if (array == nullptr || array->empty() || (pair && array->size() != 2)) {
+    note(key, pair ? "two numbers: [least, largest]" : "numbers: [5.0, 2.0]");
+    return result;
+  }
+  for (const toml::node& item : *array) {
+    if (const auto value = read_constant(*context_, item, dimension(key),
+                                         fmt::format("{}.{}", path_, key))) {
+      result.push_back(*value);
+    }
+  }
+  if (result.size() != array->size()) {
+    result.clear();
+  }
+  return result;
+}
+
+std::optional<QuantityVector> CaseTable::vector(const char* key) const {
+  if (!has(key)) {
+    return std::nullopt;
+  }
+  const toml::array* array = node(key)->as_array();
+  if (array == nullptr || array->size() != 3) {
+    note(key, "[x, y, z]");
+    return std::nullopt;
+  }
+  QuantityVector result;
+  bool good = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    auto component =
+        read_quantity(*context_, *array->get(k), dimension(key),
+                      fmt::format("{}.{}[{}]", path_, key, "xyz"[k]));
+    good = good && component.has_value();
+    result[k] = std::move(component).value_or(Quantity{});
+  }
+  return good ? std::optional(result) : std::nullopt;
+}
+
+std::vector<QuantityVector> CaseTable::vectors(const char* key) const {
+  std::vector<QuantityVector> result;
+  if (!has(key)) {
+    return result;
+  }
+  const toml::array* array = node(key)->as_array();
+  const bool points =
+      array != nullptr && !array->empty() &&
+      std::all_of(array->begin(), array->end(), [](const toml::node& item) {
+        return item.is_array() && item.as_array()->size() == 3;
+      });
+  if (!points) {
+    note(key, "points: [[x, y, z], [x, y, z], ...]");
+    return result;
+  }
+  for (std::size_t p = 0; p < array->size(); ++p) {
+    QuantityVector point;
+    for (std::size_t k = 0; k < 3; ++k) {
+      point[k] =
+          read_quantity(*context_, *array->get(p)->as_array()->get(k),
+                        dimension(key),
+                        fmt::format("{}.{}[{}][{}]", path_, key, p, "xyz"[k]))
+              .value_or(Quantity{});
+    }
+    result.push_back(std::move(point));
+  }
+  return result;
+}
+
+std::vector<CaseTable> CaseTable::tables(const char* key,
+                                         const char* spec) const {
+  std::vector<CaseTable> result;
+  if (!has(key)) {
+    return result;
+  }
+  const toml::array* array = node(key)->as_array();
+  const bool good =
+      array != nullptr && !array->empty() &&
+      std::all_of(array->begin(), array->end(),
+                  [](const toml::node& n) { return n.is_table(); });
+  if (!good) {
+    note(key, "tables, at least one: [{ on = \"...\", ... }]");
+    return result;
+  }
+  for (const toml::node& item : *array) {
+    result.emplace_back(*context_, *item.as_table(), case_table(spec), "",
+                        fmt::format("{}.{}", path_, key));
+  }
+  return result;
+}
+
+Quantity CaseTable::quantity_or_zero(const char* key) const {
+  return quantity(key).value_or(
+      Quantity{.line = line(key), .key = fmt::format("{}.{}", path_, key)});
+}
+
+QuantityVector CaseTable::vector_or_zero(const char* key) const {
+  const Quantity zero{.line = line(key),
+                      .key = fmt::format("{}.{}", path_, key)};
+  return vector(key).value_or(QuantityVector{zero, zero, zero});
+}
+
+}  // namespace meniscus

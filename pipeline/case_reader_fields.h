@@ -1,0 +1,99 @@
+/// Typed access to the tables of a case file: each value is checked against
+/// the vocabulary (pipeline/case_schema.h), and what is wrong is noted with its
+/// line. Part of the case-file reader; nothing else sees TOML.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "core/units.h"
+#include "pipeline/case_entries.h"
+#include "pipeline/case_problems.h"
+#include "pipeline/case_schema.h"
+
+namespace meniscus {
+
+/// Nodes that overrides put into the file: the override's number, from 1.
+using OverriddenNodes = std::map<const toml::node*, int>;
+
+/// What all entries of one file share.
+struct CaseContext {
+  CaseProblems& problems;
+  const OverriddenNodes& overridden;
+  UnitSystem units;
+  std::vector<std::string> names;  // that expressions know, by position
+  std::vector<char> used;          // per name: some expression has it
+  // Per name: its value when no design variable moves it.
+  std::vector<std::optional<double>> constants;
+  bool bodies_good = false;  // nothing was wrong with them
+
+  SourceLine line_of(const toml::node& node) const;
+};
+
+/// "a table", "text 'abc'", "3.5": what was found, for messages.
+std::string described(const toml::node& node);
+
+/// One table of the file, such as [curves.support], and its place.
+class CaseTable {
+ public:
+  /// Notes unknown keys and missing ones that are required.
+  CaseTable(CaseContext& context, const toml::table& table,
+            const TableSpec& spec, std::string name, std::string path);
+
+  const std::string& name() const { return name_; }
+  const std::string& path() const { return path_; }
+  SourceLine line() const { return context_->line_of(*table_); }
+  /// Of the key's value, or of the table when it is not there.
+  SourceLine line(const char* key) const;
+  bool has(const char* key) const { return table_->contains(key); }
+  std::vector<std::string> keys() const;
+
+  // Absent or wrong values come back empty; wrong ones have been noted.
+  std::optional<std::string> text(const char* key) const;
+  std::optional<std::string> choice(const char* key) const;
+  std::vector<std::string> names(const char* key) const;
+  std::optional<int> positive_integer(const char* key) const;
+  std::optional<Quantity> quantity(const char* key) const;
+  std::optional<double> constant(const char* key) const;
+  std::vector<double> constants(const char* key) const;
+  std::optional<QuantityVector> vector(const char* key) const;
+  std::vector<QuantityVector> vectors(const char* key) const;
+  /// The array's tables, checked against the vocabulary's table `spec`.
+  std::vector<CaseTable> tables(const char* key, const char* spec) const;
+
+  /// As quantity() and vector(), with 0 for absent or wrong values.
+  Quantity quantity_or_zero(const char* key) const;
+  QuantityVector vector_or_zero(const char* key) const;
+
+  const toml::node* node(const char* key) const { return table_->get(key); }
+
+ private:
+  void note(const char* key, const std::string& expected) const;
+  std::optional<Dimension> dimension(const char* key) const;
+
+  CaseContext* context_;
+  const toml::table* table_;
+  const TableSpec* spec_;
+  std::string name_;
+  std::string path_;
+};
+
+/// A number, an expression or a value with a unit; nothing, and a note, when
+/// it is none. `dimension`: none allows any.
+std::optional<Quantity> read_quantity(CaseContext& context,
+                                      const toml::node& node,
+                                      std::optional<Dimension> dimension,
+                                      const std::string& key);
+
+/// The same where no design variable may have a say.
+std::optional<double> read_constant(CaseContext& context,
+                                    const toml::node& node,
+                                    std::optional<Dimension> dimension,
+                                    const std::string& key);
+
+}  // namespace meniscus

@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "pipeline/case_checks.h"
+#include "pipeline/case_reader_tables.h"
+
+namespace meniscus {
+
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+struct CurveKeys {
+  CurveKind kind;
+  std::vector<std::string> needed;
+  std::vector<std::string> optional;
+};
+
+const std::map<std::string, CurveKeys>& curve_kinds() {
+  static const std::map<std::string, CurveKeys> kinds = {
+      {"circle", {CurveKind::Circle, {"center", "normal", "radius"}, {}}},
+      {"ellipse",
+       {CurveKind::Ellipse,
+        {"center", "normal", "axis", "radius_1", "radius_2"},
+        {}}},
+      {"rectangle",
+       {CurveKind::Rectangle,
+        {"center", "normal", "axis", "width", "height"},
+        {"corner_radius"}}},
+      {"polygon", {CurveKind::Polygon, {"points"}, {}}}};
+  return kinds;
+}
+
+/// The keys that stand there are those of its kind.
+void check_curve_keys(CaseContext& context, const CaseTable& table,
+                      const std::string& kind) {
+  const CurveKeys& keys = curve_kinds().at(kind);
+  for (const std::string& key : keys.needed) {
+    if (!table.has(key.c_str())) {
+      context.problems.add(table.line(),
+                           fmt::format("{} is a {} and has no '{}'; add it",
+                                       table.path(), kind, key));
+    }
+  }
+  for (const std::string& key : table.keys()) {
+    if (key != "kind" && find_key(case_table("curves"), key) != nullptr &&
+        !contains(keys.needed, key) && !contains(keys.optional, key)) {
+      context.problems.add(
+          table.line(key.c_str()),
+          fmt::format("{}.{} does not belong to a {}; it has {}", table.path(),
+                      key, kind, fmt::join(keys.needed, ", ")));
+    }
+  }
+}
+
+void read_curves(CaseContext& context, const toml::table& root, Case& result) {
+  for (const CaseTable& table : named_tables(context, root, "curves")) {
+    CurveEntry curve{.name = table.name(), .line = table.line()};
+    if (const auto kind = table.choice("kind")) {
+      curve.kind = curve_kinds().at(*kind).kind;
+      check_curve_keys(context, table, *kind);
+    }
+    curve.center = table.vector_or_zero("center");
+    curve.normal = table.vector_or_zero("normal");
+    curve.axis = table.vector_or_zero("axis");
+    curve.radius = table.quantity_or_zero("radius");
+    curve.radius_1 = table.quantity_or_zero("radius_1");
+    curve.radius_2 = table.quantity_or_zero("radius_2");
+    curve.width = table.quantity_or_zero("width");
+    curve.height = table.quantity_or_zero("height");
+    curve.corner_radius = table.quantity_or_zero("corner_radius");
+    curve.points = table.vectors("points");
+    result.curves.push_back(std::move(curve));
+  }
+}
+
+std::vector<std::string> curve_names(const Case& result) {
+  std::vector<std::string> names;
+  for (const CurveEntry& curve : result.curves) {
+    names.push_back(curve.name);
+  }
+  return names;
+}
+
+struct FilmNeeds {
+  FilmKind kind;
+  std::size_t least;
+  std::size_t most;
+  const char* text;
+};
+
+void check_film_curves(CaseContext& context, const CaseTable& table,
+                       const std::vector<std::string>& known,
+                       const std::vector<std::string>& curves) {
+  std::set<std::string> seen;
+  for (const std::string& curve : curves) {
+    if (!contains(known, curve)) {
+      context.problems.unknown(table.line("curves"), "curve", curve, known);
+    } else if (!seen.insert(curve).second) {
+      context.problems.add(table.line("curves"),
+                           fmt::format("{} names curve '{}' twice; name each "
+                                       "once",
+                                       table.path(), curve));
+    }
+  }
+}
+
+void read_films(CaseContext& context, const toml::table& root, Case& result) {
+  static const std::map<std::string, FilmNeeds> kinds = {
+      {"branch",
+       {FilmKind::Branch, 2, std::size_t(-1), "a branch needs two or more"}},
+      {"loft", {FilmKind::Loft, 2, 2, "a loft needs two"}},
+      {"disk", {FilmKind::Disk, 1, 1, "a disk needs one"}}};
+  const std::vector<std::string> known = curve_names(result);
+  for (const CaseTable& table : named_tables(context, root, "films")) {
+    FilmEntry film{.line = table.line()};
+    film.spec.name = table.name();
+    film.spec.curves = table.names("curves");
+    const std::size_t count = film.spec.curves.size();
+    const auto kind = table.choice("kind");
+    if (kind && count > 0) {
+      const FilmNeeds& needs = kinds.at(*kind);
+      film.spec.kind = needs.kind;
+      if (count < needs.least || count > needs.most) {
+        context.problems.add(
+            table.line("curves"),
+            fmt::format("{} names {} curve{}; {}", table.path(), count,
+                        count == 1 ? "" : "s", needs.text));
+      }
+    }
+    check_film_curves(context, table, known, film.spec.curves);
+    film.tension = table.quantity("tension").value_or(
+        Quantity{.expression = Expression(1.0),
+                 .line = table.line(),
+                 .key = table.path() + ".tension"});
+    result.films.push_back(std::move(film));
+  }
+}
+
+void read_solids(CaseContext& context, const toml::table& root, Case& result) {
+  const std::vector<std::string> known = curve_names(result);
+  for (const CaseTable& table : named_tables(context, root, "solids")) {
+    table.choice("kind");
+    CapEntry cap{.spec = {.name = table.name(), .curve = ""},
+                 .line = table.line()};
+    if (const auto curve = table.text("curve")) {
+      cap.spec.curve = *curve;
+      if (!contains(known, *curve)) {
+        context.problems.unknown(table.line("curve"), "curve", *curve, known);
+      }
+    }
+    for (const FilmEntry& film : result.films) {
+      if (film.spec.name == cap.spec.name) {
+        context.problems.add(
+            table.line(), fmt::format("'{}' is both a film and a solid; rename "
+                                      "one, or loads could not tell them apart",
+                                      cap.spec.name));
+      }
+    }
+    result.caps.push_back(std::move(cap));
+  }
+}
+
+void read_materials(CaseContext& context, const toml::table& root,
+                    Case& result) {
+  for (const CaseTable& table : named_tables(context, root, "materials")) {
+    MaterialEntry material{.name = table.name(), .line = table.line()};
+    material.youngs_modulus = table.quantity_or_zero("youngs_modulus");
+    material.poisson_ratio = table.quantity_or_zero("poisson_ratio");
+    material.density = table.quantity_or_zero("density");
+    material.yield_strength = table.quantity("yield_strength");
+    result.materials.push_back(std::move(material));
+  }
+}
+
+void find_material(CaseContext& context, const CaseTable& table,
+                   const Case& result, BodyEntry& body) {
+  const auto wanted = table.text("material");
+  if (!wanted) {
+    return;
+  }
+  std::vector<std::string> known;
+  for (const MaterialEntry& material : result.materials) {
+    if (material.name == *wanted) {
+      body.material = static_cast<int>(known.size());
+      return;
+    }
+    known.push_back(material.name);
+  }
+  context.problems.unknown(table.line("material"), "material", *wanted, known);
+}
+
+void read_bodies(CaseContext& context, const toml::table& root, Case& result) {
+  const std::vector<std::string> surfaces = surface_names(result);
+  for (const CaseTable& table : named_tables(context, root, "bodies")) {
+    BodyEntry body{.name = table.name(), .line = table.line()};
+    std::set<std::string> seen;
+    for (const std::string& surface : table.names("enclosed_by")) {
+      if (!contains(surfaces, surface)) {
+        context.problems.unknown(table.line("enclosed_by"), "film or solid",
+                                 surface, surfaces);
+      } else if (!seen.insert(surface).second) {
+        context.problems.add(
+            table.line("enclosed_by"),
+            fmt::format("{}.enclosed_by names '{}' twice; name each once",
+                        table.path(), surface));
+      }
+      body.enclosed_by.push_back(surface);
+    }
+    body.enclosure_line = table.line("enclosed_by");
+    body.volume = table.quantity("volume");
+    body.pressure = table.quantity("pressure");
+    if (table.has("volume") && table.has("pressure")) {
+      context.problems.add(
+          table.line("pressure"),
+          table.path() + " has both a volume and a pressure; keep one");
+    }
+    find_material(context, table, result, body);
+    result.bodies.push_back(std::move(body));
+  }
+}
+
+}  // namespace
+
+void read_geometry(CaseContext& context, const toml::table& root,
+                   Case& result) {
+  read_curves(context, root, result);
+  read_films(context, root, result);
+  read_solids(context, root, result);
+  read_materials(context, root, result);
+  const std::size_t before = context.problems.size();
+  read_bodies(context, root, result);
+  check_bodies(result, context.problems);
+  context.bodies_good =
+      !result.bodies.empty() && context.problems.size() == before;
+}
+
+}  // namespace meniscus

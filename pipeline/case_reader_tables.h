@@ -1,0 +1,32 @@
+/// From the checked tables of a file to the entries of a Case. Part of the
+/// case-file reader.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/case.h"
+#include "pipeline/case_reader_fields.h"
+
+namespace meniscus {
+
+/// Everything: the case's entries, and what is wrong in `problems`.
+void read_tables(const toml::table& root, const OverriddenNodes& overridden,
+                 CaseProblems& problems, Case& result);
+
+/// The tables [`table`.NAME] in the order of the file.
+std::vector<CaseTable> named_tables(CaseContext& context,
+                                    const toml::table& root, const char* table);
+
+/// The table [`table`], when there is one.
+std::optional<CaseTable> single_table(CaseContext& context,
+                                      const toml::table& root,
+                                      const char* table);
+
+/// Curves, films, solids, materials, bodies, in this order; sets bodies_good.
+void read_geometry(CaseContext& context, const toml::table& root, Case& result);
+
+/// Load cases, responses, study; after the geometry.
+void read_analysis(CaseContext& context, const toml::table& root, Case& result);
+
+}  // namespace meniscus
