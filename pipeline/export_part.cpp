@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "fea/loads.h"
-#include "io/calculix_inp.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
 #include "pipeline/results.h"
@@ -24,9 +23,11 @@ Case at_edge(Case input, std::optional<double> edge) {
   return input;
 }
 
-void write_deck(const fs::path& file, const Case& input,
-                const EvaluationFields& fields, const VectorX& design,
-                const std::string& program_version) {
+}  // namespace
+
+CalculixDeck calculix_deck_of(const Case& input, const EvaluationFields& fields,
+                              const VectorX& design,
+                              const std::string& program_version) {
   CalculixDeck deck;
   deck.comments = {"Meniscus " + program_version, "case: " + input.title,
                    "units: " + input.units.name};
@@ -58,10 +59,8 @@ void write_deck(const fs::path& file, const Case& input,
     }
     deck.steps.push_back(std::move(step));
   }
-  write_calculix_inp(file, fields.mesh, deck);
+  return deck;
 }
-
-}  // namespace
 
 fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   const StudyStore store = StudyStore::read(folder.string());
@@ -88,7 +87,9 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
                                 evaluation.failure->message));
   }
   if (options.format == "inp") {
-    write_deck(file, input, fields, design, options.program_version);
+    write_calculix_inp(
+        file, fields.mesh,
+        calculix_deck_of(input, fields, design, options.program_version));
   } else if (options.format == "vtu") {
     write_part(file, input, fields);
   } else {

@@ -6,6 +6,9 @@
 #include <string>
 
 #include "core/monitor.h"
+#include "io/calculix_inp.h"
+#include "pipeline/case.h"
+#include "pipeline/forward_model.h"
 
 namespace meniscus {
 
@@ -23,5 +26,11 @@ struct ExportOptions {
 /// finished evaluation), MeshError (no film or mesh at that edge).
 std::filesystem::path export_part(const std::filesystem::path& folder,
                                   const ExportOptions& options);
+
+/// The deck that format "inp" writes for an evaluated design: materials,
+/// supports and loads of each load case; its mesh is fields.mesh.
+CalculixDeck calculix_deck_of(const Case& input, const EvaluationFields& fields,
+                              const VectorX& design,
+                              const std::string& program_version);
 
 }  // namespace meniscus

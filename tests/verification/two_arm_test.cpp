@@ -21,7 +21,7 @@ Case two_arm(std::vector<std::string> overrides) {
   for (const char* edge : {"resolution.fea=16", "resolution.film=8"}) {
     overrides.emplace_back(edge);
   }
-  return read_case(kCase, overrides).input;
+  return read_case(kCase, overrides);
 }
 
 RunResult run(const std::vector<std::string>& overrides) {
