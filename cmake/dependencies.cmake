@@ -16,6 +16,9 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
 # meniscus_find_library(TARGET header library...): an imported target for a
 # package that ships neither a CMake nor a pkg-config file.
 function(meniscus_find_library target header)
+  if(TARGET ${target})
+    return()
+  endif()
   string(MAKE_C_IDENTIFIER ${target} id)
   find_path(${id}_INCLUDE_DIR ${header} PATH_SUFFIXES suitesparse REQUIRED)
   add_library(${target} INTERFACE IMPORTED GLOBAL)

@@ -1,6 +1,7 @@
 # Flags that every target shares, as one interface target.
 add_library(meniscus_options INTERFACE)
 add_library(meniscus::options ALIAS meniscus_options)
+target_compile_features(meniscus_options INTERFACE cxx_std_20)
 # Designated initializers leave the rest at its default, which is the point.
 target_compile_options(meniscus_options INTERFACE
   $<BUILD_INTERFACE:-Wall -Wextra -Wshadow -Wnon-virtual-dtor
@@ -13,7 +14,8 @@ target_compile_options(meniscus_options INTERFACE
 # objects exchangeable with those libraries.
 target_compile_definitions(meniscus_options INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
 target_include_directories(meniscus_options INTERFACE
-  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/meniscus>)
 
 # meniscus_add_library(NAME SOURCES ... PUBLIC targets ... PRIVATE targets ...)
 # One static library per folder, with the alias meniscus::NAME.

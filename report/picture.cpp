@@ -104,12 +104,17 @@ std::vector<std::string> render_pictures(const std::vector<PictureJob>& jobs,
   if (jobs.empty()) {
     return {};
   }
-  const auto helper = find_helper(kHelper, kHelperVariable);
+  auto helper = find_helper(kHelper, kHelperVariable);
+  const char* set = std::getenv(kHelperVariable);
+  if (!helper && (set == nullptr || *set == '\0')) {
+    helper =
+        find_program(fmt::format("{}/{}", MENISCUS_HELPER_FOLDER, kHelper));
+  }
   if (!helper) {
     return {fmt::format(
-        "no pictures: the helper program {} is neither beside this program "
-        "nor in ../libexec/meniscus; set {} to its path",
-        kHelper, kHelperVariable)};
+        "no pictures: the helper program {} is neither beside this program, "
+        "nor in ../libexec/meniscus, nor in {}; set {} to its path",
+        kHelper, MENISCUS_HELPER_FOLDER, kHelperVariable)};
   }
   std::string warning;
   try {

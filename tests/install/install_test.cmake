@@ -1,0 +1,23 @@
+# Installs the built tree BUILD into the fresh folder WORK, then configures,
+# builds and runs the outside project against it, on the case CASE.
+function(run)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result
+    OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGV " " command)
+    message(FATAL_ERROR "${command}\nended with ${result}:\n${output}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+set(prefix ${WORK}/prefix)
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/outside -G ${GENERATOR}
+  -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${prefix}
+  -DCMAKE_CXX_COMPILER=${COMPILER})
+run(${CMAKE_COMMAND} --build ${WORK}/outside)
+# The prefix is not the configured one, so only the variable leads there.
+run(${CMAKE_COMMAND} -E env
+  MENISCUS_TETGEN=${prefix}/${LIBEXEC}/meniscus/meniscus-tetgen
+  ${WORK}/outside/outside ${CASE})
+run(${prefix}/${BIN}/meniscus check ${CASE})

@@ -1,0 +1,12 @@
+#include "mesh_tet/tetrahedralize.h"
+#include "pipeline/case_reader.h"
+
+int main(int, char** arguments) {
+  const meniscus::Case input = meniscus::read_case(arguments[1]);
+  meniscus::SurfaceMesh surface;
+  surface.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  surface.facets = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  surface.facet_label = {0, 0, 0, 0};
+  surface.labels = {"skin"};
+  return meniscus::tetrahedralize(surface).failure ? 1 : 0;
+}
