@@ -196,7 +196,7 @@ LoadCase load_case_of(const LoadCaseEntry& entry, const Values& values) {
 Vec3 direction_of(const Case& input, const ResponseEntry& response,
                   const Values& values) {
   const std::size_t before = values.problems().size();
-  const Vec3 direction = values.at(response.direction);
+  Vec3 direction = values.at(response.direction);
   if (response.kind == ResponseKind::MeanDisplacement &&
       values.problems().size() == before && !(direction.norm() > 0.0)) {
     values.problems().push_back(

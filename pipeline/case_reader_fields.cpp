@@ -168,7 +168,7 @@ std::optional<std::string> CaseTable::text(const char* key) const {
 }
 
 std::optional<std::string> CaseTable::choice(const char* key) const {
-  const auto value = text(key);
+  auto value = text(key);
   if (!value) {
     return value;
   }

@@ -103,8 +103,8 @@ Json object_schema(const TableSpec& table) {
 }
 
 Json type_schema(const KeySpec& key) {
-  const Json quantity = {{"type", {"number", "string"}}};
-  const Json text = {{"type", "string"}};
+  Json quantity = {{"type", {"number", "string"}}};
+  Json text = {{"type", "string"}};
   const auto array = [](const Json& items, int least, int most) {
     Json schema = {{"type", "array"}, {"items", items}};
     if (least > 0) {
