@@ -30,7 +30,7 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   const std::vector<EvaluationRecord> records = store.all();
   const VectorX design = best_record(input, records).inputs;
   const double edge = options.edge.value_or(input.resolution.fea);
-  const fs::path file =
+  fs::path file =
       options.out.empty()
           ? folder / fmt::format("part_{:g}.{}", edge, options.format)
           : options.out;
