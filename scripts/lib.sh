@@ -11,7 +11,7 @@ build_packages=(
 run_packages=(xvfb libudunits2-data)
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
-  calculix-ccx evolver admesh git python3
+  calculix-ccx evolver admesh git locales python3
 )
 
 say() { printf '\n== %s\n' "$*"; }
