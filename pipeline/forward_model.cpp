@@ -149,7 +149,14 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
                                   EvaluationFields* fields) const {
   Evaluation result;
   result.design = design;
-  const EvaluatedCase inputs = meniscus::evaluate(impl_->input, design);
+  EvaluatedCase inputs;
+  try {
+    inputs = meniscus::evaluate(impl_->input, design);
+  } catch (const InvalidInput& error) {
+    // Numbers that hold at the ends of the bounds may fail between them.
+    result.failure = Failure{FailureKind::NotANumber, error.what()};
+    return result;
+  }
 
   Timer film_timer;
   const FilmState film_state = impl_->film->settle(inputs.film_system);

@@ -115,6 +115,17 @@ TEST(MatchTargets, ScaleByTheStartAndJudgeByThePresent) {
   EXPECT_LT((targets.residual_errors(errors) - expected).norm(), 1e-15);
 }
 
+TEST(ForwardModel, ANumberThatFailsBetweenTheBoundsIsAnAnswer) {
+  std::vector<std::string> overrides = kCoarse;
+  overrides.emplace_back("load=1000 + 0/(foot_radius - 23)");
+  const ForwardModel model(start_case(overrides));
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  const Evaluation e = model.evaluate(VectorX::Constant(1, 23.0));
+  ASSERT_TRUE(e.failure);
+  EXPECT_EQ(e.failure->kind, FailureKind::NotANumber);
+  EXPECT_FALSE(model.evaluate(VectorX::Constant(1, 24.0)).failure);
+}
+
 TEST(ForwardModel, GivesTheSameBitsOnOneAndTwoThreads) {
   const Case input = start_case({"resolution.fea=5", "resolution.film=2.5"});
   const auto responses = [&](int threads) {
