@@ -16,7 +16,7 @@ namespace {
 /// encloses a body.
 std::string surface_of(CaseContext& context, const CaseTable& table,
                        const Case& result) {
-  const std::string surface = table.text("on").value_or("");
+  std::string surface = table.text("on").value_or("");
   if (!table.has("on")) {
     return surface;
   }
