@@ -100,6 +100,40 @@ Vec3 point_on(const Polygon& p, int part, double s) {
   return (1.0 - s) * p.points[part] + s * p.points[next];
 }
 
+Dual dual_of(const Expression& expression, double t) {
+  const std::array<Dual, 1> values = {Dual::variable(t, 0, 1)};
+  return expression.evaluate(std::span<const Dual>(values));
+}
+
+Vec3 point_on(const ParametricCurve& p, double t) {
+  const std::array<double, 1> values = {t};
+  Vec3 point;
+  for (int k = 0; k < 3; ++k) {
+    point[k] = p.coordinates[k].evaluate(std::span<const double>(values));
+  }
+  return point;
+}
+
+CurveJet jet_of(const ParametricCurve& p, double t) {
+  CurveJet jet{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (int k = 0; k < 3; ++k) {
+    const Dual x = dual_of(p.coordinates[k], t);
+    jet.point[k] = x.value;
+    if (!x.is_constant()) {
+      jet.first[k] = x.gradient[0];
+      jet.second[k] = x.hessian(0, 0);
+    }
+  }
+  return jet;
+}
+
+CurveJet jet_of(const Vec3& center, const Vec3& u, const Vec3& v, double t) {
+  const double w = 2.0 * kPi;
+  const Vec3 out = std::cos(w * t) * u + std::sin(w * t) * v;
+  const Vec3 along = std::cos(w * t) * v - std::sin(w * t) * u;
+  return {center + out, w * along, -w * w * out};
+}
+
 // Arclength of an ellipse from angle 0 at equal steps of the angle: 5-point
 // Gauss on each step, exact to rounding for any usual ratio of radii.
 std::vector<double> ellipse_lengths(const Ellipse& e) {
@@ -269,7 +303,75 @@ void validate_shape(const Curve& curve, const Polygon& p) {
   }
 }
 
+void validate_shape(const Curve& curve, const ParametricCurve& p) {
+  for (const Expression& coordinate : p.coordinates) {
+    const std::vector<int> used = coordinate.names_used();
+    if (!used.empty() && used != std::vector<int>{0}) {
+      refuse(curve, fmt::format("'{}' has more names than t",
+                                coordinate.text()));
+    }
+  }
+}
+
+constexpr int kMiddleSteps = 20;
+
+// Newton on (x(t) - middle) . x'(t) = 0 from the better of two tangents.
+double nearest_to_middle(const ParametricCurve& p, double a, double b) {
+  const CurveJet start = jet_of(p, a);
+  const CurveJet end = jet_of(p, b);
+  const Vec3 middle = 0.5 * (start.point + end.point);
+  const auto project = [&](const CurveJet& jet, double t) {
+    const double speed2 = jet.first.squaredNorm();
+    return speed2 > 0.0 ? t + (middle - jet.point).dot(jet.first) / speed2 : t;
+  };
+  double t = project(start, a);
+  for (int step = 0; step < kMiddleSteps; ++step) {
+    const CurveJet jet = jet_of(p, t);
+    const Vec3 gap = jet.point - middle;
+    const double slope = gap.dot(jet.first);
+    const double bend = jet.first.squaredNorm() + gap.dot(jet.second);
+    const double move =
+        slope / (bend > 0.0 ? bend : jet.first.squaredNorm());
+    if (!std::isfinite(move)) {
+      return 0.5 * (a + b);
+    }
+    t -= move;
+    if (std::abs(move) <= 1e-15 * (1.0 + std::abs(t))) {
+      break;
+    }
+  }
+  return t;
+}
+
 }  // namespace
+
+CurveJet jet_at(const CurveShape& shape, double t) {
+  if (const auto* p = std::get_if<ParametricCurve>(&shape)) {
+    return jet_of(*p, t);
+  }
+  if (const auto* c = std::get_if<Circle>(&shape)) {
+    const Frame f = frame_of(c->normal);
+    return jet_of(c->center, c->radius * f.u, c->radius * f.v, t);
+  }
+  if (const auto* e = std::get_if<Ellipse>(&shape)) {
+    const Frame f = frame_of(e->normal, e->axis);
+    return jet_of(e->center, e->radius_1 * f.u, e->radius_2 * f.v, t);
+  }
+  throw InvalidInput(
+      "films cannot slide along a curve with corners; use a circle, an ellipse "
+      "or a parametric curve");
+}
+
+double middle_parameter(const CurveShape& shape, double a, double b) {
+  if (const auto* p = std::get_if<ParametricCurve>(&shape)) {
+    return nearest_to_middle(*p, a, b);
+  }
+  double t = 0.5 * (a + b);
+  if (std::abs(a - b) > 0.5) {
+    t += t < 0.5 ? 0.5 : -0.5;
+  }
+  return t;
+}
 
 void validate(const Curve& curve) {
   std::visit([&](const auto& shape) { validate_shape(curve, shape); },
@@ -281,7 +383,15 @@ Vec3 point_at(const CurveShape& shape, double t) {
   const double along = (t - std::floor(t)) * parts;
   const int part = std::min(static_cast<int>(along), parts - 1);
   return std::visit(
-      [&](const auto& s) { return point_on(s, part, along - part); }, shape);
+      [&](const auto& s) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(s)>,
+                                     ParametricCurve>) {
+          return point_on(s, t);
+        } else {
+          return point_on(s, part, along - part);
+        }
+      },
+      shape);
 }
 
 double length_of(const CurveShape& shape) {
@@ -296,6 +406,9 @@ std::vector<double> sample_parameters(const CurveShape& shape, double edge,
                                       int least) {
   if (!std::isfinite(edge) || edge <= 0.0) {
     throw InvalidInput(fmt::format("edge length is {}, must be above 0", edge));
+  }
+  if (std::holds_alternative<ParametricCurve>(shape)) {
+    throw InvalidInput("a parametric curve has no range to cut into edges");
   }
   const int parts = part_count(shape);
   std::vector<double> lengths(parts);

@@ -2,10 +2,12 @@
 /// expressions have been evaluated before.
 #pragma once
 
+#include <array>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "core/expression.h"
 #include "core/types.h"
 
 namespace meniscus {
@@ -42,7 +44,14 @@ struct Polygon {
   Points points;
 };
 
-using CurveShape = std::variant<Circle, Ellipse, Rectangle, Polygon>;
+/// x(t), y(t), z(t) as expressions of one name, t: any range, not wrapped, not
+/// closed of itself.
+struct ParametricCurve {
+  std::array<Expression, 3> coordinates;
+};
+
+using CurveShape =
+    std::variant<Circle, Ellipse, Rectangle, Polygon, ParametricCurve>;
 
 struct Curve {
   std::string name;
@@ -54,15 +63,30 @@ struct Curve {
 /// two equal neighbours, anything not finite.
 void validate(const Curve& curve);
 
-/// Point at parameter t in [0, 1), by arclength along straight parts and by
+/// Point at parameter t (in [0, 1) where the shape is closed), by arclength along straight parts and by
 /// angle along arcs; smooth in the shape's numbers at fixed t.
 Vec3 point_at(const CurveShape& shape, double t);
+
+/// Position and its first and second derivative by t.
+struct CurveJet {
+  Vec3 point;
+  Vec3 first;
+  Vec3 second;
+};
+/// Throws InvalidInput for rectangles and polygons, whose corners have none.
+CurveJet jet_at(const CurveShape& shape, double t);
+
+/// Parameter of the point halfway between two points of the curve: the way
+/// that is at most half around on closed shapes; on parametric ones the point
+/// nearest to the middle of the chord.
+double middle_parameter(const CurveShape& shape, double a, double b);
 
 /// Total length [length].
 double length_of(const CurveShape& shape);
 
 /// Increasing parameters in [0, 1) that cut the curve into pieces of about
-/// `edge` [length], corners kept, at least `least` pieces in all.
+/// `edge` [length], corners kept, at least `least` pieces in all. Not for
+/// parametric curves, which have no range.
 std::vector<double> sample_parameters(const CurveShape& shape, double edge,
                                       int least = 12);
 

@@ -6,19 +6,6 @@
 
 namespace meniscus {
 
-namespace {
-
-// Halfway from parameter a to b the way that is at most half around.
-double middle_parameter(double a, double b) {
-  double t = 0.5 * (a + b);
-  if (std::abs(a - b) > 0.5) {
-    t += t < 0.5 ? 0.5 : -0.5;
-  }
-  return t;
-}
-
-}  // namespace
-
 Refinement refine(const FilmComplex& complex) {
   Refinement result;
   FilmComplex& fine = result.complex;
@@ -43,8 +30,10 @@ Refinement refine(const FilmComplex& complex) {
     if (next[a] == b || next[b] == a) {
       made.kind = VertexKind::OnCurve;
       made.curve = complex.vertices[a].curve;
-      made.t = middle_parameter(complex.vertices[a].t, complex.vertices[b].t);
-      place = point_at(complex.curves[made.curve].shape, made.t);
+      const CurveShape& shape = complex.curves[made.curve].shape;
+      made.t = middle_parameter(shape, complex.vertices[a].t,
+                                complex.vertices[b].t);
+      place = point_at(shape, made.t);
     } else if (in_film[e] == 0) {
       made.kind = VertexKind::InCap;
     }
