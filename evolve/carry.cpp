@@ -32,7 +32,10 @@ Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind,
   }
   extension.outer.swap(laplace.outer);
   laplace.inner.makeCompressed();
-  extension.factor.emplace(laplace.inner, FactorKind::Cholesky, order);
+  // Films with triple lines have more unknowns than vertices: no order then.
+  const bool fits = order.size() == extension.vertices.size();
+  extension.factor.emplace(laplace.inner, FactorKind::Cholesky,
+                           fits ? order : std::vector<int>{});
   if (!extension.factor->factorize(laplace.inner)) {
     throw MeshError(
         "the reference film cannot be carried: its Laplacian is singular at "

@@ -21,17 +21,25 @@ class Flow {
       : complex_(complex), energy_(complex), targets_(targets_of(complex)) {
     const std::size_t count = complex.mesh.points.size();
     unknown_of_.assign(count, -1);
-    for (int i = 0; i < energy_.unknowns(); ++i) {
-      unknown_of_[energy_.vertices()[i]] = i;
+    for (const int v : energy_.vertices()) {
+      if (unknown_of_[v] < 0) {
+        unknown_of_[v] = static_cast<int>(movers_.size());
+        movers_.push_back(v);
+      }
     }
+    const double most =
+        *std::max_element(targets_.tension.begin(), targets_.tension.end());
     for (const int label : complex.mesh.facet_label) {
-      facet_weight_.push_back(targets_.tension[label]);
+      // A film whose tension is a function or 0 still keeps its facets apart.
+      const bool film = complex.surfaces[label].liquid;
+      facet_weight_.push_back(
+          film ? std::max(targets_.tension[label], 0.1 * most) : 0.0);
     }
     const double edge = energy_.mean_edge(complex.mesh.points);
     const double diagonal = bounding_diagonal(complex.mesh.points);
     tau_ = options.smoothing * options.smoothing * edge * edge;
     most_tau_ = std::max(tau_, diagonal * diagonal);
-    for (int b = 0; b < energy_.bodies(); ++b) {
+    for (int b = 0; b < energy_.functionals(); ++b) {
       if (targets_.bodies[b].volume) {
         held_.push_back(b);
       }
@@ -50,9 +58,9 @@ class Flow {
 
   double energy() const {
     const Points& x = complex_.mesh.points;
-    double sum = energy_.value(x, targets_.tension);
+    double sum = energy_.value(x, targets_);
     const VectorX v = energy_.volumes(x);
-    for (int b = 0; b < energy_.bodies(); ++b) {
+    for (int b = 0; b < energy_.functionals(); ++b) {
       sum -= targets_.bodies[b].pressure.value_or(0.0) * v[b];
     }
     return sum;
@@ -80,42 +88,81 @@ class Flow {
  private:
   bool try_step() {
     Points& x = complex_.mesh.points;
-    const int n = energy_.unknowns();
+    const auto n = static_cast<int>(movers_.size());
     const auto held = static_cast<int>(held_.size());
     LaplaceSystem laplace = cotan_laplacian(
         complex_.mesh, facet_weight_, unknown_of_, n, CotanWeights::Exact);
-    const VectorX mass = energy_.lumped_area(x);
+    const VectorX mass = lumped_area();
     for (int i = 0; i < n; ++i) {
       laplace.inner.coeffRef(i, i) += mass[i] / tau_;
     }
     if (!factor_) {
-      factor_.emplace(laplace.inner, FactorKind::Cholesky, energy_.order());
+      const bool plain = n == energy_.unknowns();
+      factor_.emplace(laplace.inner, FactorKind::Cholesky,
+                      plain ? energy_.order() : std::vector<int>{});
     }
     if (!factor_->factorize(laplace.inner)) {
       return false;
     }
     Eigen::MatrixXd right(n, 3 * (1 + held));
-    right.leftCols<3>() = -energy_.gradient(x, targets_.tension);
-    for (int b = 0; b < energy_.bodies(); ++b) {
+    right.leftCols<3>() = -rows_of(energy_.gradient(x, targets_));
+    for (int b = 0; b < energy_.functionals(); ++b) {
       if (const double p = targets_.bodies[b].pressure.value_or(0.0);
           p != 0.0) {
-        right.leftCols<3>() += p * energy_.volume_gradient(x, b);
+        right.leftCols<3>() += p * rows_of(energy_.functional_gradient(x, b));
       }
     }
     for (int k = 0; k < held; ++k) {
-      right.middleCols<3>(3 + 3 * k) = energy_.volume_gradient(x, held_[k]);
+      right.middleCols<3>(3 + 3 * k) =
+          rows_of(energy_.functional_gradient(x, held_[k]));
     }
     return move_at_volume(factor_->solve(right));
   }
 
+  VectorX lumped_area() const {
+    const VectorX of_unknown = energy_.lumped_area(complex_.mesh.points);
+    VectorX mass(static_cast<Eigen::Index>(movers_.size()));
+    for (std::size_t i = 0; i < movers_.size(); ++i) {
+      mass[static_cast<Eigen::Index>(i)] =
+          of_unknown[energy_.space().first(movers_[i])];
+    }
+    return mass;
+  }
+
+  /// The movers' rows; at walls only what runs along them.
+  Eigen::MatrixX3d rows_of(const Points& slope) const {
+    Eigen::MatrixX3d rows(static_cast<Eigen::Index>(movers_.size()), 3);
+    for (std::size_t i = 0; i < movers_.size(); ++i) {
+      rows.row(static_cast<Eigen::Index>(i)) = slope[movers_[i]];
+    }
+    const FilmSpace& space = energy_.space();
+    for (std::size_t k = 0; k < space.walled().size(); ++k) {
+      const int v = space.walled()[k];
+      if (unknown_of_[v] < 0) {
+        continue;
+      }
+      const Eigen::MatrixX3d normals =
+          space.wall_normals(static_cast<int>(k), complex_.mesh.points[v]);
+      const Vec3 force = slope[v];
+      const VectorX pull =
+          normals.transpose().completeOrthogonalDecomposition().solve(force);
+      rows.row(unknown_of_[v]) = force - normals.transpose() * pull;
+    }
+    return rows;
+  }
+
   Points moved(const Eigen::MatrixXd& dx, const VectorX& pressure) const {
     Points x = complex_.mesh.points;
-    for (int i = 0; i < energy_.unknowns(); ++i) {
-      Vec3 sum = dx.row(i).head<3>();
+    for (std::size_t i = 0; i < movers_.size(); ++i) {
+      const auto row = dx.row(static_cast<Eigen::Index>(i));
+      Vec3 sum = row.head<3>();
       for (Eigen::Index k = 0; k < pressure.size(); ++k) {
-        sum += pressure[k] * dx.row(i).segment<3>(3 + 3 * k).transpose();
+        sum += pressure[k] * row.segment<3>(3 + 3 * k).transpose();
       }
-      x[energy_.vertices()[i]] += sum;
+      x[movers_[i]] += sum;
+    }
+    if (energy_.space().has_walls()) {
+      energy_.space().project(x);
     }
     return x;
   }
@@ -144,7 +191,8 @@ class Flow {
       }
       Eigen::MatrixXd slope(held, held);
       for (Eigen::Index k = 0; k < held; ++k) {
-        const Eigen::MatrixX3d b = energy_.volume_gradient(x, held_[k]);
+        const Eigen::MatrixX3d b =
+            rows_of(energy_.functional_gradient(x, held_[k]));
         for (Eigen::Index j = 0; j < held; ++j) {
           slope(k, j) = b.cwiseProduct(dx.middleCols<3>(3 + 3 * j)).sum();
         }
@@ -162,7 +210,8 @@ class Flow {
   FilmComplex& complex_;
   FilmEnergy energy_;
   FilmTargets targets_;
-  std::vector<int> unknown_of_;
+  std::vector<int> unknown_of_;  // per vertex: its mover, or -1
+  std::vector<int> movers_;      // vertices
   std::vector<double> facet_weight_;
   std::vector<int> held_;
   std::optional<SymmetricFactor> factor_;

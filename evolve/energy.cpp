@@ -1,9 +1,10 @@
 #include "evolve/energy.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
-#include <fmt/format.h>
+#include <Eigen/Dense>
 
 #include "core/error.h"
 #include "evolve/facet_terms.h"
@@ -15,6 +16,10 @@ namespace {
 FacetFrame frame_of(const Points& points, const Triangle& t,
                     const Vec3& origin) {
   return {points[t[0]] - origin, points[t[1]] - origin, points[t[2]] - origin};
+}
+
+std::array<Vec3, 3> corners_of(const Points& points, const Triangle& t) {
+  return {points[t[0]], points[t[1]], points[t[2]]};
 }
 
 /// Volumes are sums of cones to this point, which keeps the cones small.
@@ -38,45 +43,60 @@ FilmTargets targets_of(const FilmComplex& complex) {
     targets.tension.push_back(surface.liquid ? surface.tension : 0.0);
   }
   targets.bodies = complex.bodies;
+  for (const int q : held_quantities(complex)) {
+    ComplexBody held;
+    held.name = complex.quantities[q].name;
+    held.volume = complex.quantities[q].target;
+    targets.bodies.push_back(std::move(held));
+  }
   return targets;
 }
 
+FilmEnergy::~FilmEnergy() = default;
+FilmEnergy::FilmEnergy(FilmEnergy&&) noexcept = default;
+FilmEnergy& FilmEnergy::operator=(FilmEnergy&&) noexcept = default;
+
 FilmEnergy::FilmEnergy(const FilmComplex& complex)
-    : facets_(complex.mesh.facets),
+    : space_(complex),
+      facets_(complex.mesh.facets),
       label_(complex.mesh.facet_label),
-      body_count_(static_cast<int>(complex.bodies.size())) {
-  const int points = static_cast<int>(complex.mesh.points.size());
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    for (const int v : facets_[f]) {
-      if (v < 0 || v >= points) {
-        throw MeshError(fmt::format(
-            "facet {} of the film names vertex {}, but there are {}", f, v,
-            points));
-      }
-    }
-    liquid_.push_back(complex.surfaces[label_[f]].liquid ? 1 : 0);
+      terms_(film_terms(complex)),
+      body_count_(static_cast<int>(complex.bodies.size())),
+      quantity_count_(static_cast<int>(complex.quantities.size())),
+      gravity_(complex.gravity) {
+  functional_count_ =
+      body_count_ + static_cast<int>(held_quantities(complex).size());
+  volume_offset_ = VectorX::Zero(functional_count_);
+  for (int b = 0; b < body_count_; ++b) {
+    cone_.push_back(complex.volume_rule == VolumeRule::Cone ||
+                    closed_by_facets(complex, b));
+    volume_offset_[b] = complex.bodies[b].volume_offset;
+  }
+  for (const ComplexSurface& surface : complex.surfaces) {
+    liquid_.push_back(surface.liquid ? 1 : 0);
+    plain_.push_back(surface.liquid && !surface.tension_field ? 1 : 0);
+    resisted_ = resisted_ || surface.tension_field;
     std::vector<int> sides(body_count_, 0);
+    const int s = static_cast<int>(side_.size());
     for (int b = 0; b < body_count_; ++b) {
       for (const BodySide& side : complex.bodies[b].sides) {
-        if (side.surface == label_[f]) {
-          sides[b] = side.sign;
-        }
+        sides[b] += side.surface == s ? side.sign : 0;
       }
     }
     side_.push_back(std::move(sides));
   }
-  std::vector<int> unknown_of(points, -1);
-  for (int v = 0; v < points; ++v) {
-    if (complex.vertices[v].kind == VertexKind::Free) {
-      unknown_of[v] = static_cast<int>(vertex_.size());
-      vertex_.push_back(v);
-    }
+  for (const FilmQuantity& quantity : complex.quantities) {
+    const bool energy = quantity.role == FilmQuantity::Role::Energy;
+    modulus_.push_back(energy ? quantity.modulus : 1.0);
+    resisted_ = resisted_ || quantity.role != FilmQuantity::Role::Info;
   }
+  corner_start_.reserve(facets_.size() + 1);
   corner_start_.push_back(0);
   for (const Triangle& t : facets_) {
     for (int k = 0; k < 3; ++k) {
-      if (unknown_of[t[k]] >= 0) {
-        corners_.push_back({k, unknown_of[t[k]]});
+      const int first = space_.first(t[k]);
+      for (int r = 0; r < space_.rank(t[k]); ++r) {
+        corners_.push_back({k, first + r});
       }
     }
     corner_start_.push_back(static_cast<int>(corners_.size()));
@@ -86,7 +106,18 @@ FilmEnergy::FilmEnergy(const FilmComplex& complex)
 }
 
 void FilmEnergy::find_floating(const FilmComplex& complex) {
+  floating_.assign(unknowns(), -1);
+  if (resisted_) {
+    return;
+  }
   const int points = static_cast<int>(complex.mesh.points.size());
+  std::vector<char> held(points, 0);
+  bool any_free = false;
+  for (int v = 0; v < points; ++v) {
+    held[v] = complex.vertices[v].kind != VertexKind::Free ||
+              (space_.rank(v) == 0 && space_.vertex_count() > v);
+    any_free = any_free || held[v] == 0;
+  }
   std::vector<int> parent(points);
   std::iota(parent.begin(), parent.end(), 0);
   for (const Triangle& t : facets_) {
@@ -94,33 +125,27 @@ void FilmEnergy::find_floating(const FilmComplex& complex) {
       parent[root_of(parent, t[k])] = root_of(parent, t[0]);
     }
   }
-  std::vector<char> held(points, 0);
   for (int v = 0; v < points; ++v) {
-    if (complex.vertices[v].kind != VertexKind::Free) {
+    if (held[v] != 0) {
       held[root_of(parent, v)] = 1;
     }
   }
   std::vector<int> number(points, -1);
-  for (const int v : vertex_) {
-    const int root = root_of(parent, v);
-    if (held[root] != 0) {
-      floating_.push_back(-1);
-      continue;
+  for (int i = 0; i < unknowns(); ++i) {
+    const int root = root_of(parent, vertices()[i]);
+    if (held[root] == 0) {
+      if (number[root] < 0) {
+        number[root] = floating_count_++;
+      }
+      floating_[i] = number[root];
     }
-    if (number[root] < 0) {
-      number[root] = floating_count_++;
-    }
-    floating_.push_back(number[root]);
   }
 }
 
 void FilmEnergy::build_pattern() {
+  // Pairs of unknowns column by column: by counting, sorting and merging.
   const int n = unknowns();
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(n) + 6 * facets_.size());
-  for (int i = 0; i < n; ++i) {
-    entries.emplace_back(i, i, 0.0);
-  }
+  std::vector<int> count(n + 1, 0);
   const auto for_pairs = [&](std::size_t f, const auto& visit) {
     for (int i = corner_start_[f]; i < corner_start_[f + 1]; ++i) {
       for (int j = corner_start_[f]; j <= i; ++j) {
@@ -130,187 +155,381 @@ void FilmEnergy::build_pattern() {
       }
     }
   };
+  element_start_.reserve(facets_.size() + 1);
+  element_start_.push_back(0);
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[f] != 0) {
-      for_pairs(f, [&](int a, int b) { entries.emplace_back(a, b, 0.0); });
+    for_pairs(f, [&](int /*a*/, int b) { ++count[b + 1]; });
+    const int c = corner_start_[f + 1] - corner_start_[f];
+    element_start_.push_back(element_start_.back() + c * (c + 1) / 2);
+  }
+  std::partial_sum(count.begin(), count.end(), count.begin());
+  std::vector<int> rows(count.back());
+  {
+    std::vector<int> at(count.begin(), count.end() - 1);
+    for (std::size_t f = 0; f < facets_.size(); ++f) {
+      for_pairs(f, [&](int a, int b) { rows[at[b]++] = a; });
     }
   }
+  std::vector<int> outer(n + 1, 0);
+  int kept = 0;
+  for (int b = 0; b < n; ++b) {
+    const auto first = rows.begin() + count[b];
+    const auto last = rows.begin() + count[b + 1];
+    std::sort(first, last);
+    const auto end = std::unique(first, last);
+    for (auto it = first; it != end; ++it) {
+      rows[kept++] = *it;
+    }
+    outer[b + 1] = kept;
+  }
+  rows.resize(kept);
   pattern_.resize(n, n);
-  pattern_.setFromTriplets(entries.begin(), entries.end());
-  pattern_.makeCompressed();
-  slot_start_.push_back(0);
-  const int* outer = pattern_.outerIndexPtr();
-  const int* inner = pattern_.innerIndexPtr();
+  pattern_.resizeNonZeros(kept);
+  std::copy(outer.begin(), outer.end(), pattern_.outerIndexPtr());
+  std::copy(rows.begin(), rows.end(), pattern_.innerIndexPtr());
+  std::fill(pattern_.valuePtr(), pattern_.valuePtr() + kept, 0.0);
+  slots_.reserve(element_start_.back());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[f] != 0) {
-      for_pairs(f, [&](int a, int b) {
-        const int* at =
-            std::lower_bound(inner + outer[b], inner + outer[b + 1], a);
-        slots_.push_back(static_cast<int>(at - inner));
-      });
-    }
-    slot_start_.push_back(static_cast<int>(slots_.size()));
-  }
-  if (n > 0) {
-    order_ = nested_dissection(pattern_);
+    for_pairs(f, [&](int a, int b) {
+      const auto at = std::lower_bound(rows.begin() + outer[b],
+                                       rows.begin() + outer[b + 1], a);
+      slots_.push_back(static_cast<int>(at - rows.begin()));
+    });
   }
 }
 
+const std::vector<int>& FilmEnergy::order() const {
+  if (order_.empty() && unknowns() > 0) {
+    order_ = nested_dissection(pattern_);
+  }
+  return order_;
+}
+
 double FilmEnergy::value(const Points& points,
-                         const std::vector<double>& tension) const {
+                         const FilmTargets& targets) const {
   double sum = 0.0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[f] != 0) {
+    if (plain_[label_[f]] != 0) {
       const Triangle& t = facets_[f];
       const Vec3& a = points[t[0]];
-      sum += tension[label_[f]] *
+      sum += targets.tension[label_[f]] *
              (points[t[1]] - a).cross(points[t[2]] - a).norm();
+    }
+  }
+  sum *= 0.5;
+  for (const auto& term : terms_) {
+    if (term->functional() == -1) {
+      for (const FilmTerm::Element& e : term->elements()) {
+        sum +=
+            term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Value)
+                .value;
+      }
+    }
+  }
+  return sum;
+}
+
+double FilmEnergy::area(const Points& points) const {
+  double sum = 0.0;
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (liquid_[label_[f]] != 0) {
+      const Triangle& t = facets_[f];
+      const Vec3& a = points[t[0]];
+      sum += (points[t[1]] - a).cross(points[t[2]] - a).norm();
     }
   }
   return 0.5 * sum;
 }
 
-double FilmEnergy::area(const Points& points) const {
-  int most = -1;
-  for (const int label : label_) {
-    most = std::max(most, label);
-  }
-  return value(points, std::vector<double>(most + 1, 1.0));
-}
-
 VectorX FilmEnergy::volumes(const Points& points) const {
-  VectorX sum = VectorX::Zero(body_count_);
+  VectorX sum = volume_offset_;
   const Vec3 origin = local_origin(points);
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
+  for (std::size_t f = 0; f < facets_.size() && body_count_ > 0; ++f) {
     const Triangle& t = facets_[f];
     const Vec3 a = points[t[0]] - origin;
     const double cone =
         a.dot((points[t[1]] - origin).cross(points[t[2]] - origin)) / 6.0;
     for (int b = 0; b < body_count_; ++b) {
-      sum[b] += side_[f][b] * cone;
+      if (cone_[b] != 0) {
+        sum[b] += side_[label_[f]][b] * cone;
+      }
+    }
+  }
+  for (const auto& term : terms_) {
+    if (term->functional() >= 0) {
+      for (const FilmTerm::Element& e : term->elements()) {
+        sum[term->functional()] +=
+            term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Value)
+                .value;
+      }
     }
   }
   return sum;
 }
 
-Eigen::MatrixX3d FilmEnergy::gradient(
-    const Points& points, const std::vector<double>& tension) const {
-  Eigen::MatrixX3d sum = Eigen::MatrixX3d::Zero(unknowns(), 3);
-  const Vec3 origin = local_origin(points);
+VectorX FilmEnergy::quantities(const Points& points) const {
+  VectorX sum = VectorX::Zero(quantity_count_);
+  for (const auto& term : terms_) {
+    const int q = term->quantity();
+    for (const FilmTerm::Element& e : term->elements()) {
+      if (q >= 0) {
+        sum[q] +=
+            term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Value)
+                .value;
+      }
+    }
+  }
+  for (int q = 0; q < quantity_count_; ++q) {
+    sum[q] = modulus_[q] != 0.0 ? sum[q] / modulus_[q] : 0.0;
+  }
+  return sum;
+}
+
+Points FilmEnergy::gradient(const Points& points,
+                            const FilmTargets& targets) const {
+  Points sum(points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[f] == 0) {
+    if (plain_[label_[f]] == 0) {
       continue;
     }
-    const FacetFrame frame = frame_of(points, facets_[f], origin);
-    for (int i = corner_start_[f]; i < corner_start_[f + 1]; ++i) {
-      sum.row(corners_[i].unknown) +=
-          tension[label_[f]] * frame.area_gradient(corners_[i].corner);
+    const Triangle& t = facets_[f];
+    const Vec3 ab = points[t[1]] - points[t[0]];
+    const Vec3 ac = points[t[2]] - points[t[0]];
+    Vec3 n = ab.cross(ac);
+    const double size = n.norm();
+    if (size > 0.0) {
+      n *= 0.5 * targets.tension[label_[f]] / size;
+    }
+    // dA/dx_i = n x e_i / 2, e_i opposite: e_b = -ac, e_c = ab.
+    const Vec3 at_b = ac.cross(n);
+    const Vec3 at_c = n.cross(ab);
+    sum[t[1]] += at_b;
+    sum[t[2]] += at_c;
+    sum[t[0]] -= at_b + at_c;
+  }
+  for (const auto& term : terms_) {
+    if (term->functional() != -1) {
+      continue;
+    }
+    for (const FilmTerm::Element& e : term->elements()) {
+      const Triangle& t = facets_[e.facet];
+      const FacetJet jet =
+          term->jet(e, corners_of(points, t), JetOrder::Gradient);
+      for (int k = 0; k < 3; ++k) {
+        sum[t[k]] += jet.gradient.segment<3>(3 * k);
+      }
     }
   }
   return sum;
 }
 
-Eigen::MatrixX3d FilmEnergy::volume_gradient(const Points& points,
-                                             int body) const {
-  Eigen::MatrixX3d sum = Eigen::MatrixX3d::Zero(unknowns(), 3);
+Points FilmEnergy::functional_gradient(const Points& points,
+                                       int functional) const {
+  Points sum(points.size(), Vec3::Zero());
   const Vec3 origin = local_origin(points);
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (side_[f][body] == 0) {
+  if (functional < body_count_ && cone_[functional] != 0) {
+    for (std::size_t f = 0; f < facets_.size(); ++f) {
+      const int sign = side_[label_[f]][functional];
+      if (sign == 0) {
+        continue;
+      }
+      const Triangle& t = facets_[f];
+      const Vec3 a = points[t[0]] - origin;
+      const Vec3 b = points[t[1]] - origin;
+      const Vec3 c = points[t[2]] - origin;
+      const double w = sign / 6.0;
+      sum[t[0]] += w * b.cross(c);
+      sum[t[1]] += w * c.cross(a);
+      sum[t[2]] += w * a.cross(b);
+    }
+  }
+  for (const auto& term : terms_) {
+    if (term->functional() != functional) {
       continue;
     }
-    const FacetFrame frame = frame_of(points, facets_[f], origin);
-    for (int i = corner_start_[f]; i < corner_start_[f + 1]; ++i) {
-      sum.row(corners_[i].unknown) +=
-          side_[f][body] * frame.volume_gradient(corners_[i].corner);
+    for (const FilmTerm::Element& e : term->elements()) {
+      const Triangle& t = facets_[e.facet];
+      const FacetJet jet =
+          term->jet(e, corners_of(points, t), JetOrder::Gradient);
+      for (int k = 0; k < 3; ++k) {
+        sum[t[k]] += jet.gradient.segment<3>(3 * k);
+      }
     }
   }
   return sum;
 }
 
-void FilmEnergy::hessian(const Points& points, const Points& directions,
-                         const std::vector<double>& tension,
-                         const VectorX& pressure, SparseMatrix& out) const {
-  double* values = out.valuePtr();
-  std::fill(values, values + out.nonZeros(), 0.0);
+void FilmEnergy::elements(const Points& points, const Points& directions,
+                          const FilmTargets& targets, const VectorX& pressure,
+                          const Points& gradient,
+                          std::vector<double>& out) const {
+  out.assign(element_start_.back(), 0.0);
   const Vec3 origin = local_origin(points);
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[f] == 0) {
-      continue;
-    }
-    const FacetFrame frame = frame_of(points, facets_[f], origin);
-    const double t = tension[label_[f]];
-    double p = 0.0;
+  std::vector<double> p_of(side_.size(), 0.0);  // per surface
+  for (std::size_t s = 0; s < side_.size(); ++s) {
     for (int b = 0; b < body_count_; ++b) {
-      p += side_[f][b] * pressure[b];
+      p_of[s] += cone_[b] != 0 ? side_[s][b] * pressure[b] : 0.0;
     }
-    int slot = slot_start_[f];
+  }
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const double t = plain_[label_[f]] != 0 ? targets.tension[label_[f]] : 0.0;
+    const double p = p_of[label_[f]];
+    if (t == 0.0 && p == 0.0) {
+      continue;
+    }
+    const FacetFrame frame = frame_of(points, facets_[f], origin);
+    const double area_factor = frame.area2 > 0.0 ? 0.5 * t / frame.area2 : 0.0;
+    int slot = element_start_[f];
+    std::array<Vec3, 9> u;  // e_i x v, without its part along the normal
     for (int i = corner_start_[f]; i < corner_start_[f + 1]; ++i) {
       const int a = corners_[i].corner;
       const Vec3& v = directions[corners_[i].unknown];
+      Vec3& u_i = u[i - corner_start_[f]];
+      u_i = frame.opposite[a].cross(v);
+      u_i -= frame.normal.dot(u_i) * frame.normal;
       for (int j = corner_start_[f]; j <= i; ++j) {
         const int b = corners_[j].corner;
         const Vec3& w = directions[corners_[j].unknown];
-        values[slots_[slot++]] += t * frame.area_hessian(a, v, b, w) -
-                                  p * frame.volume_hessian(a, v, b, w);
+        double sum = area_factor * u_i.dot(u[j - corner_start_[f]]);
+        if (a != b) {
+          const Vec3 twist = w.cross(v);
+          const double sign = b == (a + 2) % 3 ? 1.0 : -1.0;
+          sum += sign * (0.5 * t * frame.normal.dot(twist) -
+                         p / 6.0 * frame.corner[3 - a - b].dot(twist));
+        }
+        out[slot++] = sum;
+      }
+    }
+  }
+  add_terms(points, pressure, directions, out);
+  if (space_.has_walls()) {
+    add_wall_curvature(points, directions, gradient, out);
+  }
+}
+
+void FilmEnergy::add_block(int facet, int corner_a, int corner_b,
+                           const Eigen::Matrix3d& block,
+                           const Points& directions,
+                           std::vector<double>& out) const {
+  int slot = element_start_[facet];
+  for (int i = corner_start_[facet]; i < corner_start_[facet + 1]; ++i) {
+    for (int j = corner_start_[facet]; j <= i; ++j, ++slot) {
+      if (corners_[i].corner == corner_a && corners_[j].corner == corner_b) {
+        out[slot] += directions[corners_[i].unknown].dot(
+            block * directions[corners_[j].unknown]);
       }
     }
   }
 }
 
-Points FilmEnergy::normals(const Points& points) const {
-  Points sum(unknowns(), Vec3::Zero());
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[f] == 0) {
+void FilmEnergy::add_terms(const Points& points, const VectorX& pressure,
+                           const Points& directions,
+                           std::vector<double>& out) const {
+  for (const auto& term : terms_) {
+    const int functional = term->functional();
+    const double factor = functional == -1  ? 1.0
+                          : functional >= 0 ? -pressure[functional]
+                                            : 0.0;
+    if (factor == 0.0) {
       continue;
     }
-    const Triangle& t = facets_[f];
-    const Vec3& a = points[t[0]];
-    const Vec3 area2 = (points[t[1]] - a).cross(points[t[2]] - a);
-    for (int i = corner_start_[f]; i < corner_start_[f + 1]; ++i) {
-      sum[corners_[i].unknown] += area2;
+    for (const FilmTerm::Element& e : term->elements()) {
+      const FacetJet jet =
+          term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Hessian);
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b <= a; ++b) {
+          add_block(e.facet, a, b,
+                    factor * jet.hessian.block<3, 3>(3 * a, 3 * b), directions,
+                    out);
+        }
+      }
     }
   }
-  for (Vec3& normal : sum) {
-    const double length = normal.norm();
-    if (length > 0.0) {
-      normal /= length;
+}
+
+void FilmEnergy::add_wall_curvature(const Points& points,
+                                    const Points& directions,
+                                    const Points& gradient,
+                                    std::vector<double>& out) const {
+  std::vector<int> wall(points.size(), -1);
+  for (std::size_t k = 0; k < space_.walled().size(); ++k) {
+    wall[space_.walled()[k]] = static_cast<int>(k);
+  }
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    for (int a = 0; a < 3; ++a) {
+      const int v = facets_[f][a];
+      if (wall[v] >= 0) {
+        add_block(static_cast<int>(f), a, a,
+                  space_.wall_curvature(wall[v], points[v], gradient[v]),
+                  directions, out);
+        wall[v] = -1;  // once
+      }
     }
   }
-  return sum;
+}
+
+void FilmEnergy::assemble(const std::vector<double>& elements,
+                          SparseMatrix& out) const {
+  double* values = out.valuePtr();
+  std::fill(values, values + out.nonZeros(), 0.0);
+  for (std::size_t e = 0; e < slots_.size(); ++e) {
+    values[slots_[e]] += elements[e];
+  }
+}
+
+void FilmEnergy::hessian(const Points& points, const Points& directions,
+                         const FilmTargets& targets, const VectorX& pressure,
+                         SparseMatrix& out) const {
+  Points slope;
+  if (space_.has_walls()) {
+    slope = gradient(points, targets);
+    for (int b = 0; b < functional_count_; ++b) {
+      const Points more = functional_gradient(points, b);
+      for (std::size_t v = 0; v < slope.size(); ++v) {
+        slope[v] -= pressure[b] * more[v];
+      }
+    }
+  }
+  std::vector<double> entries;
+  elements(points, directions, targets, pressure, slope, entries);
+  assemble(entries, out);
 }
 
 VectorX FilmEnergy::lumped_area(const Points& points) const {
-  VectorX sum = VectorX::Zero(unknowns());
+  std::vector<double> at(points.size(), 0.0);
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[f] == 0) {
+    if (liquid_[label_[f]] == 0) {
       continue;
     }
     const Triangle& t = facets_[f];
     const Vec3& a = points[t[0]];
     const double area2 = (points[t[1]] - a).cross(points[t[2]] - a).norm();
-    for (int i = corner_start_[f]; i < corner_start_[f + 1]; ++i) {
-      sum[corners_[i].unknown] += area2 / 6.0;
+    for (const int v : t) {
+      at[v] += area2 / 6.0;
     }
+  }
+  VectorX sum(unknowns());
+  for (int i = 0; i < unknowns(); ++i) {
+    sum[i] = at[vertices()[i]];
   }
   return sum;
 }
 
-double FilmEnergy::smallest_cosine(const Points& points,
-                                   const Points& directions, int* facet) const {
+double FilmEnergy::smallest_cosine(const Points& points, const Points& base,
+                                   int* facet) const {
   double least = 1.0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[f] == 0 || corner_start_[f] == corner_start_[f + 1]) {
+    if (liquid_[label_[f]] == 0 || corner_start_[f] == corner_start_[f + 1]) {
       continue;
     }
-    Vec3 mean = Vec3::Zero();
-    for (int i = corner_start_[f]; i < corner_start_[f + 1]; ++i) {
-      mean += directions[corners_[i].unknown];
-    }
     const Triangle& t = facets_[f];
-    const Vec3& a = points[t[0]];
-    const Vec3 area2 = (points[t[1]] - a).cross(points[t[2]] - a);
-    const double size = area2.norm() * mean.norm();
-    const double cosine = size > 0.0 ? area2.dot(mean) / size : -1.0;
+    const auto normal2 = [&t](const Points& x) -> Vec3 {
+      return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+    };
+    const Vec3 now = normal2(points);
+    const Vec3 was = normal2(base);
+    const double size = std::sqrt(now.squaredNorm() * was.squaredNorm());
+    const double cosine = size > 0.0 ? now.dot(was) / size : -1.0;
     if (!(cosine >= least)) {  // not finite counts as folded
       least = std::isfinite(cosine) ? cosine : -1.0;
       if (facet != nullptr) {
@@ -325,7 +544,7 @@ double FilmEnergy::mean_edge(const Points& points) const {
   double sum = 0.0;
   long count = 0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[f] != 0) {
+    if (liquid_[label_[f]] != 0) {
       for (int k = 0; k < 3; ++k) {
         sum += (points[facets_[f][(k + 1) % 3]] - points[facets_[f][k]]).norm();
       }
@@ -335,11 +554,93 @@ double FilmEnergy::mean_edge(const Points& points) const {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-Points FilmEnergy::moved(const Points& points, const Points& directions,
-                         const VectorX& heights) const {
-  Points result = points;
-  for (int i = 0; i < unknowns(); ++i) {
-    result[vertex_[i]] += heights[i] * directions[i];
+Eigen::MatrixXd FilmEnergy::rigid_motions(const Points& points,
+                                          const Points& directions,
+                                          const VectorX& metric) const {
+  constexpr double kFree = 1e-9;     // of a wall's resistance
+  constexpr double kVisible = 1e-2;  // of a motion that moves the film
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  const int n = unknowns();
+  std::vector<VectorX> columns;
+  for (int part = 0; part < floating_count_; ++part) {
+    Vec3 center = Vec3::Zero();
+    double weight = 0.0;
+    for (int i = 0; i < n; ++i) {
+      if (floating_[i] == part) {
+        center += metric[i] * points[vertices()[i]];
+        weight += metric[i];
+      }
+    }
+    center /= std::max(weight, 1e-300);
+    double size2 = 0.0;
+    for (int i = 0; i < n; ++i) {
+      if (floating_[i] == part) {
+        size2 += metric[i] * (points[vertices()[i]] - center).squaredNorm();
+      }
+    }
+    const double size = std::sqrt(size2 / std::max(weight, 1e-300));
+    // What resists: walls that the part slides on, and gravity.
+    Eigen::Matrix<double, 6, 6> resists = Eigen::Matrix<double, 6, 6>::Zero();
+    const auto add = [&](const Vec3& at, const Vec3& normal) {
+      Vector6 row;
+      row << normal, (at - center).cross(normal) / size;
+      resists += row * row.transpose();
+    };
+    for (std::size_t k = 0; k < space_.walled().size(); ++k) {
+      const int v = space_.walled()[k];
+      if (space_.rank(v) > 0 && floating_[space_.first(v)] == part) {
+        const Eigen::MatrixX3d rows =
+            space_.wall_normals(static_cast<int>(k), points[v]);
+        for (Eigen::Index r = 0; r < rows.rows(); ++r) {
+          add(points[v], rows.row(r).normalized());
+        }
+      }
+    }
+    if (!gravity_.isZero(0.0)) {
+      const Vec3 g = gravity_.normalized();
+      const Eigen::Matrix3d across =
+          Eigen::Matrix3d::Identity() - g * g.transpose();
+      resists.topLeftCorner<3, 3>() += g * g.transpose();
+      resists.bottomRightCorner<3, 3>() += across;
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(
+        resists);
+    const double most = std::max(1.0, eigen.eigenvalues()[5]);
+    Eigen::MatrixXd found(n, 0);
+    for (int m = 0; m < 6; ++m) {
+      if (eigen.eigenvalues()[m] > kFree * most) {
+        break;
+      }
+      const Vector6 motion = eigen.eigenvectors().col(m);
+      VectorX column = VectorX::Zero(n);
+      for (int i = 0; i < n; ++i) {
+        if (floating_[i] == part) {
+          const Vec3 arm = points[vertices()[i]] - center;
+          const Vec3 move =
+              motion.head<3>() + Vec3(motion.tail<3>()).cross(arm) / size;
+          column[i] = move.dot(directions[i]);
+        }
+      }
+      found.conservativeResize(n, found.cols() + 1);
+      found.rightCols<1>() = column;
+    }
+    if (found.cols() == 0) {
+      continue;
+    }
+    // Motions that leave the film where it is (a sphere's rotations) are out.
+    const Eigen::MatrixXd gram =
+        found.transpose() * metric.asDiagonal() * found / weight;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> seen(gram);
+    for (Eigen::Index m = 0; m < gram.cols(); ++m) {
+      if (seen.eigenvalues()[m] > kVisible) {
+        columns.push_back(
+            metric.cwiseProduct(found * seen.eigenvectors().col(m)));
+      }
+    }
+  }
+  Eigen::MatrixXd result(n, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    result.col(static_cast<Eigen::Index>(c)) = columns[c];
   }
   return result;
 }

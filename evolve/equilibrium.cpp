@@ -29,7 +29,7 @@ FilmReport report_of(const FilmEnergy& energy, const FilmTargets& targets,
   FilmReport report;
   report.vertices = static_cast<int>(found.points.size());
   report.facets = static_cast<int>(energy.facets().size());
-  report.energy = energy.value(found.points, targets.tension);
+  report.energy = energy.value(found.points, targets);
   report.area = energy.area(found.points);
   report.residual = found.residual;
   report.residual_bound = bound;
@@ -154,7 +154,7 @@ FilmState settle_in_normals(const FilmEnergy& energy,
                             const FilmTargets& targets, const Points& start,
                             const SettleOptions& options) {
   FilmState state =
-      settle(energy, complex, targets, start, energy.normals(start), {}, 0.0,
+      settle(energy, complex, targets, start, energy.space().directions(start), {}, 0.0,
              options, DirectionRule::CurrentNormals);
   state.heights = VectorX::Zero(energy.unknowns());
   return state;

@@ -167,7 +167,7 @@ FilmState FilmModel::Impl::settle_in_parts(const Points& moves,
     const Points base = carry->at(moves, t);
     state = settle_along(
         *energy, complex, part == parts ? goal : blend(targets, goal, t), base,
-        energy->normals(base), state.heights, usual_neck, options);
+        energy->space().directions(base), state.heights, usual_neck, options);
     iterations += state.report.iterations;
     if (state.failure) {
       break;

@@ -41,7 +41,7 @@ FilmState given_up(const FilmComplex& complex, const std::string& reason,
   state.report.vertices = static_cast<int>(state.points.size());
   state.report.facets = static_cast<int>(energy.facets().size());
   const FilmTargets targets = targets_of(complex);
-  state.report.energy = energy.value(state.points, targets.tension);
+  state.report.energy = energy.value(state.points, targets);
   state.report.area = energy.area(state.points);
   state.report.iterations = steps;
   const VectorX volumes = energy.volumes(state.points);

@@ -183,7 +183,7 @@ std::vector<Outlook> outlooks(const FilmEnergy& energy,
     }
     int sides = 0;
     for (int b = 0; b < energy.bodies(); ++b) {
-      const int side = energy.side(f, b);
+      const double side = energy.side(f, b) * energy.space().turn(f);
       sides |= side > 0 ? 1 : (side < 0 ? 2 : 0);
     }
     for (const int v : energy.facets()[f]) {
@@ -204,14 +204,15 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
                     const std::vector<int>& facet_label) {
   const std::vector<Triangle>& facets = energy.facets();
   const FacetTree tree(facets, points);
-  const Points normals = energy.normals(points);
+  const Points normals = energy.space().directions(points);
   const std::vector<Outlook> looks = outlooks(energy, points.size());
   Neck neck;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < energy.unknowns(); ++i) {
     const int v = energy.vertices()[i];
     for (const int bit : {1, 2}) {
-      if ((looks[i].sides & bit) == 0 || normals[i].isZero()) {
+      if ((looks[i].sides & bit) == 0 || normals[i].isZero() ||
+          energy.space().rank(v) != 1) {
         continue;
       }
       const Vec3 direction = bit == 1 ? Vec3(-normals[i]) : normals[i];

@@ -16,10 +16,11 @@ constexpr double kShortest = 1.0 / 128.0;
 constexpr int kMostShifts = 12;
 constexpr int kMostShortSteps = 6;  // in a row, before giving up
 
-VectorX along(const Eigen::MatrixX3d& rows, const Points& directions) {
-  VectorX result(rows.rows());
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    result[i] = rows.row(i).dot(directions[i]);
+VectorX along(const Points& slope, const FilmEnergy& energy,
+              const Points& directions) {
+  VectorX result(energy.unknowns());
+  for (int i = 0; i < energy.unknowns(); ++i) {
+    result[i] = slope[energy.vertices()[i]].dot(directions[i]);
   }
   return result;
 }
@@ -33,7 +34,7 @@ FilmNewton::FilmNewton(const FilmEnergy& energy, const FilmTargets& targets,
       options_(options),
       system_(energy.pattern(), energy.order()),
       hessian_(energy.pattern()) {
-  for (int b = 0; b < energy.bodies(); ++b) {
+  for (int b = 0; b < energy.functionals(); ++b) {
     if (targets.bodies[b].volume) {
       held_.push_back(b);
     }
@@ -43,8 +44,8 @@ FilmNewton::FilmNewton(const FilmEnergy& energy, const FilmTargets& targets,
 FilmNewton::Trial FilmNewton::trial_at(const VectorX& heights) const {
   Trial trial;
   trial.heights = heights;
-  trial.points = energy_.moved(base_, directions_, heights);
-  trial.energy = energy_.value(trial.points, targets_.tension);
+  trial.points = energy_.space().moved(base_, directions_, heights);
+  trial.energy = energy_.value(trial.points, targets_);
   trial.volume = energy_.volumes(trial.points);
   return trial;
 }
@@ -52,37 +53,34 @@ FilmNewton::Trial FilmNewton::trial_at(const VectorX& heights) const {
 /// Derivatives at the current film.
 void FilmNewton::evaluate() {
   const int n = energy_.unknowns();
-  const int bodies = energy_.bodies();
+  const int bodies = energy_.functionals();
   if (options_.rule == DirectionRule::CurrentNormals) {
     base_ = now_.points;
     now_.heights.setZero();
-    directions_ = energy_.normals(base_);
+    directions_ = energy_.space().directions(base_);
   }
   gradient_ =
-      along(energy_.gradient(now_.points, targets_.tension), directions_);
+      along(energy_.gradient(now_.points, targets_), energy_, directions_);
   volumes_dh_.resize(n, bodies);
   for (int b = 0; b < bodies; ++b) {
-    volumes_dh_.col(b) =
-        along(energy_.volume_gradient(now_.points, b), directions_);
+    volumes_dh_.col(b) = along(energy_.functional_gradient(now_.points, b),
+                               energy_, directions_);
   }
   metric_ = energy_.lumped_area(now_.points);
   const auto held = static_cast<int>(held_.size());
-  constraints_.setZero(n, held + 3 * energy_.floating_count());
+  const Eigen::MatrixXd rigid =
+      energy_.rigid_motions(now_.points, directions_, metric_);
+  constraints_.resize(n, held + rigid.cols());
   for (int k = 0; k < held; ++k) {
     constraints_.col(k) = volumes_dh_.col(held_[k]);
   }
-  for (int i = 0; i < n; ++i) {
-    if (const int k = energy_.floating()[i]; k >= 0) {
-      constraints_.row(i).segment<3>(held + 3 * k) =
-          metric_[i] * directions_[i].transpose();
-    }
-  }
+  constraints_.rightCols(rigid.cols()) = rigid;
 }
 
 /// Pressures of the held bodies that leave the least residual.
 void FilmNewton::guess_pressure() {
-  pressure_ = VectorX::Zero(energy_.bodies());
-  for (int b = 0; b < energy_.bodies(); ++b) {
+  pressure_ = VectorX::Zero(energy_.functionals());
+  for (int b = 0; b < energy_.functionals(); ++b) {
     pressure_[b] = targets_.bodies[b].pressure.value_or(0.0);
   }
   if (held_.empty()) {
@@ -107,7 +105,8 @@ VectorX FilmNewton::residual_of(const VectorX& pressure) const {
 /// Max norm, rigid translations of floating films left out.
 double FilmNewton::residual_norm() const {
   VectorX r = residual_of(pressure_);
-  const auto rigid = Eigen::Index{3} * energy_.floating_count();
+  const auto rigid =
+      constraints_.cols() - static_cast<Eigen::Index>(held_.size());
   if (rigid > 0) {
     const Eigen::MatrixXd t = constraints_.rightCols(rigid);
     const VectorX part = (t.transpose() * t).ldlt().solve(t.transpose() * r);
@@ -143,7 +142,7 @@ double FilmNewton::rounding() const {
 double FilmNewton::merit(const Trial& trial, const VectorX& pressure,
                          double penalty) const {
   double sum = trial.energy;
-  for (int b = 0; b < energy_.bodies(); ++b) {
+  for (int b = 0; b < energy_.functionals(); ++b) {
     const double target = targets_.bodies[b].volume.value_or(0.0);
     sum -= pressure[b] * (trial.volume[b] - target);
   }
@@ -153,8 +152,7 @@ double FilmNewton::merit(const Trial& trial, const VectorX& pressure,
 /// Factors the Hessian, shifted until it is positive on the constraint space
 /// when a minimum is sought.
 bool FilmNewton::factorize() {
-  energy_.hessian(now_.points, directions_, targets_.tension, pressure_,
-                  hessian_);
+  energy_.hessian(now_.points, directions_, targets_, pressure_, hessian_);
   double shift = options_.aim == NewtonAim::Minimum ? shift_ : 0.0;
   for (int attempt = 0; attempt < kMostShifts; ++attempt) {
     if (!system_.factorize(hessian_, metric_, shift, constraints_)) {
@@ -192,7 +190,7 @@ bool FilmNewton::search_down(const ConstrainedHessian::Step& step,
   const double slope = plain - penalty * gap;
   const double start = merit(now_, pressure, penalty);
   const double fold =
-      std::min(kFold, 0.9 * energy_.smallest_cosine(now_.points, directions_));
+      std::min(kFold, 0.9 * energy_.smallest_cosine(now_.points, base_));
   for (double s = 1.0; s >= kShortest; s *= 0.5) {
     Trial trial = trial_at(now_.heights + s * step.dh);
     if (held > 0) {
@@ -201,7 +199,7 @@ bool FilmNewton::search_down(const ConstrainedHessian::Step& step,
       const VectorX stray = missing(trial.volume) - (1.0 - s) * c;
       trial = trial_at(trial.heights + system_.restore(stray));
     }
-    if (energy_.smallest_cosine(trial.points, directions_) < fold) {
+    if (energy_.smallest_cosine(trial.points, base_) < fold) {
       continue;
     }
     if (merit(trial, pressure, penalty) <=
@@ -224,7 +222,7 @@ bool FilmNewton::search_residual(const ConstrainedHessian::Step& step) {
   const Points old_directions = directions_;
   for (double s = 1.0; s >= 0.1; s *= 0.5) {
     Trial trial = trial_at(now_.heights + s * step.dh);
-    const double cosine = energy_.smallest_cosine(trial.points, directions_);
+    const double cosine = energy_.smallest_cosine(trial.points, base_);
     const double left = missing(trial.volume).norm();
     accept(std::move(trial));
     for (std::size_t k = 0; k < held_.size(); ++k) {
@@ -274,8 +272,7 @@ bool FilmNewton::advance() {
 /// One full step after the stop criterion, and the stability of the film.
 void FilmNewton::polish(NewtonResult& result) {
   shift_ = 0.0;
-  energy_.hessian(now_.points, directions_, targets_.tension, pressure_,
-                  hessian_);
+  energy_.hessian(now_.points, directions_, targets_, pressure_, hessian_);
   if (!system_.factorize(hessian_, metric_, 0.0, constraints_)) {
     result.converged = false;
     result.reason = "the Hessian is singular";

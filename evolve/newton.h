@@ -31,7 +31,7 @@ struct NewtonResult {
   std::string reason;  // when not converged
   Points points;
   VectorX heights;
-  VectorX pressure;  // one per body
+  VectorX pressure;  // one per functional
   double residual = 0.0;
   int iterations = 0;
   int index = 0;
@@ -75,15 +75,15 @@ class FilmNewton {
   const FilmEnergy& energy_;
   const FilmTargets& targets_;
   NewtonOptions options_;
-  std::vector<int> held_;  // bodies whose volume is given
+  std::vector<int> held_;  // functionals whose value is given
   ConstrainedHessian system_;
   SparseMatrix hessian_;
   Points base_;
   Points directions_;
   Trial now_;
   VectorX gradient_;             // dE/dh
-  Eigen::MatrixXd volumes_dh_;   // dV/dh, one column per body
-  Eigen::MatrixXd constraints_;  // held bodies, then rigid translations
+  Eigen::MatrixXd volumes_dh_;   // dV/dh, one column per functional
+  Eigen::MatrixXd constraints_;  // held functionals, then rigid motions
   VectorX metric_;
   VectorX pressure_;
   double shift_ = 0.0;
