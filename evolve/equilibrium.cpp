@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "core/timer.h"
-#include "evolve/neck.h"
 #include "evolve/newton.h"
 
 namespace meniscus {
@@ -78,7 +77,8 @@ FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
   state.points = std::move(found.points);
   state.heights = std::move(found.heights);
   judge(energy, complex,
-        {found.converged ? "" : found.reason, found.mode_position, usual_neck},
+        {found.converged ? "" : found.reason, found.mode_position, usual_neck,
+         {}},
         state);
   state.report.seconds = timer.seconds();
   return state;
@@ -93,8 +93,9 @@ void judge(const FilmEnergy& energy, const FilmComplex& complex,
   const bool finite = std::all_of(state.points.begin(), state.points.end(),
                                   [](const Vec3& p) { return p.allFinite(); });
   const Neck neck =
-      finite ? narrowest_neck(energy, state.points, complex.mesh.facet_label)
-             : Neck{};
+      judgement.neck ? *judgement.neck
+      : finite ? narrowest_neck(energy, state.points, complex.mesh.facet_label)
+               : Neck{};
   report.smallest_neck = neck.width;
   report.neck_position = neck.position;
   const double edge = finite ? energy.mean_edge(state.points) : 0.0;
@@ -139,6 +140,39 @@ void judge(const FilmEnergy& energy, const FilmComplex& complex,
   } else {
     report.verdict = "stable";
   }
+}
+
+LowestMode lowest_mode_of(const FilmEnergy& energy, const FilmTargets& targets,
+                          const Points& points, const VectorX& pressure) {
+  const Points own(points.begin(),
+                   points.begin() + energy.space().vertex_count());
+  const Points directions = energy.space().directions(own);
+  const VectorX metric = energy.lumped_area(own);
+  const Eigen::MatrixXd rigid = energy.rigid_motions(own, directions, metric);
+  std::vector<int> held;
+  for (int b = 0; b < energy.functionals(); ++b) {
+    if (targets.bodies[b].volume) {
+      held.push_back(b);
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(held.size());
+  Eigen::MatrixXd constraints(energy.unknowns(), count + rigid.cols());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Points slope = energy.functional_gradient(own, held[k]);
+    for (int i = 0; i < energy.unknowns(); ++i) {
+      constraints(i, k) = slope[energy.vertices()[i]].dot(directions[i]);
+    }
+  }
+  constraints.rightCols(rigid.cols()) = rigid;
+  SparseMatrix hessian = energy.pattern();
+  energy.hessian(own, directions, targets, pressure, hessian);
+  ConstrainedHessian system(energy.pattern(), energy.order());
+  LowestMode result;
+  result.mode = VectorX::Ones(energy.unknowns());
+  if (system.factorize(hessian, metric, 0.0, constraints)) {
+    result = system.lowest_mode(metric);
+  }
+  return result;
 }
 
 FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,

@@ -2,8 +2,10 @@
 /// with the verdict on what was found.
 #pragma once
 
+#include "evolve/constrained_hessian.h"
 #include "evolve/energy.h"
 #include "evolve/film_model.h"
+#include "evolve/neck.h"
 
 namespace meniscus {
 
@@ -28,10 +30,16 @@ FilmState settle_in_normals(const FilmEnergy& energy,
                             const FilmTargets& targets, const Points& start,
                             const SettleOptions& options);
 
+/// Lowest mode of a film at `points` (more may follow its vertices: only the
+/// first are read) under the given pressures, by a factorisation.
+LowestMode lowest_mode_of(const FilmEnergy& energy, const FilmTargets& targets,
+                          const Points& points, const VectorX& pressure);
+
 struct Judgement {
   std::string reason;  // why no equilibrium was reached; empty: it was
   Vec3 mode_position = Vec3::Zero();  // where the lowest mode is largest
   double usual_neck = 0.0;            // [length]; 0: not known
+  std::optional<Neck> neck;           // where it has been measured already
 };
 
 /// Measures the narrowest neck and says in words what was found, from the

@@ -7,9 +7,11 @@
 
 #include "core/error.h"
 #include "core/timer.h"
+#include "evolve/bend_midpoints.h"
 #include "evolve/curvature_flow.h"
 #include "evolve/grooming.h"
 #include "evolve/neck.h"
+#include "evolve/nested_newton.h"
 
 namespace meniscus {
 
@@ -17,6 +19,11 @@ namespace {
 
 constexpr int kFlowSteps = 8;     // between remeshings
 constexpr int kPolishRounds = 2;  // of averaging and Newton at the end
+// Facets up to which a film is groomed, and factored directly, before nested
+// refinement goes on.
+constexpr std::size_t kGroomed = 1500;
+constexpr std::size_t kDirect = 6000;
+constexpr double kLooseReduction = 1e-2;  // on levels that are refined further
 
 bool has_free_vertex(const FilmComplex& complex) {
   return std::any_of(complex.vertices.begin(), complex.vertices.end(),
@@ -120,9 +127,137 @@ FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
                               complex.mesh.points, options.settle);
     steps += state.report.iterations;
     complex.mesh.points = state.points;
-    if (state.failure || !options.edge) {
+    if (state.failure || (!options.edge && options.refinements == 0)) {
       break;
     }
+  }
+  return state;
+}
+
+/// The chain of nested levels; the coarsest was groomed and settled.
+struct Chain {
+  std::vector<std::unique_ptr<FilmEnergy>> energies;
+  std::vector<FilmLevel> levels;
+
+  void add(const FilmComplex& complex, std::vector<Edge> parents) {
+    energies.push_back(std::make_unique<FilmEnergy>(complex));
+    if (!levels.empty() &&
+        !is_nested(*levels.back().energy, *energies.back(), parents)) {
+      // Parts that stay unrefined break the chain: start anew from here.
+      levels.clear();
+      parents.clear();
+    }
+    levels.push_back({energies.back().get(), std::move(parents)});
+  }
+};
+
+FilmReport nested_report(const FilmEnergy& energy, const FilmTargets& targets,
+                         const NestedResult& found, double bound) {
+  FilmReport report;
+  report.vertices = static_cast<int>(found.points.size());
+  report.facets = static_cast<int>(energy.facets().size());
+  report.energy = energy.value(found.points, targets);
+  report.area = energy.area(found.points);
+  report.residual = found.residual;
+  report.residual_bound = bound;
+  const VectorX volumes = energy.volumes(found.points);
+  for (int b = 0; b < energy.functionals(); ++b) {
+    report.bodies.push_back({targets.bodies[b].name, volumes[b],
+                             targets.bodies[b].volume.value_or(volumes[b]),
+                             found.pressure[b]});
+  }
+  return report;
+}
+
+/// One level finer. `last`: to the stop criterion, with the verdict.
+FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
+                       const FindOptions& options, bool last, int& steps) {
+  const FilmEnergy& coarse = *chain.energies.back();
+  Refinement finer = refine(complex);
+  bend_midpoints(coarse.space(), complex.mesh.points, finer);
+  complex = std::move(finer.complex);
+  chain.add(complex, std::move(finer.parents));
+  const FilmEnergy& energy = *chain.energies.back();
+  const FilmTargets targets = targets_of(complex);
+  const bool direct = complex.mesh.facets.size() <= kDirect ||
+                      chain.levels.size() < 2;
+  const auto settle_directly = [&] {
+    FilmState found = settle_in_normals(energy, complex, targets,
+                                        complex.mesh.points, options.settle);
+    steps += found.report.iterations;
+    complex.mesh.points = found.points;
+    return found;
+  };
+  if (direct) {
+    return settle_directly();
+  }
+  const double tension =
+      *std::max_element(targets.tension.begin(), targets.tension.end());
+  NestedNewton newton(chain.levels, targets);
+  NestedOptions nested{.residual_bound = options.settle.residual_factor *
+                                         tension *
+                                         energy.mean_edge(complex.mesh.points),
+                       .volume_tolerance = options.settle.volume_tolerance,
+                       .reduction = last ? 0.0 : kLooseReduction,
+                       .monitor = options.settle.monitor};
+  VectorX pressure(energy.functionals());
+  for (int b = 0; b < energy.functionals(); ++b) {
+    pressure[b] = state.report.bodies[b].pressure;
+  }
+  const NestedResult found =
+      newton.run(complex.mesh.points, pressure, nested);
+  steps += found.iterations;
+  if (!found.converged) {
+    return settle_directly();
+  }
+  complex.mesh.points = found.points;
+  const FilmReport before = std::move(state.report);
+  state.report =
+      nested_report(energy, targets, found, nested.residual_bound);
+  if (!last) {
+    state.report.smallest_neck = before.smallest_neck;
+    state.report.neck_position = before.neck_position;
+    state.report.index = before.index;
+    return state;
+  }
+  const LowestMode guess = lowest_mode_of(*chain.levels.front().energy, targets,
+                                          complex.mesh.points, found.pressure);
+  const NestedModes modes = newton.lowest_modes(guess.mode);
+  state.report.min_eigenvalue = modes.eigenvalues[0];
+  state.report.index = modes.eigenvalues[0] < 0.0 ? 1 : 0;
+  state.points = found.points;
+  state.heights = VectorX::Zero(energy.unknowns());
+  Judgement judgement;
+  judgement.mode_position = modes.position;
+  judgement.neck = Neck{before.smallest_neck, before.neck_position, -1, -1};
+  judge(energy, complex, judgement, state);
+  return state;
+}
+
+/// Nested refinements of a start: groomed and settled while it is coarse.
+FilmState find_nested(FilmComplex& complex, const FindOptions& options,
+                      int& steps) {
+  int left = options.refinements;
+  std::string reason = bring_near(complex, {}, options.max_rounds, steps,
+                                  options.settle.monitor);
+  while (reason.empty() && left > 0 &&
+         4 * complex.mesh.facets.size() <= kGroomed) {
+    complex = refine(complex).complex;
+    --left;
+    equiangulate(complex);
+    average_vertices(complex);
+    reason = bring_near(complex, {}, options.max_rounds, steps,
+                        options.settle.monitor);
+  }
+  if (!reason.empty()) {
+    return given_up(complex, reason, steps);
+  }
+  FilmState state = settle_and_polish(complex, options, steps);
+  Chain chain;
+  chain.add(complex, {});
+  for (; left > 0 && !state.failure; --left) {
+    state = settle_finer(chain, complex, std::move(state), options, left == 1,
+                         steps);
   }
   return state;
 }
@@ -132,6 +267,12 @@ FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
 FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options) {
   const Timer timer;
   int steps = 0;
+  if (!options.edge && options.refinements > 0) {
+    FilmState state = find_nested(complex, options, steps);
+    state.report.iterations = steps;
+    state.report.seconds = timer.seconds();
+    return state;
+  }
   const int levels = options.edge ? options.halvings : 0;
   FilmComplex raw = complex;
   std::string reason = bring_near_by_levels(complex, options, levels, steps);

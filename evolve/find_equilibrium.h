@@ -10,6 +10,9 @@ struct FindOptions {
   /// triangulation stays as it is.
   std::optional<double> edge;
   int halvings = 1;     // the start's edge is edge x 2^halvings
+  /// Without `edge`: nested 1:4 refinements of the start, each film settled
+  /// from the one before. The facet count is 4^refinements x the start's.
+  int refinements = 0;
   int max_rounds = 10;  // of flow and remeshing on the coarsest level
   SettleOptions settle;
 };

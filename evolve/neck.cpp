@@ -11,7 +11,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr double kFacing = 0.5;  // cosine between line and facet normal
+constexpr double kFacing = 0.7;  // cosine between line and facet normal
 constexpr int kLeaf = 4;
 
 /// Bounding volume tree over facets, split at the median of the longest axis.
@@ -198,6 +198,31 @@ std::vector<Outlook> outlooks(const FilmEnergy& energy,
   return result;
 }
 
+/// Vertices within two edges of a line, rim or junction: films that meet there
+/// come near to each other without being a neck.
+std::vector<char> near_lines(const FilmEnergy& energy, std::size_t count) {
+  std::vector<char> near(count, 0);
+  for (std::size_t f = 0; f < energy.facets().size(); ++f) {
+    for (const int v : energy.facets()[f]) {
+      if (energy.is_liquid(static_cast<int>(f)) &&
+          (energy.space().rank(v) != 1 ||
+           energy.space().line_ends(v)[0] >= 0)) {
+        near[v] = 1;
+      }
+    }
+  }
+  for (int ring = 0; ring < 2; ++ring) {
+    std::vector<char> next = near;
+    for (const Triangle& t : energy.facets()) {
+      if (near[t[0]] + near[t[1]] + near[t[2]] > 0) {
+        next[t[0]] = next[t[1]] = next[t[2]] = 1;
+      }
+    }
+    near = std::move(next);
+  }
+  return near;
+}
+
 }  // namespace
 
 Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
@@ -206,6 +231,7 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
   const FacetTree tree(facets, points);
   const Points normals = energy.space().directions(points);
   const std::vector<Outlook> looks = outlooks(energy, points.size());
+  const std::vector<char> near = near_lines(energy, points.size());
   Neck neck;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < energy.unknowns(); ++i) {
@@ -219,7 +245,9 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
       double length = least;
       const auto accept = [&](int f) {
         const Triangle& t = facets[f];
-        return t[0] != v && t[1] != v && t[2] != v &&
+        const bool corner =
+            near[v] != 0 && near[t[0]] + near[t[1]] + near[t[2]] > 0;
+        return t[0] != v && t[1] != v && t[2] != v && !corner &&
                share_body(energy, f, looks[i].facet);
       };
       const int f = tree.first_hit(points[v], direction, length, accept);
