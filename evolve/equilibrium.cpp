@@ -77,7 +77,9 @@ FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
   state.points = std::move(found.points);
   state.heights = std::move(found.heights);
   judge(energy, complex,
-        {found.converged ? "" : found.reason, found.mode_position, usual_neck,
+        {found.converged ? "" : found.reason,
+         found.mode_position,
+         usual_neck,
          {}},
         state);
   state.report.seconds = timer.seconds();
@@ -188,8 +190,8 @@ FilmState settle_in_normals(const FilmEnergy& energy,
                             const FilmTargets& targets, const Points& start,
                             const SettleOptions& options) {
   FilmState state =
-      settle(energy, complex, targets, start, energy.space().directions(start), {}, 0.0,
-             options, DirectionRule::CurrentNormals);
+      settle(energy, complex, targets, start, energy.space().directions(start),
+             {}, 0.0, options, DirectionRule::CurrentNormals);
   state.heights = VectorX::Zero(energy.unknowns());
   return state;
 }

@@ -179,8 +179,8 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
   chain.add(complex, std::move(finer.parents));
   const FilmEnergy& energy = *chain.energies.back();
   const FilmTargets targets = targets_of(complex);
-  const bool direct = complex.mesh.facets.size() <= kDirect ||
-                      chain.levels.size() < 2;
+  const bool direct =
+      complex.mesh.facets.size() <= kDirect || chain.levels.size() < 2;
   const auto settle_directly = [&] {
     FilmState found = settle_in_normals(energy, complex, targets,
                                         complex.mesh.points, options.settle);
@@ -204,16 +204,14 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
   for (int b = 0; b < energy.functionals(); ++b) {
     pressure[b] = state.report.bodies[b].pressure;
   }
-  const NestedResult found =
-      newton.run(complex.mesh.points, pressure, nested);
+  const NestedResult found = newton.run(complex.mesh.points, pressure, nested);
   steps += found.iterations;
   if (!found.converged) {
     return settle_directly();
   }
   complex.mesh.points = found.points;
   const FilmReport before = std::move(state.report);
-  state.report =
-      nested_report(energy, targets, found, nested.residual_bound);
+  state.report = nested_report(energy, targets, found, nested.residual_bound);
   if (!last) {
     state.report.smallest_neck = before.smallest_neck;
     state.report.neck_position = before.neck_position;

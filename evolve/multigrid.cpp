@@ -7,7 +7,8 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kMostShifts = 12;
+constexpr int kMostShifts = 24;
+constexpr double kShiftMargin = 2.0;
 
 /// Corners of the four children as pairs of the parent's corners.
 constexpr std::array<std::array<std::array<int, 2>, 3>, 4> kChildren = {
@@ -24,8 +25,7 @@ bool is_nested(const FilmEnergy& coarse, const FilmEnergy& fine,
     return false;
   }
   const int old = coarse.space().vertex_count();
-  if (fine.space().vertex_count() !=
-      old + static_cast<int>(parents.size())) {
+  if (fine.space().vertex_count() != old + static_cast<int>(parents.size())) {
     return false;
   }
   for (std::size_t f = 0; f < coarse.facets().size(); ++f) {
@@ -35,10 +35,10 @@ bool is_nested(const FilmEnergy& coarse, const FilmEnergy& fine,
         const int a = coarse.facets()[f][p];
         const int b = coarse.facets()[f][q];
         const int v = fine.facets()[4 * f + c][k];
-        const bool fits =
-            p == q ? v == a
-                   : v >= old && (parents[v - old] == Edge{a, b} ||
-                                  parents[v - old] == Edge{b, a});
+        const bool fits = p == q
+                              ? v == a
+                              : v >= old && (parents[v - old] == Edge{a, b} ||
+                                             parents[v - old] == Edge{b, a});
         if (!fits) {
           return false;
         }
@@ -72,8 +72,7 @@ struct FilmMultigrid::Level {
   mutable std::vector<float> b;
 
   explicit Level(const FilmEnergy& energy);
-  void take(const SparseMatrix& lower, double shift,
-            std::vector<double>* full);
+  void take(const SparseMatrix& lower, double shift, std::vector<double>* full);
   void sweep_down(bool from_zero) const;
   void sweep_up() const;
 };
@@ -141,8 +140,7 @@ void FilmMultigrid::Level::take(const SparseMatrix& lower, double shift,
         }
         continue;
       }
-      value[lower_slot[k]] = value[upper_slot[k]] =
-          static_cast<float>(from[k]);
+      value[lower_slot[k]] = value[upper_slot[k]] = static_cast<float>(from[k]);
       if (full != nullptr) {
         (*full)[lower_slot[k]] = (*full)[upper_slot[k]] = from[k];
       }
@@ -258,9 +256,9 @@ void FilmMultigrid::gather(std::size_t fine,
         for (int i = 0; i < nc; ++i) {
           const FilmEnergy::Corner& from = coarse.corners()[c0 + i];
           const double w = 0.5 * (from.corner == a) + 0.5 * (from.corner == b);
-          p[j][i] = w == 0.0 ? 0.0
-                             : w * d_fine[at.unknown].dot(
-                                       d_coarse[from.unknown]);
+          p[j][i] = w == 0.0
+                        ? 0.0
+                        : w * d_fine[at.unknown].dot(d_coarse[from.unknown]);
         }
       }
       const double* k = &fine_elements[above.element_start()[g]];
@@ -295,6 +293,32 @@ void FilmMultigrid::gather(std::size_t fine,
   }
 }
 
+bool FilmMultigrid::factor_coarsest(const SparseMatrix& matrix,
+                                    double least_shift) {
+  const VectorX& metric = levels_.front()->metric;
+  const auto works = [&](double shift) {
+    SparseMatrix shifted = matrix;
+    for (int i = 0; i < shifted.cols(); ++i) {
+      shifted.valuePtr()[shifted.outerIndexPtr()[i]] += shift * metric[i];
+    }
+    return coarsest_->factorize(shifted);
+  };
+  shift_ = least_shift;
+  if (works(shift_)) {
+    return true;
+  }
+  const double trace = matrix.diagonal().cwiseAbs().sum();
+  for (int attempt = 0; attempt < kMostShifts; ++attempt) {
+    shift_ = std::max(2.0 * shift_, 1e-4 * trace / metric.sum());
+    if (works(shift_)) {
+      // Finer levels reach lower eigenvalues: keep away from zero.
+      shift_ *= kShiftMargin;
+      return works(shift_);
+    }
+  }
+  return false;
+}
+
 bool FilmMultigrid::refresh(const Points& directions,
                             const std::vector<double>& elements,
                             const VectorX& metric, double least_shift) {
@@ -315,21 +339,8 @@ bool FilmMultigrid::refresh(const Points& directions,
     gather(l, now, coarser);
     now = std::move(coarser);
   }
-  shift_ = least_shift;
-  const VectorX& bottom = levels_.front()->metric;
-  for (int attempt = 0;; ++attempt) {
-    SparseMatrix shifted = matrices.front();
-    for (int i = 0; i < shifted.cols(); ++i) {
-      shifted.valuePtr()[shifted.outerIndexPtr()[i]] += shift_ * bottom[i];
-    }
-    if (coarsest_->factorize(shifted)) {
-      break;
-    }
-    if (attempt == kMostShifts) {
-      return false;
-    }
-    const double trace = matrices.front().diagonal().cwiseAbs().sum();
-    shift_ = std::max(4.0 * shift_, 1e-4 * trace / bottom.sum());
+  if (!factor_coarsest(matrices.front(), least_shift)) {
+    return false;
   }
   for (std::size_t l = 1; l <= finest; ++l) {
     levels_[l]->take(matrices[l], shift_,

@@ -50,6 +50,7 @@ class FilmMultigrid {
   void transfer_weights(std::size_t fine);
   void gather(std::size_t fine, const std::vector<double>& fine_elements,
               std::vector<double>& coarse_elements) const;
+  bool factor_coarsest(const SparseMatrix& matrix, double least_shift);
   void cycle(std::size_t level) const;
 
   std::vector<FilmLevel> chain_;

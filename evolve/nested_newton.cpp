@@ -11,6 +11,8 @@ namespace {
 
 constexpr int kMostLinear = 200;
 constexpr double kFirstReduction = 1e-3;  // of the linear residual
+constexpr double kServes = 0.3;           // a step's reduction of the residual
+constexpr double kMostReduction = 1e-7;   // that single precision gives
 constexpr double kAim = 0.1;              // of the bound, for the last solve
 constexpr double kFold = 0.15;            // cosine of a facet's turn in a step
 constexpr int kModeSteps = 30;
@@ -140,9 +142,8 @@ bool NestedNewton::refresh() {
   // hold; the preconditioner gets them from the shift.
   const double tension =
       *std::max_element(targets_.tension.begin(), targets_.tension.end());
-  const double shift = constraints_.cols() > 0
-                           ? tension / bounding_diagonal2(points_)
-                           : 0.0;
+  const double shift =
+      constraints_.cols() > 0 ? tension / bounding_diagonal2(points_) : 0.0;
   if (!multigrid_.refresh(directions_, elements, metric_, shift)) {
     return false;
   }
@@ -154,23 +155,23 @@ bool NestedNewton::refresh() {
   if (m > 0) {
     const Eigen::MatrixXd schur =
         constraints_.transpose() * inverse_constraints_;
-    schur_inverse_ = (0.5 * (schur + schur.transpose()))
-                         .completeOrthogonalDecomposition()
-                         .pseudoInverse();
+    // Not made symmetric: so the projection is exact in double precision,
+    // whatever the preconditioner's rounding.
+    schur_inverse_ = schur.completeOrthogonalDecomposition().pseudoInverse();
   }
   return true;
 }
 
-/// The preconditioner on the space that keeps the constraints.
-VectorX NestedNewton::project(const VectorX& right,
-                              VectorX* multipliers) const {
+/// The preconditioner on the space that keeps the constraints. What the
+/// constraints take of `right` is removed from it and added to `multipliers`,
+/// which keeps `right` small (Gould, Hribar, Nocedal 2001, section 6).
+VectorX NestedNewton::project(VectorX& right, VectorX& multipliers) const {
   VectorX z = multigrid_.precondition(right);
   if (constraints_.cols() > 0) {
     const VectorX y = schur_inverse_ * (constraints_.transpose() * z);
     z -= inverse_constraints_ * y;
-    if (multipliers != nullptr) {
-      *multipliers = y;
-    }
+    right -= constraints_ * y;
+    multipliers += y;
   }
   return z;
 }
@@ -184,8 +185,8 @@ NestedNewton::Step NestedNewton::solve(const VectorX& residual,
     step.heights = inverse_constraints_ * (schur_inverse_ * missing);
     g += multigrid_.multiply(step.heights);
   }
-  VectorX multipliers;
-  VectorX z = project(g, &multipliers);
+  VectorX multipliers = VectorX::Zero(constraints_.cols());
+  VectorX z = project(g, multipliers);
   VectorX p = -z;
   double gz = g.dot(z);
   const double enough = factor * factor * gz;
@@ -199,12 +200,12 @@ NestedNewton::Step NestedNewton::solve(const VectorX& residual,
     const double alpha = gz / curvature;
     step.heights += alpha * p;
     g += alpha * kp;
-    z = project(g, &multipliers);
+    z = project(g, multipliers);
     const double next = g.dot(z);
     p = (next / gz) * p - z;
     gz = next;
   }
-  step.pressure = multipliers.head(multipliers.size() > 0 ? held_.size() : 0);
+  step.pressure = multipliers.head(static_cast<Eigen::Index>(held_.size()));
   return step;
 }
 
@@ -241,15 +242,23 @@ NestedResult NestedNewton::run(const Points& start, const VectorX& pressure,
       result.reason = "the residual does not fall";
       break;
     }
+    // The film's normals turn with every step, so convergence may be linear
+    // at the end: a Hessian that still serves is kept, and no step is solved
+    // better than the last one's success promises (Eisenstat, Walker 1996).
+    const double ratio = result.iterations == 0 ? 1.0 : norm / before;
+    const bool serves = result.iterations > 1 && ratio < kServes;
     before = norm;
-    if (!refresh()) {
+    if (!serves && !refresh()) {
       result.reason = "the Hessian cannot be preconditioned";
       break;
     }
+    const double aim =
+        std::max(kAim * options.residual_bound, options.reduction * first) /
+        norm;
     const double factor =
         result.iterations == 0
             ? kFirstReduction
-            : std::min(kFirstReduction, kAim * options.residual_bound / norm);
+            : std::max({aim, kMostReduction, std::min(0.1, ratio * ratio)});
     const Step step = solve(r, missing(), factor);
     result.linear_iterations += step.iterations;
     if (!step.positive) {
@@ -300,9 +309,9 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
     Eigen::MatrixXd w(n, step == 0 ? 0 : k);
     Eigen::MatrixXd kw(n, w.cols());
     for (Eigen::Index j = 0; j < w.cols(); ++j) {
-      const VectorX r =
-          kx.col(j) - values[j] * metric_.cwiseProduct(x.col(j));
-      w.col(j) = project(r, nullptr);
+      VectorX r = kx.col(j) - values[j] * metric_.cwiseProduct(x.col(j));
+      VectorX multipliers = VectorX::Zero(constraints_.cols());
+      w.col(j) = project(r, multipliers);
       kw.col(j) = multigrid_.multiply(w.col(j));
     }
     Eigen::MatrixXd s(n, k + w.cols() + p.cols());
@@ -310,7 +319,8 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
     s << x, w, p;
     ks << kx, kw, kp;
     const Eigen::MatrixXd mass = s.transpose() * metric_.asDiagonal() * s;
-    const VectorX scale = mass.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const VectorX scale =
+        mass.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd unit = scale.asDiagonal() * mass * scale.asDiagonal();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(unit);
     Eigen::Index drop = 0;
@@ -322,7 +332,8 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
         scale.asDiagonal() * gram.eigenvectors().rightCols(m) *
         gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal();
     const Eigen::MatrixXd stiff = s.transpose() * ks;
-    const Eigen::MatrixXd small = basis.transpose() * (0.5 * (stiff + stiff.transpose())) * basis;
+    const Eigen::MatrixXd small =
+        basis.transpose() * (0.5 * (stiff + stiff.transpose())) * basis;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(small);
     const Eigen::MatrixXd y = basis * ritz.eigenvectors().leftCols(k);
     Eigen::MatrixXd y_rest = y;

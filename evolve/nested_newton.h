@@ -12,7 +12,7 @@
 namespace meniscus {
 
 struct NestedOptions {
-  double residual_bound = 0.0;  // [force], max norm in the normal space
+  double residual_bound = 0.0;      // [force], max norm in the normal space
   double volume_tolerance = 1e-10;  // relative
   int max_iterations = 12;
   /// Stop earlier, once the residual fell by this factor; 0: go to the bound.
@@ -31,8 +31,8 @@ struct NestedResult {
 };
 
 struct NestedModes {
-  VectorX eigenvalues;    // ascending [force/length^3]
-  Eigen::MatrixXd modes;  // one column each, along the directions
+  VectorX eigenvalues;           // ascending [force/length^3]
+  Eigen::MatrixXd modes;         // one column each, along the directions
   Vec3 position = Vec3::Zero();  // where the lowest is largest
 };
 
@@ -66,7 +66,7 @@ class NestedNewton {
   VectorX missing() const;
   bool volumes_hold(double tolerance) const;
   bool refresh();
-  VectorX project(const VectorX& right, VectorX* multipliers) const;
+  VectorX project(VectorX& right, VectorX& multipliers) const;
   Step solve(const VectorX& residual, const VectorX& missing, double factor);
 
   const FilmEnergy& energy_;
@@ -75,7 +75,7 @@ class NestedNewton {
   std::vector<int> held_;
   Points points_;
   Points directions_;
-  Points slope_;                       // of the energy
+  Points slope_;  // of the energy
   std::vector<Points> functional_slope_;
   VectorX gradient_;
   Eigen::MatrixXd functional_;   // dF/dh, one column per functional
