@@ -179,7 +179,8 @@ class Flow {
     }
     VectorX pressure = VectorX::Zero(held);
     Points x = moved(dx, pressure);
-    for (int i = 0; i < kPressureIterations && held > 0; ++i) {
+    bool reached = held == 0;
+    for (int i = 0; i < kPressureIterations && !reached; ++i) {
       const VectorX volumes = energy_.volumes(x);
       VectorX gap(held);
       for (Eigen::Index k = 0; k < held; ++k) {
@@ -187,6 +188,7 @@ class Flow {
       }
       if (gap.cwiseAbs().maxCoeff() <=
           1e-3 * kVolumeReached * goal.cwiseAbs().maxCoeff()) {
+        reached = true;
         break;
       }
       Eigen::MatrixXd slope(held, held);
@@ -200,8 +202,8 @@ class Flow {
       pressure += slope.completeOrthogonalDecomposition().solve(gap);
       x = moved(dx, pressure);
     }
-    if (!flat(x).allFinite()) {
-      return false;
+    if (!reached || !flat(x).allFinite()) {
+      return false;  // a shorter step will
     }
     complex_.mesh.points = std::move(x);
     return true;
