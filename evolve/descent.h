@@ -1,0 +1,44 @@
+/// The motions of the paper (Swanson, Brakke, Breen 2009) and of Surface
+/// Evolver: gradient descent with the best scale, and conjugate gradients.
+/// Slow beside Newton's method and kept for those who want them by name: every
+/// step lowers the energy.
+#pragma once
+
+#include "core/monitor.h"
+#include "evolve/energy.h"
+
+namespace meniscus {
+
+enum class DescentMethod {
+  Gradient,           // along minus the gradient per lumped area
+  ConjugateGradients  // Polak, Ribiere 1969, restarted where it would climb
+};
+
+struct DescentOptions {
+  DescentMethod method = DescentMethod::Gradient;
+  int max_steps = 1000;
+  double residual_bound = 0.0;      // [force], max norm along the directions
+  double volume_tolerance = 1e-10;  // relative, restored after every step
+  Monitor* monitor = nullptr;
+};
+
+struct DescentReport {
+  bool converged = false;
+  int steps = 0;
+  std::vector<double> energies;  // at the start and after every step
+  double residual = 0.0;         // [force]
+  double scale = 0.0;            // the last one [length^3/force]
+  VectorX pressure;              // one per functional
+  std::string message;
+};
+
+/// Moves `points` by heights along fixed `directions` (one per unknown)
+/// downhill at the targets' volumes and pressures. The scale of each step is
+/// doubled or halved until the energy is bracketed, then taken at the minimum
+/// of the parabola through three points. Stops where no scale lowers the
+/// energy beyond rounding.
+DescentReport descend(const FilmEnergy& energy, const FilmTargets& targets,
+                      const Points& directions, Points& points,
+                      const DescentOptions& options);
+
+}  // namespace meniscus
