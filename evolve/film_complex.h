@@ -46,7 +46,8 @@ struct ComplexEdge {
 using VectorField = std::array<Expression, 3>;  // over x, y, z
 
 /// Level set f(x, y, z) = 0 [any unit] that vertices are held to, or may not
-/// cross. AtLeast: f >= 0.
+/// cross. AtLeast: f >= 0; a vertex on such a wall leaves it where its film
+/// pulls it away.
 struct LevelSet {
   enum class Side { On, AtLeast, AtMost };
   std::string name;
@@ -71,6 +72,7 @@ struct ComplexSurface {
   double tension = 0.0;  // [force/length]; 0 on caps
   std::optional<Expression> tension_field;  // over x, y, z; replaces tension
   bool refine = true;                       // false: facets stay as they are
+  int constraints = -1;  // of the vertices born inside it (obstacles)
 };
 
 /// One surface's part in a body: sign +1 where the surface's facet normals

@@ -114,8 +114,12 @@ FilmSpace::FilmSpace(const FilmComplex& complex)
       wall.curve = vertex.curve;
       wall.t = vertex.t;
       static_cast<void>(jet_at(curves_[wall.curve].shape, wall.t));
-    } else if (vertex.constraints >= 0 && vertex.held) {
-      wall.level_sets = complex.constraint_sets[vertex.constraints];
+    } else if (vertex.constraints >= 0) {
+      for (const int wall_set : complex.constraint_sets[vertex.constraints]) {
+        if (vertex.held || level_sets_[wall_set].side == LevelSet::Side::On) {
+          wall.level_sets.push_back(wall_set);
+        }
+      }
     }
     const bool walled = slides || !wall.level_sets.empty();
     const int rank =

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/timer.h"
 #include "evolve/bend_midpoints.h"
+#include "evolve/contacts.h"
 #include "evolve/curvature_flow.h"
 #include "evolve/grooming.h"
 #include "evolve/neck.h"
@@ -23,6 +24,7 @@ constexpr int kPolishRounds = 2;  // of averaging and Newton at the end
 // refinement goes on.
 constexpr std::size_t kGroomed = 1500;
 constexpr std::size_t kDirect = 6000;
+constexpr int kContactRounds = 40;
 constexpr double kLooseReduction = 1e-2;  // on levels that are refined further
 
 bool has_free_vertex(const FilmComplex& complex) {
@@ -107,6 +109,28 @@ std::string bring_near_by_levels(FilmComplex& complex,
   return "";
 }
 
+/// Newton, and again with other contacts while one-sided walls ask for it.
+FilmState settle_with_contacts(FilmComplex& complex,
+                               const SettleOptions& options, int& steps) {
+  for (int round = 0;; ++round) {
+    const FilmEnergy energy(complex);
+    FilmState state = settle_in_normals(energy, complex, targets_of(complex),
+                                        complex.mesh.points, options);
+    steps += state.report.iterations;
+    complex.mesh.points = state.points;
+    if (!has_contacts(complex) || round == kContactRounds) {
+      return state;
+    }
+    VectorX pressure(energy.functionals());
+    for (int b = 0; b < energy.functionals(); ++b) {
+      pressure[b] = state.report.bodies[b].pressure;
+    }
+    if (update_contacts(complex, energy, pressure) == 0) {
+      return state;
+    }
+  }
+}
+
 /// Newton, and vertex averaging so that facets are good where the film is.
 FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
                             int& steps) {
@@ -122,11 +146,7 @@ FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
       equiangulate(complex);
       average_vertices(complex);
     }
-    const FilmEnergy energy(complex);
-    state = settle_in_normals(energy, complex, targets_of(complex),
-                              complex.mesh.points, options.settle);
-    steps += state.report.iterations;
-    complex.mesh.points = state.points;
+    state = settle_with_contacts(complex, options.settle, steps);
     if (state.failure || (!options.edge && options.refinements == 0)) {
       break;
     }
@@ -182,13 +202,14 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
   const bool direct =
       complex.mesh.facets.size() <= kDirect || chain.levels.size() < 2;
   const auto settle_directly = [&] {
-    FilmState found = settle_in_normals(energy, complex, targets,
-                                        complex.mesh.points, options.settle);
-    steps += found.report.iterations;
-    complex.mesh.points = found.points;
+    FilmState found = settle_with_contacts(complex, options.settle, steps);
+    if (has_contacts(complex)) {
+      chain = Chain();  // ranks may have changed
+      chain.add(complex, {});
+    }
     return found;
   };
-  if (direct) {
+  if (direct || has_contacts(complex)) {
     return settle_directly();
   }
   const double tension =

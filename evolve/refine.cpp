@@ -40,6 +40,18 @@ Vec3 onto_walls(const FilmComplex& complex, int set, Vec3 at) {
   return at;
 }
 
+/// The vertex born inside a surface with an obstacle.
+ComplexVertex born_by(const FilmComplex& complex, int set, const Edge& edge) {
+  ComplexVertex made;
+  made.constraints = set;
+  const auto touches = [&](int v) {
+    const ComplexVertex& vertex = complex.vertices[v];
+    return vertex.constraints < 0 || vertex.held;
+  };
+  made.held = touches(edge[0]) && touches(edge[1]);
+  return made;
+}
+
 /// The vertex born on a marked edge, and its place.
 ComplexVertex born_on(const FilmComplex& complex, const ComplexEdge& edge,
                       Vec3& place) {
@@ -69,11 +81,16 @@ Refinement refine(const FilmComplex& complex) {
   const std::vector<Edge>& edges = result.parents;
   // A vertex is a cap's when no film touches its edge.
   std::vector<char> in_film(edges.size(), 0);
+  std::vector<int> obstacle(edges.size(), -1);
   for (std::size_t f = 0; f < facet_edges.size(); ++f) {
     if (complex.surfaces[complex.mesh.facet_label[f]].liquid) {
       for (const int e : facet_edges[f]) {
         in_film[e] = 1;
       }
+    }
+    const int set = complex.surfaces[complex.mesh.facet_label[f]].constraints;
+    for (const int e : facet_edges[f]) {
+      obstacle[e] = std::max(obstacle[e], set);
     }
   }
   std::unordered_map<std::uint64_t, int> marked;
@@ -109,6 +126,11 @@ Refinement refine(const FilmComplex& complex) {
       place = point_at(shape, made.t);
     } else if (in_film[e] == 0) {
       made.kind = VertexKind::InCap;
+    } else if (obstacle[e] >= 0) {
+      made = born_by(complex, obstacle[e], edges[e]);
+      if (made.held) {
+        place = onto_walls(complex, obstacle[e], place);
+      }
     }
     fine.mesh.points.push_back(place);
     fine.vertices.push_back(made);
