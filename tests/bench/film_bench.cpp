@@ -54,8 +54,11 @@ void print_evolver(const char* script, const EvolverRun& run) {
 }
 
 // "x 7.3 (at least 5, aim 10) aim".
-std::string ratio(double theirs, double ours, double least, double aim) {
-  const double value = theirs / ours;
+std::string ratio(double theirs, const FilmRun& own, double least, double aim) {
+  if (!own.settled) {
+    return "no film of ours";
+  }
+  const double value = theirs / own.user_seconds;
   const char* mark = value >= aim ? "AIM" : value >= least ? "ok" : "BELOW";
   return fmt::format("x {:.1f} (at least {:g}, aim {:g}: {})", value, least,
                      aim, mark);
@@ -83,10 +86,8 @@ void race(const SpeedWork& work, const BenchOptions& options) {
     fmt::print(
         "  faster than tuned   {}\n  faster than typical {}\n"
         "  memory / evolver's  {:.2f} (at most 1)\n",
-        ratio(tuned.user_seconds, own.user_seconds, work.least_tuned,
-              work.aim_tuned),
-        ratio(typical.user_seconds, own.user_seconds, work.least_typical,
-              work.aim_typical),
+        ratio(tuned.user_seconds, own, work.least_tuned, work.aim_tuned),
+        ratio(typical.user_seconds, own, work.least_typical, work.aim_typical),
         own.peak_bytes / tuned.peak_bytes);
   }
   std::fflush(stdout);

@@ -70,7 +70,13 @@ std::optional<double> printed(const std::string& output,
 bool have_evolver() { return find_program("evolver").has_value(); }
 
 std::string evolver_commands(const FilmComplex& start, const EvolverJob& job) {
-  std::string text = job.descent + " " + hessians(2) + "\n";
+  std::string text =
+      "before := total_energy; printf \"\\nstart_energy %.15g\\n\", before;\n";
+  for (std::size_t b = 0; b < start.bodies.size(); ++b) {
+    text += fmt::format(
+        "printf \"start_volume_{} %.15g\\n\", body[{}].volume;\n", b, b + 1);
+  }
+  text += job.descent + " " + hessians(2) + "\n";
   for (int level = 1; level <= job.refinements; ++level) {
     text += "r; ";
     for (std::size_t b = 0; b < start.bodies.size(); ++b) {
@@ -109,6 +115,11 @@ EvolverRun run_evolver(const FilmComplex& start, const EvolverJob& job) {
   run.output = child.output;
   run.peak_bytes = child.peak_bytes;
   run.user_seconds = child.user_seconds;
+  run.start_energy = printed(run.output, "start_energy").value_or(NAN);
+  for (std::size_t b = 0; b < start.bodies.size(); ++b) {
+    run.start_volumes.push_back(
+        printed(run.output, fmt::format("start_volume_{}", b)).value_or(NAN));
+  }
   const auto done = printed(run.output, "done_clock");
   const auto end = printed(run.output, "done_end");
   if (!child.succeeded || !done || !end) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "evolve/film_complex.h"
 
@@ -31,6 +32,8 @@ struct EvolverRun {
   bool converged = false;     // and the last `hessian` changed nothing
   double user_seconds = 0.0;  // CPU, start to the last `hessian`
   double peak_bytes = 0.0;
+  double start_energy = 0.0;          // as loaded
+  std::vector<double> start_volumes;  // one per body [length^3]
   int facets = 0;
   double energy = 0.0;
   double mean_edge = 0.0;  // [length]

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <stdexcept>
 
 #include <Eigen/Geometry>
@@ -81,6 +82,15 @@ Numbers number(const FilmComplex& complex) {
     }
   }
   list_edges(facets, numbers.edges, numbers.facet_edges);
+  std::set<Edge> marked;  // integrals run as these do
+  for (const ComplexEdge& edge : complex.edges) {
+    marked.insert({edge.a, edge.b});
+  }
+  for (Edge& edge : numbers.edges) {
+    if (marked.contains({edge[1], edge[0]})) {
+      std::swap(edge[0], edge[1]);
+    }
+  }
   for (const Triangle& facet : facets) {
     for (const int v : facet) {
       numbers.vertex[v] = 1;

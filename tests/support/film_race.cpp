@@ -41,6 +41,14 @@ void ask_refinements(int refinements, FilmComplex& complex, Options& options) {
   }
 }
 
+int film_facets(const FilmComplex& complex) {
+  int count = 0;
+  for (const int label : complex.mesh.facet_label) {
+    count += complex.surfaces[label].liquid ? 1 : 0;
+  }
+  return count;
+}
+
 std::string settle(const FilmComplex& start, int refinements) {
   FilmComplex complex = start;
   FindOptions options;
@@ -58,7 +66,7 @@ std::string settle(const FilmComplex& start, int refinements) {
   return fmt::format(
       "{:d} {:.17g} {:.17g} {} {:.17g} {:.17g} {:.17g} {:.17g}"
       "\n{}",
-      settled, user, wall.count(), complex.mesh.facets.size(), report.energy,
+      settled, user, wall.count(), film_facets(complex), report.energy,
       report.residual, report.residual_bound, report.min_eigenvalue,
       report.verdict);
 }

@@ -31,7 +31,7 @@ struct FilmRun {
   double user_seconds = 0.0;
   double wall_seconds = 0.0;
   double peak_bytes = 0.0;  // of the whole process
-  int facets = 0;           // of films and caps
+  int facets = 0;           // of films, caps not counted
   double energy = 0.0;
   double residual = 0.0;        // along normals, largest [force]
   double residual_bound = 0.0;  // 1e-10 x tension x mean edge [force]
