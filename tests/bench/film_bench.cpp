@@ -1,62 +1,188 @@
-/// The film alone: freezing from the curves, and the next design.
+/// Films side by side with Surface Evolver: the speed table, growth of the
+/// time with the facets, and memory at four million facets.
+///
+///   film_bench [--scale N] [--only NAME] [--repeat N] [--no-evolver] [--large]
+///
+/// --scale N runs at 1/4^N of the size; --repeat N takes the median of N of our
+/// own runs (3). Times are user CPU seconds of one thread, one run at a time.
+#include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <optional>
 
-#include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
-#include "evolve/film_model.h"
+#include "tests/support/evolver.h"
+#include "tests/support/film_complexes.h"
+#include "tests/support/film_race.h"
 
 namespace meniscus {
 namespace {
 
-FilmSystem two_arm(double support_x) {
-  const double s = std::sqrt(3.0) / 2.0;
-  FilmSystem system;
-  system.curves = {
-      {"support", Circle{Vec3(support_x, 0, 0), Vec3(0, 0, -1), 35}},
-      {"left", Circle{Vec3(-120, 0, 72), Vec3(-s, 0, 0.5), 50}},
-      {"right", Circle{Vec3(120, 0, 72), Vec3(s, 0, 0.5), 50}}};
-  system.films = {{"skin", FilmKind::Branch, {"support", "left", "right"}, 1}};
-  system.caps = {
-      {"foot", "support"}, {"left_pad", "left"}, {"right_pad", "right"}};
-  system.bodies = {
-      {"part", {"skin", "foot", "left_pad", "right_pad"}, 1.7e6, {}}};
-  return system;
-}
+constexpr double kMega = 1e6;
+constexpr double kGrowthBound = 1.2;  // time ~ facets^1.2 at most
+constexpr double kLargeBound = 4.0 * 1024 * 1024 * 1024;  // [byte]
 
-double edge_of(const benchmark::State& state) {
-  return static_cast<double>(state.range(0)) / 100.0;
-}
+struct BenchOptions {
+  int scale = 0;
+  int repeat = 3;
+  std::optional<std::string> only;
+  bool evolver = true;
+  bool large = false;
+};
 
-void film_freeze(benchmark::State& state) {
-  for (const auto& iteration : state) {
-    static_cast<void>(iteration);
-    const FilmModel model = FilmModel::freeze(
-        two_arm(0.0), {.edge = edge_of(state), .refinements = 1});
-    state.counters["facets"] = model.reference().report.facets;
+void print_own(const FilmRun& run) {
+  fmt::print("  {:<8} {:>8.2f} {:>8.2f} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
+             "ours", run.user_seconds, run.wall_seconds, run.peak_bytes / kMega,
+             run.energy, run.residual, run.verdict);
+  if (!run.settled) {
+    fmt::print(
+        "           NOT SETTLED: residual bound {:.2e}, lowest "
+        "eigenvalue {:.3g}\n",
+        run.residual_bound, run.min_eigenvalue);
   }
 }
 
-void film_next_design(benchmark::State& state) {
-  const FilmModel model = FilmModel::freeze(
-      two_arm(0.0), {.edge = edge_of(state), .refinements = 1});
-  for (const auto& iteration : state) {
-    static_cast<void>(iteration);
-    benchmark::DoNotOptimize(model.settle(two_arm(2.0)));
-  }
-  state.counters["facets"] = model.reference().report.facets;
+void print_evolver(const char* script, const EvolverRun& run) {
+  fmt::print("  {:<8} {:>8.2f} {:>8} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
+             script, run.user_seconds, "", run.peak_bytes / kMega, run.energy,
+             run.residual.value_or(NAN),
+             !run.ended       ? "failed"
+             : !run.converged ? "still moving"
+                              : "");
 }
 
-// Edges in hundredths of a millimetre.
-BENCHMARK(film_freeze)
-    ->Arg(1450)
-    ->Arg(890)
-    ->Arg(485)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(film_next_design)
-    ->Arg(1450)
-    ->Arg(890)
-    ->Arg(485)
-    ->Unit(benchmark::kMillisecond);
+// "x 7.3 (at least 5, aim 10) aim".
+std::string ratio(double theirs, const FilmRun& own, double least, double aim) {
+  if (!own.settled) {
+    return "no film of ours";
+  }
+  const double value = theirs / own.user_seconds;
+  const char* mark = value >= aim ? "AIM" : value >= least ? "ok" : "BELOW";
+  return fmt::format("x {:.1f} (at least {:g}, aim {:g}: {})", value, least,
+                     aim, mark);
+}
+
+EvolverRun evolver_run(const SpeedWork& work, EvolverScript script,
+                       int refinements) {
+  return run_evolver(
+      work.start(),
+      {.refinements = refinements, .script = script, .descent = work.descent});
+}
+
+void race(const SpeedWork& work, const BenchOptions& options) {
+  const int refinements = std::max(0, work.refinements - options.scale);
+  const FilmRun own = median_run(work.start(), refinements, options.repeat);
+  fmt::print("{}, {} facets\n", work.name, own.facets);
+  print_own(own);
+  if (options.evolver) {
+    const EvolverRun tuned =
+        evolver_run(work, EvolverScript::Tuned, refinements);
+    print_evolver("tuned", tuned);
+    const EvolverRun typical =
+        evolver_run(work, EvolverScript::Typical, refinements);
+    print_evolver("typical", typical);
+    fmt::print(
+        "  faster than tuned   {}\n  faster than typical {}\n"
+        "  memory / evolver's  {:.2f} (at most 1)\n",
+        ratio(tuned.user_seconds, own, work.least_tuned, work.aim_tuned),
+        ratio(typical.user_seconds, own, work.least_typical, work.aim_typical),
+        own.peak_bytes / tuned.peak_bytes);
+  }
+  std::fflush(stdout);
+}
+
+void growth(const BenchOptions& options) {
+  fmt::print("\ngrowth: catenoid, user seconds ~ facets^p, p at most {:g}\n",
+             kGrowthBound);
+  double first_seconds = 0.0;
+  int first_facets = 0;
+  for (const int refinements : {5, 6, 7}) {
+    const FilmRun run =
+        median_run(films::catenoid_start(),
+                   std::max(0, refinements - options.scale), options.repeat);
+    if (first_facets == 0) {
+      first_seconds = run.user_seconds;
+      first_facets = run.facets;
+      fmt::print("  {:>8} facets {:>8.2f} s\n", run.facets, run.user_seconds);
+      continue;
+    }
+    const double power =
+        std::log(run.user_seconds / first_seconds) /
+        std::log(static_cast<double>(run.facets) / first_facets);
+    fmt::print("  {:>8} facets {:>8.2f} s  {:>6.0f} MB  p = {:.2f}\n",
+               run.facets, run.user_seconds, run.peak_bytes / kMega, power);
+    std::fflush(stdout);
+  }
+}
+
+void large() {
+  const FilmRun run = run_film(films::catenoid_start(), 8);
+  fmt::print(
+      "\nlarge: catenoid, {} facets: {:.1f} s, {:.0f} MB (at most "
+      "{:.0f}), {}\n",
+      run.facets, run.user_seconds, run.peak_bytes / kMega, kLargeBound / kMega,
+      run.verdict);
+}
+
+int number(const char* text) {
+  int value = 0;
+  std::from_chars(text, text + std::strlen(text), value);
+  return value;
+}
+
+std::optional<BenchOptions> read_options(int count, char** words) {
+  BenchOptions options;
+  for (int i = 1; i < count; ++i) {
+    const std::string word = words[i];
+    const bool more = i + 1 < count;
+    if (word == "--scale" && more) {
+      options.scale = number(words[++i]);
+    } else if (word == "--repeat" && more) {
+      options.repeat = std::max(1, number(words[++i]));
+    } else if (word == "--only" && more) {
+      options.only = words[++i];
+    } else if (word == "--no-evolver") {
+      options.evolver = false;
+    } else if (word == "--large") {
+      options.large = true;
+    } else {
+      return std::nullopt;
+    }
+  }
+  return options;
+}
+
+int run(int count, char** words) {
+  std::optional<BenchOptions> options = read_options(count, words);
+  if (!options) {
+    fmt::print(stderr,
+               "usage: film_bench [--scale N] [--only NAME] [--repeat N] "
+               "[--no-evolver] [--large]\n");
+    return 2;
+  }
+  if (options->evolver && !have_evolver()) {
+    fmt::print("evolver (Debian package evolver) is not installed\n");
+    options->evolver = false;
+  }
+  fmt::print("{:<10} {:>8} {:>8} {:>7} {:>19} {:>10}\n", "", "user s", "wall s",
+             "MB", "energy", "residual");
+  for (const SpeedWork& work : speed_works()) {
+    if (!options->only || work.name == *options->only) {
+      race(work, *options);
+    }
+  }
+  if (!options->only) {
+    growth(*options);
+  }
+  if (options->large) {
+    large();
+  }
+  return 0;
+}
 
 }  // namespace
 }  // namespace meniscus
+
+int main(int count, char** words) { return meniscus::run(count, words); }

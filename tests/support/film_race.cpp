@@ -1,0 +1,119 @@
+#include "tests/support/film_race.h"
+
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "evolve/find_equilibrium.h"
+#include "evolve/grooming.h"
+#include "tests/support/film_complexes.h"
+#include "tests/support/measured_child.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kResidualFactor = 1e-10;  // x tension x mean edge
+
+constexpr const char* kDescent = "g 10; u; V; g 5;";
+// From fewer steps on the coarse frame, the fine levels diverge.
+constexpr const char* kLongDescent = "g 20; u; V; g 10;";
+
+double user_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+}
+
+// Nested levels where the search offers them, else the finest mesh at once.
+template <class Options>
+void ask_refinements(int refinements, FilmComplex& complex, Options& options) {
+  if constexpr (requires { options.refinements; }) {
+    options.refinements = refinements;
+  } else {
+    for (int level = 0; level < refinements; ++level) {
+      complex = refine(complex).complex;
+    }
+  }
+}
+
+int film_facets(const FilmComplex& complex) {
+  int count = 0;
+  for (const int label : complex.mesh.facet_label) {
+    count += complex.surfaces[label].liquid ? 1 : 0;
+  }
+  return count;
+}
+
+std::string settle(const FilmComplex& start, int refinements) {
+  FilmComplex complex = start;
+  FindOptions options;
+  ask_refinements(refinements, complex, options);
+  options.settle.residual_factor = kResidualFactor;
+  const double before = user_seconds();
+  const auto begin = std::chrono::steady_clock::now();
+  const FilmState state = find_equilibrium(complex, options);
+  const std::chrono::duration<double> wall =
+      std::chrono::steady_clock::now() - begin;
+  const double user = user_seconds() - before;
+  const FilmReport& report = state.report;
+  const bool settled = !state.failure && report.index == 0 &&
+                       report.residual <= report.residual_bound;
+  return fmt::format(
+      "{:d} {:.17g} {:.17g} {} {:.17g} {:.17g} {:.17g} {:.17g}"
+      "\n{}",
+      settled, user, wall.count(), film_facets(complex), report.energy,
+      report.residual, report.residual_bound, report.min_eigenvalue,
+      report.verdict);
+}
+
+}  // namespace
+
+const std::vector<SpeedWork>& speed_works() {
+  static const std::vector<SpeedWork> works = {
+      {"catenoid", [] { return films::catenoid_start(); }, 6, kDescent, 5, 16,
+       10, 30},
+      {"cube", [] { return films::cube_start(); }, 5, kDescent, 5, 20, 12, 48},
+      {"strut", [] { return films::strut_start(); }, 5, kDescent, 5, 25, 10,
+       50},
+      {"triple_disk", [] { return films::triple_disk_start(); }, 6, kDescent, 3,
+       9, 8, 24},
+      {"cube_frame", [] { return films::cube_frame_start(); }, 6, kLongDescent,
+       3, 8, 6, 16}};
+  return works;
+}
+
+FilmRun run_film(const FilmComplex& start, int refinements) {
+  const MeasuredChild child =
+      measure_forked([&] { return settle(start, refinements); });
+  FilmRun run;
+  run.peak_bytes = child.peak_bytes;
+  run.user_seconds = child.user_seconds;
+  run.wall_seconds = child.wall_seconds;
+  run.verdict = child.output;
+  if (child.succeeded) {
+    std::istringstream text(child.output);
+    text >> run.settled >> run.user_seconds >> run.wall_seconds >> run.facets >>
+        run.energy >> run.residual >> run.residual_bound >> run.min_eigenvalue;
+    text.ignore();
+    std::getline(text, run.verdict);
+  }
+  return run;
+}
+
+FilmRun median_run(const FilmComplex& start, int refinements, int count) {
+  std::vector<FilmRun> runs;
+  for (int i = 0; i < count; ++i) {
+    runs.push_back(run_film(start, refinements));
+  }
+  std::sort(runs.begin(), runs.end(), [](const FilmRun& a, const FilmRun& b) {
+    return a.user_seconds < b.user_seconds;
+  });
+  return runs[runs.size() / 2];
+}
+
+}  // namespace meniscus
