@@ -24,9 +24,10 @@ enum class VertexKind {
 
 struct ComplexVertex {
   VertexKind kind = VertexKind::Free;
-  int curve = -1;         // OnCurve, Slides: index into curves
-  double t = 0.0;         // OnCurve, Slides: curve parameter
-  int constraints = -1;   // Free: index into constraint_sets; -1: none
+  int curve = -1;        // OnCurve, Slides: index into curves
+  double t = 0.0;        // OnCurve, Slides: curve parameter
+  int constraints = -1;  // Free: index into constraint_sets; -1: none
+  bool held = true;      // by them now; false: a one-sided wall was left
 };
 
 /// Marked edges: those that refinement and grooming must know of. Every other
