@@ -1,8 +1,6 @@
 #include "core/surface_mesh.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <unordered_map>
 
 namespace meniscus {
 
@@ -42,24 +40,83 @@ double enclosed_volume(const SurfaceMesh& mesh) {
   return sum / 6.0;
 }
 
+namespace {
+
+// Per half edge (3 f + k) the first half edge between the same two points:
+// half edges are put in one bucket per smaller point by counting, so that the
+// time is linear but for the sorting of large buckets.
+std::vector<int> first_half_edges(const std::vector<Triangle>& facets) {
+  constexpr int kSmall = 24;  // above it sorting beats comparing all
+  int points = 0;
+  for (const Triangle& t : facets) {
+    points = std::max({points, t[0] + 1, t[1] + 1, t[2] + 1});
+  }
+  struct Half {
+    int other;
+    int half;
+  };
+  std::vector<int> start(points + 1, 0);
+  const auto each = [&](const auto& visit) {
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const int a = facets[f][k];
+        const int b = facets[f][k == 2 ? 0 : k + 1];
+        visit(std::min(a, b),
+              Half{std::max(a, b), static_cast<int>(3 * f) + k});
+      }
+    }
+  };
+  each([&](int point, const Half&) { ++start[point + 1]; });
+  for (int p = 0; p < points; ++p) {
+    start[p + 1] += start[p];
+  }
+  std::vector<Half> halves(3 * facets.size());
+  std::vector<int> fill(start.begin(), start.end() - 1);
+  each([&](int point, const Half& half) { halves[fill[point]++] = half; });
+  std::vector<int> first(3 * facets.size());
+  for (int p = 0; p < points; ++p) {
+    Half* begin = halves.data() + start[p];
+    Half* end = halves.data() + start[p + 1];
+    if (end - begin > kSmall) {
+      std::sort(begin, end, [](const Half& x, const Half& y) {
+        return x.other < y.other || (x.other == y.other && x.half < y.half);
+      });
+      for (Half* h = begin; h != end; ++h) {
+        const bool again = h != begin && (h - 1)->other == h->other;
+        first[h->half] = again ? first[(h - 1)->half] : h->half;
+      }
+      continue;
+    }
+    for (Half* h = begin; h != end; ++h) {
+      Half* same = begin;
+      while (same->other != h->other) {
+        ++same;
+      }
+      first[h->half] = same->half;
+    }
+  }
+  return first;
+}
+
+}  // namespace
+
 void list_edges(const std::vector<Triangle>& facets, std::vector<Edge>& edges,
                 std::vector<Triangle>& facet_edges) {
   edges.clear();
+  edges.reserve(facets.size() + facets.size() / 2 + 3);
   facet_edges.assign(facets.size(), Triangle{});
-  std::unordered_map<std::uint64_t, int> ids;
-  ids.reserve(2 * facets.size());
+  const std::vector<int> first = first_half_edges(facets);
   for (std::size_t f = 0; f < facets.size(); ++f) {
     for (int k = 0; k < 3; ++k) {
-      const int a = facets[f][k];
-      const int b = facets[f][(k + 1) % 3];
-      const Edge edge{std::min(a, b), std::max(a, b)};
-      const std::uint64_t key = (static_cast<std::uint64_t>(edge[0]) << 32) |
-                                static_cast<std::uint32_t>(edge[1]);
-      const auto [at, added] = ids.emplace(key, static_cast<int>(edges.size()));
-      if (added) {
-        edges.push_back(edge);
+      const int same = first[3 * f + k];
+      if (same != static_cast<int>(3 * f) + k) {
+        facet_edges[f][k] = facet_edges[same / 3][same % 3];
+        continue;
       }
-      facet_edges[f][k] = at->second;
+      const int a = facets[f][k];
+      const int b = facets[f][k == 2 ? 0 : k + 1];
+      facet_edges[f][k] = static_cast<int>(edges.size());
+      edges.push_back({std::min(a, b), std::max(a, b)});
     }
   }
 }

@@ -1,156 +1,199 @@
 #include <algorithm>
-#include <cmath>
-#include <unordered_map>
+#include <utility>
 
-#include <Eigen/Dense>
-
-#include "evolve/film_space.h"
+#include "evolve/edge_marks.h"
 #include "evolve/grooming.h"
-#include "evolve/rims.h"
 
 namespace meniscus {
 
 namespace {
 
-std::uint64_t key_of(int a, int b) {
-  return (static_cast<std::uint64_t>(std::min(a, b)) << 32) |
-         static_cast<std::uint32_t>(std::max(a, b));
-}
+// Per edge: its mark (index into EdgeMarks::all or -1), whether it is halved,
+// and the vertex in its middle.
+struct EdgePlan {
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  std::vector<int> mark;
+  std::vector<int> middle;  // -1: stays whole
+  std::vector<char> in_film;
+  std::vector<int> obstacle;  // constraint set of its films, or -1
+};
 
-constexpr int kWallSteps = 30;
-
-/// The nearest point on the level sets, by Newton's least steps.
-Vec3 onto_walls(const FilmComplex& complex, int set, Vec3 at) {
-  const std::vector<int>& walls = complex.constraint_sets[set];
-  const auto count = static_cast<Eigen::Index>(walls.size());
-  for (int step = 0; step < kWallSteps; ++step) {
-    Eigen::MatrixX3d rows(count, 3);
-    VectorX gap(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const PlaceJet jet = jet_at(complex.level_sets[walls[i]].formula, at);
-      rows.row(i) = jet.gradient;
-      gap[i] = jet.value;
-    }
-    const Vec3 move = rows.completeOrthogonalDecomposition().solve(gap);
-    at -= move;
-    if (!(move.norm() > 1e-14 * at.norm())) {
-      break;
+EdgePlan plan_edges(const FilmComplex& complex, const EdgeMarks& marks) {
+  EdgePlan plan;
+  list_edges(complex.mesh.facets, plan.edges, plan.facet_edges);
+  plan.in_film.assign(plan.edges.size(), 0);
+  plan.obstacle.assign(plan.edges.size(), -1);
+  std::vector<char> whole(plan.edges.size(), 0);
+  for (std::size_t f = 0; f < plan.facet_edges.size(); ++f) {
+    const ComplexSurface& surface =
+        complex.surfaces[complex.mesh.facet_label[f]];
+    for (const int e : plan.facet_edges[f]) {
+      plan.in_film[e] |= surface.liquid ? 1 : 0;
+      whole[e] |= surface.refine ? 0 : 1;
+      plan.obstacle[e] = std::max(plan.obstacle[e], surface.constraints);
     }
   }
-  return at;
+  std::vector<char> seen(marks.all().size(), 0);
+  plan.mark.resize(plan.edges.size());
+  for (std::size_t e = 0; e < plan.edges.size(); ++e) {
+    plan.mark[e] = marks.find(plan.edges[e][0], plan.edges[e][1]);
+    if (plan.mark[e] >= 0) {
+      seen[plan.mark[e]] = 1;
+    }
+  }
+  // Wires: marked edges that no facet has.
+  for (std::size_t m = 0; m < complex.edges.size(); ++m) {
+    if (seen[m] == 0) {
+      const ComplexEdge& wire = complex.edges[m];
+      plan.edges.push_back(
+          {std::min(wire.a, wire.b), std::max(wire.a, wire.b)});
+      plan.mark.push_back(static_cast<int>(m));
+      plan.in_film.push_back(0);
+      plan.obstacle.push_back(-1);
+      whole.push_back(0);
+    }
+  }
+  plan.middle.assign(plan.edges.size(), -1);
+  int next = static_cast<int>(complex.mesh.points.size());
+  for (std::size_t e = 0; e < plan.edges.size(); ++e) {
+    const int m = plan.mark[e];
+    if (whole[e] == 0 && (m < 0 || marks.all()[m].refine)) {
+      plan.middle[e] = next++;
+    }
+  }
+  return plan;
 }
 
-/// The vertex born inside a surface with an obstacle.
-ComplexVertex born_by(const FilmComplex& complex, int set, const Edge& edge) {
-  ComplexVertex made;
-  made.constraints = set;
-  const auto touches = [&](int v) {
-    const ComplexVertex& vertex = complex.vertices[v];
-    return vertex.constraints < 0 || vertex.held;
-  };
-  made.held = touches(edge[0]) && touches(edge[1]);
+PlacedVertex middle_of(const FilmComplex& complex, const EdgeMarks& marks,
+                       const EdgePlan& plan, std::size_t e) {
+  const auto [a, b] = plan.edges[e];
+  const ComplexVertex& va = complex.vertices[a];
+  const ComplexVertex& vb = complex.vertices[b];
+  const Vec3& pa = complex.mesh.points[a];
+  const Vec3& pb = complex.mesh.points[b];
+  if (plan.mark[e] >= 0) {
+    return born_on(complex, marks.all()[plan.mark[e]], {va, pa}, {vb, pb});
+  }
+  PlacedVertex made;
+  made.place = 0.5 * (pa + pb);
+  if (plan.in_film[e] != 0 && plan.obstacle[e] >= 0) {
+    const auto touches = [](const ComplexVertex& v) {
+      return v.constraints < 0 || v.held;
+    };
+    made.vertex.constraints = plan.obstacle[e];
+    made.vertex.held = touches(va) && touches(vb);
+    made.place = onto_walls(complex, plan.obstacle[e], made.vertex.held,
+                            made.place);
+  }
+  if (plan.in_film[e] == 0) {
+    const bool solid =
+        va.kind == VertexKind::Fixed && vb.kind == VertexKind::Fixed;
+    made.vertex.kind = solid ? VertexKind::Fixed : VertexKind::InCap;
+  }
   return made;
 }
 
-/// The vertex born on a marked edge, and its place.
-ComplexVertex born_on(const FilmComplex& complex, const ComplexEdge& edge,
-                      Vec3& place) {
-  ComplexVertex made;
-  made.kind = edge.kind;
-  made.constraints = edge.constraints;
-  if (edge.kind == VertexKind::OnCurve || edge.kind == VertexKind::Slides) {
-    const CurveShape& shape = complex.curves[edge.curve].shape;
-    made.curve = edge.curve;
-    made.t = middle_parameter(shape, complex.vertices[edge.a].t,
-                              complex.vertices[edge.b].t);
-    place = point_at(shape, made.t);
-  } else if (edge.kind == VertexKind::Free && edge.constraints >= 0) {
-    place = onto_walls(complex, edge.constraints, place);
+// The children of a facet beside edges that stay whole; `m` are the middles
+// of its edges (01), (12), (20), or -1.
+void add_partial(const Points& points, const Triangle& t, const Triangle& m,
+                 std::vector<Triangle>& children) {
+  const auto halved =
+      std::count_if(m.begin(), m.end(), [](int v) { return v >= 0; });
+  if (halved == 0) {
+    children.push_back(t);
+    return;
   }
-  return made;
+  // Turned so that edge (01) is the one halved, or (20) the one whole.
+  int k = 0;
+  while (halved == 1 ? m[k] < 0 : m[(k + 2) % 3] >= 0) {
+    ++k;
+  }
+  const int a = t[k];
+  const int b = t[(k + 1) % 3];
+  const int c = t[(k + 2) % 3];
+  const int ab = m[k];
+  if (halved == 1) {
+    children.push_back({a, ab, c});
+    children.push_back({ab, b, c});
+    return;
+  }
+  const int bc = m[(k + 1) % 3];
+  children.push_back({ab, b, bc});
+  if ((points[a] - points[bc]).squaredNorm() <=
+      (points[c] - points[ab]).squaredNorm()) {
+    children.push_back({a, ab, bc});
+    children.push_back({a, bc, c});
+  } else {
+    children.push_back({a, ab, c});
+    children.push_back({ab, bc, c});
+  }
+}
+
+void refine_marks(const FilmComplex& complex, const EdgePlan& plan,
+                  FilmComplex& fine) {
+  std::vector<int> middle(complex.edges.size(), -1);
+  for (std::size_t e = 0; e < plan.edges.size(); ++e) {
+    const int m = plan.mark[e];
+    if (m >= 0 && m < static_cast<int>(middle.size())) {
+      middle[m] = plan.middle[e];
+    }
+  }
+  fine.edges.clear();
+  fine.edges.reserve(2 * complex.edges.size());
+  for (std::size_t m = 0; m < complex.edges.size(); ++m) {
+    ComplexEdge half = complex.edges[m];
+    if (middle[m] >= 0) {
+      half.b = middle[m];
+      fine.edges.push_back(half);
+      half.a = middle[m];
+      half.b = complex.edges[m].b;
+    }
+    fine.edges.push_back(half);
+  }
 }
 
 }  // namespace
 
 Refinement refine(const FilmComplex& complex) {
+  const EdgeMarks marks(complex);
+  const EdgePlan plan = plan_edges(complex, marks);
   Refinement result;
   FilmComplex& fine = result.complex;
   fine = complex;
-  std::vector<Triangle> facet_edges;
-  list_edges(complex.mesh.facets, result.parents, facet_edges);
-  const std::vector<Edge>& edges = result.parents;
-  // A vertex is a cap's when no film touches its edge.
-  std::vector<char> in_film(edges.size(), 0);
-  std::vector<int> obstacle(edges.size(), -1);
-  for (std::size_t f = 0; f < facet_edges.size(); ++f) {
-    if (complex.surfaces[complex.mesh.facet_label[f]].liquid) {
-      for (const int e : facet_edges[f]) {
-        in_film[e] = 1;
-      }
-    }
-    const int set = complex.surfaces[complex.mesh.facet_label[f]].constraints;
-    for (const int e : facet_edges[f]) {
-      obstacle[e] = std::max(obstacle[e], set);
+  const std::size_t points = complex.mesh.points.size();
+  fine.mesh.points.reserve(points + plan.edges.size());
+  fine.vertices.reserve(points + plan.edges.size());
+  result.parents.reserve(plan.edges.size());
+  for (std::size_t e = 0; e < plan.edges.size(); ++e) {
+    if (plan.middle[e] >= 0) {
+      const PlacedVertex made = middle_of(complex, marks, plan, e);
+      fine.mesh.points.push_back(made.place);
+      fine.vertices.push_back(made.vertex);
+      result.parents.push_back(plan.edges[e]);
     }
   }
-  std::unordered_map<std::uint64_t, int> marked;
-  for (std::size_t m = 0; m < complex.edges.size(); ++m) {
-    marked[key_of(complex.edges[m].a, complex.edges[m].b)] =
-        static_cast<int>(m);
-  }
-  const std::vector<int> next = rim_neighbours(complex);
-  const int first = static_cast<int>(complex.mesh.points.size());
-  fine.edges.clear();
-  fine.vertices.reserve(first + edges.size());
-  fine.mesh.points.reserve(first + edges.size());
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto [a, b] = edges[e];
-    ComplexVertex made;
-    Vec3 place = 0.5 * (complex.mesh.points[a] + complex.mesh.points[b]);
-    const auto mark = marked.empty() ? marked.end() : marked.find(key_of(a, b));
-    if (mark != marked.end()) {
-      const ComplexEdge& edge = complex.edges[mark->second];
-      made = born_on(complex, edge, place);
-      ComplexEdge half = edge;
-      half.b = first + static_cast<int>(e);
-      fine.edges.push_back(half);
-      half.a = half.b;
-      half.b = edge.b;
-      fine.edges.push_back(half);
-    } else if (next[a] == b || next[b] == a) {
-      const CurveShape& shape = complex.curves[complex.vertices[a].curve].shape;
-      made.kind = VertexKind::OnCurve;
-      made.curve = complex.vertices[a].curve;
-      made.t =
-          middle_parameter(shape, complex.vertices[a].t, complex.vertices[b].t);
-      place = point_at(shape, made.t);
-    } else if (in_film[e] == 0) {
-      made.kind = VertexKind::InCap;
-    } else if (obstacle[e] >= 0) {
-      made = born_by(complex, obstacle[e], edges[e]);
-      if (made.held) {
-        place = onto_walls(complex, obstacle[e], place);
-      }
-    }
-    fine.mesh.points.push_back(place);
-    fine.vertices.push_back(made);
-  }
-  fine.mesh.facets.clear();
+  std::vector<Triangle>& children = fine.mesh.facets;
+  children.clear();
+  children.reserve(4 * plan.facet_edges.size());
   fine.mesh.facet_label.clear();
-  fine.mesh.facets.reserve(4 * facet_edges.size());
-  fine.mesh.facet_label.reserve(4 * facet_edges.size());
-  for (std::size_t f = 0; f < facet_edges.size(); ++f) {
+  fine.mesh.facet_label.reserve(4 * plan.facet_edges.size());
+  for (std::size_t f = 0; f < plan.facet_edges.size(); ++f) {
     const Triangle& t = complex.mesh.facets[f];
-    const int ab = first + facet_edges[f][0];
-    const int bc = first + facet_edges[f][1];
-    const int ca = first + facet_edges[f][2];
-    for (const Triangle& small :
-         {Triangle{t[0], ab, ca}, Triangle{ab, t[1], bc},
-          Triangle{ca, bc, t[2]}, Triangle{ab, bc, ca}}) {
-      fine.mesh.facets.push_back(small);
-      fine.mesh.facet_label.push_back(complex.mesh.facet_label[f]);
+    const int ab = plan.middle[plan.facet_edges[f][0]];
+    const int bc = plan.middle[plan.facet_edges[f][1]];
+    const int ca = plan.middle[plan.facet_edges[f][2]];
+    if (ab >= 0 && bc >= 0 && ca >= 0) {
+      children.push_back({t[0], ab, ca});
+      children.push_back({ab, t[1], bc});
+      children.push_back({ca, bc, t[2]});
+      children.push_back({ab, bc, ca});
+    } else {
+      add_partial(complex.mesh.points, t, {ab, bc, ca}, children);
     }
+    fine.mesh.facet_label.resize(children.size(), complex.mesh.facet_label[f]);
   }
+  refine_marks(complex, plan, fine);
   return result;
 }
 

@@ -7,9 +7,16 @@ namespace meniscus {
 
 std::vector<int> rim_neighbours(const FilmComplex& complex) {
   const auto& vertices = complex.vertices;
+  std::vector<char> marked(complex.curves.size(), 0);
+  for (const ComplexEdge& edge : complex.edges) {
+    if (edge.curve >= 0) {
+      marked[edge.curve] = 1;
+    }
+  }
   std::vector<int> order;
   for (std::size_t v = 0; v < vertices.size(); ++v) {
-    if (vertices[v].kind == VertexKind::OnCurve) {
+    if (vertices[v].kind == VertexKind::OnCurve &&
+        marked[vertices[v].curve] == 0) {
       order.push_back(static_cast<int>(v));
     }
   }

@@ -1,4 +1,4 @@
-/// Rims of a complex: the chains of vertices along its curves.
+/// Rims of a complex: the chains of vertices along curves without marked edges.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,8 @@
 namespace meniscus {
 
 /// Per vertex the next vertex on its curve in the order of t, the last one's
-/// being the first; -1 off the curves.
+/// being the first; -1 off the curves, and on curves that have marked edges,
+/// which say more than the order does.
 std::vector<int> rim_neighbours(const FilmComplex& complex);
 
 }  // namespace meniscus
