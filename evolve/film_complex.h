@@ -70,6 +70,7 @@ struct ComplexSurface {
   double tension = 0.0;  // [force/length]; 0 on caps
   std::optional<Expression> tension_field;  // over x, y, z; replaces tension
   bool refine = true;                       // false: facets stay as they are
+  int constraints = -1;  // of vertices born inside, index into constraint_sets
 };
 
 /// One surface's part in a body: sign +1 where the surface's facet normals
