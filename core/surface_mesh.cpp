@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include <Eigen/Geometry>
+
 namespace meniscus {
 
 int SurfaceMesh::label_of(const std::string& name) const {
