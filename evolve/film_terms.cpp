@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include <Eigen/Geometry>
+#include <Eigen/Dense>
 
 #include "evolve/film_space.h"
 
@@ -41,11 +41,23 @@ const std::array<QuadraturePoint, 7>& facet_rule() {
   return kRule;
 }
 
-/// Degree 5 on [0, 1]: Gauss, three points.
-constexpr std::array<std::array<double, 2>, 3> kEdgeRule = {
-    {{0.11270166537925831, 5.0 / 18.0},
-     {0.5, 8.0 / 18.0},
-     {0.88729833462074169, 5.0 / 18.0}}};
+/// Gauss points on [0, 1], 1 to 8 of them: place, weight.
+std::vector<std::array<double, 2>> edge_rule(int points) {
+  const int n = std::clamp(points, 1, 8);
+  // Golub, Welsch 1969: eigenvalues of the Jacobi matrix of Legendre's
+  // polynomials.
+  Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(n, n);
+  for (int k = 1; k < n; ++k) {
+    jacobi(k, k - 1) = jacobi(k - 1, k) = k / std::sqrt(4.0 * k * k - 1.0);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobi);
+  std::vector<std::array<double, 2>> rule;
+  for (int k = 0; k < n; ++k) {
+    const double first = eigen.eigenvectors()(0, k);
+    rule.push_back({0.5 * (1.0 + eigen.eigenvalues()[k]), first * first});
+  }
+  return rule;
+}
 
 Eigen::Matrix3d cross_matrix(const Vec3& v) {
   Eigen::Matrix3d m;
@@ -245,7 +257,8 @@ class ScalarTerm : public FilmTerm {
 /// Integral of F . dl along an edge of the facet.
 class LineTerm : public FilmTerm {
  public:
-  explicit LineTerm(FieldFunction field) : field_(std::move(field)) {}
+  LineTerm(FieldFunction field, int points)
+      : field_(std::move(field)), rule_(edge_rule(points)) {}
 
   FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
                JetOrder order) const override {
@@ -254,7 +267,7 @@ class LineTerm : public FilmTerm {
     const Vec3 way = c[b] - c[a];
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
     FacetJet sum;
-    for (const auto& [s, weight] : kEdgeRule) {
+    for (const auto& [s, weight] : rule_) {
       const FieldJet f = field_(c[a] + s * way);
       const double w = element.sign * weight;
       sum.value += w * f.value.dot(way);
@@ -284,6 +297,75 @@ class LineTerm : public FilmTerm {
 
  private:
   FieldFunction field_;
+  std::vector<std::array<double, 2>> rule_;
+};
+
+/// Area between edges and the convex wall that they are chords of:
+/// k |S| (|S . n_a| + |S . n_b|) / 12 (Surface Evolver manual 2.70, "convex
+/// constraints"). The Hessian is that of differences of the exact gradient.
+class GapTerm : public FilmTerm {
+ public:
+  GapTerm(Expression formula, double constant)
+      : formula_(std::move(formula)), constant_(constant) {}
+
+  FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
+               JetOrder order) const override {
+    FacetJet sum = first_order(element, c);
+    if (order == JetOrder::Hessian) {
+      const double step = 1e-5 * (c[1] - c[0]).norm();
+      for (int i = 0; i < 9; ++i) {
+        std::array<Vec3, 3> up = c;
+        std::array<Vec3, 3> down = c;
+        up[i / 3][i % 3] += step;
+        down[i / 3][i % 3] -= step;
+        sum.hessian.col(i) = (first_order(element, up).gradient -
+                              first_order(element, down).gradient) /
+                             (2.0 * step);
+      }
+      sum.hessian = 0.5 * (sum.hessian + sum.hessian.transpose()).eval();
+    }
+    return sum;
+  }
+
+ private:
+  FacetJet first_order(const Element& element,
+                       const std::array<Vec3, 3>& c) const {
+    const int a = element.first;
+    const int b = (a + 1) % 3;
+    const Vec3 s = c[b] - c[a];
+    const double length = s.norm();
+    const double w = element.sign * constant_ / 12.0;
+    FacetJet sum;
+    if (!(length > 0.0)) {
+      return sum;
+    }
+    double rise = 0.0;
+    Vec3 by_s = Vec3::Zero();
+    for (const int end : {a, b}) {
+      const PlaceJet f = jet_at(formula_, c[end]);
+      const double size = f.gradient.norm();
+      if (!(size > 0.0)) {
+        continue;
+      }
+      const Vec3 n = f.gradient / size;
+      const double dot = s.dot(n);
+      const double sign = dot < 0.0 ? -1.0 : 1.0;
+      rise += std::abs(dot);
+      by_s += sign * n;
+      // dn = (I - n n^T) H dx / |grad|.
+      const Vec3 across = s - dot * n;
+      sum.gradient.segment<3>(3 * end) +=
+          w * length * sign / size * (f.hessian * across);
+    }
+    sum.value = w * length * rise;
+    const Vec3 pull = w * (rise / length * s + length * by_s);
+    sum.gradient.segment<3>(3 * b) += pull;
+    sum.gradient.segment<3>(3 * a) -= pull;
+    return sum;
+  }
+
+  Expression formula_;
+  double constant_;
 };
 
 }  // namespace
@@ -356,14 +438,26 @@ class FilmTermBuilder {
   }
 
   void add_lines() {
-    if (complex_.edges.empty() || complex_.integrals.empty()) {
+    const bool gaps =
+        complex_.gap_constant != 0.0 &&
+        std::any_of(complex_.level_sets.begin(), complex_.level_sets.end(),
+                    [](const LevelSet& wall) { return wall.convex; });
+    if (complex_.edges.empty() || (complex_.integrals.empty() && !gaps)) {
       return;
     }
     const std::map<Edge, std::vector<int>> around = facets_at_marked_edges();
+    for (std::size_t w = 0; w < complex_.level_sets.size() && gaps; ++w) {
+      if (complex_.level_sets[w].convex) {
+        add(std::make_unique<GapTerm>(complex_.level_sets[w].formula,
+                                      complex_.gap_constant),
+            gap_elements(static_cast<int>(w), around), -1);
+      }
+    }
     for (std::size_t i = 0; i < complex_.integrals.size(); ++i) {
       const LineIntegral& integral = complex_.integrals[i];
       const auto add_line = [&](const auto& elements, int functional) {
-        add(std::make_unique<LineTerm>(expression_field(integral.field)),
+        add(std::make_unique<LineTerm>(expression_field(integral.field),
+                                       complex_.line_points),
             elements, functional);
       };
       if (integral.role == LineIntegral::Role::Energy) {
@@ -436,7 +530,7 @@ class FilmTermBuilder {
   std::map<Edge, std::vector<int>> facets_at_marked_edges() const {
     std::map<Edge, std::vector<int>> around;
     for (const ComplexEdge& e : complex_.edges) {
-      if (e.integrals >= 0) {
+      if (e.integrals >= 0 || e.constraints >= 0) {
         around[{std::min(e.a, e.b), std::max(e.a, e.b)}];
       }
     }
@@ -488,6 +582,25 @@ class FilmTermBuilder {
       const auto& facets = around.at({std::min(e.a, e.b), std::max(e.a, e.b)});
       if (!facets.empty()) {
         result.push_back(on_facet(e, facets.front()));
+      }
+    }
+    return result;
+  }
+
+  std::vector<FilmTerm::Element> gap_elements(
+      int wall, const std::map<Edge, std::vector<int>>& around) const {
+    std::vector<FilmTerm::Element> result;
+    for (const ComplexEdge& e : complex_.edges) {
+      if (e.constraints < 0 || e.kind != VertexKind::Free) {
+        continue;
+      }
+      const auto& set = complex_.constraint_sets[e.constraints];
+      const auto& facets = around.at({std::min(e.a, e.b), std::max(e.a, e.b)});
+      if (std::find(set.begin(), set.end(), wall) != set.end() &&
+          !facets.empty()) {
+        FilmTerm::Element element = on_facet(e, facets.front());
+        element.sign = 1.0;
+        result.push_back(element);
       }
     }
     return result;

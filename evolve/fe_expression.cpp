@@ -1,0 +1,326 @@
+#include "evolve/fe_expression.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "core/nearest_name.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr int kDeepest = 200;
+constexpr std::size_t kMostNodes = 4000;
+
+struct Function {
+  int arguments = 1;
+};
+
+const std::map<std::string, Function, std::less<>>& functions() {
+  static const std::map<std::string, Function, std::less<>> known = {
+      {"abs", {}},   {"sqr", {}},      {"sqrt", {}},     {"sin", {}},
+      {"cos", {}},   {"tan", {}},      {"acos", {}},     {"asin", {}},
+      {"atan", {}},  {"atan2", {2}},   {"log", {}},      {"exp", {}},
+      {"sinh", {}},  {"cosh", {}},     {"tanh", {}},     {"asinh", {}},
+      {"acosh", {}}, {"atanh", {}},    {"pow", {2}},     {"ceil", {}},
+      {"floor", {}}, {"minimum", {2}}, {"maximum", {2}}, {"min", {2}},
+      {"max", {2}},  {"log10", {}},    {"if", {3}},
+  };
+  return known;
+}
+
+class Parser {
+ public:
+  Parser(FeLexer& lexer, FeDialect dialect)
+      : lexer_(lexer), evolver_(dialect == FeDialect::Evolver) {}
+
+  FeExpression parse() {
+    expression_.place = lexer_.peek().place;
+    const int root = difference();
+    if (expression_.nodes[root].op == FeOperator::Number) {
+      expression_.number = expression_.nodes[root].number;
+      expression_.nodes.clear();
+    }
+    return std::move(expression_);
+  }
+
+ private:
+  // Counts levels of recursion.
+  class Level {
+   public:
+    explicit Level(Parser& parser) : parser_(parser) {
+      if (++parser_.depth_ > kDeepest) {
+        parser_.lexer_.fail(
+            parser_.lexer_.peek().place,
+            fmt::format("the expression is nested more than {} deep",
+                        kDeepest));
+      }
+    }
+    ~Level() { --parser_.depth_; }
+    Level(const Level&) = delete;
+    Level& operator=(const Level&) = delete;
+
+   private:
+    Parser& parser_;
+  };
+
+  int node(FeOperator op, const FePlace& place, int a = -1, int b = -1,
+           int c = -1) {
+    if (expression_.nodes.size() >= kMostNodes) {
+      lexer_.fail(place, fmt::format("the expression has more than {} parts",
+                                     kMostNodes));
+    }
+    FeNode made;
+    made.op = op;
+    made.child = {a, b, c};
+    made.place = place;
+    expression_.nodes.push_back(std::move(made));
+    return static_cast<int>(expression_.nodes.size()) - 1;
+  }
+
+  // A sign that begins a new expression: "1 -2".
+  bool starts_another(const FeToken& token) const {
+    return evolver_ && brackets_ == 0 && (token.is("-") || token.is("+")) &&
+           token.after_space && !token.before_space;
+  }
+
+  bool taken(std::string_view symbol) {
+    if (!lexer_.peek().is(symbol)) {
+      return false;
+    }
+    lexer_.take();
+    return true;
+  }
+
+  // '=' is a minus that binds least.
+  int difference() {
+    int left = choice();
+    while (evolver_ && lexer_.peek().is("=")) {
+      const FePlace place = lexer_.take().place;
+      left = node(FeOperator::Subtract, place, left, choice());
+    }
+    return left;
+  }
+
+  int choice() {
+    const Level level(*this);
+    const int condition = either();
+    if (!evolver_ || !lexer_.peek().is("?")) {
+      return condition;
+    }
+    const FePlace place = lexer_.take().place;
+    const int yes = choice();
+    if (!taken(":")) {
+      lexer_.fail_here("'?' needs its ':'");
+    }
+    return node(FeOperator::Choose, place, condition, yes, choice());
+  }
+
+  int either() {
+    int left = both();
+    while (evolver_ &&
+           (lexer_.peek().is("||") || lexer_.peek().is_name("or"))) {
+      const FePlace place = lexer_.take().place;
+      left = node(FeOperator::Or, place, left, both());
+    }
+    return left;
+  }
+
+  int both() {
+    int left = negation();
+    while (evolver_ &&
+           (lexer_.peek().is("&&") || lexer_.peek().is_name("and"))) {
+      const FePlace place = lexer_.take().place;
+      left = node(FeOperator::And, place, left, negation());
+    }
+    return left;
+  }
+
+  int negation() {
+    if (evolver_ && (lexer_.peek().is("!") || lexer_.peek().is_name("not"))) {
+      const Level level(*this);
+      const FePlace place = lexer_.take().place;
+      return node(FeOperator::Not, place, negation());
+    }
+    return comparison();
+  }
+
+  static std::optional<FeOperator> comparing(const FeToken& token) {
+    if (token.kind != FeToken::Kind::Symbol) {
+      return std::nullopt;
+    }
+    return token.text == "<"    ? FeOperator::Less
+           : token.text == "<=" ? FeOperator::LessEqual
+           : token.text == ">"  ? FeOperator::Greater
+           : token.text == ">=" ? FeOperator::GreaterEqual
+           : token.text == "==" ? FeOperator::Equal
+           : token.text == "!=" ? std::optional(FeOperator::NotEqual)
+                                : std::nullopt;
+  }
+
+  int comparison() {
+    int left = sum();
+    while (const auto op = comparing(lexer_.peek())) {
+      const FePlace place = lexer_.take().place;
+      left = node(*op, place, left, sum());
+    }
+    return left;
+  }
+
+  int sum() {
+    int left = product();
+    for (;;) {
+      const FeToken& token = lexer_.peek();
+      if ((!token.is("+") && !token.is("-")) || starts_another(token)) {
+        return left;
+      }
+      const FeToken sign = lexer_.take();
+      left = node(sign.is("+") ? FeOperator::Add : FeOperator::Subtract,
+                  sign.place, left, product());
+    }
+  }
+
+  std::optional<FeOperator> multiplying(const FeToken& token) const {
+    if (token.is("*")) {
+      return FeOperator::Multiply;
+    }
+    if (token.is("/")) {
+      return FeOperator::Divide;
+    }
+    if (evolver_ && (token.is("%") || token.is_name("mod"))) {
+      return FeOperator::Modulo;
+    }
+    if (evolver_ && token.is_name("idiv")) {
+      return FeOperator::IntegerDivide;
+    }
+    if (evolver_ && token.is_name("imod")) {
+      return FeOperator::IntegerModulo;
+    }
+    return std::nullopt;
+  }
+
+  int product() {
+    int left = sign();
+    while (const auto op = multiplying(lexer_.peek())) {
+      const FePlace place = lexer_.take().place;
+      left = node(*op, place, left, sign());
+    }
+    return left;
+  }
+
+  int sign() {
+    if (lexer_.peek().is("-")) {
+      const Level level(*this);
+      const FePlace place = lexer_.take().place;
+      return node(FeOperator::Negate, place, sign());
+    }
+    if (taken("+")) {
+      const Level level(*this);
+      return sign();
+    }
+    return power();
+  }
+
+  int power() {
+    int left = atom();
+    while (lexer_.peek().is("^") || lexer_.peek().is("**")) {
+      const FePlace place = lexer_.take().place;
+      const Level level(*this);
+      const bool leads =
+          lexer_.peek().is("-") || lexer_.peek().is("+") || !evolver_;
+      left = node(FeOperator::Power, place, left, leads ? sign() : atom());
+    }
+    return left;
+  }
+
+  int atom() {
+    const FeToken& token = lexer_.peek();
+    if (token.kind == FeToken::Kind::Number) {
+      const int made = node(FeOperator::Number, token.place);
+      expression_.nodes[made].number = lexer_.take().number;
+      return made;
+    }
+    if (token.is("(")) {
+      lexer_.take();
+      ++brackets_;
+      const int inside = difference();
+      close();
+      return inside;
+    }
+    if (token.kind != FeToken::Kind::Name) {
+      lexer_.fail_here("a number, a name or '(' is expected");
+    }
+    FeToken name = lexer_.take();
+    if (lexer_.peek().is("(") && functions().count(name.text) != 0) {
+      return call(std::move(name));
+    }
+    const int made = node(FeOperator::Name, name.place);
+    expression_.nodes[made].name = std::move(name.text);
+    return made;
+  }
+
+  int call(FeToken name) {
+    const Function& function = functions().find(name.text)->second;
+    lexer_.take();
+    ++brackets_;
+    std::array<int, 3> arguments{-1, -1, -1};
+    for (int k = 0; k < function.arguments; ++k) {
+      if (k > 0 && !taken(",")) {
+        lexer_.fail_here(fmt::format("{}() has {} arguments; a ',' is expected",
+                                     name.text, function.arguments));
+      }
+      arguments[k] = difference();
+    }
+    close();
+    const int made = node(FeOperator::Call, name.place, arguments[0],
+                          arguments[1], arguments[2]);
+    expression_.nodes[made].name = std::move(name.text);
+    return made;
+  }
+
+  void close() {
+    // The token behind the bracket belongs outside.
+    if (!lexer_.peek().is(")")) {
+      lexer_.fail_here("')' is expected");
+    }
+    --brackets_;
+    lexer_.take();
+  }
+
+  FeLexer& lexer_;
+  bool evolver_ = true;
+  FeExpression expression_;
+  int depth_ = 0;
+  int brackets_ = 0;
+};
+
+}  // namespace
+
+FeExpression parse_expression(FeLexer& lexer, FeDialect dialect) {
+  return Parser(lexer, dialect).parse();
+}
+
+const FeUnknowns& place_names() {
+  static const FeUnknowns names = {{"x", "x"},  {"y", "y"},  {"z", "z"},
+                                   {"x1", "x"}, {"x2", "y"}, {"x3", "z"}};
+  return names;
+}
+
+const FeUnknowns& parameter_names() {
+  static const FeUnknowns names = {{"p1", "t"}};
+  return names;
+}
+
+std::vector<const FeNode*> names_in(const FeExpression& expression) {
+  std::vector<const FeNode*> names;
+  for (const FeNode& node : expression.nodes) {
+    if (node.op == FeOperator::Name) {
+      names.push_back(&node);
+    }
+  }
+  return names;
+}
+
+}  // namespace meniscus

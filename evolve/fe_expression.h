@@ -1,0 +1,89 @@
+/// Arithmetic of Surface Evolver datafiles: parsed into a tree, then either
+/// evaluated to a number or compiled into an Expression of the place.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/expression.h"
+#include "evolve/fe_lexer.h"
+
+namespace meniscus {
+
+enum class FeOperator {
+  Number,
+  Name,
+  Negate,
+  Not,
+  Add,
+  Subtract,
+  Multiply,
+  Divide,
+  Modulo,         // x - floor(x / y) y
+  IntegerDivide,  // rounds both toward zero first
+  IntegerModulo,  // of the floors
+  Power,
+  Less,
+  LessEqual,
+  Greater,
+  GreaterEqual,
+  Equal,
+  NotEqual,
+  And,
+  Or,
+  Choose,  // condition ? a : b
+  Call     // name(a) or name(a, b)
+};
+
+struct FeNode {
+  FeOperator op = FeOperator::Number;
+  double number = 0.0;
+  std::string name;                      // Name, Call: in lower case
+  std::array<int, 3> child{-1, -1, -1};  // indices of earlier nodes
+  FePlace place;
+};
+
+/// A number, or a tree whose root is the last node.
+struct FeExpression {
+  double number = 0.0;
+  std::vector<FeNode> nodes;  // empty: the number
+  FePlace place;
+
+  bool is_number() const { return nodes.empty(); }
+};
+
+/// How text groups. Evolver: a ^ b ^ c is (a ^ b) ^ c and, outside brackets, a
+/// sign behind a space and right before its operand begins a new expression.
+/// Ours: core/expression.h.
+enum class FeDialect { Evolver, Ours };
+
+/// The longest expression at hand. Throws InvalidInput for broken syntax,
+/// unknown functions, more than 200 levels of nesting or 4,000 operations.
+FeExpression parse_expression(FeLexer& lexer,
+                              FeDialect dialect = FeDialect::Evolver);
+
+/// Values by name in lower case.
+using FeValues = std::map<std::string, double, std::less<>>;
+
+/// Names that stay names, and what they are called in ours: x1 -> x, p1 -> t.
+using FeUnknowns = std::map<std::string, std::string, std::less<>>;
+const FeUnknowns& place_names();      // x y z x1 x2 x3 -> x y z
+const FeUnknowns& parameter_names();  // p1 -> t
+
+/// Every name in the expression, in order of appearance, repeats kept.
+std::vector<const FeNode*> names_in(const FeExpression& expression);
+
+/// Throw InvalidInput "file:line:column: what": a name without value, a result
+/// that is not finite, an operation that ours lacks (% of a coordinate).
+double number_of(const FeExpression& expression, const FeValues& values,
+                 const std::string& file);
+Expression compiled(const FeExpression& expression, const FeValues& values,
+                    const FeUnknowns& unknowns, const std::string& file);
+
+/// `expression`, of x, y, z or of t, as text for a datafile; t is called p1.
+/// Throws InvalidInput when it cannot be said there.
+std::string fe_expression_text(const Expression& expression);
+
+}  // namespace meniscus

@@ -1,0 +1,199 @@
+#include "tests/evolve/film_sums.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Geometry>
+
+namespace meniscus::sums {
+
+namespace {
+
+double at(const Expression& expression, const Vec3& p) {
+  return expression.evaluate(std::array{p.x(), p.y(), p.z()});
+}
+
+Vec3 at(const VectorField& field, const Vec3& p) {
+  return {at(field[0], p), at(field[1], p), at(field[2], p)};
+}
+
+// Gauss-Legendre on [0, 1], exact to degree 9.
+double along(const VectorField& field, const Vec3& a, const Vec3& b) {
+  const double inner = std::sqrt(5.0 - 2.0 * std::sqrt(10.0 / 7.0)) / 3.0;
+  const double outer = std::sqrt(5.0 + 2.0 * std::sqrt(10.0 / 7.0)) / 3.0;
+  const double w_inner = (322.0 + 13.0 * std::sqrt(70.0)) / 900.0;
+  const double w_outer = (322.0 - 13.0 * std::sqrt(70.0)) / 900.0;
+  const std::array<std::array<double, 2>, 5> rule = {{{0.0, 128.0 / 225.0},
+                                                      {inner, w_inner},
+                                                      {-inner, w_inner},
+                                                      {outer, w_outer},
+                                                      {-outer, w_outer}}};
+  double sum = 0.0;
+  for (const auto& [x, w] : rule) {
+    sum += 0.5 * w * at(field, a + 0.5 * (1.0 + x) * (b - a)).dot(b - a);
+  }
+  return sum;
+}
+
+// Seven points, exact to degree 5 (Radon 1948): mean over a triangle.
+template <class Function>
+double mean(const Vec3& a, const Vec3& b, const Vec3& c, Function function) {
+  double sum = 0.225 * function((a + b + c) / 3.0);
+  for (const double sign : {1.0, -1.0}) {
+    const double q = (6.0 + sign * std::sqrt(15.0)) / 21.0;
+    const double w = (155.0 + sign * std::sqrt(15.0)) / 1200.0;
+    sum += w * (function(q * a + q * b + (1 - 2 * q) * c) +
+                function(q * b + q * c + (1 - 2 * q) * a) +
+                function(q * c + q * a + (1 - 2 * q) * b));
+  }
+  return sum;
+}
+
+struct Corners {
+  Vec3 a, b, c;
+  Vec3 vector() const { return 0.5 * (b - a).cross(c - a); }
+};
+
+Corners corners(const FilmComplex& complex, std::size_t facet) {
+  const Triangle& t = complex.mesh.facets[facet];
+  return {complex.mesh.points[t[0]], complex.mesh.points[t[1]],
+          complex.mesh.points[t[2]]};
+}
+
+// Sign of the facet in the body: 1, -1, or 0.
+int sign_in(const FilmComplex& complex, int body, std::size_t facet) {
+  int sign = 0;
+  for (const BodySide& side : complex.bodies[body].sides) {
+    if (side.surface == complex.mesh.facet_label[facet]) {
+      sign += side.sign;
+    }
+  }
+  return sign;
+}
+
+double weight(const FilmComplex& complex, int body) {
+  const double specific = -complex.gravity.z() * complex.bodies[body].density;
+  double sum = 0.0;
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    const auto [a, b, c] = corners(complex, f);
+    const double squares = a.z() * a.z() + b.z() * b.z() + c.z() * c.z() +
+                           a.z() * b.z() + b.z() * c.z() + c.z() * a.z();
+    sum += sign_in(complex, body, f) * squares / 12.0 *
+           corners(complex, f).vector().z();
+  }
+  return specific * sum;
+}
+
+}  // namespace
+
+double area(const FilmComplex& complex) {
+  double sum = 0.0;
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    sum += corners(complex, f).vector().norm();
+  }
+  return sum;
+}
+
+double quantity(const FilmComplex& complex, int index) {
+  const FilmQuantity& q = complex.quantities[index];
+  double sum = 0.0;
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    if (!q.surfaces.empty() &&
+        std::find(q.surfaces.begin(), q.surfaces.end(),
+                  complex.mesh.facet_label[f]) == q.surfaces.end()) {
+      continue;
+    }
+    const Corners t = corners(complex, f);
+    if (q.kind == FilmQuantity::Kind::VectorIntegral) {
+      sum += mean(t.a, t.b, t.c, [&](const Vec3& p) {
+        return at(q.field, p).dot(t.vector());
+      });
+    } else if (q.kind == FilmQuantity::Kind::ScalarIntegral) {
+      sum += t.vector().norm() * mean(t.a, t.b, t.c, [&](const Vec3& p) {
+               return at(q.scalar, p);
+             });
+    } else {
+      sum += t.vector().norm();
+    }
+  }
+  return sum;
+}
+
+double energy(const FilmComplex& complex) {
+  double sum = 0.0;
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    const ComplexSurface& surface =
+        complex.surfaces[complex.mesh.facet_label[f]];
+    const Corners t = corners(complex, f);
+    sum += t.vector().norm() *
+           (surface.tension_field ? mean(t.a, t.b, t.c,
+                                         [&](const Vec3& p) {
+                                           return at(*surface.tension_field, p);
+                                         })
+                                  : surface.tension);
+  }
+  for (std::size_t b = 0; b < complex.bodies.size(); ++b) {
+    sum += weight(complex, static_cast<int>(b));
+  }
+  for (const ComplexEdge& edge : complex.edges) {
+    if (edge.integrals < 0) {
+      continue;
+    }
+    for (const int index : complex.integral_sets[edge.integrals]) {
+      const LineIntegral& integral = complex.integrals[index];
+      if (integral.role == LineIntegral::Role::Energy) {
+        sum += along(integral.field, complex.mesh.points[edge.a],
+                     complex.mesh.points[edge.b]);
+      }
+    }
+  }
+  for (std::size_t q = 0; q < complex.quantities.size(); ++q) {
+    if (complex.quantities[q].role == FilmQuantity::Role::Energy) {
+      sum += complex.quantities[q].modulus *
+             quantity(complex, static_cast<int>(q));
+    }
+  }
+  return sum;
+}
+
+double volume(const FilmComplex& complex, int body) {
+  double sum = complex.bodies[body].volume_offset;
+  std::map<Edge, int> runs;  // with sign in the body, both ways of each edge
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    const int sign = sign_in(complex, body, f);
+    const Corners t = corners(complex, f);
+    const Vec3 middle = (t.a + t.b + t.c) / 3.0;
+    sum += sign * (complex.volume_rule == VolumeRule::Cone
+                       ? middle.dot(t.vector()) / 3.0
+                       : middle.z() * t.vector().z());
+    const Triangle& v = complex.mesh.facets[f];
+    for (int k = 0; k < 3; ++k) {
+      runs[{v[k], v[(k + 1) % 3]}] += sign;
+      runs[{v[(k + 1) % 3], v[k]}] -= sign;
+    }
+  }
+  for (const ComplexEdge& edge : complex.edges) {
+    if (edge.integrals < 0) {
+      continue;
+    }
+    for (const int index : complex.integral_sets[edge.integrals]) {
+      const LineIntegral& integral = complex.integrals[index];
+      if (integral.role == LineIntegral::Role::Content) {
+        sum += runs[{edge.a, edge.b}] * along(integral.field,
+                                              complex.mesh.points[edge.a],
+                                              complex.mesh.points[edge.b]);
+      }
+    }
+  }
+  return sum;
+}
+
+int edges(const FilmComplex& complex) {
+  std::vector<Edge> list;
+  std::vector<Triangle> facet_edges;
+  list_edges(complex.mesh.facets, list, facet_edges);
+  return static_cast<int>(list.size());
+}
+
+}  // namespace meniscus::sums
