@@ -24,9 +24,9 @@ enum class VertexKind {
 
 struct ComplexVertex {
   VertexKind kind = VertexKind::Free;
-  int curve = -1;         // OnCurve, Slides: index into curves
-  double t = 0.0;         // OnCurve, Slides: curve parameter
-  int constraints = -1;   // Free: index into constraint_sets; -1: none
+  int curve = -1;        // OnCurve, Slides: index into curves
+  double t = 0.0;        // OnCurve, Slides: curve parameter
+  int constraints = -1;  // Free: index into constraint_sets; -1: none
 };
 
 /// Marked edges: those that refinement and grooming must know of. Every other
@@ -51,6 +51,7 @@ struct LevelSet {
   std::string name;
   Expression formula;  // over x, y, z
   Side side = Side::On;
+  bool convex = false;  // free marked edges on it carry gap energy
 };
 
 /// Line integral of a vector field along marked edges: energy of walls that
@@ -130,6 +131,11 @@ struct FilmComplex {
   std::vector<FilmQuantity> quantities;
   Vec3 gravity = Vec3::Zero();  // acceleration [length/time^2]
   VolumeRule volume_rule = VolumeRule::Cone;
+  int line_points = 5;  // Gauss points of line integrals, per edge
+  // Energy of free marked edges S on convex level sets, for the area between
+  // edge and wall: gap_constant |S| (|S . n_a| + |S . n_b|) / 12 with the unit
+  // normals of the level set at the edge's ends [force/length].
+  double gap_constant = 0.0;
 };
 
 }  // namespace meniscus
