@@ -53,6 +53,8 @@ class ComplexBuilder {
     bodies();
     attach_quantities();
     complex_.gravity = Vec3(0.0, 0.0, -values_.at("g"));
+    complex_.line_points = file_.line_order / 2 + 1;
+    set_gap_constant();
     complex_.volume_rule =
         file_.symmetric_content ? VolumeRule::Cone : VolumeRule::Column;
     return std::move(complex_);
@@ -399,6 +401,25 @@ class ComplexBuilder {
                               quantity.name));
         }
       }
+    }
+  }
+
+  void set_gap_constant() {
+    bool convex = false;
+    complex_.gap_constant =
+        file_.gap_constant ? number(*file_.gap_constant) : 1.0;
+    for (const FeBoundary& boundary : file_.boundaries) {
+      if (boundary.integrals.convex && complex_.gap_constant != 0.0) {
+        fe_fail(file_, boundary.place,
+                "gap energy of boundaries (convex) is not supported; say "
+                "'gap_constant 0', or use a constraint");
+      }
+    }
+    for (const FeConstraint& constraint : file_.constraints) {
+      convex = convex || constraint.integrals.convex;
+    }
+    if (!convex) {
+      complex_.gap_constant = 0.0;
     }
   }
 

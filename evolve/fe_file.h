@@ -128,6 +128,7 @@ struct FeFile {
   std::optional<FeExpression> gravity;       // default 1
   std::optional<FeExpression> gap_constant;  // default 1
   bool symmetric_content = false;
+  int line_order = 3;  // exact degree of line integrals, as in Evolver
   std::vector<FeBoundary> boundaries;
   std::vector<FeConstraint> constraints;
   std::vector<FeQuantity> quantities;

@@ -146,7 +146,9 @@ LineIntegral line_integral(const FeFile& file, FeValues values,
                                : file.constraints[key.owner].name);
   made.role = key.role;
   made.field = compiled_field(field, values, file);
-  if (key.reversed) {
+  // Evolver adds content of boundaries with the other sign.
+  if (key.reversed !=
+      (key.boundary && key.role == LineIntegral::Role::Content)) {
     for (Expression& component : made.field) {
       component = negative(component);
     }
@@ -257,6 +259,7 @@ std::vector<std::vector<int>> fe_formulas(const FeFile& file,
                 : constraint.side == FeConstraint::Side::Nonnegative
                     ? LevelSet::Side::AtLeast
                     : LevelSet::Side::AtMost;
+    made.convex = constraint.integrals.convex;
     complex.level_sets.push_back(std::move(made));
   }
   const std::map<IntegralKey, int> integrals = all_integrals(file, values);

@@ -141,6 +141,8 @@ void FeReader::declaration() {
     file_.gap_constant = constant();
   } else if (word == "symmetric_content") {
     file_.symmetric_content = true;
+  } else if (word == "integral_order_1d") {
+    integral_order(keyword.place);
   } else if (!ignored(word)) {
     refuse(keyword);
   }
@@ -227,6 +229,17 @@ void FeReader::refuse(const FeToken& keyword) {
   lexer_.fail(keyword.place,
               fmt::format("unknown keyword '{}'{}", word,
                           near.empty() ? "" : "; is '" + near + "' meant?"));
+}
+
+void FeReader::integral_order(const FePlace& place) {
+  constexpr int kHighest = 19;
+  skip_separators();
+  file_.line_order = integer("an order");
+  if (file_.line_order < 1 || file_.line_order > kHighest) {
+    lexer_.fail(place, fmt::format("integral_order_1d is {}; it must be 1 to "
+                                   "{}",
+                                   file_.line_order, kHighest));
+  }
 }
 
 std::string FeReader::declared_name(const char* what) {

@@ -27,6 +27,7 @@ class FeReader {
   void boundary();
   void constraint();
   void integrals(FeIntegrals& integrals);
+  void integral_order(const FePlace& place);
   std::string declared_name(const char* what);
 
   // fe_reader_quantities.cpp

@@ -61,7 +61,9 @@ INSTANTIATE_TEST_SUITE_P(
         Loaded{"mound", 18, 40, 24, 1, 14.0, 5.0},
         Loaded{"qmound", 18, 40, 24, 1, 14.0, 5.5},
         Loaded{"octa", 7, 18, 12, 0, 24.0, 24.0},
-        Loaded{"quad", 5, 8, 4, 0, 4.4721359549996, 4.4721359549996}),
+        Loaded{"quad", 5, 8, 4, 0, 4.4721359549996, 4.4721359549996},
+        Loaded{"sphere", 10, 16, 8, 1, 5.4641016151378, 2.9428090415821},
+        Loaded{"tankex", 8, 16, 8, 1, 2.8284271247462, 2.3572361663283}),
     [](const auto& loaded) { return loaded.param.name; });
 
 struct Refused {

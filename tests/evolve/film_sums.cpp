@@ -18,20 +18,60 @@ Vec3 at(const VectorField& field, const Vec3& p) {
   return {at(field[0], p), at(field[1], p), at(field[2], p)};
 }
 
-// Gauss-Legendre on [0, 1], exact to degree 9.
-double along(const VectorField& field, const Vec3& a, const Vec3& b) {
-  const double inner = std::sqrt(5.0 - 2.0 * std::sqrt(10.0 / 7.0)) / 3.0;
-  const double outer = std::sqrt(5.0 + 2.0 * std::sqrt(10.0 / 7.0)) / 3.0;
-  const double w_inner = (322.0 + 13.0 * std::sqrt(70.0)) / 900.0;
-  const double w_outer = (322.0 - 13.0 * std::sqrt(70.0)) / 900.0;
-  const std::array<std::array<double, 2>, 5> rule = {{{0.0, 128.0 / 225.0},
-                                                      {inner, w_inner},
-                                                      {-inner, w_inner},
-                                                      {outer, w_outer},
-                                                      {-outer, w_outer}}};
+// Node k of n of Gauss-Legendre on [-1, 1] and its weight, by Newton's method
+// on the recurrence.
+std::array<double, 2> gauss(int k, int n) {
+  double x = std::cos(3.14159265358979323846 * (k + 0.75) / (n + 0.5));
+  double slope = 1.0;
+  for (int step = 0; step < 10; ++step) {
+    double p = 1.0;
+    double before = 0.0;
+    for (int j = 1; j <= n; ++j) {
+      const double next = ((2 * j - 1) * x * p - (j - 1) * before) / j;
+      before = p;
+      p = next;
+    }
+    slope = n * (x * p - before) / (x * x - 1.0);
+    x -= p / slope;
+  }
+  return {x, 2.0 / ((1.0 - x * x) * slope * slope)};
+}
+
+double along(const FilmComplex& complex, const VectorField& field,
+             const ComplexEdge& edge) {
+  const Vec3& a = complex.mesh.points[edge.a];
+  const Vec3& b = complex.mesh.points[edge.b];
   double sum = 0.0;
-  for (const auto& [x, w] : rule) {
+  for (int k = 0; k < complex.line_points; ++k) {
+    const auto [x, w] = gauss(k, complex.line_points);
     sum += 0.5 * w * at(field, a + 0.5 * (1.0 + x) * (b - a)).dot(b - a);
+  }
+  return sum;
+}
+
+Vec3 normal(const LevelSet& level, const Vec3& p) {
+  return level.formula
+      .evaluate(std::array{Dual::variable(p.x(), 0, 3),
+                           Dual::variable(p.y(), 1, 3),
+                           Dual::variable(p.z(), 2, 3)})
+      .gradient.normalized();
+}
+
+double gap(const FilmComplex& complex, const ComplexEdge& edge) {
+  const Vec3& a = complex.mesh.points[edge.a];
+  const Vec3& b = complex.mesh.points[edge.b];
+  double sum = 0.0;
+  if (edge.kind != VertexKind::Free || edge.constraints < 0) {
+    return sum;
+  }
+  for (const int index : complex.constraint_sets[edge.constraints]) {
+    const LevelSet& level = complex.level_sets[index];
+    if (level.convex) {
+      sum += complex.gap_constant * (b - a).norm() *
+             (std::abs((b - a).dot(normal(level, a))) +
+              std::abs((b - a).dot(normal(level, b)))) /
+             12.0;
+    }
   }
   return sum;
 }
@@ -137,14 +177,14 @@ double energy(const FilmComplex& complex) {
     sum += weight(complex, static_cast<int>(b));
   }
   for (const ComplexEdge& edge : complex.edges) {
+    sum += gap(complex, edge);
     if (edge.integrals < 0) {
       continue;
     }
     for (const int index : complex.integral_sets[edge.integrals]) {
       const LineIntegral& integral = complex.integrals[index];
       if (integral.role == LineIntegral::Role::Energy) {
-        sum += along(integral.field, complex.mesh.points[edge.a],
-                     complex.mesh.points[edge.b]);
+        sum += along(complex, integral.field, edge);
       }
     }
   }
@@ -180,9 +220,7 @@ double volume(const FilmComplex& complex, int body) {
     for (const int index : complex.integral_sets[edge.integrals]) {
       const LineIntegral& integral = complex.integrals[index];
       if (integral.role == LineIntegral::Role::Content) {
-        sum += runs[{edge.a, edge.b}] * along(integral.field,
-                                              complex.mesh.points[edge.a],
-                                              complex.mesh.points[edge.b]);
+        sum += runs[{edge.a, edge.b}] * along(complex, integral.field, edge);
       }
     }
   }
