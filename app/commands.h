@@ -32,10 +32,17 @@ struct ExportArguments {
   std::string out;             // file; empty: into the run's folder
 };
 
+struct EvolveArguments {
+  std::string path;  // a case, or a Surface Evolver datafile (*.fe)
+  CommonArguments common;
+  std::optional<int> refinements;  // datafiles
+  std::string method = "newton";   // "gradient", "conjugate_gradients"
+};
+
 int new_command(const std::string& name);
 int check_command(const std::string& case_path, const CommonArguments& common);
 int run_command(const RunArguments& arguments);
-int evolve_command(const std::string& case_path, const CommonArguments& common);
+int evolve_command(const EvolveArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int study_show_command(const std::string& folder, const std::string& csv);
 

@@ -74,12 +74,24 @@ int run_program(int argc, char** argv) {
   run->callback(
       [&] { command = [&] { return meniscus::run_command(run_arguments); }; });
 
-  CLI::App* evolve =
-      app.add_subcommand("evolve", "film equilibrium of a case only");
-  add_case(*evolve, case_path);
-  add_common(*evolve, common);
+  meniscus::EvolveArguments evolve_arguments;
+  CLI::App* evolve = app.add_subcommand(
+      "evolve", "film equilibrium only, of a case or a Surface Evolver file");
+  evolve
+      ->add_option("FILE", evolve_arguments.path,
+                   "case file (TOML) or datafile (.fe)")
+      ->required();
+  add_common(*evolve, evolve_arguments.common);
+  evolve
+      ->add_option("--refine", evolve_arguments.refinements,
+                   "datafiles: 1:4 refinements (default: to 2,000 facets)")
+      ->check(CLI::Range(0, 10));
+  evolve
+      ->add_option("--method", evolve_arguments.method,
+                   "datafiles: newton, gradient or conjugate_gradients")
+      ->check(CLI::IsMember({"newton", "gradient", "conjugate_gradients"}));
   evolve->callback([&] {
-    command = [&] { return meniscus::evolve_command(case_path, common); };
+    command = [&] { return meniscus::evolve_command(evolve_arguments); };
   });
 
   meniscus::ExportArguments export_arguments;

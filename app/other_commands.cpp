@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "app/versions.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
+#include "pipeline/datafile.h"
 #include "pipeline/new_case.h"
 #include "pipeline/results.h"
 #include "pipeline/study_table.h"
@@ -52,9 +54,73 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
   return kExitDone;
 }
 
-int evolve_command(const std::string& case_path,
-                   const CommonArguments& common) {
-  const CaseReading reading = read_case_aloud(case_path, common);
+namespace {
+
+/// "name=value" as numbers; parameters of a datafile.
+std::map<std::string, double> numbers_of(
+    const std::vector<std::string>& overrides) {
+  std::map<std::string, double> result;
+  for (const std::string& text : overrides) {
+    const std::size_t at = text.find('=');
+    if (at == std::string::npos || at == 0) {
+      throw InvalidInput(fmt::format("--set {}: expected NAME=VALUE", text));
+    }
+    try {
+      result[text.substr(0, at)] = Expression::parse(text.substr(at + 1), {})
+                                       .evaluate(std::span<const double>());
+    } catch (const ExpressionError& error) {
+      throw InvalidInput(fmt::format("--set {}: {}", text, error.what()));
+    }
+  }
+  return result;
+}
+
+int evolve_datafile_command(const EvolveArguments& arguments) {
+  const CommonArguments& common = arguments.common;
+  const fs::path path = arguments.path;
+  const fs::path folder = common.out.empty() ? fs::path("results") / path.stem()
+                                             : fs::path(common.out);
+  DatafileOptions options;
+  DatafileResult result;
+  TerminalMonitor monitor(monitor_options(common));
+  try {
+    options.refinements = arguments.refinements;
+    options.parameters = numbers_of(common.overrides);
+    options.method = arguments.method == "gradient" ? DatafileMethod::Gradient
+                     : arguments.method == "conjugate_gradients"
+                         ? DatafileMethod::ConjugateGradients
+                         : DatafileMethod::Newton;
+    options.monitor = &monitor;
+    make_folder(folder);
+    catch_stop_signals();
+    result = evolve_datafile(path, options);
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+  const std::string warning = write_datafile_result(result, folder);
+  if (!common.quiet) {
+    std::fputs(datafile_text(result).c_str(), stdout);
+    std::printf("  written to %s\n", folder.string().c_str());
+  }
+  if (!warning.empty()) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+  if (result.failure) {
+    std::fprintf(stderr, "failed: %s\n", result.failure->message.c_str());
+    return kExitNoSolution;
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+int evolve_command(const EvolveArguments& arguments) {
+  if (fs::path(arguments.path).extension() == ".fe") {
+    return evolve_datafile_command(arguments);
+  }
+  const CommonArguments& common = arguments.common;
+  const CaseReading reading = read_case_aloud(arguments.path, common);
   if (!reading.input) {
     return kExitWrongInput;
   }

@@ -17,27 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json film_json(const FilmReport& film) {
-  Json bodies = Json::object();
-  for (const BodyState& body : film.bodies) {
-    bodies[body.name] = {{"volume", body.volume}, {"pressure", body.pressure}};
-  }
-  return {{"vertices", film.vertices},
-          {"facets", film.facets},
-          {"energy", film.energy},
-          {"area", film.area},
-          {"residual", film.residual},
-          {"residual_bound", film.residual_bound},
-          {"min_eigenvalue", film.min_eigenvalue},
-          {"index", film.index},
-          {"smallest_neck", film.smallest_neck},
-          {"neck_position",
-           {film.neck_position.x(), film.neck_position.y(),
-            film.neck_position.z()}},
-          {"verdict", film.verdict},
-          {"bodies", bodies}};
-}
-
 Json tet_json(const TetFigures& tet) {
   return {{"nodes", tet.nodes},
           {"elements", tet.elements},
@@ -122,6 +101,27 @@ std::string with_error(double value, const VectorX& errors, Eigen::Index k,
 }
 
 }  // namespace
+
+nlohmann::ordered_json film_json(const FilmReport& film) {
+  Json bodies = Json::object();
+  for (const BodyState& body : film.bodies) {
+    bodies[body.name] = {{"volume", body.volume}, {"pressure", body.pressure}};
+  }
+  return {{"vertices", film.vertices},
+          {"facets", film.facets},
+          {"energy", film.energy},
+          {"area", film.area},
+          {"residual", film.residual},
+          {"residual_bound", film.residual_bound},
+          {"min_eigenvalue", film.min_eigenvalue},
+          {"index", film.index},
+          {"smallest_neck", film.smallest_neck},
+          {"neck_position",
+           {film.neck_position.x(), film.neck_position.y(),
+            film.neck_position.z()}},
+          {"verdict", film.verdict},
+          {"bodies", bodies}};
+}
 
 EvaluationRecord make_record(const Case& input, const Evaluation& evaluation) {
   EvaluationRecord record;

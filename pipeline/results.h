@@ -15,6 +15,9 @@ namespace meniscus {
 /// Version of result.json's schema (docs/results.md).
 inline constexpr int kResultSchemaVersion = 1;
 
+/// The film's part of result.json.
+nlohmann::ordered_json film_json(const FilmReport& film);
+
 EvaluationRecord make_record(const Case& input, const Evaluation& evaluation);
 
 /// Inputs, responses and failure of a record; the figures stay in its text.

@@ -1,0 +1,46 @@
+/// Surface Evolver datafiles through the program: read, settled, written.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "evolve/descent.h"
+#include "evolve/fe_complex.h"
+#include "evolve/film_model.h"
+
+namespace meniscus {
+
+enum class DatafileMethod { Newton, Gradient, ConjugateGradients };
+
+struct DatafileOptions {
+  /// 1:4 refinements; empty: as many as give 2,000 facets.
+  std::optional<int> refinements;
+  DatafileMethod method = DatafileMethod::Newton;
+  int max_steps = 2000;  // of the two descents
+  std::map<std::string, double> parameters;
+  Monitor* monitor = nullptr;
+};
+
+struct DatafileResult {
+  FilmComplex complex;  // settled
+  FilmReport report;
+  std::vector<std::pair<std::string, double>> quantities;
+  std::optional<Failure> failure;
+};
+
+/// Reads `path` and settles its films by our own route. Throws InvalidInput
+/// with file, line and column, IoError, Interrupted.
+DatafileResult evolve_datafile(const std::filesystem::path& path,
+                               const DatafileOptions& options);
+
+/// film.vtp, film.fe and film.json in `folder`. Throws IoError. Returns a
+/// warning when the film cannot be said in a datafile, else nothing.
+std::string write_datafile_result(const DatafileResult& result,
+                                  const std::filesystem::path& folder);
+
+/// The result for people; a datafile has no units.
+std::string datafile_text(const DatafileResult& result);
+
+}  // namespace meniscus
