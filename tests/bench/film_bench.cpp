@@ -33,9 +33,10 @@ struct BenchOptions {
 };
 
 void print_own(const FilmRun& run) {
-  fmt::print("  {:<8} {:>8.2f} {:>8.2f} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
-             "ours", run.user_seconds, run.wall_seconds, run.peak_bytes / kMega,
-             run.energy, run.residual, run.verdict);
+  fmt::print(
+      "  {:<8} {:>8.2f} {:>6.2f} {:>8.2f} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
+      "ours", run.user_seconds, run.system_seconds, run.wall_seconds,
+      run.peak_bytes / kMega, run.energy, run.residual, run.verdict);
   if (!run.settled) {
     fmt::print(
         "           NOT SETTLED: residual bound {:.2e}, lowest "
@@ -45,12 +46,13 @@ void print_own(const FilmRun& run) {
 }
 
 void print_evolver(const char* script, const EvolverRun& run) {
-  fmt::print("  {:<8} {:>8.2f} {:>8} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
-             script, run.user_seconds, "", run.peak_bytes / kMega, run.energy,
-             run.residual.value_or(NAN),
-             !run.ended       ? "failed"
-             : !run.converged ? "still moving"
-                              : "");
+  fmt::print(
+      "  {:<8} {:>8.2f} {:>6.2f} {:>8} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
+      script, run.user_seconds, run.system_seconds, "", run.peak_bytes / kMega,
+      run.energy, run.residual.value_or(NAN),
+      !run.ended       ? "failed"
+      : !run.converged ? "still moving"
+                       : "");
 }
 
 // "x 7.3 (at least 5, aim 10) aim".
