@@ -4,7 +4,8 @@
 ///   film_bench [--scale N] [--only NAME] [--repeat N] [--no-evolver] [--large]
 ///
 /// --scale N runs at 1/4^N of the size; --repeat N takes the median of N of our
-/// own runs (3). Times are user CPU seconds of one thread, one run at a time.
+/// own runs (3). Ratios are of CPU seconds, user and system, of one thread, one
+/// run at a time.
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -33,9 +34,10 @@ struct BenchOptions {
 };
 
 void print_own(const FilmRun& run) {
-  fmt::print("  {:<8} {:>8.2f} {:>8.2f} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
-             "ours", run.user_seconds, run.wall_seconds, run.peak_bytes / kMega,
-             run.energy, run.residual, run.verdict);
+  fmt::print(
+      "  {:<8} {:>8.2f} {:>6.2f} {:>8.2f} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
+      "ours", run.user_seconds, run.system_seconds, run.wall_seconds,
+      run.peak_bytes / kMega, run.energy, run.residual, run.verdict);
   if (!run.settled) {
     fmt::print(
         "           NOT SETTLED: residual bound {:.2e}, lowest "
@@ -45,20 +47,23 @@ void print_own(const FilmRun& run) {
 }
 
 void print_evolver(const char* script, const EvolverRun& run) {
-  fmt::print("  {:<8} {:>8.2f} {:>8} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
-             script, run.user_seconds, "", run.peak_bytes / kMega, run.energy,
-             run.residual.value_or(NAN),
-             !run.ended       ? "failed"
-             : !run.converged ? "still moving"
-                              : "");
+  fmt::print(
+      "  {:<8} {:>8.2f} {:>6.2f} {:>8} {:>7.0f} {:>19.14g} {:>10.2e}  {}\n",
+      script, run.user_seconds, run.system_seconds, "", run.peak_bytes / kMega,
+      run.energy, run.residual.value_or(NAN),
+      !run.ended       ? "failed"
+      : !run.converged ? "last step still moved"
+                       : "");
 }
 
 // "x 7.3 (at least 5, aim 10) aim".
-std::string ratio(double theirs, const FilmRun& own, double least, double aim) {
+std::string ratio(const EvolverRun& theirs, const FilmRun& own, double least,
+                  double aim) {
   if (!own.settled) {
     return "no film of ours";
   }
-  const double value = theirs / own.user_seconds;
+  const double value = (theirs.user_seconds + theirs.system_seconds) /
+                       (own.user_seconds + own.system_seconds);
   const char* mark = value >= aim ? "AIM" : value >= least ? "ok" : "BELOW";
   return fmt::format("x {:.1f} (at least {:g}, aim {:g}: {})", value, least,
                      aim, mark);
@@ -86,8 +91,8 @@ void race(const SpeedWork& work, const BenchOptions& options) {
     fmt::print(
         "  faster than tuned   {}\n  faster than typical {}\n"
         "  memory / evolver's  {:.2f} (at most 1)\n",
-        ratio(tuned.user_seconds, own, work.least_tuned, work.aim_tuned),
-        ratio(typical.user_seconds, own, work.least_typical, work.aim_typical),
+        ratio(tuned, own, work.least_tuned, work.aim_tuned),
+        ratio(typical, own, work.least_typical, work.aim_typical),
         own.peak_bytes / tuned.peak_bytes);
   }
   std::fflush(stdout);
@@ -166,8 +171,8 @@ int run(int count, char** words) {
     fmt::print("evolver (Debian package evolver) is not installed\n");
     options->evolver = false;
   }
-  fmt::print("{:<10} {:>8} {:>8} {:>7} {:>19} {:>10}\n", "", "user s", "wall s",
-             "MB", "energy", "residual");
+  fmt::print("{:<10} {:>8} {:>6} {:>8} {:>7} {:>19} {:>10}\n", "", "user s",
+             "sys s", "wall s", "MB", "energy", "residual");
   for (const SpeedWork& work : speed_works()) {
     if (!options->only || work.name == *options->only) {
       race(work, *options);

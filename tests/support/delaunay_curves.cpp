@@ -107,7 +107,7 @@ Meridian delaunay_meridian(double equator, double pressure, double half_length,
 
 Meridian unduloid() { return delaunay_meridian(1.0, 1.3, 1.5); }
 
-Meridian nodoid() { return delaunay_meridian(1.0, 2.6, 1.0); }
+Meridian nodoid() { return delaunay_meridian(1.0, 2.6, 0.65); }
 
 Catenoid catenoid(double radius, double spacing) {
   require_catenoid(radius, spacing);

@@ -38,8 +38,9 @@ Meridian delaunay_meridian(double equator, double pressure, double half_length,
 /// its neck.
 Meridian unduloid();
 
-/// Nodoid with a bulge at z = 0: equator 1, pressure 2.6, rims past the place
-/// where it turns back in z, so that no function r(z) gives it.
+/// Nodoid with a bulge at z = 0: equator 1, pressure 2.6, rims short of the
+/// place where it turns back in z; beyond that a film at fixed volume slips
+/// sideways and is no longer of revolution.
 Meridian nodoid();
 
 /// Catenoid between rings of `radius`, `spacing` apart.

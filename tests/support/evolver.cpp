@@ -115,6 +115,7 @@ EvolverRun run_evolver(const FilmComplex& start, const EvolverJob& job) {
   run.output = child.output;
   run.peak_bytes = child.peak_bytes;
   run.user_seconds = child.user_seconds;
+  run.system_seconds = child.system_seconds;
   run.start_energy = printed(run.output, "start_energy").value_or(NAN);
   for (std::size_t b = 0; b < start.bodies.size(); ++b) {
     run.start_volumes.push_back(

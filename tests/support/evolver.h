@@ -31,6 +31,7 @@ struct EvolverRun {
   bool ended = false;         // the script ran to its end
   bool converged = false;     // and the last `hessian` changed nothing
   double user_seconds = 0.0;  // CPU, start to the last `hessian`
+  double system_seconds = 0.0;
   double peak_bytes = 0.0;
   double start_energy = 0.0;          // as loaded
   std::vector<double> start_volumes;  // one per body [length^3]

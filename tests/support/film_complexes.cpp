@@ -282,6 +282,10 @@ double prism_volume(const TubeSpec& spec) {
          spec.radius * spec.length;
 }
 
+double prism_pressure(const TubeSpec& spec) {
+  return 1.0 / (spec.radius * std::cos(pi / spec.around));
+}
+
 FilmComplex long_tube_saddle(int around, int rows) {
   TubeSpec spec{.length = 6.5, .around = around, .rows = rows};
   spec.volume = prism_volume(spec);

@@ -63,6 +63,10 @@ FilmComplex tube_start(const TubeSpec& spec);
 /// Volume of the prism that tube_start() begins with [length^3].
 double prism_volume(const TubeSpec& spec);
 
+/// Pressure at which that prism rests [force/length^2]: that of the inscribed
+/// circle, 1 / (radius cos(pi / around)).
+double prism_pressure(const TubeSpec& spec);
+
 /// A tube longer than its perimeter (radius 1, length 6.5) at the volume of
 /// its own prism: settled as it stands, and a saddle of index 1 under
 /// volume (Plateau-Rayleigh).

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <omp.h>
 #include <sys/resource.h>
 
 #include "evolve/find_equilibrium.h"
@@ -51,12 +52,10 @@ int film_facets(const FilmComplex& complex) {
 
 std::string settle(const FilmComplex& start, int refinements) {
   FilmComplex complex = start;
-  FindOptions options;
-  ask_refinements(refinements, complex, options);
-  options.settle.residual_factor = kResidualFactor;
+  omp_set_num_threads(1);
   const double before = user_seconds();
   const auto begin = std::chrono::steady_clock::now();
-  const FilmState state = find_equilibrium(complex, options);
+  const FilmState state = find_refined(complex, refinements);
   const std::chrono::duration<double> wall =
       std::chrono::steady_clock::now() - begin;
   const double user = user_seconds() - before;
@@ -87,12 +86,20 @@ const std::vector<SpeedWork>& speed_works() {
   return works;
 }
 
+FilmState find_refined(FilmComplex& complex, int refinements) {
+  FindOptions options;
+  ask_refinements(refinements, complex, options);
+  options.settle.residual_factor = kResidualFactor;
+  return find_equilibrium(complex, options);
+}
+
 FilmRun run_film(const FilmComplex& start, int refinements) {
   const MeasuredChild child =
       measure_forked([&] { return settle(start, refinements); });
   FilmRun run;
   run.peak_bytes = child.peak_bytes;
   run.user_seconds = child.user_seconds;
+  run.system_seconds = child.system_seconds;
   run.wall_seconds = child.wall_seconds;
   run.verdict = child.output;
   if (child.succeeded) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evolve/film_complex.h"
+#include "evolve/film_model.h"
 #include "tests/support/evolver.h"
 
 namespace meniscus {
@@ -29,6 +30,7 @@ struct FilmRun {
   bool settled = false;  // residual within its bound, stable
   std::string verdict;   // or the message of what was thrown
   double user_seconds = 0.0;
+  double system_seconds = 0.0;  // of the whole process
   double wall_seconds = 0.0;
   double peak_bytes = 0.0;  // of the whole process
   int facets = 0;           // of films, caps not counted
@@ -37,6 +39,10 @@ struct FilmRun {
   double residual_bound = 0.0;  // 1e-10 x tension x mean edge [force]
   double min_eigenvalue = 0.0;
 };
+
+/// find_equilibrium() after nested refinements, to 1e-10 x tension x mean
+/// edge; `complex` becomes the film.
+FilmState find_refined(FilmComplex& complex, int refinements);
 
 /// Settles `start` after nested refinements, one thread, in a child process of
 /// its own.

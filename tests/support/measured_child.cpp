@@ -41,6 +41,11 @@ std::string read_all(int file) {
   }
 }
 
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) +
+         1e-6 * static_cast<double>(time.tv_usec);
+}
+
 // `child` runs in the fork, is given the pipe to write to and never returns.
 MeasuredChild measure(const std::function<void(int)>& child) {
   std::array<int, 2> ends{};
@@ -69,8 +74,8 @@ MeasuredChild measure(const std::function<void(int)>& child) {
   const std::chrono::duration<double> wall =
       std::chrono::steady_clock::now() - start;
   result.wall_seconds = wall.count();
-  result.user_seconds = static_cast<double>(usage.ru_utime.tv_sec) +
-                        1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+  result.user_seconds = seconds_of(usage.ru_utime);
+  result.system_seconds = seconds_of(usage.ru_stime);
   result.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
   result.succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   return result;

@@ -11,6 +11,7 @@ namespace meniscus {
 struct MeasuredChild {
   bool succeeded = false;     // exited with code 0
   double user_seconds = 0.0;  // CPU time in user mode, all threads
+  double system_seconds = 0.0;
   double wall_seconds = 0.0;
   double peak_bytes = 0.0;  // largest resident set
   std::string output;       // what `work` returned, or the program's stdout
