@@ -253,25 +253,56 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
   return state;
 }
 
-/// Nested refinements of a start: groomed and settled while it is coarse.
-FilmState find_nested(FilmComplex& complex, const FindOptions& options,
-                      int& steps) {
-  int left = options.refinements;
-  std::string reason = bring_near(complex, {}, options.max_rounds, steps,
-                                  options.settle.monitor);
+/// Flow on the start and its refinements until the film is near rest at
+/// kGroomed facets, each level groomed; `blind` of them without flow, for films
+/// that the coarse levels tear. What stays undone is left in `left`.
+std::string bring_near_nested(FilmComplex& complex, const FindOptions& options,
+                              int blind, int& left, int& steps) {
+  const auto flow = [&] {
+    return bring_near(complex, {}, options.max_rounds, steps,
+                      options.settle.monitor);
+  };
+  std::string reason = blind > 0 ? "" : flow();
   while (reason.empty() && left > 0 &&
          4 * complex.mesh.facets.size() <= kGroomed) {
     complex = refine(complex).complex;
     --left;
-    equiangulate(complex);
-    average_vertices(complex);
-    reason = bring_near(complex, {}, options.max_rounds, steps,
-                        options.settle.monitor);
+    if (--blind <= 0) {
+      equiangulate(complex);
+      average_vertices(complex);
+      reason = flow();
+    }
   }
-  if (!reason.empty()) {
-    return given_up(complex, reason, steps);
+  return reason;
+}
+
+/// Nested refinements of a start: groomed and settled while it is coarse.
+FilmState find_nested(FilmComplex& complex, const FindOptions& options,
+                      int& steps) {
+  const FilmComplex raw = complex;
+  FilmState state;
+  int left = 0;
+  for (const int blind : {0, 1, 2, 3}) {
+    if (blind > options.refinements ||
+        (blind > 1 && raw.mesh.facets.size() << (2 * blind) > kGroomed)) {
+      break;
+    }
+    FilmComplex attempt = raw;
+    int rest = options.refinements;
+    const std::string reason =
+        bring_near_nested(attempt, options, blind, rest, steps);
+    FilmState found = reason.empty()
+                          ? settle_and_polish(attempt, options, steps)
+                          : given_up(attempt, reason, steps);
+    if (blind == 0 || !found.failure) {
+      state = std::move(found);
+      complex = std::move(attempt);
+      left = rest;
+    }
+    if (!state.failure || state.failure->kind == FailureKind::FilmUnstable) {
+      break;
+    }
   }
-  FilmState state = settle_and_polish(complex, options, steps);
   Chain chain;
   chain.add(complex, {});
   for (; left > 0 && !state.failure; --left) {
