@@ -1,0 +1,209 @@
+#include "evolve/facet_probe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace meniscus {
+
+namespace {
+
+constexpr int kLeaf = 4;
+
+Vec3 on_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
+  const Vec3 ab = b - a;
+  const double length2 = ab.squaredNorm();
+  const double t = length2 > 0.0 ? ab.dot(p - a) / length2 : 0.0;
+  return a + std::clamp(t, 0.0, 1.0) * ab;
+}
+
+}  // namespace
+
+FacetProbe::FacetProbe(const Points& points,
+                       const std::vector<Triangle>& facets)
+    : points_(points), facets_(facets) {
+  ids_.resize(facets.size());
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    ids_[f] = static_cast<int>(f);
+  }
+  if (!ids_.empty()) {
+    nodes_.reserve(facets.size());
+    build(0, static_cast<int>(ids_.size()));
+  }
+}
+
+int FacetProbe::build(int first, int last) {
+  const auto center3 = [&](int f) -> Vec3 {
+    const Triangle& t = facets_[f];
+    return points_[t[0]] + points_[t[1]] + points_[t[2]];
+  };
+  Node node;
+  node.low.setConstant(std::numeric_limits<double>::infinity());
+  node.high = -node.low;
+  for (int k = first; k < last; ++k) {
+    for (const int v : facets_[ids_[k]]) {
+      node.low = node.low.cwiseMin(points_[v]);
+      node.high = node.high.cwiseMax(points_[v]);
+    }
+  }
+  node.first = first;
+  node.last = last;
+  const int id = static_cast<int>(nodes_.size());
+  nodes_.push_back(node);
+  if (last - first > kLeaf) {
+    int axis = 0;
+    (node.high - node.low).maxCoeff(&axis);
+    const int middle = first + (last - first) / 2;
+    std::nth_element(ids_.begin() + first, ids_.begin() + middle,
+                     ids_.begin() + last, [&](int f, int g) {
+                       const double a = center3(f)[axis];
+                       const double b = center3(g)[axis];
+                       return a != b ? a < b : f < g;
+                     });
+    const int left = build(first, middle);
+    const int right = build(middle, last);
+    nodes_[id].left = left;
+    nodes_[id].right = right;
+  }
+  return id;
+}
+
+double FacetProbe::distance_to(const Node& node, const Vec3& p) const {
+  return (p - p.cwiseMax(node.low).cwiseMin(node.high)).norm();
+}
+
+// By the regions of the triangle (Ericson, Real-Time Collision Detection,
+// 2005, section 5.1.5), the inner one by its plane.
+Vec3 FacetProbe::nearest_on(int facet, const Vec3& p) const {
+  const Triangle& t = facets_[facet];
+  const Vec3& a = points_[t[0]];
+  const Vec3& b = points_[t[1]];
+  const Vec3& c = points_[t[2]];
+  const Vec3 n = (b - a).cross(c - a);
+  const double n2 = n.squaredNorm();
+  const double u = n.dot((c - b).cross(p - b));
+  const double v = n.dot((a - c).cross(p - c));
+  const double w = n.dot((b - a).cross(p - a));
+  if (n2 > 0.0 && u >= 0.0 && v >= 0.0 && w >= 0.0) {
+    return p - n * (n.dot(p - a) / n2);
+  }
+  Vec3 best = on_segment(a, b, p);
+  for (const Vec3& q : {on_segment(b, c, p), on_segment(c, a, p)}) {
+    if ((q - p).squaredNorm() < (best - p).squaredNorm()) {
+      best = q;
+    }
+  }
+  return best;
+}
+
+FacetProbe::Hit FacetProbe::nearest(const Vec3& p) const {
+  Hit hit;
+  if (nodes_.empty()) {
+    return hit;
+  }
+  std::array<std::pair<int, double>, 64> stack;
+  int top = 0;
+  stack[top++] = {0, 0.0};
+  while (top > 0) {
+    const auto [id, bound] = stack[--top];
+    if (bound >= hit.distance) {
+      continue;
+    }
+    const Node& node = nodes_[id];
+    if (node.left < 0) {
+      for (int k = node.first; k < node.last; ++k) {
+        const Vec3 q = nearest_on(ids_[k], p);
+        const double distance = (q - p).norm();
+        if (distance < hit.distance) {
+          hit = {ids_[k], q, distance};
+        }
+      }
+      continue;
+    }
+    const double left = distance_to(nodes_[node.left], p);
+    const double right = distance_to(nodes_[node.right], p);
+    if (left <= right) {
+      stack[top++] = {node.right, right};
+      stack[top++] = {node.left, left};
+    } else {
+      stack[top++] = {node.left, left};
+      stack[top++] = {node.right, right};
+    }
+  }
+  return hit;
+}
+
+// The ball through p, tangent to `normal`'s plane there, and through q.
+bool FacetProbe::shrink(int facet, const Vec3& p, const Vec3& normal,
+                        const Vec3& q, Ball& ball) const {
+  const Vec3 chord = q - p;
+  const double height = normal.dot(chord);
+  const double length2 = chord.squaredNorm();
+  if (height <= 0.0 || height * height < kCone * kCone * length2) {
+    return false;
+  }
+  const double radius = 0.5 * length2 / height;
+  if (!(radius < ball.radius * (1.0 - kSlack))) {
+    return false;
+  }
+  ball = {facet, q, radius};
+  return true;
+}
+
+void FacetProbe::shrink(int facet, const Vec3& p, const Vec3& normal,
+                        double limit, Ball& ball) const {
+  const Triangle& t = facets_[facet];
+  bool shrunk = true;
+  while (shrunk) {
+    const double radius = std::min(ball.radius, limit);
+    shrunk =
+        shrink(facet, p, normal, nearest_on(facet, p + radius * normal), ball);
+  }
+  // The nearest point may lie outside the cone where others lie inside.
+  shrink(facet, p, normal,
+         (points_[t[0]] + points_[t[1]] + points_[t[2]]) / 3.0, ball);
+  for (const int v : t) {
+    shrink(facet, p, normal, points_[v], ball);
+  }
+}
+
+FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
+                                          double limit) const {
+  Ball ball;
+  if (nodes_.empty()) {
+    return ball;
+  }
+  std::array<int, 64> stack;
+  int top = 0;
+  stack[top++] = 0;
+  ball.radius = limit / (1.0 - kSlack);
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    const Vec3 center = p + ball.radius * normal;
+    if (distance_to(node, center) >= ball.radius * (1.0 - kSlack)) {
+      continue;
+    }
+    if (node.left < 0) {
+      for (int k = node.first; k < node.last; ++k) {
+        shrink(ids_[k], p, normal, limit, ball);
+      }
+      continue;
+    }
+    // Nearest to the ray first: there the ball shrinks fastest.
+    const auto away = [&](int id) {
+      const Vec3 c = 0.5 * (nodes_[id].low + nodes_[id].high) - p;
+      return c.squaredNorm() - 2.0 * ball.radius * std::max(0.0, normal.dot(c));
+    };
+    const bool left_first = away(node.left) <= away(node.right);
+    stack[top++] = left_first ? node.right : node.left;
+    stack[top++] = left_first ? node.left : node.right;
+  }
+  if (ball.facet < 0) {
+    ball.radius = std::numeric_limits<double>::infinity();
+  }
+  return ball;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,64 @@
+/// Nearest point on a facet set and the largest ball that fits beside it: what
+/// measuring a wall and the room around a film needs.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "core/types.h"
+
+namespace meniscus {
+
+/// A bounding-box tree over facets; O(n log n) to build, about O(log n) a
+/// question. Points and facets must outlive it unchanged.
+class FacetProbe {
+ public:
+  FacetProbe(const Points& points, const std::vector<Triangle>& facets);
+
+  struct Hit {
+    int facet = -1;  // -1: no facets
+    Vec3 point = Vec3::Zero();
+    double distance = std::numeric_limits<double>::infinity();  // [length]
+  };
+  /// The point of the facets that is nearest to `p`.
+  Hit nearest(const Vec3& p) const;
+
+  struct Ball {
+    int facet = -1;  // touched; -1: nothing in the way
+    Vec3 touch = Vec3::Zero();
+    double radius = std::numeric_limits<double>::infinity();  // [length]
+  };
+  /// The largest ball of at most radius `limit` with its centre on the ray
+  /// from `p` along the unit vector `normal`, touching `p`, that holds no
+  /// point q of the facets seen from p within kCone of `normal`: the medial
+  /// ball (Ma, Bae & Choi 2012) without the film's own neighbourhood. The
+  /// radius is within kSlack of the exact one, never below it.
+  Ball tangent_ball(const Vec3& p, const Vec3& normal, double limit) const;
+
+  static constexpr double kCone = 0.5;    // cosine: 60 degrees
+  static constexpr double kSlack = 0.01;  // relative
+
+ private:
+  struct Node {
+    Vec3 low;
+    Vec3 high;
+    int first = 0;  // facets first .. last - 1 of ids_
+    int last = 0;
+    int left = -1;  // -1: a leaf
+    int right = -1;
+  };
+  int build(int first, int last);
+  double distance_to(const Node& node, const Vec3& p) const;
+  Vec3 nearest_on(int facet, const Vec3& p) const;
+  bool shrink(int facet, const Vec3& p, const Vec3& normal, const Vec3& q,
+              Ball& ball) const;
+  void shrink(int facet, const Vec3& p, const Vec3& normal, double limit,
+              Ball& ball) const;
+
+  const Points& points_;
+  const std::vector<Triangle>& facets_;
+  std::vector<int> ids_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,43 @@
+/// How far and where a sheet's vertices go to become a wall's two sides.
+#pragma once
+
+#include <vector>
+
+#include "evolve/jet_fit.h"
+#include "evolve/sheet.h"
+#include "evolve/thicken.h"
+
+namespace meniscus {
+
+/// Parts of the thickness that lie in front of the film and behind it.
+struct WallShares {
+  double front = 0.5;
+  double back = 0.5;
+};
+WallShares shares(WallSide side);
+
+/// Per vertex the move for an offset by 1: the solution of n_f . d = 1 over
+/// its facets, by corner angle in the least-squares sense, along the jet's
+/// normal, or on a crease in the space that the facets' normals span clearly.
+std::vector<Vec3> offset_directions(const Sheet& sheet,
+                                    const std::vector<Jet>& jets);
+
+struct OffsetSides {
+  Points front;
+  Points back;
+  MeasuredThickness thinnest;
+  MeasuredThickness thickest;
+  int corrections = 0;
+};
+
+/// Moves the sheet by `asked` (per vertex, [length]) and corrects the moves by
+/// the thickness measured; the best state met is returned.
+OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
+                         const std::vector<double>& asked,
+                         const ThickenOptions& options);
+
+/// See ThickWall::safe.
+SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
+                             const std::vector<double>& asked, WallSide side);
+
+}  // namespace meniscus
