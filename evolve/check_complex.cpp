@@ -1,10 +1,14 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <tuple>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "evolve/body_sides.h"
+#include "evolve/edge_marks.h"
 #include "evolve/grooming.h"
 
 namespace meniscus {
@@ -14,6 +18,22 @@ namespace {
 // Rim vertices are computed by point_at; only a different compilation of it
 // may differ in the last bits.
 constexpr double kOnCurve = 1e-12;  // x bounding-box diagonal
+// Walls are projected to, by Newton's method in other coordinates.
+constexpr double kOnWall = 1e-7;  // x bounding-box diagonal
+
+// One of `count` things, or none (-1) where `none` says so.
+enum class MayBeNone { No, Yes };
+void check_index(int index, std::size_t count, MayBeNone none,
+                 const std::string& what) {
+  if (index >= static_cast<int>(count) ||
+      index < (none == MayBeNone::Yes ? -1 : 0)) {
+    throw MeshError(fmt::format("{} {}, of {}", what, index, count));
+  }
+}
+
+bool along_curve(VertexKind kind) {
+  return kind == VertexKind::OnCurve || kind == VertexKind::Slides;
+}
 
 void check_sizes(const FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
@@ -67,6 +87,10 @@ void check_facets(const FilmComplex& complex) {
                                   t[1], t[2]));
     }
   }
+  for (const ComplexEdge& edge : complex.edges) {
+    used[edge.a] = 1;
+    used[edge.b] = 1;
+  }
   for (int v = 0; v < points; ++v) {
     if (used[v] == 0) {
       throw MeshError(fmt::format("vertex {} belongs to no facet", v));
@@ -74,8 +98,122 @@ void check_facets(const FilmComplex& complex) {
   }
 }
 
+void check_same_facets(const SurfaceMesh& mesh) {
+  std::vector<Triangle> sorted = mesh.facets;
+  for (Triangle& t : sorted) {
+    std::sort(t.begin(), t.end());
+  }
+  std::vector<int> order(sorted.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int f, int g) {
+    return std::tie(sorted[f], f) < std::tie(sorted[g], g);
+  });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const int f = order[i - 1];
+    const int g = order[i];
+    if (sorted[f] == sorted[g] && mesh.facet_label[f] == mesh.facet_label[g]) {
+      throw MeshError(
+          fmt::format("facets {} and {} of '{}' have the same points: {} {} {}",
+                      f, g, mesh.labels[mesh.facet_label[f]], sorted[f][0],
+                      sorted[f][1], sorted[f][2]));
+    }
+  }
+}
+
+void check_sets(const FilmComplex& complex) {
+  for (const auto& set : complex.constraint_sets) {
+    for (const int wall : set) {
+      check_index(wall, complex.level_sets.size(), MayBeNone::No,
+                  "a constraint set names level set");
+    }
+  }
+  for (const auto& set : complex.integral_sets) {
+    for (const int integral : set) {
+      check_index(integral, complex.integrals.size(), MayBeNone::No,
+                  "an integral set names line integral");
+    }
+  }
+  for (const FilmQuantity& quantity : complex.quantities) {
+    check_index(quantity.body, complex.bodies.size(), MayBeNone::Yes,
+                fmt::format("quantity '{}' is of body", quantity.name));
+    for (const int surface : quantity.surfaces) {
+      check_index(surface, complex.surfaces.size(), MayBeNone::No,
+                  fmt::format("quantity '{}' is of surface", quantity.name));
+    }
+  }
+}
+
+void check_marks(const FilmComplex& complex) {
+  std::vector<Edge> ends;
+  for (std::size_t m = 0; m < complex.edges.size(); ++m) {
+    const ComplexEdge& edge = complex.edges[m];
+    const std::string name = fmt::format("marked edge {}", m);
+    for (const int v : {edge.a, edge.b}) {
+      check_index(v, complex.mesh.points.size(), MayBeNone::No,
+                  name + " ends at point");
+    }
+    if (edge.a == edge.b || edge.kind == VertexKind::InCap) {
+      throw MeshError(
+          fmt::format("{} from {} to {} {}", name, edge.a, edge.b,
+                      edge.a == edge.b ? "has no length" : "is inside a cap"));
+    }
+    if (along_curve(edge.kind)) {
+      check_index(edge.curve, complex.curves.size(), MayBeNone::No,
+                  name + " is on curve");
+    }
+    check_index(edge.constraints, complex.constraint_sets.size(),
+                MayBeNone::Yes, name + " is on constraint set");
+    check_index(edge.integrals, complex.integral_sets.size(), MayBeNone::Yes,
+                name + " has integral set");
+    ends.push_back({std::min(edge.a, edge.b), std::max(edge.a, edge.b)});
+  }
+  std::sort(ends.begin(), ends.end());
+  const auto twice = std::adjacent_find(ends.begin(), ends.end());
+  if (twice != ends.end()) {
+    throw MeshError(
+        fmt::format("edge {}-{} is marked twice", (*twice)[0], (*twice)[1]));
+  }
+}
+
+void check_on_curve(const FilmComplex& complex, std::size_t v, double bound) {
+  const ComplexVertex& vertex = complex.vertices[v];
+  const bool known = vertex.curve >= 0 &&
+                     vertex.curve < static_cast<int>(complex.curves.size());
+  const bool closed = known && !std::holds_alternative<ParametricCurve>(
+                                   complex.curves[vertex.curve].shape);
+  if (!known || !std::isfinite(vertex.t) ||
+      (closed && !(vertex.t >= 0.0 && vertex.t < 1.0))) {
+    throw MeshError(fmt::format("vertex {} is on curve {} of {} at t = {}", v,
+                                vertex.curve, complex.curves.size(), vertex.t));
+  }
+  const Curve& curve = complex.curves[vertex.curve];
+  const double off =
+      (point_at(curve.shape, vertex.t) - complex.mesh.points[v]).norm();
+  if (!(off <= kOnCurve * bound)) {
+    throw MeshError(
+        fmt::format("vertex {} is {:.3g} off its curve '{}' at t = {}", v, off,
+                    curve.name, vertex.t));
+  }
+}
+
+// Off its level sets by how far the next point of them is.
+void check_on_walls(const FilmComplex& complex, std::size_t v, double bound) {
+  const ComplexVertex& vertex = complex.vertices[v];
+  const Vec3& p = complex.mesh.points[v];
+  const Vec3 foot = onto_walls(complex, vertex.constraints, vertex.held, p);
+  if (!((foot - p).norm() <= kOnWall * bound)) {
+    const int first = complex.constraint_sets[vertex.constraints].front();
+    throw MeshError(fmt::format(
+        "vertex {} at ({:.6g}, {:.6g}, {:.6g}) is {:.3g} off its level sets "
+        "('{}' is one of {})",
+        v, p.x(), p.y(), p.z(), (foot - p).norm(),
+        complex.level_sets[first].name,
+        complex.constraint_sets[vertex.constraints].size()));
+  }
+}
+
 void check_vertices(const FilmComplex& complex) {
-  const double bound = kOnCurve * bounding_diagonal(complex.mesh.points);
+  const double size = bounding_diagonal(complex.mesh.points);
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
     const ComplexVertex& vertex = complex.vertices[v];
     const Vec3& p = complex.mesh.points[v];
@@ -83,29 +221,20 @@ void check_vertices(const FilmComplex& complex) {
       throw MeshError(
           fmt::format("vertex {} is at ({}, {}, {})", v, p.x(), p.y(), p.z()));
     }
-    if (vertex.kind != VertexKind::OnCurve) {
+    if (along_curve(vertex.kind)) {
+      check_on_curve(complex, v, size);
       continue;
     }
-    if (vertex.curve < 0 ||
-        vertex.curve >= static_cast<int>(complex.curves.size()) ||
-        !(vertex.t >= 0.0 && vertex.t < 1.0)) {
-      throw MeshError(fmt::format("vertex {} is on curve {} of {} at t = {}", v,
-                                  vertex.curve, complex.curves.size(),
-                                  vertex.t));
-    }
-    const Curve& curve = complex.curves[vertex.curve];
-    const double off = (point_at(curve.shape, vertex.t) - p).norm();
-    if (!(off <= bound)) {
-      throw MeshError(
-          fmt::format("vertex {} is {:.3g} off its curve '{}' at "
-                      "t = {}",
-                      v, off, curve.name, vertex.t));
+    check_index(vertex.constraints, complex.constraint_sets.size(),
+                MayBeNone::Yes, fmt::format("vertex {} is on set", v));
+    if (vertex.kind == VertexKind::Free && vertex.constraints >= 0) {
+      check_on_walls(complex, v, size);
     }
   }
 }
 
-// Two facets of one surface run opposite ways along their edge; an edge has
-// another number of facets only where both its ends are on a curve.
+// Two facets of one surface run opposite ways along their edge; an edge with
+// one facet is marked, or has both ends on a curve.
 void check_edges(const FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
   std::vector<Edge> edges;
@@ -117,6 +246,7 @@ void check_edges(const FilmComplex& complex) {
     int label = -1;
     bool mixed = false;
   };
+  const EdgeMarks marks(complex);
   std::vector<Count> counts(edges.size());
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     for (int k = 0; k < 3; ++k) {
@@ -135,11 +265,11 @@ void check_edges(const FilmComplex& complex) {
     const Vec3 p = 0.5 * (mesh.points[a] + mesh.points[b]);
     const bool on_curve = complex.vertices[a].kind == VertexKind::OnCurve &&
                           complex.vertices[b].kind == VertexKind::OnCurve;
-    if (!on_curve && (count.facets != 2 || count.mixed)) {
+    if (!on_curve && count.facets == 1 && marks.find(a, b) < 0) {
       throw MeshError(fmt::format(
-          "edge {}-{} of '{}' at ({:.6g}, {:.6g}, "
-          "{:.6g}) has {} facets away from the curves",
-          a, b, mesh.labels[count.label], p.x(), p.y(), p.z(), count.facets));
+          "edge {}-{} of '{}' at ({:.6g}, {:.6g}, {:.6g}) has one facet, but "
+          "is neither on a curve nor marked",
+          a, b, mesh.labels[count.label], p.x(), p.y(), p.z()));
     }
     if (!count.mixed && count.facets == 2 && count.balance != 0) {
       throw MeshError(
@@ -150,7 +280,63 @@ void check_edges(const FilmComplex& complex) {
   }
 }
 
+// A body's facets use every edge as often one way as the other; they may end
+// on walls, and on any marked edge where columns measure volumes.
+void check_closed(const FilmComplex& complex, const ComplexBody& body,
+                  const EdgeMarks& marks) {
+  std::vector<int> signs(complex.surfaces.size(), 0);
+  for (const BodySide& side : body.sides) {
+    signs[side.surface] += side.sign;
+  }
+  SurfaceMesh shell;
+  shell.points = complex.mesh.points;
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    Triangle t = complex.mesh.facets[f];
+    const int sign = signs[complex.mesh.facet_label[f]];
+    if (sign != 0) {
+      if (sign < 0) {
+        std::swap(t[1], t[2]);
+      }
+      shell.facets.push_back(t);
+    }
+  }
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(shell.facets, edges, facet_edges);
+  std::vector<std::array<int, 2>> runs(edges.size(), {0, 0});
+  for (std::size_t f = 0; f < shell.facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int e = facet_edges[f][k];
+      ++runs[e][shell.facets[f][k] == edges[e][0] ? 0 : 1];
+    }
+  }
+  bool closed = true;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (runs[e][0] == runs[e][1]) {
+      continue;
+    }
+    closed = false;
+    const int mark = marks.find(edges[e][0], edges[e][1]);
+    const bool may_end =
+        mark >= 0 && (complex.volume_rule == VolumeRule::Column ||
+                      marks.all()[mark].constraints >= 0 ||
+                      marks.all()[mark].integrals >= 0);
+    if (!may_end) {
+      throw MeshError(fmt::format(
+          "body '{}': edge {}-{} is used {} times one way and {} times the "
+          "other; a closed body uses it as often each way",
+          body.name, edges[e][0], edges[e][1], runs[e][0], runs[e][1]));
+    }
+  }
+  const double volume = enclosed_volume(shell);
+  if (closed && !(volume > 0.0)) {
+    throw MeshError(fmt::format("body '{}' is inside out: its volume is {}",
+                                body.name, volume));
+  }
+}
+
 void check_bodies(const FilmComplex& complex) {
+  const EdgeMarks marks(complex);
   for (const ComplexBody& body : complex.bodies) {
     for (const BodySide& side : body.sides) {
       if (side.surface < 0 ||
@@ -160,30 +346,7 @@ void check_bodies(const FilmComplex& complex) {
                                     body.name, side.surface, side.sign));
       }
     }
-    const SurfaceMesh shell = body_surface(complex, body);
-    std::vector<Edge> edges;
-    std::vector<Triangle> facet_edges;
-    list_edges(shell.facets, edges, facet_edges);
-    std::vector<std::array<int, 2>> runs(edges.size(), {0, 0});
-    for (std::size_t f = 0; f < shell.facets.size(); ++f) {
-      for (int k = 0; k < 3; ++k) {
-        const int e = facet_edges[f][k];
-        ++runs[e][shell.facets[f][k] == edges[e][0] ? 0 : 1];
-      }
-    }
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      if (runs[e][0] != 1 || runs[e][1] != 1) {
-        throw MeshError(fmt::format(
-            "body '{}': edge {}-{} is used {} times one way and {} times the "
-            "other; a closed body uses it once each way",
-            body.name, edges[e][0], edges[e][1], runs[e][0], runs[e][1]));
-      }
-    }
-    const double volume = enclosed_volume(shell);
-    if (!(volume > 0.0)) {
-      throw MeshError(fmt::format("body '{}' is inside out: its volume is {}",
-                                  body.name, volume));
-    }
+    check_closed(complex, body, marks);
   }
 }
 
@@ -191,7 +354,10 @@ void check_bodies(const FilmComplex& complex) {
 
 void check_complex(const FilmComplex& complex) {
   check_sizes(complex);
+  check_sets(complex);
+  check_marks(complex);
   check_facets(complex);
+  check_same_facets(complex.mesh);
   check_vertices(complex);
   check_edges(complex);
   check_bodies(complex);

@@ -114,16 +114,16 @@ SurfaceMesh fill_disk(const Points& rim, double edge) {
     piece += (rim[(i + 1) % rim.size()] - rim[i]).norm();
   }
   piece /= static_cast<double>(rim.size());
-  SurfaceMesh mesh;
-  mesh.points = rim;
-  mesh.facets = EarClipper(rim).run();
-  mesh.facet_label.assign(mesh.facets.size(), 0);
-  EditLimits limits;
-  limits.held.assign(rim.size(), 1);
-  SurfaceEditor editor(std::move(mesh), std::move(limits));
+  FilmComplex disk;
+  disk.mesh.points = rim;
+  disk.mesh.facets = EarClipper(rim).run();
+  disk.mesh.facet_label.assign(disk.mesh.facets.size(), 0);
+  disk.surfaces.resize(1);
+  disk.vertices.assign(rim.size(), {.kind = VertexKind::Fixed});
+  SurfaceEditor editor(std::move(disk));
   // Where the curve is cut finer than asked, the inside follows it.
-  make_isotropic(editor, std::min(edge, piece), kPasses);
-  return editor.finish();
+  make_isotropic(editor, {.edge = std::min(edge, piece)}, kPasses);
+  return std::move(editor).finish().mesh;
 }
 
 }  // namespace meniscus

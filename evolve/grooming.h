@@ -1,6 +1,7 @@
 /// Building and remeshing a film complex. All deterministic.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "evolve/film_complex.h"
@@ -15,13 +16,19 @@ namespace meniscus {
 /// position), a surface that encloses nothing.
 FilmComplex build_start(const FilmSystem& system, double edge);
 
-/// Isotropic remeshing of the films towards `edge`: split above 4/3, collapse
-/// below 4/5, flip towards valence six and Delaunay, vertex averaging along
-/// the film. Rim vertices stay where they are; caps are not touched.
-/// Volumes change slightly; settle again afterwards.
+/// Isotropic remeshing of the films towards an edge length: split above 4/3,
+/// collapse below 4/5, flip towards Delaunay, vertex averaging along the film.
+/// Triple lines and liquid marked edges stay lines with their films and marks,
+/// remeshed along themselves; walls and curves are kept to; rims, solid
+/// surfaces, refine = false and the points where lines meet are not touched
+/// (evolve/surface_editor.h says when). Volumes change slightly; settle again
+/// afterwards. Throws InvalidInput for a length that is not above 0.
 struct RemeshOptions {
   double edge = 0.0;  // [length], > 0
   int passes = 5;
+  /// Length wanted at a place [length -> length], > 0; replaces `edge`. Should
+  /// change by less than about half its value within its value.
+  std::function<double(const Vec3&)> edge_field = {};
 };
 void remesh_films(FilmComplex& complex, const RemeshOptions& options);
 
@@ -29,8 +36,9 @@ void remesh_films(FilmComplex& complex, const RemeshOptions& options);
 /// (equiangulation). Returns the number of flips.
 int equiangulate(FilmComplex& complex);
 
-/// One step of vertex averaging: free vertices move to the area-weighted
-/// centre of their facets, along the film only.
+/// One step of vertex averaging: liquid vertices move to the area-weighted
+/// centre of their facets, along the film only; on lines to the middle of
+/// their neighbours, along the line only.
 void average_vertices(FilmComplex& complex);
 
 /// Nested refinement: every facet into four, by the middles of its edges.
@@ -53,8 +61,11 @@ struct Refinement {
 Refinement refine(const FilmComplex& complex);
 
 /// Throws MeshError, naming ids, unless every invariant of a complex holds:
-/// indices, labels and kinds consistent, rim vertices on their curve, films
-/// manifold away from rims, each body closed and outward.
+/// indices, labels and kinds consistent, no facet twice, vertices on their
+/// curves and level sets, marks once per edge, edges with one facet marked or
+/// on a curve, two facets of one surface running opposite ways, and each
+/// body's facets using every edge as often each way (but for marked edges on
+/// walls or above columns, where the rest is integrals), outward.
 void check_complex(const FilmComplex& complex);
 
 }  // namespace meniscus

@@ -2,80 +2,193 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
-#include <tuple>
+#include <numeric>
+#include <utility>
 
-#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
 
 namespace meniscus {
 
-namespace {
-
-// Smallest gain of a flip [tangent]: keeps rounding from flipping for ever.
-constexpr double kLeastGain = 1e-7;
-// The two diagonals of a flip may be this far apart, x the shorter one: the
-// surface of a coarse circle of 12 pieces needs 0.13.
-constexpr double kFlipHeight = 0.15;
-// A flip may bend the surface up to this much, or less than it bent before.
-const double kFlatCosine = std::cos(0.6);
-// A collapse may turn a facet up to this much, and leave no smaller angle
-// than this unless the facets around were worse.
-const double kTurnCosine = std::cos(0.6);
-constexpr double kLeastTangent = 0.2;
-// Averaging may lower the worst angle around a vertex to this.
-constexpr double kGoodTangent = 0.7;
-
-using QueuedEdge = std::tuple<double, int, int>;  // key, first id, second id
-
-// Tangent of a triangle's smallest angle (at most 60 degrees): orders shapes
-// as the angle does, for less work.
-double smallest_tangent(const Vec3& a, const Vec3& b, const Vec3& c) {
-  // It lies opposite the shortest side.
-  const Vec3 ab = b - a;
-  const Vec3 bc = c - b;
-  const double la = bc.squaredNorm();
-  const double lb = (a - c).squaredNorm();
-  const double lc = ab.squaredNorm();
-  const double below = 0.5 * (la + lb + lc) - std::min({la, lb, lc});
-  return below > 0.0 ? ab.cross(bc).norm() / below : 0.0;
+double EdgeTarget::field_at(const Vec3& place) const {
+  const double value = field(place);
+  if (!(std::isfinite(value) && value > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "the edge length wanted at ({:.6g}, {:.6g}, {:.6g}) is {}; it must be "
+        "above 0 everywhere on the films",
+        place.x(), place.y(), place.z(), value));
+  }
+  return value;
 }
 
-}  // namespace
-
-double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return std::atan(smallest_tangent(a, b, c));
-}
-
-SurfaceEditor::SurfaceEditor(SurfaceMesh mesh, EditLimits limits)
-    : mesh_(std::move(mesh)),
-      limits_(std::move(limits)),
-      star_(mesh_.points.size()),
-      old_points_(static_cast<int>(mesh_.points.size())) {
-  limits_.held.resize(mesh_.points.size(), 0);
-  limits_.frozen.resize(mesh_.facets.size(), 0);
-  limits_.rim_next.resize(mesh_.points.size(), -1);
+SurfaceEditor::SurfaceEditor(FilmComplex complex)
+    : complex_(std::move(complex)),
+      mesh_(std::move(complex_.mesh)),
+      frozen_(mesh_.facets.size(), 0),
+      lines_(mesh_.points.size()),
+      star_(mesh_.points.size()) {
   for (int f = 0; f < static_cast<int>(mesh_.facets.size()); ++f) {
+    const ComplexSurface& surface = complex_.surfaces[mesh_.facet_label[f]];
+    frozen_[f] = surface.liquid && surface.refine ? 0 : 1;
     for (const int v : mesh_.facets[f]) {
       star_[v].push_back(f);
     }
   }
-  hold_border_vertices();
+  find_lines();
+  rank_vertices();
 }
 
-template <typename Visit>
-void SurfaceEditor::for_each_edge(const Visit& visit) const {
-  for (int f = 0; f < static_cast<int>(mesh_.facets.size()); ++f) {
-    if (!alive(f) || limits_.frozen[f] != 0) {
+void SurfaceEditor::find_lines() {
+  const EdgeMarks marks(complex_);
+  marks_ = marks.all();
+  old_marks_ = complex_.edges.size();
+  old_and_rim_marks_ = marks_.size();
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(mesh_.facets, edges, facet_edges);
+  struct Use {
+    int facets = 0;
+    int balance = 0;
+    int frozen = 0;
+    int label = -1;
+    bool mixed = false;
+  };
+  std::vector<Use> uses(edges.size());
+  for (std::size_t f = 0; f < facet_edges.size(); ++f) {
+    const int label = mesh_.facet_label[f];
+    for (int k = 0; k < 3; ++k) {
+      const int e = facet_edges[f][k];
+      Use& use = uses[e];
+      use.mixed = use.mixed || (use.facets > 0 && use.label != label);
+      use.label = label;
+      use.frozen += frozen_[f];
+      use.balance += mesh_.facets[f][k] == edges[e][0] ? 1 : -1;
+      ++use.facets;
+    }
+  }
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto [a, b] = edges[e];
+    const Use& use = uses[e];
+    const int mark = marks.find(a, b);
+    const bool inside = use.facets == 2 && !use.mixed && use.balance == 0;
+    if (use.frozen == use.facets || (inside && mark < 0 && use.frozen == 0)) {
       continue;
     }
-    for (int k = 0; k < 3; ++k) {
-      const int a = mesh_.facets[f][k];
-      const int b = mesh_.facets[f][(k + 1) % 3];
-      if (a < b) {  // a free edge runs once each way
-        visit(a, b);
+    const bool liquid =
+        mark < 0
+            ? use.facets > 2 || use.mixed
+            : marks_[mark].refine && (marks_[mark].kind == VertexKind::Free ||
+                                      marks_[mark].kind == VertexKind::Slides);
+    const bool moves = liquid && use.frozen == 0;
+    lines_[a].push_back({b, mark, moves});
+    lines_[b].push_back({a, mark, moves});
+  }
+}
+
+void SurfaceEditor::rank_vertices() {
+  rank_.resize(mesh_.points.size());
+  for (int v = 0; v < static_cast<int>(rank_.size()); ++v) {
+    rank_[v] = rank_of(v);
+  }
+  for (const ComplexEdge& mark : marks_) {
+    if (line(mark.a, mark.b) == nullptr) {  // a wire, or on solid facets
+      rank_[mark.a] = Rank::Held;
+      rank_[mark.b] = Rank::Held;
+    }
+  }
+}
+
+SurfaceEditor::Rank SurfaceEditor::rank_of(int v) const {
+  const ComplexVertex& vertex = complex_.vertices[v];
+  const bool slides = vertex.kind == VertexKind::Slides;
+  const auto is_frozen = [&](int f) { return frozen_[f] != 0; };
+  if ((vertex.kind != VertexKind::Free && !slides) ||
+      std::any_of(star_[v].begin(), star_[v].end(), is_frozen) ||
+      !link_is_connected(v)) {
+    return Rank::Held;
+  }
+  if (lines_[v].empty()) {
+    return slides ? Rank::Held
+                  : (vertex.constraints >= 0 ? Rank::Wall : Rank::Film);
+  }
+  return lines_[v].size() == 2 && same_line(v) ? Rank::Line : Rank::Held;
+}
+
+// True when the two line edges at the vertex belong to one liquid line, and
+// the vertex may go along it.
+bool SurfaceEditor::same_line(int v) const {
+  const LineEnd& one = lines_[v][0];
+  const LineEnd& two = lines_[v][1];
+  if (!one.moves || !two.moves || (one.mark < 0) != (two.mark < 0)) {
+    return false;
+  }
+  const ComplexVertex& vertex = complex_.vertices[v];
+  if (one.mark < 0) {
+    if (vertex.kind != VertexKind::Free || vertex.constraints >= 0) {
+      return false;
+    }
+  } else {
+    const ComplexEdge& p = marks_[one.mark];
+    const ComplexEdge& q = marks_[two.mark];
+    const bool through = (p.b == v) == (q.a == v);
+    if (p.kind != q.kind || p.curve != q.curve ||
+        p.constraints != q.constraints || p.integrals != q.integrals ||
+        (p.integrals >= 0 && !through) || vertex.kind != p.kind ||
+        (p.kind == VertexKind::Slides ? vertex.curve != p.curve
+                                      : vertex.constraints != p.constraints)) {
+      return false;
+    }
+  }
+  return labels_along(v, one.to) == labels_along(v, two.to);
+}
+
+std::vector<int> SurfaceEditor::labels_along(int a, int b) const {
+  std::vector<int> labels;
+  for (const int f : star_[a]) {
+    const Triangle& t = mesh_.facets[f];
+    if (t[0] == b || t[1] == b || t[2] == b) {
+      labels.push_back(mesh_.facet_label[f]);
+    }
+  }
+  std::sort(labels.begin(), labels.end());
+  return labels;
+}
+
+// False where sheets meet in the vertex only.
+bool SurfaceEditor::link_is_connected(int v) const {
+  const auto& star = star_[v];
+  const int count = static_cast<int>(star.size());
+  std::vector<std::pair<int, int>> corners;  // neighbour, position in star
+  corners.reserve(2 * star.size());
+  for (int i = 0; i < count; ++i) {
+    for (const int u : mesh_.facets[star[i]]) {
+      if (u != v) {
+        corners.emplace_back(u, i);
       }
     }
   }
+  std::sort(corners.begin(), corners.end());
+  std::vector<int> root(count);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int i) {
+    while (root[i] != i) {
+      i = root[i] = root[root[i]];
+    }
+    return i;
+  };
+  int parts = count;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if (corners[i].first == corners[i - 1].first) {
+      const int p = find(corners[i].second);
+      const int q = find(corners[i - 1].second);
+      if (p != q) {
+        root[p] = q;
+        --parts;
+      }
+    }
+  }
+  return parts == 1;
 }
 
 bool SurfaceEditor::has_edge(int a, int b) const {
@@ -88,58 +201,60 @@ bool SurfaceEditor::has_edge(int a, int b) const {
   });
 }
 
-bool SurfaceEditor::is_rim(int a, int b) const {
-  return limits_.rim_next[a] == b || limits_.rim_next[b] == a;
+bool SurfaceEditor::has_facet(int a, int b, int c) const {
+  return std::any_of(star_[a].begin(), star_[a].end(), [&](int f) {
+    const Triangle& t = mesh_.facets[f];
+    return (t[0] == b || t[1] == b || t[2] == b) &&
+           (t[0] == c || t[1] == c || t[2] == c);
+  });
 }
 
-// True when exactly two facets of one surface, running opposite ways and
-// neither of them frozen, share the edge.
-bool SurfaceEditor::free_pair(int a, int b, Pair& pair) const {
-  pair = Pair{};
-  if (is_rim(a, b)) {
+const SurfaceEditor::LineEnd* SurfaceEditor::line(int a, int b) const {
+  for (const LineEnd& end : lines_[a]) {
+    if (end.to == b) {
+      return &end;
+    }
+  }
+  return nullptr;
+}
+
+SurfaceEditor::LineEnd& SurfaceEditor::line_end(int from, int to) {
+  return *std::find_if(lines_[from].begin(), lines_[from].end(),
+                       [&](const LineEnd& end) { return end.to == to; });
+}
+
+// Finds the facets along the edge; false when there are none or the edge must
+// stay as it is.
+bool SurfaceEditor::gather(int a, int b) {
+  wings_.clear();
+  const bool turn = star_[b].size() < star_[a].size();
+  const int end = turn ? a : b;
+  for (const int f : star_[turn ? b : a]) {
+    const Triangle& t = mesh_.facets[f];
+    if (t[0] != end && t[1] != end && t[2] != end) {
+      continue;
+    }
+    if (frozen_[f] != 0) {
+      return false;
+    }
+    const auto off = [&](int v) { return v != a && v != b; };
+    wings_.push_back({f, *std::find_if(t.begin(), t.end(), off)});
+  }
+  if (wings_.empty()) {
     return false;
   }
-  const auto& star = star_[star_[b].size() < star_[a].size() ? b : a];
-  for (const int f : star) {
-    const Triangle& t = mesh_.facets[f];
-    for (int k = 0; k < 3; ++k) {
-      const int from = t[k];
-      const int to = t[(k + 1) % 3];
-      const bool along = from == a && to == b;
-      if (!along && !(from == b && to == a)) {
-        continue;
-      }
-      int& slot = along ? pair.left : pair.right;
-      if (slot >= 0 || limits_.frozen[f] != 0) {
-        return false;
-      }
-      slot = f;
-      (along ? pair.left_corner : pair.right_corner) = t[(k + 2) % 3];
-    }
-  }
-  return pair.left >= 0 && pair.right >= 0 &&
-         mesh_.facet_label[pair.left] == mesh_.facet_label[pair.right] &&
-         pair.left_corner != pair.right_corner;
+  const LineEnd* on = line(a, b);
+  return on == nullptr || on->moves;
 }
 
-void SurfaceEditor::hold_border_vertices() {
-  Pair pair;
-  for (std::size_t f = 0; f < mesh_.facets.size(); ++f) {
-    const Triangle t = mesh_.facets[f];
-    for (int k = 0; k < 3; ++k) {
-      if (limits_.frozen[f] != 0) {
-        limits_.held[t[k]] = 1;
-      }
-      const int next = t[(k + 1) % 3];
-      if (limits_.held[t[k]] != 0 && limits_.held[next] != 0) {
-        continue;
-      }
-      if (!free_pair(t[k], next, pair)) {
-        limits_.held[t[k]] = 1;
-        limits_.held[next] = 1;
-      }
-    }
+// The vertex in the middle of an edge, as split and collapse make it.
+PlacedVertex SurfaceEditor::middle(int a, int b, const LineEnd* on) const {
+  if (on != nullptr && on->mark >= 0) {
+    return born_on(complex_, marks_[on->mark], placed(a), placed(b));
   }
+  PlacedVertex made;
+  made.place = 0.5 * (mesh_.points[a] + mesh_.points[b]);
+  return made;
 }
 
 void SurfaceEditor::replace_corner(int facet, int from, int to) {
@@ -155,333 +270,73 @@ void SurfaceEditor::drop_from_star(int vertex, int facet) {
   star.erase(std::find(star.begin(), star.end(), facet));
 }
 
-int SurfaceEditor::add_facet(const Triangle& corners, int label) {
+void SurfaceEditor::add_facet(const Triangle& corners, int label) {
   const int id = static_cast<int>(mesh_.facets.size());
   mesh_.facets.push_back(corners);
   mesh_.facet_label.push_back(label);
-  limits_.frozen.push_back(0);
+  frozen_.push_back(0);
   for (const int v : corners) {
     star_[v].push_back(id);
   }
-  return id;
 }
 
-int SurfaceEditor::split(int a, int b, const Pair& pair) {
-  const int m = static_cast<int>(mesh_.points.size());
-  mesh_.points.push_back(0.5 * (mesh_.points[a] + mesh_.points[b]));
-  limits_.held.push_back(0);
-  limits_.rim_next.push_back(-1);
+int SurfaceEditor::add_vertex(const PlacedVertex& made, Rank rank) {
+  const int v = static_cast<int>(mesh_.points.size());
+  mesh_.points.push_back(made.place);
+  complex_.vertices.push_back(made.vertex);
+  rank_.push_back(rank);
   star_.emplace_back();
-  // Left (a, b, c) keeps a, right (b, a, d) keeps a; the halves at b are new.
-  for (const int f : {pair.left, pair.right}) {
-    replace_corner(f, b, m);
-    drop_from_star(b, f);
-    star_[m].push_back(f);
-  }
-  add_facet({m, b, pair.left_corner}, mesh_.facet_label[pair.left]);
-  add_facet({b, m, pair.right_corner}, mesh_.facet_label[pair.right]);
-  return m;
+  lines_.emplace_back();
+  return v;
 }
 
-void SurfaceEditor::split_above(double limit) {
-  std::priority_queue<QueuedEdge> queue;
-  const auto push = [&](int a, int b) {
-    const double l = length(a, b);
-    if (l > limit) {
-      queue.emplace(l, std::min(a, b), std::max(a, b));
-    }
-  };
-  for_each_edge(push);
-  Pair pair;
-  while (!queue.empty()) {
-    const auto [l, a, b] = queue.top();
-    queue.pop();
-    if (!free_pair(a, b, pair)) {
-      continue;
-    }
-    // Longer sides that are still there are borders: halving beside them
-    // would go on for ever.
-    double longest = 0.0;
-    for (const int v : {pair.left_corner, pair.right_corner}) {
-      longest = std::max({longest, length(a, v), length(b, v)});
-    }
-    if (longest > (1.0 + 1e-12) * l) {
-      continue;
-    }
-    const int m = split(a, b, pair);
-    for (const int v : {a, b, pair.left_corner, pair.right_corner}) {
-      push(v, m);
-    }
-  }
+double SurfaceEditor::ratio(int a, int b, const EdgeTarget& target) const {
+  const Vec3& p = mesh_.points[a];
+  const Vec3& q = mesh_.points[b];
+  return (p - q).norm() / target.at(0.5 * (p + q));
 }
 
-// The link condition on the whole complex, frozen facets included: the only
-// common neighbours are the corners off the edge.
-bool SurfaceEditor::link_allows(int gone, int kept, const Pair& pair) const {
-  for (const int f : star_[gone]) {
-    for (const int v : mesh_.facets[f]) {
-      if (v != gone && v != kept && v != pair.left_corner &&
-          v != pair.right_corner && has_edge(kept, v)) {
-        return false;
-      }
-    }
-  }
-  // A closed tetrahedron would collapse onto itself.
-  return star_[pair.left_corner].size() > 3 &&
-         star_[pair.right_corner].size() > 3;
-}
-
-bool SurfaceEditor::can_collapse(int gone, int kept, const Vec3& place,
-                                 double longest) const {
-  double before = kLeastTangent;
-  double after = kLeastTangent;
-  for (const int end : {gone, kept}) {
-    const int other = end == gone ? kept : gone;
-    if (end == kept && limits_.held[kept] != 0) {
-      break;  // only the facets around the vertex that goes are changed
-    }
-    for (const int f : star_[end]) {
-      const Triangle& t = mesh_.facets[f];
-      std::array<Vec3, 3> p;
-      bool dies = false;
-      for (int k = 0; k < 3; ++k) {
-        dies = dies || t[k] == other;
-        p[k] = t[k] == end ? place : mesh_.points[t[k]];
-        if (t[k] != end && t[k] != other &&
-            (mesh_.points[t[k]] - place).norm() > longest) {
-          return false;
-        }
-      }
-      const Vec3 old = normal2(f);
-      before = std::min(before,
-                        smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
-                                         mesh_.points[t[2]]));
-      if (dies) {
-        continue;
-      }
-      const Vec3 now = (p[1] - p[0]).cross(p[2] - p[0]);
-      const double bound = old.norm() * now.norm();
-      if (!(old.dot(now) > kTurnCosine * bound)) {
-        return false;
-      }
-      after = std::min(after, smallest_tangent(p[0], p[1], p[2]));
-    }
-  }
-  return after >= before;
-}
-
-void SurfaceEditor::collapse(int gone, int kept, const Vec3& place,
-                             const Pair& pair) {
-  for (const int f : {pair.left, pair.right}) {
-    for (const int v : Triangle(mesh_.facets[f])) {
-      drop_from_star(v, f);
-    }
-    mesh_.facets[f] = {-1, -1, -1};
-  }
-  for (const int f : star_[gone]) {
-    replace_corner(f, gone, kept);
-    star_[kept].push_back(f);
-  }
-  star_[gone].clear();
-  mesh_.points[kept] = place;
-}
-
-void SurfaceEditor::collapse_below(double limit, double longest) {
-  std::priority_queue<QueuedEdge, std::vector<QueuedEdge>, std::greater<>>
-      queue;
-  const auto push = [&](int a, int b) {
-    const double l = length(a, b);
-    if (l < limit) {
-      queue.emplace(l, std::min(a, b), std::max(a, b));
-    }
-  };
-  for_each_edge(push);
-  Pair pair;
-  while (!queue.empty()) {
-    const auto [l, a, b] = queue.top();
-    queue.pop();
-    const bool a_held = limits_.held[a] != 0;
-    const bool b_held = limits_.held[b] != 0;
-    if ((a_held && b_held) || !free_pair(a, b, pair) || length(a, b) != l) {
-      continue;
-    }
-    const int kept = a_held || !b_held ? a : b;
-    const int gone = kept == a ? b : a;
-    const Vec3 place = a_held || b_held
-                           ? mesh_.points[kept]
-                           : Vec3(0.5 * (mesh_.points[a] + mesh_.points[b]));
-    if (!link_allows(gone, kept, pair) ||
-        !can_collapse(gone, kept, place, longest)) {
-      continue;
-    }
-    collapse(gone, kept, place, pair);
-    for (const int f : star_[kept]) {
-      const Triangle& t = mesh_.facets[f];
-      const int k = t[0] == kept ? 0 : t[1] == kept ? 1 : 2;
-      push(kept, t[(k + 1) % 3]);
-    }
-  }
-}
-
-bool SurfaceEditor::should_flip(int a, int b, const Pair& pair) const {
-  const int c = pair.left_corner;
-  const int d = pair.right_corner;
-  const Vec3& pa = mesh_.points[a];
-  const Vec3& pb = mesh_.points[b];
-  const Vec3& pc = mesh_.points[c];
-  const Vec3& pd = mesh_.points[d];
-  const double now =
-      std::min(smallest_tangent(pa, pb, pc), smallest_tangent(pb, pa, pd));
-  const double then =
-      std::min(smallest_tangent(pc, pd, pb), smallest_tangent(pd, pc, pa));
-  if (!(then > now + kLeastGain) || is_rim(c, d) || has_edge(c, d)) {
-    return false;
-  }
-  const Vec3 across = (pb - pa).cross(pd - pc);
-  const double height = std::abs(across.dot(pc - pa));
-  if (height * height >
-      kFlipHeight * kFlipHeight * across.squaredNorm() *
-          std::min((pb - pa).squaredNorm(), (pd - pc).squaredNorm())) {
-    return false;
-  }
-  const Vec3 old_left = (pb - pa).cross(pc - pa);
-  const Vec3 old_right = (pa - pb).cross(pd - pb);
-  const Vec3 new_b = (pd - pc).cross(pb - pc);
-  const Vec3 new_a = (pc - pd).cross(pa - pd);
-  const Vec3 mean = old_left + old_right;
-  const double bound_new = new_a.norm() * new_b.norm();
-  const double bound_old = old_left.norm() * old_right.norm();
-  const double bend_new = new_a.dot(new_b);
-  const bool flat = bend_new >= kFlatCosine * bound_new;
-  const bool flatter =
-      bend_new * bound_old >= old_left.dot(old_right) * bound_new;
-  return (flat || flatter) &&
-         new_a.dot(mean) > 0.5 * new_a.norm() * mean.norm() &&
-         new_b.dot(mean) > 0.5 * new_b.norm() * mean.norm();
-}
-
-void SurfaceEditor::flip(int a, int b, const Pair& pair) {
-  const int c = pair.left_corner;
-  const int d = pair.right_corner;
-  mesh_.facets[pair.left] = {c, d, b};
-  mesh_.facets[pair.right] = {d, c, a};
-  drop_from_star(a, pair.left);
-  drop_from_star(b, pair.right);
-  star_[d].push_back(pair.left);
-  star_[c].push_back(pair.right);
-}
-
-int SurfaceEditor::flip_all() {
-  std::queue<Edge> queue;
-  for_each_edge([&](int a, int b) { queue.push({a, b}); });
-  int flips = 0;
-  Pair pair;
-  while (!queue.empty()) {
-    const auto [a, b] = queue.front();
-    queue.pop();
-    if (!free_pair(a, b, pair) || !should_flip(a, b, pair)) {
-      continue;
-    }
-    flip(a, b, pair);
-    ++flips;
-    for (const int u : {a, b}) {
-      for (const int v : {pair.left_corner, pair.right_corner}) {
-        queue.push({std::min(u, v), std::max(u, v)});
-      }
-    }
-  }
-  return flips;
-}
-
-void SurfaceEditor::average() {
-  for (int v = 0; v < static_cast<int>(mesh_.points.size()); ++v) {
-    if (limits_.held[v] != 0 || star_[v].empty()) {
-      continue;
-    }
-    Vec3 centre = Vec3::Zero();
-    Vec3 normal = Vec3::Zero();
-    double area = 0.0;
-    for (const int f : star_[v]) {
-      const Triangle& t = mesh_.facets[f];
-      const Vec3 n = normal2(f);
-      const double weight = n.norm();
-      centre += weight / 3.0 *
-                (mesh_.points[t[0]] + mesh_.points[t[1]] + mesh_.points[t[2]]);
-      normal += n;
-      area += weight;
-    }
-    if (!(normal.norm() > 1e-9 * area)) {
-      continue;
-    }
-    normal.normalize();
-    Vec3 move = centre / area - mesh_.points[v];
-    move -= normal.dot(move) * normal;
-    const Vec3 old = mesh_.points[v];
-    const auto worst = [&] {
-      double least = 2.0;
-      for (const int f : star_[v]) {
-        const Triangle& t = mesh_.facets[f];
-        least = std::min(
-            least, smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
-                                    mesh_.points[t[2]]));
-        if (!(normal2(f).dot(normal) > 0.0)) {
-          least = -1.0;
-        }
-      }
-      return least;
-    };
-    const double before = std::min(worst(), kGoodTangent);
-    for (int trial = 0; trial < 3; ++trial) {
-      mesh_.points[v] = old + move;
-      if (worst() >= before) {
-        break;
-      }
-      move *= 0.5;
-      mesh_.points[v] = old;
-    }
-  }
-}
-
-void make_isotropic(SurfaceEditor& editor, double edge, int passes) {
-  for (int pass = 0; pass < passes; ++pass) {
-    editor.split_above(4.0 / 3.0 * edge);
-    editor.flip_all();
-    editor.collapse_below(0.8 * edge, 4.0 / 3.0 * edge);
-    editor.flip_all();
-    editor.average();
-    editor.flip_all();
-  }
-  for (int step = 0; step < 3; ++step) {
-    editor.average();
-    editor.flip_all();
-  }
-}
-
-SurfaceMesh SurfaceEditor::finish(std::vector<int>* origin) const {
-  SurfaceMesh result;
-  result.labels = mesh_.labels;
+FilmComplex SurfaceEditor::finish() && {
   std::vector<int> number(mesh_.points.size(), -1);
-  if (origin != nullptr) {
-    origin->clear();
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    number[v] = star_[v].empty() ? -1 : 0;
   }
-  for (int v = 0; v < static_cast<int>(mesh_.points.size()); ++v) {
-    if (star_[v].empty()) {
-      continue;
-    }
-    number[v] = static_cast<int>(result.points.size());
-    result.points.push_back(mesh_.points[v]);
-    if (origin != nullptr) {
-      origin->push_back(v < old_points_ ? v : -1);
+  std::vector<ComplexEdge> edges;
+  for (std::size_t m = 0; m < marks_.size(); ++m) {
+    const bool rim = m >= old_marks_ && m < old_and_rim_marks_;
+    if (!rim && marks_[m].a >= 0) {
+      edges.push_back(marks_[m]);
+      number[marks_[m].a] = 0;
+      number[marks_[m].b] = 0;
     }
   }
+  int count = 0;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == 0) {
+      mesh_.points[count] = mesh_.points[v];
+      complex_.vertices[count] = complex_.vertices[v];
+      number[v] = count++;
+    }
+  }
+  mesh_.points.resize(count);
+  complex_.vertices.resize(count);
+  for (ComplexEdge& edge : edges) {
+    edge.a = number[edge.a];
+    edge.b = number[edge.b];
+  }
+  complex_.edges = std::move(edges);
+  std::size_t kept = 0;
   for (std::size_t f = 0; f < mesh_.facets.size(); ++f) {
     const Triangle& t = mesh_.facets[f];
     if (t[0] >= 0) {
-      result.facets.push_back({number[t[0]], number[t[1]], number[t[2]]});
-      result.facet_label.push_back(mesh_.facet_label[f]);
+      mesh_.facets[kept] = {number[t[0]], number[t[1]], number[t[2]]};
+      mesh_.facet_label[kept++] = mesh_.facet_label[f];
     }
   }
-  return result;
+  mesh_.facets.resize(kept);
+  mesh_.facet_label.resize(kept);
+  complex_.mesh = std::move(mesh_);
+  return std::move(complex_);
 }
 
 }  // namespace meniscus
