@@ -67,11 +67,11 @@ struct FeQuantity {
   FePlace place;
 };
 
-enum class FeElement { Vertex, Edge, Facet, Body };
+enum class FeElement { Vertices, Edges, Facets, Bodies };
 
 /// An attribute that the file defines; 0 where no value is given.
 struct FeAttribute {
-  FeElement element = FeElement::Vertex;
+  FeElement element = FeElement::Vertices;
   std::string name;
 };
 

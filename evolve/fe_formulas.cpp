@@ -53,7 +53,7 @@ std::set<int> attributes_in(const FeFile& file, const FeField& field) {
   for (const FeExpression& formula : field) {
     for (const FeNode* node : names_in(formula)) {
       for (std::size_t k = 0; k < file.attributes.size(); ++k) {
-        if (file.attributes[k].element == FeElement::Edge &&
+        if (file.attributes[k].element == FeElement::Edges &&
             file.attributes[k].name == node->name) {
           used.insert(static_cast<int>(k));
         }

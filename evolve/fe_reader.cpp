@@ -272,10 +272,10 @@ void FeReader::parameter() {
 // define edge attribute NAME real
 void FeReader::attribute() {
   static const std::map<std::string, FeElement, std::less<>> kElements = {
-      {"vertex", FeElement::Vertex},
-      {"edge", FeElement::Edge},
-      {"facet", FeElement::Facet},
-      {"body", FeElement::Body}};
+      {"vertex", FeElement::Vertices},
+      {"edge", FeElement::Edges},
+      {"facet", FeElement::Facets},
+      {"body", FeElement::Bodies}};
   const FeToken element = lexer_.take();
   const auto found = kElements.find(element.text);
   if (found == kElements.end() || !lexer_.peek().is_name("attribute")) {
@@ -383,7 +383,7 @@ void FeReader::integrals(FeIntegrals& integrals) {
       lexer_.fail(keyword.place,
                   fmt::format("a second '{}' here", keyword.text));
     }
-    target = field(energy ? "e" : "c", Sees::Place, FeElement::Edge);
+    target = field(energy ? "e" : "c", Sees::Place, FeElement::Edges);
   }
 }
 

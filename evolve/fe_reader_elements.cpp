@@ -86,7 +86,7 @@ void FeReader::vertex() {
     made.coordinates.push_back(constant());
   }
   while (on_line()) {
-    if (!mark(FeElement::Vertex, made.marks)) {
+    if (!mark(FeElement::Vertices, made.marks)) {
       unknown_mark("vertex");
     }
   }
@@ -138,7 +138,7 @@ void FeReader::edge() {
                                        "supported",
                                        made.id));
       }
-    } else if (!mark(FeElement::Edge, made.marks)) {
+    } else if (!mark(FeElement::Edges, made.marks)) {
       unknown_mark("edge");
     }
   }
@@ -171,7 +171,7 @@ void FeReader::face() {
     if (lexer_.peek().is_name("tension") || lexer_.peek().is_name("density")) {
       lexer_.take();
       made.tension = constant();
-    } else if (!mark(FeElement::Facet, made.marks)) {
+    } else if (!mark(FeElement::Facets, made.marks)) {
       unknown_mark("face");
     }
   }
@@ -268,7 +268,7 @@ bool FeReader::body_attribute(FeBody& body) {
                                  : nullptr;
   if (target == nullptr) {
     FeMarks marks;
-    return own_attribute(FeElement::Body, marks);
+    return own_attribute(FeElement::Bodies, marks);
   }
   lexer_.take();
   on_line();
@@ -284,7 +284,7 @@ bool FeReader::mark(FeElement element, FeMarks& marks) {
   if (token.text == "fixed") {
     lexer_.take();
     marks.fixed = true;
-  } else if (token.text == "no_refine" && element != FeElement::Vertex) {
+  } else if (token.text == "no_refine" && element != FeElement::Vertices) {
     lexer_.take();
     marks.no_refine = true;
   } else if (words_without_effect().count(token.text) != 0) {
@@ -353,7 +353,7 @@ bool FeReader::own_attribute(FeElement element, FeMarks& marks) {
 
 bool FeReader::own_quantity(FeElement element, FeMarks& marks) {
   const auto found = quantity_.find(lexer_.peek().text);
-  if (element != FeElement::Facet || found == quantity_.end()) {
+  if (element != FeElement::Facets || found == quantity_.end()) {
     return false;
   }
   lexer_.take();

@@ -76,16 +76,30 @@ double gap(const FilmComplex& complex, const ComplexEdge& edge) {
   return sum;
 }
 
-// Seven points, exact to degree 5 (Radon 1948): mean over a triangle.
+// Twelve points, exact to degree 6 (Dunavant 1985, Evolver's own rule): mean
+// over a triangle.
 template <class Function>
 double mean(const Vec3& a, const Vec3& b, const Vec3& c, Function function) {
-  double sum = 0.225 * function((a + b + c) / 3.0);
-  for (const double sign : {1.0, -1.0}) {
-    const double q = (6.0 + sign * std::sqrt(15.0)) / 21.0;
-    const double w = (155.0 + sign * std::sqrt(15.0)) / 1200.0;
-    sum += w * (function(q * a + q * b + (1 - 2 * q) * c) +
-                function(q * b + q * c + (1 - 2 * q) * a) +
-                function(q * c + q * a + (1 - 2 * q) * b));
+  double sum = 0.0;
+  const auto add = [&](double w, double p, double q) {
+    sum += w * function(p * a + q * b + (1.0 - p - q) * c);
+  };
+  for (const auto& [w, q] :
+       {std::array{0.11678627572637936603, 0.24928674517091042129},
+        std::array{0.05084490637020681692, 0.06308901449150222834}}) {
+    add(w, q, q);
+    add(w, q, 1.0 - 2.0 * q);
+    add(w, 1.0 - 2.0 * q, q);
+  }
+  constexpr double kWeight = 0.08285107561837357519;
+  constexpr std::array<double, 3> kAt = {
+      0.05314504984481694735, 0.31035245103378440542, 0.63650249912139864723};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (i != j) {
+        add(kWeight, kAt[i], kAt[j]);
+      }
+    }
   }
   return sum;
 }
