@@ -1,0 +1,42 @@
+/// Evolution macros of Surface Evolver datafiles: the part of its command
+/// language that such macros use, run with our own operations.
+///
+///   g [n]  r [n]  u  V  U  hessian  hessian_seek  t length  o  G value  recalc
+///   name := {...}   name := expression   += -= *= /=   body[i].target := ...
+///   set|unset vertex|edge|facet|body ... where ...   fix|unfix ... where ...
+///   refine edges where ...   if then else   for   while   do while   {...} n
+///   printf   show, color and view commands (left out)
+///
+/// `g` moves along the film's normals with the best scale, `U` switches to
+/// conjugate gradients; results come near those of Evolver, not to its digits.
+/// Everything else is refused by name and line.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/monitor.h"
+#include "evolve/fe_complex.h"
+
+namespace meniscus {
+
+struct FeScriptOptions {
+  std::string macro = "gogo";
+  long most_steps = 1'000'000;  // commands and loop rounds in all
+  Monitor* monitor = nullptr;
+};
+
+struct FeScriptResult {
+  FilmComplex complex;
+  std::string output;  // of printf
+  int iterations = 0;  // of g and hessian
+};
+
+/// Runs the commands of the file's `read` section, then the macro. Throws
+/// InvalidInput "file:line:column: what" for commands and names that are not
+/// known, for wrong syntax, endless loops and a macro that is not there.
+FeScriptResult run_fe_script(const FeFile& file,
+                             const std::map<std::string, double>& parameters,
+                             const FeScriptOptions& options);
+
+}  // namespace meniscus
