@@ -125,13 +125,13 @@ double rms_error(const Found& found,
   return std::sqrt(sum / count);
 }
 
-TEST(FilmClosedForms, CubeBecomesASphere) {
+TEST(FilmConvergence, CubeBecomesASphere) {
   const films::Sphere sphere = films::sphere_of_volume(1.0);
   expect_second_order(films::cube_start(), 1,
                       {.area = sphere.area, .pressure = sphere.pressure});
 }
 
-TEST(FilmClosedForms, Catenoid) {
+TEST(FilmConvergence, Catenoid) {
   const films::Catenoid exact = films::catenoid(1.0, 1.0);
   const Found found = expect_second_order(
       films::catenoid_start(), 2, {.area = exact.area}, [&](const Found& film) {
@@ -143,14 +143,14 @@ TEST(FilmClosedForms, Catenoid) {
   EXPECT_NEAR(found.report().smallest_neck, 2.0 * exact.waist, 1e-3);
 }
 
-TEST(FilmClosedForms, CylinderAtFixedVolume) {
+TEST(FilmConvergence, CylinderAtFixedVolume) {
   constexpr double kLength = 3.0;
   expect_second_order(
       films::tube_start({.length = kLength, .volume = pi * kLength}), 2,
       {.area = 2.0 * pi * kLength, .pressure = 1.0});
 }
 
-TEST(FilmClosedForms, CylinderAtFixedPressure) {
+TEST(FilmConvergence, CylinderAtFixedPressure) {
   constexpr double kLength = 2.0;
   expect_second_order(films::tube_start({.length = kLength, .pressure = 1.0}),
                       2, {.area = 2.0 * pi * kLength}, [&](const Found& found) {
@@ -173,7 +173,7 @@ FilmComplex tube_for(const films::Meridian& exact) {
                             .volume = exact.volume});
 }
 
-TEST(FilmClosedForms, Unduloid) {
+TEST(FilmConvergence, Unduloid) {
   const films::Meridian exact = films::unduloid();
   expect_second_order(tube_for(exact), 2,
                       {.area = exact.area, .pressure = exact.pressure},
@@ -181,8 +181,8 @@ TEST(FilmClosedForms, Unduloid) {
 }
 
 // Its rim before the turn: a nodoid that has turned back in z slides off its
-// axis (Russo and Steen 1986), as film_stability_test shows.
-TEST(FilmClosedForms, Nodoid) {
+// axis (Russo and Steen 1986), as film_verdicts_test shows.
+TEST(FilmConvergence, Nodoid) {
   const films::Meridian exact = films::delaunay_meridian(1.0, 2.6, 0.7);
   ASSERT_LT(exact.rim().r * std::cos(exact.rim().psi),
             0.5 * exact.pressure * exact.rim().r * exact.rim().r);
@@ -191,7 +191,7 @@ TEST(FilmClosedForms, Nodoid) {
                       profile_error(exact));
 }
 
-TEST(FilmClosedForms, PlaneIsExact) {
+TEST(FilmConvergence, PlaneIsExact) {
   films::ComplexBuilder builder;
   const int film = builder.liquid("film");
   // A rectangle of 2 x 3 that stands askew in space.
@@ -225,10 +225,10 @@ void expect_cap(double degrees) {
   EXPECT_NEAR(pressure, 0.0, kClose);
 }
 
-TEST(FilmClosedForms, SessileCapAt60Degrees) { expect_cap(60.0); }
-TEST(FilmClosedForms, SessileCapAt120Degrees) { expect_cap(120.0); }
+TEST(FilmConvergence, SessileCapAt60Degrees) { expect_cap(60.0); }
+TEST(FilmConvergence, SessileCapAt120Degrees) { expect_cap(120.0); }
 
-TEST(FilmClosedForms, TripleDisk) {
+TEST(FilmConvergence, TripleDisk) {
   const films::TripleDisk exact = films::triple_disk();
   const double rounding = 1e-10;  // of the printed digits
   EXPECT_NEAR(exact.waist, 0.6386863468, rounding);
@@ -263,7 +263,7 @@ TEST(FilmClosedForms, TripleDisk) {
 // Where a film ends in a corner of the frame its curvature is singular, and so
 // it is along the triple lines near the quadruple points: the order is lower
 // at first (1.76 from 640 facets) and rises to 1.92 at 40,960.
-TEST(FilmClosedForms, CubeFrame) {
+TEST(FilmConvergence, CubeFrame) {
   std::vector<double> errors;
   for (int k = 3; k < 6; ++k) {
     const Found found = films::settled(films::cube_frame_start(), k);
@@ -277,7 +277,7 @@ TEST(FilmClosedForms, CubeFrame) {
   EXPECT_NEAR(errors[2] + (errors[2] - errors[1]) / 3.0, 0.0, kDigits);
 }
 
-TEST(FilmClosedForms, TetrahedralFrameIsExact) {
+TEST(FilmConvergence, TetrahedralFrameIsExact) {
   const Found found = films::settled(films::tetrahedral_frame_start(), 3);
   expect_settled(found);
   EXPECT_NEAR(found.report().area, films::kTetrahedralFrameArea, kFlat);
@@ -286,7 +286,7 @@ TEST(FilmClosedForms, TetrahedralFrameIsExact) {
   EXPECT_NEAR(angles.worst, 0.0, 1e-9);
 }
 
-TEST(FilmClosedForms, DoubleBubble) {
+TEST(FilmConvergence, DoubleBubble) {
   const films::DoubleBubble exact = films::double_bubble(1.0);
   const Found found =
       expect_second_order(films::double_bubble_start(), 1,
