@@ -100,16 +100,20 @@ struct FilmQuantity {
     VectorIntegral,  // integral of field . normal over facets
     Area,            // plain area of facets
     ScalarIntegral,  // integral of scalar over facets
-    BodyVolume       // volume of `body`, or of all when -1
+    BodyVolume,      // volume of `body`, or of all when -1
+    // Integral of scalar over `body`, or over all when -1, which facets close:
+    // where they do not, cones to `origin` do.
+    BodyScalarIntegral
   };
   std::string name;
   Role role = Role::Info;
   Kind kind = Kind::VectorIntegral;
-  VectorField field;          // VectorIntegral
-  Expression scalar;          // ScalarIntegral
-  double modulus = 1.0;       // Energy
-  double target = 0.0;        // Held
-  std::vector<int> surfaces;  // empty: every facet
+  VectorField field;           // VectorIntegral
+  Expression scalar;           // ScalarIntegral, BodyScalarIntegral
+  Vec3 origin = Vec3::Zero();  // BodyScalarIntegral: the scalar's pole if any
+  double modulus = 1.0;        // Energy
+  double target = 0.0;         // Held
+  std::vector<int> surfaces;   // empty: every facet
   int body = -1;
 };
 

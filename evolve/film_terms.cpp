@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 
 #include "evolve/film_space.h"
+#include "evolve/radial_field.h"
 
 namespace meniscus {
 
@@ -88,12 +89,6 @@ struct NormalJet {
   }
 };
 
-/// F, dF/dx and sum_m g_m d2F_m for any g.
-struct FieldJet {
-  Vec3 value = Vec3::Zero();
-  Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();  // row m: grad F_m
-  std::array<Eigen::Matrix3d, 3> bend;
-};
 using FieldFunction = std::function<FieldJet(const Vec3&)>;
 
 FieldFunction expression_field(const VectorField& field) {
@@ -140,6 +135,12 @@ FieldJet cone_field(const Vec3& at) {
   jet.slope = Eigen::Matrix3d::Identity() / 3.0;
   jet.bend.fill(Eigen::Matrix3d::Zero());
   return jet;
+}
+
+FieldFunction body_field(const FilmQuantity& quantity) {
+  return [phi = quantity.scalar, origin = quantity.origin](const Vec3& at) {
+    return radial_field(phi, origin, at);
+  };
 }
 
 /// Integral of F . n over facets.
@@ -495,7 +496,15 @@ class FilmTermBuilder {
               facets_of(quantity.surfaces, factor), functional, number);
           break;
         case FilmQuantity::Kind::BodyVolume:
-          add_volume_quantity(quantity, factor, functional, number);
+          add_body_quantity(quantity,
+                            complex_.volume_rule == VolumeRule::Column
+                                ? FieldFunction(column_field)
+                                : FieldFunction(cone_field),
+                            factor, functional, number);
+          break;
+        case FilmQuantity::Kind::BodyScalarIntegral:
+          add_body_quantity(quantity, body_field(quantity), factor, functional,
+                            number);
           break;
       }
     }
@@ -512,8 +521,8 @@ class FilmTermBuilder {
     return sign;
   }
 
-  void add_volume_quantity(const FilmQuantity& quantity, double factor,
-                           int functional, int number) {
+  void add_body_quantity(const FilmQuantity& quantity, FieldFunction field,
+                         double factor, int functional, int number) {
     std::vector<FilmTerm::Element> elements;
     for (std::size_t b = 0; b < complex_.bodies.size(); ++b) {
       if (quantity.body < 0 || quantity.body == static_cast<int>(b)) {
@@ -521,10 +530,8 @@ class FilmTermBuilder {
         elements.insert(elements.end(), more.begin(), more.end());
       }
     }
-    const bool column = complex_.volume_rule == VolumeRule::Column;
-    add(std::make_unique<FluxTerm>(column ? FieldFunction(column_field)
-                                          : FieldFunction(cone_field)),
-        std::move(elements), functional, number);
+    add(std::make_unique<FluxTerm>(std::move(field)), std::move(elements),
+        functional, number);
   }
 
   std::map<Edge, std::vector<int>> facets_at_marked_edges() const {
