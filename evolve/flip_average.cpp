@@ -67,15 +67,24 @@ void SurfaceEditor::flip(int a, int b, int left, int right, int c, int d) {
 }
 
 int SurfaceEditor::flip_all() {
+  // Only where something has changed since the last time.
   std::queue<Edge> queue;
   for (int f = 0; f < static_cast<int>(mesh_.facets.size()); ++f) {
     const Triangle& t = mesh_.facets[f];
-    for (int k = 0; alive(f) && frozen_[f] == 0 && k < 3; ++k) {
-      if (t[k] < t[(k + 1) % 3]) {
-        queue.push({t[k], t[(k + 1) % 3]});
+    if (!alive(f) || frozen_[f] != 0 ||
+        changed_[t[0]] + changed_[t[1]] + changed_[t[2]] == 0) {
+      continue;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k];
+      const int b = t[(k + 1) % 3];
+      // The facet beside queues it unless only this one has a changed corner.
+      if (a < b || changed_[a] + changed_[b] == 0) {
+        queue.push({std::min(a, b), std::max(a, b)});
       }
     }
   }
+  std::fill(changed_.begin(), changed_.end(), 0);
   int flips = 0;
   while (!queue.empty()) {
     const auto [a, b] = queue.front();
@@ -210,6 +219,7 @@ void SurfaceEditor::average(const EdgeTarget& target) {
       mesh_.points[v] = now.place;
       complex_.vertices[v] = now.vertex;
       if (worst_shape(v, normals) >= before) {
+        changed_[v] = 1;
         break;
       }
       move *= 0.5;
@@ -224,6 +234,16 @@ void make_isotropic(SurfaceEditor& editor, const EdgeTarget& target,
   constexpr double kLong = 4.0 / 3.0;
   constexpr double kShort = 0.8;
   constexpr int kSmoothing = 3;
+  // Merging wider pieces of long needles would cost volume.
+  constexpr double kNarrow = 0.65;
+  // Needles are cut down by halves, and narrow ones merged in between: cut to
+  // size at once they would leave far too many facets and take a flip for each
+  // pair. No flips of long edges: they would change the shape.
+  double limit = 0.5 * editor.longest(target);
+  for (; limit > kLong; limit *= 0.5) {
+    editor.split_above(limit, target);
+    editor.collapse_below(kNarrow, limit, target);
+  }
   for (int pass = 0; pass < passes; ++pass) {
     editor.split_above(kLong, target);
     editor.flip_all();

@@ -43,6 +43,13 @@ void SurfaceEditor::for_each_edge(const Visit& visit) const {
   }
 }
 
+double SurfaceEditor::longest(const EdgeTarget& target) const {
+  double result = 0.0;
+  for_each_edge(
+      [&](int a, int b) { result = std::max(result, ratio(a, b, target)); });
+  return result;
+}
+
 void SurfaceEditor::split(int a, int b, const PlacedVertex& made) {
   const LineEnd* found = line(a, b);
   const bool on_line = found != nullptr;
@@ -214,6 +221,7 @@ void SurfaceEditor::collapse(int gone, int kept, const PlacedVertex& place) {
     replace_corner(f, gone, kept);
     star_[kept].push_back(f);
   }
+  changed_[kept] = 1;
   star_[gone].clear();
   move_lines(gone, kept);
   mesh_.points[kept] = place.place;

@@ -26,6 +26,7 @@ SurfaceEditor::SurfaceEditor(FilmComplex complex)
     : complex_(std::move(complex)),
       mesh_(std::move(complex_.mesh)),
       frozen_(mesh_.facets.size(), 0),
+      changed_(mesh_.points.size(), 1),
       lines_(mesh_.points.size()),
       star_(mesh_.points.size()) {
   for (int f = 0; f < static_cast<int>(mesh_.facets.size()); ++f) {
@@ -284,6 +285,7 @@ int SurfaceEditor::add_vertex(const PlacedVertex& made, Rank rank) {
   const int v = static_cast<int>(mesh_.points.size());
   mesh_.points.push_back(made.place);
   complex_.vertices.push_back(made.vertex);
+  changed_.push_back(1);
   rank_.push_back(rank);
   star_.emplace_back();
   lines_.emplace_back();

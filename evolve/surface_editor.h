@@ -36,6 +36,9 @@ class SurfaceEditor {
  public:
   explicit SurfaceEditor(FilmComplex complex);
 
+  /// The longest edge that may be changed, x target.
+  double longest(const EdgeTarget& target) const;
+
   /// Halves edges longer than `factor` x target, the longest first.
   void split_above(double factor, const EdgeTarget& target);
 
@@ -121,6 +124,7 @@ class SurfaceEditor {
   std::size_t old_marks_ = 0;
   std::size_t old_and_rim_marks_ = 0;
   std::vector<char> frozen_;                 // per facet: is not changed
+  std::vector<char> changed_;                // per point: since the last flips
   std::vector<Rank> rank_;                   // per point
   std::vector<std::vector<LineEnd>> lines_;  // per point
   std::vector<std::vector<int>> star_;       // per point: its facets
@@ -128,6 +132,7 @@ class SurfaceEditor {
 };
 
 /// Passes of split, collapse, flip and average towards triangles of `target`.
+/// Edges much longer are first cut down by halves.
 void make_isotropic(SurfaceEditor& editor, const EdgeTarget& target,
                     int passes);
 

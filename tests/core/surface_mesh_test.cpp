@@ -37,6 +37,37 @@ TEST(SurfaceMesh, ClosedSurfaceHasEveryEdgeTwice) {
   EXPECT_EQ(mesh.points.size() - edges.size() + mesh.facets.size(), 2u);
 }
 
+TEST(SurfaceMesh, ListsEdgesByFirstAppearanceAroundHubsToo) {
+  // A fan about point 0, three films along its first spoke, a lone facet.
+  std::vector<Triangle> facets;
+  constexpr int kFan = 200;
+  for (int i = 0; i < kFan; ++i) {
+    facets.push_back({1 + (i + 1) % kFan, 0, 1 + i});
+  }
+  facets.push_back({0, 1, kFan + 1});
+  facets.push_back({kFan + 4, kFan + 3, kFan + 2});
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(facets, edges, facet_edges);
+  std::vector<Edge> expected;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = facets[f][k];
+      const int b = facets[f][(k + 1) % 3];
+      const Edge edge{std::min(a, b), std::max(a, b)};
+      auto at = std::find(expected.begin(), expected.end(), edge);
+      if (at == expected.end()) {
+        expected.push_back(edge);
+        at = expected.end() - 1;
+      }
+      EXPECT_EQ(facet_edges[f][k], at - expected.begin());
+    }
+  }
+  EXPECT_EQ(edges, expected);
+  list_edges({}, edges, facet_edges);
+  EXPECT_TRUE(edges.empty());
+}
+
 TEST(TetMesh, BrickFillsItsBoxWithOutwardFaces) {
   const TetMesh mesh = shapes::brick(Vec3(2, 1, 3), 2, 3, 4);
   double volume = 0.0;

@@ -95,6 +95,41 @@ TEST(PopEdges, TakesFilmsOffUntilThreeAreLeft) {
   EXPECT_EQ(pop_edges(complex).popped, 0);
 }
 
+TEST(PopEdges, PopsAClosedLine) {
+  // Four bands along the unit circle: inwards, up, outwards, down.
+  constexpr int kAround = 12;
+  films::ComplexBuilder builder;
+  const auto ring = [&](double radius, double z, VertexKind kind) {
+    std::vector<int> points;
+    for (int i = 0; i < kAround; ++i) {
+      const double a = 2.0 * pi * i / kAround;
+      points.push_back(builder.vertex(
+          Vec3(radius * std::cos(a), radius * std::sin(a), z), kind));
+    }
+    return points;
+  };
+  const std::vector<int> line = ring(1.0, 0.0, VertexKind::Free);
+  const std::array<std::array<double, 2>, 4> ends = {
+      {{0.6, 0.1}, {0.7, 0.4}, {1.5, 0.0}, {1.0, -0.5}}};
+  for (std::size_t band = 0; band < ends.size(); ++band) {
+    const auto rim = ring(ends[band][0], ends[band][1], VertexKind::Fixed);
+    builder.band(builder.liquid("band" + std::to_string(band)), line, rim);
+    for (int i = 0; i < kAround; ++i) {
+      builder.fixed_edge(rim[i], rim[(i + 1) % kAround]);
+    }
+  }
+  FilmComplex complex = builder.complex();
+  EXPECT_EQ(count_edges(complex.mesh, 4), kAround);
+  EXPECT_EQ(pop_edges(complex).popped, 1);
+  check_complex(complex);
+  EXPECT_EQ(count_edges(complex.mesh, 4), 0);
+  EXPECT_EQ(count_edges(complex.mesh, 3), 2 * kAround);
+  // The first two bands make the smallest angle.
+  EXPECT_EQ(triple_lines(complex.mesh).of_films,
+            (std::map<std::vector<int>, int>{{{0, 1, 4}, 1}, {{2, 3, 4}, 1}}));
+  EXPECT_EQ(triple_lines(complex.mesh).junctions, 0);
+}
+
 TEST(PopEdges, LeavesMarkedLinesAlone) {
   FilmComplex complex = fins({0, 90, 180, 270}, 3);
   complex.edges.push_back({.a = 1, .b = 2});
