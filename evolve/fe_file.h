@@ -123,7 +123,7 @@ struct FeBody {
 
 struct FeFile {
   std::string name;  // for messages
-  std::vector<FeParameter> parameters;
+  std::vector<FeParameter> parameters;  // a name's last value counts
   std::vector<FeAttribute> attributes;
   std::optional<FeExpression> gravity;       // default 1
   std::optional<FeExpression> gap_constant;  // default 1

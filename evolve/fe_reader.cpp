@@ -32,6 +32,7 @@ const std::map<std::string, int, std::less<>>& without_effect() {
       {"facetedges_predicted", 1},
       {"quantities_predicted", 1},
       {"method_instances_predicted", 1},
+      {"scale", 1},
       {"scale_limit", 1},
       {"constraint_tolerance", 1},
       {"total_time", 1},
@@ -262,10 +263,7 @@ void FeReader::parameter() {
   made.name = declared_name("a parameter");
   accept("=");
   made.value = constant();
-  if (!parameters_.insert(made.name).second) {
-    lexer_.fail(made.place,
-                fmt::format("parameter '{}' is declared twice", made.name));
-  }
+  parameters_.insert(made.name);
   file_.parameters.push_back(std::move(made));
 }
 

@@ -1,6 +1,7 @@
 // Datafiles written here, loaded by Surface Evolver itself: counts, energy,
 // area and volumes must be the same.
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -199,6 +200,33 @@ TEST_F(EvolverFe, AgreesOnExpressionsInEveryForm) {
     const FilmComplex complex = complex_of(read_fe(text, "formula.fe"));
     expect_near(sums::energy(complex), measure(text).energy, "energy");
     expect_same(complex);
+  }
+}
+
+// The shipped samples after their own macros, refined and settled.
+TEST_F(EvolverFe, AgreesOnItsOwnDumps) {
+  const std::filesystem::path samples = "/usr/share/doc/evolver/examples";
+  for (const char* name : {"cat", "catbody", "catman", "column", "cube",
+                           "mound", "qmound", "octa", "quad", "sphere"}) {
+    std::ifstream file(samples / (std::string(name) + ".fe"));
+    if (!file) {
+      GTEST_SKIP() << "the samples of Debian's evolver-doc are not installed";
+    }
+    SCOPED_TRACE(name);
+    std::ostringstream text;
+    text << file.rdbuf();
+    const std::filesystem::path dump = folder_ / "film.dmp";
+    const Measured measured =
+        measure(text.str(), fmt::format("gogo\ndump \"{}\"", dump.string()));
+    std::ostringstream dumped;
+    dumped << std::ifstream(dump).rdbuf();
+    const FilmComplex complex = complex_of(read_fe(dumped.str(), "film.dmp"));
+    EXPECT_EQ(measured.facets, complex.mesh.facets.size());
+    // Dumps have 15 digits.
+    constexpr double kDumped = 1e-11;
+    EXPECT_NEAR(sums::energy(complex), measured.energy,
+                kDumped * measured.energy);
+    EXPECT_NEAR(sums::area(complex), measured.area, kDumped * measured.area);
   }
 }
 
