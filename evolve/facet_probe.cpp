@@ -170,7 +170,8 @@ void FacetProbe::shrink(int facet, const Vec3& p, const Vec3& normal,
 }
 
 FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
-                                          double limit) const {
+                                          double limit,
+                                          std::span<const int> own) const {
   Ball ball;
   if (nodes_.empty()) {
     return ball;
@@ -187,7 +188,12 @@ FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
     }
     if (node.left < 0) {
       for (int k = node.first; k < node.last; ++k) {
-        shrink(ids_[k], p, normal, limit, ball);
+        const Triangle& t = facets_[ids_[k]];
+        const bool at_home = std::find_first_of(t.begin(), t.end(), own.begin(),
+                                                own.end()) != t.end();
+        if (!at_home) {
+          shrink(ids_[k], p, normal, limit, ball);
+        }
       }
       continue;
     }

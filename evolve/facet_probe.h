@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/types.h"
@@ -32,8 +33,10 @@ class FacetProbe {
   /// from `p` along the unit vector `normal`, touching `p`, that holds no
   /// point q of the facets seen from p within kCone of `normal`: the medial
   /// ball (Ma, Bae & Choi 2012) without the film's own neighbourhood. The
-  /// radius is within kSlack of the exact one, never below it.
-  Ball tangent_ball(const Vec3& p, const Vec3& normal, double limit) const;
+  /// radius is within kSlack of the exact one, never below it. `own`: corners
+  /// of facets that are passed over, those p lies on.
+  Ball tangent_ball(const Vec3& p, const Vec3& normal, double limit,
+                    std::span<const int> own) const;
 
   static constexpr double kCone = 0.5;    // cosine: 60 degrees
   static constexpr double kSlack = 0.01;  // relative

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
@@ -14,7 +15,9 @@ namespace {
 
 constexpr double kSpanned = 0.05;    // of the largest eigenvalue
 constexpr double kLongestMitre = 3;  // a sharper mitre is cut there
+constexpr double kFlatHold = 1e-6;   // of the tangential move, see header
 constexpr double kLargestFix = 1.5;  // of a correction, per pass
+constexpr double kSlow = 0.95;       // a pass that gains less is the last
 constexpr double kTotalFix = 4.0;    // of all corrections together
 
 double corner_angle(const Sheet& sheet, int facet, int v) {
@@ -136,7 +139,8 @@ WallShares shares(WallSide side) {
 }
 
 std::vector<Vec3> offset_directions(const Sheet& sheet,
-                                    const std::vector<Jet>& jets) {
+                                    const std::vector<Jet>& jets,
+                                    const std::vector<double>& asked) {
   std::vector<Vec3> directions;
   directions.reserve(jets.size());
   for (int v = 0; v < static_cast<int>(jets.size()); ++v) {
@@ -149,10 +153,16 @@ std::vector<Vec3> offset_directions(const Sheet& sheet,
       matrix += weight * n * n.transpose();
       right += weight * n;
     }
+    if (sheet.on_crease[v] != 0) {
+      directions.push_back(mitre(matrix, right));
+      continue;
+    }
     const Vec3& n = jets[v].normal;
-    directions.push_back(sheet.on_crease[v] != 0
-                             ? mitre(matrix, right)
-                             : Vec3(n * (n.dot(right) / n.dot(matrix * n))));
+    const double bend =
+        asked[v] * std::max(std::abs(jets[v].k1), std::abs(jets[v].k2));
+    const double hold = matrix.trace() * (kFlatHold + bend * bend);
+    matrix += hold * (Mat3::Identity() - n * n.transpose());
+    directions.push_back(matrix.ldlt().solve(right));
   }
   return directions;
 }
@@ -169,12 +179,13 @@ OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
     Points front = moved(sheet, direction, distance, part.front);
     Points back = moved(sheet, direction, distance, -part.back);
     gauge.measure(front, back);
+    const bool slow = gauge.worst() > kSlow * best_error;
     if (gauge.worst() < best_error) {
       best_error = gauge.worst();
       best = {std::move(front), std::move(back), gauge.thinnest(),
               gauge.thickest(), pass};
     }
-    if (gauge.worst() <= options.accuracy) {
+    if (slow || gauge.worst() <= options.accuracy) {
       break;
     }
     for (std::size_t v = 0; v < distance.size(); ++v) {
