@@ -33,7 +33,7 @@ struct ThickenOptions {
   /// Corrections of the offsets by the thickness measured end when no sample
   /// is further off than this (relative), when they gain little, or after
   /// max_corrections.
-  double accuracy = 0.005;
+  double accuracy = 0.02;
   int max_corrections = 8;
 };
 
