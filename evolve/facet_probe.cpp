@@ -32,6 +32,14 @@ FacetProbe::FacetProbe(const Points& points,
     nodes_.reserve(facets.size());
     build(0, static_cast<int>(ids_.size()));
   }
+  planes_.reserve(facets.size());
+  for (const int f : ids_) {
+    const auto& [a, b, c] = facets[f];
+    const Vec3 n = (points[b] - points[a]).cross(points[c] - points[a]);
+    const double length = n.norm();
+    const Vec3 unit = length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+    planes_.push_back({unit, unit.dot(points[a])});
+  }
 }
 
 int FacetProbe::build(int first, int last) {
@@ -98,8 +106,9 @@ Vec3 FacetProbe::nearest_on(int facet, const Vec3& p) const {
   return best;
 }
 
-FacetProbe::Hit FacetProbe::nearest(const Vec3& p) const {
+FacetProbe::Hit FacetProbe::nearest(const Vec3& p, double bound) const {
   Hit hit;
+  hit.distance = bound;
   if (nodes_.empty()) {
     return hit;
   }
@@ -107,13 +116,18 @@ FacetProbe::Hit FacetProbe::nearest(const Vec3& p) const {
   int top = 0;
   stack[top++] = {0, 0.0};
   while (top > 0) {
-    const auto [id, bound] = stack[--top];
-    if (bound >= hit.distance) {
+    const auto [id, least] = stack[--top];
+    if (least >= hit.distance) {
       continue;
     }
     const Node& node = nodes_[id];
     if (node.left < 0) {
       for (int k = node.first; k < node.last; ++k) {
+        // Boxes of tilted facets reach far beyond them, planes do not.
+        const Plane& plane = planes_[k];
+        if (std::abs(plane.normal.dot(p) - plane.offset) >= hit.distance) {
+          continue;
+        }
         const Vec3 q = nearest_on(ids_[k], p);
         const double distance = (q - p).norm();
         if (distance < hit.distance) {

@@ -21,8 +21,10 @@ class FacetProbe {
     Vec3 point = Vec3::Zero();
     double distance = std::numeric_limits<double>::infinity();  // [length]
   };
-  /// The point of the facets that is nearest to `p`.
-  Hit nearest(const Vec3& p) const;
+  /// The point of the facets that is nearest to `p`, if nearer than `bound`;
+  /// else facet -1 at that distance. A tight bound saves most of the work.
+  Hit nearest(const Vec3& p,
+              double bound = std::numeric_limits<double>::infinity()) const;
 
   struct Ball {
     int facet = -1;  // touched; -1: nothing in the way
@@ -61,6 +63,11 @@ class FacetProbe {
   const Points& points_;
   const std::vector<Triangle>& facets_;
   std::vector<int> ids_;
+  struct Plane {
+    Vec3 normal = Vec3::Zero();  // unit; 0 for a facet without area
+    double offset = 0.0;
+  };
+  std::vector<Plane> planes_;  // of the facets in the order of ids_
   std::vector<Node> nodes_;
 };
 

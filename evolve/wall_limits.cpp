@@ -110,7 +110,7 @@ class Limits {
     for (const double part : {0.25, 0.5, 0.75}) {
       const Vec3 q = center + radius * (std::cos(part * angle) * from +
                                         std::sin(part * angle) * along);
-      if (probe_.nearest(q).distance > kOffBall * radius) {
+      if (probe_.nearest(q, kOffBall * radius).facet < 0) {
         return false;
       }
     }

@@ -53,8 +53,8 @@ class Gauge {
     high_.assign(asked_.size(), 0.0);
     least_ = std::numeric_limits<double>::infinity();
     most_ = 0.0;
-    side(front, FacetProbe(back, sheet_.film.facets));
-    side(back, FacetProbe(front, sheet_.film.facets));
+    side(front, back);
+    side(back, front);
   }
 
   double worst() const { return std::max(1.0 - least_, most_ - 1.0); }
@@ -65,18 +65,22 @@ class Gauge {
 
  private:
   template <typename Corners>
-  void sample(const Points& side, const FacetProbe& other,
+  void sample(const Points& side, const Points& other, const FacetProbe& probe,
               const Corners& corners) {
     Vec3 p = Vec3::Zero();
+    Vec3 across = Vec3::Zero();
     double asked = 0.0;
     for (const int v : corners) {
       p += side[v];
+      across += other[v];
       asked += asked_[v];
     }
     const auto count = static_cast<double>(corners.size());
     p /= count;
     asked /= count;
-    const double value = other.nearest(p).distance;
+    // The same place on the other side is near the nearest.
+    const double bound = (across / count - p).norm();
+    const double value = probe.nearest(p, bound).distance;
     const double ratio = value / asked;
     if (ratio < least_) {
       least_ = ratio;
@@ -92,15 +96,16 @@ class Gauge {
     }
   }
 
-  void side(const Points& points, const FacetProbe& other) {
+  void side(const Points& points, const Points& other) {
+    const FacetProbe probe(other, sheet_.film.facets);
     for (int v = 0; v < static_cast<int>(points.size()); ++v) {
-      sample(points, other, std::array<int, 1>{v});
+      sample(points, other, probe, std::array<int, 1>{v});
     }
     for (const Edge& e : sheet_.edges) {
-      sample(points, other, e);
+      sample(points, other, probe, e);
     }
     for (const Triangle& t : sheet_.film.facets) {
-      sample(points, other, t);
+      sample(points, other, probe, t);
     }
   }
 
