@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -11,13 +12,6 @@ namespace meniscus {
 namespace {
 
 constexpr int kLeaf = 4;
-
-Vec3 on_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
-  const Vec3 ab = b - a;
-  const double length2 = ab.squaredNorm();
-  const double t = length2 > 0.0 ? ab.dot(p - a) / length2 : 0.0;
-  return a + std::clamp(t, 0.0, 1.0) * ab;
-}
 
 }  // namespace
 
@@ -31,6 +25,14 @@ FacetProbe::FacetProbe(const Points& points,
   if (!ids_.empty()) {
     nodes_.reserve(facets.size());
     build(0, static_cast<int>(ids_.size()));
+  }
+  planes_.reserve(facets.size());
+  for (const int f : ids_) {
+    const auto& [a, b, c] = facets[f];
+    const Vec3 n = (points[b] - points[a]).cross(points[c] - points[a]);
+    const double length = n.norm();
+    const Vec3 unit = length > 0.0 ? Vec3(n / length) : Vec3::Zero();
+    planes_.push_back({unit, unit.dot(points[a])});
   }
 }
 
@@ -75,31 +77,49 @@ double FacetProbe::distance_to(const Node& node, const Vec3& p) const {
 }
 
 // By the regions of the triangle (Ericson, Real-Time Collision Detection,
-// 2005, section 5.1.5), the inner one by its plane.
+// 2005, section 5.1.5).
 Vec3 FacetProbe::nearest_on(int facet, const Vec3& p) const {
   const Triangle& t = facets_[facet];
   const Vec3& a = points_[t[0]];
-  const Vec3& b = points_[t[1]];
-  const Vec3& c = points_[t[2]];
-  const Vec3 n = (b - a).cross(c - a);
-  const double n2 = n.squaredNorm();
-  const double u = n.dot((c - b).cross(p - b));
-  const double v = n.dot((a - c).cross(p - c));
-  const double w = n.dot((b - a).cross(p - a));
-  if (n2 > 0.0 && u >= 0.0 && v >= 0.0 && w >= 0.0) {
-    return p - n * (n.dot(p - a) / n2);
+  const Vec3 ab = points_[t[1]] - a;
+  const Vec3 ac = points_[t[2]] - a;
+  const Vec3 ap = p - a;
+  const double d1 = ab.dot(ap);
+  const double d2 = ac.dot(ap);
+  const double aa = ab.squaredNorm();
+  const double cc = ac.squaredNorm();
+  const double ac_ab = ab.dot(ac);
+  const double d3 = d1 - aa;  // of p - b
+  const double d4 = d2 - ac_ab;
+  const double d5 = d1 - ac_ab;  // of p - c
+  const double d6 = d2 - cc;
+  const double va = d3 * d6 - d5 * d4;
+  const double vb = d5 * d2 - d1 * d6;
+  const double vc = d1 * d4 - d3 * d2;
+  const double sum = va + vb + vc;
+  if (va > 0.0 && vb > 0.0 && vc > 0.0 && sum > 0.0) {
+    return a + ab * (vb / sum) + ac * (vc / sum);
   }
-  Vec3 best = on_segment(a, b, p);
-  for (const Vec3& q : {on_segment(b, c, p), on_segment(c, a, p)}) {
-    if ((q - p).squaredNorm() < (best - p).squaredNorm()) {
-      best = q;
-    }
+  const auto part = [](double along, double whole) {
+    return whole > 0.0 ? std::clamp(along / whole, 0.0, 1.0) : 0.0;
+  };
+  const double s = part(d1, aa);
+  const double r = part(d2, cc);
+  const double w = part(d4 - d3, aa + cc - 2.0 * ac_ab);
+  // Squared distances to the three sides, less that to a.
+  const double on_ab = s * (s * aa - 2.0 * d1);
+  const double on_ac = r * (r * cc - 2.0 * d2);
+  const Vec3 bc = ab + w * (ac - ab);
+  const double on_bc = bc.squaredNorm() - 2.0 * bc.dot(ap);
+  if (on_bc < on_ab && on_bc < on_ac) {
+    return a + bc;
   }
-  return best;
+  return on_ab <= on_ac ? Vec3(a + s * ab) : Vec3(a + r * ac);
 }
 
-FacetProbe::Hit FacetProbe::nearest(const Vec3& p) const {
+FacetProbe::Hit FacetProbe::nearest(const Vec3& p, double bound) const {
   Hit hit;
+  hit.distance = bound;
   if (nodes_.empty()) {
     return hit;
   }
@@ -107,13 +127,18 @@ FacetProbe::Hit FacetProbe::nearest(const Vec3& p) const {
   int top = 0;
   stack[top++] = {0, 0.0};
   while (top > 0) {
-    const auto [id, bound] = stack[--top];
-    if (bound >= hit.distance) {
+    const auto [id, least] = stack[--top];
+    if (least >= hit.distance) {
       continue;
     }
     const Node& node = nodes_[id];
     if (node.left < 0) {
       for (int k = node.first; k < node.last; ++k) {
+        // Boxes of tilted facets reach far beyond them, planes do not.
+        const Plane& plane = planes_[k];
+        if (std::abs(plane.normal.dot(p) - plane.offset) >= hit.distance) {
+          continue;
+        }
         const Vec3 q = nearest_on(ids_[k], p);
         const double distance = (q - p).norm();
         if (distance < hit.distance) {
@@ -170,7 +195,8 @@ void FacetProbe::shrink(int facet, const Vec3& p, const Vec3& normal,
 }
 
 FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
-                                          double limit) const {
+                                          double limit,
+                                          std::span<const int> own) const {
   Ball ball;
   if (nodes_.empty()) {
     return ball;
@@ -187,7 +213,12 @@ FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
     }
     if (node.left < 0) {
       for (int k = node.first; k < node.last; ++k) {
-        shrink(ids_[k], p, normal, limit, ball);
+        const Triangle& t = facets_[ids_[k]];
+        const bool at_home = std::find_first_of(t.begin(), t.end(), own.begin(),
+                                                own.end()) != t.end();
+        if (!at_home) {
+          shrink(ids_[k], p, normal, limit, ball);
+        }
       }
       continue;
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/types.h"
@@ -20,8 +21,10 @@ class FacetProbe {
     Vec3 point = Vec3::Zero();
     double distance = std::numeric_limits<double>::infinity();  // [length]
   };
-  /// The point of the facets that is nearest to `p`.
-  Hit nearest(const Vec3& p) const;
+  /// The point of the facets that is nearest to `p`, if nearer than `bound`;
+  /// else facet -1 at that distance. A tight bound saves most of the work.
+  Hit nearest(const Vec3& p,
+              double bound = std::numeric_limits<double>::infinity()) const;
 
   struct Ball {
     int facet = -1;  // touched; -1: nothing in the way
@@ -32,8 +35,10 @@ class FacetProbe {
   /// from `p` along the unit vector `normal`, touching `p`, that holds no
   /// point q of the facets seen from p within kCone of `normal`: the medial
   /// ball (Ma, Bae & Choi 2012) without the film's own neighbourhood. The
-  /// radius is within kSlack of the exact one, never below it.
-  Ball tangent_ball(const Vec3& p, const Vec3& normal, double limit) const;
+  /// radius is within kSlack of the exact one, never below it. `own`: corners
+  /// of facets that are passed over, those p lies on.
+  Ball tangent_ball(const Vec3& p, const Vec3& normal, double limit,
+                    std::span<const int> own) const;
 
   static constexpr double kCone = 0.5;    // cosine: 60 degrees
   static constexpr double kSlack = 0.01;  // relative
@@ -58,6 +63,11 @@ class FacetProbe {
   const Points& points_;
   const std::vector<Triangle>& facets_;
   std::vector<int> ids_;
+  struct Plane {
+    Vec3 normal = Vec3::Zero();  // unit; 0 for a facet without area
+    double offset = 0.0;
+  };
+  std::vector<Plane> planes_;  // of the facets in the order of ids_
   std::vector<Node> nodes_;
 };
 

@@ -10,7 +10,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kCubicPoints = 12;
+constexpr int kCubicPoints = 14;
 constexpr int kQuadraticPoints = 5;
 constexpr int kMaxRings = 3;
 // A point whose normal is further off cannot be part of the same graph z(x, y);

@@ -18,7 +18,7 @@ struct Jet {
 /// One jet per vertex: z(x, y) of degree 3 through the vertex, fitted to the
 /// points of the rings around it, never across a crease (Cazals & Pouget 2005:
 /// normals are of order 3 in the edge length, curvatures of order 2); of degree
-/// 2 where fewer than 12 points are at hand, and the normal alone, weighted
+/// 2 where fewer than 14 points are at hand, and the normal alone, weighted
 /// after Max 1999, with fewer than 5. Vertices on a crease have that normal and
 /// curvatures 0.
 std::vector<Jet> fit_jets(const Sheet& sheet);

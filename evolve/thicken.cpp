@@ -272,8 +272,8 @@ ThickWall thicken(const SurfaceMesh& film, const ThickenOptions& options) {
   const Sheet sheet = make_sheet(film);
   const std::vector<double> asked = asked_thickness(sheet, options.thickness);
   const std::vector<Jet> jets = fit_jets(sheet);
-  const OffsetSides sides =
-      offset_sides(sheet, offset_directions(sheet, jets), asked, options);
+  const OffsetSides sides = offset_sides(
+      sheet, offset_directions(sheet, jets, asked), asked, options);
   Assembly assembly(sheet, film, options);
   assembly.add_sides(sides);
   for (const RimLoop& loop : rim_loops(sheet)) {

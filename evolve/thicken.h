@@ -31,8 +31,9 @@ struct ThickenOptions {
   WallSide side = WallSide::Both;
   std::vector<WallRim> rims;
   /// Corrections of the offsets by the thickness measured end when no sample
-  /// is further off than this (relative), or after max_corrections.
-  double accuracy = 0.005;
+  /// is further off than this (relative), when they gain little, or after
+  /// max_corrections.
+  double accuracy = 0.02;
   int max_corrections = 8;
 };
 

@@ -1,6 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "evolve/facet_probe.h"
@@ -15,9 +20,15 @@ constexpr double kFocalPart = 0.9;
 constexpr double kGapPart = 0.5;
 // A ball as large as the osculating one, within this, is the film's own bend.
 constexpr double kOwnBend = 1.15;
+// Relative to the ball: how far a bend of the film may leave it (a square
+// corner does by 0.29), and below which sine the ends are opposite.
+constexpr double kOffBall = 0.35;
+constexpr double kOpposite = 0.2;
+constexpr int kWaysRound = 8;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 struct Room {
-  double value = std::numeric_limits<double>::infinity();
+  double value = kUnlimited;
   WallLimit limit = WallLimit::None;
 };
 
@@ -29,40 +40,81 @@ class Limits {
         probe_(sheet.film.points, sheet.film.facets),
         far_(bounding_diagonal(sheet.film.points)) {}
 
-  Room at(const Vec3& p, const Jet& jet) const {
-    Room room;
-    // Moving along the normal is limited by bends towards it, k < 0.
-    const double ahead = std::max(0.0, -jet.k2);
-    const double behind = std::max(0.0, jet.k1);
-    lower(room, bend_limit(ahead, part_.front), WallLimit::Curvature);
-    lower(room, bend_limit(behind, part_.back), WallLimit::Curvature);
-    lower(room, gap_limit(p, jet.normal, ahead), WallLimit::Gap);
-    lower(room, gap_limit(p, -jet.normal, behind), WallLimit::Gap);
-    return room;
+  // Moving along the normal is limited by bends towards it, k < 0.
+  Room bend(const Jet& jet) const {
+    const double value = std::min(bend_limit(-jet.k2, part_.front),
+                                  bend_limit(jet.k1, part_.back));
+    return {value,
+            std::isfinite(value) ? WallLimit::Curvature : WallLimit::None};
+  }
+
+  // Only below `most`. One-sided walls need both sides' gaps: another part may
+  // have its own wall on the side that faces this one.
+  Room gap(const Vec3& p, const Jet& jet, std::span<const int> own,
+           double most) const {
+    const double front =
+        gap_limit(p, jet.normal, -jet.k2, part_.front, own, most);
+    const double back = gap_limit(p, -jet.normal, jet.k1, part_.back, own,
+                                  std::min(most, front));
+    const double value = std::min(front, back);
+    return {value, std::isfinite(value) ? WallLimit::Gap : WallLimit::None};
   }
 
  private:
-  static void lower(Room& room, double value, WallLimit limit) {
-    if (value < room.value) {
-      room = {value, limit};
-    }
-  }
-
   static double bend_limit(double curvature, double share) {
-    return curvature > 0.0 && share > 0.0
-               ? kFocalPart / (share * curvature)
-               : std::numeric_limits<double>::infinity();
+    return curvature > 0.0 && share > 0.0 ? kFocalPart / (share * curvature)
+                                          : kUnlimited;
   }
 
-  // One-sided walls too need both sides' gaps: the other part has a wall of
-  // its own, which may lie on the side that faces this one.
-  double gap_limit(const Vec3& p, const Vec3& towards, double bend) const {
-    const FacetProbe::Ball ball = probe_.tangent_ball(p, towards, far_);
-    const bool own_bend = ball.radius * bend * kOwnBend >= 1.0;
-    if (ball.facet < 0 || own_bend) {
-      return std::numeric_limits<double>::infinity();
+  double gap_limit(const Vec3& p, const Vec3& towards, double curvature,
+                   double share, std::span<const int> own, double most) const {
+    const double osculating =
+        curvature > 0.0 ? 1.0 / (kOwnBend * curvature) : far_;
+    const double largest = std::min({far_, osculating, most});
+    const FacetProbe::Ball ball = probe_.tangent_ball(p, towards, largest, own);
+    if (ball.facet < 0) {
+      return kUnlimited;
+    }
+    if (is_own_bend(p, towards, ball)) {
+      return share > 0.0 ? kFocalPart * ball.radius / share : kUnlimited;
     }
     return kGapPart * 2.0 * ball.radius;
+  }
+
+  // Does the film follow the ball's surface from p to where it touches? Then
+  // it is the inside of a bend or a tube and not another part of the film.
+  bool is_own_bend(const Vec3& p, const Vec3& towards,
+                   const FacetProbe::Ball& ball) const {
+    const Vec3 center = p + ball.radius * towards;
+    const Vec3 end = (ball.touch - center) / ball.radius;
+    const double angle = std::acos(std::clamp(-towards.dot(end), -1.0, 1.0));
+    Vec3 along = end + towards * -towards.dot(end);
+    if (along.norm() > kOpposite) {
+      return follows(center, -towards, along.normalized(), ball.radius, angle);
+    }
+    // Touched opposite p: any half circle may be the film's way round.
+    const Vec3 x = towards.unitOrthogonal();
+    const Vec3 y = towards.cross(x);
+    for (int i = 0; i < kWaysRound; ++i) {
+      const double turn = 2.0 * std::numbers::pi * i / kWaysRound;
+      along = std::cos(turn) * x + std::sin(turn) * y;
+      if (follows(center, -towards, along, ball.radius, angle)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool follows(const Vec3& center, const Vec3& from, const Vec3& along,
+               double radius, double angle) const {
+    for (const double part : {0.25, 0.5, 0.75}) {
+      const Vec3 q = center + radius * (std::cos(part * angle) * from +
+                                        std::sin(part * angle) * along);
+      if (probe_.nearest(q, kOffBall * radius).facet < 0) {
+        return false;
+      }
+    }
+    return true;
   }
 
   WallShares part_;
@@ -94,31 +146,39 @@ SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
                              const std::vector<double>& asked, WallSide side) {
   const Limits limits(sheet, side);
   SafeThickness safe;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kUnlimited;
   int where = 0;
-  const auto consider = [&](const Vec3& p, const Jet& jet, double wanted, int v,
-                            int facet) {
-    const Room room = limits.at(p, jet);
+  const auto consider = [&](const Room& room, const Vec3& p, double wanted,
+                            int v, int facet) {
     if (room.value / wanted < least) {
       least = room.value / wanted;
       safe = {room.value, wanted, room.limit, sheet.origin[v], p, {}};
       where = facet;
     }
   };
-  for (int v = 0; v < static_cast<int>(jets.size()); ++v) {
+  const auto count = static_cast<int>(jets.size());
+  const Points& x = sheet.film.points;
+  for (int v = 0; v < count; ++v) {
+    consider(limits.bend(jets[v]), x[v], asked[v], v,
+             sheet.facet_list[sheet.facet_start[v]]);
+  }
+  for (int v = 0; v < count; ++v) {
     if (sheet.on_crease[v] == 0) {
-      consider(sheet.film.points[v], jets[v], asked[v], v,
-               sheet.facet_list[sheet.facet_start[v]]);
+      const std::array<int, 1> own = {v};
+      consider(limits.gap(x[v], jets[v], own, least * asked[v]), x[v], asked[v],
+               v, sheet.facet_list[sheet.facet_start[v]]);
     }
   }
   // Beside creases facet centres stand for the vertices, which have no normal.
   for (int f = 0; f < static_cast<int>(sheet.film.facets.size()); ++f) {
-    const auto& [a, b, c] = sheet.film.facets[f];
-    if (sheet.on_crease[a] != 0 || sheet.on_crease[b] != 0 ||
-        sheet.on_crease[c] != 0) {
-      const Points& x = sheet.film.points;
-      consider((x[a] + x[b] + x[c]) / 3.0, {sheet.facet_normal[f], 0.0, 0.0},
-               (asked[a] + asked[b] + asked[c]) / 3.0, a, f);
+    const Triangle& t = sheet.film.facets[f];
+    if (std::any_of(t.begin(), t.end(),
+                    [&](int v) { return sheet.on_crease[v] != 0; })) {
+      const Vec3 center = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.0;
+      const double wanted = (asked[t[0]] + asked[t[1]] + asked[t[2]]) / 3.0;
+      const Jet flat = {sheet.facet_normal[f], 0.0, 0.0};
+      consider(limits.gap(center, flat, {}, least * wanted), center, wanted,
+               t[0], f);
     }
   }
   safe.message = describe(safe, sheet, where);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
@@ -14,7 +15,9 @@ namespace {
 
 constexpr double kSpanned = 0.05;    // of the largest eigenvalue
 constexpr double kLongestMitre = 3;  // a sharper mitre is cut there
+constexpr double kFlatHold = 1e-6;   // of the tangential move, see header
 constexpr double kLargestFix = 1.5;  // of a correction, per pass
+constexpr double kSlow = 0.95;       // a pass that gains less is the last
 constexpr double kTotalFix = 4.0;    // of all corrections together
 
 double corner_angle(const Sheet& sheet, int facet, int v) {
@@ -50,8 +53,8 @@ class Gauge {
     high_.assign(asked_.size(), 0.0);
     least_ = std::numeric_limits<double>::infinity();
     most_ = 0.0;
-    side(front, FacetProbe(back, sheet_.film.facets));
-    side(back, FacetProbe(front, sheet_.film.facets));
+    side(front, back);
+    side(back, front);
   }
 
   double worst() const { return std::max(1.0 - least_, most_ - 1.0); }
@@ -62,18 +65,22 @@ class Gauge {
 
  private:
   template <typename Corners>
-  void sample(const Points& side, const FacetProbe& other,
+  void sample(const Points& side, const Points& other, const FacetProbe& probe,
               const Corners& corners) {
     Vec3 p = Vec3::Zero();
+    Vec3 across = Vec3::Zero();
     double asked = 0.0;
     for (const int v : corners) {
       p += side[v];
+      across += other[v];
       asked += asked_[v];
     }
     const auto count = static_cast<double>(corners.size());
     p /= count;
     asked /= count;
-    const double value = other.nearest(p).distance;
+    // The same place on the other side is near the nearest.
+    const double bound = (across / count - p).norm();
+    const double value = probe.nearest(p, bound).distance;
     const double ratio = value / asked;
     if (ratio < least_) {
       least_ = ratio;
@@ -89,15 +96,16 @@ class Gauge {
     }
   }
 
-  void side(const Points& points, const FacetProbe& other) {
+  void side(const Points& points, const Points& other) {
+    const FacetProbe probe(other, sheet_.film.facets);
     for (int v = 0; v < static_cast<int>(points.size()); ++v) {
-      sample(points, other, std::array<int, 1>{v});
+      sample(points, other, probe, std::array<int, 1>{v});
     }
     for (const Edge& e : sheet_.edges) {
-      sample(points, other, e);
+      sample(points, other, probe, e);
     }
     for (const Triangle& t : sheet_.film.facets) {
-      sample(points, other, t);
+      sample(points, other, probe, t);
     }
   }
 
@@ -136,7 +144,8 @@ WallShares shares(WallSide side) {
 }
 
 std::vector<Vec3> offset_directions(const Sheet& sheet,
-                                    const std::vector<Jet>& jets) {
+                                    const std::vector<Jet>& jets,
+                                    const std::vector<double>& asked) {
   std::vector<Vec3> directions;
   directions.reserve(jets.size());
   for (int v = 0; v < static_cast<int>(jets.size()); ++v) {
@@ -149,10 +158,16 @@ std::vector<Vec3> offset_directions(const Sheet& sheet,
       matrix += weight * n * n.transpose();
       right += weight * n;
     }
+    if (sheet.on_crease[v] != 0) {
+      directions.push_back(mitre(matrix, right));
+      continue;
+    }
     const Vec3& n = jets[v].normal;
-    directions.push_back(sheet.on_crease[v] != 0
-                             ? mitre(matrix, right)
-                             : Vec3(n * (n.dot(right) / n.dot(matrix * n))));
+    const double bend =
+        asked[v] * std::max(std::abs(jets[v].k1), std::abs(jets[v].k2));
+    const double hold = matrix.trace() * (kFlatHold + bend * bend);
+    matrix += hold * (Mat3::Identity() - n * n.transpose());
+    directions.push_back(matrix.ldlt().solve(right));
   }
   return directions;
 }
@@ -169,12 +184,13 @@ OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
     Points front = moved(sheet, direction, distance, part.front);
     Points back = moved(sheet, direction, distance, -part.back);
     gauge.measure(front, back);
+    const bool slow = gauge.worst() > kSlow * best_error;
     if (gauge.worst() < best_error) {
       best_error = gauge.worst();
       best = {std::move(front), std::move(back), gauge.thinnest(),
               gauge.thickest(), pass};
     }
-    if (gauge.worst() <= options.accuracy) {
+    if (slow || gauge.worst() <= options.accuracy) {
       break;
     }
     for (std::size_t v = 0; v < distance.size(); ++v) {

@@ -17,10 +17,14 @@ struct WallShares {
 WallShares shares(WallSide side);
 
 /// Per vertex the move for an offset by 1: the solution of n_f . d = 1 over
-/// its facets, by corner angle in the least-squares sense, along the jet's
-/// normal, or on a crease in the space that the facets' normals span clearly.
+/// its facets, by corner angle in the least-squares sense; on a crease in the
+/// space that the facets' normals span clearly, elsewhere with the part off the
+/// jet's normal held back by weight (k t)^2: with t far below the edges the
+/// facets' planes alone count, and a thick wall keeps to the normal, without
+/// which its compressed side folds.
 std::vector<Vec3> offset_directions(const Sheet& sheet,
-                                    const std::vector<Jet>& jets);
+                                    const std::vector<Jet>& jets,
+                                    const std::vector<double>& asked);
 
 struct OffsetSides {
   Points front;
