@@ -17,13 +17,17 @@ class EdgeMarks {
   /// that are not marked (rim_neighbours), as OnCurve.
   const std::vector<ComplexEdge>& all() const { return all_; }
 
-  /// Index into all() of the edge between two points; -1: not marked.
+  /// Index into all() of the edge between two points; -1: not marked, as are
+  /// the edges of points that came later.
   int find(int a, int b) const {
-    return touched_[a] != 0 && touched_[b] != 0 ? search(a, b) : -1;
+    return touched(a) && touched(b) ? search(a, b) : -1;
   }
 
  private:
   int search(int a, int b) const;
+  bool touched(int v) const {
+    return v < static_cast<int>(touched_.size()) && touched_[v] != 0;
+  }
 
   std::vector<ComplexEdge> all_;
   std::vector<int> sorted_;    // indices of all_ by (smaller, larger) point

@@ -189,7 +189,7 @@ Refinement refine(const FilmComplex& complex) {
       children.push_back({ca, bc, t[2]});
       children.push_back({ab, bc, ca});
     } else {
-      add_partial(complex.mesh.points, t, {ab, bc, ca}, children);
+      add_partial(fine.mesh.points, t, {ab, bc, ca}, children);
     }
     fine.mesh.facet_label.resize(children.size(), complex.mesh.facet_label[f]);
   }
