@@ -20,12 +20,16 @@ constexpr std::array<const char*, FirstFunction - Negate> kSymbols = {
     "-", "+", "-", "*", "/", "^", "<", "<=", ">", ">=", "==", "!="};
 
 double value_of(double x) { return x; }
-double value_of(const Dual& x) { return x.value; }
+template <int N>
+double value_of(const BasicDual<N>& x) {
+  return x.value;
+}
 
 bool is_finite(double x) { return std::isfinite(x); }
-bool is_finite(const Dual& x) {
-  return std::isfinite(x.value) && x.gradient.allFinite() &&
-         x.hessian.allFinite();
+template <int N>
+bool is_finite(const BasicDual<N>& x) {
+  return std::isfinite(x.value) &&
+         (x.is_constant() || (x.gradient.allFinite() && x.hessian.allFinite()));
 }
 
 template <class Scalar>
@@ -154,7 +158,8 @@ Expression::Expression(double constant) : text_(fmt::format("{}", constant)) {
 
 template <class Scalar>
 Scalar Expression::run(std::span<const Scalar> values) const {
-  std::vector<Scalar> stack;
+  static thread_local std::vector<Scalar> stack;  // no allocation per call
+  stack.clear();
   for (std::size_t next = 0; next < code_.size();) {
     const Instruction& at = code_[next++];
     if (at.operation == Number) {
@@ -198,6 +203,16 @@ double Expression::evaluate(std::span<const double> values) const {
 
 Dual Expression::evaluate(std::span<const Dual> values) const {
   return run(values);
+}
+
+Dual3 Expression::evaluate(std::span<const Dual3> values) const {
+  return run(values);
+}
+
+bool Expression::is_constant() const {
+  return std::none_of(code_.begin(), code_.end(), [](const Instruction& at) {
+    return at.operation == Name;
+  });
 }
 
 std::vector<int> Expression::names_used() const {

@@ -54,11 +54,12 @@ class Expression {
   /// duals also when it has no finite first or second derivative.
   double evaluate(std::span<const double> values) const;
   Dual evaluate(std::span<const Dual> values) const;
+  Dual3 evaluate(std::span<const Dual3> values) const;
 
   const std::string& text() const { return text_; }
   /// Positions of the names that appear, ascending.
   std::vector<int> names_used() const;
-  bool is_constant() const { return names_used().empty(); }
+  bool is_constant() const;
 
  private:
   friend class ExpressionParser;

@@ -42,15 +42,13 @@ PlaceJet jet_at(const Expression& expression, const Vec3& at) {
     jet.value = expression.evaluate(std::span<const double>(values));
     return jet;
   }
-  const std::array<Dual, 3> values = {Dual::variable(at.x(), 0, 3),
-                                      Dual::variable(at.y(), 1, 3),
-                                      Dual::variable(at.z(), 2, 3)};
-  const Dual dual = expression.evaluate(std::span<const Dual>(values));
+  const std::array<Dual3, 3> values = {Dual3::variable(at.x(), 0),
+                                       Dual3::variable(at.y(), 1),
+                                       Dual3::variable(at.z(), 2)};
+  const Dual3 dual = expression.evaluate(std::span<const Dual3>(values));
   jet.value = dual.value;
-  if (!dual.is_constant()) {
-    jet.gradient = dual.gradient;
-    jet.hessian = dual.hessian;
-  }
+  jet.gradient = dual.gradient;
+  jet.hessian = dual.hessian;
   return jet;
 }
 
