@@ -1,7 +1,7 @@
 #include "evolve/fe_expression.h"
 
-#include <algorithm>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -34,7 +34,15 @@ const std::map<std::string, Function, std::less<>>& functions() {
 class Parser {
  public:
   Parser(FeLexer& lexer, FeDialect dialect)
-      : lexer_(lexer), evolver_(dialect == FeDialect::Evolver) {}
+      : lexer_(lexer),
+        evolver_(dialect != FeDialect::Ours),
+        commands_(dialect == FeDialect::Commands) {}
+
+  FeExpression parse_path() {
+    expression_.place = lexer_.peek().place;
+    path();
+    return std::move(expression_);
+  }
 
   FeExpression parse() {
     expression_.place = lexer_.peek().place;
@@ -82,8 +90,9 @@ class Parser {
 
   // A sign that begins a new expression: "1 -2".
   bool starts_another(const FeToken& token) const {
-    return evolver_ && brackets_ == 0 && (token.is("-") || token.is("+")) &&
-           token.after_space && !token.before_space;
+    return evolver_ && !commands_ && brackets_ == 0 &&
+           (token.is("-") || token.is("+")) && token.after_space &&
+           !token.before_space;
   }
 
   bool taken(std::string_view symbol) {
@@ -249,8 +258,14 @@ class Parser {
       close();
       return inside;
     }
+    if (commands_ && token.kind == FeToken::Kind::String) {
+      return quoted();
+    }
     if (token.kind != FeToken::Kind::Name) {
       lexer_.fail_here("a number, a name or '(' is expected");
+    }
+    if (commands_) {
+      return command_atom();
     }
     FeToken name = lexer_.take();
     if (lexer_.peek().is("(") && functions().count(name.text) != 0) {
@@ -258,6 +273,96 @@ class Parser {
     }
     const int made = node(FeOperator::Name, name.place);
     expression_.nodes[made].name = std::move(name.text);
+    return made;
+  }
+
+  // Texts in a row are one.
+  int quoted() {
+    const int made = node(FeOperator::Text, lexer_.peek().place);
+    while (lexer_.peek().kind == FeToken::Kind::String) {
+      expression_.nodes[made].name += lexer_.take().text;
+    }
+    return made;
+  }
+
+  int command_atom() {
+    static const std::set<std::string, std::less<>> kAggregates = {
+        "max", "min", "sum", "avg", "count"};
+    static const std::set<std::string, std::less<>> kTests = {
+        "on_constraint", "on_boundary",        "hit_constraint",
+        "on_quantity",   "on_method_instance", "value_of_constraint"};
+    const std::string word = lexer_.peek().text;
+    if (kAggregates.count(word) != 0) {
+      return aggregate();
+    }
+    if (kTests.count(word) != 0) {
+      const Level level(*this);
+      const FePlace place = lexer_.take().place;
+      const int made = node(FeOperator::Member, place, -1, atom());
+      expression_.nodes[made].name = word;
+      return made;
+    }
+    if (functions().count(word) != 0) {
+      FeToken name = lexer_.take();
+      if (!lexer_.peek().is("(")) {
+        lexer_.fail_here(fmt::format("'(' is expected behind {}", word));
+      }
+      return call(std::move(name));
+    }
+    return path();
+  }
+
+  int path() {
+    int owner = -1;
+    do {
+      if (lexer_.peek().kind != FeToken::Kind::Name) {
+        lexer_.fail_here("a name is expected");
+      }
+      FeToken name = lexer_.take();
+      std::array<int, 2> index{-1, -1};
+      for (int& k : index) {
+        if (taken("[")) {
+          k = difference();
+          if (!taken("]")) {
+            lexer_.fail_here("']' is expected");
+          }
+        }
+      }
+      const bool plain = owner < 0 && index[0] < 0;
+      const int made = node(plain ? FeOperator::Name : FeOperator::Member,
+                            name.place, owner, index[0], index[1]);
+      expression_.nodes[made].name = std::move(name.text);
+      owner = made;
+    } while (taken("."));
+    return owner;
+  }
+
+  // sum(facet ff where ff.area > 1, ff.area)
+  int aggregate() {
+    const Level level(*this);
+    FeToken name = lexer_.take();
+    if (!taken("(")) {
+      lexer_.fail_here(fmt::format("'(' is expected behind {}", name.text));
+    }
+    const int elements = path();
+    std::string variable;
+    if (lexer_.peek().kind == FeToken::Kind::Name &&
+        !lexer_.peek().is_name("where")) {
+      variable = lexer_.take().text;
+    }
+    int condition = -1;
+    if (lexer_.peek().is_name("where")) {
+      lexer_.take();
+      condition = difference();
+    }
+    const int value = taken(",") ? difference() : -1;
+    if (!taken(")")) {
+      lexer_.fail_here("')' is expected");
+    }
+    const int made =
+        node(FeOperator::Aggregate, name.place, elements, condition, value);
+    expression_.nodes[made].name = std::move(name.text);
+    expression_.nodes[made].variable = std::move(variable);
     return made;
   }
 
@@ -291,6 +396,7 @@ class Parser {
 
   FeLexer& lexer_;
   bool evolver_ = true;
+  bool commands_ = false;
   FeExpression expression_;
   int depth_ = 0;
   int brackets_ = 0;
@@ -300,6 +406,10 @@ class Parser {
 
 FeExpression parse_expression(FeLexer& lexer, FeDialect dialect) {
   return Parser(lexer, dialect).parse();
+}
+
+FeExpression parse_path(FeLexer& lexer) {
+  return Parser(lexer, FeDialect::Commands).parse_path();
 }
 
 const FeUnknowns& place_names() {
