@@ -337,10 +337,9 @@ TEST(FeReader, EndsOnLargeGarbageInBoundedTime) {
   for (const char* pattern :
        {" ", "\n", "a", "1", "(", "\"", "/*", "//", "#define A A\n",
         "keep_macros ", "\\\n", "vertices 1 2 3\n", "- ", "\xff"}) {
-    std::string text;
-    text.reserve(kSize + 20);
+    std::string text = pattern;
     while (text.size() < kSize) {
-      text += pattern;
+      text += text;
     }
     const auto start = std::chrono::steady_clock::now();
     const std::string message = message_of(text);
