@@ -5,59 +5,13 @@
 #include <fmt/format.h>
 
 #include "core/nearest_name.h"
+#include "evolve/fe_command_words.h"
 
 namespace meniscus {
 
 namespace {
 
 constexpr int kDeepest = 100;
-
-using Words = std::set<std::string, std::less<>>;
-
-// With a number behind, or without.
-const Words& words() {
-  static const Words known = {"convert_to_quantities",
-                              "hessian",
-                              "hessian_seek",
-                              "hessian_menu",
-                              "recalc",
-                              "lagrange",
-                              "linear",
-                              "quadratic",
-                              "saddle",
-                              "edgeweed",
-                              "areaweed",
-                              "edgedivide",
-                              "equiangulate",
-                              "longj",
-                              "jiggle",
-                              "rebody",
-                              "eigenprobe",
-                              "dirichlet",
-                              "sobolev",
-                              "vertex_average"};
-  return known;
-}
-
-const Words& toggles() {
-  static const Words known = {
-      "conj_grad",      "autorecalc",     "autodisplay",
-      "quiet",          "hessian_normal", "hessian_normal_perp",
-      "hessian_diff",   "check_increase", "normal_motion",
-      "gv_binary",      "diffusion",      "metric_conversion",
-      "linear_metric",  "hessian_quiet",  "area_normalization",
-      "gravity",        "runge_kutta",    "deturck",
-      "autopop",        "autochop",       "kusner",
-      "effective_area", "estimate",       "approx_curv",
-      "post_project",   "jiggle_toggle",  "hessian_special_normal"};
-  return known;
-}
-
-const Words& element_commands() {
-  static const Words known = {"refine", "delete",   "edgeswap", "pop",
-                              "fix",    "dissolve", "list",     "unfix"};
-  return known;
-}
 
 class CommandParser {
  public:
@@ -92,7 +46,8 @@ class CommandParser {
 
   [[noreturn]] void unknown(const FePlaceOf& call) const {
     std::vector<std::string> known(defined_.begin(), defined_.end());
-    for (const Words& group : {words(), toggles(), element_commands()}) {
+    for (const CommandWords& group :
+         {command_words(), command_toggles(), element_commands()}) {
       known.insert(known.end(), group.begin(), group.end());
     }
     const std::string near = nearest_name(call.name, known);
@@ -224,10 +179,10 @@ class CommandParser {
       result.elements = elements();
       return result;
     }
-    if (toggles().count(token.text) != 0) {
+    if (command_toggles().count(token.text) != 0) {
       return toggle();
     }
-    if (words().count(token.text) != 0) {
+    if (command_words().count(token.text) != 0) {
       FeStatement result = made(FeStatement::Kind::Word, lexer_.take());
       optional_number(result);
       return result;

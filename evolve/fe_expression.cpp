@@ -5,31 +5,12 @@
 
 #include <fmt/format.h>
 
-#include "core/nearest_name.h"
-
 namespace meniscus {
 
 namespace {
 
 constexpr int kDeepest = 200;
 constexpr std::size_t kMostNodes = 4000;
-
-struct Function {
-  int arguments = 1;
-};
-
-const std::map<std::string, Function, std::less<>>& functions() {
-  static const std::map<std::string, Function, std::less<>> known = {
-      {"abs", {}},   {"sqr", {}},      {"sqrt", {}},     {"sin", {}},
-      {"cos", {}},   {"tan", {}},      {"acos", {}},     {"asin", {}},
-      {"atan", {}},  {"atan2", {2}},   {"log", {}},      {"exp", {}},
-      {"sinh", {}},  {"cosh", {}},     {"tanh", {}},     {"asinh", {}},
-      {"acosh", {}}, {"atanh", {}},    {"pow", {2}},     {"ceil", {}},
-      {"floor", {}}, {"minimum", {2}}, {"maximum", {2}}, {"min", {2}},
-      {"max", {2}},  {"log10", {}},    {"if", {3}},
-  };
-  return known;
-}
 
 class Parser {
  public:
@@ -268,7 +249,7 @@ class Parser {
       return command_atom();
     }
     FeToken name = lexer_.take();
-    if (lexer_.peek().is("(") && functions().count(name.text) != 0) {
+    if (lexer_.peek().is("(") && function_arguments(name.text) > 0) {
       return call(std::move(name));
     }
     const int made = node(FeOperator::Name, name.place);
@@ -302,7 +283,7 @@ class Parser {
       expression_.nodes[made].name = word;
       return made;
     }
-    if (functions().count(word) != 0) {
+    if (function_arguments(word) > 0) {
       FeToken name = lexer_.take();
       if (!lexer_.peek().is("(")) {
         lexer_.fail_here(fmt::format("'(' is expected behind {}", word));
@@ -367,14 +348,14 @@ class Parser {
   }
 
   int call(FeToken name) {
-    const Function& function = functions().find(name.text)->second;
+    const int wanted = function_arguments(name.text);
     lexer_.take();
     ++brackets_;
     std::array<int, 3> arguments{-1, -1, -1};
-    for (int k = 0; k < function.arguments; ++k) {
+    for (int k = 0; k < wanted; ++k) {
       if (k > 0 && !taken(",")) {
         lexer_.fail_here(fmt::format("{}() has {} arguments; a ',' is expected",
-                                     name.text, function.arguments));
+                                     name.text, wanted));
       }
       arguments[k] = difference();
     }
@@ -410,27 +391,6 @@ FeExpression parse_expression(FeLexer& lexer, FeDialect dialect) {
 
 FeExpression parse_path(FeLexer& lexer) {
   return Parser(lexer, FeDialect::Commands).parse_path();
-}
-
-const FeUnknowns& place_names() {
-  static const FeUnknowns names = {{"x", "x"},  {"y", "y"},  {"z", "z"},
-                                   {"x1", "x"}, {"x2", "y"}, {"x3", "z"}};
-  return names;
-}
-
-const FeUnknowns& parameter_names() {
-  static const FeUnknowns names = {{"p1", "t"}};
-  return names;
-}
-
-std::vector<const FeNode*> names_in(const FeExpression& expression) {
-  std::vector<const FeNode*> names;
-  for (const FeNode& node : expression.nodes) {
-    if (node.op == FeOperator::Name) {
-      names.push_back(&node);
-    }
-  }
-  return names;
 }
 
 }  // namespace meniscus

@@ -81,6 +81,9 @@ using FeUnknowns = std::map<std::string, std::string, std::less<>>;
 const FeUnknowns& place_names();      // x y z x1 x2 x3 -> x y z
 const FeUnknowns& parameter_names();  // p1 -> t
 
+/// How many arguments the function has; 0: there is none of that name.
+int function_arguments(std::string_view name);
+
 /// Every name in the expression, in order of appearance, repeats kept.
 std::vector<const FeNode*> names_in(const FeExpression& expression);
 

@@ -99,6 +99,7 @@ TEST(FeReader, TakesOtherParameterValues) {
   const FeFile file = read_fe(wide, "a.fe");
   EXPECT_EQ(complex_of(file).mesh.points[2].x(), 1.0);
   EXPECT_EQ(complex_of(file, {{"WIDTH", 8.0}}).mesh.points[2].x(), 4.0);
+  EXPECT_EQ(complex_of(file, {{"G", 8.0}}).gravity.z(), -8.0);
   EXPECT_THROW(complex_of(file, {{"widht", 8.0}}), InvalidInput);
 }
 
