@@ -120,8 +120,9 @@ double value_of(const FeNode& node, double a, double b, double c) {
       return a != 0.0 ? b : c;
     case FeOperator::Call:
       return function_value(node.name, a, b, c);
+    default:
+      return std::nan("");  // commands only: refused before
   }
-  return 0.0;
 }
 
 // How tightly a text holds together.
@@ -180,6 +181,11 @@ class Writer {
     }
     if (node.op == FeOperator::Name) {
       return named(node);
+    }
+    if (node.op == FeOperator::Member || node.op == FeOperator::Aggregate ||
+        node.op == FeOperator::Text) {
+      fail(file_, node.place,
+           fmt::format("'{}' belongs to commands, not to formulas", node.name));
     }
     std::array<Piece, 3> below;
     bool known = true;

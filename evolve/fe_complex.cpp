@@ -6,10 +6,11 @@
 #include <set>
 #include <tuple>
 
-#include <Eigen/QR>
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "evolve/fe_formulas.h"
+#include "evolve/put_on_constraints.h"
 
 namespace meniscus {
 
@@ -144,71 +145,12 @@ class ComplexBuilder {
     complex_.vertices.push_back(made);
   }
 
-  // The nearest point of the constraints, by Newton's method with least steps.
   Vec3 projected(const Vec3& from, int set, const FePlace& place) const {
-    if (set < 0) {
-      return from;
-    }
-    constexpr int kSteps = 60;
-    constexpr double kOff = 1e-10;    // Evolver's tolerance is 1e-12
-    constexpr double kStill = 1e-15;  // of the position: rounding
-    Vec3 p = from;
-    double off = 0.0;
-    for (int step = 0; step < kSteps; ++step) {
-      Eigen::VectorXd f;
-      Eigen::MatrixXd gradients;
-      off = violation(p, set, place, f, gradients);
-      if (off == 0.0) {
-        return p;
-      }
-      const Vec3 move = gradients.completeOrthogonalDecomposition().solve(f);
-      p -= move;
-      if (!p.allFinite() || move.norm() <= kStill * p.norm()) {
-        break;
-      }
-    }
-    if (!(off <= kOff)) {
-      fe_fail(file_, place,
-              fmt::format("the vertex cannot be put onto its constraints: a "
-                          "formula stays at {}; start nearer to them",
-                          off));
-    }
-    return p;
-  }
-
-  // Largest value of the formulas that must vanish at p; their values and
-  // gradients (rows).
-  double violation(const Vec3& p, int set, const FePlace& place,
-                   Eigen::VectorXd& f, Eigen::MatrixXd& gradients) const {
-    const std::array<Dual, 3> at = {Dual::variable(p.x(), 0, 3),
-                                    Dual::variable(p.y(), 1, 3),
-                                    Dual::variable(p.z(), 2, 3)};
-    std::vector<Dual> rows;
     try {
-      for (const int index : complex_.constraint_sets[set]) {
-        const LevelSet& level = complex_.level_sets[index];
-        Dual value = level.formula.evaluate(at);
-        const bool holds =
-            (level.side == LevelSet::Side::AtLeast && value.value >= 0.0) ||
-            (level.side == LevelSet::Side::AtMost && value.value <= 0.0);
-        if (!holds && !value.is_constant()) {
-          rows.push_back(std::move(value));
-        } else if (!holds && value.value != 0.0) {
-          fe_fail(file_, place,
-                  fmt::format("constraint '{}' has the value {} everywhere",
-                              level.name, value.value));
-        }
-      }
-    } catch (const ExpressionError& error) {
+      return put_on_constraints(complex_, set, from);
+    } catch (const InvalidInput& error) {
       fe_fail(file_, place, error.what());
     }
-    f.resize(static_cast<int>(rows.size()));
-    gradients.resize(f.size(), 3);
-    for (int k = 0; k < f.size(); ++k) {
-      f[k] = rows[k].value;
-      gradients.row(k) = rows[k].gradient.transpose();
-    }
-    return f.size() == 0 ? 0.0 : f.cwiseAbs().maxCoeff();
   }
 
   void marked_edges() {

@@ -10,7 +10,8 @@
 namespace meniscus {
 
 /// The complex that the file describes when its parameters have their values
-/// in the file, those named in `parameters` (any case) others.
+/// in the file, those named in `parameters` (any case) others; "G" there is
+/// the gravity constant.
 ///
 /// Vertices and edges in no face are left out. Faces of more than three edges
 /// are cut about the mean of their vertices, as Evolver does; what is born

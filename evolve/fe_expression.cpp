@@ -1,11 +1,9 @@
 #include "evolve/fe_expression.h"
 
-#include <algorithm>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
-
-#include "core/nearest_name.h"
 
 namespace meniscus {
 
@@ -14,27 +12,18 @@ namespace {
 constexpr int kDeepest = 200;
 constexpr std::size_t kMostNodes = 4000;
 
-struct Function {
-  int arguments = 1;
-};
-
-const std::map<std::string, Function, std::less<>>& functions() {
-  static const std::map<std::string, Function, std::less<>> known = {
-      {"abs", {}},   {"sqr", {}},      {"sqrt", {}},     {"sin", {}},
-      {"cos", {}},   {"tan", {}},      {"acos", {}},     {"asin", {}},
-      {"atan", {}},  {"atan2", {2}},   {"log", {}},      {"exp", {}},
-      {"sinh", {}},  {"cosh", {}},     {"tanh", {}},     {"asinh", {}},
-      {"acosh", {}}, {"atanh", {}},    {"pow", {2}},     {"ceil", {}},
-      {"floor", {}}, {"minimum", {2}}, {"maximum", {2}}, {"min", {2}},
-      {"max", {2}},  {"log10", {}},    {"if", {3}},
-  };
-  return known;
-}
-
 class Parser {
  public:
   Parser(FeLexer& lexer, FeDialect dialect)
-      : lexer_(lexer), evolver_(dialect == FeDialect::Evolver) {}
+      : lexer_(lexer),
+        evolver_(dialect != FeDialect::Ours),
+        commands_(dialect == FeDialect::Commands) {}
+
+  FeExpression parse_path() {
+    expression_.place = lexer_.peek().place;
+    path();
+    return std::move(expression_);
+  }
 
   FeExpression parse() {
     expression_.place = lexer_.peek().place;
@@ -82,8 +71,9 @@ class Parser {
 
   // A sign that begins a new expression: "1 -2".
   bool starts_another(const FeToken& token) const {
-    return evolver_ && brackets_ == 0 && (token.is("-") || token.is("+")) &&
-           token.after_space && !token.before_space;
+    return evolver_ && !commands_ && brackets_ == 0 &&
+           (token.is("-") || token.is("+")) && token.after_space &&
+           !token.before_space;
   }
 
   bool taken(std::string_view symbol) {
@@ -249,11 +239,17 @@ class Parser {
       close();
       return inside;
     }
+    if (commands_ && token.kind == FeToken::Kind::String) {
+      return quoted();
+    }
     if (token.kind != FeToken::Kind::Name) {
       lexer_.fail_here("a number, a name or '(' is expected");
     }
+    if (commands_) {
+      return command_atom();
+    }
     FeToken name = lexer_.take();
-    if (lexer_.peek().is("(") && functions().count(name.text) != 0) {
+    if (lexer_.peek().is("(") && function_arguments(name.text) > 0) {
       return call(std::move(name));
     }
     const int made = node(FeOperator::Name, name.place);
@@ -261,15 +257,105 @@ class Parser {
     return made;
   }
 
+  // Texts in a row are one.
+  int quoted() {
+    const int made = node(FeOperator::Text, lexer_.peek().place);
+    while (lexer_.peek().kind == FeToken::Kind::String) {
+      expression_.nodes[made].name += lexer_.take().text;
+    }
+    return made;
+  }
+
+  int command_atom() {
+    static const std::set<std::string, std::less<>> kAggregates = {
+        "max", "min", "sum", "avg", "count"};
+    static const std::set<std::string, std::less<>> kTests = {
+        "on_constraint", "on_boundary",        "hit_constraint",
+        "on_quantity",   "on_method_instance", "value_of_constraint"};
+    const std::string word = lexer_.peek().text;
+    if (kAggregates.count(word) != 0) {
+      return aggregate();
+    }
+    if (kTests.count(word) != 0) {
+      const Level level(*this);
+      const FePlace place = lexer_.take().place;
+      const int made = node(FeOperator::Member, place, -1, atom());
+      expression_.nodes[made].name = word;
+      return made;
+    }
+    if (function_arguments(word) > 0) {
+      FeToken name = lexer_.take();
+      if (!lexer_.peek().is("(")) {
+        lexer_.fail_here(fmt::format("'(' is expected behind {}", word));
+      }
+      return call(std::move(name));
+    }
+    return path();
+  }
+
+  int path() {
+    int owner = -1;
+    do {
+      if (lexer_.peek().kind != FeToken::Kind::Name) {
+        lexer_.fail_here("a name is expected");
+      }
+      FeToken name = lexer_.take();
+      std::array<int, 2> index{-1, -1};
+      for (int& k : index) {
+        if (taken("[")) {
+          k = difference();
+          if (!taken("]")) {
+            lexer_.fail_here("']' is expected");
+          }
+        }
+      }
+      const bool plain = owner < 0 && index[0] < 0;
+      const int made = node(plain ? FeOperator::Name : FeOperator::Member,
+                            name.place, owner, index[0], index[1]);
+      expression_.nodes[made].name = std::move(name.text);
+      owner = made;
+    } while (taken("."));
+    return owner;
+  }
+
+  // sum(facet ff where ff.area > 1, ff.area)
+  int aggregate() {
+    const Level level(*this);
+    FeToken name = lexer_.take();
+    if (!taken("(")) {
+      lexer_.fail_here(fmt::format("'(' is expected behind {}", name.text));
+    }
+    const int elements = path();
+    std::string variable;
+    if (lexer_.peek().kind == FeToken::Kind::Name &&
+        !lexer_.peek().is_name("where")) {
+      variable = lexer_.take().text;
+    }
+    int condition = -1;
+    if (lexer_.peek().is_name("where")) {
+      lexer_.take();
+      condition = difference();
+    }
+    const int value = taken(",") ? difference() : -1;
+    if (!taken(")")) {
+      lexer_.fail_here("')' is expected");
+    }
+    const int made =
+        node(FeOperator::Aggregate, name.place, elements, condition, value);
+    expression_.nodes[made].name = std::move(name.text);
+    expression_.nodes[made].variable = std::move(variable);
+    return made;
+  }
+
   int call(FeToken name) {
-    const Function& function = functions().find(name.text)->second;
+    const int wanted = function_arguments(name.text);
     lexer_.take();
     ++brackets_;
     std::array<int, 3> arguments{-1, -1, -1};
-    for (int k = 0; k < function.arguments; ++k) {
+    for (int k = 0; k < wanted; ++k) {
       if (k > 0 && !taken(",")) {
         lexer_.fail_here(fmt::format("{}() has {} arguments; a ',' is expected",
-                                     name.text, function.arguments));
+                                     name.text, wanted));
       }
       arguments[k] = difference();
     }
@@ -291,6 +377,7 @@ class Parser {
 
   FeLexer& lexer_;
   bool evolver_ = true;
+  bool commands_ = false;
   FeExpression expression_;
   int depth_ = 0;
   int brackets_ = 0;
@@ -302,25 +389,8 @@ FeExpression parse_expression(FeLexer& lexer, FeDialect dialect) {
   return Parser(lexer, dialect).parse();
 }
 
-const FeUnknowns& place_names() {
-  static const FeUnknowns names = {{"x", "x"},  {"y", "y"},  {"z", "z"},
-                                   {"x1", "x"}, {"x2", "y"}, {"x3", "z"}};
-  return names;
-}
-
-const FeUnknowns& parameter_names() {
-  static const FeUnknowns names = {{"p1", "t"}};
-  return names;
-}
-
-std::vector<const FeNode*> names_in(const FeExpression& expression) {
-  std::vector<const FeNode*> names;
-  for (const FeNode& node : expression.nodes) {
-    if (node.op == FeOperator::Name) {
-      names.push_back(&node);
-    }
-  }
-  return names;
+FeExpression parse_path(FeLexer& lexer) {
+  return Parser(lexer, FeDialect::Commands).parse_path();
 }
 
 }  // namespace meniscus

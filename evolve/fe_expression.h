@@ -34,13 +34,18 @@ enum class FeOperator {
   And,
   Or,
   Choose,  // condition ? a : b
-  Call     // name(a) or name(a, b)
+  Call,    // name(a) or name(a, b)
+  // In commands only:
+  Member,     // child 0 . name [child 1] [child 2], -1 where there is none
+  Aggregate,  // name(child 0 variable where child 1, child 2), name = sum, ...
+  Text        // "name"
 };
 
 struct FeNode {
   FeOperator op = FeOperator::Number;
   double number = 0.0;
-  std::string name;                      // Name, Call: in lower case
+  std::string name;      // Name, Call, Member, Aggregate: in lower case
+  std::string variable;  // Aggregate: name of the element at hand, or empty
   std::array<int, 3> child{-1, -1, -1};  // indices of earlier nodes
   FePlace place;
 };
@@ -56,13 +61,17 @@ struct FeExpression {
 
 /// How text groups. Evolver: a ^ b ^ c is (a ^ b) ^ c and, outside brackets, a
 /// sign behind a space and right before its operand begins a new expression.
-/// Ours: core/expression.h.
-enum class FeDialect { Evolver, Ours };
+/// Commands: the same without that, with elements, their attributes, sums over
+/// them and texts. Ours: core/expression.h.
+enum class FeDialect { Evolver, Commands, Ours };
 
 /// The longest expression at hand. Throws InvalidInput for broken syntax,
 /// unknown functions, more than 200 levels of nesting or 4,000 operations.
 FeExpression parse_expression(FeLexer& lexer,
                               FeDialect dialect = FeDialect::Evolver);
+
+/// "vertex[3].edge", "body", "x": a Name or Members, as commands have them.
+FeExpression parse_path(FeLexer& lexer);
 
 /// Values by name in lower case.
 using FeValues = std::map<std::string, double, std::less<>>;
@@ -71,6 +80,9 @@ using FeValues = std::map<std::string, double, std::less<>>;
 using FeUnknowns = std::map<std::string, std::string, std::less<>>;
 const FeUnknowns& place_names();      // x y z x1 x2 x3 -> x y z
 const FeUnknowns& parameter_names();  // p1 -> t
+
+/// How many arguments the function has; 0: there is none of that name.
+int function_arguments(std::string_view name);
 
 /// Every name in the expression, in order of appearance, repeats kept.
 std::vector<const FeNode*> names_in(const FeExpression& expression);

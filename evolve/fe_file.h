@@ -122,7 +122,7 @@ struct FeBody {
 };
 
 struct FeFile {
-  std::string name;  // for messages
+  std::string name;                     // for messages
   std::vector<FeParameter> parameters;  // a name's last value counts
   std::vector<FeAttribute> attributes;
   std::optional<FeExpression> gravity;       // default 1

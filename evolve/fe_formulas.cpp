@@ -222,7 +222,8 @@ FeValues fe_values(const FeFile& file,
     known.push_back(parameter.name);
   }
   for (const auto& [name, value] : others) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
+    if (name != "g" &&
+        std::find(known.begin(), known.end(), name) == known.end()) {
       const std::string near = nearest_name(name, known);
       throw InvalidInput(
           fmt::format("{}: there is no parameter '{}'{}", file.name, name,
@@ -235,6 +236,9 @@ FeValues fe_values(const FeFile& file,
   }
   if (file.gravity) {
     values["g"] = number_of(*file.gravity, values, file.name);
+  }
+  if (const auto other = others.find("g"); other != others.end()) {
+    values["g"] = other->second;
   }
   return values;
 }

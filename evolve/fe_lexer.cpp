@@ -45,8 +45,8 @@ std::string printable(std::string_view text) {
 
 }  // namespace
 
-FeLexer::FeLexer(std::string_view text, std::string name)
-    : text_(text), name_(std::move(name)) {
+FeLexer::FeLexer(std::string_view text, std::string name, int first_line)
+    : text_(text), name_(std::move(name)), line_(first_line) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text_.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
     text_.remove_prefix(kByteOrderMark.size());
@@ -248,6 +248,7 @@ FeToken FeLexer::raw() {
     }
     token.kind = FeToken::Kind::Name;
     token.text = spelling_;
+    token.upper = lower(spelling_.front()) != spelling_.front();
     std::transform(token.text.begin(), token.text.end(), token.text.begin(),
                    lower);
   } else if (c == '"') {

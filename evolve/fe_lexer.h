@@ -21,6 +21,7 @@ struct FeToken {
   Kind kind = Kind::End;
   std::string text;     // names in lower case; of numbers as written
   double number = 0.0;  // Number: always finite
+  bool upper = false;   // the name's first letter, as written
   bool first_on_line = false;
   bool after_space = false;
   bool before_space = false;
@@ -39,8 +40,9 @@ struct FeToken {
 /// beyond bounds, comments and texts without end, and #include.
 class FeLexer {
  public:
-  /// `text` must outlive the lexer; `name` is that of the file, for messages.
-  FeLexer(std::string_view text, std::string name);
+  /// `text` must outlive the lexer; `name` is that of the file, for messages,
+  /// which count lines from `first_line`.
+  FeLexer(std::string_view text, std::string name, int first_line = 1);
 
   const FeToken& peek() const { return token_; }
   FeToken take();  // the token at hand; moves on

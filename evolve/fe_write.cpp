@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "evolve/curve.h"
 #include "evolve/fe_expression.h"
+#include "evolve/fe_integral_places.h"
 
 namespace meniscus {
 
@@ -18,21 +19,21 @@ constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
 
 class FeWriter {
  public:
-  explicit FeWriter(const FilmComplex& complex) : complex_(complex) {}
+  explicit FeWriter(const FilmComplex& complex)
+      : complex_(complex), places_(complex) {}
 
   std::string write() {
     number_edges();
-    place_integrals();
     top();
     for (std::size_t c = 0; c < complex_.curves.size(); ++c) {
-      if (is_boundary(static_cast<int>(c))) {
+      if (fe_is_boundary(complex_, static_cast<int>(c))) {
         curve(static_cast<int>(c));
       }
     }
     for (std::size_t k = 0; k < complex_.level_sets.size(); ++k) {
       level_set(static_cast<int>(k));
     }
-    for (const auto& [key, number] : carriers_) {
+    for (const auto& [key, number] : places_.carriers) {
       const auto [level, set] = key;
       add("\nconstraint {}  // carries integrals\nformula: {}\n", number,
           level < 0 ? "0" : text(complex_.level_sets[level].formula));
@@ -84,63 +85,6 @@ class FeWriter {
     }
   }
 
-  // A boundary or constraint carries the integrals of its edges when they are
-  // the same for all; those of other edges get constraints of their own.
-  void place_integrals() {
-    constexpr int kNone = -1;
-    constexpr int kUnseen = -2;
-    of_curve_.assign(complex_.curves.size(), kUnseen);
-    of_level_.assign(complex_.level_sets.size(), kUnseen);
-    const auto see = [](int& of, int set) {
-      of = of == kUnseen || of == set ? set : kNone;
-    };
-    for (const ComplexEdge& edge : complex_.edges) {
-      if (on_boundary(edge)) {
-        see(of_curve_[edge.curve], edge.integrals);
-      } else if (has_levels(edge)) {
-        const std::vector<int>& levels =
-            complex_.constraint_sets[edge.constraints];
-        for (std::size_t k = 0; k < levels.size(); ++k) {
-          see(of_level_[levels[k]], k == 0 ? edge.integrals : kNone);
-        }
-      }
-    }
-    int next = static_cast<int>(complex_.level_sets.size()) + 1;
-    for (const ComplexEdge& edge : complex_.edges) {
-      if (needs_carrier(edge) &&
-          carriers_.emplace(carrier_key(edge), next).second) {
-        ++next;
-      }
-    }
-  }
-
-  bool on_boundary(const ComplexEdge& edge) const {
-    return (edge.kind == VertexKind::OnCurve ||
-            edge.kind == VertexKind::Slides) &&
-           is_boundary(edge.curve);
-  }
-  static bool has_levels(const ComplexEdge& edge) {
-    return edge.kind == VertexKind::Free && edge.constraints >= 0;
-  }
-  bool needs_carrier(const ComplexEdge& edge) const {
-    if (edge.integrals < 0) {
-      return false;
-    }
-    if (on_boundary(edge)) {
-      return of_curve_[edge.curve] != edge.integrals;
-    }
-    return !has_levels(edge) ||
-           of_level_[complex_.constraint_sets[edge.constraints][0]] !=
-               edge.integrals;
-  }
-  // Level set that the carrier repeats, so that vertices born there stay on
-  // it, or -1; set of integrals.
-  std::array<int, 2> carrier_key(const ComplexEdge& edge) const {
-    return {
-        has_levels(edge) ? complex_.constraint_sets[edge.constraints][0] : -1,
-        edge.integrals};
-  }
-
   void top() {
     const bool heavy = std::any_of(
         complex_.bodies.begin(), complex_.bodies.end(),
@@ -159,12 +103,6 @@ class FeWriter {
     }
   }
 
-  bool is_boundary(int curve) const {
-    const CurveShape& shape = complex_.curves[curve].shape;
-    return !std::holds_alternative<Rectangle>(shape) &&
-           !std::holds_alternative<Polygon>(shape);
-  }
-
   void curve(int index) {
     const CurveShape& shape = complex_.curves[index].shape;
     add("\nboundary {} parameters 1  // {}\n", index + 1,
@@ -177,7 +115,7 @@ class FeWriter {
       round(shape);
     }
     // Evolver adds content of boundaries with the other sign.
-    integral_set(of_curve_[index], Sign::ContentOpposite);
+    integral_set(places_.of_curve[index], Sign::ContentOpposite);
   }
 
   void round(const CurveShape& shape) {
@@ -200,7 +138,7 @@ class FeWriter {
         : level.side == LevelSet::Side::AtMost ? " nonpositive"
                                                : "",
         one_line(level.name), text(level.formula));
-    integral_set(of_level_[index], Sign::Same);
+    integral_set(places_.of_level[index], Sign::Same);
   }
 
   enum class Sign { Same, ContentOpposite };
@@ -301,7 +239,7 @@ class FeWriter {
     const Vec3& p = complex_.mesh.points[index];
     const bool on_curve =
         vertex.kind == VertexKind::OnCurve || vertex.kind == VertexKind::Slides;
-    if (on_curve && is_boundary(vertex.curve)) {
+    if (on_curve && fe_is_boundary(complex_, vertex.curve)) {
       add("{} {} boundary {}{}\n", index + 1, vertex.t, vertex.curve + 1,
           vertex.kind == VertexKind::OnCurve ? " fixed" : "");
       return;
@@ -336,12 +274,12 @@ class FeWriter {
   }
 
   void marks(const ComplexEdge& edge) {
-    const bool carried = needs_carrier(edge);
+    const bool carried = places_.needs_carrier(complex_, edge);
     if (edge.kind == VertexKind::Slides &&
-        (carried || !is_boundary(edge.curve))) {
+        (carried || !fe_is_boundary(complex_, edge.curve))) {
       refuse_sliding(edge.curve);
     }
-    if (on_boundary(edge) && !carried) {
+    if (fe_on_boundary(complex_, edge) && !carried) {
       add(" boundary {}", edge.curve + 1);
     }
     if (edge.kind != VertexKind::Free && edge.kind != VertexKind::Slides) {
@@ -349,7 +287,7 @@ class FeWriter {
     }
     const std::vector<int> none;
     const std::vector<int>& levels =
-        has_levels(edge) ? complex_.constraint_sets[edge.constraints] : none;
+        fe_has_levels(edge) ? complex_.constraint_sets[edge.constraints] : none;
     if (carried || !levels.empty()) {
       add(" constraint");
     }
@@ -357,7 +295,7 @@ class FeWriter {
       add(" {}", levels[k] + 1);
     }
     if (carried) {
-      add(" {}", carriers_.at(carrier_key(edge)));
+      add(" {}", places_.carriers.at(FeIntegralPlaces::key_of(complex_, edge)));
     }
     if (!edge.refine) {
       add(" no_refine");
@@ -431,9 +369,7 @@ class FeWriter {
   std::string out_;
   std::vector<Edge> edges_;
   std::vector<Triangle> facet_edges_;
-  std::vector<int> of_curve_;  // set of integrals; below 0: none
-  std::vector<int> of_level_;
-  std::map<std::array<int, 2>, int> carriers_;  // constraint number
+  FeIntegralPlaces places_;
   std::vector<int> mark_;  // of edges: index into complex.edges, or -1
 };
 

@@ -99,6 +99,7 @@ TEST(FeReader, TakesOtherParameterValues) {
   const FeFile file = read_fe(wide, "a.fe");
   EXPECT_EQ(complex_of(file).mesh.points[2].x(), 1.0);
   EXPECT_EQ(complex_of(file, {{"WIDTH", 8.0}}).mesh.points[2].x(), 4.0);
+  EXPECT_EQ(complex_of(file, {{"G", 8.0}}).gravity.z(), -8.0);
   EXPECT_THROW(complex_of(file, {{"widht", 8.0}}), InvalidInput);
 }
 
@@ -337,10 +338,9 @@ TEST(FeReader, EndsOnLargeGarbageInBoundedTime) {
   for (const char* pattern :
        {" ", "\n", "a", "1", "(", "\"", "/*", "//", "#define A A\n",
         "keep_macros ", "\\\n", "vertices 1 2 3\n", "- ", "\xff"}) {
-    std::string text;
-    text.reserve(kSize + 20);
+    std::string text = pattern;
     while (text.size() < kSize) {
-      text += pattern;
+      text += text;
     }
     const auto start = std::chrono::steady_clock::now();
     const std::string message = message_of(text);

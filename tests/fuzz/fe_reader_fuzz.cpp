@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "evolve/fe_commands.h"
 #include "evolve/fe_complex.h"
 #include "evolve/fe_write.h"
 
@@ -15,9 +16,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   std::string written;
   try {
-    written = fe_text(complex_of(read_fe(text, "fuzz.fe")));
+    const FeFile file = read_fe(text, "fuzz.fe");
+    written = fe_text(complex_of(file));
+    parse_commands(file.commands, file.name, file.commands_line);
   } catch (const InvalidInput&) {
-    return 0;
+    if (written.empty()) {
+      return 0;
+    }
   }
   try {
     complex_of(read_fe(written, "written.fe"));
