@@ -90,7 +90,21 @@ int run_program(int argc, char** argv) {
       ->add_option("--method", evolve_arguments.method,
                    "datafiles: newton, gradient or conjugate_gradients")
       ->check(CLI::IsMember({"newton", "gradient", "conjugate_gradients"}));
-  evolve->callback([&] {
+  CLI::Option* script =
+      evolve
+          ->add_option("--script", evolve_arguments.macro,
+                       "datafiles: run this macro of the file (default: gogo) "
+                       "in place of our own route")
+          ->expected(0, 1)
+          ->default_str("gogo");
+  CLI::Option* pop = evolve->add_flag(
+      "--pop", evolve_arguments.pop,
+      "datafiles: split junctions of more than three films, and settle again");
+  pop->excludes(script);
+  evolve->callback([&, script] {
+    if (script->count() > 0 && evolve_arguments.macro.empty()) {
+      evolve_arguments.macro = "gogo";
+    }
     command = [&] { return meniscus::evolve_command(evolve_arguments); };
   });
 

@@ -90,6 +90,10 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
                      : arguments.method == "conjugate_gradients"
                          ? DatafileMethod::ConjugateGradients
                          : DatafileMethod::Newton;
+    if (!arguments.macro.empty()) {
+      options.macro = arguments.macro;
+    }
+    options.pop = arguments.pop;
     options.monitor = &monitor;
     make_folder(folder);
     catch_stop_signals();

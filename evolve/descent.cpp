@@ -30,8 +30,17 @@ class Descent {
       }
     }
     h_ = VectorX::Zero(energy.unknowns());
-    metric_ = energy.lumped_area(base).cwiseMax(1e-300);
-    restore(h_);
+    metric_ = options.metric == DescentMetric::LumpedArea
+                  ? VectorX(energy.lumped_area(base).cwiseMax(1e-300))
+                  : VectorX(VectorX::Ones(energy.unknowns()));
+    for (const int b : held_) {
+      volume_.push_back(*targets.bodies[b].volume);
+    }
+    if (options.most_restore) {
+      approach(*options.most_restore);
+    } else {
+      restore(h_);
+    }
     now_ = value(h_);
   }
 
@@ -149,25 +158,50 @@ class Descent {
     }
     return sum;
   }
+  VectorX missing(const Points& x) const {
+    const VectorX volumes = energy_.volumes(x);
+    VectorX gap(static_cast<Eigen::Index>(held_.size()));
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      gap[static_cast<Eigen::Index>(k)] = volume_[k] - volumes[held_[k]];
+    }
+    return gap;
+  }
+  VectorX heights_for(const Points& x, const VectorX& gap) const {
+    const Eigen::MatrixXd b = volume_slopes(x);
+    const Eigen::MatrixXd wb = metric_.cwiseInverse().asDiagonal() * b;
+    return wb * (b.transpose() * wb).ldlt().solve(gap);
+  }
+  /// One step towards the volumes, which are then held where they are.
+  void approach(double most) {
+    if (held_.empty()) {
+      return;
+    }
+    const Points x = at(h_);
+    const VectorX way = heights_for(x, missing(x));
+    const double far = way.size() > 0 ? way.cwiseAbs().maxCoeff() : 0.0;
+    if (far > 0.0 && std::isfinite(far)) {
+      h_ += std::min(1.0, most / far) * way;
+    }
+    const VectorX volumes = energy_.volumes(at(h_));
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      volume_[k] = volumes[held_[k]];
+    }
+  }
   /// Newton steps along the volume slopes; false where they do not arrive.
   bool restore(VectorX& h) const {
     for (int k = 0; k < kRestoreSteps && !held_.empty(); ++k) {
       const Points x = at(h);
-      const VectorX volumes = energy_.volumes(x);
-      VectorX gap(static_cast<Eigen::Index>(held_.size()));
+      const VectorX gap = missing(x);
       bool there = true;
       for (std::size_t i = 0; i < held_.size(); ++i) {
-        const double target = *targets_.bodies[held_[i]].volume;
-        gap[static_cast<Eigen::Index>(i)] = target - volumes[held_[i]];
-        there = there && std::abs(target - volumes[held_[i]]) <=
-                             0.1 * options_.volume_tolerance * std::abs(target);
+        there =
+            there && std::abs(gap[static_cast<Eigen::Index>(i)]) <=
+                         0.1 * options_.volume_tolerance * std::abs(volume_[i]);
       }
       if (there) {
         return true;
       }
-      const Eigen::MatrixXd b = volume_slopes(x);
-      const Eigen::MatrixXd wb = metric_.cwiseInverse().asDiagonal() * b;
-      h += wb * (b.transpose() * wb).ldlt().solve(gap);
+      h += heights_for(x, gap);
       if (!h.allFinite()) {
         return false;
       }
@@ -218,6 +252,7 @@ class Descent {
   Points base_;
   const DescentOptions& options_;
   std::vector<int> held_;
+  std::vector<double> volume_;  // of the held ones
   VectorX h_;
   VectorX metric_;
   VectorX force_;

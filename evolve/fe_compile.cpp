@@ -74,7 +74,9 @@ double function_value(const std::string& name, double a, double b, double c) {
   return a != 0.0 ? b : c;  // if
 }
 
-double value_of(const FeNode& node, double a, double b, double c) {
+}  // namespace
+
+double operation_value(const FeNode& node, double a, double b, double c) {
   switch (node.op) {
     case FeOperator::Number:
     case FeOperator::Name:
@@ -124,6 +126,8 @@ double value_of(const FeNode& node, double a, double b, double c) {
       return std::nan("");  // commands only: refused before
   }
 }
+
+namespace {
 
 // How tightly a text holds together.
 enum Grip { kComparison, kSum, kProduct, kPower, kAtom };
@@ -196,7 +200,7 @@ class Writer {
       }
     }
     if (known) {
-      return {value_of(node, below[0].number.value_or(0.0),
+      return {operation_value(node, below[0].number.value_or(0.0),
                        below[1].number.value_or(0.0),
                        below[2].number.value_or(0.0)),
               {}};

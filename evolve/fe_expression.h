@@ -84,6 +84,10 @@ const FeUnknowns& parameter_names();  // p1 -> t
 /// How many arguments the function has; 0: there is none of that name.
 int function_arguments(std::string_view name);
 
+/// What the node makes of its children's values; not for names, members,
+/// aggregates and texts.
+double operation_value(const FeNode& node, double a, double b, double c);
+
 /// Every name in the expression, in order of appearance, repeats kept.
 std::vector<const FeNode*> names_in(const FeExpression& expression);
 

@@ -2,14 +2,15 @@
 /// language that such macros use, run with our own operations.
 ///
 ///   g [n]  r [n]  u  V  U  hessian  hessian_seek  t length  o  G value  recalc
-///   name := {...}   name := expression   += -= *= /=   body[i].target := ...
-///   set|unset vertex|edge|facet|body ... where ...   fix|unfix ... where ...
-///   refine edges where ...   if then else   for   while   do while   {...} n
-///   printf   show, color and view commands (left out)
+///   name := {...}   name := value   += -= *= /=   body[i].target := ...
+///   set|unset vertices|edges|facets|bodies ... where ...   fix|unfix ...
+///   refine edges where ...   if then else   for   while   do while   foreach
+///   {...} n   break   continue   print   printf   sum, max, ... of elements
 ///
-/// `g` moves along the film's normals with the best scale, `U` switches to
-/// conjugate gradients; results come near those of Evolver, not to its digits.
-/// Everything else is refused by name and line.
+/// `g` moves along the film's normals with the best scale, `U` and conj_grad
+/// switch to conjugate gradients: results come near those of Evolver, not to
+/// its digits. Colours and views are left out; everything else is refused by
+/// name and line.
 #pragma once
 
 #include <map>

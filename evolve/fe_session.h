@@ -3,47 +3,67 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/monitor.h"
+#include "core/surface_mesh.h"
 #include "evolve/fe_complex.h"
 
 namespace meniscus {
+
+enum class FeKind { Vertices, Edges, Facets, Bodies };
+
+/// An element at hand; index from 0.
+struct FeElementRef {
+  FeKind kind = FeKind::Vertices;
+  int index = -1;
+};
 
 class FeSession {
  public:
   FeSession(const FeFile& file, const std::map<std::string, double>& parameters,
             Monitor* monitor);
 
-  enum class Kind { Vertex, Edge, Facet, Body };
   using Filter = std::function<bool(int)>;  // of an element's index
 
-  // Commands of one letter or word.
   void descend_steps(int count);
   void newton_step();
   void refine_all();
   void refine_edges(const Filter& chosen);
   void flip();
   void average();
-  void remove_tiny(double length);
+  int remove_tiny(double length);
   void pop_all();
-  void toggle_conjugate() { conjugate_ = !conjugate_; }
   void conjugate(bool on) { conjugate_ = on; }
+  bool is_conjugate() const { return conjugate_; }
   void gravity(double constant);
+  /// The parameters' values act: formulas anew, vertices back on their walls.
+  void recalculate_all();
 
-  // Values.
-  bool has_name(const std::string& name) const;
-  double value(const std::string& name) const;
+  /// A parameter, a variable or a figure of the film, in lower case.
+  std::optional<double> value(const std::string& name) const;
   void assign(const std::string& name, double value);
-  int count(Kind kind) const;
-  /// False where the element has no such attribute.
-  bool attribute(Kind kind, int index, const std::string& name, int number,
-                 double& result) const;
-  bool set_attribute(Kind kind, int index, const std::string& name,
+  /// value, target or pressure of a quantity.
+  std::optional<double> quantity(const std::string& name,
+                                 const std::string& attribute) const;
+
+  int count(FeKind kind) const;
+  /// Nothing where such elements have no such attribute; `number` is that of
+  /// the constraint or boundary in on_constraint, on_boundary.
+  std::optional<double> attribute(const FeElementRef& element,
+                                  const std::string& name, int number) const;
+  /// False where it cannot be set.
+  bool set_attribute(const FeElementRef& element, const std::string& name,
                      double value);
-  /// constraint, boundary, fixed; `on` false takes it away.
-  bool mark(Kind kind, int index, const std::string& name, int number, bool on);
-  int body_of(int id) const;  // index, or -1
+  bool fix(const FeElementRef& element);
+  bool unfix(const FeElementRef& element);
+  /// `what`: constraint or boundary.
+  bool release(const FeElementRef& element, const std::string& what,
+               int number);
+  /// By the number in the file; nothing where there is none.
+  std::optional<FeElementRef> element(FeKind kind, int id) const;
 
   const FilmComplex& complex() const { return complex_; }
   int iterations() const { return iterations_; }
@@ -52,7 +72,17 @@ class FeSession {
   void changed();
   const std::vector<Edge>& edges() const;
   int mark_of(int edge) const;  // into complex_.edges, or -1
-  int split_surface(int surface, double tension);
+  bool on_wall(int set, int number) const;
+  bool on_curve(int curve, int number) const;
+  std::optional<double> vertex_attribute(int v, const std::string& name,
+                                         int number) const;
+  std::optional<double> edge_attribute(int e, const std::string& name,
+                                       int number) const;
+  std::optional<double> facet_attribute(int f, const std::string& name) const;
+  std::optional<double> body_attribute(int b, const std::string& name) const;
+  int surface_with_tension(int surface, double tension);
+  void release_vertex(int v, const std::string& what, int number);
+  void release_edge(int e, const std::string& what);
 
   const FeFile& file_;
   FilmComplex complex_;

@@ -195,6 +195,11 @@ class FeWriter {
       case FilmQuantity::Kind::Area:
         add("facet_area{}\n", where);
         break;
+      case FilmQuantity::Kind::BodyScalarIntegral:
+        throw InvalidInput(fmt::format(
+            "quantity '{}' is an integral over a body, which datafiles have "
+            "not",
+            quantity.name));
       case FilmQuantity::Kind::BodyVolume:
         throw InvalidInput(fmt::format(
             "quantity '{}' is a body's volume, which a datafile says as the "

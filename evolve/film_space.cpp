@@ -52,7 +52,7 @@ PlaceJet jet_at(const Expression& expression, const Vec3& at) {
   return jet;
 }
 
-FilmSpace::FilmSpace(const FilmComplex& complex)
+FilmSpace::FilmSpace(const FilmComplex& complex, FilmMotion motion)
     : facets_(complex.mesh.facets),
       level_sets_(complex.level_sets),
       curves_(complex.curves) {
@@ -120,9 +120,11 @@ FilmSpace::FilmSpace(const FilmComplex& complex)
       }
     }
     const bool walled = slides || !wall.level_sets.empty();
+    const int junction = 3;
     const int rank =
         slides ? 1
-               : rank_of(lines[v], static_cast<int>(wall.level_sets.size()));
+               : rank_of(motion == FilmMotion::Everywhere ? junction : lines[v],
+                         static_cast<int>(wall.level_sets.size()));
     vertex_.insert(vertex_.end(), rank, v);
     if (walled) {
       wall_of_.resize(points, -1);

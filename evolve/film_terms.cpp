@@ -272,7 +272,6 @@ class LineTerm : public FilmTerm {
     const int a = element.first;
     const int b = (a + 1) % 3;
     const Vec3 way = c[b] - c[a];
-    const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
     FacetJet sum;
     for (const auto& [s, weight] : rule_) {
       const FieldJet f = field_(c[a] + s * way);

@@ -21,7 +21,8 @@ constexpr int kMoveTrials = 3;  // each half as long as the last
 
 }  // namespace
 
-bool SurfaceEditor::should_flip(int a, int b, int c, int d) const {
+bool SurfaceEditor::should_flip(int a, int b, int c, int d,
+                                FlipRule rule) const {
   const Vec3& pa = mesh_.points[a];
   const Vec3& pb = mesh_.points[b];
   const Vec3& pc = mesh_.points[c];
@@ -32,6 +33,9 @@ bool SurfaceEditor::should_flip(int a, int b, int c, int d) const {
       std::min(smallest_tangent(pc, pd, pb), smallest_tangent(pd, pc, pa));
   if (!(then > now + kLeastGain) || line(c, d) != nullptr || has_edge(c, d)) {
     return false;
+  }
+  if (rule == FlipRule::AnglesOnly) {
+    return true;
   }
   const Vec3 across = (pb - pa).cross(pd - pc);
   const double height = std::abs(across.dot(pc - pa));
@@ -66,7 +70,7 @@ void SurfaceEditor::flip(int a, int b, int left, int right, int c, int d) {
   star_[c].push_back(right);
 }
 
-int SurfaceEditor::flip_all() {
+int SurfaceEditor::flip_all(FlipRule rule) {
   // Only where something has changed since the last time.
   std::queue<Edge> queue;
   for (int f = 0; f < static_cast<int>(mesh_.facets.size()); ++f) {
@@ -98,7 +102,7 @@ int SurfaceEditor::flip_all() {
                             (t[2] == a && t[0] == b);
     const Wing left = wings_[first_left ? 0 : 1];
     const Wing right = wings_[first_left ? 1 : 0];
-    if (!should_flip(a, b, left.corner, right.corner)) {
+    if (!should_flip(a, b, left.corner, right.corner, rule)) {
       continue;
     }
     flip(a, b, left.facet, right.facet, left.corner, right.corner);

@@ -20,9 +20,9 @@ void remesh_films(FilmComplex& complex, const RemeshOptions& options) {
   complex = std::move(editor).finish();
 }
 
-int equiangulate(FilmComplex& complex) {
+int equiangulate(FilmComplex& complex, FlipRule rule) {
   SurfaceEditor editor(std::move(complex));
-  const int flips = editor.flip_all();
+  const int flips = editor.flip_all(rule);
   complex = std::move(editor).finish();
   return flips;
 }

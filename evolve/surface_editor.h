@@ -17,6 +17,7 @@
 
 #include "evolve/edge_marks.h"
 #include "evolve/film_complex.h"
+#include "evolve/grooming.h"
 #include "evolve/triangle_shape.h"
 
 namespace meniscus {
@@ -48,8 +49,8 @@ class SurfaceEditor {
   void collapse_below(double factor, double longest, const EdgeTarget& target);
 
   /// Flips edges inside films where that increases the smaller of the smallest
-  /// angles of the two facets, and does not fold the film. Returns the number.
-  int flip_all();
+  /// angles of the two facets, and as `rule` says. Returns the number.
+  int flip_all(FlipRule rule = FlipRule::KeepShape);
 
   /// Moves each liquid vertex along its film to the centre of its facets
   /// (weights: area over target^2), on lines along the line to the middle of
@@ -104,7 +105,7 @@ class SurfaceEditor {
   void collapse(int gone, int kept, const PlacedVertex& place);
   void move_lines(int gone, int kept);
 
-  bool should_flip(int a, int b, int c, int d) const;
+  bool should_flip(int a, int b, int c, int d, FlipRule rule) const;
   void flip(int a, int b, int left, int right, int c, int d);
 
   Vec3 film_move(int v, const EdgeTarget& target, Vec3& normal) const;

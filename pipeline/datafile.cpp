@@ -8,9 +8,11 @@
 #include "core/error.h"
 #include "core/timer.h"
 #include "evolve/equilibrium.h"
+#include "evolve/fe_script.h"
 #include "evolve/fe_write.h"
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
+#include "evolve/pop.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
 #include "pipeline/results.h"
@@ -21,6 +23,7 @@ namespace {
 
 constexpr double kEnoughFacets = 2000.0;
 constexpr double kDescentResidual = 1e-6;  // x tension x edge
+constexpr int kMostPops = 10;
 
 int refinements_of(const FilmComplex& complex, const DatafileOptions& options) {
   if (options.refinements) {
@@ -36,38 +39,18 @@ int refinements_of(const FilmComplex& complex, const DatafileOptions& options) {
   return result;
 }
 
-double largest_tension(const FilmTargets& targets) {
-  return targets.tension.empty() ? 0.0
-                                 : *std::max_element(targets.tension.begin(),
-                                                     targets.tension.end());
+double residual_bound_of(const FilmEnergy& energy, const Points& points,
+                         const FilmTargets& targets) {
+  const double tension =
+      targets.tension.empty()
+          ? 0.0
+          : *std::max_element(targets.tension.begin(), targets.tension.end());
+  return kDescentResidual * tension * energy.mean_edge(points);
 }
 
-/// The paper's motion, refined and groomed between its runs.
-FilmState descend_by_levels(FilmComplex& complex, int refinements,
-                            const DatafileOptions& options) {
-  DescentReport report;
-  int steps = 0;
-  for (int level = 0; level <= refinements; ++level) {
-    if (level > 0) {
-      complex = refine(complex).complex;
-    }
-    equiangulate(complex);
-    average_vertices(complex);
-    const FilmEnergy energy(complex);
-    const FilmTargets targets = targets_of(complex);
-    const double bound = kDescentResidual * largest_tension(targets) *
-                         energy.mean_edge(complex.mesh.points);
-    report =
-        descend(energy, targets, energy.space().directions(complex.mesh.points),
-                complex.mesh.points,
-                {.method = options.method == DatafileMethod::Gradient
-                               ? DescentMethod::Gradient
-                               : DescentMethod::ConjugateGradients,
-                 .max_steps = options.max_steps,
-                 .residual_bound = bound,
-                 .monitor = options.monitor});
-    steps += report.steps;
-  }
+/// The film as descent left it, with the verdict.
+FilmState state_after(const FilmComplex& complex, const DescentReport& descent,
+                      int steps) {
   const FilmEnergy energy(complex);
   const FilmTargets targets = targets_of(complex);
   FilmState state;
@@ -77,22 +60,94 @@ FilmState descend_by_levels(FilmComplex& complex, int refinements,
   figures.facets = static_cast<int>(complex.mesh.facets.size());
   figures.energy = energy.value(state.points, targets);
   figures.area = energy.area(state.points);
-  figures.residual = report.residual;
-  figures.residual_bound = kDescentResidual * largest_tension(targets) *
-                           energy.mean_edge(state.points);
+  figures.residual = descent.residual;
+  figures.residual_bound = residual_bound_of(energy, state.points, targets);
   figures.iterations = steps;
   const VectorX volumes = energy.volumes(state.points);
   for (int b = 0; b < energy.functionals(); ++b) {
     figures.bodies.push_back({targets.bodies[b].name, volumes[b],
                               targets.bodies[b].volume.value_or(volumes[b]),
-                              report.pressure[b]});
+                              descent.pressure[b]});
   }
   const LowestMode mode =
-      lowest_mode_of(energy, targets, state.points, report.pressure);
+      lowest_mode_of(energy, targets, state.points, descent.pressure);
   figures.min_eigenvalue = mode.eigenvalue;
   figures.index = mode.eigenvalue < 0.0 ? 1 : 0;
-  judge(energy, complex, {.reason = report.converged ? "" : report.message},
-        state);
+  const bool at_rest = figures.residual <= figures.residual_bound;
+  judge(energy, complex, {.reason = at_rest ? "" : descent.message}, state);
+  return state;
+}
+
+DescentReport descend_to_rest(FilmComplex& complex, DescentOptions options) {
+  const FilmEnergy energy(complex);
+  const FilmTargets targets = targets_of(complex);
+  const Points directions = energy.space().directions(complex.mesh.points);
+  options.residual_bound =
+      residual_bound_of(energy, complex.mesh.points, targets);
+  return descend(energy, targets, directions, complex.mesh.points, options);
+}
+
+/// The paper's motion, refined and groomed between its runs.
+FilmState descend_by_levels(FilmComplex& complex, int refinements,
+                            const DatafileOptions& options) {
+  const DescentMethod method = options.method == DatafileMethod::Gradient
+                                   ? DescentMethod::Gradient
+                                   : DescentMethod::ConjugateGradients;
+  DescentReport report;
+  int steps = 0;
+  for (int level = 0; level <= refinements; ++level) {
+    if (level > 0) {
+      complex = refine(complex).complex;
+    }
+    equiangulate(complex);
+    average_vertices(complex);
+    report = descend_to_rest(complex, {.method = method,
+                                       .max_steps = options.max_steps,
+                                       .monitor = options.monitor});
+    steps += report.steps;
+  }
+  return state_after(complex, report, steps);
+}
+
+FilmState run_macro(const FeFile& file, const DatafileOptions& options,
+                    DatafileResult& result) {
+  FeScriptResult script =
+      run_fe_script(file, options.parameters,
+                    {.macro = *options.macro, .monitor = options.monitor});
+  result.complex = std::move(script.complex);
+  result.printed = std::move(script.output);
+  DescentReport now =
+      descend_to_rest(result.complex, {.max_steps = 0, .most_restore = 0.0});
+  now.message = "the macro ended here";
+  FilmState state = state_after(result.complex, now, script.iterations);
+  if (state.report.residual > state.report.residual_bound) {
+    state.report.verdict = fmt::format(
+        "not at rest: the macro ended at a residual of {:.3g} (bound {:.3g})",
+        state.report.residual, state.report.residual_bound);
+  }
+  state.failure.reset();
+  return state;
+}
+
+/// Settled, popped and settled again. Films without junctions to pop are
+/// settled once.
+FilmState settle_and_pop(FilmComplex& complex, const FindOptions& options,
+                         int& popped) {
+  FilmComplex coarse = complex;
+  FilmState state = find_equilibrium(complex, options);
+  for (int round = 0; round < kMostPops; ++round) {
+    // The start is popped: its refinements are those of the popped film.
+    FilmComplex settled = coarse;
+    find_equilibrium(settled, {.settle = options.settle});
+    const int here = pop_edges(settled).popped + pop_vertices(settled).popped;
+    if (here == 0) {
+      break;
+    }
+    popped += here;
+    coarse = settled;
+    complex = std::move(settled);
+    state = find_equilibrium(complex, options);
+  }
   return state;
 }
 
@@ -106,10 +161,13 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
   result.complex = complex_of(file, options.parameters);
   const int refinements = refinements_of(result.complex, options);
   FilmState state;
-  if (options.method == DatafileMethod::Newton) {
-    state = find_equilibrium(
-        result.complex,
-        {.refinements = refinements, .settle = {.monitor = options.monitor}});
+  if (options.macro) {
+    state = run_macro(file, options, result);
+  } else if (options.method == DatafileMethod::Newton) {
+    const FindOptions find{.refinements = refinements,
+                           .settle = {.monitor = options.monitor}};
+    state = options.pop ? settle_and_pop(result.complex, find, result.popped)
+                        : find_equilibrium(result.complex, find);
   } else {
     state = descend_by_levels(result.complex, refinements, options);
   }
@@ -144,7 +202,8 @@ std::string write_datafile_result(const DatafileResult& result,
 
 std::string datafile_text(const DatafileResult& result) {
   const FilmReport& film = result.report;
-  std::string text = fmt::format(
+  std::string text = result.printed;
+  text += fmt::format(
       "film: {}\n  {} vertices, {} facets, area {:.12g}, energy {:.12g} (units "
       "of the datafile)\n  residual {:.2e} (bound {:.2e}), smallest eigenvalue "
       "{:.4g}, index {}\n",
@@ -161,6 +220,9 @@ std::string datafile_text(const DatafileResult& result) {
   }
   for (const auto& [name, value] : result.quantities) {
     text += fmt::format("  quantity {}: {:.12g}\n", name, value);
+  }
+  if (result.popped > 0) {
+    text += fmt::format("  {} junctions popped\n", result.popped);
   }
   text +=
       fmt::format("  {} steps in {:.2f} s\n", film.iterations, film.seconds);

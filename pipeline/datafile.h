@@ -19,6 +19,11 @@ struct DatafileOptions {
   std::optional<int> refinements;
   DatafileMethod method = DatafileMethod::Newton;
   int max_steps = 2000;  // of the two descents
+  /// Run this macro of the file instead of our own route.
+  std::optional<std::string> macro;
+  /// Settle, pop junctions of too many films, and settle again, until none is
+  /// left (Newton only).
+  bool pop = false;
   std::map<std::string, double> parameters;
   Monitor* monitor = nullptr;
 };
@@ -28,10 +33,13 @@ struct DatafileResult {
   FilmReport report;
   std::vector<std::pair<std::string, double>> quantities;
   std::optional<Failure> failure;
+  std::string printed;  // by the macro
+  int popped = 0;       // junctions
 };
 
 /// Reads `path` and settles its films by our own route. Throws InvalidInput
-/// with file, line and column, IoError, Interrupted.
+/// with file, line and column, IoError, Interrupted. A macro may end anywhere:
+/// that is no failure, and the report says how far from rest the film is.
 DatafileResult evolve_datafile(const std::filesystem::path& path,
                                const DatafileOptions& options);
 

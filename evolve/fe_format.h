@@ -1,0 +1,16 @@
+/// Internal to fe_script: the texts of printf.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace meniscus {
+
+/// `format` as printf would say it, escapes included; conversions d i f F e E
+/// g G with flags, width and precision. Nothing when a conversion is another
+/// one, or there are more of them than values.
+std::optional<std::string> fe_formatted(const std::string& format,
+                                        const std::vector<double>& values);
+
+}  // namespace meniscus
