@@ -18,7 +18,10 @@ constexpr int kPressureIterations = 12;
 class Flow {
  public:
   Flow(FilmComplex& complex, const FlowOptions& options)
-      : complex_(complex), energy_(complex), targets_(targets_of(complex)) {
+      : complex_(complex),
+        energy_(complex),
+        targets_(targets_of(complex)),
+        most_motion_(options.most_motion) {
     const std::size_t count = complex.mesh.points.size();
     unknown_of_.assign(count, -1);
     for (const int v : energy_.vertices()) {
@@ -74,7 +77,8 @@ class Flow {
     for (int attempt = 0; attempt < 6; ++attempt) {
       if (try_step()) {
         const double after = energy();
-        if (std::isfinite(after) && (!hold || after <= before)) {
+        if (std::isfinite(after) && (!hold || after <= before) &&
+            !too_far(old)) {
           tau_ = std::min(most_tau_, 2.0 * tau_);
           return true;
         }
@@ -86,6 +90,14 @@ class Flow {
   }
 
  private:
+  bool too_far(const Points& old) const {
+    return most_motion_ > 0.0 &&
+           std::any_of(movers_.begin(), movers_.end(), [&](int v) {
+             return (complex_.mesh.points[v] - old[v]).squaredNorm() >
+                    most_motion_ * most_motion_;
+           });
+  }
+
   bool try_step() {
     Points& x = complex_.mesh.points;
     const auto n = static_cast<int>(movers_.size());
@@ -217,6 +229,7 @@ class Flow {
   std::vector<double> facet_weight_;
   std::vector<int> held_;
   std::optional<SymmetricFactor> factor_;
+  double most_motion_ = 0.0;
   double tau_ = 0.0;
   double most_tau_ = 0.0;
 };
@@ -237,6 +250,10 @@ FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
     }
     const bool hold = flow.at_volume();
     if (!flow.step()) {
+      break;
+    }
+    if (options.torn && options.torn(complex)) {
+      report.torn = true;
       break;
     }
     const double next = flow.energy();

@@ -2,6 +2,8 @@
 /// start near to equilibrium, where Newton takes over.
 #pragma once
 
+#include <functional>
+
 #include "core/monitor.h"
 #include "evolve/energy.h"
 
@@ -11,11 +13,15 @@ struct FlowOptions {
   int max_steps = 30;
   double smoothing = 3.0;       // first step smooths over this many edges
   double energy_change = 1e-4;  // stop: relative change of energy per step
+  double most_motion = 0.0;     // of a vertex per step [length]; 0: no bound
+  /// Asked after every step; true stops: the film tears.
+  std::function<bool(const FilmComplex&)> torn = {};
   Monitor* monitor = nullptr;
 };
 
 struct FlowReport {
   int steps = 0;
+  bool torn = false;
   bool settled = false;  // volumes reached and the energy at rest
 };
 

@@ -188,10 +188,10 @@ FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,
 FilmState settle_in_normals(const FilmEnergy& energy,
                             const FilmComplex& complex,
                             const FilmTargets& targets, const Points& start,
-                            const SettleOptions& options) {
+                            const SettleOptions& options, double usual_neck) {
   FilmState state =
       settle(energy, complex, targets, start, energy.space().directions(start),
-             {}, 0.0, options, DirectionRule::CurrentNormals);
+             {}, usual_neck, options, DirectionRule::CurrentNormals);
   state.heights = VectorX::Zero(energy.unknowns());
   return state;
 }

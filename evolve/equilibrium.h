@@ -28,7 +28,8 @@ FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,
 FilmState settle_in_normals(const FilmEnergy& energy,
                             const FilmComplex& complex,
                             const FilmTargets& targets, const Points& start,
-                            const SettleOptions& options);
+                            const SettleOptions& options,
+                            double usual_neck = 0.0);
 
 /// Lowest mode of a film at `points` (more may follow its vertices: only the
 /// first are read) under the given pressures, by a factorisation.

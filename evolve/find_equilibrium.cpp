@@ -11,6 +11,7 @@
 #include "evolve/contacts.h"
 #include "evolve/curvature_flow.h"
 #include "evolve/grooming.h"
+#include "evolve/junctions.h"
 #include "evolve/neck.h"
 #include "evolve/nested_newton.h"
 
@@ -18,8 +19,13 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kFlowSteps = 8;     // between remeshings
-constexpr int kPolishRounds = 2;  // of averaging and Newton at the end
+constexpr int kFlowSteps = 8;  // between remeshings
+// Where Newton finds no film, flow goes on so long, to tell a film that tears
+// from one that rests.
+constexpr int kLongRounds = 30;
+constexpr double kLongChange = 1e-8;
+constexpr double kLongMotion = 0.25;  // x edge, per step
+constexpr int kPolishRounds = 2;      // of averaging and Newton at the end
 // Facets up to which a film is groomed, and factored directly, before nested
 // refinement goes on.
 constexpr std::size_t kGroomed = 1500;
@@ -67,17 +73,19 @@ FilmState given_up(const FilmComplex& complex, const std::string& reason,
 /// Flow and remeshing in turn. Empty when the film came near rest; else why
 /// not.
 std::string bring_near(FilmComplex& complex, std::optional<double> edge,
-                       int rounds, int& steps, Monitor* monitor) {
-  FlowOptions flow{.max_steps = kFlowSteps, .monitor = monitor};
+                       int rounds, int& steps, FlowOptions flow) {
+  flow.max_steps = kFlowSteps;
+  flow.torn = [&](const FilmComplex& film) {
+    return pinches(film, edge ? *edge : mean_edge_length(film.mesh));
+  };
   for (int round = 0; round < rounds; ++round) {
     const FlowReport report = flow_to_rest(complex, flow);
     steps += report.steps;
+    if (report.torn) {
+      return "the film pinched while it flowed";
+    }
     if (edge) {
       remesh_films(complex, {.edge = *edge});
-    }
-    const double width = edge ? *edge : mean_edge_length(complex.mesh);
-    if (pinches(complex, width)) {
-      return "the film pinched while it flowed";
     }
     if (report.settled || report.steps == 0) {
       break;
@@ -101,7 +109,7 @@ std::string bring_near_by_levels(FilmComplex& complex,
       remesh_films(complex, {.edge = *edge});
     }
     std::string reason = bring_near(complex, edge, options.max_rounds, steps,
-                                    options.settle.monitor);
+                                    {.monitor = options.settle.monitor});
     if (!reason.empty()) {
       return reason;
     }
@@ -109,13 +117,23 @@ std::string bring_near_by_levels(FilmComplex& complex,
   return "";
 }
 
+/// Settled, though its neck may need shorter edges.
+bool is_settled(const FilmState& state) {
+  return !state.failure ||
+         (state.failure->kind == FailureKind::FilmPinched &&
+          state.report.index == 0 &&
+          state.report.residual <= state.report.residual_bound &&
+          state.report.residual_bound > 0.0);
+}
+
 /// Newton, and again with other contacts while one-sided walls ask for it.
-FilmState settle_with_contacts(FilmComplex& complex,
+FilmState settle_with_contacts(FilmComplex& complex, double usual_neck,
                                const SettleOptions& options, int& steps) {
   for (int round = 0;; ++round) {
     const FilmEnergy energy(complex);
-    FilmState state = settle_in_normals(energy, complex, targets_of(complex),
-                                        complex.mesh.points, options);
+    FilmState state =
+        settle_in_normals(energy, complex, targets_of(complex),
+                          complex.mesh.points, options, usual_neck);
     steps += state.report.iterations;
     complex.mesh.points = state.points;
     if (!has_contacts(complex) || round == kContactRounds) {
@@ -129,6 +147,26 @@ FilmState settle_with_contacts(FilmComplex& complex,
       return state;
     }
   }
+}
+
+/// The same; where it finds no film, flow tells whether one is there.
+FilmState settle_or_follow(FilmComplex& complex, double usual_neck,
+                           const SettleOptions& options, int& steps) {
+  const Points before = complex.mesh.points;
+  FilmState state = settle_with_contacts(complex, usual_neck, options, steps);
+  if (!state.failure || state.failure->kind != FailureKind::FilmNotFound ||
+      complex.mesh.facets.size() > kDirect) {
+    return state;
+  }
+  complex.mesh.points = before;
+  const std::string reason =
+      bring_near(complex, {}, kLongRounds, steps,
+                 {.energy_change = kLongChange,
+                  .most_motion = kLongMotion * mean_edge_length(complex.mesh),
+                  .monitor = options.monitor});
+  return reason.empty()
+             ? settle_with_contacts(complex, usual_neck, options, steps)
+             : given_up(complex, reason, steps);
 }
 
 /// Newton, and vertex averaging so that facets are good where the film is.
@@ -146,8 +184,8 @@ FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
       equiangulate(complex);
       average_vertices(complex);
     }
-    state = settle_with_contacts(complex, options.settle, steps);
-    if (state.failure || (!options.edge && options.refinements == 0)) {
+    state = settle_or_follow(complex, 0.0, options.settle, steps);
+    if (!is_settled(state) || (!options.edge && options.refinements == 0)) {
       break;
     }
   }
@@ -158,6 +196,7 @@ FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
 struct Chain {
   std::vector<std::unique_ptr<FilmEnergy>> energies;
   std::vector<FilmLevel> levels;
+  Neck neck;  // of the finest level that was factored
 
   void add(const FilmComplex& complex, std::vector<Edge> parents) {
     energies.push_back(std::make_unique<FilmEnergy>(complex));
@@ -168,6 +207,11 @@ struct Chain {
       parents.clear();
     }
     levels.push_back({energies.back().get(), std::move(parents)});
+  }
+
+  void measure_neck(const FilmComplex& complex) {
+    neck = narrowest_neck(*energies.back(), complex.mesh.points,
+                          complex.mesh.facet_label);
   }
 };
 
@@ -202,11 +246,13 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
   const bool direct =
       complex.mesh.facets.size() <= kDirect || chain.levels.size() < 2;
   const auto settle_directly = [&] {
-    FilmState found = settle_with_contacts(complex, options.settle, steps);
+    FilmState found = settle_or_follow(complex, state.report.smallest_neck,
+                                       options.settle, steps);
     if (has_contacts(complex)) {
       chain = Chain();  // ranks may have changed
       chain.add(complex, {});
     }
+    chain.measure_neck(complex);
     return found;
   };
   if (direct || has_contacts(complex)) {
@@ -237,6 +283,7 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
     state.report.smallest_neck = before.smallest_neck;
     state.report.neck_position = before.neck_position;
     state.report.index = before.index;
+    state.failure.reset();  // a thin neck is judged at the end
     return state;
   }
   const LowestMode guess = lowest_mode_of(*chain.levels.front().energy, targets,
@@ -248,7 +295,7 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
   state.heights = VectorX::Zero(energy.unknowns());
   Judgement judgement;
   judgement.mode_position = modes.position;
-  judgement.neck = Neck{before.smallest_neck, before.neck_position, -1, -1};
+  judgement.neck = chain.neck;
   judge(energy, complex, judgement, state);
   return state;
 }
@@ -260,7 +307,7 @@ std::string bring_near_nested(FilmComplex& complex, const FindOptions& options,
                               int blind, int& left, int& steps) {
   const auto flow = [&] {
     return bring_near(complex, {}, options.max_rounds, steps,
-                      options.settle.monitor);
+                      {.monitor = options.settle.monitor});
   };
   std::string reason = blind > 0 ? "" : flow();
   while (reason.empty() && left > 0 &&
@@ -274,6 +321,23 @@ std::string bring_near_nested(FilmComplex& complex, const FindOptions& options,
     }
   }
   return reason;
+}
+
+/// A film with a junction that no film keeps is no minimum, however well it
+/// settled.
+void judge_junctions(const std::optional<UnstableJunction>& junction,
+                     FilmState& state) {
+  if (!junction || state.failure) {
+    return;
+  }
+  const Vec3& at = junction->place;
+  state.report.verdict = fmt::format(
+      "unstable: {} at ({:.4g}, {:.4g}, {:.4g}); popping it splits it and "
+      "lowers the energy",
+      junction->line ? "more than three films meet along the line"
+                     : "films meet otherwise than in four lines",
+      at.x(), at.y(), at.z());
+  state.failure = Failure{FailureKind::FilmUnstable, state.report.verdict};
 }
 
 /// Nested refinements of a start: groomed and settled while it is coarse.
@@ -294,21 +358,27 @@ FilmState find_nested(FilmComplex& complex, const FindOptions& options,
     FilmState found = reason.empty()
                           ? settle_and_polish(attempt, options, steps)
                           : given_up(attempt, reason, steps);
-    if (blind == 0 || !found.failure) {
+    if (blind == 0 || is_settled(found)) {
       state = std::move(found);
       complex = std::move(attempt);
       left = rest;
     }
-    if (!state.failure || state.failure->kind == FailureKind::FilmUnstable) {
+    if (is_settled(state) || state.failure->kind == FailureKind::FilmUnstable) {
       break;
     }
   }
+  // Refinement keeps junctions: looked for while they are few.
+  const auto junction = unstable_junction(complex);
   Chain chain;
   chain.add(complex, {});
-  for (; left > 0 && !state.failure; --left) {
+  if (left > 0) {
+    chain.measure_neck(complex);
+  }
+  for (; left > 0 && is_settled(state); --left) {
     state = settle_finer(chain, complex, std::move(state), options, left == 1,
                          steps);
   }
+  judge_junctions(junction, state);
   return state;
 }
 
@@ -336,6 +406,7 @@ FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options) {
   }
   FilmState state = reason.empty() ? settle_and_polish(complex, options, steps)
                                    : given_up(complex, reason, steps);
+  judge_junctions(unstable_junction(complex), state);
   state.report.iterations = steps;
   state.report.seconds = timer.seconds();
   return state;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -13,6 +14,8 @@ namespace {
 
 constexpr double kFacing = 0.7;  // cosine between line and facet normal
 constexpr int kLeaf = 4;
+constexpr int kNearLine = 2;  // edges from a line, rim or junction
+constexpr int kCorner = 3;    // edges along the films
 
 /// Bounding volume tree over facets, split at the median of the longest axis.
 class FacetTree {
@@ -198,8 +201,8 @@ std::vector<Outlook> outlooks(const FilmEnergy& energy,
   return result;
 }
 
-/// Vertices within two edges of a line, rim or junction: films that meet there
-/// come near to each other without being a neck.
+/// Vertices near a line, rim or junction: films that meet there come near to
+/// each other without being a neck.
 std::vector<char> near_lines(const FilmEnergy& energy, std::size_t count) {
   std::vector<char> near(count, 0);
   for (std::size_t f = 0; f < energy.facets().size(); ++f) {
@@ -211,7 +214,7 @@ std::vector<char> near_lines(const FilmEnergy& energy, std::size_t count) {
       }
     }
   }
-  for (int ring = 0; ring < 2; ++ring) {
+  for (int ring = 0; ring < kNearLine; ++ring) {
     std::vector<char> next = near;
     for (const Triangle& t : energy.facets()) {
       if (near[t[0]] + near[t[1]] + near[t[2]] > 0) {
@@ -223,6 +226,64 @@ std::vector<char> near_lines(const FilmEnergy& energy, std::size_t count) {
   return near;
 }
 
+/// Which facets are a few edges away from a vertex: across a corner, not
+/// across a neck.
+class Corners {
+ public:
+  Corners(const std::vector<Triangle>& facets, std::size_t points)
+      : facets_(facets), start_(points + 1, 0) {
+    for (const Triangle& t : facets) {
+      for (const int v : t) {
+        ++start_[v + 1];
+      }
+    }
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    around_.resize(3 * facets.size());
+    std::vector<int> next(start_.begin(), start_.end() - 1);
+    for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+      for (const int v : facets[f]) {
+        around_[next[v]++] = f;
+      }
+    }
+  }
+
+  bool has(int v, int facet) {
+    if (v != centre_) {
+      gather(v);
+    }
+    return std::any_of(
+        facets_[facet].begin(), facets_[facet].end(), [&](int corner) {
+          return std::binary_search(found_.begin(), found_.end(), corner);
+        });
+  }
+
+ private:
+  void gather(int v) {
+    centre_ = v;
+    found_ = {v};
+    std::vector<int> edge = found_;
+    for (int ring = 0; ring < kCorner; ++ring) {
+      std::vector<int> next;
+      for (const int u : edge) {
+        for (int k = start_[u]; k < start_[u + 1]; ++k) {
+          const Triangle& t = facets_[around_[k]];
+          next.insert(next.end(), t.begin(), t.end());
+        }
+      }
+      std::sort(next.begin(), next.end());
+      next.erase(std::unique(next.begin(), next.end()), next.end());
+      edge = next;
+      found_ = std::move(next);  // each ring holds the one within
+    }
+  }
+
+  const std::vector<Triangle>& facets_;
+  std::vector<int> start_;
+  std::vector<int> around_;
+  int centre_ = -1;
+  std::vector<int> found_;
+};
+
 }  // namespace
 
 Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
@@ -232,6 +293,7 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
   const Points normals = energy.space().directions(points);
   const std::vector<Outlook> looks = outlooks(energy, points.size());
   const std::vector<char> near = near_lines(energy, points.size());
+  Corners corners(facets, points.size());
   Neck neck;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < energy.unknowns(); ++i) {
@@ -245,8 +307,9 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
       double length = least;
       const auto accept = [&](int f) {
         const Triangle& t = facets[f];
-        const bool corner =
-            near[v] != 0 && near[t[0]] + near[t[1]] + near[t[2]] > 0;
+        const bool corner = near[v] != 0 &&
+                            near[t[0]] + near[t[1]] + near[t[2]] > 0 &&
+                            corners.has(v, f);
         return t[0] != v && t[1] != v && t[2] != v && !corner &&
                share_body(energy, f, looks[i].facet);
       };

@@ -16,39 +16,12 @@
 namespace meniscus {
 namespace {
 
+using films::fins_start;
 using nonmanifold::count_edges;
 using nonmanifold::triple_lines;
 using std::numbers::pi;
 
 constexpr double kRounding = 1e-12;
-
-// Half planes from the z axis, 0 <= z <= 4, out to radius 2, at these angles.
-FilmComplex fins(const std::vector<double>& degrees, int along) {
-  films::ComplexBuilder builder;
-  std::vector<int> line;
-  for (int i = 0; i <= along; ++i) {
-    line.push_back(builder.vertex(Vec3(0, 0, 4.0 * i / along)));
-  }
-  for (const int end : {0, along}) {
-    builder.complex().vertices[line[end]].kind = VertexKind::Fixed;
-  }
-  for (const double angle : degrees) {
-    const double a = angle * pi / 180.0;
-    const Vec3 out(2.0 * std::cos(a), 2.0 * std::sin(a), 0.0);
-    const int film = builder.liquid("fin" + std::to_string(int(angle)));
-    std::vector<int> rim;
-    for (const int v : line) {
-      rim.push_back(builder.vertex(builder.place(v) + out, VertexKind::Fixed));
-    }
-    for (int i = 0; i < along; ++i) {
-      builder.quad(film, line[i], rim[i], rim[i + 1], line[i + 1]);
-      builder.fixed_edge(rim[i], rim[i + 1]);
-    }
-    builder.fixed_edge(line[0], rim[0]);
-    builder.fixed_edge(line[along], rim[along]);
-  }
-  return builder.complex();
-}
 
 int most_films(const SurfaceMesh& mesh) {
   std::size_t most = 0;
@@ -61,7 +34,7 @@ int most_films(const SurfaceMesh& mesh) {
 TEST(PopEdges, MakesTwoTripleLinesOfFourFilms) {
   for (const int along : {1, 2, 7}) {
     SCOPED_TRACE(along);
-    FilmComplex complex = fins({0, 60, 180, 240}, along);
+    FilmComplex complex = fins_start({0, 60, 180, 240}, along);
     ASSERT_EQ(most_films(complex.mesh), 4);
     const PopReport report = pop_edges(complex);
     EXPECT_EQ(report.popped, 1);
@@ -86,7 +59,7 @@ TEST(PopEdges, MakesTwoTripleLinesOfFourFilms) {
 }
 
 TEST(PopEdges, TakesFilmsOffUntilThreeAreLeft) {
-  FilmComplex complex = fins({0, 50, 115, 180, 240, 300}, 4);
+  FilmComplex complex = fins_start({0, 50, 115, 180, 240, 300}, 4);
   const PopReport report = pop_edges(complex);
   EXPECT_EQ(report.popped, 3);
   EXPECT_EQ(most_films(complex.mesh), 3);
@@ -131,7 +104,7 @@ TEST(PopEdges, PopsAClosedLine) {
 }
 
 TEST(PopEdges, LeavesMarkedLinesAlone) {
-  FilmComplex complex = fins({0, 90, 180, 270}, 3);
+  FilmComplex complex = fins_start({0, 90, 180, 270}, 3);
   complex.edges.push_back({.a = 1, .b = 2});
   const PopReport report = pop_edges(complex);
   EXPECT_EQ(report.popped, 2);  // above and below it

@@ -316,4 +316,31 @@ FilmComplex thin_catenoid_saddle(int around, int rows) {
   return complex;
 }
 
+FilmComplex fins_start(const std::vector<double>& degrees, int along) {
+  ComplexBuilder builder;
+  std::vector<int> line;
+  for (int i = 0; i <= along; ++i) {
+    line.push_back(builder.vertex(Vec3(0, 0, 4.0 * i / along)));
+  }
+  for (const int end : {0, along}) {
+    builder.complex().vertices[line[end]].kind = VertexKind::Fixed;
+  }
+  for (const double angle : degrees) {
+    const double a = angle * pi / 180.0;
+    const Vec3 out(2.0 * std::cos(a), 2.0 * std::sin(a), 0.0);
+    const int film = builder.liquid("fin" + std::to_string(int(angle)));
+    std::vector<int> rim;
+    for (const int v : line) {
+      rim.push_back(builder.vertex(builder.place(v) + out, VertexKind::Fixed));
+    }
+    for (int i = 0; i < along; ++i) {
+      builder.quad(film, line[i], rim[i], rim[i + 1], line[i + 1]);
+      builder.fixed_edge(rim[i], rim[i + 1]);
+    }
+    builder.fixed_edge(line[0], rim[0]);
+    builder.fixed_edge(line[along], rim[along]);
+  }
+  return builder.complex();
+}
+
 }  // namespace meniscus::films

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "evolve/film_complex.h"
 
@@ -75,5 +76,9 @@ FilmComplex long_tube_saddle(int around = 18, int rows = 18);
 /// The unstable catenoid between rings of radius 1 at z = +-0.5, waist
 /// 0.2350: settled but for its faceting, and a saddle of index 1.
 FilmComplex thin_catenoid_saddle(int around = 18, int rows = 18);
+
+/// Films from the z axis, 0 <= z <= 4, out to radius 2 at these angles [deg],
+/// `along` quads each; rims and the axis' ends are fixed.
+FilmComplex fins_start(const std::vector<double>& degrees, int along);
 
 }  // namespace meniscus::films

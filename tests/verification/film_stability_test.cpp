@@ -5,6 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "evolve/find_equilibrium.h"
+#include "evolve/grooming.h"
+#include "evolve/pop.h"
+#include "tests/evolve/film_systems.h"
 #include "tests/support/delaunay_curves.h"
 #include "tests/support/film_complexes.h"
 #include "tests/support/film_race.h"
@@ -91,19 +95,114 @@ TEST(FilmStability, CatenoidNearItsLimit) {
   EXPECT_NEAR(beyond.neck_position.z(), 0.0, 0.05 * 1.34);
 }
 
-// From V = 13 stable, at 12.5 a neck pinches near the small ring.
-TEST(FilmStability, StrutNearItsLimit) {
+constexpr double kStrutLength = 4.0;
+
+FilmReport strut_at(double volume, int refinements) {
   FilmComplex strut = films::strut_start();
-  strut.bodies[0].volume = 13.0;
-  FilmComplex stable = strut;
-  const FilmState film = find_refined(stable, 2);
-  EXPECT_EQ(film.report.verdict, "stable");
-  strut.bodies[0].volume = 12.5;
-  const FilmState beyond = find_refined(strut, 2);
-  EXPECT_NE(beyond.report.verdict, "stable");
-  // The small ring is at z = 4.
-  EXPECT_GT(beyond.report.neck_position.z(), 3.0) << beyond.report.verdict;
-  EXPECT_LT(beyond.report.neck_position.z(), 4.0);
+  strut.bodies[0].volume = volume;
+  return find_refined(strut, refinements).report;
+}
+
+// From V = 13 stable, at 12.5 no more: a neck pinches near the small ring,
+// which is at z = 4.
+TEST(FilmStability, StrutNearItsLimit) {
+  for (const double volume : {14.0, 13.0}) {
+    const FilmReport film = strut_at(volume, 3);
+    EXPECT_EQ(film.verdict, "stable") << volume;
+    EXPECT_EQ(film.index, 0) << volume;
+    EXPECT_GT(film.min_eigenvalue, 0.0) << volume;
+  }
+  // The neck's place does not depend on the volume or the mesh.
+  const double neck = 3.29;
+  for (const double volume : {12.5, 12.25, 12.0}) {
+    for (const int refinements : {1, 3}) {
+      const FilmReport film = strut_at(volume, refinements);
+      EXPECT_NE(film.verdict.find("pinching"), std::string::npos)
+          << volume << ": " << film.verdict;
+      EXPECT_NEAR(film.neck_position.z(), neck, 0.05 * kStrutLength)
+          << volume << ", refinements " << refinements;
+    }
+  }
+}
+
+// Two opposite arms and a foot that share one volume see each other at fixed
+// pressure: the limit per arm is nearer to pi R than to 2 pi R.
+FilmState tee(double half, double ring, double volume) {
+  FilmSystem system;
+  system.curves = {{"foot", Circle{Vec3(0, 0, -80), Vec3(0, 0, -1), ring}},
+                   {"left", Circle{Vec3(-half, 0, 0), Vec3(-1, 0, 0), ring}},
+                   {"right", Circle{Vec3(half, 0, 0), Vec3(1, 0, 0), ring}}};
+  system.films = {{"skin", FilmKind::Branch, {"foot", "left", "right"}, 1.0}};
+  system.caps = {
+      {"foot_cap", "foot"}, {"left_cap", "left"}, {"right_cap", "right"}};
+  system.bodies = {{"part",
+                    {"skin", "foot_cap", "left_cap", "right_cap"},
+                    volume,
+                    std::nullopt}};
+  constexpr double kEdge = 10.0;
+  FilmComplex start = build_start(system, 2.0 * kEdge);
+  return find_equilibrium(start, {.edge = kEdge});
+}
+
+TEST(FilmStability, TeeOfArms) {
+  const FilmState saddle = tee(120.0, 30.0, 9e5);
+  EXPECT_EQ(saddle.report.index, 1) << saddle.report.verdict;
+  EXPECT_LE(saddle.report.residual, saddle.report.residual_bound);
+  ASSERT_TRUE(saddle.failure);
+  EXPECT_EQ(saddle.failure->kind, FailureKind::FilmUnstable);
+  const FilmState stable = tee(120.0, 40.0, 1.6e6);
+  EXPECT_EQ(stable.report.verdict, "stable");
+  for (const double ring : {25.0, 30.0}) {
+    const FilmState gone = tee(150.0, ring, ring < 30.0 ? 8e5 : 1.1e6);
+    ASSERT_TRUE(gone.failure) << ring;
+    EXPECT_EQ(gone.failure->kind, FailureKind::FilmPinched)
+        << gone.failure->message;
+    // In an arm, between the tee's middle and the rim.
+    const Vec3& at = gone.report.neck_position;
+    EXPECT_GT(std::abs(at.x()), 60.0);
+    EXPECT_LT(std::abs(at.x()), 140.0);
+  }
+}
+
+// The two-arm bracket far out: 1.60e6 mm3 is enough at support_x = 40, and at
+// 1.55e6 the long arm's neck goes, though Newton's method can end there at a
+// perfect residual and a positive definite Hessian.
+TEST(FilmStability, TwoArmBracketFarOut) {
+  const auto find = [](double support_x, double volume) {
+    constexpr double kEdge = 8.0;
+    FilmComplex start =
+        build_start(systems::two_arm(support_x, volume), 2.0 * kEdge);
+    return find_equilibrium(start, {.edge = kEdge});
+  };
+  EXPECT_EQ(find(0.0, 1.20e6).report.verdict, "stable");
+  EXPECT_EQ(find(40.0, 1.60e6).report.verdict, "stable");
+  EXPECT_EQ(find(60.0, 1.65e6).report.verdict, "stable");
+  for (const double support_x : {40.0, 60.0}) {
+    const FilmState gone = find(support_x, support_x < 50.0 ? 1.55e6 : 1.60e6);
+    ASSERT_TRUE(gone.failure) << support_x;
+    EXPECT_EQ(gone.failure->kind, FailureKind::FilmPinched)
+        << gone.failure->message;
+    // In the long arm, which reaches to x = -120.
+    EXPECT_LT(gone.report.neck_position.x(), -20.0) << support_x;
+    EXPECT_GT(gone.report.neck_position.x(), -110.0) << support_x;
+  }
+}
+
+// Plateau: four half planes along one line are a saddle however well they
+// rest; popped, they are none.
+TEST(FilmStability, FourFilmsAlongALine) {
+  FilmComplex cross = films::fins_start({0, 60, 180, 240}, 4);
+  FilmComplex settled = cross;
+  const FilmState state = find_equilibrium(settled, {.refinements = 2});
+  ASSERT_TRUE(state.failure);
+  EXPECT_EQ(state.failure->kind, FailureKind::FilmUnstable);
+  EXPECT_NE(state.report.verdict.find("three films"), std::string::npos)
+      << state.report.verdict;
+  EXPECT_LE(state.report.residual, state.report.residual_bound);
+  EXPECT_GT(pop_edges(cross).popped, 0);
+  const FilmState popped = find_equilibrium(cross, {.refinements = 2});
+  EXPECT_EQ(popped.report.verdict, "stable");
+  EXPECT_LT(popped.report.energy, 0.99 * state.report.energy);
 }
 
 }  // namespace
