@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "core/error.h"
 #include "evolve/laplacian.h"
 
 namespace meniscus {
@@ -75,13 +76,9 @@ class Flow {
     const double before = energy();
     const Points old = complex_.mesh.points;
     for (int attempt = 0; attempt < 6; ++attempt) {
-      if (try_step()) {
-        const double after = energy();
-        if (std::isfinite(after) && (!hold || after <= before) &&
-            !too_far(old)) {
-          tau_ = std::min(most_tau_, 2.0 * tau_);
-          return true;
-        }
+      if (holds_up(before, hold) && !too_far(old)) {
+        tau_ = std::min(most_tau_, 2.0 * tau_);
+        return true;
       }
       complex_.mesh.points = old;
       tau_ *= 0.25;
@@ -96,6 +93,21 @@ class Flow {
              return (complex_.mesh.points[v] - old[v]).squaredNorm() >
                     most_motion_ * most_motion_;
            });
+  }
+
+  /// A step; false where it is to be taken back.
+  bool holds_up(double before, bool hold) {
+    try {
+      if (!try_step()) {
+        return false;
+      }
+      const double after = energy();
+      return std::isfinite(after) && (!hold || after <= before);
+    } catch (const ExpressionError&) {
+      return false;  // it went where a formula has no value
+    } catch (const MeshError&) {
+      return false;  // or where a wall cannot be reached
+    }
   }
 
   bool try_step() {
@@ -179,6 +191,22 @@ class Flow {
     return x;
   }
 
+  /// How fast the held volumes grow at `at` along each motion in dx: that
+  /// without pressure first, then one per held volume.
+  Eigen::MatrixXd volume_slopes(const Points& at,
+                                const Eigen::MatrixXd& dx) const {
+    const auto held = static_cast<Eigen::Index>(held_.size());
+    Eigen::MatrixXd slopes(held, 1 + held);
+    for (Eigen::Index k = 0; k < held; ++k) {
+      const Eigen::MatrixX3d b =
+          rows_of(energy_.functional_gradient(at, held_[k]));
+      for (Eigen::Index j = 0; j <= held; ++j) {
+        slopes(k, j) = b.cwiseProduct(dx.middleCols<3>(3 * j)).sum();
+      }
+    }
+    return slopes;
+  }
+
   /// Finds the pressures at which the moved film has this step's volumes.
   bool move_at_volume(const Eigen::MatrixXd& dx) {
     const auto held = static_cast<Eigen::Index>(held_.size());
@@ -189,29 +217,36 @@ class Flow {
       const double most = kVolumeStep * std::abs(target);
       goal[k] = now[held_[k]] + std::clamp(target - now[held_[k]], -most, most);
     }
-    VectorX pressure = VectorX::Zero(held);
-    Points x = moved(dx, pressure);
-    bool reached = held == 0;
-    for (int i = 0; i < kPressureIterations && !reached; ++i) {
-      const VectorX volumes = energy_.volumes(x);
+    const auto missing = [&](const Points& at) {
+      const VectorX volumes = energy_.volumes(at);
       VectorX gap(held);
       for (Eigen::Index k = 0; k < held; ++k) {
         gap[k] = goal[k] - volumes[held_[k]];
       }
+      return gap;
+    };
+    VectorX pressure = VectorX::Zero(held);
+    if (held > 0 && energy_.space().has_walls()) {
+      // Along walls a film without pressure may run far away: start with the
+      // pressure that holds it on its straight way.
+      const Points& start = complex_.mesh.points;
+      const Eigen::MatrixXd slopes = volume_slopes(start, dx);
+      pressure = slopes.rightCols(held).completeOrthogonalDecomposition().solve(
+          missing(start) - slopes.col(0));
+    }
+    Points x = moved(dx, pressure);
+    bool reached = held == 0;
+    for (int i = 0; i < kPressureIterations && !reached; ++i) {
+      const VectorX gap = missing(x);
       if (gap.cwiseAbs().maxCoeff() <=
           1e-3 * kVolumeReached * goal.cwiseAbs().maxCoeff()) {
         reached = true;
         break;
       }
-      Eigen::MatrixXd slope(held, held);
-      for (Eigen::Index k = 0; k < held; ++k) {
-        const Eigen::MatrixX3d b =
-            rows_of(energy_.functional_gradient(x, held_[k]));
-        for (Eigen::Index j = 0; j < held; ++j) {
-          slope(k, j) = b.cwiseProduct(dx.middleCols<3>(3 + 3 * j)).sum();
-        }
-      }
-      pressure += slope.completeOrthogonalDecomposition().solve(gap);
+      pressure += volume_slopes(x, dx)
+                      .rightCols(held)
+                      .completeOrthogonalDecomposition()
+                      .solve(gap);
       x = moved(dx, pressure);
     }
     if (!reached || !flat(x).allFinite()) {

@@ -22,11 +22,6 @@ std::array<Vec3, 3> corners_of(const Points& points, const Triangle& t) {
   return {points[t[0]], points[t[1]], points[t[2]]};
 }
 
-/// Volumes are sums of cones to this point, which keeps the cones small.
-Vec3 local_origin(const Points& points) {
-  return points.empty() ? Vec3::Zero() : points.front();
-}
-
 int root_of(std::vector<int>& parent, int i) {
   while (parent[i] != i) {
     parent[i] = parent[parent[i]];
@@ -68,8 +63,9 @@ FilmEnergy::FilmEnergy(const FilmComplex& complex, FilmMotion motion)
       body_count_ + static_cast<int>(held_quantities(complex).size());
   volume_offset_ = VectorX::Zero(functional_count_);
   for (int b = 0; b < body_count_; ++b) {
-    cone_.push_back(complex.volume_rule == VolumeRule::Cone ||
-                    closed_by_facets(complex, b));
+    const bool closed = closed_by_facets(complex, b);
+    cone_.push_back(closed || complex.volume_rule == VolumeRule::Cone);
+    open_cones_ = open_cones_ || (cone_.back() != 0 && !closed);
     volume_offset_[b] = complex.bodies[b].volume_offset;
   }
   for (const ComplexSurface& surface : complex.surfaces) {
@@ -241,9 +237,15 @@ double FilmEnergy::area(const Points& points) const {
   return 0.5 * sum;
 }
 
+/// A point of the film keeps the cones of closed bodies small. The line
+/// integrals that close others count on cones to the origin.
+Vec3 FilmEnergy::cone_origin(const Points& points) const {
+  return points.empty() || open_cones_ ? Vec3::Zero() : points.front();
+}
+
 VectorX FilmEnergy::volumes(const Points& points) const {
   VectorX sum = volume_offset_;
-  const Vec3 origin = local_origin(points);
+  const Vec3 origin = cone_origin(points);
   for (std::size_t f = 0; f < facets_.size() && body_count_ > 0; ++f) {
     const Triangle& t = facets_[f];
     const Vec3 a = points[t[0]] - origin;
@@ -326,7 +328,7 @@ Points FilmEnergy::gradient(const Points& points,
 Points FilmEnergy::functional_gradient(const Points& points,
                                        int functional) const {
   Points sum(points.size(), Vec3::Zero());
-  const Vec3 origin = local_origin(points);
+  const Vec3 origin = cone_origin(points);
   if (functional < body_count_ && cone_[functional] != 0) {
     for (std::size_t f = 0; f < facets_.size(); ++f) {
       const int sign = side_[label_[f]][functional];
@@ -364,7 +366,7 @@ void FilmEnergy::elements(const Points& points, const Points& directions,
                           const Points& gradient,
                           std::vector<double>& out) const {
   out.assign(element_start_.back(), 0.0);
-  const Vec3 origin = local_origin(points);
+  const Vec3 origin = cone_origin(points);
   std::vector<double> p_of(side_.size(), 0.0);  // per surface
   for (std::size_t s = 0; s < side_.size(); ++s) {
     for (int b = 0; b < body_count_; ++b) {

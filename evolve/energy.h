@@ -101,6 +101,7 @@ class FilmEnergy {
                                 const VectorX& metric) const;
 
  private:
+  Vec3 cone_origin(const Points& points) const;
   void find_floating(const FilmComplex& complex);
   void build_pattern();
   void add_terms(const Points& points, const VectorX& pressure,
@@ -119,6 +120,7 @@ class FilmEnergy {
   std::vector<char> plain_;             // per surface: tension is a number
   std::vector<std::vector<int>> side_;  // per surface, per body
   std::vector<char> cone_;              // per body: cones measure it
+  bool open_cones_ = false;             // of a body that facets do not close
   VectorX volume_offset_;
   std::vector<std::unique_ptr<FilmTerm>> terms_;
   int body_count_ = 0;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kWallSteps = 40;
 constexpr double kOnWall = 1e-14;  // of the coordinates' size
+constexpr double kAcross = 0.7;    // cosine: a rim's motion to its normal
 
 Vec3 any_normal(const Vec3& t) {
   Eigen::Index least = 0;
@@ -267,10 +268,16 @@ void FilmSpace::wall_directions(int k, const Points& points, const Vec3& normal,
     result[at] = n.isZero(0.0) ? n : any_normal(n);
     result[at + 1] = n.cross(result[at]);
   } else {
+    result[at] = unit(normal - normal.dot(n) * n);
     const Edge& ends = line_ends(v);
-    Vec3 d = ends[0] >= 0 ? n.cross(points[ends[1]] - points[ends[0]])
-                          : Vec3(normal - normal.dot(n) * n);
-    result[at] = unit(d);
+    if (ends[0] >= 0) {
+      // The film's normal means nothing along the wall where the film lies
+      // flat on it, or where films cancel: then straight across its line.
+      const Vec3 across = unit(n.cross(points[ends[1]] - points[ends[0]]));
+      if (!(std::abs(result[at].dot(across)) > kAcross)) {
+        result[at] = across;
+      }
+    }
   }
 }
 

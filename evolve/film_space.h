@@ -41,8 +41,9 @@ class FilmSpace {
   const std::vector<int>& walled() const { return walled_; }
 
   /// Unit directions, one per unknown, of the film at `points`: area-weighted
-  /// normals, two normals of a line, or axes; within the walls. Zero where
-  /// films cancel.
+  /// normals, two normals of a line, or axes; within the walls (what runs along
+  /// them of the film's normal: Surface Evolver's choice). Zero where films
+  /// cancel.
   Points directions(const Points& points) const;
 
   /// points + h d at every unknown's vertex, back on the walls.

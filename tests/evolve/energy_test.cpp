@@ -175,6 +175,24 @@ void check_derivatives(const Loaded& film) {
             1e-7);
 }
 
+// Line integrals that close such a body count on cones to the origin itself.
+TEST(FilmEnergy, ConesOfOpenBodiesStandOnTheOrigin) {
+  FilmComplex complex;
+  complex.mesh.points = {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
+  complex.mesh.facets = {{0, 1, 2}};
+  complex.mesh.facet_label = {0};
+  complex.mesh.labels = {"film"};
+  complex.vertices.resize(3);
+  complex.surfaces.resize(1);
+  complex.bodies.resize(1);
+  complex.bodies[0].sides = {{0, 1}};
+  complex.volume_rule = VolumeRule::Cone;
+  const FilmEnergy energy(complex);
+  const Points& x = complex.mesh.points;
+  EXPECT_NEAR(energy.volumes(x)[0], 1.0, kRounding);
+  EXPECT_NEAR(energy.functional_gradient(x, 0)[0].x(), 1.0, kRounding);
+}
+
 TEST(FilmEnergy, DerivativesMatchDifferencesOverASweepOfSteps) {
   check_derivatives(Loaded(skewed_tube()));
 }
