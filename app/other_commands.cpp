@@ -15,6 +15,7 @@
 #include "pipeline/new_case.h"
 #include "pipeline/results.h"
 #include "pipeline/study_table.h"
+#include "pipeline/walls.h"
 
 namespace meniscus {
 
@@ -117,6 +118,24 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
   return kExitDone;
 }
 
+/// A wall beyond its safe thickness is written too, to be looked at.
+int write_walls(const Case& input, const std::vector<CaseWall>& walls,
+                const fs::path& folder, const CommonArguments& common) {
+  int code = kExitDone;
+  for (const CaseWall& wall : walls) {
+    write_wall(input, wall, folder);
+    if (!common.quiet) {
+      std::fputs(wall_text(input, wall).c_str(), stdout);
+    }
+    if (!wall.wall.findings.empty()) {
+      std::fprintf(stderr, "failed: wall %s cannot be meshed: %s\n",
+                   wall.name.c_str(), summary(wall.wall.findings).c_str());
+      code = kExitNoSolution;
+    }
+  }
+  return code;
+}
+
 }  // namespace
 
 int evolve_command(const EvolveArguments& arguments) {
@@ -152,7 +171,8 @@ int evolve_command(const EvolveArguments& arguments) {
     std::fprintf(stderr, "failed: %s\n", film.failure->message.c_str());
     return kExitNoSolution;
   }
-  return kExitDone;
+  return write_walls(input, make_walls(numbers, model, film.points), folder,
+                     common);
 }
 
 int study_show_command(const std::string& folder, const std::string& csv) {

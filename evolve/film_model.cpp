@@ -9,8 +9,10 @@
 #include "core/timer.h"
 #include "evolve/carry.h"
 #include "evolve/equilibrium.h"
+#include "evolve/fields.h"
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
+#include "evolve/tension_field.h"
 
 namespace meniscus {
 
@@ -68,6 +70,13 @@ void check_numbers(const FilmSystem& system) {
   }
 }
 
+std::string no_value(const ExpressionError& error) {
+  return fmt::format(
+      "a field, or a tension (it must be above 0), has no value where the film "
+      "went: {}",
+      error.what());
+}
+
 }  // namespace
 
 struct FilmModel::Impl {
@@ -85,7 +94,11 @@ struct FilmModel::Impl {
   std::vector<int> mid_vertex;        // per edge: fine vertex, -1 for straight
 
   FilmTargets targets_of_system(const FilmSystem& system) const;
+  void check_fields(const FilmSystem& system) const;
   std::vector<Curve> curves_of_system(const FilmSystem& system) const;
+  void find_reference(const FilmSystem& initial,
+                      const FilmModelOptions& options,
+                      const SettleOptions& settle);
   void list_mid_sides();
   FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,
                             int parts, const SettleOptions& options) const;
@@ -105,8 +118,20 @@ FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
           fmt::format("the design has no film '{}', which its model has",
                       complex.surfaces[s].name));
     }
-    result.tension[s] = film->tension;
+    const std::optional<Expression>& field = complex.surfaces[s].tension_field;
+    if (film->tension_field.has_value() != field.has_value() ||
+        (field &&
+         positive_only(*film->tension_field).text() != field->text())) {
+      throw InvalidInput(fmt::format(
+          "the design changes the tension field of film '{}'; it belongs to "
+          "the frozen model: freeze another one",
+          film->name));
+    }
+    if (!field) {
+      result.tension[s] = film->tension;
+    }
   }
+  check_fields(system);
   for (ComplexBody& body : result.bodies) {
     const auto spec =
         std::find_if(system.bodies.begin(), system.bodies.end(),
@@ -121,6 +146,28 @@ FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
     body.pressure = spec->pressure;
   }
   return result;
+}
+
+/// The fields of the design are those that were frozen.
+void FilmModel::Impl::check_fields(const FilmSystem& system) const {
+  std::vector<std::string> formulas;
+  for (const FieldSpec& field : system.fields) {
+    formulas.push_back(field_expression(field).text());
+  }
+  for (const PressureSpec& spec : system.pressures) {
+    formulas.push_back(spec.pressure.text());
+  }
+  const bool same =
+      std::equal(formulas.begin(), formulas.end(), complex.quantities.begin(),
+                 complex.quantities.end(),
+                 [](const std::string& formula, const FilmQuantity& quantity) {
+                   return formula == quantity.scalar.text();
+                 });
+  if (!same) {
+    throw InvalidInput(
+        "the design changes the field energies; they belong to the frozen "
+        "model: freeze another one");
+  }
 }
 
 std::vector<Curve> FilmModel::Impl::curves_of_system(
@@ -157,21 +204,60 @@ void FilmModel::Impl::list_mid_sides() {
   }
 }
 
+void FilmModel::Impl::find_reference(const FilmSystem& initial,
+                                     const FilmModelOptions& options,
+                                     const SettleOptions& settle) {
+  Monitor& monitor =
+      options.monitor != nullptr ? *options.monitor : silent_monitor();
+  monitor.progress({"film", "building the start", 0.0});
+  complex = build_start(initial, options.edge * std::exp2(kHalvings));
+  monitor.progress({"film", "settling the raw start", 0.1});
+  reference = find_equilibrium(
+      complex, {.edge = options.edge, .halvings = kHalvings, .settle = settle});
+  meshed = complex.mesh;
+  corner_count = static_cast<int>(complex.mesh.points.size());
+  for (int level = 0; level < options.refinements; ++level) {
+    monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
+    Refinement finer = refine(complex);
+    complex = std::move(finer.complex);
+    if (level == 0) {
+      parents = std::move(finer.parents);
+    }
+    if (!reference.failure) {
+      energy.emplace(complex);
+      reference = settle_in_normals(*energy, complex, targets_of(complex),
+                                    complex.mesh.points, settle);
+      complex.mesh.points = reference.points;
+    }
+  }
+}
+
 FilmState FilmModel::Impl::settle_in_parts(const Points& moves,
                                            const FilmTargets& goal, int parts,
                                            const SettleOptions& options) const {
   FilmState state;
   int iterations = 0;
-  for (int part = 1; part <= parts; ++part) {
-    const double t = static_cast<double>(part) / parts;
-    const Points base = carry->at(moves, t);
-    state = settle_along(
-        *energy, complex, part == parts ? goal : blend(targets, goal, t), base,
-        energy->space().directions(base), state.heights, usual_neck, options);
-    iterations += state.report.iterations;
-    if (state.failure) {
-      break;
+  try {
+    for (int part = 1; part <= parts && !state.failure; ++part) {
+      const double t = static_cast<double>(part) / parts;
+      const Points base = carry->at(moves, t);
+      state = settle_along(*energy, complex,
+                           part == parts ? goal : blend(targets, goal, t), base,
+                           energy->space().directions(base), state.heights,
+                           usual_neck, options);
+      iterations += state.report.iterations;
     }
+    if (!state.failure) {
+      tensions_at(complex, state.points);  // throws where one is not above 0
+    }
+  } catch (const ExpressionError& error) {
+    state = reference;
+    state.failure = Failure{FailureKind::NotANumber, no_value(error)};
+  } catch (const InvalidInput& error) {
+    state.failure = Failure{FailureKind::NotANumber, error.what()};
+  }
+  if (state.failure) {
+    state.report.verdict = state.failure->message;
   }
   state.report.iterations = iterations;
   return state;
@@ -197,30 +283,10 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   const Timer timer;
   auto impl = std::make_unique<Impl>();
   SettleOptions settle{.monitor = options.monitor};
-  Monitor& monitor =
-      options.monitor != nullptr ? *options.monitor : silent_monitor();
-  monitor.progress({"film", "building the start", 0.0});
-  impl->complex = build_start(initial, options.edge * std::exp2(kHalvings));
-  monitor.progress({"film", "settling the raw start", 0.1});
-  impl->reference = find_equilibrium(
-      impl->complex,
-      {.edge = options.edge, .halvings = kHalvings, .settle = settle});
-  impl->meshed = impl->complex.mesh;
-  impl->corner_count = static_cast<int>(impl->complex.mesh.points.size());
-  for (int level = 0; level < options.refinements; ++level) {
-    monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
-    Refinement finer = refine(impl->complex);
-    impl->complex = std::move(finer.complex);
-    if (level == 0) {
-      impl->parents = std::move(finer.parents);
-    }
-    if (!impl->reference.failure) {
-      impl->energy.emplace(impl->complex);
-      impl->reference = settle_in_normals(*impl->energy, impl->complex,
-                                          targets_of(impl->complex),
-                                          impl->complex.mesh.points, settle);
-      impl->complex.mesh.points = impl->reference.points;
-    }
+  try {
+    impl->find_reference(initial, options, settle);
+  } catch (const ExpressionError& error) {
+    throw InvalidInput(no_value(error));
   }
   impl->list_mid_sides();
   if (impl->reference.failure || !impl->energy) {
@@ -304,6 +370,18 @@ SurfaceMesh FilmModel::fine_mesh(const Points& points) const {
   SurfaceMesh mesh = impl_->complex.mesh;
   mesh.points = points;
   return mesh;
+}
+
+std::vector<int> FilmModel::rim(const std::string& curve) const {
+  std::vector<int> result;
+  for (std::size_t v = 0; v < impl_->complex.vertices.size(); ++v) {
+    const ComplexVertex& vertex = impl_->complex.vertices[v];
+    if (vertex.kind == VertexKind::OnCurve &&
+        impl_->complex.curves[vertex.curve].name == curve) {
+      result.push_back(static_cast<int>(v));
+    }
+  }
+  return result;
 }
 
 }  // namespace meniscus

@@ -8,8 +8,9 @@
 ///
 /// r: rim points on the curves at fixed curve parameters; C: constant harmonic
 /// weights, rows summing to one (evolve/carry.h); n_i: unit vertex normal of
-/// X(p); h: minimises tension x area over the film at the bodies' volumes and
-/// pressures.
+/// X(p); h: minimises tension x area and the field energies over the film at
+/// the bodies' volumes and pressures. Tensions may change with the design,
+/// tension fields and field energies stay those of the initial one.
 #pragma once
 
 #include <memory>
@@ -34,7 +35,7 @@ struct BodyState {
 struct FilmReport {
   int vertices = 0;
   int facets = 0;
-  double energy = 0.0;    // sum of tension x area [force length]
+  double energy = 0.0;    // tension x area, and fields [force length]
   double area = 0.0;      // of films, caps not counted [length^2]
   double residual = 0.0;  // max |dE/dh_i - sum p dV/dh_i| over free vertices
   double residual_bound = 0.0;  // 1e-9 x tension x mean edge [force]
@@ -87,9 +88,9 @@ class FilmModel {
   /// Equilibrium for another design of the same system; a pure function of
   /// the model and `system`, and may run in several threads. A film that is
   /// not found is in the state's failure, not thrown. Throws InvalidInput for
-  /// names and kinds that are not the model's, for numbers that no film can
-  /// follow (radius, tension or volume not above 0, anything not finite), and
-  /// for a model that has no film at its initial design.
+  /// names, kinds and fields that are not the model's, for numbers that no film
+  /// can follow (radius, tension or volume not above 0, anything not finite),
+  /// and for a model that has no film at its initial design.
   FilmState settle(const FilmSystem& system,
                    const SettleOptions& options = {}) const;
 
@@ -102,6 +103,10 @@ class FilmModel {
   /// All facets at the film's own resolution (caps included), for files and
   /// pictures.
   SurfaceMesh fine_mesh(const Points& points) const;
+
+  /// Vertices of the fine mesh on a curve; none for a curve that the model has
+  /// not.
+  std::vector<int> rim(const std::string& curve) const;
 
   FilmModel(FilmModel&&) noexcept;
   FilmModel& operator=(FilmModel&&) noexcept;

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "core/expression.h"
 #include "evolve/curve.h"
+#include "evolve/field_spec.h"
 
 namespace meniscus {
 
@@ -23,6 +25,8 @@ struct FilmSpec {
   FilmKind kind = FilmKind::Branch;
   std::vector<std::string> curves;
   double tension = 1.0;  // energy per area of the whole film [force/length]
+  // Over x, y, z; replaces tension, the same for every design of a model.
+  std::optional<Expression> tension_field;
 };
 
 /// Flat solid disk across a planar closed curve; carries no tension.
@@ -44,6 +48,9 @@ struct FilmSystem {
   std::vector<FilmSpec> films;
   std::vector<CapSpec> caps;
   std::vector<BodySpec> bodies;
+  // Field energies; like tension fields, the same for every design of a model.
+  std::vector<FieldSpec> fields;
+  std::vector<PressureSpec> pressures;
 };
 
 }  // namespace meniscus

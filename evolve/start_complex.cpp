@@ -9,9 +9,11 @@
 #include "core/error.h"
 #include "evolve/body_sides.h"
 #include "evolve/disk_fill.h"
+#include "evolve/fields.h"
 #include "evolve/grooming.h"
 #include "evolve/hull.h"
 #include "evolve/loft.h"
+#include "evolve/tension_field.h"
 
 namespace meniscus {
 
@@ -153,6 +155,16 @@ class StartBuilder {
       require_body(cap.name);
     }
     orient_bodies(result_);
+    add_fields();
+    const std::vector<double> tensions =
+        tensions_at(result_, result_.mesh.points);
+    for (std::size_t s = 0; s < tensions.size(); ++s) {
+      ComplexSurface& surface = result_.surfaces[s];
+      surface.tension = tensions[s];
+      if (surface.tension_field) {
+        surface.tension_field = positive_only(*surface.tension_field);
+      }
+    }
     return std::move(result_);
   }
 
@@ -230,7 +242,8 @@ class StartBuilder {
   }
 
   void add_film(const FilmSpec& film) {
-    const int label = add_surface({film.name, true, film.tension});
+    const int label =
+        add_surface({film.name, true, film.tension, film.tension_field});
     std::set<std::string> used;
     for (const std::string& name : film.curves) {
       if (!used.insert(name).second) {
@@ -349,6 +362,16 @@ class StartBuilder {
       made.sides.push_back({surface, 1});
     }
     result_.bodies.push_back(std::move(made));
+  }
+
+  void add_fields() {
+    for (const FieldSpec& field : system_.fields) {
+      result_.quantities.push_back(field_quantity(result_, field));
+    }
+    for (const PressureSpec& spec : system_.pressures) {
+      result_.quantities.push_back(
+          pressure_quantity(result_, spec.name, spec.body, spec.pressure));
+    }
   }
 
   void require_body(const std::string& surface) const {

@@ -1,107 +1,19 @@
 #include "pipeline/case.h"
 
+#include <algorithm>
+#include <span>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evolve/fields.h"
+#include "pipeline/case_values.h"
 
 namespace meniscus {
 
 namespace {
 
-/// All names' values at one design: design variables, then parameters. What
-/// has no good value is told in `problems` and counts as 0.
-class Values {
- public:
-  Values(const Case& input, const VectorX& design,
-         std::vector<std::string>& problems)
-      : input_(input), problems_(problems) {
-    if (design.size() != static_cast<Eigen::Index>(input.design.size())) {
-      throw InvalidInput(fmt::format("{}: {} design values for {} variables",
-                                     input.path, design.size(),
-                                     input.design.size()));
-    }
-    values_.assign(design.begin(), design.end());
-    values_.resize(input.design.size() + input.parameters.size(), 0.0);
-    for (const int k : input.parameter_order) {
-      values_[input.design.size() + static_cast<std::size_t>(k)] =
-          at(input.parameters[static_cast<std::size_t>(k)].value);
-    }
-  }
-
-  double at(const Quantity& quantity) const {
-    try {
-      return quantity.expression.evaluate(values_);
-    } catch (const ExpressionError& error) {
-      problems_.push_back(
-          fmt::format("{}: {}: {}{}", place(input_, quantity.line),
-                      quantity.key, error.what(), where(quantity)));
-      return 0.0;
-    }
-  }
-
-  Vec3 at(const QuantityVector& vector) const {
-    return {at(vector[0]), at(vector[1]), at(vector[2])};
-  }
-
-  /// The value; when it has one that is not `good`, what it must be is told.
-  template <class Condition>
-  double at(const Quantity& quantity, const Condition& good,
-            const char* must_be) const {
-    const std::size_t before = problems_.size();
-    const double value = at(quantity);
-    if (problems_.size() == before && !good(value)) {
-      problems_.push_back(fmt::format(
-          "{}: {} is {:g}{}; it must be {}", place(input_, quantity.line),
-          quantity.key, value, where(quantity), must_be));
-    }
-    return value;
-  }
-
-  double positive(const Quantity& quantity) const {
-    return at(
-        quantity, [](double x) { return x > 0.0; }, "above 0");
-  }
-
-  /// " where support_x = 3, gap = 2"; nothing for plain numbers.
-  template <class... Quantities>
-  std::string where(const Quantities&... quantities) const {
-    std::vector<char> used(values_.size(), 0);
-    (mark(quantities, used), ...);
-    std::string text;
-    for (std::size_t k = 0; k < used.size(); ++k) {
-      if (used[k] != 0) {
-        const bool is_design = k < input_.design.size();
-        text += fmt::format(
-            "{}{} = {:g}", text.empty() ? " where " : ", ",
-            is_design ? input_.design[k].name
-                      : input_.parameters[k - input_.design.size()].name,
-            values_[k]);
-      }
-    }
-    return text;
-  }
-
-  std::vector<std::string>& problems() const { return problems_; }
-
- private:
-  static void mark(const Quantity& quantity, std::vector<char>& used) {
-    for (const int name : quantity.expression.names_used()) {
-      used[static_cast<std::size_t>(name)] = 1;
-    }
-  }
-  template <class Items>
-  static void mark(const Items& items, std::vector<char>& used) {
-    for (const auto& item : items) {
-      mark(item, used);
-    }
-  }
-
-  const Case& input_;
-  std::vector<std::string>& problems_;
-  std::vector<double> values_;
-};
-
-CurveShape shape_of(const CurveEntry& curve, const Values& values) {
+CurveShape shape_of(const CurveEntry& curve, const CaseValues& values) {
   switch (curve.kind) {
     case CurveKind::Circle:
       return Circle{values.at(curve.center), values.at(curve.normal),
@@ -125,7 +37,7 @@ CurveShape shape_of(const CurveEntry& curve, const Values& values) {
 }
 
 Curve curve_of(const Case& input, const CurveEntry& entry,
-               const Values& values) {
+               const CaseValues& values) {
   const std::size_t before = values.problems().size();
   Curve curve{entry.name, shape_of(entry, values)};
   if (values.problems().size() == before) {
@@ -142,14 +54,101 @@ Curve curve_of(const Case& input, const CurveEntry& entry,
   return curve;
 }
 
-FilmSystem films_of(const Case& input, const Values& values) {
+constexpr int kPlacesOnCurve = 16;
+
+/// Tells where an expression of place is not above 0 on the curves that hold a
+/// film: what can be known before there is one.
+void check_on_curves(const Case& input, const FilmSystem& system,
+                     const std::vector<std::string>& curves,
+                     const PlaceQuantity& from, const Expression& expression,
+                     const CaseValues& values) {
+  const auto tell = [&](const std::string& found, const Vec3& at,
+                        const std::string& curve) {
+    values.problems().push_back(fmt::format(
+        "{}: {} {} at ({:.4g}, {:.4g}, {:.4g}) on curve '{}'{}; it must be "
+        "above 0 on the whole film",
+        place(input, from.quantity.line), from.quantity.key, found, at.x(),
+        at.y(), at.z(), curve, values.where(from.quantity)));
+  };
+  for (const Curve& curve : system.curves) {
+    if (std::find(curves.begin(), curves.end(), curve.name) == curves.end()) {
+      continue;
+    }
+    for (int k = 0; k < kPlacesOnCurve; ++k) {
+      const Vec3 at =
+          point_at(curve.shape, static_cast<double>(k) / kPlacesOnCurve);
+      try {
+        const double value =
+            expression.evaluate(std::span<const double>(at.data(), 3));
+        if (!(value > 0.0)) {
+          return tell(fmt::format("is {:.4g}", value), at, curve.name);
+        }
+      } catch (const ExpressionError& error) {
+        return tell(fmt::format("has no value ({})", error.what()), at,
+                    curve.name);
+      }
+    }
+  }
+}
+
+PoleShape pole_of(const FieldEntry& field, const CaseValues& values) {
+  switch (field.kind) {
+    case FieldKind::Segment:
+      return SegmentPole{values.at(field.from), values.at(field.to)};
+    case FieldKind::Plane:
+      return PlanePole{values.at(field.at), values.at(field.normal)};
+    case FieldKind::Polyline: {
+      PolylinePole pole;
+      for (const QuantityVector& point : field.points) {
+        pole.points.push_back(values.at(point));
+      }
+      return pole;
+    }
+    case FieldKind::Point:
+    case FieldKind::Pressure:
+      break;
+  }
+  return PointPole{values.at(field.at)};
+}
+
+void add_field(const Case& input, const FieldEntry& field,
+               const CaseValues& values, FilmSystem& system) {
+  if (field.kind == FieldKind::Pressure) {
+    system.pressures.push_back(
+        {field.name, field.body, values.of_place(field.pressure)});
+    return;
+  }
+  FieldSpec spec{.name = field.name, .shape = pole_of(field, values)};
+  spec.strength = values.at(field.strength);
+  spec.power = values.positive(field.power);
+  spec.core = values.positive(field.core);
+  if (field.body.empty()) {
+    spec.per = PerArea{field.films};
+  } else {
+    spec.per = PerVolume{field.body};
+  }
+  try {
+    field_expression(spec);
+  } catch (const InvalidInput& error) {
+    values.problems().push_back(
+        fmt::format("{}: {}", place(input, field.line), error.what()));
+  }
+  system.fields.push_back(std::move(spec));
+}
+
+FilmSystem films_of(const Case& input, const CaseValues& values) {
   FilmSystem system;
   for (const CurveEntry& curve : input.curves) {
     system.curves.push_back(curve_of(input, curve, values));
   }
   for (const FilmEntry& film : input.films) {
     system.films.push_back(film.spec);
-    system.films.back().tension = values.positive(film.tension);
+    FilmSpec& spec = system.films.back();
+    if (film.tension.of_place) {
+      spec.tension_field = values.of_place(film.tension);
+    } else {
+      spec.tension = values.positive(film.tension.quantity);
+    }
   }
   for (const CapEntry& cap : input.caps) {
     system.caps.push_back(cap.spec);
@@ -164,10 +163,42 @@ FilmSystem films_of(const Case& input, const Values& values) {
     }
     system.bodies.push_back(std::move(spec));
   }
+  for (const FieldEntry& field : input.fields) {
+    add_field(input, field, values, system);
+  }
   return system;
 }
 
-Material material_of(const MaterialEntry& entry, const Values& values) {
+std::vector<std::string> curves_of(const Case& input,
+                                   const std::vector<std::string>& films) {
+  std::vector<std::string> curves;
+  for (const FilmEntry& film : input.films) {
+    if (std::find(films.begin(), films.end(), film.spec.name) != films.end()) {
+      curves.insert(curves.end(), film.spec.curves.begin(),
+                    film.spec.curves.end());
+    }
+  }
+  return curves;
+}
+
+/// Tells of expressions of place that cannot hold on their films.
+void check_places(const Case& input, const EvaluatedCase& numbers,
+                  const CaseValues& values) {
+  for (std::size_t k = 0; k < input.films.size(); ++k) {
+    const FilmSpec& film = numbers.film_system.films[k];
+    if (film.tension_field) {
+      check_on_curves(input, numbers.film_system, film.curves,
+                      input.films[k].tension, *film.tension_field, values);
+    }
+  }
+  for (std::size_t k = 0; k < input.walls.size(); ++k) {
+    const WallSpec& wall = numbers.walls[k];
+    check_on_curves(input, numbers.film_system, curves_of(input, wall.films),
+                    input.walls[k].thickness, wall.thickness, values);
+  }
+}
+
+Material material_of(const MaterialEntry& entry, const CaseValues& values) {
   Material material{.name = entry.name};
   material.youngs_modulus = values.positive(entry.youngs_modulus);
   material.poisson_ratio = values.at(
@@ -181,7 +212,7 @@ Material material_of(const MaterialEntry& entry, const Values& values) {
   return material;
 }
 
-LoadCase load_case_of(const LoadCaseEntry& entry, const Values& values) {
+LoadCase load_case_of(const LoadCaseEntry& entry, const CaseValues& values) {
   LoadCase load_case{.name = entry.name, .supports = entry.supports};
   for (const LoadEntry& load : entry.loads) {
     if (load.force) {
@@ -194,7 +225,7 @@ LoadCase load_case_of(const LoadCaseEntry& entry, const Values& values) {
 }
 
 Vec3 direction_of(const Case& input, const ResponseEntry& response,
-                  const Values& values) {
+                  const CaseValues& values) {
   const std::size_t before = values.problems().size();
   Vec3 direction = values.at(response.direction);
   if (response.kind == ResponseKind::MeanDisplacement &&
@@ -221,12 +252,16 @@ void throw_first(const std::vector<std::string>& problems) {
 EvaluatedCase evaluate(const Case& input, const VectorX& design,
                        std::vector<std::string>& problems) {
   const std::size_t before = problems.size();
-  const Values values(input, design, problems);
+  const CaseValues values(input, design, problems);
   EvaluatedCase result;
   if (problems.size() > before) {
     return result;  // what follows from a bad parameter is no news
   }
   result.film_system = films_of(input, values);
+  for (const WallEntry& wall : input.walls) {
+    result.walls.push_back(
+        {wall.name, wall.films, values.of_place(wall.thickness), wall.side});
+  }
   for (const BodyEntry& body : input.bodies) {
     result.materials.push_back(material_of(
         input.materials[static_cast<std::size_t>(body.material)], values));
@@ -238,6 +273,9 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
     result.response_directions.push_back(direction_of(input, response, values));
   }
   result.fea_edge = input.resolution.fea;
+  if (problems.size() == before) {
+    check_places(input, result, values);
+  }
   return result;
 }
 
@@ -261,7 +299,7 @@ std::string place(const Case& input, SourceLine line) {
 std::vector<std::pair<std::string, double>> parameter_values(
     const Case& input, const VectorX& design) {
   std::vector<std::string> problems;
-  const Values values(input, design, problems);
+  const CaseValues values(input, design, problems);
   std::vector<std::pair<std::string, double>> result;
   for (const Parameter& parameter : input.parameters) {
     result.emplace_back(parameter.name, values.at(parameter.value));

@@ -26,6 +26,8 @@ struct Case {
   std::vector<FilmEntry> films;
   std::vector<CapEntry> caps;
   std::vector<BodyEntry> bodies;
+  std::vector<WallEntry> walls;
+  std::vector<FieldEntry> fields;
   std::vector<MaterialEntry> materials;
   std::vector<LoadCaseEntry> load_cases;
   std::vector<ResponseEntry> responses;
@@ -33,9 +35,18 @@ struct Case {
   StudyEntry study;
 };
 
+/// A film made solid by thickness.
+struct WallSpec {
+  std::string name;
+  std::vector<std::string> films;
+  Expression thickness;  // over x, y, z [length]
+  WallSide side = WallSide::Both;
+};
+
 /// The numbers of one design.
 struct EvaluatedCase {
   FilmSystem film_system;
+  std::vector<WallSpec> walls;
   std::vector<Material> materials;  // one per body, in the bodies' order
   std::vector<LoadCase> load_cases;
   std::vector<Vec3> response_directions;  // one per response

@@ -109,10 +109,15 @@ void warn_of_idle(const Case& input, CaseProblems& problems) {
     used_surfaces.insert(body.enclosed_by.begin(), body.enclosed_by.end());
     used_materials.insert(body.material);
   }
+  for (const WallEntry& wall : input.walls) {
+    used_surfaces.insert(wall.films.begin(), wall.films.end());
+  }
   const auto surface = [&](const std::string& name, SourceLine line,
                            const char* what) {
     if (used_surfaces.count(name) == 0) {
-      problems.warn(line, fmt::format("{} '{}' encloses no body", what, name));
+      problems.warn(line,
+                    fmt::format("{} '{}' encloses no body{}", what, name,
+                                input.walls.empty() ? "" : " and is no wall"));
     }
   };
   for (const FilmEntry& film : input.films) {
@@ -279,6 +284,22 @@ std::vector<std::string> surface_names(const Case& input) {
   }
   for (const FilmEntry& film : input.films) {
     names.push_back(film.spec.name);
+  }
+  return names;
+}
+
+std::vector<std::string> film_names(const Case& input) {
+  std::vector<std::string> names;
+  for (const FilmEntry& film : input.films) {
+    names.push_back(film.spec.name);
+  }
+  return names;
+}
+
+std::vector<std::string> body_names(const Case& input) {
+  std::vector<std::string> names;
+  for (const BodyEntry& body : input.bodies) {
+    names.push_back(body.name);
   }
   return names;
 }

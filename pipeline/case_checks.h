@@ -26,6 +26,8 @@ void check_case(const Case& input, CaseProblems& problems);
 
 /// Films and solids.
 std::vector<std::string> surface_names(const Case& input);
+std::vector<std::string> film_names(const Case& input);
+std::vector<std::string> body_names(const Case& input);
 
 /// "two_arm" for "cases/two_arm/case.toml", else the file's stem.
 std::string case_name(const std::string& path);

@@ -10,6 +10,7 @@
 
 #include "core/expression.h"
 #include "evolve/film_system.h"
+#include "evolve/thicken.h"
 #include "fea/elasticity.h"
 
 namespace meniscus {
@@ -26,6 +27,13 @@ struct Quantity {
   std::string key;  // "curves.support.radius", for messages
 };
 using QuantityVector = std::array<Quantity, 3>;
+
+/// A number, or an expression that knows the coordinates x, y, z after the
+/// case's names.
+struct PlaceQuantity {
+  Quantity quantity;
+  bool of_place = false;  // x, y or z appear
+};
 
 struct DesignVariable {
   std::string name;
@@ -53,7 +61,7 @@ struct CurveEntry {
 
 struct FilmEntry {
   FilmSpec spec;  // tension filled in by evaluate()
-  Quantity tension;
+  PlaceQuantity tension;
   SourceLine line = 0;
 };
 
@@ -69,6 +77,28 @@ struct BodyEntry {
   int material = 0;  // index into materials
   SourceLine line = 0;
   SourceLine enclosure_line = 0;  // of enclosed_by
+};
+
+struct WallEntry {
+  std::string name;
+  std::vector<std::string> films;
+  PlaceQuantity thickness;
+  WallSide side = WallSide::Both;
+  SourceLine line = 0;
+};
+
+enum class FieldKind { Point, Segment, Polyline, Plane, Pressure };
+
+struct FieldEntry {
+  std::string name;
+  FieldKind kind = FieldKind::Point;
+  QuantityVector at, normal, from, to;
+  std::vector<QuantityVector> points;
+  Quantity strength, power, core;
+  std::vector<std::string> films;  // acts per area of these; or
+  std::string body;                // per volume of this
+  PlaceQuantity pressure;
+  SourceLine line = 0;
 };
 
 struct MaterialEntry {

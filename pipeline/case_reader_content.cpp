@@ -96,8 +96,8 @@ std::size_t skip_string(std::string_view text, std::size_t at) {
 
 std::string canonical_text(const toml::table& root) {
   static const std::set<std::string> ordered = {
-      "design", "curves",    "films",      "solids",
-      "bodies", "materials", "load_cases", "responses"};
+      "design", "curves", "films",     "solids",     "bodies",
+      "walls",  "fields", "materials", "load_cases", "responses"};
   std::string text = "meniscus-case-1;";
   for (const auto& [key, node] : root) {
     const std::string name(key.str());

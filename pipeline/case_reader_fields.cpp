@@ -42,10 +42,14 @@ std::string described(const toml::node& node) {
                              : "a date or time";
 }
 
-std::optional<Quantity> read_quantity(CaseContext& context,
-                                      const toml::node& node,
-                                      std::optional<Dimension> dimension,
-                                      const std::string& key) {
+namespace {
+
+/// `names`: those of the context, and more after them.
+std::optional<Quantity> read_expression(CaseContext& context,
+                                        const toml::node& node,
+                                        std::optional<Dimension> dimension,
+                                        const std::string& key,
+                                        const std::vector<std::string>& names) {
   Quantity result{.line = context.line_of(node), .key = key};
   const auto* text = node.as_string();
   if (text == nullptr) {
@@ -62,9 +66,11 @@ std::optional<Quantity> read_quantity(CaseContext& context,
     result.expression =
         looks_like_quantity(text->get())
             ? Expression(parse_quantity(text->get(), dimension, context.units))
-            : Expression::parse(text->get(), context.names);
+            : Expression::parse(text->get(), names);
     for (const int name : result.expression.names_used()) {
-      context.used[static_cast<std::size_t>(name)] = 1;
+      if (static_cast<std::size_t>(name) < context.used.size()) {
+        context.used[static_cast<std::size_t>(name)] = 1;
+      }
     }
     return result;
   } catch (const ExpressionError& error) {
@@ -77,6 +83,55 @@ std::optional<Quantity> read_quantity(CaseContext& context,
   return std::nullopt;
 }
 
+/// The first name that a design variable moves or that has no value; empty
+/// when there is none.
+std::string moving_name(const CaseContext& context, const Quantity& quantity) {
+  for (const int name : quantity.expression.names_used()) {
+    const auto k = static_cast<std::size_t>(name);
+    if (k < context.names.size() &&
+        (k >= context.constants.size() || !context.constants[k])) {
+      return context.names[k];
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::optional<Quantity> read_quantity(CaseContext& context,
+                                      const toml::node& node,
+                                      std::optional<Dimension> dimension,
+                                      const std::string& key) {
+  return read_expression(context, node, dimension, key, context.names);
+}
+
+std::optional<PlaceQuantity> read_place_quantity(
+    CaseContext& context, const toml::node& node,
+    std::optional<Dimension> dimension, const std::string& key) {
+  std::vector<std::string> names = context.names;
+  names.insert(names.end(), {"x", "y", "z"});
+  auto quantity = read_expression(context, node, dimension, key, names);
+  if (!quantity) {
+    return std::nullopt;
+  }
+  const std::vector<int> used = quantity->expression.names_used();
+  const bool of_place =
+      !used.empty() && used.back() >= static_cast<int>(context.names.size());
+  return PlaceQuantity{*std::move(quantity), of_place};
+}
+
+void require_frozen(CaseContext& context, const Quantity& quantity,
+                    const char* what) {
+  if (const std::string name = moving_name(context, quantity); !name.empty()) {
+    context.problems.add(
+        quantity.line,
+        fmt::format("{} depends on '{}', which a design variable moves or "
+                    "which has no value; {} is part of the frozen film and "
+                    "must be the same for every design: take '{}' out of it",
+                    quantity.key, name, what, name));
+  }
+}
+
 std::optional<double> read_constant(CaseContext& context,
                                     const toml::node& node,
                                     std::optional<Dimension> dimension,
@@ -85,18 +140,18 @@ std::optional<double> read_constant(CaseContext& context,
   if (!quantity) {
     return std::nullopt;
   }
+  if (const std::string name = moving_name(context, *quantity); !name.empty()) {
+    context.problems.add(
+        quantity->line,
+        fmt::format("{} depends on '{}', which a design variable moves or "
+                    "which has no value; expected a number that is the same "
+                    "for every design",
+                    key, name));
+    return std::nullopt;
+  }
   std::vector<double> values(context.names.size(), 0.0);
   for (const int name : quantity->expression.names_used()) {
     const auto k = static_cast<std::size_t>(name);
-    if (k >= context.constants.size() || !context.constants[k]) {
-      context.problems.add(
-          quantity->line,
-          fmt::format("{} depends on '{}', which a design variable moves or "
-                      "which has no value; expected a number that is the same "
-                      "for every design",
-                      key, context.names[k]));
-      return std::nullopt;
-    }
     values[k] = *context.constants[k];
   }
   try {
@@ -138,12 +193,29 @@ SourceLine CaseTable::line(const char* key) const {
   return node == nullptr ? line() : context_->line_of(*node);
 }
 
-std::vector<std::string> CaseTable::keys() const {
-  std::vector<std::string> found;
-  for (const auto& [key, node] : *table_) {
-    found.emplace_back(key.str());
+void CaseTable::check_kind(const std::string& kind,
+                           const KindKeys& keys) const {
+  for (const std::string& key : keys.needed) {
+    if (!table_->contains(key)) {
+      context_->problems.add(
+          line(),
+          fmt::format("{} is a {} and has no '{}'; add it", path_, kind, key));
+    }
   }
-  return found;
+  const auto among = [](const std::vector<std::string>& list,
+                        const std::string& key) {
+    return std::find(list.begin(), list.end(), key) != list.end();
+  };
+  for (const auto& [node_key, node] : *table_) {
+    const std::string key(node_key.str());
+    if (key != "kind" && find_key(*spec_, key) != nullptr &&
+        !among(keys.needed, key) && !among(keys.optional, key)) {
+      context_->problems.add(
+          context_->line_of(node),
+          fmt::format("{}.{} does not belong to a {}; it has {}", path_, key,
+                      kind, fmt::join(keys.needed, ", ")));
+    }
+  }
 }
 
 void CaseTable::note(const char* key, const std::string& expected) const {
@@ -237,6 +309,14 @@ std::optional<Quantity> CaseTable::quantity(const char* key) const {
   }
   return read_quantity(*context_, *node(key), dimension(key),
                        fmt::format("{}.{}", path_, key));
+}
+
+std::optional<PlaceQuantity> CaseTable::place_quantity(const char* key) const {
+  if (!has(key)) {
+    return std::nullopt;
+  }
+  return read_place_quantity(*context_, *node(key), dimension(key),
+                             fmt::format("{}.{}", path_, key));
 }
 
 std::optional<double> CaseTable::constant(const char* key) const {

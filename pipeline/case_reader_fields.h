@@ -38,6 +38,12 @@ struct CaseContext {
 /// "a table", "text 'abc'", "3.5": what was found, for messages.
 std::string described(const toml::node& node);
 
+/// The keys that one kind of entry has beside `kind`.
+struct KindKeys {
+  std::vector<std::string> needed;
+  std::vector<std::string> optional;
+};
+
 /// One table of the file, such as [curves.support], and its place.
 class CaseTable {
  public:
@@ -51,7 +57,8 @@ class CaseTable {
   /// Of the key's value, or of the table when it is not there.
   SourceLine line(const char* key) const;
   bool has(const char* key) const { return table_->contains(key); }
-  std::vector<std::string> keys() const;
+  /// Notes keys that an entry of this kind lacks or should not have.
+  void check_kind(const std::string& kind, const KindKeys& keys) const;
 
   // Absent or wrong values come back empty; wrong ones have been noted.
   std::optional<std::string> text(const char* key) const;
@@ -59,6 +66,7 @@ class CaseTable {
   std::vector<std::string> names(const char* key) const;
   std::optional<int> positive_integer(const char* key) const;
   std::optional<Quantity> quantity(const char* key) const;
+  std::optional<PlaceQuantity> place_quantity(const char* key) const;
   std::optional<double> constant(const char* key) const;
   std::vector<double> constants(const char* key) const;
   std::optional<QuantityVector> vector(const char* key) const;
@@ -89,6 +97,16 @@ std::optional<Quantity> read_quantity(CaseContext& context,
                                       const toml::node& node,
                                       std::optional<Dimension> dimension,
                                       const std::string& key);
+
+/// The same for a quantity that may also be an expression of x, y, z.
+std::optional<PlaceQuantity> read_place_quantity(
+    CaseContext& context, const toml::node& node,
+    std::optional<Dimension> dimension, const std::string& key);
+
+/// Notes a quantity that a design variable moves although `what`, of which it
+/// is a part, belongs to the frozen film.
+void require_frozen(CaseContext& context, const Quantity& quantity,
+                    const char* what);
 
 /// The same where no design variable may have a say.
 std::optional<double> read_constant(CaseContext& context,

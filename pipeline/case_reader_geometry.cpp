@@ -18,53 +18,29 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 struct CurveKeys {
   CurveKind kind;
-  std::vector<std::string> needed;
-  std::vector<std::string> optional;
+  KindKeys keys;
 };
 
 const std::map<std::string, CurveKeys>& curve_kinds() {
   static const std::map<std::string, CurveKeys> kinds = {
-      {"circle", {CurveKind::Circle, {"center", "normal", "radius"}, {}}},
+      {"circle", {CurveKind::Circle, {{"center", "normal", "radius"}, {}}}},
       {"ellipse",
        {CurveKind::Ellipse,
-        {"center", "normal", "axis", "radius_1", "radius_2"},
-        {}}},
+        {{"center", "normal", "axis", "radius_1", "radius_2"}, {}}}},
       {"rectangle",
        {CurveKind::Rectangle,
-        {"center", "normal", "axis", "width", "height"},
-        {"corner_radius"}}},
-      {"polygon", {CurveKind::Polygon, {"points"}, {}}}};
+        {{"center", "normal", "axis", "width", "height"}, {"corner_radius"}}}},
+      {"polygon", {CurveKind::Polygon, {{"points"}, {}}}}};
   return kinds;
-}
-
-/// The keys that stand there are those of its kind.
-void check_curve_keys(CaseContext& context, const CaseTable& table,
-                      const std::string& kind) {
-  const CurveKeys& keys = curve_kinds().at(kind);
-  for (const std::string& key : keys.needed) {
-    if (!table.has(key.c_str())) {
-      context.problems.add(table.line(),
-                           fmt::format("{} is a {} and has no '{}'; add it",
-                                       table.path(), kind, key));
-    }
-  }
-  for (const std::string& key : table.keys()) {
-    if (key != "kind" && find_key(case_table("curves"), key) != nullptr &&
-        !contains(keys.needed, key) && !contains(keys.optional, key)) {
-      context.problems.add(
-          table.line(key.c_str()),
-          fmt::format("{}.{} does not belong to a {}; it has {}", table.path(),
-                      key, kind, fmt::join(keys.needed, ", ")));
-    }
-  }
 }
 
 void read_curves(CaseContext& context, const toml::table& root, Case& result) {
   for (const CaseTable& table : named_tables(context, root, "curves")) {
     CurveEntry curve{.name = table.name(), .line = table.line()};
     if (const auto kind = table.choice("kind")) {
-      curve.kind = curve_kinds().at(*kind).kind;
-      check_curve_keys(context, table, *kind);
+      const CurveKeys& keys = curve_kinds().at(*kind);
+      curve.kind = keys.kind;
+      table.check_kind(*kind, keys.keys);
     }
     curve.center = table.vector_or_zero("center");
     curve.normal = table.vector_or_zero("normal");
@@ -135,10 +111,13 @@ void read_films(CaseContext& context, const toml::table& root, Case& result) {
       }
     }
     check_film_curves(context, table, known, film.spec.curves);
-    film.tension = table.quantity("tension").value_or(
-        Quantity{.expression = Expression(1.0),
-                 .line = table.line(),
-                 .key = table.path() + ".tension"});
+    film.tension = table.place_quantity("tension").value_or(
+        PlaceQuantity{{.expression = Expression(1.0),
+                       .line = table.line(),
+                       .key = table.path() + ".tension"}});
+    if (film.tension.of_place) {
+      require_frozen(context, film.tension.quantity, "a tension of x, y, z");
+    }
     result.films.push_back(std::move(film));
   }
 }

@@ -13,6 +13,7 @@ namespace meniscus {
 namespace {
 
 void check_top(CaseContext& context, const toml::table& root) {
+  const bool only_walls = root.contains("walls") && !root.contains("bodies");
   std::vector<std::string> known;
   for (const TableSpec& spec : case_tables()) {
     const std::string name = spec.name;
@@ -27,7 +28,9 @@ void check_top(CaseContext& context, const toml::table& root) {
       }
     } else if (name != "support" && name != "load") {
       known.push_back(name);
-      if (spec.required && !root.contains(name)) {
+      const bool needed = spec.need == TableNeed::Always ||
+                          (spec.need == TableNeed::ForParts && !only_walls);
+      if (needed && !root.contains(name)) {
         context.problems.add(
             1, fmt::format("the file has no [{}{}] ({}); add one", name,
                            spec.named_entries ? ".NAME" : "", spec.doc));
@@ -319,6 +322,8 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   read_parameters(context, parameters, result);
   read_design(design, context, result);
   read_geometry(context, root, result);
+  read_walls(context, root, result);
+  read_fields(context, root, result);
   read_resolution(context, root, result);
   read_analysis(context, root, result);
   warn_of_unused(context, result);

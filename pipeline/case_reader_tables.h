@@ -26,6 +26,10 @@ std::optional<CaseTable> single_table(CaseContext& context,
 /// Curves, films, solids, materials, bodies, in this order; sets bodies_good.
 void read_geometry(CaseContext& context, const toml::table& root, Case& result);
 
+/// Walls and field energies; after the geometry.
+void read_walls(CaseContext& context, const toml::table& root, Case& result);
+void read_fields(CaseContext& context, const toml::table& root, Case& result);
+
 /// Load cases, responses, study; after the geometry.
 void read_analysis(CaseContext& context, const toml::table& root, Case& result);
 

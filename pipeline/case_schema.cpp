@@ -9,12 +9,13 @@ namespace {
 
 using D = Dimension;
 using K = KeyType;
+using N = TableNeed;
 
 std::vector<TableSpec> make_tables() {
   return {
       {"",
        false,
-       true,
+       N::Always,
        "Above the first table",
        {{"title", K::Text, D::None, true, "one line for people"},
         {"units", K::Choice, D::None, true,
@@ -22,20 +23,20 @@ std::vector<TableSpec> make_tables() {
          "mm-N-MPa|m-N-Pa|in-lbf-psi"}}},
       {"parameters",
        false,
-       false,
+       N::Optional,
        "Named numbers for expressions, `name = value`; override from outside "
        "with --set name=value",
        {}},
       {"design",
        true,
-       false,
+       N::Optional,
        "A design variable: what the optimizer moves",
        {{"initial", K::Constant, std::nullopt, true,
          "value at which the model freezes and the study starts"},
         {"bounds", K::Bounds, std::nullopt, true, "[least, largest]"}}},
       {"curves",
        true,
-       true,
+       N::Always,
        "A closed boundary curve that holds films; counter-clockwise seen from "
        "the tip of its normal",
        {{"kind", K::Choice, D::None, true, "its shape",
@@ -56,18 +57,19 @@ std::vector<TableSpec> make_tables() {
         {"points", K::Vectors, D::Length, false, "of polygon, in order"}}},
       {"films",
        true,
-       true,
+       N::Always,
        "A liquid film between curves",
        {{"kind", K::Choice, D::None, true,
          "how the liquid starts: branch (convex hull of any number of curves "
          "less their caps), loft (band between two), disk (across one)",
          "branch|loft|disk", "facets|file"},
         {"curves", K::Names, D::None, true, "the curves that hold it"},
-        {"tension", K::Quantity, D::Tension, false,
-         "energy per area of the whole film; 1 when left out"}}},
+        {"tension", K::Place, D::Tension, false,
+         "energy per area of the film, above 0; 1 when left out. An expression "
+         "of x, y, z cannot depend on design variables"}}},
       {"solids",
        true,
-       false,
+       N::Optional,
        "A solid surface, named so that loads find it",
        {{"kind", K::Choice, D::None, true,
          "cap: flat disk across a planar "
@@ -76,7 +78,7 @@ std::vector<TableSpec> make_tables() {
         {"curve", K::Name, D::None, true, "the cap's rim"}}},
       {"bodies",
        true,
-       true,
+       N::ForParts,
        "A chamber that films and solids enclose; it becomes solid material",
        {{"enclosed_by", K::Names, D::None, true,
          "films and solids that close it"},
@@ -84,9 +86,49 @@ std::vector<TableSpec> make_tables() {
         {"pressure", K::Quantity, D::Pressure, false,
          "inside minus outside, instead of a volume"},
         {"material", K::Name, D::None, true, "what fills it"}}},
+      {"walls",
+       true,
+       N::Optional,
+       "A film made solid by thickness. `meniscus evolve` reports the largest "
+       "safe thickness and writes the closed surface",
+       {{"films", K::Names, D::None, true,
+         "the film, or several that join smoothly or at a crease"},
+        {"thickness", K::Place, D::Length, true, "above 0"},
+        {"side", K::Choice, D::None, false,
+         "where the material lies: both sides of the film, all of it inside "
+         "(against the film's normals) or outside; both when left out",
+         "both|inside|outside"}}},
+      {"fields",
+       true,
+       N::Optional,
+       "A field energy. Poles (point, segment, polyline, plane) at distance d "
+       "add -strength (1 + (d / core)^2)^(-power / 2) to the energy per area "
+       "of films or per volume of a body; a pressure adds to a body's own. "
+       "Part of the frozen film: no design variable may move it",
+       {{"kind", K::Choice, D::None, true, "what acts",
+         "point|segment|polyline|plane|pressure"},
+        {"at", K::Vector, D::Length, false, "of point, plane"},
+        {"normal", K::Vector, D::None, false, "of plane; any length but 0"},
+        {"from", K::Vector, D::Length, false, "of segment"},
+        {"to", K::Vector, D::Length, false, "of segment"},
+        {"points", K::Vectors, D::Length, false,
+         "of polyline, in order; it closes where the last is the first"},
+        {"strength", K::Quantity, std::nullopt, false,
+         "of poles: energy on the pole per area or volume, above 0 attracts, "
+         "below repels. A film whose tension it exceeds crumples there"},
+        {"power", K::Quantity, D::None, false,
+         "of poles: falls as d^-power far away; 2 when left out"},
+        {"core", K::Quantity, D::Length, false,
+         "of poles: within it the field is soft"},
+        {"films", K::Names, D::None, false,
+         "of poles: acts per area of these, or"},
+        {"body", K::Name, D::None, false,
+         "of poles and pressure: acts per volume of this"},
+        {"pressure", K::Place, D::Pressure, false,
+         "of pressure: above 0 inflates"}}},
       {"resolution",
        false,
-       true,
+       N::Always,
        "Edge lengths",
        {{"fea", K::Constant, D::Length, true,
          "of the settled film that is filled with elements"},
@@ -98,7 +140,7 @@ std::vector<TableSpec> make_tables() {
          "out"}}},
       {"materials",
        true,
-       true,
+       N::ForParts,
        "An isotropic linear-elastic material",
        {{"youngs_modulus", K::Quantity, D::Pressure, true, "above 0"},
         {"poisson_ratio", K::Quantity, D::None, true, "above -1 and below 0.5"},
@@ -107,20 +149,20 @@ std::vector<TableSpec> make_tables() {
          "stress above it is warned of"}}},
       {"load_cases",
        true,
-       true,
+       N::ForParts,
        "Supports and loads that act together",
        {{"supports", K::Supports, D::None, true, "at least one"},
         {"loads", K::Loads, D::None, true, "at least one"}}},
       {"support",
        false,
-       false,
+       N::Optional,
        "A surface that is held",
        {{"on", K::Name, D::None, true, "the surface that is held"},
         {"fix", K::Text, D::None, true,
          "components held at 0: some of \"xyz\""}}},
       {"load",
        false,
-       false,
+       N::Optional,
        "A surface that is loaded, by a force or a pressure",
        {{"on", K::Name, D::None, true, "the surface that is loaded"},
         {"force", K::Vector, D::Force, false,
@@ -129,7 +171,7 @@ std::vector<TableSpec> make_tables() {
          "positive into the material"}}},
       {"responses",
        true,
-       true,
+       N::ForParts,
        "A number that the solver reports",
        {{"kind", K::Choice, D::None, true,
          "mean_displacement: area-weighted over a surface along a direction; "
@@ -148,7 +190,7 @@ std::vector<TableSpec> make_tables() {
          "left out"}}},
       {"study",
        false,
-       false,
+       N::Optional,
        "What to do; analyse the initial design when left out",
        {{"kind", K::Choice, D::None, true, "analyse or match", "analyse|match",
          "minimize|sweep|family|pareto|tolerance"},
@@ -198,8 +240,8 @@ std::vector<std::string> split_choices(const char* choices) {
 }
 
 bool is_later_table(const std::string& name) {
-  constexpr std::array<const char*, 6> kLater = {"walls",  "fields", "regions",
-                                                 "family", "sweep",  "process"};
+  constexpr std::array<const char*, 4> kLater = {"regions", "family", "sweep",
+                                                 "process"};
   return std::find(kLater.begin(), kLater.end(), name) != kLater.end();
 }
 

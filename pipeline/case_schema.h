@@ -19,6 +19,7 @@ enum class KeyType {
   Integer,
   Quantity,     // number, expression or "value unit"
   Constant,     // a quantity that no design variable moves
+  Place,        // a quantity, or an expression that also knows x, y, z
   Vector,       // array of three quantities
   Vectors,      // array of arrays of three quantities
   Bounds,       // array of two constants
@@ -38,10 +39,16 @@ struct KeySpec {
   const char* later = "";    // choices of later versions, refused by name
 };
 
+enum class TableNeed {
+  Optional,
+  Always,   // at least one entry
+  ForParts  // the same, unless the case has walls and no bodies
+};
+
 struct TableSpec {
   const char* name;    // "curves"; "" for the file's top
   bool named_entries;  // [curves.NAME]
-  bool required;       // at least one entry
+  TableNeed need;
   const char* doc;
   std::vector<KeySpec> keys;
 };

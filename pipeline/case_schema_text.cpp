@@ -27,6 +27,8 @@ const char* type_text(const KeySpec& key) {
       return "quantity";
     case K::Constant:
       return "constant";
+    case K::Place:
+      return "quantity of x, y, z";
     case K::Vector:
       return "3 quantities";
     case K::Vectors:
@@ -127,6 +129,7 @@ Json type_schema(const KeySpec& key) {
       return {{"type", "integer"}};
     case K::Quantity:
     case K::Constant:
+    case K::Place:
       return quantity;
     case K::Vector:
       return array(quantity, 3, 3);
@@ -152,6 +155,7 @@ std::string json_schema() {
   Json schema = object_schema(case_table(""));
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "Meniscus case file";
+  Json for_parts = Json::array();
   for (const TableSpec& table : case_tables()) {
     const std::string name = table.name;
     if (name.empty() || name == "support" || name == "load") {
@@ -168,10 +172,13 @@ std::string json_schema() {
     } else {
       schema["properties"][name] = object_schema(table);
     }
-    if (table.required) {
+    if (table.need == TableNeed::Always) {
       schema["required"].push_back(name);
+    } else if (table.need == TableNeed::ForParts) {
+      for_parts.push_back(name);
     }
   }
+  schema["anyOf"] = {{{"required", for_parts}}, {{"required", {"walls"}}}};
   return schema.dump(2) + "\n";
 }
 

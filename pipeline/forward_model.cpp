@@ -8,6 +8,7 @@
 #include "mesh_tet/tet_quality.h"
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/responses.h"
+#include "pipeline/walls.h"
 
 namespace meniscus {
 
@@ -131,6 +132,7 @@ bool ForwardModel::Impl::place_nodes(const QuadraticSurface& surface,
 ForwardModel::ForwardModel(const Case& input,
                            const ForwardModelOptions& options)
     : impl_(std::make_unique<Impl>()) {
+  refuse_walls(input);
   impl_->input = input;
   impl_->freeze(options);
 }

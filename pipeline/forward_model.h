@@ -58,7 +58,8 @@ class ForwardModel {
  public:
   /// Freezes films, tetrahedra and elasticity at the case's initial design.
   /// When that design cannot be evaluated, failure() says why and the model
-  /// must not be used. Throws what its stages throw for wrong input.
+  /// must not be used. Throws what its stages throw for wrong input, and for a
+  /// case with walls.
   explicit ForwardModel(const Case& input,
                         const ForwardModelOptions& options = {});
   ~ForwardModel();

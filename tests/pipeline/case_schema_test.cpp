@@ -111,8 +111,8 @@ TEST(CaseTables, AreFoundByName) {
   EXPECT_EQ(find_key(case_table("bodies"), "volme"), nullptr);
   EXPECT_THAT(split_choices("a|bc|d"), testing::ElementsAre("a", "bc", "d"));
   EXPECT_THAT(split_choices(""), testing::IsEmpty());
-  EXPECT_TRUE(is_later_table("walls"));
-  EXPECT_FALSE(is_later_table("wals"));
+  EXPECT_TRUE(is_later_table("regions"));
+  EXPECT_FALSE(is_later_table("walls"));
 }
 
 TEST(CaseSchema, TheFileForEditorsIsCurrent) {

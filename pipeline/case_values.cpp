@@ -1,0 +1,145 @@
+#include "pipeline/case_values.h"
+
+#include <algorithm>
+#include <cctype>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+bool is_letter(char c) {
+  return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0;
+}
+bool is_digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Past the number that starts at `at`, its exponent included: its e is no
+/// name.
+std::size_t skip_number(const std::string& text, std::size_t at) {
+  const auto digits = [&] {
+    while (at < text.size() && (is_digit(text[at]) || text[at] == '.')) {
+      ++at;
+    }
+  };
+  digits();
+  if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
+    ++at;
+    at += at < text.size() && (text[at] == '+' || text[at] == '-') ? 1 : 0;
+    digits();
+  }
+  return at;
+}
+
+/// The text with each name replaced by its value, in parentheses; x, y, z and
+/// functions stay. `text` must parse.
+std::string with_values(const std::string& text,
+                        const std::vector<std::string>& names,
+                        std::span<const double> values) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t start = at;
+    if (is_digit(text[at]) || text[at] == '.') {
+      at = skip_number(text, at);
+    } else if (is_letter(text[at])) {
+      while (at < text.size() && (is_letter(text[at]) || is_digit(text[at]))) {
+        ++at;
+      }
+      const auto name =
+          std::find(names.begin(), names.end(), text.substr(start, at - start));
+      if (name != names.end()) {
+        const auto k = static_cast<std::size_t>(name - names.begin());
+        result += fmt::format("({})", values[k]);
+        continue;
+      }
+    } else {
+      ++at;
+    }
+    result.append(text, start, at - start);
+  }
+  return result;
+}
+
+}  // namespace
+
+CaseValues::CaseValues(const Case& input, const VectorX& design,
+                       std::vector<std::string>& problems)
+    : input_(input), problems_(problems) {
+  if (design.size() != static_cast<Eigen::Index>(input.design.size())) {
+    throw InvalidInput(fmt::format("{}: {} design values for {} variables",
+                                   input.path, design.size(),
+                                   input.design.size()));
+  }
+  for (const DesignVariable& variable : input.design) {
+    names_.push_back(variable.name);
+  }
+  for (const Parameter& parameter : input.parameters) {
+    names_.push_back(parameter.name);
+  }
+  values_.assign(design.begin(), design.end());
+  values_.resize(names_.size(), 0.0);
+  for (const int k : input.parameter_order) {
+    values_[input.design.size() + static_cast<std::size_t>(k)] =
+        at(input.parameters[static_cast<std::size_t>(k)].value);
+  }
+}
+
+double CaseValues::at(const Quantity& quantity) const {
+  try {
+    return quantity.expression.evaluate(values_);
+  } catch (const ExpressionError& error) {
+    problems_.push_back(fmt::format("{}: {}: {}{}",
+                                    place(input_, quantity.line), quantity.key,
+                                    error.what(), where(quantity)));
+    return 0.0;
+  }
+}
+
+Expression CaseValues::of_place(const PlaceQuantity& place_quantity) const {
+  const Quantity& quantity = place_quantity.quantity;
+  if (!place_quantity.of_place) {
+    return Expression(at(quantity));
+  }
+  try {
+    return Expression::parse(
+        with_values(quantity.expression.text(), names_, values_),
+        {"x", "y", "z"});
+  } catch (const ExpressionError& error) {
+    problems_.push_back(fmt::format("{}: {}: {}", place(input_, quantity.line),
+                                    quantity.key, error.what()));
+    return Expression();
+  }
+}
+
+void CaseValues::tell_bad(const Quantity& quantity, double value,
+                          const char* must_be) const {
+  problems_.push_back(fmt::format("{}: {} is {:g}{}; it must be {}",
+                                  place(input_, quantity.line), quantity.key,
+                                  value, where(quantity), must_be));
+}
+
+std::string CaseValues::where_text(const std::vector<char>& used) const {
+  std::string text;
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (used[k] != 0) {
+      text += fmt::format("{}{} = {:g}", text.empty() ? " where " : ", ",
+                          names_[k], values_[k]);
+    }
+  }
+  return text;
+}
+
+void CaseValues::mark(const Quantity& quantity, std::vector<char>& used) {
+  for (const int name : quantity.expression.names_used()) {
+    if (static_cast<std::size_t>(name) < used.size()) {  // else x, y or z
+      used[static_cast<std::size_t>(name)] = 1;
+    }
+  }
+}
+
+}  // namespace meniscus

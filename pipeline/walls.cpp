@@ -1,0 +1,88 @@
+#include "pipeline/walls.h"
+
+#include <fmt/format.h>
+
+#include "io/stl.h"
+#include "io/vtk_files.h"
+
+namespace meniscus {
+
+namespace {
+
+/// The facets of the films named; every point stays.
+SurfaceMesh films_of(const SurfaceMesh& all,
+                     const std::vector<std::string>& films) {
+  SurfaceMesh mesh;
+  mesh.points = all.points;
+  mesh.labels = films;
+  for (std::size_t f = 0; f < all.facets.size(); ++f) {
+    const int label = mesh.label_of(all.labels[all.facet_label[f]]);
+    if (label >= 0) {
+      mesh.facets.push_back(all.facets[f]);
+      mesh.facet_label.push_back(label);
+    }
+  }
+  return mesh;
+}
+
+std::string place_text(const Vec3& p) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
+}
+
+}  // namespace
+
+std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
+                                 const FilmModel& model, const Points& points) {
+  const SurfaceMesh all = model.fine_mesh(points);
+  std::vector<CaseWall> walls;
+  for (const WallSpec& spec : numbers.walls) {
+    ThickenOptions options{.thickness = spec.thickness, .side = spec.side};
+    for (const Curve& curve : numbers.film_system.curves) {
+      options.rims.push_back({curve.name, model.rim(curve.name)});
+    }
+    walls.push_back({spec.name, thicken(films_of(all, spec.films), options)});
+  }
+  return walls;
+}
+
+std::string wall_text(const Case& input, const CaseWall& made) {
+  const ThickWall& wall = made.wall;
+  const std::string& unit = input.units.length;
+  std::string text = fmt::format(
+      "wall {}: {} facets, volume {:.8g} {}\n"
+      "  thickness {:.4g} to {:.4g} {}, thinnest at {}, thickest at {}\n",
+      made.name, wall.surface.facets.size(), wall.volume,
+      input.units.unit_of(Dimension::Volume), wall.thinnest.value,
+      wall.thickest.value, unit, place_text(wall.thinnest.place),
+      place_text(wall.thickest.place));
+  text += wall.safe.limit == WallLimit::None
+              ? "  nothing limits the thickness\n"
+              : fmt::format(
+                    "  largest safe thickness {:.4g} {}, {:.4g} asked "
+                    "there: {}\n",
+                    wall.safe.value, unit, wall.safe.asked, wall.safe.message);
+  return text;
+}
+
+void write_wall(const Case& input, const CaseWall& made,
+                const std::filesystem::path& folder) {
+  const std::string name = "wall_" + made.name;
+  MeshFields fields;
+  fields.notes = {{"title", input.title}, {"length_unit", input.units.length}};
+  write_vtp(folder / (name + ".vtp"), made.wall.surface, fields);
+  write_stl(folder / (name + ".stl"), made.wall.surface,
+            {.name = input.title, .unit = input.units.length});
+}
+
+void refuse_walls(const Case& input) {
+  if (!input.walls.empty()) {
+    const WallEntry& wall = input.walls.front();
+    throw InvalidInput(fmt::format(
+        "{}: walls.{} cannot be analysed in this version; `meniscus evolve` "
+        "settles the film and writes the closed wall (wall_{}.stl) for another "
+        "mesher, or take [walls] out to analyse the bodies alone",
+        place(input, wall.line), wall.name, wall.name));
+  }
+}
+
+}  // namespace meniscus
