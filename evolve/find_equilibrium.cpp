@@ -24,6 +24,7 @@ constexpr int kFlowSteps = 8;  // between remeshings
 // from one that rests.
 constexpr int kLongRounds = 30;
 constexpr double kLongChange = 1e-8;
+constexpr int kLookAt = 2;  // steps between looks at the neck, else each step
 constexpr double kLongMotion = 0.25;  // x edge, per step
 constexpr int kPolishRounds = 2;      // of averaging and Newton at the end
 // Facets up to which a film is groomed, and factored directly, before nested
@@ -75,8 +76,10 @@ FilmState given_up(const FilmComplex& complex, const std::string& reason,
 std::string bring_near(FilmComplex& complex, std::optional<double> edge,
                        int rounds, int& steps, FlowOptions flow) {
   flow.max_steps = kFlowSteps;
+  int asked = 0;
   flow.torn = [&](const FilmComplex& film) {
-    return pinches(film, edge ? *edge : mean_edge_length(film.mesh));
+    const bool look = flow.most_motion > 0.0 || ++asked % kLookAt == 0;
+    return look && pinches(film, edge ? *edge : mean_edge_length(film.mesh));
   };
   for (int round = 0; round < rounds; ++round) {
     const FlowReport report = flow_to_rest(complex, flow);

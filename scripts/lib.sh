@@ -11,8 +11,10 @@ build_packages=(
 run_packages=(xvfb libudunits2-data)
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
-  calculix-ccx evolver admesh git locales python3
+  calculix-ccx evolver evolver-doc admesh git locales python3
 )
+
+fuzz_packages=(clang libclang-rt-14-dev)
 
 say() { printf '\n== %s\n' "$*"; }
 
