@@ -37,8 +37,9 @@ struct EvolveArguments {
   CommonArguments common;
   std::optional<int> refinements;  // datafiles
   std::string method = "newton";   // "gradient", "conjugate_gradients"
-  std::string macro;                // datafiles: run it; empty: our own route
-  bool pop = false;                 // datafiles: junctions of too many films
+  std::string macro;               // datafiles: run it; empty: our own route
+  bool pop = false;                // datafiles: junctions of too many films
+  bool pictures = true;
 };
 
 int new_command(const std::string& name);

@@ -51,4 +51,17 @@ std::vector<std::string> draw(const Case& input, const EvaluationFields& fields,
   return render_pictures(jobs, {.monitor = &monitor});
 }
 
+std::vector<std::string> draw_film(const std::string& title,
+                                   const std::vector<std::string>& solids,
+                                   const std::filesystem::path& folder,
+                                   Monitor& monitor) {
+  PictureJob job;
+  job.kind = PictureKind::Film;
+  job.film = (folder / "film.vtp").string();
+  job.output = (folder / "film.png").string();
+  job.title = title;
+  job.solids = solids;
+  return render_pictures({job}, {.monitor = &monitor});
+}
+
 }  // namespace meniscus

@@ -16,4 +16,11 @@ std::vector<std::string> draw(const Case& input, const EvaluationFields& fields,
                               const std::filesystem::path& folder,
                               Monitor& monitor);
 
+/// film.png from the film.vtp in `folder`; `solids`: its surfaces that are no
+/// films.
+std::vector<std::string> draw_film(const std::string& title,
+                                   const std::vector<std::string>& solids,
+                                   const std::filesystem::path& folder,
+                                   Monitor& monitor);
+
 }  // namespace meniscus

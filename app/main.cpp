@@ -101,6 +101,8 @@ int run_program(int argc, char** argv) {
       "--pop", evolve_arguments.pop,
       "datafiles: split junctions of more than three films, and settle again");
   pop->excludes(script);
+  evolve->add_flag("!--no-pictures", evolve_arguments.pictures,
+                   "leave the picture out");
   evolve->callback([&, script] {
     if (script->count() > 0 && evolve_arguments.macro.empty()) {
       evolve_arguments.macro = "gogo";

@@ -6,6 +6,7 @@
 
 #include "app/case_input.h"
 #include "app/commands.h"
+#include "app/draw.h"
 #include "app/exit_code.h"
 #include "app/signals.h"
 #include "app/versions.h"
@@ -76,6 +77,12 @@ std::map<std::string, double> numbers_of(
   return result;
 }
 
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+}
+
 int evolve_datafile_command(const EvolveArguments& arguments) {
   const CommonArguments& common = arguments.common;
   const fs::path path = arguments.path;
@@ -104,6 +111,15 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
     return kExitWrongInput;
   }
   const std::string warning = write_datafile_result(result, folder);
+  if (arguments.pictures) {
+    std::vector<std::string> solids;
+    for (const ComplexSurface& surface : result.complex.surfaces) {
+      if (!surface.liquid) {
+        solids.push_back(surface.name);
+      }
+    }
+    warn(draw_film(path.filename().string(), solids, folder, monitor));
+  }
   if (!common.quiet) {
     std::fputs(datafile_text(result).c_str(), stdout);
     std::printf("  written to %s\n", folder.string().c_str());
@@ -164,6 +180,13 @@ int evolve_command(const EvolveArguments& arguments) {
                             .monitor = &monitor});
   const FilmState& film = model.reference();
   write_film(input, model.fine_mesh(film.points), folder);
+  if (arguments.pictures) {
+    std::vector<std::string> solids;
+    for (const CapSpec& cap : numbers.film_system.caps) {
+      solids.push_back(cap.name);
+    }
+    warn(draw_film(input.title, solids, folder, monitor));
+  }
   if (!common.quiet) {
     std::fputs(film_text(input, film.report).c_str(), stdout);
   }

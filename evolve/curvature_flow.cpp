@@ -50,6 +50,7 @@ class Flow {
     }
   }
 
+  const FilmEnergy& film() const { return energy_; }
   bool has_unknowns() const { return energy_.unknowns() > 0; }
 
   bool at_volume() const {
@@ -287,7 +288,7 @@ FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
     if (!flow.step()) {
       break;
     }
-    if (options.torn && options.torn(complex)) {
+    if (options.torn && options.torn(flow.film(), complex.mesh.points)) {
       report.torn = true;
       break;
     }

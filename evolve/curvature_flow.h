@@ -15,7 +15,7 @@ struct FlowOptions {
   double energy_change = 1e-4;  // stop: relative change of energy per step
   double most_motion = 0.0;     // of a vertex per step [length]; 0: no bound
   /// Asked after every step; true stops: the film tears.
-  std::function<bool(const FilmComplex&)> torn = {};
+  std::function<bool(const FilmEnergy&, const Points&)> torn = {};
   Monitor* monitor = nullptr;
 };
 

@@ -41,13 +41,6 @@ bool has_free_vertex(const FilmComplex& complex) {
                      });
 }
 
-bool pinches(const FilmComplex& complex, double edge) {
-  const FilmEnergy energy(complex);
-  const Neck neck =
-      narrowest_neck(energy, complex.mesh.points, complex.mesh.facet_label);
-  return neck.surface >= 0 && neck.width < edge;
-}
-
 FilmState given_up(const FilmComplex& complex, const std::string& reason,
                    int steps) {
   const FilmEnergy energy(complex);
@@ -77,9 +70,13 @@ std::string bring_near(FilmComplex& complex, std::optional<double> edge,
                        int rounds, int& steps, FlowOptions flow) {
   flow.max_steps = kFlowSteps;
   int asked = 0;
-  flow.torn = [&](const FilmComplex& film) {
-    const bool look = flow.most_motion > 0.0 || ++asked % kLookAt == 0;
-    return look && pinches(film, edge ? *edge : mean_edge_length(film.mesh));
+  flow.torn = [&](const FilmEnergy& energy, const Points& points) {
+    if (flow.most_motion == 0.0 && ++asked % kLookAt != 0) {
+      return false;
+    }
+    const Neck neck = narrowest_neck(energy, points, complex.mesh.facet_label);
+    return neck.surface >= 0 &&
+           neck.width < (edge ? *edge : energy.mean_edge(points));
   };
   for (int round = 0; round < rounds; ++round) {
     const FlowReport report = flow_to_rest(complex, flow);
