@@ -51,8 +51,8 @@ FilmEnergy::~FilmEnergy() = default;
 FilmEnergy::FilmEnergy(FilmEnergy&&) noexcept = default;
 FilmEnergy& FilmEnergy::operator=(FilmEnergy&&) noexcept = default;
 
-FilmEnergy::FilmEnergy(const FilmComplex& complex)
-    : space_(complex),
+FilmEnergy::FilmEnergy(const FilmComplex& complex, FilmMotion motion)
+    : space_(complex, motion),
       facets_(complex.mesh.facets),
       label_(complex.mesh.facet_label),
       terms_(film_terms(complex)),

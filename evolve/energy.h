@@ -29,7 +29,8 @@ class FilmEnergy {
   /// Takes the topology of `complex` (facets, kinds, sides of bodies), its
   /// walls and its terms, no positions. Throws MeshError for a facet corner
   /// out of range.
-  explicit FilmEnergy(const FilmComplex& complex);
+  explicit FilmEnergy(const FilmComplex& complex,
+                      FilmMotion motion = FilmMotion::NormalSpace);
   ~FilmEnergy();
   FilmEnergy(FilmEnergy&&) noexcept;
   FilmEnergy& operator=(FilmEnergy&&) noexcept;

@@ -53,7 +53,7 @@ PlaceJet jet_at(const Expression& expression, const Vec3& at) {
   return jet;
 }
 
-FilmSpace::FilmSpace(const FilmComplex& complex)
+FilmSpace::FilmSpace(const FilmComplex& complex, FilmMotion motion)
     : facets_(complex.mesh.facets),
       level_sets_(complex.level_sets),
       curves_(complex.curves) {
@@ -121,9 +121,11 @@ FilmSpace::FilmSpace(const FilmComplex& complex)
       }
     }
     const bool walled = slides || !wall.level_sets.empty();
-    const int rank =
-        slides ? 1
-               : rank_of(lines[v], static_cast<int>(wall.level_sets.size()));
+    const auto walls = static_cast<int>(wall.level_sets.size());
+    const int rank = slides ? 1
+                     : motion == FilmMotion::Anywhere
+                         ? std::max(0, 3 - walls)
+                         : rank_of(lines[v], walls);
     vertex_.insert(vertex_.end(), rank, v);
     if (walled) {
       wall_of_.resize(points, -1);

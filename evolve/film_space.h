@@ -11,12 +11,19 @@
 
 namespace meniscus {
 
+enum class FilmMotion {
+  NormalSpace,
+  Anywhere  // within the walls: for descent, which may then slide vertices to
+            // where coarse facets have less area
+};
+
 class FilmSpace {
  public:
   /// Takes topology, kinds and constraints, no positions. Throws MeshError for
   /// a facet corner out of range, InvalidInput for a curve that films cannot
   /// slide along.
-  explicit FilmSpace(const FilmComplex& complex);
+  explicit FilmSpace(const FilmComplex& complex,
+                     FilmMotion motion = FilmMotion::NormalSpace);
 
   /// An unknown is a pair (vertex, direction); those of one vertex follow each
   /// other.
