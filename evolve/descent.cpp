@@ -6,6 +6,8 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
+#include "core/error.h"
+
 namespace meniscus {
 
 namespace {
@@ -213,11 +215,16 @@ class Descent {
     return restore(h) ? h : VectorX();
   }
   double value_at(double s) const {
-    const VectorX h = trial(s);
-    const double e = h.size() == h_.size()
-                         ? value(h)
-                         : std::numeric_limits<double>::infinity();
-    return std::isfinite(e) ? e : std::numeric_limits<double>::infinity();
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    try {
+      const VectorX h = trial(s);
+      const double e = h.size() == h_.size() ? value(h) : kNone;
+      return std::isfinite(e) ? e : kNone;
+    } catch (const ExpressionError&) {
+      return kNone;  // too far: a formula has no value there
+    } catch (const MeshError&) {
+      return kNone;  // or a wall cannot be reached
+    }
   }
   bool take_best(double s0, double e0, double s1, double e1, double s2,
                  double e2) {

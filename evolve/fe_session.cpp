@@ -76,7 +76,7 @@ int FeSession::mark_of(int edge) const {
 }
 
 void FeSession::descend_steps(int count) {
-  const FilmEnergy energy(complex_, FilmMotion::Everywhere);
+  const FilmEnergy energy(complex_, FilmMotion::Anywhere);
   const FilmTargets targets = targets_of(complex_);
   for (int step = 0; step < count;) {
     // Directions follow the film: anew every few steps.

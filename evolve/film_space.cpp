@@ -121,11 +121,11 @@ FilmSpace::FilmSpace(const FilmComplex& complex, FilmMotion motion)
       }
     }
     const bool walled = slides || !wall.level_sets.empty();
-    const int junction = 3;
-    const int rank =
-        slides ? 1
-               : rank_of(motion == FilmMotion::Everywhere ? junction : lines[v],
-                         static_cast<int>(wall.level_sets.size()));
+    const auto walls = static_cast<int>(wall.level_sets.size());
+    const int rank = slides ? 1
+                     : motion == FilmMotion::Anywhere
+                         ? std::max(0, 3 - walls)
+                         : rank_of(lines[v], walls);
     vertex_.insert(vertex_.end(), rank, v);
     if (walled) {
       wall_of_.resize(points, -1);

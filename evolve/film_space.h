@@ -13,7 +13,8 @@ namespace meniscus {
 
 enum class FilmMotion {
   NormalSpace,
-  Everywhere  // along the film too, as Surface Evolver's `g` moves vertices
+  Anywhere  // within the walls: for descent, which may then slide vertices to
+            // where coarse facets have less area, as Surface Evolver's `g` does
 };
 
 class FilmSpace {

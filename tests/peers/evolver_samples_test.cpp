@@ -12,8 +12,10 @@
 
 #include "core/child_process.h"
 #include "core/find_program.h"
-#include "evolve/equilibrium.h"
 #include "evolve/fe_complex.h"
+#include "evolve/find_equilibrium.h"
+#include "evolve/pop.h"
+#include "evolve/slide_vertices.h"
 #include "tests/support/temp_folder.h"
 
 namespace meniscus {
@@ -21,6 +23,10 @@ namespace {
 
 constexpr double kDumped = 1e-12;  // relative: dumps have 15 digits
 constexpr double kSame = 1e-10;    // relative, of a film that is at rest
+constexpr double kAbove = 1e-4;    // relative, of our own route
+// The sixteenth digit of coordinates of size 1 alone leaves this residual,
+// relative to tension x edge.
+constexpr double kRounding = 1e-14;
 
 std::string sample(const std::string& name) {
   std::ifstream file(std::filesystem::path("/usr/share/doc/evolver/examples") /
@@ -31,62 +37,181 @@ std::string sample(const std::string& name) {
 }
 
 struct Ran {
-  double energy = 0.0;
+  double energy = NAN;
+  double volume = 0.0;  // of all bodies
   int facets = 0;
   std::string dump;
 };
 
-class EvolverSamples : public ::testing::Test {
- protected:
-  // What Surface Evolver makes of a datafile by `commands`.
-  Ran evolver(const std::string& text, const std::string& commands) {
-    const std::filesystem::path dump = folder_ / "film.dmp";
-    std::ofstream(folder_ / "film.fe") << text;
-    std::ofstream(folder_ / "script.cmd")
-        << commands
-        << "\nprintf \"MEASURED %.17g %d\\n\", total_energy, facet_count;\n"
-        << "dump \"" << dump.string() << "\"\nq\nq\n";
-    ChildOptions options;
-    options.argv = {"evolver", "-x", "-f", (folder_ / "script.cmd").string(),
-                    (folder_ / "film.fe").string()};
-    options.environment = {{"LC_ALL", "C"}};
-    options.time_limit = 60.0;
-    const ChildResult result = run_child(options);
-    Ran ran;
-    const auto at = result.output.rfind("MEASURED ");
-    if (at == std::string::npos) {
-      ADD_FAILURE() << describe_end(result) << "\n" << result.output;
-      return ran;
-    }
-    std::istringstream numbers(result.output.substr(at + 9));
-    numbers >> ran.energy >> ran.facets;
-    std::ostringstream dumped;
-    dumped << std::ifstream(dump).rdbuf();
-    ran.dump = dumped.str();
+// What Surface Evolver makes of a datafile by `commands`.
+Ran run_evolver(const std::string& text, const std::string& commands) {
+  const TempFolder folder;
+  const std::filesystem::path dump = folder / "film.dmp";
+  std::ofstream(folder / "film.fe") << text;
+  std::ofstream(folder / "script.cmd")
+      << commands
+      << "\nprintf \"MEASURED %.17g %.17g %d\\n\", total_energy, "
+         "sum(body,volume), facet_count;\ndump \""
+      << dump.string() << "\"\nq\nq\n";
+  ChildOptions options;
+  options.argv = {"evolver", "-x", "-f", (folder / "script.cmd").string(),
+                  (folder / "film.fe").string()};
+  options.environment = {{"LC_ALL", "C"}};
+  options.time_limit = 60.0;
+  const ChildResult result = run_child(options);
+  Ran ran;
+  const auto at = result.output.rfind("MEASURED ");
+  if (at == std::string::npos) {
+    ADD_FAILURE() << describe_end(result) << "\n" << result.output;
     return ran;
   }
+  std::istringstream numbers(result.output.substr(at + 9));
+  numbers >> ran.energy >> ran.volume >> ran.facets;
+  std::ostringstream dumped;
+  dumped << std::ifstream(dump).rdbuf();
+  ran.dump = dumped.str();
+  return ran;
+}
 
-  TempFolder folder_;
-};
+/// Why the test cannot run; empty: it can.
+std::string missing(const std::string& name) {
+  if (!find_program("evolver")) {
+    return "evolver (Debian package evolver) is not installed";
+  }
+  return sample(name).empty()
+             ? "the samples of Debian's evolver-doc are not installed"
+             : "";
+}
 
 double energy_of(const FilmComplex& complex) {
   return FilmEnergy(complex).value(complex.mesh.points, targets_of(complex));
 }
 
-TEST_F(EvolverSamples, StayAtRest) {
-  for (const char* name :
-       {"cat", "catbody", "catman", "column", "cube", "mound", "qmound", "octa",
-        "quad", "sphere", "tankex"}) {
-    const bool seek = std::string(name) != "sphere" && std::string(name) != "tankex";
-    const Ran ran = evolver(sample(name), seek ? "gogo; hessian_seek; hessian_seek; hessian;" : name[0]=='s'? "gogo; g 2000;" : "g 5; r; g 5; r; g 5; U; g 1000;");
-    FilmComplex c = complex_of(read_fe(ran.dump, "film.dmp"));
-    const FilmEnergy energy(c);
-    SettleOptions o; o.residual_factor = 1e10; o.volume_tolerance=1e10; 
-    // One polish step
-    const FilmState now = settle_in_normals(energy, c, targets_of(c), c.mesh.points, {.residual_factor = 1e-30, .max_iterations = 0});
-    const FilmState s = settle_in_normals(energy, c, targets_of(c), c.mesh.points, {});
-    fmt::print("{:8s} F {:5d} E_se {:.14g} dE {:.2e} | res0 {:.2e} -> {:.2e} dE {:.2e} it {} idx {} eig {:.3g} {:.60s}\n", name, ran.facets, ran.energy, energy_of(c)/ran.energy-1, now.report.residual, s.report.residual, s.report.energy/ran.energy-1, s.report.iterations, s.report.index, s.report.min_eigenvalue, s.report.verdict);
+struct Dumped {
+  std::string name;
+  std::string commands = "gogo; hessian_seek; hessian_seek;";
+  int index = 0;
+};
+
+class EvolverDump : public ::testing::TestWithParam<Dumped> {};
+
+TEST_P(EvolverDump, IsAtRest) {
+  const Dumped& sampled = GetParam();
+  if (const std::string why = missing(sampled.name); !why.empty()) {
+    GTEST_SKIP() << why;
   }
+  const Ran ran = run_evolver(sample(sampled.name), sampled.commands);
+  const FilmComplex complex = complex_of(read_fe(ran.dump, "film.dmp"));
+  const FilmEnergy energy(complex);
+  const Points& points = complex.mesh.points;
+  const FilmTargets targets = targets_of(complex);
+  EXPECT_EQ(ran.facets, complex.mesh.facets.size());
+  EXPECT_NEAR(energy_of(complex), ran.energy, kDumped * ran.energy);
+  EXPECT_NEAR(energy.volumes(points).head(energy.bodies()).sum(), ran.volume,
+              kDumped * (1.0 + ran.volume));
+
+  // No step at all: the residual along the normals that Evolver left.
+  const FilmState before =
+      settle_in_normals(energy, complex, targets, points,
+                        {.residual_factor = 0.0, .max_iterations = 0});
+  const FilmState after =
+      settle_in_normals(energy, complex, targets, points, {});
+  RecordProperty("energy", fmt::format("{:.15g}", ran.energy));
+  RecordProperty("residual_before",
+                 fmt::format("{:.2e}", before.report.residual));
+  RecordProperty("residual_after",
+                 fmt::format("{:.2e}", after.report.residual));
+  RecordProperty("energy_moved",
+                 fmt::format("{:.2e}", after.report.energy / ran.energy - 1.0));
+  EXPECT_FALSE(after.failure) << after.report.verdict;
+  EXPECT_NEAR(after.report.energy, ran.energy, kSame * ran.energy);
+  const double size = energy.value(points, targets) / energy.area(points) *
+                      energy.mean_edge(points);
+  EXPECT_LE(after.report.residual,
+            std::max(before.report.residual, kRounding * size));
+}
+
+// sphere.fe has no Hessian in Surface Evolver (gap energy): descent, to where
+// no scale lowers the energy.
+INSTANTIATE_TEST_SUITE_P(Samples, EvolverDump,
+                         ::testing::Values(Dumped{"cat"}, Dumped{"catbody"},
+                                           Dumped{"catman"}, Dumped{"column"},
+                                           Dumped{"cube"}, Dumped{"mound"},
+                                           Dumped{"qmound"}, Dumped{"octa"},
+                                           Dumped{"quad"},
+                                           Dumped{"sphere", "gogo; g 2000;"}),
+                         [](const auto& one) { return one.param.name; });
+
+struct Raw {
+  std::string name;
+  std::string commands = "gogo; hessian_seek; hessian_seek;";
+  int refinements = 2;  // as many as the commands do
+};
+
+class RawSample : public ::testing::TestWithParam<Raw> {};
+
+// find_equilibrium grooms its facets; Surface Evolver's `g` leaves them where
+// their area is least, which slide_vertices does.
+TEST_P(RawSample, EndsNoHigherThanEvolver) {
+  const Raw& raw = GetParam();
+  if (const std::string why = missing(raw.name); !why.empty()) {
+    GTEST_SKIP() << why;
+  }
+  const Ran ran = run_evolver(sample(raw.name), raw.commands);
+  FilmComplex complex = complex_of(read_fe(sample(raw.name), raw.name + ".fe"));
+  const FilmState found =
+      find_equilibrium(complex, {.refinements = raw.refinements});
+  ASSERT_FALSE(found.failure) << found.report.verdict;
+  const FilmState slid = slide_vertices(complex, {});
+  ASSERT_FALSE(slid.failure) << slid.report.verdict;
+  EXPECT_EQ(ran.facets, complex.mesh.facets.size());
+  EXPECT_LT(slid.report.energy, (1.0 + kAbove) * ran.energy);
+  RecordProperty("energy", fmt::format("{:.15g}", ran.energy));
+  RecordProperty("groomed",
+                 fmt::format("{:.2e}", found.report.energy / ran.energy - 1.0));
+  RecordProperty("slid",
+                 fmt::format("{:.2e}", slid.report.energy / ran.energy - 1.0));
+  EXPECT_EQ(slid.report.index, 0);
+}
+
+// The macros of the mounds refine their rims first; here every edge alike. 96
+// facets, with which catman.fe's macro ends, have several least areas: two
+// levels more.
+INSTANTIATE_TEST_SUITE_P(
+    Samples, RawSample,
+    ::testing::Values(
+        Raw{"catbody", "gogo; hessian_seek; hessian_seek;", 3},
+        Raw{"catman",
+            "gogo; r; U; g 100; r; g 100; hessian_seek; hessian_seek;", 3},
+        Raw{"column"}, Raw{"cube"},
+        Raw{"mound", "g 5; r; g 5; r; g 5; hessian; hessian; hessian_seek;"},
+        Raw{"qmound", "g 5; r; g 5; r; g 5; hessian; hessian; hessian_seek;"},
+        Raw{"quad", "gogo; hessian_seek; hessian_seek;", 3},
+        Raw{"sphere", "gogo; g 2000;", 3}),
+    [](const auto& one) { return one.param.name; });
+
+// cat.fe: the rings are too far apart for a catenoid. The film pinches, which
+// is said; popped on request it ends as two flat polygons, whose area does not
+// depend on their facets.
+TEST(EvolverSamples, CatPopsIntoTwoPolygons) {
+  if (const std::string why = missing("cat"); !why.empty()) {
+    GTEST_SKIP() << why;
+  }
+  const Ran ran = run_evolver(
+      sample("cat"),
+      "r; u; r; g 400; t .05; o; g 20; hessian_seek; hessian_seek;");
+  FilmComplex complex = complex_of(read_fe(sample("cat"), "cat.fe"));
+  const FilmState found = find_equilibrium(complex, {.refinements = 2});
+  ASSERT_TRUE(found.failure);
+  EXPECT_EQ(found.failure->kind, FailureKind::FilmPinched);
+  collapse_tiny_edges(complex, 0.1);
+  EXPECT_EQ(pop_vertices(complex).popped, 1);
+  const FilmState disks = find_equilibrium(complex, {});
+  EXPECT_FALSE(disks.failure) << disks.report.verdict;
+  EXPECT_LT(disks.report.energy, (1.0 + kAbove) * ran.energy);
+  constexpr double kRadius = 1.5088795;
+  const double polygons = 24.0 * kRadius * kRadius * std::sin(M_PI / 12.0);
+  EXPECT_NEAR(disks.report.energy, polygons, kSame * polygons);
 }
 
 }  // namespace
