@@ -4,6 +4,7 @@
 #include <cholmod.h>
 #include <cmath>
 #include <metis.h>
+#include <mutex>
 
 #include <fmt/format.h>
 
@@ -98,6 +99,10 @@ std::vector<int> nested_dissection(const SparseMatrix& lower) {
       order[c] = c;
     }
   } else {
+    // METIS seeds and draws from the C library's one random sequence: in two
+    // threads at once the order would depend on their timing.
+    static std::mutex one_at_a_time;
+    const std::lock_guard lock(one_at_a_time);
     idx_t count = n;
     const int status =
         METIS_NodeND(&count, start.data(), neighbours.data(), nullptr, nullptr,
