@@ -25,10 +25,6 @@ SurfaceMesh films_of(const SurfaceMesh& all,
   return mesh;
 }
 
-std::string place_text(const Vec3& p) {
-  return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
-}
-
 }  // namespace
 
 std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
@@ -48,20 +44,21 @@ std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
 std::string wall_text(const Case& input, const CaseWall& made) {
   const ThickWall& wall = made.wall;
   const std::string& unit = input.units.length;
-  std::string text = fmt::format(
+  const auto measured = [&](const MeasuredThickness& t) {
+    return fmt::format("{:.4g} {} of {:.4g} asked at ({:.4g}, {:.4g}, {:.4g})",
+                       t.value, unit, t.asked, t.place.x(), t.place.y(),
+                       t.place.z());
+  };
+  return fmt::format(
       "wall {}: {} facets, volume {:.8g} {}\n"
-      "  thickness {:.4g} to {:.4g} {}, thinnest at {}, thickest at {}\n",
+      "  thinnest {}\n  thickest {}\n  largest safe thickness {}\n",
       made.name, wall.surface.facets.size(), wall.volume,
-      input.units.unit_of(Dimension::Volume), wall.thinnest.value,
-      wall.thickest.value, unit, place_text(wall.thinnest.place),
-      place_text(wall.thickest.place));
-  text += wall.safe.limit == WallLimit::None
-              ? "  nothing limits the thickness\n"
-              : fmt::format(
-                    "  largest safe thickness {:.4g} {}, {:.4g} asked "
-                    "there: {}\n",
-                    wall.safe.value, unit, wall.safe.asked, wall.safe.message);
-  return text;
+      input.units.unit_of(Dimension::Volume), measured(wall.thinnest),
+      measured(wall.thickest),
+      wall.safe.limit == WallLimit::None
+          ? std::string("not limited by the film")
+          : fmt::format("{:.4g} {}: {}", wall.safe.value, unit,
+                        wall.safe.message));
 }
 
 void write_wall(const Case& input, const CaseWall& made,
