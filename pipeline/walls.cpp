@@ -1,5 +1,8 @@
 #include "pipeline/walls.h"
 
+#include <utility>
+
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "io/stl.h"
@@ -8,6 +11,8 @@
 namespace meniscus {
 
 namespace {
+
+constexpr double kFlat = 1e-6;  // of a cone's largest volume
 
 /// The facets of the films named; every point stays.
 SurfaceMesh films_of(const SurfaceMesh& all,
@@ -25,6 +30,46 @@ SurfaceMesh films_of(const SurfaceMesh& all,
   return mesh;
 }
 
+/// Turns a film whose normals face the middle of its rim: how a film starts
+/// must not decide where its inside is. A flat one stays as its curve runs.
+void turn_outward(SurfaceMesh& mesh, int label, const Vec3& middle) {
+  double volume = 0.0;  // six times that of the cones to the middle
+  double size = 0.0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (mesh.facet_label[f] == label) {
+      const Triangle& t = mesh.facets[f];
+      const Vec3 a = mesh.points[t[0]] - middle;
+      const Vec3 b = mesh.points[t[1]] - middle;
+      const Vec3 c = mesh.points[t[2]] - middle;
+      volume += a.dot(b.cross(c));
+      size += a.norm() * (b - a).cross(c - a).norm();
+    }
+  }
+  if (volume < -kFlat * size) {
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+      if (mesh.facet_label[f] == label) {
+        std::swap(mesh.facets[f][1], mesh.facets[f][2]);
+      }
+    }
+  }
+}
+
+Vec3 middle_of_rim(const FilmSystem& system, const std::string& film,
+                   const FilmModel& model, const Points& points) {
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (const FilmSpec& spec : system.films) {
+    for (const std::string& curve : spec.curves) {
+      for (const int v :
+           spec.name == film ? model.rim(curve) : std::vector<int>()) {
+        sum += points[static_cast<std::size_t>(v)];
+        ++count;
+      }
+    }
+  }
+  return sum / count;
+}
+
 }  // namespace
 
 std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
@@ -36,7 +81,12 @@ std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
     for (const Curve& curve : numbers.film_system.curves) {
       options.rims.push_back({curve.name, model.rim(curve.name)});
     }
-    walls.push_back({spec.name, thicken(films_of(all, spec.films), options)});
+    SurfaceMesh film = films_of(all, spec.films);
+    for (const std::string& name : spec.films) {
+      turn_outward(film, film.label_of(name),
+                   middle_of_rim(numbers.film_system, name, model, points));
+    }
+    walls.push_back({spec.name, thicken(film, options)});
   }
   return walls;
 }

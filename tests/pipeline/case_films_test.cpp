@@ -98,11 +98,17 @@ TEST(CaseWalls, NeedNoBodies) {
   EXPECT_DOUBLE_EQ(at(numbers.walls[0].thickness, 0, 0, 4), 1.1);
 }
 
-TEST(CaseWalls, CloseOnTheSettledFilm) {
+class CaseWallsOf : public testing::TestWithParam<const char*> {};
+
+// Inside is towards the axis however the film starts.
+TEST_P(CaseWallsOf, CloseOnTheSettledFilm) {
   const TempFolder folder;
   const Case input =
       *read_case_text(
-           tube("films = [\"skin\"]\nthickness = 2\nside = \"inside\"\n"),
+           changed(tube("films = [\"skin\"]\nthickness = 2\n"
+                        "side = \"inside\"\n"),
+                   "kind = \"branch\"\ncurves = [\"base\", \"head\"]",
+                   GetParam()),
            "case.toml")
            .input;
   const EvaluatedCase numbers = evaluate(input, initial_design(input));
@@ -130,6 +136,32 @@ TEST(CaseWalls, CloseOnTheSettledFilm) {
   write_wall(input, walls[0], folder.path());
   EXPECT_GT(std::filesystem::file_size(folder.path() / "wall_web.stl"), 1000U);
   EXPECT_GT(std::filesystem::file_size(folder.path() / "wall_web.vtp"), 1000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AnyStart, CaseWallsOf,
+    testing::Values("kind = \"branch\"\ncurves = [\"base\", \"head\"]",
+                    "kind = \"loft\"\ncurves = [\"base\", \"head\"]",
+                    "kind = \"loft\"\ncurves = [\"head\", \"base\"]"));
+
+TEST(CaseWalls, OfAFlatFilmFollowTheCurve) {
+  const std::string text =
+      changed(changed(tube("films = [\"skin\"]\nthickness = 2\n"
+                           "side = \"inside\"\n"),
+                      "curves = [\"base\", \"head\"]", "curves = [\"base\"]"),
+              "kind = \"branch\"", "kind = \"disk\"");
+  const Case input = *read_case_text(text, "case.toml").input;
+  const EvaluatedCase numbers = evaluate(input, initial_design(input));
+  const FilmModel model =
+      FilmModel::freeze(numbers.film_system, {.edge = numbers.fea_edge});
+  const auto walls = make_walls(numbers, model, model.reference().points);
+  double highest = 0.0;  // the base's normal points down
+  for (const Vec3& p : walls[0].wall.surface.points) {
+    highest = std::max(highest, p.z());
+  }
+  EXPECT_NEAR(highest, 2.0, 0.05);
+  EXPECT_NEAR(walls[0].wall.volume, 2.0 * model.reference().report.area,
+              0.01 * walls[0].wall.volume);
 }
 
 TEST(CaseWalls, AreNotAnalysed) {
