@@ -86,7 +86,11 @@ std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
       turn_outward(film, film.label_of(name),
                    middle_of_rim(numbers.film_system, name, model, points));
     }
-    walls.push_back({spec.name, thicken(film, options)});
+    try {
+      walls.push_back({spec.name, thicken(film, options)});
+    } catch (const Error& error) {
+      throw InvalidInput(fmt::format("walls.{}: {}", spec.name, error.what()));
+    }
   }
   return walls;
 }
