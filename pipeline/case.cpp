@@ -118,6 +118,7 @@ void add_field(const Case& input, const FieldEntry& field,
         {field.name, field.body, values.of_place(field.pressure)});
     return;
   }
+  const std::size_t before = values.problems().size();
   FieldSpec spec{.name = field.name, .shape = pole_of(field, values)};
   spec.strength = values.at(field.strength);
   spec.power = values.positive(field.power);
@@ -127,11 +128,24 @@ void add_field(const Case& input, const FieldEntry& field,
   } else {
     spec.per = PerVolume{field.body};
   }
-  try {
-    field_expression(spec);
-  } catch (const InvalidInput& error) {
-    values.problems().push_back(
-        fmt::format("{}: {}", place(input, field.line), error.what()));
+  for (const FilmSpec& film : system.films) {
+    const bool acts = std::find(field.films.begin(), field.films.end(),
+                                film.name) != field.films.end();
+    if (acts && !film.tension_field && spec.strength >= film.tension) {
+      values.problems().push_back(fmt::format(
+          "{}: {} is {:g}, and film '{}' has a tension of {:g}; it would "
+          "crumple on the pole: expected less, a larger core reaches as far",
+          place(input, field.strength.line), field.strength.key, spec.strength,
+          film.name, film.tension));
+    }
+  }
+  if (values.problems().size() == before) {
+    try {
+      field_expression(spec);
+    } catch (const InvalidInput& error) {
+      values.problems().push_back(
+          fmt::format("{}: {}", place(input, field.line), error.what()));
+    }
   }
   system.fields.push_back(std::move(spec));
 }

@@ -101,7 +101,7 @@ void check_closed(const Case& input, const BodyEntry& body,
   }
 }
 
-void warn_of_idle(const Case& input, CaseProblems& problems) {
+void check_use(const Case& input, CaseProblems& problems) {
   std::set<std::string> used_curves;
   std::set<std::string> used_surfaces;
   std::set<int> used_materials;
@@ -112,21 +112,22 @@ void warn_of_idle(const Case& input, CaseProblems& problems) {
   for (const WallEntry& wall : input.walls) {
     used_surfaces.insert(wall.films.begin(), wall.films.end());
   }
-  const auto surface = [&](const std::string& name, SourceLine line,
-                           const char* what) {
-    if (used_surfaces.count(name) == 0) {
-      problems.warn(line,
-                    fmt::format("{} '{}' encloses no body{}", what, name,
-                                input.walls.empty() ? "" : " and is no wall"));
-    }
-  };
   for (const FilmEntry& film : input.films) {
     used_curves.insert(film.spec.curves.begin(), film.spec.curves.end());
-    surface(film.spec.name, film.line, "film");
+    if (used_surfaces.count(film.spec.name) == 0) {
+      problems.warn(film.line, fmt::format("film '{}' encloses no body and is "
+                                           "no wall",
+                                           film.spec.name));
+    }
   }
   for (const CapEntry& cap : input.caps) {
     used_curves.insert(cap.spec.curve);
-    surface(cap.spec.name, cap.line, "solid");
+    if (used_surfaces.count(cap.spec.name) == 0) {
+      problems.add(cap.line,
+                   fmt::format("solid '{}' encloses no body; add it to a "
+                               "body's enclosed_by or take it out",
+                               cap.spec.name));
+    }
   }
   for (const CurveEntry& curve : input.curves) {
     if (used_curves.count(curve.name) == 0) {
@@ -328,7 +329,7 @@ void check_bodies(const Case& input, CaseProblems& problems) {
 
 void check_case(const Case& input, CaseProblems& problems) {
   if (problems.empty()) {
-    warn_of_idle(input, problems);
+    check_use(input, problems);
     check_numbers(input, problems);
   }
 }

@@ -1,11 +1,10 @@
 #include "pipeline/case_reader_fields.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
-#include "core/error.h"
 #include "core/nearest_name.h"
 
 namespace meniscus {
@@ -13,9 +12,6 @@ namespace meniscus {
 namespace {
 
 constexpr std::size_t kShown = 40;  // characters of a text in a message
-
-const char* const kQuantity =
-    "a number, an expression in quotes or a value with a unit";
 
 }  // namespace
 
@@ -40,127 +36,6 @@ std::string described(const toml::node& node) {
   return node.is_table()     ? "a table"
          : node.is_boolean() ? (*node.value<bool>() ? "true" : "false")
                              : "a date or time";
-}
-
-namespace {
-
-/// `names`: those of the context, and more after them.
-std::optional<Quantity> read_expression(CaseContext& context,
-                                        const toml::node& node,
-                                        std::optional<Dimension> dimension,
-                                        const std::string& key,
-                                        const std::vector<std::string>& names) {
-  Quantity result{.line = context.line_of(node), .key = key};
-  const auto* text = node.as_string();
-  if (text == nullptr) {
-    const auto value = node.value<double>();
-    if (node.is_number() && value && std::isfinite(*value)) {
-      result.expression = Expression(*value);
-      return result;
-    }
-    context.problems.add(result.line, fmt::format("{} is {}; expected {}", key,
-                                                  described(node), kQuantity));
-    return std::nullopt;
-  }
-  try {
-    result.expression =
-        looks_like_quantity(text->get())
-            ? Expression(parse_quantity(text->get(), dimension, context.units))
-            : Expression::parse(text->get(), names);
-    for (const int name : result.expression.names_used()) {
-      if (static_cast<std::size_t>(name) < context.used.size()) {
-        context.used[static_cast<std::size_t>(name)] = 1;
-      }
-    }
-    return result;
-  } catch (const ExpressionError& error) {
-    context.problems.add(
-        result.line, fmt::format("{}: {} at character {}", key, error.what(),
-                                 error.column()));
-  } catch (const InvalidInput& error) {
-    context.problems.add(result.line, fmt::format("{}: {}", key, error.what()));
-  }
-  return std::nullopt;
-}
-
-/// The first name that a design variable moves or that has no value; empty
-/// when there is none.
-std::string moving_name(const CaseContext& context, const Quantity& quantity) {
-  for (const int name : quantity.expression.names_used()) {
-    const auto k = static_cast<std::size_t>(name);
-    if (k < context.names.size() &&
-        (k >= context.constants.size() || !context.constants[k])) {
-      return context.names[k];
-    }
-  }
-  return "";
-}
-
-}  // namespace
-
-std::optional<Quantity> read_quantity(CaseContext& context,
-                                      const toml::node& node,
-                                      std::optional<Dimension> dimension,
-                                      const std::string& key) {
-  return read_expression(context, node, dimension, key, context.names);
-}
-
-std::optional<PlaceQuantity> read_place_quantity(
-    CaseContext& context, const toml::node& node,
-    std::optional<Dimension> dimension, const std::string& key) {
-  std::vector<std::string> names = context.names;
-  names.insert(names.end(), {"x", "y", "z"});
-  auto quantity = read_expression(context, node, dimension, key, names);
-  if (!quantity) {
-    return std::nullopt;
-  }
-  const std::vector<int> used = quantity->expression.names_used();
-  const bool of_place =
-      !used.empty() && used.back() >= static_cast<int>(context.names.size());
-  return PlaceQuantity{*std::move(quantity), of_place};
-}
-
-void require_frozen(CaseContext& context, const Quantity& quantity,
-                    const char* what) {
-  if (const std::string name = moving_name(context, quantity); !name.empty()) {
-    context.problems.add(
-        quantity.line,
-        fmt::format("{} depends on '{}', which a design variable moves or "
-                    "which has no value; {} is part of the frozen film and "
-                    "must be the same for every design: take '{}' out of it",
-                    quantity.key, name, what, name));
-  }
-}
-
-std::optional<double> read_constant(CaseContext& context,
-                                    const toml::node& node,
-                                    std::optional<Dimension> dimension,
-                                    const std::string& key) {
-  const auto quantity = read_quantity(context, node, dimension, key);
-  if (!quantity) {
-    return std::nullopt;
-  }
-  if (const std::string name = moving_name(context, *quantity); !name.empty()) {
-    context.problems.add(
-        quantity->line,
-        fmt::format("{} depends on '{}', which a design variable moves or "
-                    "which has no value; expected a number that is the same "
-                    "for every design",
-                    key, name));
-    return std::nullopt;
-  }
-  std::vector<double> values(context.names.size(), 0.0);
-  for (const int name : quantity->expression.names_used()) {
-    const auto k = static_cast<std::size_t>(name);
-    values[k] = *context.constants[k];
-  }
-  try {
-    return quantity->expression.evaluate(values);
-  } catch (const ExpressionError& error) {
-    context.problems.add(quantity->line,
-                         fmt::format("{}: {}", key, error.what()));
-    return std::nullopt;
-  }
 }
 
 CaseTable::CaseTable(CaseContext& context, const toml::table& table,

@@ -96,7 +96,8 @@ std::vector<TableSpec> make_tables() {
         {"thickness", K::Place, D::Length, true, "above 0"},
         {"side", K::Choice, D::None, false,
          "where the material lies: both sides of the film, all of it inside "
-         "(against the film's normals) or outside; both when left out",
+         "(towards the middle of the film's curves) or outside; both when left "
+         "out",
          "both|inside|outside"}}},
       {"fields",
        true,

@@ -1,5 +1,8 @@
 #include "pipeline/walls.h"
 
+#include <utility>
+
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "io/stl.h"
@@ -8,6 +11,8 @@
 namespace meniscus {
 
 namespace {
+
+constexpr double kFlat = 1e-6;  // of a cone's largest volume
 
 /// The facets of the films named; every point stays.
 SurfaceMesh films_of(const SurfaceMesh& all,
@@ -25,8 +30,44 @@ SurfaceMesh films_of(const SurfaceMesh& all,
   return mesh;
 }
 
-std::string place_text(const Vec3& p) {
-  return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
+/// Turns a film whose normals face the middle of its rim: how a film starts
+/// must not decide where its inside is. A flat one stays as its curve runs.
+void turn_outward(SurfaceMesh& mesh, int label, const Vec3& middle) {
+  double volume = 0.0;  // six times that of the cones to the middle
+  double size = 0.0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (mesh.facet_label[f] == label) {
+      const Triangle& t = mesh.facets[f];
+      const Vec3 a = mesh.points[t[0]] - middle;
+      const Vec3 b = mesh.points[t[1]] - middle;
+      const Vec3 c = mesh.points[t[2]] - middle;
+      volume += a.dot(b.cross(c));
+      size += a.norm() * (b - a).cross(c - a).norm();
+    }
+  }
+  if (volume < -kFlat * size) {
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+      if (mesh.facet_label[f] == label) {
+        std::swap(mesh.facets[f][1], mesh.facets[f][2]);
+      }
+    }
+  }
+}
+
+Vec3 middle_of_rim(const FilmSystem& system, const std::string& film,
+                   const FilmModel& model, const Points& points) {
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (const FilmSpec& spec : system.films) {
+    for (const std::string& curve : spec.curves) {
+      for (const int v :
+           spec.name == film ? model.rim(curve) : std::vector<int>()) {
+        sum += points[static_cast<std::size_t>(v)];
+        ++count;
+      }
+    }
+  }
+  return sum / count;
 }
 
 }  // namespace
@@ -40,7 +81,16 @@ std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
     for (const Curve& curve : numbers.film_system.curves) {
       options.rims.push_back({curve.name, model.rim(curve.name)});
     }
-    walls.push_back({spec.name, thicken(films_of(all, spec.films), options)});
+    SurfaceMesh film = films_of(all, spec.films);
+    for (const std::string& name : spec.films) {
+      turn_outward(film, film.label_of(name),
+                   middle_of_rim(numbers.film_system, name, model, points));
+    }
+    try {
+      walls.push_back({spec.name, thicken(film, options)});
+    } catch (const Error& error) {
+      throw InvalidInput(fmt::format("walls.{}: {}", spec.name, error.what()));
+    }
   }
   return walls;
 }
@@ -48,20 +98,21 @@ std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
 std::string wall_text(const Case& input, const CaseWall& made) {
   const ThickWall& wall = made.wall;
   const std::string& unit = input.units.length;
-  std::string text = fmt::format(
+  const auto measured = [&](const MeasuredThickness& t) {
+    return fmt::format("{:.4g} {} of {:.4g} asked at ({:.4g}, {:.4g}, {:.4g})",
+                       t.value, unit, t.asked, t.place.x(), t.place.y(),
+                       t.place.z());
+  };
+  return fmt::format(
       "wall {}: {} facets, volume {:.8g} {}\n"
-      "  thickness {:.4g} to {:.4g} {}, thinnest at {}, thickest at {}\n",
+      "  thinnest {}\n  thickest {}\n  largest safe thickness {}\n",
       made.name, wall.surface.facets.size(), wall.volume,
-      input.units.unit_of(Dimension::Volume), wall.thinnest.value,
-      wall.thickest.value, unit, place_text(wall.thinnest.place),
-      place_text(wall.thickest.place));
-  text += wall.safe.limit == WallLimit::None
-              ? "  nothing limits the thickness\n"
-              : fmt::format(
-                    "  largest safe thickness {:.4g} {}, {:.4g} asked "
-                    "there: {}\n",
-                    wall.safe.value, unit, wall.safe.asked, wall.safe.message);
-  return text;
+      input.units.unit_of(Dimension::Volume), measured(wall.thinnest),
+      measured(wall.thickest),
+      wall.safe.limit == WallLimit::None
+          ? std::string("not limited by the film")
+          : fmt::format("{:.4g} {}: {}", wall.safe.value, unit,
+                        wall.safe.message));
 }
 
 void write_wall(const Case& input, const CaseWall& made,

@@ -16,8 +16,10 @@ struct CaseWall {
 };
 
 /// One per wall of the case, at the film's own resolution; rims are named
-/// after the curves. Throws what thicken() throws: InvalidInput, MeshError for
-/// films that meet in junctions.
+/// after the curves. Inside is the side that faces the middle of the film's
+/// rim; of a flat film the side against its curve's normal. Throws
+/// InvalidInput for films that meet three at a line and a thickness that is not
+/// above 0 everywhere.
 std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
                                  const FilmModel& model, const Points& points);
 

@@ -119,13 +119,73 @@ const Mistake kMistakes[] = {
      "and must be the same for every design: take 'foot' out of it"},
     {"TensionBelowZero", "curves = [\"base\", \"head\"]",
      "curves = [\"base\", \"head\"]\ntension = \"z - length/2\"",
-     "27: films.skin.tension is -30 at (9.615, -23.08, 0) on curve 'base' where length "
+     "27: films.skin.tension is -30 at (9.615, -23.08, 0) on curve 'base' "
+     "where length "
      "= 60; it must be above 0 on the whole film"},
     {"TensionWithoutValue", "curves = [\"base\", \"head\"]",
      "curves = [\"base\", \"head\"]\ntension = \"log(z)\"",
-     "27: films.skin.tension has no value (log(0) is not a finite number in 'log(z)')"},
+     "27: films.skin.tension has no value (log(0) is not a finite number in "
+     "'log(z)')"},
     {"PlaceWhereNoneIs", "radius = 20", "radius = \"x\"",
      "22: curves.head.radius: unknown name 'x'"},
+    {"IdleSolid", "[resolution]",
+     "[curves.lid]\nkind = \"circle\"\ncenter = [0, 0, 90]\n"
+     "normal = [0, 0, 1]\nradius = 9\n"
+     "[solids.lid]\nkind = \"cap\"\ncurve = \"lid\"\n[resolution]",
+     "46: solid 'lid' encloses no body; add it to a body's enclosed_by"},
+    {"WallWithoutThickness", "[resolution]",
+     "[walls.web]\nfilms = [\"skin\"]\n[resolution]",
+     "41: walls.web has no 'thickness' (above 0); add it"},
+    {"WallOfASolid", "[resolution]",
+     "[walls.web]\nfilms = [\"foot_pad\"]\nthickness = 1\n[resolution]",
+     "42: there is no film 'foot_pad'"},
+    {"WallOfTwoFilms", "[resolution]",
+     "[walls.web]\nfilms = [\"skin\"]\nthickness = 1\n[walls.shell]\nfilms = "
+     "[\"skin\"]\nthickness = 1\n[resolution]",
+     "45: walls.shell.films names 'skin', of which 'web' is made already"},
+    {"WallSide", "[resolution]",
+     "[walls.web]\nfilms = [\"skin\"]\nthickness = 1\nside = "
+     "\"in\"\n[resolution]",
+     "44: walls.web.side is the text 'in'"},
+    {"WallThickness", "[resolution]",
+     "[walls.web]\nfilms = [\"skin\"]\nthickness = \"z - 1\"\n[resolution]",
+     "43: walls.web.thickness is -1 at (9.615, -23.08, 0) on curve 'base'; it "
+     "must be above 0 on the whole film"},
+    {"FieldWithoutCore", "[resolution]",
+     "[fields.pull]\nkind = \"point\"\nat = [0, 0, 30]\nstrength = 0.2\nfilms "
+     "= [\"skin\"]\n[resolution]",
+     "41: fields.pull is a point and has no 'core'; add it"},
+    {"FieldOnNothing", "[resolution]",
+     "[fields.pull]\nkind = \"point\"\nat = [0, 0, 30]\nstrength = 0.2\ncore = "
+     "3\n[resolution]",
+     "41: fields.pull has neither films nor a body; expected films"},
+    {"FieldOnFilmAndBody", "[resolution]",
+     "[fields.pull]\nkind = \"point\"\nat = [0, 0, 30]\nstrength = 0.2\ncore = "
+     "3\nfilms = [\"skin\"]\nbody = \"part\"\n[resolution]",
+     "41: fields.pull has both films and a body"},
+    {"FieldOnUnknownBody", "[resolution]",
+     "[fields.pull]\nkind = \"point\"\nat = [0, 0, 30]\nstrength = 0.2\ncore = "
+     "3\nbody = \"port\"\n[resolution]",
+     "46: there is no body 'port'; did you mean 'part'?"},
+    {"FieldTooStrong", "[resolution]",
+     "[fields.pull]\nkind = \"point\"\nat = [0, 0, 30]\nstrength = 2\ncore = "
+     "3\nfilms = [\"skin\"]\n[resolution]",
+     "44: fields.pull.strength is 2, and film 'skin' has a tension of 1; it "
+     "would crumple on the pole"},
+    {"FieldThatMoves", "[resolution]",
+     "[fields.pull]\nkind = \"point\"\nat = [0, 0, 30]\nstrength = "
+     "\"foot/100\"\ncore = 3\nfilms = [\"skin\"]\n[resolution]",
+     "44: fields.pull.strength depends on 'foot', which a design variable "
+     "moves or which has no value; a field energy is part of the frozen film"},
+    {"FieldOfZeroCore", "[resolution]",
+     "[fields.pull]\nkind = \"point\"\nat = [0, 0, 30]\nstrength = 0.2\ncore = "
+     "0\nfilms = [\"skin\"]\n[resolution]",
+     "45: fields.pull.core is 0; it must be above 0"},
+    {"PressureOfAPole", "[resolution]",
+     "[fields.pull]\nkind = \"point\"\nat = [0, 0, 30]\nstrength = 0.2\ncore = "
+     "3\nfilms = [\"skin\"]\npressure = 1\n[resolution]",
+     "47: fields.pull.pressure does not belong to a point; it has at, "
+     "strength, core"},
     {"UnknownCurve", "curves = [\"base\", \"head\"]",
      "curves = [\"base\", \"heat\"]",
      "26: there is no curve 'heat'; did you mean 'head'?"},

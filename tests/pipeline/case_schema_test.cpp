@@ -57,6 +57,15 @@ void validate(const json& schema, const json& value, const std::string& path,
       problems.push_back(path + ": needs " + key.get<std::string>());
     }
   }
+  const json any = schema.value("anyOf", json::array());
+  if (!any.empty() &&
+      std::none_of(any.begin(), any.end(), [&](const json& one) {
+        std::vector<std::string> found;
+        validate(one, value, path, found);
+        return found.empty();
+      })) {
+    problems.push_back(path + ": none of anyOf");
+  }
   for (const auto& [key, item] : value.items()) {
     const json properties = schema.value("properties", json::object());
     const json others = schema.value("additionalProperties", json(true));
@@ -89,6 +98,9 @@ TEST(JsonSchema, AcceptsTheCasesThatTheReaderAccepts) {
   EXPECT_THAT(against_schema(file_text(two_arm_path())), testing::IsEmpty());
   EXPECT_THAT(against_schema(new_case_text("x")), testing::IsEmpty());
   EXPECT_THAT(against_schema(strut()), testing::IsEmpty());
+  EXPECT_THAT(
+      against_schema(tube("films = [\"skin\"]\nthickness = \"z + 1\"\n")),
+      testing::IsEmpty());
 }
 
 TEST(JsonSchema, RefusesWhatTheReaderRefuses) {
@@ -103,6 +115,8 @@ TEST(JsonSchema, RefusesWhatTheReaderRefuses) {
               ElementsAre(".curves.head.radius: type"));
   EXPECT_THAT(against_schema(changed(strut(), "title = \"A strut\"", "")),
               ElementsAre(": needs title"));
+  EXPECT_THAT(against_schema(changed(strut(), "[materials", "[material")),
+              testing::Contains(": none of anyOf"));
 }
 
 TEST(CaseTables, AreFoundByName) {

@@ -93,6 +93,15 @@ inline std::string changed(std::string text, const std::string& from,
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+/// The strut's film as a wall, without body, loads and study.
+inline std::string tube(const std::string& wall) {
+  const std::string films =
+      changed(strut().substr(0, strut().find("[solids.foot_pad]")),
+              "load = 1000.0\n", "");
+  return changed(films, "\"length\"", "\"length - 40\"") + "[walls.web]\n" +
+         wall + "[resolution]\nfea = 6\nfilm = 3\n";
+}
+
 inline std::string strut_without_head() {
   return changed(strut(),
                  "[curves.head]\nkind = \"circle\"\n"
