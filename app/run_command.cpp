@@ -15,6 +15,7 @@
 #include "io/atomic_file.h"
 #include "pipeline/results.h"
 #include "pipeline/stored_case.h"
+#include "pipeline/walls.h"
 
 namespace meniscus {
 
@@ -155,6 +156,7 @@ int run_command(const RunArguments& arguments) {
   catch_stop_signals();
   std::optional<StudyStore> store;
   try {
+    refuse_walls(input);
     make_folder(folder);
     store.emplace(open_store(input, folder.string(), arguments.resume));
     // An older result must not stand beside a study that is not its own.

@@ -8,8 +8,8 @@
 #include "core/error.h"
 #include "core/timer.h"
 #include "evolve/bend_midpoints.h"
+#include "evolve/bring_near.h"
 #include "evolve/contacts.h"
-#include "evolve/curvature_flow.h"
 #include "evolve/grooming.h"
 #include "evolve/junctions.h"
 #include "evolve/neck.h"
@@ -19,12 +19,10 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kFlowSteps = 8;  // between remeshings
 // Where Newton finds no film, flow goes on so long, to tell a film that tears
 // from one that rests.
 constexpr int kLongRounds = 30;
 constexpr double kLongChange = 1e-8;
-constexpr int kLookAt = 2;  // steps between looks at the neck, else each step
 constexpr double kLongMotion = 0.25;  // x edge, per step
 constexpr int kPolishRounds = 2;      // of averaging and Newton at the end
 // Facets up to which a film is groomed, and factored directly, before nested
@@ -62,36 +60,6 @@ FilmState given_up(const FilmComplex& complex, const std::string& reason,
   }
   judge(energy, complex, {.reason = reason}, state);
   return state;
-}
-
-/// Flow and remeshing in turn. Empty when the film came near rest; else why
-/// not.
-std::string bring_near(FilmComplex& complex, std::optional<double> edge,
-                       int rounds, int& steps, FlowOptions flow) {
-  flow.max_steps = kFlowSteps;
-  int asked = 0;
-  flow.torn = [&](const FilmEnergy& energy, const Points& points) {
-    if (flow.most_motion == 0.0 && ++asked % kLookAt != 0) {
-      return false;
-    }
-    const Neck neck = narrowest_neck(energy, points, complex.mesh.facet_label);
-    return neck.surface >= 0 &&
-           neck.width < (edge ? *edge : energy.mean_edge(points));
-  };
-  for (int round = 0; round < rounds; ++round) {
-    const FlowReport report = flow_to_rest(complex, flow);
-    steps += report.steps;
-    if (report.torn) {
-      return "the film pinched while it flowed";
-    }
-    if (edge) {
-      remesh_films(complex, {.edge = *edge});
-    }
-    if (report.settled || report.steps == 0) {
-      break;
-    }
-  }
-  return "";
 }
 
 /// Coarse to fine over the edges edge x 2^k, k = levels..0. Empty when the

@@ -164,6 +164,22 @@ TEST(FilmStability, TeeOfArms) {
   }
 }
 
+// A pressure that no film can hold: said soon, in little memory.
+TEST(FilmStability, PressureBeyondEveryFilm) {
+  FilmSystem system = systems::two_arm(0.0);
+  system.bodies[0].volume.reset();
+  system.bodies[0].pressure = 0.6;
+  constexpr double kEdge = 16.0;
+  FilmComplex start = build_start(system, kEdge);
+  const FilmState gone = find_equilibrium(start, {.edge = kEdge});
+  ASSERT_TRUE(gone.failure);
+  EXPECT_EQ(gone.failure->kind, FailureKind::FilmNotFound);
+  EXPECT_NE(gone.failure->message.find("grows without end"), std::string::npos)
+      << gone.failure->message;
+  constexpr std::size_t kMany = 200'000;
+  EXPECT_LT(start.mesh.facets.size(), kMany);
+}
+
 // The two-arm bracket far out: 1.60e6 mm3 is enough at support_x = 40, and at
 // 1.55e6 the long arm's neck goes, though Newton's method can end there at a
 // perfect residual and a positive definite Hessian.
