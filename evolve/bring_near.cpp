@@ -41,12 +41,12 @@ std::string bring_near(FilmComplex& complex, std::optional<double> edge,
   for (int round = 0; round < rounds; ++round) {
     const FlowReport report = flow_to_rest(complex, flow);
     steps += report.steps;
-    if (report.torn) {
-      return "the film pinched while it flowed";
-    }
     if (!(FilmEnergy(complex).area(complex.mesh.points) < limit)) {
       return "the film grows without end: a pressure or field is more than "
              "its tension can hold";
+    }
+    if (report.torn) {
+      return "the film pinched while it flowed";
     }
     if (edge) {
       remesh_films(complex, {.edge = *edge});

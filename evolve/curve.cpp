@@ -307,8 +307,8 @@ void validate_shape(const Curve& curve, const ParametricCurve& p) {
   for (const Expression& coordinate : p.coordinates) {
     const std::vector<int> used = coordinate.names_used();
     if (!used.empty() && used != std::vector<int>{0}) {
-      refuse(curve, fmt::format("'{}' has more names than t",
-                                coordinate.text()));
+      refuse(curve,
+             fmt::format("'{}' has more names than t", coordinate.text()));
     }
   }
 }
@@ -330,8 +330,7 @@ double nearest_to_middle(const ParametricCurve& p, double a, double b) {
     const Vec3 gap = jet.point - middle;
     const double slope = gap.dot(jet.first);
     const double bend = jet.first.squaredNorm() + gap.dot(jet.second);
-    const double move =
-        slope / (bend > 0.0 ? bend : jet.first.squaredNorm());
+    const double move = slope / (bend > 0.0 ? bend : jet.first.squaredNorm());
     if (!std::isfinite(move)) {
       return 0.5 * (a + b);
     }

@@ -63,8 +63,9 @@ struct Curve {
 /// two equal neighbours, anything not finite.
 void validate(const Curve& curve);
 
-/// Point at parameter t (in [0, 1) where the shape is closed), by arclength along straight parts and by
-/// angle along arcs; smooth in the shape's numbers at fixed t.
+/// Point at parameter t (in [0, 1) where the shape is closed), by arclength
+/// along straight parts and by angle along arcs; smooth in the shape's numbers
+/// at fixed t.
 Vec3 point_at(const CurveShape& shape, double t);
 
 /// Position and its first and second derivative by t.

@@ -201,8 +201,8 @@ class Writer {
     }
     if (known) {
       return {operation_value(node, below[0].number.value_or(0.0),
-                       below[1].number.value_or(0.0),
-                       below[2].number.value_or(0.0)),
+                              below[1].number.value_or(0.0),
+                              below[2].number.value_or(0.0)),
               {}};
     }
     const bool chooses = node.op == FeOperator::Choose ||

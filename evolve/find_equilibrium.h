@@ -9,7 +9,7 @@ struct FindOptions {
   /// Edge of the film that comes out [length], > 0. Empty: the start's
   /// triangulation stays as it is.
   std::optional<double> edge;
-  int halvings = 1;     // the start's edge is edge x 2^halvings
+  int halvings = 1;  // the start's edge is edge x 2^halvings
   /// Without `edge`: nested 1:4 refinements of the start, each film settled
   /// from the one before. The facet count is 4^refinements x the start's.
   int refinements = 0;

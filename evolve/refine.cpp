@@ -83,8 +83,8 @@ PlacedVertex middle_of(const FilmComplex& complex, const EdgeMarks& marks,
     };
     made.vertex.constraints = plan.obstacle[e];
     made.vertex.held = touches(va) && touches(vb);
-    made.place = onto_walls(complex, plan.obstacle[e], made.vertex.held,
-                            made.place);
+    made.place =
+        onto_walls(complex, plan.obstacle[e], made.vertex.held, made.place);
   }
   if (plan.in_film[e] == 0) {
     const bool solid =

@@ -21,8 +21,8 @@ FilmComplex near_sphere() {
   FilmComplex complex = refine(films::cube_start(3)).complex;
   for (Vec3& p : complex.mesh.points) {
     const Vec3 out = p - Vec3::Constant(0.5);
-    p = Vec3::Constant(0.5) + 0.6 * out.normalized() *
-                                  (1.0 + 0.1 * out.x() * out.y() / 0.25);
+    p = Vec3::Constant(0.5) +
+        0.6 * out.normalized() * (1.0 + 0.1 * out.x() * out.y() / 0.25);
   }
   return complex;
 }
@@ -46,9 +46,8 @@ void ends_where_newton_ends(const FilmComplex& complex, DescentMethod method) {
   for (std::size_t k = 1; k < report.energies.size(); ++k) {
     EXPECT_LT(report.energies[k], report.energies[k - 1]) << "step " << k;
   }
-  const FilmState newton =
-      settle_along(energy, complex, targets, complex.mesh.points, directions,
-                   {}, 0.0, {});
+  const FilmState newton = settle_along(
+      energy, complex, targets, complex.mesh.points, directions, {}, 0.0, {});
   ASSERT_FALSE(newton.failure) << newton.report.verdict;
   EXPECT_NEAR(report.energies.back(), newton.report.energy,
               kEnergy * newton.report.energy)

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <omp.h>
 #include <sstream>
 
 #include <fmt/format.h>
-#include <omp.h>
 #include <sys/resource.h>
 
 #include "evolve/find_equilibrium.h"
