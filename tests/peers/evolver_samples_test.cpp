@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(Samples, EvolverDump,
                                            Dumped{"cube"}, Dumped{"mound"},
                                            Dumped{"qmound"}, Dumped{"octa"},
                                            Dumped{"quad"},
-                                           Dumped{"sphere", "gogo; g 2000;"}),
+                                           Dumped{"sphere", "gogo; g 400;"}),
                          [](const auto& one) { return one.param.name; });
 
 struct Raw {
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
         Raw{"mound", "g 5; r; g 5; r; g 5; hessian; hessian; hessian_seek;"},
         Raw{"qmound", "g 5; r; g 5; r; g 5; hessian; hessian; hessian_seek;"},
         Raw{"quad", "gogo; hessian_seek; hessian_seek;", 3},
-        Raw{"sphere", "gogo; g 2000;", 3}),
+        Raw{"sphere", "gogo; g 400;", 3}),
     [](const auto& one) { return one.param.name; });
 
 // cat.fe: the rings are too far apart for a catenoid. The film pinches, which
