@@ -6,6 +6,7 @@
 
 #include "evolve/equilibrium.h"
 #include "evolve/grooming.h"
+#include "evolve/slide_vertices.h"
 #include "tests/support/film_complexes.h"
 
 namespace meniscus {
@@ -21,8 +22,8 @@ FilmComplex near_sphere() {
   FilmComplex complex = refine(films::cube_start(3)).complex;
   for (Vec3& p : complex.mesh.points) {
     const Vec3 out = p - Vec3::Constant(0.5);
-    p = Vec3::Constant(0.5) + 0.6 * out.normalized() *
-                                  (1.0 + 0.1 * out.x() * out.y() / 0.25);
+    p = Vec3::Constant(0.5) +
+        0.6 * out.normalized() * (1.0 + 0.1 * out.x() * out.y() / 0.25);
   }
   return complex;
 }
@@ -46,9 +47,8 @@ void ends_where_newton_ends(const FilmComplex& complex, DescentMethod method) {
   for (std::size_t k = 1; k < report.energies.size(); ++k) {
     EXPECT_LT(report.energies[k], report.energies[k - 1]) << "step " << k;
   }
-  const FilmState newton =
-      settle_along(energy, complex, targets, complex.mesh.points, directions,
-                   {}, 0.0, {});
+  const FilmState newton = settle_along(
+      energy, complex, targets, complex.mesh.points, directions, {}, 0.0, {});
   ASSERT_FALSE(newton.failure) << newton.report.verdict;
   EXPECT_NEAR(report.energies.back(), newton.report.energy,
               kEnergy * newton.report.energy)
@@ -72,6 +72,27 @@ TEST_P(Descends, KeepsVolumeAtEveryStep) {
   descend(energy, targets, energy.space().directions(points), points,
           {.method = GetParam(), .max_steps = 7});
   EXPECT_NEAR(energy.volumes(points)[0], 1.0, 1e-10);
+}
+
+// Facets inscribed in a waist miss area to either side: sliding them uses it.
+TEST(SlideVertices, LowersTheEnergyOfASettledFilmAtItsVolume) {
+  for (FilmComplex complex : {near_sphere(), near_catenoid()}) {
+    FilmEnergy energy(complex);
+    const FilmTargets targets = targets_of(complex);
+    const FilmState settled =
+        settle_in_normals(energy, complex, targets, complex.mesh.points, {});
+    ASSERT_FALSE(settled.failure) << settled.report.verdict;
+    complex.mesh.points = settled.points;
+    const FilmState slid = slide_vertices(complex, {.steps = 50});
+    ASSERT_FALSE(slid.failure) << slid.report.verdict;
+    EXPECT_LT(slid.report.energy, (1.0 - 1e-6) * settled.report.energy);
+    EXPECT_GT(slid.report.energy, (1.0 - 1e-2) * settled.report.energy);
+    EXPECT_LE(slid.report.residual, slid.report.residual_bound);
+    EXPECT_EQ(complex.mesh.points, slid.points);
+    if (!complex.bodies.empty()) {
+      EXPECT_NEAR(energy.volumes(slid.points)[0], 1.0, 1e-10);
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(ByName, Descends,
