@@ -120,14 +120,13 @@ FilmSpace::FilmSpace(const FilmComplex& complex, FilmMotion motion)
         }
       }
     }
-    const bool walled = slides || !wall.level_sets.empty();
     const auto walls = static_cast<int>(wall.level_sets.size());
     const int rank = slides ? 1
                      : motion == FilmMotion::Anywhere
                          ? std::max(0, 3 - walls)
                          : rank_of(lines[v], walls);
     vertex_.insert(vertex_.end(), rank, v);
-    if (walled) {
+    if (slides || walls > 0) {
       wall_of_.resize(points, -1);
       wall_of_[v] = static_cast<int>(walls_.size());
       walls_.push_back(std::move(wall));
@@ -269,10 +268,8 @@ void FilmSpace::wall_directions(int k, const Points& points, const Vec3& normal,
     result[at + 1] = n.cross(result[at]);
   } else {
     result[at] = unit(normal - normal.dot(n) * n);
-    const Edge& ends = line_ends(v);
-    if (ends[0] >= 0) {
-      // The film's normal means nothing along the wall where the film lies
-      // flat on it, or where films cancel: then straight across its line.
+    if (const Edge& ends = line_ends(v); ends[0] >= 0) {
+      // Where the film lies flat on the wall, or films cancel.
       const Vec3 across = unit(n.cross(points[ends[1]] - points[ends[0]]));
       if (!(std::abs(result[at].dot(across)) > kAcross)) {
         result[at] = across;

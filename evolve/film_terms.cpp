@@ -90,12 +90,16 @@ struct NormalJet {
   }
 };
 
-using FieldFunction = std::function<FieldJet(const Vec3&)>;
+using FieldFunction = std::function<FieldJet(const Vec3&, JetOrder)>;
 
 FieldFunction expression_field(const VectorField& field) {
-  return [field](const Vec3& at) {
+  return [field](const Vec3& at, JetOrder order) {
     FieldJet jet;
     for (int m = 0; m < 3; ++m) {
+      if (order == JetOrder::Value) {  // duals cost several times as much
+        jet.value[m] = field[m].evaluate(std::span<const double>(at.data(), 3));
+        continue;
+      }
       const PlaceJet part = jet_at(field[m], at);
       jet.value[m] = part.value;
       jet.slope.row(m) = part.gradient;
@@ -107,7 +111,7 @@ FieldFunction expression_field(const VectorField& field) {
 
 /// Weight: F = -rho (g.x)^2 / (2 |g|^2) g has divergence -rho g.x.
 FieldFunction weight_field(double density, const Vec3& g) {
-  return [density, g](const Vec3& at) {
+  return [density, g](const Vec3& at, JetOrder /*order*/) {
     FieldJet jet;
     const double along = g.dot(at);
     const double scale = -density / g.squaredNorm();
@@ -121,7 +125,7 @@ FieldFunction weight_field(double density, const Vec3& g) {
 }
 
 /// F = (0, 0, z): columns down to z = 0.
-FieldJet column_field(const Vec3& at) {
+FieldJet column_field(const Vec3& at, JetOrder /*order*/) {
   FieldJet jet;
   jet.value = Vec3(0, 0, at.z());
   jet.slope(2, 2) = 1.0;
@@ -130,7 +134,7 @@ FieldJet column_field(const Vec3& at) {
 }
 
 /// F = x / 3.
-FieldJet cone_field(const Vec3& at) {
+FieldJet cone_field(const Vec3& at, JetOrder /*order*/) {
   FieldJet jet;
   jet.value = at / 3.0;
   jet.slope = Eigen::Matrix3d::Identity() / 3.0;
@@ -139,7 +143,8 @@ FieldJet cone_field(const Vec3& at) {
 }
 
 FieldFunction body_field(const FilmQuantity& quantity) {
-  return [phi = quantity.scalar, origin = quantity.origin](const Vec3& at) {
+  return [phi = quantity.scalar, origin = quantity.origin](const Vec3& at,
+                                                           JetOrder /*order*/) {
     return radial_field(phi, origin, at);
   };
 }
@@ -155,7 +160,7 @@ class FluxTerm : public FilmTerm {
     FacetJet sum;
     for (const QuadraturePoint& q : facet_rule()) {
       const auto& l = q.weight_of;
-      const FieldJet f = field_(l[0] * c[0] + l[1] * c[1] + l[2] * c[2]);
+      const FieldJet f = field_(l[0] * c[0] + l[1] * c[1] + l[2] * c[2], order);
       const double w = 0.5 * element.sign * q.weight;
       sum.value += w * f.value.dot(n.normal);
       if (order == JetOrder::Value) {
@@ -274,7 +279,7 @@ class LineTerm : public FilmTerm {
     const Vec3 way = c[b] - c[a];
     FacetJet sum;
     for (const auto& [s, weight] : rule_) {
-      const FieldJet f = field_(c[a] + s * way);
+      const FieldJet f = field_(c[a] + s * way, order);
       const double w = element.sign * weight;
       sum.value += w * f.value.dot(way);
       if (order == JetOrder::Value) {

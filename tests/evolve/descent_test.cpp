@@ -6,6 +6,7 @@
 
 #include "evolve/equilibrium.h"
 #include "evolve/grooming.h"
+#include "evolve/slide_vertices.h"
 #include "tests/support/film_complexes.h"
 
 namespace meniscus {
@@ -71,6 +72,27 @@ TEST_P(Descends, KeepsVolumeAtEveryStep) {
   descend(energy, targets, energy.space().directions(points), points,
           {.method = GetParam(), .max_steps = 7});
   EXPECT_NEAR(energy.volumes(points)[0], 1.0, 1e-10);
+}
+
+// Facets inscribed in a waist miss area to either side: sliding them uses it.
+TEST(SlideVertices, LowersTheEnergyOfASettledFilmAtItsVolume) {
+  for (FilmComplex complex : {near_sphere(), near_catenoid()}) {
+    FilmEnergy energy(complex);
+    const FilmTargets targets = targets_of(complex);
+    const FilmState settled =
+        settle_in_normals(energy, complex, targets, complex.mesh.points, {});
+    ASSERT_FALSE(settled.failure) << settled.report.verdict;
+    complex.mesh.points = settled.points;
+    const FilmState slid = slide_vertices(complex, {.steps = 50});
+    ASSERT_FALSE(slid.failure) << slid.report.verdict;
+    EXPECT_LT(slid.report.energy, (1.0 - 1e-6) * settled.report.energy);
+    EXPECT_GT(slid.report.energy, (1.0 - 1e-2) * settled.report.energy);
+    EXPECT_LE(slid.report.residual, slid.report.residual_bound);
+    EXPECT_EQ(complex.mesh.points, slid.points);
+    if (!complex.bodies.empty()) {
+      EXPECT_NEAR(energy.volumes(slid.points)[0], 1.0, 1e-10);
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(ByName, Descends,
