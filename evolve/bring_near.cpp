@@ -42,11 +42,10 @@ std::string bring_near(FilmComplex& complex, std::optional<double> edge,
     const FlowReport report = flow_to_rest(complex, flow);
     steps += report.steps;
     if (!(FilmEnergy(complex).area(complex.mesh.points) < limit)) {
-      return "the film grows without end: a pressure or field is more than "
-             "its tension can hold";
+      return kFilmGrows;
     }
     if (report.torn) {
-      return "the film pinched while it flowed";
+      return kFilmTears;
     }
     if (edge) {
       remesh_films(complex, {.edge = *edge});

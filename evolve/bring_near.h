@@ -8,9 +8,14 @@
 
 namespace meniscus {
 
+inline constexpr const char* kFilmTears = "the film pinched while it flowed";
+inline constexpr const char* kFilmGrows =
+    "the film grows without end: a pressure or field is more than its tension "
+    "can hold";
+
 /// Flow and, with `edge` [length], remeshing in turn, at most `rounds` times;
 /// adds its steps to `steps`. Empty when the film came near rest; else why
-/// not: it tears, or grows without end. With flow.most_motion the neck is
+/// not: one of the two above. With flow.most_motion the neck is
 /// looked at after every step.
 std::string bring_near(FilmComplex& complex, std::optional<double> edge,
                        int rounds, int& steps, FlowOptions flow);

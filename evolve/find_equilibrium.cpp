@@ -58,7 +58,11 @@ FilmState given_up(const FilmComplex& complex, const std::string& reason,
                                    body.volume.value_or(volumes[b]),
                                    body.pressure.value_or(0.0)});
   }
-  judge(energy, complex, {.reason = reason}, state);
+  Judgement judgement{.reason = reason};
+  if (reason == kFilmGrows) {
+    judgement.neck = Neck{};  // whatever comes near is no neck
+  }
+  judge(energy, complex, judgement, state);
   return state;
 }
 

@@ -13,6 +13,7 @@
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
 #include "evolve/pop.h"
+#include "evolve/slide_vertices.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
 #include "pipeline/results.h"
@@ -24,6 +25,7 @@ namespace {
 constexpr double kEnoughFacets = 2000.0;
 constexpr double kDescentResidual = 1e-6;  // x tension x edge
 constexpr int kMostPops = 10;
+constexpr std::size_t kSlid = 10000;  // facets up to which vertices slide
 
 int refinements_of(const FilmComplex& complex, const DatafileOptions& options) {
   if (options.refinements) {
@@ -129,15 +131,35 @@ FilmState run_macro(const FeFile& file, const DatafileOptions& options,
   return state;
 }
 
+/// Our own route: raw facets flipped as Surface Evolver's users do with `u`,
+/// equilibrium, and where facets are few, vertices moved to where they have
+/// least area, as `g` does.
+FilmState settle(FilmComplex& complex, const FindOptions& options) {
+  equiangulate(complex, FlipRule::AnglesOnly);
+  FilmState state = find_equilibrium(complex, options);
+  if (state.failure || complex.mesh.facets.size() > kSlid) {
+    return state;
+  }
+  FilmComplex slid = complex;
+  FilmState lower = slide_vertices(slid, {.settle = options.settle});
+  if (lower.failure || !(lower.report.energy < state.report.energy)) {
+    return state;
+  }
+  lower.report.iterations += state.report.iterations;
+  complex = std::move(slid);
+  return lower;
+}
+
 /// Settled, popped and settled again. Films without junctions to pop are
 /// settled once.
 FilmState settle_and_pop(FilmComplex& complex, const FindOptions& options,
                          int& popped) {
   FilmComplex coarse = complex;
-  FilmState state = find_equilibrium(complex, options);
+  FilmState state = settle(complex, options);
   for (int round = 0; round < kMostPops; ++round) {
     // The start is popped: its refinements are those of the popped film.
     FilmComplex settled = coarse;
+    equiangulate(settled, FlipRule::AnglesOnly);
     find_equilibrium(settled, {.settle = options.settle});
     const int here = pop_edges(settled).popped + pop_vertices(settled).popped;
     if (here == 0) {
@@ -146,7 +168,7 @@ FilmState settle_and_pop(FilmComplex& complex, const FindOptions& options,
     popped += here;
     coarse = settled;
     complex = std::move(settled);
-    state = find_equilibrium(complex, options);
+    state = settle(complex, options);
   }
   return state;
 }
@@ -167,7 +189,7 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
     const FindOptions find{.refinements = refinements,
                            .settle = {.monitor = options.monitor}};
     state = options.pop ? settle_and_pop(result.complex, find, result.popped)
-                        : find_equilibrium(result.complex, find);
+                        : settle(result.complex, find);
   } else {
     state = descend_by_levels(result.complex, refinements, options);
   }
