@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Dense>
 
+#include "evolve/grooming.h"
 #include "evolve/laplacian.h"
+#include "evolve/triangle_shape.h"
 
 namespace meniscus {
 
@@ -14,6 +17,24 @@ namespace {
 constexpr double kVolumeStep = 0.15;     // most relative change a step
 constexpr double kVolumeReached = 1e-6;  // relative
 constexpr int kPressureIterations = 12;
+// Facets with a smaller angle are evened out: as far as a rim that slides
+// squeezes them, they would hold the film up.
+constexpr double kThin = 10.0 * std::numbers::pi / 180.0;
+
+constexpr int kPasses = 10;  // of averaging, a step at most
+
+bool has_thin_facet(const FilmComplex& complex) {
+  const SurfaceMesh& mesh = complex.mesh;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const auto [a, b, c] = mesh.facets[f];
+    if (complex.surfaces[mesh.facet_label[f]].liquid &&
+        smallest_angle(mesh.points[a], mesh.points[b], mesh.points[c]) <
+            kThin) {
+      return true;
+    }
+  }
+  return false;
+}
 
 class Flow {
  public:
@@ -238,6 +259,9 @@ FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
     const bool hold = flow.at_volume();
     if (!flow.step()) {
       break;
+    }
+    for (int pass = 0; pass < kPasses && has_thin_facet(complex); ++pass) {
+      average_vertices(complex);
     }
     const double next = flow.energy();
     if (hold && std::abs(energy - next) <= options.energy_change * energy) {
