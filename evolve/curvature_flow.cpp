@@ -21,7 +21,8 @@ constexpr int kPressureIterations = 12;
 // squeezes them, they would hold the film up.
 constexpr double kThin = 10.0 * std::numbers::pi / 180.0;
 
-constexpr int kPasses = 10;  // of averaging, a step at most
+constexpr double kJunctionsRest = 1e-3;  // way in a step, over the mean edge
+constexpr int kPasses = 10;              // of averaging, a step at most
 
 bool has_thin_facet(const FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
@@ -65,6 +66,20 @@ class Flow {
         held_.push_back(b);
       }
     }
+  }
+
+  /// Largest way of a place where lines meet since `old`, over the mean edge.
+  /// Newton keeps a line's other vertices where they are along it, so it moves
+  /// such a place by a part of an edge only: the flow has to bring it there.
+  double junction_motion(const Points& old) const {
+    const Points& x = complex_.mesh.points;
+    double most = 0.0;
+    for (const int v : movers_) {
+      if (energy_.space().rank(v) == 3) {
+        most = std::max(most, (x[v] - old[v]).norm());
+      }
+    }
+    return most / energy_.mean_edge(x);
   }
 
   bool has_unknowns() const { return energy_.unknowns() > 0; }
@@ -257,14 +272,17 @@ FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
       throw_if_stopped(*options.monitor, "film");
     }
     const bool hold = flow.at_volume();
+    const Points before = complex.mesh.points;
     if (!flow.step()) {
       break;
     }
+    const bool junctions_rest = flow.junction_motion(before) <= kJunctionsRest;
     for (int pass = 0; pass < kPasses && has_thin_facet(complex); ++pass) {
       average_vertices(complex);
     }
     const double next = flow.energy();
-    if (hold && std::abs(energy - next) <= options.energy_change * energy) {
+    if (hold && junctions_rest &&
+        std::abs(energy - next) <= options.energy_change * energy) {
       report.settled = true;
       break;
     }

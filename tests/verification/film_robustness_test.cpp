@@ -94,5 +94,13 @@ TEST(FilmRobustness, TripleDisk) {
   expect_energy(found, films::triple_disk().area);
 }
 
+// Places where lines meet have to move by many edges.
+TEST(FilmRobustness, Frames) {
+  const Found cube = found_raw(films::cube_frame_start(), 4);
+  expect_energy(cube, films::kCubeFrameArea);
+  const Found tetrahedron = found_raw(films::tetrahedral_frame_start(), 4);
+  expect_energy(tetrahedron, films::kTetrahedralFrameArea);
+}
+
 }  // namespace
 }  // namespace meniscus
