@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Dense>
 
 #include "core/error.h"
+#include "evolve/grooming.h"
 #include "evolve/laplacian.h"
+#include "evolve/triangle_shape.h"
 
 namespace meniscus {
 
@@ -15,6 +18,25 @@ namespace {
 constexpr double kVolumeStep = 0.15;     // most relative change a step
 constexpr double kVolumeReached = 1e-6;  // relative
 constexpr int kPressureIterations = 12;
+// Facets with a smaller angle are evened out: as far as a rim that slides
+// squeezes them, they would hold the film up.
+constexpr double kThin = 10.0 * std::numbers::pi / 180.0;
+
+constexpr double kJunctionsRest = 1e-3;  // way in a step, over the mean edge
+constexpr int kPasses = 10;              // of averaging, a step at most
+
+bool has_thin_facet(const FilmComplex& complex) {
+  const SurfaceMesh& mesh = complex.mesh;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const auto [a, b, c] = mesh.facets[f];
+    if (complex.surfaces[mesh.facet_label[f]].liquid &&
+        smallest_angle(mesh.points[a], mesh.points[b], mesh.points[c]) <
+            kThin) {
+      return true;
+    }
+  }
+  return false;
+}
 
 class Flow {
  public:
@@ -51,6 +73,21 @@ class Flow {
   }
 
   const FilmEnergy& film() const { return energy_; }
+
+  /// Largest way of a place where lines meet since `old`, over the mean edge.
+  /// Newton keeps a line's other vertices where they are along it, so it moves
+  /// such a place by a part of an edge only: the flow has to bring it there.
+  double junction_motion(const Points& old) const {
+    const Points& x = complex_.mesh.points;
+    double most = 0.0;
+    for (const int v : movers_) {
+      if (energy_.space().rank(v) == 3) {
+        most = std::max(most, (x[v] - old[v]).norm());
+      }
+    }
+    return most / energy_.mean_edge(x);
+  }
+
   bool has_unknowns() const { return energy_.unknowns() > 0; }
 
   bool at_volume() const {
@@ -285,6 +322,7 @@ FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
       throw_if_stopped(*options.monitor, "film");
     }
     const bool hold = flow.at_volume();
+    const Points before = complex.mesh.points;
     if (!flow.step()) {
       break;
     }
@@ -292,8 +330,13 @@ FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
       report.torn = true;
       break;
     }
+    const bool junctions_rest = flow.junction_motion(before) <= kJunctionsRest;
+    for (int pass = 0; pass < kPasses && has_thin_facet(complex); ++pass) {
+      average_vertices(complex);
+    }
     const double next = flow.energy();
-    if (hold && std::abs(energy - next) <= options.energy_change * energy) {
+    if (hold && junctions_rest &&
+        std::abs(energy - next) <= options.energy_change * energy) {
       report.settled = true;
       break;
     }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "evolve/energy.h"
 #include "evolve/fe_complex.h"
 #include "tests/evolve/film_sums.h"
 
@@ -31,6 +32,8 @@ struct Loaded {
   double area, energy;
 };
 
+void PrintTo(const Loaded& loaded, std::ostream* out) { *out << loaded.name; }
+
 class FeSamples : public ::testing::TestWithParam<Loaded> {};
 
 TEST_P(FeSamples, LoadWithEvolversCountsAreaAndEnergy) {
@@ -44,9 +47,11 @@ TEST_P(FeSamples, LoadWithEvolversCountsAreaAndEnergy) {
   EXPECT_EQ(sums::edges(complex), expected.edges);
   EXPECT_EQ(complex.mesh.facets.size(), expected.facets);
   EXPECT_EQ(complex.bodies.size(), expected.bodies);
+  const FilmEnergy energy(complex);
+  const Points& points = complex.mesh.points;
   EXPECT_NEAR(sums::area(complex), expected.area,
               kTwelveDigits * expected.area);
-  EXPECT_NEAR(sums::energy(complex), expected.energy,
+  EXPECT_NEAR(energy.value(points, targets_of(complex)), expected.energy,
               kTwelveDigits * expected.energy);
 }
 
@@ -70,6 +75,10 @@ struct Refused {
   std::string name;
   std::string message;
 };
+
+void PrintTo(const Refused& refused, std::ostream* out) {
+  *out << refused.name;
+}
 
 class FeRefusedSamples : public ::testing::TestWithParam<Refused> {};
 

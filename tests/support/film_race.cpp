@@ -9,7 +9,6 @@
 #include <sys/resource.h>
 
 #include "evolve/find_equilibrium.h"
-#include "evolve/grooming.h"
 #include "tests/support/film_complexes.h"
 #include "tests/support/measured_child.h"
 
@@ -28,18 +27,6 @@ double user_seconds() {
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_utime.tv_sec) +
          1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
-}
-
-// Nested levels where the search offers them, else the finest mesh at once.
-template <class Options>
-void ask_refinements(int refinements, FilmComplex& complex, Options& options) {
-  if constexpr (requires { options.refinements; }) {
-    options.refinements = refinements;
-  } else {
-    for (int level = 0; level < refinements; ++level) {
-      complex = refine(complex).complex;
-    }
-  }
 }
 
 int film_facets(const FilmComplex& complex) {
@@ -72,6 +59,8 @@ std::string settle(const FilmComplex& start, int refinements) {
 
 }  // namespace
 
+void PrintTo(const SpeedWork& work, std::ostream* out) { *out << work.name; }
+
 const std::vector<SpeedWork>& speed_works() {
   static const std::vector<SpeedWork> works = {
       {"catenoid", [] { return films::catenoid_start(); }, 6, kDescent, 5, 16,
@@ -87,10 +76,9 @@ const std::vector<SpeedWork>& speed_works() {
 }
 
 FilmState find_refined(FilmComplex& complex, int refinements) {
-  FindOptions options;
-  ask_refinements(refinements, complex, options);
-  options.settle.residual_factor = kResidualFactor;
-  return find_equilibrium(complex, options);
+  return find_equilibrium(complex,
+                          {.refinements = refinements,
+                           .settle = {.residual_factor = kResidualFactor}});
 }
 
 FilmRun run_film(const FilmComplex& start, int refinements) {

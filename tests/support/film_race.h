@@ -2,6 +2,7 @@
 /// Evolver's from the same starts to the same facet counts.
 #pragma once
 
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct SpeedWork {
   double aim_tuned = 0;
   double aim_typical = 0;
 };
+
+/// Its name, for test output.
+void PrintTo(const SpeedWork& work, std::ostream* out);
 
 const std::vector<SpeedWork>& speed_works();
 

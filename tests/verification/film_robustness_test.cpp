@@ -72,7 +72,7 @@ TEST(FilmRobustness, Strut) {
 }
 
 TEST(FilmRobustness, SessileCaps) {
-  for (const double degrees : {50.0, 90.0, 120.0}) {
+  for (const double degrees : {50.0, 90.0, 150.0}) {
     SCOPED_TRACE(degrees);
     const double angle = degrees * std::numbers::pi / 180.0;
     const films::SessileCap exact = films::sessile_cap(1.0, angle);
@@ -92,6 +92,14 @@ TEST(FilmRobustness, DoubleBubble) {
 TEST(FilmRobustness, TripleDisk) {
   const Found found = found_raw(films::triple_disk_start(), 4);
   expect_energy(found, films::triple_disk().area);
+}
+
+// Places where lines meet have to move by many edges.
+TEST(FilmRobustness, Frames) {
+  const Found cube = found_raw(films::cube_frame_start(), 4);
+  expect_energy(cube, films::kCubeFrameArea);
+  const Found tetrahedron = found_raw(films::tetrahedral_frame_start(), 4);
+  expect_energy(tetrahedron, films::kTetrahedralFrameArea);
 }
 
 }  // namespace
