@@ -205,7 +205,7 @@ class Flow {
       }
       const Eigen::MatrixX3d normals =
           space.wall_normals(static_cast<int>(k), complex_.mesh.points[v]);
-      const Vec3 force = slope[v];
+      const Vec3& force = slope[v];
       const VectorX pull =
           normals.transpose().completeOrthogonalDecomposition().solve(force);
       rows.row(unknown_of_[v]) = force - normals.transpose() * pull;

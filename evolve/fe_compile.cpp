@@ -130,11 +130,11 @@ double operation_value(const FeNode& node, double a, double b, double c) {
 namespace {
 
 // How tightly a text holds together.
-enum Grip { kComparison, kSum, kProduct, kPower, kAtom };
+enum class Grip { Comparison, Sum, Product, Power, Atom };
 
 struct Text {
   std::string text;
-  Grip grip = kAtom;
+  Grip grip = Grip::Atom;
 
   std::string within(Grip least) const {
     return grip >= least ? text : "(" + text + ")";
@@ -148,7 +148,8 @@ struct Piece {
 };
 
 Text number_text(double number) {
-  return {fmt::format("{}", number), std::signbit(number) ? kSum : kAtom};
+  return {fmt::format("{}", number),
+          std::signbit(number) ? Grip::Sum : Grip::Atom};
 }
 
 class Writer {
@@ -226,7 +227,7 @@ class Writer {
   Piece named(const FeNode& node) const {
     if (const auto found = unknowns_.find(node.name);
         found != unknowns_.end()) {
-      return {std::nullopt, {found->second, kAtom}};
+      return {std::nullopt, {found->second, Grip::Atom}};
     }
     if (const auto found = values_.find(node.name); found != values_.end()) {
       return {found->second, {}};
@@ -235,53 +236,55 @@ class Writer {
   }
 
   static Text infix(const Text& a, const char* sign, const Text& b, Grip own) {
-    const Grip right = own == kPower || own == kComparison
-                           ? (own == kPower ? kAtom : kSum)
+    const Grip right = own == Grip::Power || own == Grip::Comparison
+                           ? (own == Grip::Power ? Grip::Atom : Grip::Sum)
                            : static_cast<Grip>(own + 1);
-    const Grip left = own == kPower ? kAtom : own == kComparison ? kSum : own;
+    const Grip left = own == Grip::Power        ? Grip::Atom
+                      : own == Grip::Comparison ? Grip::Sum
+                                                : own;
     return {a.within(left) + sign + b.within(right), own};
   }
 
   Text if_text(const Text& a, const std::string& b, const std::string& c) {
     if (ours_) {
-      return {fmt::format("if({}, {}, {})", a.text, b, c), kAtom};
+      return {fmt::format("if({}, {}, {})", a.text, b, c), Grip::Atom};
     }
-    return {fmt::format("(({}) ? ({}) : ({}))", a.text, b, c), kAtom};
+    return {fmt::format("(({}) ? ({}) : ({}))", a.text, b, c), Grip::Atom};
   }
 
   Text text_of(const FeNode& node, const Text& a, const Text& b,
                const Text& c) {
     switch (node.op) {
       case FeOperator::Negate:
-        return {"-" + a.within(kPower), kSum};
+        return {"-" + a.within(Grip::Power), Grip::Sum};
       case FeOperator::Not:
-        return infix(a, " == ", {"0", kAtom}, kComparison);
+        return infix(a, " == ", {"0", Grip::Atom}, Grip::Comparison);
       case FeOperator::Add:
-        return infix(a, " + ", b, kSum);
+        return infix(a, " + ", b, Grip::Sum);
       case FeOperator::Subtract:
-        return infix(a, " - ", b, kSum);
+        return infix(a, " - ", b, Grip::Sum);
       case FeOperator::Multiply:
-        return infix(a, "*", b, kProduct);
+        return infix(a, "*", b, Grip::Product);
       case FeOperator::Divide:
-        return infix(a, "/", b, kProduct);
+        return infix(a, "/", b, Grip::Product);
       case FeOperator::Power:
-        return infix(a, "^", b, kPower);
+        return infix(a, "^", b, Grip::Power);
       case FeOperator::Less:
-        return infix(a, " < ", b, kComparison);
+        return infix(a, " < ", b, Grip::Comparison);
       case FeOperator::LessEqual:
-        return infix(a, " <= ", b, kComparison);
+        return infix(a, " <= ", b, Grip::Comparison);
       case FeOperator::Greater:
-        return infix(a, " > ", b, kComparison);
+        return infix(a, " > ", b, Grip::Comparison);
       case FeOperator::GreaterEqual:
-        return infix(a, " >= ", b, kComparison);
+        return infix(a, " >= ", b, Grip::Comparison);
       case FeOperator::Equal:
-        return infix(a, " == ", b, kComparison);
+        return infix(a, " == ", b, Grip::Comparison);
       case FeOperator::NotEqual:
-        return infix(a, " != ", b, kComparison);
+        return infix(a, " != ", b, Grip::Comparison);
       case FeOperator::And:
-        return if_text(a, b.within(kSum) + " != 0", "0");
+        return if_text(a, b.within(Grip::Sum) + " != 0", "0");
       case FeOperator::Or:
-        return if_text(a, "1", b.within(kSum) + " != 0");
+        return if_text(a, "1", b.within(Grip::Sum) + " != 0");
       case FeOperator::Choose:
         return if_text(a, b.text, c.text);
       case FeOperator::Call:
@@ -303,21 +306,22 @@ class Writer {
            fmt::format("{}() of coordinates is not supported", name));
     }
     if (name == "asinh") {
-      return {
-          fmt::format("log({0} + sqrt(sqr({1}) + 1))", a.within(kSum), a.text),
-          kAtom};
+      return {fmt::format("log({0} + sqrt(sqr({1}) + 1))", a.within(Grip::Sum),
+                          a.text),
+              Grip::Atom};
     }
     if (name == "acosh") {
-      return {
-          fmt::format("log({0} + sqrt(sqr({1}) - 1))", a.within(kSum), a.text),
-          kAtom};
+      return {fmt::format("log({0} + sqrt(sqr({1}) - 1))", a.within(Grip::Sum),
+                          a.text),
+              Grip::Atom};
     }
     if (name == "atanh") {
-      return {fmt::format("0.5*log((1 + {0})/(1 - {0}))", a.within(kProduct)),
-              kProduct};
+      return {
+          fmt::format("0.5*log((1 + {0})/(1 - {0}))", a.within(Grip::Product)),
+          Grip::Product};
     }
     if (!ours_ && name == "log10") {
-      return {fmt::format("log({})/log(10)", a.text), kProduct};
+      return {fmt::format("log({})/log(10)", a.text), Grip::Product};
     }
     if (name == "min" || name == "minimum") {
       name = ours_ ? "min" : "minimum";
@@ -326,7 +330,7 @@ class Writer {
     }
     return {node.child[1] < 0 ? fmt::format("{}({})", name, a.text)
                               : fmt::format("{}({}, {})", name, a.text, b.text),
-            kAtom};
+            Grip::Atom};
   }
 
   const FeExpression& expression_;
