@@ -236,12 +236,13 @@ class Writer {
   }
 
   static Text infix(const Text& a, const char* sign, const Text& b, Grip own) {
-    const Grip right = own == Grip::Power || own == Grip::Comparison
-                           ? (own == Grip::Power ? Grip::Atom : Grip::Sum)
-                           : static_cast<Grip>(own + 1);
+    // a - (b - c), a^(b^c); comparisons never chain.
     const Grip left = own == Grip::Power        ? Grip::Atom
                       : own == Grip::Comparison ? Grip::Sum
                                                 : own;
+    const Grip right = own == Grip::Sum       ? Grip::Product
+                       : own == Grip::Product ? Grip::Power
+                                              : left;
     return {a.within(left) + sign + b.within(right), own};
   }
 
