@@ -153,6 +153,7 @@ class EdgePopper {
         return;
       }
       std::vector<int> on;
+      on.reserve(sheets.size());
       for (const int f : sheets) {
         on.push_back(follow(f, from, v, *next));
       }
