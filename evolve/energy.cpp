@@ -44,8 +44,11 @@ FilmEnergy::FilmEnergy(const FilmComplex& complex, FilmMotion motion)
       label_(complex.mesh.facet_label),
       terms_(film_terms(complex)),
       body_count_(static_cast<int>(complex.bodies.size())),
-      quantity_count_(static_cast<int>(complex.quantities.size())),
-      gravity_(complex.gravity) {
+      quantity_count_(static_cast<int>(complex.quantities.size())) {
+  if (std::any_of(complex.bodies.begin(), complex.bodies.end(),
+                  [](const ComplexBody& b) { return b.density != 0.0; })) {
+    gravity_ = complex.gravity;
+  }
   functional_count_ =
       body_count_ + static_cast<int>(held_quantities(complex).size());
   volume_offset_ = VectorX::Zero(functional_count_);

@@ -130,7 +130,7 @@ class FilmEnergy {
   std::vector<int> floating_;    // per unknown: floating part, or -1
   int floating_count_ = 0;
   bool resisted_ = false;  // by fields in space: nothing floats
-  Vec3 gravity_ = Vec3::Zero();
+  Vec3 gravity_ = Vec3::Zero();  // zero where nothing has weight
   std::vector<int> corner_start_;  // per facet: into corners_
   std::vector<Corner> corners_;
   std::vector<int> element_start_;  // per facet: into elements

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "evolve/curvature_flow.h"
+#include "evolve/find_equilibrium.h"
 #include "tests/evolve/film_shapes.h"
+#include "tests/support/film_complexes.h"
 
 namespace meniscus {
 namespace {
@@ -119,6 +121,17 @@ TEST(Equilibrium, CylinderAtFixedVolumeIsStableBelowTwoPi) {
   EXPECT_EQ(longer.failure->kind, FailureKind::FilmUnstable)
       << longer.report.verdict;
   EXPECT_EQ(longer.report.index, 1);
+}
+
+// Gravity on bodies without weight moves nothing: the bubble floats still, and
+// its lowest mode is that of a sphere, 4 T / R^2.
+TEST(Equilibrium, GravityWithoutWeightHoldsNothing) {
+  FilmComplex bubble = films::cube_start();
+  bubble.gravity = Vec3(0, 0, -9.81);
+  const FilmState state = find_equilibrium(bubble, {.refinements = 1});
+  EXPECT_EQ(state.report.verdict, "stable");
+  const double radius = std::cbrt(0.75 / std::numbers::pi);
+  EXPECT_NEAR(state.report.min_eigenvalue, 4.0 / (radius * radius), 0.3);
 }
 
 }  // namespace

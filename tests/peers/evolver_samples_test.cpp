@@ -244,7 +244,8 @@ FilmState popped(FilmComplex complex, const std::string& commands) {
 
 // octa.fe: the raw film is a saddle that must pop, edges first. At which of
 // several films at rest that ends is a matter of history: Surface Evolver's
-// macro is the record of a trial sequence. So is this: the best of a few.
+// macro is the record of a trial sequence. These were found by a random search
+// over such commands; the best of a few is taken.
 TEST(EvolverSamples, OctaPopsToTheCentralPoint) {
   if (const std::string why = missing("octa"); !why.empty()) {
     GTEST_SKIP() << why;
