@@ -136,11 +136,7 @@ class Descent {
     return energy_.space().moved(base_, directions_, h);
   }
   VectorX along(const Points& slope) const {
-    VectorX result(energy_.unknowns());
-    for (int i = 0; i < energy_.unknowns(); ++i) {
-      result[i] = slope[energy_.vertices()[i]].dot(directions_[i]);
-    }
-    return result;
+    return energy_.along(slope, directions_);
   }
   Eigen::MatrixXd volume_slopes(const Points& x) const {
     Eigen::MatrixXd b(energy_.unknowns(),

@@ -251,6 +251,14 @@ Points FilmEnergy::functional_gradient(const Points& points,
   return sum;
 }
 
+VectorX FilmEnergy::along(const Points& slope, const Points& directions) const {
+  VectorX result(unknowns());
+  for (int i = 0; i < unknowns(); ++i) {
+    result[i] = slope[vertices()[i]].dot(directions[i]);
+  }
+  return result;
+}
+
 VectorX FilmEnergy::lumped_area(const Points& points) const {
   std::vector<double> at(points.size(), 0.0);
   for (std::size_t f = 0; f < facets_.size(); ++f) {

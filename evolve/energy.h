@@ -62,6 +62,9 @@ class FilmEnergy {
   /// dF/dx of one functional, one per vertex.
   Points functional_gradient(const Points& points, int functional) const;
 
+  /// What of a gradient (one per vertex) runs along each unknown's direction.
+  VectorX along(const Points& slope, const Points& directions) const;
+
   /// Elements of the Hessian of E - sum pressure F along `directions`, packed:
   /// per facet the lower triangle over its corners' unknowns. `gradient`: of
   /// that Lagrangian, for the walls' bending.
@@ -129,8 +132,8 @@ class FilmEnergy {
   std::vector<double> modulus_;  // per quantity: what its terms carry
   std::vector<int> floating_;    // per unknown: floating part, or -1
   int floating_count_ = 0;
-  bool resisted_ = false;  // by fields in space: nothing floats
-  Vec3 gravity_ = Vec3::Zero();  // zero where nothing has weight
+  bool resisted_ = false;          // by fields in space: nothing floats
+  Vec3 gravity_ = Vec3::Zero();    // zero where nothing has weight
   std::vector<int> corner_start_;  // per facet: into corners_
   std::vector<Corner> corners_;
   std::vector<int> element_start_;  // per facet: into elements

@@ -23,28 +23,6 @@ std::string place(const Vec3& p) {
 constexpr const char* kAdvice =
     "a larger volume, shorter arms or larger rims would help";
 
-FilmReport report_of(const FilmEnergy& energy, const FilmTargets& targets,
-                     const NewtonResult& found, double bound) {
-  FilmReport report;
-  report.vertices = static_cast<int>(found.points.size());
-  report.facets = static_cast<int>(energy.facets().size());
-  report.energy = energy.value(found.points, targets);
-  report.area = energy.area(found.points);
-  report.residual = found.residual;
-  report.residual_bound = bound;
-  report.min_eigenvalue = found.min_eigenvalue;
-  report.index = found.index;
-  report.iterations = found.iterations;
-  const VectorX volumes = energy.volumes(found.points);
-  for (int b = 0; b < energy.bodies(); ++b) {
-    const ComplexBody& body = targets.bodies[b];
-    report.bodies.push_back({body.name, volumes[b],
-                             body.volume.value_or(volumes[b]),
-                             found.pressure[b]});
-  }
-  return report;
-}
-
 FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
                  const FilmTargets& targets, const Points& base,
                  const Points& directions, const VectorX& start,
@@ -73,7 +51,12 @@ FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
     }
   }
   FilmState state;
-  state.report = report_of(energy, targets, found, newton.residual_bound);
+  state.report = figures_of(energy, targets, found.points, found.pressure);
+  state.report.residual = found.residual;
+  state.report.residual_bound = newton.residual_bound;
+  state.report.min_eigenvalue = found.min_eigenvalue;
+  state.report.index = found.index;
+  state.report.iterations = found.iterations;
   state.points = std::move(found.points);
   state.heights = std::move(found.heights);
   judge(energy, complex,
@@ -87,6 +70,22 @@ FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
 }
 
 }  // namespace
+
+FilmReport figures_of(const FilmEnergy& energy, const FilmTargets& targets,
+                      const Points& points, const VectorX& pressure) {
+  FilmReport report;
+  report.vertices = static_cast<int>(points.size());
+  report.facets = static_cast<int>(energy.facets().size());
+  report.energy = energy.value(points, targets);
+  report.area = energy.area(points);
+  const VectorX volumes = energy.volumes(points);
+  for (int b = 0; b < energy.functionals(); ++b) {
+    const ComplexBody& body = targets.bodies[b];
+    report.bodies.push_back(
+        {body.name, volumes[b], body.volume.value_or(volumes[b]), pressure[b]});
+  }
+  return report;
+}
 
 void judge(const FilmEnergy& energy, const FilmComplex& complex,
            const Judgement& judgement, FilmState& state) {

@@ -36,6 +36,11 @@ FilmState settle_in_normals(const FilmEnergy& energy,
 LowestMode lowest_mode_of(const FilmEnergy& energy, const FilmTargets& targets,
                           const Points& points, const VectorX& pressure);
 
+/// What can be read from a film at `points`: counts, energy, area, and per
+/// functional its value and `pressure`. The rest is left at its defaults.
+FilmReport figures_of(const FilmEnergy& energy, const FilmTargets& targets,
+                      const Points& points, const VectorX& pressure);
+
 struct Judgement {
   std::string reason;  // why no equilibrium was reached; empty: it was
   Vec3 mode_position = Vec3::Zero();  // where the lowest mode is largest

@@ -45,19 +45,13 @@ FilmState given_up(const FilmComplex& complex, const std::string& reason,
   FilmState state;
   state.points = complex.mesh.points;
   state.heights = VectorX::Zero(energy.unknowns());
-  state.report.vertices = static_cast<int>(state.points.size());
-  state.report.facets = static_cast<int>(energy.facets().size());
   const FilmTargets targets = targets_of(complex);
-  state.report.energy = energy.value(state.points, targets);
-  state.report.area = energy.area(state.points);
-  state.report.iterations = steps;
-  const VectorX volumes = energy.volumes(state.points);
-  for (int b = 0; b < energy.bodies(); ++b) {
-    const ComplexBody& body = complex.bodies[b];
-    state.report.bodies.push_back({body.name, volumes[b],
-                                   body.volume.value_or(volumes[b]),
-                                   body.pressure.value_or(0.0)});
+  VectorX pressure(energy.functionals());
+  for (int b = 0; b < energy.functionals(); ++b) {
+    pressure[b] = targets.bodies[b].pressure.value_or(0.0);
   }
+  state.report = figures_of(energy, targets, state.points, pressure);
+  state.report.iterations = steps;
   Judgement judgement{.reason = reason};
   if (reason == kFilmGrows) {
     judgement.neck = Neck{};  // whatever comes near is no neck
@@ -187,24 +181,6 @@ struct Chain {
   }
 };
 
-FilmReport nested_report(const FilmEnergy& energy, const FilmTargets& targets,
-                         const NestedResult& found, double bound) {
-  FilmReport report;
-  report.vertices = static_cast<int>(found.points.size());
-  report.facets = static_cast<int>(energy.facets().size());
-  report.energy = energy.value(found.points, targets);
-  report.area = energy.area(found.points);
-  report.residual = found.residual;
-  report.residual_bound = bound;
-  const VectorX volumes = energy.volumes(found.points);
-  for (int b = 0; b < energy.functionals(); ++b) {
-    report.bodies.push_back({targets.bodies[b].name, volumes[b],
-                             targets.bodies[b].volume.value_or(volumes[b]),
-                             found.pressure[b]});
-  }
-  return report;
-}
-
 /// One level finer. `last`: to the stop criterion, with the verdict.
 FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
                        const FindOptions& options, bool last, int& steps) {
@@ -250,7 +226,9 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
   }
   complex.mesh.points = found.points;
   const FilmReport before = std::move(state.report);
-  state.report = nested_report(energy, targets, found, nested.residual_bound);
+  state.report = figures_of(energy, targets, found.points, found.pressure);
+  state.report.residual = found.residual;
+  state.report.residual_bound = nested.residual_bound;
   if (!last) {
     state.report.smallest_neck = before.smallest_neck;
     state.report.neck_position = before.neck_position;

@@ -18,15 +18,6 @@ constexpr double kFold = 0.15;            // cosine of a facet's turn in a step
 constexpr int kModeSteps = 30;
 constexpr double kModeAccuracy = 1e-4;  // of the lowest eigenvalue, relative
 
-VectorX along(const Points& slope, const FilmEnergy& energy,
-              const Points& directions) {
-  VectorX result(energy.unknowns());
-  for (int i = 0; i < energy.unknowns(); ++i) {
-    result[i] = slope[energy.vertices()[i]].dot(directions[i]);
-  }
-  return result;
-}
-
 double bounding_diagonal2(const Points& points) {
   const double d = bounding_diagonal(points);
   return std::max(1e-300, d * d);
@@ -48,14 +39,14 @@ void NestedNewton::evaluate(const Points& points) {
   points_ = points;
   directions_ = energy_.space().directions(points_);
   slope_ = energy_.gradient(points_, targets_);
-  gradient_ = along(slope_, energy_, directions_);
+  gradient_ = energy_.along(slope_, directions_);
   metric_ = energy_.lumped_area(points_);
   const int functionals = energy_.functionals();
   functional_.resize(energy_.unknowns(), functionals);
   functional_slope_.resize(functionals);
   for (int b = 0; b < functionals; ++b) {
     functional_slope_[b] = energy_.functional_gradient(points_, b);
-    functional_.col(b) = along(functional_slope_[b], energy_, directions_);
+    functional_.col(b) = energy_.along(functional_slope_[b], directions_);
   }
   values_ = functionals > 0 ? energy_.volumes(points_) : VectorX();
   const Eigen::MatrixXd rigid =

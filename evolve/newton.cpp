@@ -16,15 +16,6 @@ constexpr double kShortest = 1.0 / 128.0;
 constexpr int kMostShifts = 12;
 constexpr int kMostShortSteps = 6;  // in a row, before giving up
 
-VectorX along(const Points& slope, const FilmEnergy& energy,
-              const Points& directions) {
-  VectorX result(energy.unknowns());
-  for (int i = 0; i < energy.unknowns(); ++i) {
-    result[i] = slope[energy.vertices()[i]].dot(directions[i]);
-  }
-  return result;
-}
-
 }  // namespace
 
 FilmNewton::FilmNewton(const FilmEnergy& energy, const FilmTargets& targets,
@@ -60,11 +51,11 @@ void FilmNewton::evaluate() {
     directions_ = energy_.space().directions(base_);
   }
   gradient_ =
-      along(energy_.gradient(now_.points, targets_), energy_, directions_);
+      energy_.along(energy_.gradient(now_.points, targets_), directions_);
   volumes_dh_.resize(n, bodies);
   for (int b = 0; b < bodies; ++b) {
-    volumes_dh_.col(b) = along(energy_.functional_gradient(now_.points, b),
-                               energy_, directions_);
+    volumes_dh_.col(b) =
+        energy_.along(energy_.functional_gradient(now_.points, b), directions_);
   }
   metric_ = energy_.lumped_area(now_.points);
   const auto held = static_cast<int>(held_.size());

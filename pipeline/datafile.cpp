@@ -60,19 +60,10 @@ FilmState state_after(const FilmComplex& complex, const DescentReport& descent,
   FilmState state;
   state.points = complex.mesh.points;
   FilmReport& figures = state.report;
-  figures.vertices = static_cast<int>(state.points.size());
-  figures.facets = static_cast<int>(complex.mesh.facets.size());
-  figures.energy = energy.value(state.points, targets);
-  figures.area = energy.area(state.points);
+  figures = figures_of(energy, targets, state.points, descent.pressure);
   figures.residual = descent.residual;
   figures.residual_bound = residual_bound_of(energy, state.points, targets);
   figures.iterations = steps;
-  const VectorX volumes = energy.volumes(state.points);
-  for (int b = 0; b < energy.functionals(); ++b) {
-    figures.bodies.push_back({targets.bodies[b].name, volumes[b],
-                              targets.bodies[b].volume.value_or(volumes[b]),
-                              descent.pressure[b]});
-  }
   const LowestMode mode =
       lowest_mode_of(energy, targets, state.points, descent.pressure);
   figures.min_eigenvalue = mode.eigenvalue;
