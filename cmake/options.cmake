@@ -30,10 +30,12 @@ function(meniscus_add_library name)
   endif()
 endfunction()
 
-# meniscus_add_test(NAME SOURCES ... LINK targets ... [LABELS ...] [TIMEOUT s])
-# One GoogleTest program, each of its cases a CTest test.
+# meniscus_add_test(NAME SOURCES ... LINK targets ... [LABELS ...] [TIMEOUT s]
+#                   [ALONE])
+# One GoogleTest program, each of its cases a CTest test; ALONE: with no other
+# test beside it, for tests of speed.
 function(meniscus_add_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name}
     PRIVATE ${ARG_LINK} GTest::gmock GTest::gtest_main)
@@ -41,6 +43,9 @@ function(meniscus_add_test name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
+  if(ARG_ALONE)
+    set(alone RUN_SERIAL TRUE)
+  endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" ${alone})
 endfunction()

@@ -231,7 +231,7 @@ std::vector<char> near_lines(const FilmEnergy& energy, std::size_t count) {
 class Corners {
  public:
   Corners(const std::vector<Triangle>& facets, std::size_t points)
-      : facets_(facets), start_(points + 1, 0) {
+      : facets_(facets), start_(points + 1, 0), mark_(points, -1) {
     for (const Triangle& t : facets) {
       for (const int v : t) {
         ++start_[v + 1];
@@ -251,35 +251,37 @@ class Corners {
     if (v != centre_) {
       gather(v);
     }
-    return std::any_of(
-        facets_[facet].begin(), facets_[facet].end(), [&](int corner) {
-          return std::binary_search(found_.begin(), found_.end(), corner);
-        });
+    const Triangle& t = facets_[facet];
+    return mark_[t[0]] == v || mark_[t[1]] == v || mark_[t[2]] == v;
   }
 
  private:
+  // Ring by ring; `mark_` is the centre that a vertex was last found from.
   void gather(int v) {
     centre_ = v;
+    mark_[v] = v;
     found_ = {v};
-    std::vector<int> edge = found_;
+    std::size_t first = 0;
     for (int ring = 0; ring < kCorner; ++ring) {
-      std::vector<int> next;
-      for (const int u : edge) {
-        for (int k = start_[u]; k < start_[u + 1]; ++k) {
-          const Triangle& t = facets_[around_[k]];
-          next.insert(next.end(), t.begin(), t.end());
+      const std::size_t last = found_.size();
+      for (; first < last; ++first) {
+        for (int k = start_[found_[first]]; k < start_[found_[first] + 1];
+             ++k) {
+          for (const int u : facets_[around_[k]]) {
+            if (mark_[u] != v) {
+              mark_[u] = v;
+              found_.push_back(u);
+            }
+          }
         }
       }
-      std::sort(next.begin(), next.end());
-      next.erase(std::unique(next.begin(), next.end()), next.end());
-      edge = next;
-      found_ = std::move(next);  // each ring holds the one within
     }
   }
 
   const std::vector<Triangle>& facets_;
   std::vector<int> start_;
   std::vector<int> around_;
+  std::vector<int> mark_;
   int centre_ = -1;
   std::vector<int> found_;
 };

@@ -3,9 +3,9 @@
 ///
 ///   film_bench [--scale N] [--only NAME] [--repeat N] [--no-evolver] [--large]
 ///
-/// --scale N runs at 1/4^N of the size; --repeat N takes the median of N of our
-/// own runs (3). Ratios are of CPU seconds, user and system, of one thread, one
-/// run at a time.
+/// --scale N runs at 1/4^N of the size; --repeat N takes the fastest of N runs
+/// of each program (2). Ratios are of CPU seconds, user and system, of one
+/// thread, one run at a time.
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -27,7 +27,7 @@ constexpr double kLargeBound = 4.0 * 1024 * 1024 * 1024;  // [byte]
 
 struct BenchOptions {
   int scale = 0;
-  int repeat = 3;
+  int repeat = 2;
   std::optional<std::string> only;
   bool evolver = true;
   bool large = false;
@@ -70,23 +70,26 @@ std::string ratio(const EvolverRun& theirs, const FilmRun& own, double least,
 }
 
 EvolverRun evolver_run(const SpeedWork& work, EvolverScript script,
-                       int refinements) {
-  return run_evolver(
-      work.start(),
-      {.refinements = refinements, .script = script, .descent = work.descent});
+                       int refinements, int repeat) {
+  return fastest(repeat, [&] {
+    return run_evolver(work.start(), {.refinements = refinements,
+                                      .script = script,
+                                      .descent = work.descent});
+  });
 }
 
 void race(const SpeedWork& work, const BenchOptions& options) {
   const int refinements = std::max(0, work.refinements - options.scale);
-  const FilmRun own = median_run(work.start(), refinements, options.repeat);
+  const FilmRun own = fastest(
+      options.repeat, [&] { return run_film(work.start(), refinements); });
   fmt::print("{}, {} facets\n", work.name, own.facets);
   print_own(own);
   if (options.evolver) {
     const EvolverRun tuned =
-        evolver_run(work, EvolverScript::Tuned, refinements);
+        evolver_run(work, EvolverScript::Tuned, refinements, options.repeat);
     print_evolver("tuned", tuned);
     const EvolverRun typical =
-        evolver_run(work, EvolverScript::Typical, refinements);
+        evolver_run(work, EvolverScript::Typical, refinements, options.repeat);
     print_evolver("typical", typical);
     fmt::print(
         "  faster than tuned   {}\n  faster than typical {}\n"
@@ -104,9 +107,10 @@ void growth(const BenchOptions& options) {
   double first_seconds = 0.0;
   int first_facets = 0;
   for (const int refinements : {5, 6, 7}) {
-    const FilmRun run =
-        median_run(films::catenoid_start(),
-                   std::max(0, refinements - options.scale), options.repeat);
+    const FilmRun run = fastest(options.repeat, [&] {
+      return run_film(films::catenoid_start(),
+                      std::max(0, refinements - options.scale));
+    });
     if (first_facets == 0) {
       first_seconds = run.user_seconds;
       first_facets = run.facets;

@@ -1,6 +1,5 @@
 #include "tests/support/film_race.h"
 
-#include <algorithm>
 #include <chrono>
 #include <omp.h>
 #include <sstream>
@@ -98,17 +97,6 @@ FilmRun run_film(const FilmComplex& start, int refinements) {
     std::getline(text, run.verdict);
   }
   return run;
-}
-
-FilmRun median_run(const FilmComplex& start, int refinements, int count) {
-  std::vector<FilmRun> runs;
-  for (int i = 0; i < count; ++i) {
-    runs.push_back(run_film(start, refinements));
-  }
-  std::sort(runs.begin(), runs.end(), [](const FilmRun& a, const FilmRun& b) {
-    return a.user_seconds < b.user_seconds;
-  });
-  return runs[runs.size() / 2];
 }
 
 }  // namespace meniscus
