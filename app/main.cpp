@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/exit_code.h"
 #include "core/error.h"
+#include "core/memory.h"
 
 namespace {
 
@@ -155,6 +156,7 @@ int run_program(int argc, char** argv) {
 
 /// What escapes a command becomes a message and an exit code.
 int main(int argc, char** argv) {
+  meniscus::keep_freed_memory();
   try {
     return run_program(argc, argv);
   } catch (const meniscus::InvalidInput& error) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "core/memory.h"
 #include "evolve/find_equilibrium.h"
 #include "tests/support/film_complexes.h"
 #include "tests/support/measured_child.h"
@@ -37,6 +38,7 @@ int film_facets(const FilmComplex& complex) {
 }
 
 std::string settle(const FilmComplex& start, int refinements) {
+  keep_freed_memory();  // as the program does
   FilmComplex complex = start;
   omp_set_num_threads(1);
   const double before = user_seconds();
