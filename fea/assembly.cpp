@@ -1,11 +1,12 @@
 #include "fea/assembly.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
-#include <omp.h>
 
 #include <Eigen/Geometry>
 
+#include "fea/block_kernels.h"
 #include "fea/tet_element.h"
 
 namespace meniscus {
@@ -74,43 +75,33 @@ void add_stiffness(const double (*G)[Width], int a, int b, const Lame& m,
   block[8] += both * g2[2] + d;
 }
 
-/// Adds the blocks of rows [low, high); returns the first bad element.
+/// Adds the blocks of one element; false when it is bad.
 template <int Nodes>
-int assemble_rows(const ElementTable& table, const Points& x,
-                  const std::vector<Lame>& lames, int low, int high,
-                  BlockMatrix<double>& matrix) {
+bool add_element(const ElementTable& table, const Points& x,
+                 const std::vector<Lame>& lames, int e,
+                 BlockMatrix<double>& matrix) {
   const BlockPattern& p = table.pattern;
   constexpr int kPairs = Nodes * (Nodes - 1) / 2;
-  const int count = p.element_count();
-  int bad = count;
   std::array<Vec3, Nodes> corner;
+  load_nodes<Nodes>(table, x, e, corner);
   TetGradients<Nodes> g;
+  if (!tet_gradients<Nodes>(corner, g)) {
+    return false;
+  }
+  const std::size_t first = static_cast<std::size_t>(e) * Nodes;
   alignas(32) double G[3 * Nodes][kPadded<Nodes>];
-  for (int e = 0; e < count; ++e) {
-    const std::size_t first = static_cast<std::size_t>(e) * Nodes;
-    const int* ids = p.element_nodes.data() + first;
-    if (ids[Nodes - 1] < low || ids[0] >= high) {
-      continue;
-    }
-    load_nodes<Nodes>(table, x, e, corner);
-    if (!tet_gradients<Nodes>(corner, g)) {
-      bad = std::min(bad, e);
-    }
-    outer_products<Nodes>(g, table.slot.data() + first, G);
-    const Lame& m = lames[table.region[e]];
-    const int* block =
-        p.pair_block.data() + static_cast<std::size_t>(e) * kPairs;
-    for (int a = 0; a < Nodes; ++a) {
-      if (ids[a] >= low && ids[a] < high) {
-        add_stiffness(G, a, a, m, matrix.diagonal.data() + 9L * ids[a]);
-        for (int b = 0; b < a; ++b) {
-          add_stiffness(G, a, b, m,
-                        matrix.lower.data() + 9L * block[a * (a - 1) / 2 + b]);
-        }
-      }
+  outer_products<Nodes>(g, table.slot.data() + first, G);
+  const Lame& m = lames[table.region[e]];
+  const int* ids = p.element_nodes.data() + first;
+  const int* block = p.pair_block.data() + static_cast<std::size_t>(e) * kPairs;
+  for (int a = 0; a < Nodes; ++a) {
+    add_stiffness(G, a, a, m, matrix.diagonal.data() + 9L * ids[a]);
+    for (int b = 0; b < a; ++b) {
+      add_stiffness(G, a, b, m,
+                    matrix.lower.data() + 9L * block[a * (a - 1) / 2 + b]);
     }
   }
-  return bad;
+  return true;
 }
 
 template <int Nodes>
@@ -118,38 +109,33 @@ std::optional<int> assemble_all(const ElementTable& table, const Points& x,
                                 const std::vector<Lame>& lames,
                                 BlockMatrix<double>& matrix) {
   const BlockPattern& p = table.pattern;
-  int bad = p.element_count();
-  // Each thread owns a range of rows and visits the elements that touch it.
-#pragma omp parallel reduction(min : bad)
-  {
-    const long threads = omp_get_num_threads();
-    const long t = omp_get_thread_num();
-    const long blocks = static_cast<long>(p.column.size());
-    const auto row = [&](long part) {
-      const long target = blocks * part / threads;
-      return static_cast<int>(
-          std::lower_bound(p.start.begin(), p.start.end() - 1, target) -
-          p.start.begin());
-    };
-    const int low = t == 0 ? 0 : row(t);
-    const int high = t + 1 == threads ? p.nodes : row(t + 1);
+  over_chunks(p.chunks, RowOrder::Forward, [&](int chunk) {
+    const int low = p.chunks.first[chunk];
+    const int high = p.chunks.first[chunk + 1];
     std::fill(matrix.diagonal.begin() + 9L * low,
               matrix.diagonal.begin() + 9L * high, 0.0);
     std::fill(matrix.lower.begin() + 9L * p.start[low],
               matrix.lower.begin() + 9L * p.start[high], 0.0);
-    bad = assemble_rows<Nodes>(table, x, lames, low, high, matrix);
-  }
-  return bad == p.element_count() ? std::nullopt : std::optional(bad);
+  });
+  std::atomic<int> bad = p.element_count();
+  over_elements(table, [&](int e) {
+    if (!add_element<Nodes>(table, x, lames, e, matrix)) {
+      int least = bad;
+      while (e < least && !bad.compare_exchange_weak(least, e)) {
+      }
+    }
+  });
+  return bad == p.element_count() ? std::nullopt : std::optional<int>(bad);
 }
 
 template <int Nodes>
 void add_internal_forces(const ElementTable& table, const Points& x,
                          const std::vector<Lame>& lames, const VectorX& u,
                          VectorX& f) {
-  std::array<Vec3, Nodes> corner;
-  TetGradients<Nodes> g;
-  for (int e = 0; e < table.pattern.element_count(); ++e) {
+  over_elements(table, [&](int e) {
+    std::array<Vec3, Nodes> corner;
     load_nodes<Nodes>(table, x, e, corner);
+    TetGradients<Nodes> g;
     tet_gradients<Nodes>(corner, g);
     const Lame& m = lames[table.region[e]];
     const std::size_t first = static_cast<std::size_t>(e) * Nodes;
@@ -171,12 +157,12 @@ void add_internal_forces(const ElementTable& table, const Points& x,
         f.segment<3>(3 * ids[a]).noalias() += stress * g.gradient[q][a];
       }
     }
-  }
+  });
 }
 
 }  // namespace
 
-ElementTable make_element_table(int nodes, int nodes_per_element,
+ElementTable make_element_table(RowChunks chunks, int nodes_per_element,
                                 const std::vector<int>& elements,
                                 std::vector<int> region) {
   ElementTable table;
@@ -196,15 +182,25 @@ ElementTable make_element_table(int nodes, int nodes_per_element,
     }
   }
   table.region = std::move(region);
-  table.pattern = make_pattern(nodes, nodes_per_element, std::move(ascending));
+  const int count = static_cast<int>(elements.size()) / nodes_per_element;
+  int e = 0;
+  for (const int row : chunks.first) {
+    while (e < count &&
+           ascending[static_cast<std::size_t>(e) * nodes_per_element] < row) {
+      ++e;
+    }
+    table.chunk_first.push_back(e);
+  }
+  table.pattern =
+      make_pattern(std::move(chunks), nodes_per_element, std::move(ascending));
   return table;
 }
 
 std::optional<int> assemble(const ElementTable& table, const Points& x,
                             const std::vector<Lame>& lames,
                             BlockMatrix<double>& matrix) {
-  matrix.diagonal.resize(9L * table.pattern.nodes);
-  matrix.lower.resize(9L * table.pattern.column.size());
+  matrix.diagonal.resize(9L * table.pattern.nodes + kBlockPadding);
+  matrix.lower.resize(9L * table.pattern.column.size() + kBlockPadding);
   return table.pattern.nodes_per_element == 4
              ? assemble_all<4>(table, x, lames, matrix)
              : assemble_all<10>(table, x, lames, matrix);

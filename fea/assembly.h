@@ -15,16 +15,31 @@ struct ElementTable {
   std::vector<unsigned char> slot;  // per element and node in TetMesh's order:
                                     // its place among the ascending nodes
   std::vector<int> region;          // per element
+  std::vector<int> chunk_first;     // elements of each chunk of rows: those
+                                    // whose lowest node is in it; chunks + 1
 };
 
-/// `elements`: node ids (solver's) in TetMesh's order, nodes_per_element each.
-ElementTable make_element_table(int nodes, int nodes_per_element,
+/// work(e) for every element. Chunks of one colour side by side: elements that
+/// share a node are never visited at the same time, nor in another order.
+template <class Work>
+void over_elements(const ElementTable& table, const Work& work) {
+  over_chunks(table.pattern.chunks, RowOrder::Forward, [&](int chunk) {
+    for (int e = table.chunk_first[chunk]; e < table.chunk_first[chunk + 1];
+         ++e) {
+      work(e);
+    }
+  });
+}
+
+/// `elements`: node ids (solver's) in TetMesh's order, nodes_per_element each;
+/// elements ascend by their lowest node.
+ElementTable make_element_table(RowChunks chunks, int nodes_per_element,
                                 const std::vector<int>& elements,
                                 std::vector<int> region);
 
 /// Fills `matrix` with K_ab = sum over points of V (lambda g_a g_b^T +
-/// mu g_b g_a^T + mu g_a . g_b I). Each block adds its elements in their
-/// order, whatever the number of threads. `x`: the solver's nodes; `lames`:
+/// mu g_b g_a^T + mu g_a . g_b I). Each block adds its elements in one order,
+/// whatever the number of threads. `x`: the solver's nodes; `lames`:
 /// one per region. Returns the first element (solver's) whose Jacobian
 /// determinant is not positive at a point; the matrix is then of no use.
 std::optional<int> assemble(const ElementTable& table, const Points& x,

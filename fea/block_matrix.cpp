@@ -34,10 +34,12 @@ NodeElements elements_of_nodes(int nodes, const std::vector<int>& ids) {
 
 }  // namespace
 
-BlockPattern make_pattern(int nodes, int nodes_per_element,
+BlockPattern make_pattern(RowChunks chunks, int nodes_per_element,
                           std::vector<int> element_nodes) {
+  const int nodes = chunks.first.back();
   BlockPattern pattern;
   pattern.nodes = nodes;
+  pattern.chunks = std::move(chunks);
   pattern.nodes_per_element = nodes_per_element;
   const NodeElements around = elements_of_nodes(nodes, element_nodes);
   const int pairs = pattern.pairs_per_element();
@@ -78,38 +80,45 @@ BlockPattern make_pattern(int nodes, int nodes_per_element,
   return pattern;
 }
 
-template <int K>
+template <int B, int K>
 void multiply(const BlockPattern& pattern, const BlockMatrix<double>& matrix,
               const double* x, double* y) {
-  constexpr int kWidth = 3 * K;
-  const double* block = matrix.lower.data();
-  for (int i = 0; i < pattern.nodes; ++i) {
-    const double* xi = x + static_cast<std::ptrdiff_t>(i) * kWidth;
-    double t[kWidth] = {};
-    add_block<K>(matrix.diagonal.data() + static_cast<std::ptrdiff_t>(9) * i,
-                 xi, t);
-    for (int k = pattern.start[i]; k < pattern.start[i + 1]; ++k, block += 9) {
-      const std::ptrdiff_t j =
-          static_cast<std::ptrdiff_t>(pattern.column[k]) * kWidth;
-      add_block<K>(block, x + j, t);
-      add_block_transposed<K>(block, xi, y + j);
+  constexpr std::ptrdiff_t kWidth = K * kLanes<B>;
+  over_chunks(pattern.chunks, RowOrder::Forward, [&](int chunk) {
+    for (int i = pattern.chunks.first[chunk];
+         i < pattern.chunks.first[chunk + 1]; ++i) {
+      const double* xi = x + i * kWidth;
+      RowSum<B, K, double> sum;
+      for (int k = pattern.start[i]; k < pattern.start[i + 1]; ++k) {
+        const double* block =
+            matrix.lower.data() + static_cast<std::ptrdiff_t>(B * B) * k;
+        const std::ptrdiff_t j = pattern.column[k] * kWidth;
+        sum.add(block, x + j);
+        add_transposed<B, K>(block, xi, y + j);
+      }
+      // Only rows after i add to y_i: it has not been written before.
+      double* yi = y + i * kWidth;
+      std::fill_n(yi, kWidth, 0.0);
+      add_transposed<B, K>(
+          matrix.diagonal.data() + static_cast<std::ptrdiff_t>(B * B) * i, xi,
+          yi);  // it is symmetric
+      for (int k = 0; k < K; ++k) {
+        for (int r = 0; r < B; ++r) {
+          yi[k * kLanes<B> + r] += sum.component(k, r);
+        }
+      }
     }
-    // Rows above i only are touched by the transposed blocks of this row, so
-    // y_i has not been written before.
-    double* yi = y + static_cast<std::ptrdiff_t>(i) * kWidth;
-    for (int k = 0; k < kWidth; ++k) {
-      yi[k] = t[k];
-    }
-  }
+  });
 }
 
-template void multiply<1>(const BlockPattern&, const BlockMatrix<double>&,
-                          const double*, double*);
-template void multiply<2>(const BlockPattern&, const BlockMatrix<double>&,
-                          const double*, double*);
-template void multiply<3>(const BlockPattern&, const BlockMatrix<double>&,
-                          const double*, double*);
-template void multiply<4>(const BlockPattern&, const BlockMatrix<double>&,
-                          const double*, double*);
+#define MENISCUS_MULTIPLY(K)                                              \
+  template void multiply<3, K>(const BlockPattern&,                       \
+                               const BlockMatrix<double>&, const double*, \
+                               double*);
+MENISCUS_MULTIPLY(1)
+MENISCUS_MULTIPLY(2)
+MENISCUS_MULTIPLY(3)
+MENISCUS_MULTIPLY(4)
+#undef MENISCUS_MULTIPLY
 
 }  // namespace meniscus

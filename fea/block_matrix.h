@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "fea/row_chunks.h"
 
 namespace meniscus {
 
@@ -17,6 +18,7 @@ struct BlockPattern {
   int nodes = 0;
   std::vector<int> start;   // nodes + 1
   std::vector<int> column;  // block columns
+  RowChunks chunks;         // of the rows
 
   /// For element e and pair k of its nodes (see assembly.h): the block.
   int nodes_per_element = 0;
@@ -33,19 +35,21 @@ struct BlockPattern {
 
 /// The pattern of a mesh. `element_nodes`: ids below `nodes`, ascending within
 /// each element. Pair k = a (a - 1) / 2 + b, b < a, is row a, column b.
-BlockPattern make_pattern(int nodes, int nodes_per_element,
+BlockPattern make_pattern(RowChunks chunks, int nodes_per_element,
                           std::vector<int> element_nodes);
 
-/// Values: blocks row by row, nine numbers each, row-major.
+/// Values: blocks row by row, B x B numbers each, row-major; `lower` ends with
+/// kBlockPadding zeros more (block_kernels.h).
 template <class Real>
 struct BlockMatrix {
-  std::vector<Real> diagonal;  // 9 a node
-  std::vector<Real> lower;     // 9 a block of the pattern
+  std::vector<Real> diagonal;  // one block a node
+  std::vector<Real> lower;     // one block a column of the pattern
 };
 
-/// y = A x for K interleaved vectors: entry (node, component, k) stands at
-/// (3 node + component) K + k.
-template <int K>
+/// y = A x for K vectors of padded layout: component c of node n and column k
+/// stands at (n K + k) kLanes<B> + c. The padding of x must be zero, that of y
+/// becomes garbage.
+template <int B, int K>
 void multiply(const BlockPattern& pattern, const BlockMatrix<double>& matrix,
               const double* x, double* y);
 

@@ -1,73 +1,95 @@
 #include "fea/block_sweeps.h"
 
-#include <algorithm>
-
 #include "fea/block_kernels.h"
 
 namespace meniscus {
 
 namespace {
 
-/// One row: new x_i from r_i, the row's gathered part and `upper`_i, then the
-/// scatter of x_i through the transposed blocks.
-template <int K, bool Backward>
+/// One row: new x_i from r_i, the row's gathered part and `upper`_i.
+template <int B, int K, bool Backward>
 inline void relax_row(const SweepMatrix& matrix, int i, const float* r,
-                      float* x, float* upper) {
-  constexpr int kWidth = 3 * K;
+                      float* x, const float* upper) {
+  constexpr int kLane = kLanes<B>;
+  constexpr std::ptrdiff_t kWidth = K * kLane;
   const BlockPattern& p = *matrix.pattern;
-  const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * kWidth;
-  float t[kWidth] = {};
+  RowSum<B, K, float> sum;
   // Blocks in the order of the sweep, so that memory streams one way.
   const int first = p.start[i];
   const int last = p.start[i + 1];
   for (int n = 0; n < last - first; ++n) {
     const int k = Backward ? last - 1 - n : first + n;
-    add_block<K>(matrix.lower + 9L * k, x + 1L * p.column[k] * kWidth, t);
+    sum.add(matrix.lower + static_cast<std::ptrdiff_t>(B * B) * k,
+            x + p.column[k] * kWidth);
   }
-  for (int d = 0; d < kWidth; ++d) {
-    t[d] = r[at + d] - t[d] - upper[at + d];
+  const float* inverse =
+      matrix.inverse + static_cast<std::ptrdiff_t>(B * kLane) * i;
+  for (int k = 0; k < K; ++k) {
+    const std::ptrdiff_t at = i * kWidth + k * kLane;
+    Lanes<float, B> xi = Lanes<float, B>::Zero();
+    for (int c = 0; c < B; ++c) {
+      xi += lanes<B>(inverse + c * kLane) *
+            (r[at + c] - sum.component(k, c) - upper[at + c]);
+    }
+    lanes<B>(x + at) = xi;
   }
-  float xi[kWidth] = {};
-  add_block<K>(matrix.inverse + 9L * i, t, xi);
-  std::copy_n(xi, kWidth, x + at);
-  for (int k = first; k < last; ++k) {
-    add_block_transposed<K>(matrix.lower + 9L * k, xi,
-                            upper + 1L * p.column[k] * kWidth);
+}
+
+/// upper += the transposed blocks of row i times x_i.
+template <int B, int K>
+inline void scatter_row(const SweepMatrix& matrix, int i, const float* x,
+                        float* upper) {
+  constexpr std::ptrdiff_t kWidth = K * kLanes<B>;
+  const BlockPattern& p = *matrix.pattern;
+  for (int k = p.start[i]; k < p.start[i + 1]; ++k) {
+    add_transposed<B, K>(matrix.lower + static_cast<std::ptrdiff_t>(B * B) * k,
+                         x + i * kWidth, upper + p.column[k] * kWidth);
   }
 }
 
 }  // namespace
 
-template <int K>
+template <int B, int K>
 void sweep_forward(const SweepMatrix& matrix, const float* r, float* x,
                    float* upper) {
-  for (int i = 0; i < matrix.pattern->nodes; ++i) {
-    relax_row<K, false>(matrix, i, r, x, upper);
-    // This row has used the old sum; rows below now add the new one.
-    float* sum = upper + 3L * K * i;
-    for (int d = 0; d < 3 * K; ++d) {
-      sum[d] = -sum[d];
+  const RowChunks& chunks = matrix.pattern->chunks;
+  over_chunks(chunks, RowOrder::Forward, [&](int chunk) {
+    for (int i = chunks.first[chunk]; i < chunks.first[chunk + 1]; ++i) {
+      relax_row<B, K, false>(matrix, i, r, x, upper);
+      // This row has used the old sum; rows below now add the new one.
+      constexpr std::ptrdiff_t kWidth = K * kLanes<B>;
+      Eigen::Map<Eigen::Array<float, kWidth, 1>> sum(upper + i * kWidth);
+      sum = -sum;
+      scatter_row<B, K>(matrix, i, x, upper);
     }
-  }
+  });
 }
 
-template <int K>
+template <int B, int K>
 void sweep_backward(const SweepMatrix& matrix, const float* r, float* x,
                     float* upper) {
-  for (int i = matrix.pattern->nodes - 1; i >= 0; --i) {
-    relax_row<K, true>(matrix, i, r, x, upper);
-  }
+  const RowChunks& chunks = matrix.pattern->chunks;
+  over_chunks(chunks, RowOrder::Backward, [&](int chunk) {
+    for (int i = chunks.first[chunk + 1] - 1; i >= chunks.first[chunk]; --i) {
+      relax_row<B, K, true>(matrix, i, r, x, upper);
+      scatter_row<B, K>(matrix, i, x, upper);
+    }
+  });
 }
 
-#define MENISCUS_SWEEPS(K)                                                  \
-  template void sweep_forward<K>(const SweepMatrix&, const float*, float*,  \
-                                 float*);                                   \
-  template void sweep_backward<K>(const SweepMatrix&, const float*, float*, \
-                                  float*);
-MENISCUS_SWEEPS(1)
-MENISCUS_SWEEPS(2)
-MENISCUS_SWEEPS(3)
-MENISCUS_SWEEPS(4)
+#define MENISCUS_SWEEPS(B, K)                                                  \
+  template void sweep_forward<B, K>(const SweepMatrix&, const float*, float*,  \
+                                    float*);                                   \
+  template void sweep_backward<B, K>(const SweepMatrix&, const float*, float*, \
+                                     float*);
+MENISCUS_SWEEPS(3, 1)
+MENISCUS_SWEEPS(3, 2)
+MENISCUS_SWEEPS(3, 3)
+MENISCUS_SWEEPS(3, 4)
+MENISCUS_SWEEPS(6, 1)
+MENISCUS_SWEEPS(6, 2)
+MENISCUS_SWEEPS(6, 3)
+MENISCUS_SWEEPS(6, 4)
 #undef MENISCUS_SWEEPS
 
 }  // namespace meniscus

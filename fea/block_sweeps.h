@@ -7,24 +7,25 @@
 
 namespace meniscus {
 
-/// L: blocks below the diagonal, as in BlockMatrix; inverse: inverses of the
-/// diagonal blocks, 9 a node, zero in fixed components.
+/// L: blocks below the diagonal, as in BlockMatrix; inverse: (pseudo-)inverses
+/// of the diagonal blocks, kLanes<B> numbers a row, the padding zero: held
+/// directions are in their null space.
 struct SweepMatrix {
   const BlockPattern* pattern;
   const float* lower;
   const float* inverse;
 };
 
-/// x_i = D_i^-1 (r_i - (L x)_i - (U x)_i), i ascending, for K interleaved
-/// vectors. `upper`: U x on entry; U times the change of x on return, which is
-/// minus the residual.
-template <int K>
+/// x_i = D_i^-1 (r_i - (L x)_i - (U x)_i), rows in order, for K vectors of
+/// padded layout (see multiply). `upper`: U x on entry; U times the change of
+/// x on return, which is minus the residual.
+template <int B, int K>
 void sweep_forward(const SweepMatrix& matrix, const float* r, float* x,
                    float* upper);
 
-/// The same, i descending, which is the adjoint. `upper`: zero on entry, U x on
-/// return.
-template <int K>
+/// The same against the order, which is the adjoint. `upper`: zero on entry,
+/// U x on return.
+template <int B, int K>
 void sweep_backward(const SweepMatrix& matrix, const float* r, float* x,
                     float* upper);
 

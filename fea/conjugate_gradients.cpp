@@ -1,8 +1,12 @@
 #include "fea/conjugate_gradients.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
+
+#include "fea/block_kernels.h"
 
 namespace meniscus {
 
@@ -13,39 +17,14 @@ using Vec = std::vector<double>;
 template <int K>
 using Sums = std::array<double, K>;
 
-/// Dot products of interleaved vectors, summed in pieces of fixed length.
-template <int K>
-Sums<K> dot(const Vec& a, const Vec& b) {
-  constexpr std::size_t kWidth = K;
-  constexpr std::size_t kPiece = 4096 * kWidth;
-  Sums<K> total{};
-  for (std::size_t first = 0; first < a.size(); first += kPiece) {
-    const std::size_t last = std::min(first + kPiece, a.size());
-    double sum[4][K] = {};  // four chains hide the latency of additions
-    std::size_t d = first;
-    for (; d + 4 * kWidth <= last; d += 4 * kWidth) {
-      for (std::size_t c = 0; c < 4; ++c) {
-        for (std::size_t k = 0; k < kWidth; ++k) {
-          sum[c][k] += a[d + c * kWidth + k] * b[d + c * kWidth + k];
-        }
-      }
-    }
-    for (; d < last; d += K) {
-      for (int k = 0; k < K; ++k) {
-        sum[0][k] += a[d + k] * b[d + k];
-      }
-    }
-    for (int k = 0; k < K; ++k) {
-      total[k] += (sum[0][k] + sum[1][k]) + (sum[2][k] + sum[3][k]);
-    }
-  }
-  return total;
-}
+/// Nodes whose products are summed in one piece, whatever the threads.
+constexpr int kPiece = 1024;
 
 template <int K>
 class Solver {
  public:
-  explicit Solver(const CgProblem& problem) : problem_(problem) {}
+  explicit Solver(const CgProblem& problem)
+      : problem_(problem), nodes_(problem.pattern.nodes) {}
 
   std::vector<CgColumn> run(const std::vector<VectorX>& f,
                             std::vector<VectorX>& u) {
@@ -58,45 +37,99 @@ class Solver {
       if (live_[k]) {
         columns_[k].end = CgEnd::TooManyIterations;
       }
-      for (std::size_t d = 0; d < size_; ++d) {
-        u[k][static_cast<Eigen::Index>(d)] = u_[d * K + k];
+      for (int i = 0; i < nodes_; ++i) {
+        u[k].segment<3>(3L * i) = at(u_, i, k);
       }
     }
     return columns_;
   }
 
  private:
+  static constexpr std::ptrdiff_t kWidth = K * kLanes<3>;
+  using Node = Eigen::Array<double, kLanes<3>, 1>;
+
+  static Eigen::Map<Vec3> at(Vec& v, int node, int k) {
+    return Eigen::Map<Vec3>(v.data() + node * kWidth + k * kLanes<3>);
+  }
+  static Eigen::Map<Node> lane(Vec& v, int node, int k) {
+    return Eigen::Map<Node>(v.data() + node * kWidth + k * kLanes<3>);
+  }
+
+  /// work(node, sums) for all nodes, `sums` added in pieces of fixed length.
+  template <class Work>
+  Sums<K> over_nodes(const Work& work) {
+    const int pieces = (nodes_ + kPiece - 1) / kPiece;
+    std::vector<Sums<K>> part(pieces);
+#pragma omp parallel for schedule(static) if (nodes_ >= kParallelRows)
+    for (int p = 0; p < pieces; ++p) {
+      Sums<K> sum{};
+      const int last = std::min(nodes_, (p + 1) * kPiece);
+      for (int i = p * kPiece; i < last; ++i) {
+        work(i, sum);
+      }
+      part[p] = sum;
+    }
+    Sums<K> total{};
+    for (const Sums<K>& sum : part) {
+      for (int k = 0; k < K; ++k) {
+        total[k] += sum[k];
+      }
+    }
+    return total;
+  }
+
+  Sums<K> dot(Vec& a, Vec& b) {
+    return over_nodes([&](int i, Sums<K>& sum) {
+      for (int k = 0; k < K; ++k) {
+        sum[k] += at(a, i, k).dot(at(b, i, k));
+      }
+    });
+  }
+
+  /// Takes off what `v` has along held directions.
+  void project(Vec& v) {
+    const NodeFreedom& freedom = problem_.freedom;
+    for (std::size_t h = 0; h < freedom.held.size(); ++h) {
+      for (int k = 0; k < K; ++k) {
+        auto vk = at(v, freedom.held[h], k);
+        vk = (freedom.projector[h] * vk).eval();
+      }
+    }
+  }
+
   void start(const std::vector<VectorX>& f, const std::vector<VectorX>& u) {
-    size_ = problem_.fixed.size();
     for (Vec* v : {&u_, &r_, &z_, &p_, &q_}) {
-      v->assign(size_ * K, 0.0);
+      v->assign(static_cast<std::size_t>(nodes_) * kWidth, 0.0);
     }
-    bool zero_start = true;
-    for (std::size_t d = 0; d < size_; ++d) {
-      for (int k = 0; k < K && problem_.fixed[d] == 0; ++k) {
-        r_[d * K + k] = f[k][static_cast<Eigen::Index>(d)];
-        u_[d * K + k] = u[k][static_cast<Eigen::Index>(d)];
-        zero_start = zero_start && u_[d * K + k] == 0.0;
+    for (int i = 0; i < nodes_; ++i) {
+      for (int k = 0; k < K; ++k) {
+        at(r_, i, k) = f[k].segment<3>(3L * i);
+        at(u_, i, k) = u[k].segment<3>(3L * i);
       }
     }
-    load_ = dot<K>(r_, r_);
+    project(r_);
+    project(u_);
+    load_ = dot(r_, r_);
+    const bool zero_start =
+        std::all_of(u_.begin(), u_.end(), [](double v) { return v == 0.0; });
     if (!zero_start) {
-      multiply<K>(problem_.pattern, problem_.matrix, u_.data(), q_.data());
-      for (std::size_t d = 0; d < size_; ++d) {
-        for (int k = 0; k < K && problem_.fixed[d] == 0; ++k) {
-          r_[d * K + k] -= q_[d * K + k];
+      multiply<3, K>(problem_.pattern, problem_.matrix, u_.data(), q_.data());
+      over_nodes([&](int i, Sums<K>&) {
+        for (int k = 0; k < K; ++k) {
+          at(r_, i, k) -= at(q_, i, k);
         }
-      }
+      });
+      project(r_);
     }
-    const Sums<K> rr = dot<K>(r_, r_);
+    const Sums<K> rr = dot(r_, r_);
     columns_.resize(K);
     for (int k = 0; k < K; ++k) {
       live_[k] = true;
       ++open_;
-      if (load_[k] == 0.0) {  // all load on fixed components: stays at rest
-        for (std::size_t d = 0; d < size_; ++d) {
-          u_[d * K + k] = 0.0;
-          r_[d * K + k] = 0.0;
+      if (load_[k] == 0.0) {  // all load on held directions: stays at rest
+        for (int i = 0; i < nodes_; ++i) {
+          at(u_, i, k).setZero();
+          at(r_, i, k).setZero();
         }
         close(k, CgEnd::Converged);
       } else {
@@ -107,19 +140,19 @@ class Solver {
 
   void iterate(int step) {
     problem_.preconditioner.apply(r_, z_, K);
-    const Sums<K> rz = dot<K>(r_, z_);
+    const Sums<K> rz = dot(r_, z_);
     Sums<K> beta{};
     for (int k = 0; k < K; ++k) {
       beta[k] = step > 0 && live_[k] ? rz[k] / rz_[k] : 0.0;
     }
     rz_ = rz;
-    for (std::size_t d = 0; d < size_; ++d) {
+    over_nodes([&](int i, Sums<K>&) {
       for (int k = 0; k < K; ++k) {
-        p_[d * K + k] = z_[d * K + k] + beta[k] * p_[d * K + k];
+        lane(p_, i, k) = lane(z_, i, k) + beta[k] * lane(p_, i, k);
       }
-    }
-    multiply<K>(problem_.pattern, problem_.matrix, p_.data(), q_.data());
-    const Sums<K> pq = dot<K>(p_, q_);
+    });
+    multiply<3, K>(problem_.pattern, problem_.matrix, p_.data(), q_.data());
+    const Sums<K> pq = dot(p_, q_);
     Sums<K> alpha{};
     for (int k = 0; k < K; ++k) {
       if (live_[k] && !(std::isfinite(rz[k]) && std::isfinite(pq[k]))) {
@@ -129,14 +162,14 @@ class Solver {
       }
       alpha[k] = live_[k] ? rz[k] / pq[k] : 0.0;
     }
-    for (std::size_t d = 0; d < size_; ++d) {
-      const double free = problem_.fixed[d] == 0 ? 1.0 : 0.0;
+    over_nodes([&](int i, Sums<K>&) {
       for (int k = 0; k < K; ++k) {
-        u_[d * K + k] += alpha[k] * p_[d * K + k];
-        r_[d * K + k] -= free * alpha[k] * q_[d * K + k];
+        lane(u_, i, k) += alpha[k] * lane(p_, i, k);
+        at(r_, i, k) -= alpha[k] * at(q_, i, k);
       }
-    }
-    const Sums<K> rr = dot<K>(r_, r_);
+    });
+    project(r_);
+    const Sums<K> rr = dot(r_, r_);
     for (int k = 0; k < K; ++k) {
       if (live_[k]) {
         columns_[k].iterations = step + 1;
@@ -165,7 +198,7 @@ class Solver {
   }
 
   const CgProblem& problem_;
-  std::size_t size_ = 0;
+  const int nodes_;
   Vec u_, r_, z_, p_, q_;
   Sums<K> load_{};
   Sums<K> rz_{};

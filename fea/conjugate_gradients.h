@@ -16,8 +16,8 @@ struct CgProblem {
   const BlockPattern& pattern;
   const BlockMatrix<double>& matrix;
   const Preconditioner& preconditioner;
-  const std::vector<char>& fixed;  // 3 per node: these stay 0
-  double tolerance = 1e-10;        // |f - A u| / |f| per right-hand side
+  const NodeFreedom& freedom;  // held directions stay 0
+  double tolerance = 1e-10;    // |f - A u| / |f| per right-hand side
   int max_iterations = 400;
   Monitor& monitor;
 };
@@ -30,8 +30,8 @@ struct CgColumn {
   double residual = 0.0;  // relative; of the recurrence
 };
 
-/// Solves A u = f on the free degrees of freedom. `f`, `u`: K <= kMostColumns
-/// vectors, 3 per node, solver's numbering; `u` holds the start and becomes
+/// Solves A u = f on the free directions. `f`, `u`: K <= kMostColumns vectors,
+/// 3 per node, solver's numbering; `u` holds the start and becomes
 /// the solution. Textbook algorithm: Saad, Iterative Methods for Sparse Linear
 /// Systems, 2003, algorithm 9.1. Throws Interrupted when the monitor asks.
 std::vector<CgColumn> conjugate_gradients(const CgProblem& problem,

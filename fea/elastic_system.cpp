@@ -1,6 +1,7 @@
 #include "fea/elastic_system.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -78,7 +79,7 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
 }
 
 void ElasticSystem::order_mesh(const TetMesh& base) {
-  order_ = morton_order(base);
+  order_ = chunked_order(base);
   std::vector<int> elements;
   std::vector<int> region;
   elements.reserve(base.elements.size());
@@ -89,9 +90,8 @@ void ElasticSystem::order_mesh(const TetMesh& base) {
     }
     region.push_back(base.element_region[e]);
   }
-  shared_->table =
-      make_element_table(static_cast<int>(base.nodes.size()),
-                         base.nodes_per_element(), elements, std::move(region));
+  shared_->table = make_element_table(order_.chunks, base.nodes_per_element(),
+                                      elements, std::move(region));
 }
 
 void ElasticSystem::group_supports(const TetMesh& base,
@@ -103,42 +103,57 @@ void ElasticSystem::group_supports(const TetMesh& base,
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
     const std::vector<char> given = fixed_dofs(base, load_cases[c]);
     check_held(base, given, load_cases[c].name);
-    std::vector<char> fixed(given.size());
+    NodeFreedom freedom{static_cast<int>(order_.to_mesh.size()), {}, {}};
     for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
       const std::size_t from = order_.to_mesh[i];
-      for (std::size_t k = 0; k < 3; ++k) {
-        fixed[3 * i + k] = loose[from] != 0 ? 1 : given[3 * from + k];
+      Vec3 free = Vec3::Zero();
+      for (std::size_t k = 0; k < 3 && loose[from] == 0; ++k) {
+        free[k] = given[3 * from + k] != 0 ? 0.0 : 1.0;
+      }
+      if (!free.isOnes(0.0)) {
+        freedom.held.push_back(static_cast<int>(i));
+        freedom.projector.emplace_back(free.asDiagonal());
       }
     }
     const auto found =
-        std::find_if(groups_.begin(), groups_.end(),
-                     [&](const Group& g) { return g.fixed == fixed; });
+        std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) {
+          return g.freedom.held == freedom.held &&
+                 g.freedom.projector == freedom.projector;
+        });
     if (found != groups_.end()) {
       found->cases.push_back(static_cast<int>(c));
     } else {
-      groups_.push_back({{static_cast<int>(c)}, std::move(fixed), nullptr});
+      groups_.push_back({{static_cast<int>(c)}, std::move(freedom), nullptr});
     }
   }
+  double free = 3.0 * static_cast<double>(base.nodes.size());
+  for (const Mat3& P : groups_.front().freedom.projector) {
+    free -= 3.0 - P.trace();
+  }
+  unknowns_ = static_cast<int>(std::lround(free));
 }
 
 void ElasticSystem::build_preconditioners(const TetMesh& base,
                                           const BlockMatrix<double>& matrix) {
-  const auto& fixed = groups_.front().fixed;
-  const auto unknowns = std::count(fixed.begin(), fixed.end(), 0);
-  multigrid_ = options_.solver == SolverKind::Multigrid ||
-               (options_.solver == SolverKind::Automatic && base.order == 2 &&
-                unknowns > kDirectUnknowns);
+  multigrid_ =
+      options_.solver == SolverKind::Multigrid ||
+      (options_.solver == SolverKind::Automatic && unknowns_ > kDirectUnknowns);
   if (!multigrid_) {
     for (Group& group : groups_) {
       group.preconditioner =
-          make_direct(shared_->table.pattern, matrix, group.fixed);
+          make_direct(shared_->table.pattern, matrix, group.freedom);
     }
     return;
   }
-  if (base.order != 2) {
-    throw InvalidInput(
-        "elasticity: the multigrid solver needs ten-node elements; choose "
-        "Automatic or Cholesky for four-node ones");
+  shared_->smoother = make_smoother_matrix(matrix);
+  if (base.order == 1) {
+    const Points x = solver_points(base);
+    for (Group& group : groups_) {
+      group.preconditioner = make_multigrid(
+          {.nodal = {&shared_->table.pattern, &matrix, &shared_->smoother, &x},
+           .freedom = &group.freedom});
+    }
+    return;
   }
   CornerMesh corners = make_corner_mesh(base, order_);
   BlockMatrix<double> coarse;
@@ -147,19 +162,20 @@ void ElasticSystem::build_preconditioners(const TetMesh& base,
     throw MeshError(fmt::format(
         "element {}: its straight-sided corners enclose no positive volume; "
         "improve the mesh or choose the Cholesky solver",
-        order_.element[*bad]));
+        corners.element[*bad]));
   }
   shared_->map = std::move(corners.map);
-  shared_->smoother = make_smoother_matrix(matrix);
+  shared_->corner_table = std::move(corners.table);
+  shared_->corner_smoother = make_smoother_matrix(coarse);
   for (Group& group : groups_) {
     group.preconditioner =
-        make_multigrid({.pattern = &shared_->table.pattern,
-                        .matrix = &matrix,
-                        .smoother = &shared_->smoother,
-                        .map = &shared_->map,
-                        .coarse_pattern = &corners.table.pattern,
-                        .coarse_matrix = &coarse,
-                        .fixed = &group.fixed});
+        make_multigrid({.nodal = {&shared_->corner_table.pattern, &coarse,
+                                  &shared_->corner_smoother, &corners.x},
+                        .freedom = &group.freedom,
+                        .fine_pattern = &shared_->table.pattern,
+                        .fine_matrix = &matrix,
+                        .fine_smoother = &shared_->smoother,
+                        .map = &shared_->map});
   }
 }
 
@@ -245,10 +261,10 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
   ElasticSolution result;
   result.displacements.resize(load_cases.size());
   result.reactions.resize(load_cases.size());
-  result.report.solver = multigrid_ ? "p-multigrid" : "cholmod";
-  const auto& fixed = groups_.front().fixed;
-  result.report.dofs =
-      static_cast<int>(std::count(fixed.begin(), fixed.end(), 0));
+  result.report.solver = !multigrid_       ? "cholmod"
+                         : mesh.order == 1 ? "multigrid"
+                                           : "p-multigrid";
+  result.report.dofs = unknowns_;
   std::vector<VectorX> f;
   for (const LoadCase& load_case : load_cases) {
     check_loads(mesh, load_case);
@@ -289,7 +305,7 @@ void ElasticSystem::solve_columns(
       conjugate_gradients({.pattern = shared_->table.pattern,
                            .matrix = matrix,
                            .preconditioner = *group.preconditioner,
-                           .fixed = group.fixed,
+                           .freedom = group.freedom,
                            .tolerance = options_.tolerance,
                            .max_iterations = options_.max_iterations,
                            .monitor = monitor},
@@ -298,7 +314,7 @@ void ElasticSystem::solve_columns(
     const int c = cases[k];
     const VectorX internal = internal_forces(shared_->table, x, lames_, u[k]);
     const Equilibrium equilibrium =
-        check_equilibrium({x, right[k], internal, u[k], group.fixed, matrix});
+        check_equilibrium({x, right[k], internal, u[k], group.freedom, matrix});
     result.displacements[c] = to_mesh(u[k]);
     result.reactions[c] = to_mesh(equilibrium.reactions);
     ElasticReport& report = result.report;

@@ -7,8 +7,8 @@
 
 #include "fea/assembly.h"
 #include "fea/elasticity.h"
+#include "fea/multigrid.h"
 #include "fea/node_order.h"
-#include "fea/preconditioner.h"
 
 namespace meniscus {
 
@@ -39,7 +39,7 @@ class ElasticSystem {
   /// Load cases that fix the same degrees of freedom share a preconditioner.
   struct Group {
     std::vector<int> cases;
-    std::vector<char> fixed;  // solver's numbering
+    NodeFreedom freedom;  // solver's numbering
     std::unique_ptr<Preconditioner> preconditioner;
   };
 
@@ -47,6 +47,8 @@ class ElasticSystem {
   struct Shared {
     ElementTable table;
     SmootherMatrix smoother;
+    ElementTable corner_table;
+    SmootherMatrix corner_smoother;
     CornerMap map;
   };
 
@@ -73,6 +75,7 @@ class ElasticSystem {
   NodeOrder order_;
   std::unique_ptr<Shared> shared_;
   std::vector<Group> groups_;
+  int unknowns_ = 0;  // free, of the first load case
   bool multigrid_ = false;
 };
 

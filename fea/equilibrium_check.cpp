@@ -21,17 +21,23 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
   double load = 0.0;
   double error = 0.0;
   double rounding = 0.0;
-  for (Eigen::Index d = 0; d < input.f.size(); ++d) {
-    if (input.fixed[d] != 0) {
-      result.reactions[d] = input.internal[d] - input.f[d];
-      continue;
+  std::size_t h = 0;
+  for (Eigen::Index i = 0; i < input.f.size() / 3; ++i) {
+    const Vec3 f = input.f.segment<3>(3 * i);
+    Vec3 gap = f - input.internal.segment<3>(3 * i);
+    Vec3 given = f;
+    const Vec3 diagonal(input.matrix.diagonal[9 * i],
+                        input.matrix.diagonal[9 * i + 4],
+                        input.matrix.diagonal[9 * i + 8]);
+    if (h < input.freedom.held.size() && input.freedom.held[h] == i) {
+      const Mat3& P = input.freedom.projector[h++];
+      result.reactions.segment<3>(3 * i) = P * gap - gap;
+      gap = P * gap;
+      given = P * f;
     }
-    const double r = input.f[d] - input.internal[d];
-    const double term =
-        input.matrix.diagonal[9 * (d / 3) + 4 * (d % 3)] * input.u[d];
-    load += input.f[d] * input.f[d];
-    error += r * r;
-    rounding += term * term;
+    load += given.squaredNorm();
+    error += gap.squaredNorm();
+    rounding += diagonal.cwiseProduct(input.u.segment<3>(3 * i)).squaredNorm();
   }
   if (load > 0.0) {
     result.residual = std::sqrt(error / load);

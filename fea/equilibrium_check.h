@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/types.h"
 #include "fea/block_matrix.h"
+#include "fea/node_freedom.h"
 
 namespace meniscus {
 
@@ -17,13 +18,13 @@ struct EquilibriumInput {
   const VectorX& f;         // loads [force]
   const VectorX& internal;  // K u [force]
   const VectorX& u;         // [length]
-  const std::vector<char>& fixed;
+  const NodeFreedom& freedom;
   const BlockMatrix<double>& matrix;
 };
 
 struct Equilibrium {
-  VectorX reactions;       // K u - f where fixed, else 0 [force]
-  double residual = 0.0;   // |f - K u| / |f| on free unknowns
+  VectorX reactions;       // K u - f along held directions [force]
+  double residual = 0.0;   // |f - K u| / |f| on free directions
   double rounding = 0.0;   // what double precision allows for that residual
   double imbalance = 0.0;  // |sum of reactions and loads| / sum of |loads|,
                            // forces and moments (over the part's size)

@@ -2,76 +2,110 @@
 
 #include <algorithm>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "fea/block_kernels.h"
 
 namespace meniscus {
 
 namespace {
 
-std::vector<int> free_list(const std::vector<char>& fixed) {
-  std::vector<int> dof;
-  for (std::size_t d = 0; d < fixed.size(); ++d) {
-    if (fixed[d] == 0) {
-      dof.push_back(static_cast<int>(d));
+using RowMat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+/// Free directions as the first columns, and how many; the axes themselves
+/// where the support follows them.
+struct FreeBasis {
+  Mat3 axes = Mat3::Identity();
+  int rank = 3;
+};
+
+FreeBasis free_basis(const Mat3& projector) {
+  FreeBasis basis;
+  basis.rank = 0;
+  const Mat3 diagonal = projector.diagonal().asDiagonal();
+  Mat3 vectors = Mat3::Identity();
+  Vec3 values = projector.diagonal();
+  if (projector != diagonal) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(projector);
+    vectors = solver.eigenvectors();
+    values = solver.eigenvalues();
+  }
+  basis.axes.setZero();
+  for (int k = 0; k < 3; ++k) {
+    if (values[k] > 0.5) {
+      basis.axes.col(basis.rank++) = vectors.col(k);
     }
   }
-  return dof;
+  return basis;
 }
 
-/// The lower triangle by columns; the pattern holds it by rows, so columns
-/// fill with ascending rows when rows are visited in order.
-SparseMatrix free_matrix(const BlockPattern& pattern,
-                         const BlockMatrix<double>& matrix,
-                         const std::vector<char>& fixed,
-                         const std::vector<int>& dof) {
-  std::vector<int> number(fixed.size(), -1);
-  for (std::size_t k = 0; k < dof.size(); ++k) {
-    number[dof[k]] = static_cast<int>(k);
+/// The matrix on the free directions, lower triangle by columns. The pattern
+/// holds it by rows, so columns fill with ascending rows when rows are visited
+/// in order.
+class FreeMatrix {
+ public:
+  FreeMatrix(const BlockPattern& pattern, const BlockMatrix<double>& matrix,
+             const std::vector<int>& start, const std::vector<FreeBasis>& bases)
+      : pattern_(pattern), matrix_(matrix), start_(start), bases_(bases) {}
+
+  SparseMatrix build() const {
+    const int n = start_.back();
+    SparseMatrix A(n, n);
+    int* first = A.outerIndexPtr();
+    std::fill(first, first + n + 1, 0);
+    visit([&](int, int column, double) { ++first[column + 1]; });
+    for (int c = 0; c < n; ++c) {
+      first[c + 1] += first[c];
+    }
+    A.resizeNonZeros(first[n]);
+    std::vector<int> next(first, first + n);
+    visit([&](int row, int column, double value) {
+      A.innerIndexPtr()[next[column]] = row;
+      A.valuePtr()[next[column]++] = value;
+    });
+    return A;
   }
-  const auto n = static_cast<int>(dof.size());
-  SparseMatrix A(n, n);
-  const auto visit = [&](const auto& entry) {
-    for (int i = 0; i < pattern.nodes; ++i) {
-      for (int r = 0; r < 3; ++r) {
-        const int row = number[3 * i + r];
-        if (row < 0) {
-          continue;
-        }
-        for (int b = pattern.start[i]; b < pattern.start[i + 1]; ++b) {
-          for (int c = 0; c < 3; ++c) {
-            const int column = number[3 * pattern.column[b] + c];
-            if (column >= 0) {
-              entry(row, column, matrix.lower[9L * b + 3L * r + c]);
-            }
-          }
-        }
-        for (int c = 0; c <= r; ++c) {
-          if (number[3 * i + c] >= 0) {
-            entry(row, number[3 * i + c], matrix.diagonal[9L * i + 3L * r + c]);
+
+ private:
+  Mat3 turned(int i, int j, const double* block) const {
+    return bases_[i].axes.transpose() * Eigen::Map<const RowMat3>(block) *
+           bases_[j].axes;
+  }
+
+  template <class Entry>
+  void visit(const Entry& entry) const {
+    for (int i = 0; i < pattern_.nodes; ++i) {
+      const int first = pattern_.start[i];
+      const int count = pattern_.start[i + 1] - first;
+      std::vector<Mat3> blocks;
+      blocks.reserve(count + 1);
+      for (int b = 0; b < count; ++b) {
+        blocks.push_back(turned(i, pattern_.column[first + b],
+                                matrix_.lower.data() + 9L * (first + b)));
+      }
+      blocks.push_back(turned(i, i, matrix_.diagonal.data() + 9L * i));
+      for (int r = 0; r < bases_[i].rank; ++r) {
+        for (int b = 0; b <= count; ++b) {
+          const int j = b < count ? pattern_.column[first + b] : i;
+          const int last = b < count ? bases_[j].rank : r + 1;
+          for (int c = 0; c < last; ++c) {
+            entry(start_[i] + r, start_[j] + c, blocks[b](r, c));
           }
         }
       }
     }
-  };
-  int* start = A.outerIndexPtr();
-  std::fill(start, start + n + 1, 0);
-  visit([&](int, int column, double) { ++start[column + 1]; });
-  for (int c = 0; c < n; ++c) {
-    start[c + 1] += start[c];
   }
-  A.resizeNonZeros(start[n]);
-  std::vector<int> next(start, start + n);
-  visit([&](int row, int column, double value) {
-    A.innerIndexPtr()[next[column]] = row;
-    A.valuePtr()[next[column]++] = value;
-  });
-  return A;
-}
+
+  const BlockPattern& pattern_;
+  const BlockMatrix<double>& matrix_;
+  const std::vector<int>& start_;
+  const std::vector<FreeBasis>& bases_;
+};
 
 std::vector<int> elimination_order(const BlockPattern& pattern,
-                                   const std::vector<char>& fixed) {
+                                   const std::vector<int>& unknown) {
   const int n = pattern.nodes;
   SparseMatrix graph(n, n);
   int* start = graph.outerIndexPtr();
@@ -91,18 +125,11 @@ std::vector<int> elimination_order(const BlockPattern& pattern,
       graph.valuePtr()[place] = 1.0;
     }
   }
-  std::vector<int> number(fixed.size(), -1);
-  int count = 0;
-  for (std::size_t d = 0; d < fixed.size(); ++d) {
-    if (fixed[d] == 0) {
-      number[d] = count++;
-    }
-  }
   std::vector<int> order;
-  order.reserve(count);
-  for (const int dof : expand_order(nested_dissection(graph), 3)) {
-    if (number[dof] >= 0) {
-      order.push_back(number[dof]);
+  order.reserve(unknown.back());
+  for (const int node : nested_dissection(graph)) {
+    for (int u = unknown[node]; u < unknown[node + 1]; ++u) {
+      order.push_back(u);
     }
   }
   return order;
@@ -112,35 +139,57 @@ std::vector<int> elimination_order(const BlockPattern& pattern,
 
 FreeFactor::FreeFactor(const BlockPattern& pattern,
                        const BlockMatrix<double>& matrix,
-                       const std::vector<char>& fixed)
-    : dof_(free_list(fixed)), factor_([&] {
-        const SparseMatrix A = free_matrix(pattern, matrix, fixed, dof_);
+                       const NodeFreedom& freedom)
+    : held_(freedom.held), factor_([&] {
+        std::vector<FreeBasis> bases(pattern.nodes);
+        for (std::size_t h = 0; h < held_.size(); ++h) {
+          bases[held_[h]] = free_basis(freedom.projector[h]);
+          axes_.push_back(bases[held_[h]].axes);
+        }
+        start_.assign(1, 0);
+        for (const FreeBasis& basis : bases) {
+          start_.push_back(start_.back() + basis.rank);
+        }
+        const SparseMatrix A =
+            FreeMatrix(pattern, matrix, start_, bases).build();
         SymmetricFactor factor(A, FactorKind::Cholesky,
-                               elimination_order(pattern, fixed));
+                               elimination_order(pattern, start_));
         if (!factor.factorize(A)) {
           throw SolverError(fmt::format(
               "the stiffness matrix of {} unknowns is not positive definite: a "
               "piece of the part hangs on a single node or edge and can turn, "
               "or the elements are nearly flat",
-              dof_.size()));
+              start_.back()));
         }
         return factor;
       }()) {}
 
 void FreeFactor::solve(const double* r, double* z, int K) const {
-  const Eigen::Index n = size();
-  Eigen::MatrixXd right(n, K);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (int k = 0; k < K; ++k) {
-      right(i, k) = r[static_cast<std::ptrdiff_t>(dof_[i]) * K + k];
+  constexpr int kLane = kLanes<3>;
+  const int nodes = static_cast<int>(start_.size()) - 1;
+  // work(node, column, axes) for every node and column.
+  const auto visit = [&](const auto& work) {
+    std::size_t h = 0;
+    for (int i = 0; i < nodes; ++i) {
+      const bool held = h < held_.size() && held_[h] == i;
+      const Mat3 axes = held ? axes_[h++] : Mat3(Mat3::Identity());
+      for (int k = 0; k < K; ++k) {
+        work(i, k, axes.leftCols(start_[i + 1] - start_[i]));
+      }
     }
-  }
+  };
+  Eigen::MatrixXd right(start_.back(), K);
+  visit([&](int i, int k, const auto& axes) {
+    right.col(k).segment(start_[i], axes.cols()) =
+        axes.transpose() *
+        Eigen::Map<const Vec3>(r + (static_cast<std::ptrdiff_t>(i) * K + k) *
+                                       kLane);
+  });
   const Eigen::MatrixXd x = factor_.solve(right);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (int k = 0; k < K; ++k) {
-      z[static_cast<std::ptrdiff_t>(dof_[i]) * K + k] = x(i, k);
-    }
-  }
+  visit([&](int i, int k, const auto& axes) {
+    Eigen::Map<Vec3>(z + (static_cast<std::ptrdiff_t>(i) * K + k) * kLane) =
+        axes * x.col(k).segment(start_[i], axes.cols());
+  });
 }
 
 }  // namespace meniscus

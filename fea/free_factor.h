@@ -1,30 +1,31 @@
-/// Direct factorisation of a stiffness matrix on its free degrees of freedom.
+/// Direct factorisation of a stiffness matrix on its free directions.
 #pragma once
 
 #include <vector>
 
 #include "core/linear_solve.h"
 #include "fea/block_matrix.h"
+#include "fea/node_freedom.h"
 
 namespace meniscus {
 
-/// The rows and columns of the degrees of freedom that are not fixed, factored
-/// by a supernodal Cholesky; elimination order by nested dissection of the
-/// graph of nodes.
+/// The matrix on its free directions, factored by a supernodal Cholesky;
+/// elimination order by nested dissection of the graph of nodes.
 class FreeFactor {
  public:
-  /// `fixed`: one flag per degree of freedom, 3 per node. Throws SolverError
-  /// when the matrix is not positive definite or memory runs out.
+  /// Throws SolverError when the matrix is not positive definite or memory
+  /// runs out.
   FreeFactor(const BlockPattern& pattern, const BlockMatrix<double>& matrix,
-             const std::vector<char>& fixed);
+             const NodeFreedom& freedom);
 
-  int size() const { return static_cast<int>(dof_.size()); }
-
-  /// z = A^-1 r for K interleaved vectors (see multiply); z is 0 where fixed.
+  /// z = A^-1 r for K vectors of padded layout (see multiply); z is 0 along
+  /// held directions.
   void solve(const double* r, double* z, int K) const;
 
  private:
-  std::vector<int> dof_;  // free unknown -> degree of freedom
+  std::vector<int> start_;  // first unknown of each node; nodes + 1
+  std::vector<int> held_;   // nodes whose free directions are ...
+  std::vector<Mat3> axes_;  // ... the first columns of these
   SymmetricFactor factor_;
 };
 

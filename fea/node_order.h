@@ -1,11 +1,11 @@
-/// The order in which the solver stores nodes and elements: nodes along a
-/// Morton curve through the base mesh, elements by their lowest node, so that
-/// neighbours in space are neighbours in memory.
+/// The order in which the solver stores nodes and elements: neighbours in space
+/// are neighbours in memory, and threads find independent work.
 #pragma once
 
 #include <vector>
 
 #include "core/tet_mesh.h"
+#include "fea/row_chunks.h"
 
 namespace meniscus {
 
@@ -13,8 +13,12 @@ struct NodeOrder {
   std::vector<int> to_mesh;    // solver's node -> the mesh's node
   std::vector<int> to_solver;  // the mesh's node -> solver's node
   std::vector<int> element;    // solver's element -> the mesh's element
+  RowChunks chunks;            // of solver's nodes
 };
 
-NodeOrder morton_order(const TetMesh& mesh);
+/// Cuts a Morton curve through the nodes into chunks, colours the chunks so
+/// that no node neighbours two of one colour, and orders nodes by colour, chunk
+/// and place on the curve, elements by their lowest node.
+NodeOrder chunked_order(const TetMesh& mesh);
 
 }  // namespace meniscus

@@ -88,8 +88,24 @@ TEST_P(Element, InternalForcesAreTheStiffnessTimesTheDisplacement) {
     u[d] = std::sin(static_cast<double>(d) + 1.0);
   }
   const VectorX expected = dense(table, matrix) * u;
-  VectorX product = VectorX::Zero(u.size());
-  multiply<1>(table.pattern, matrix, u.data(), product.data());
+  // Two columns of padded layout: u and 2 u.
+  constexpr int kColumns = 2;
+  Eigen::Matrix4Xd x =
+      Eigen::Matrix4Xd::Zero(4, kColumns * table.pattern.nodes);
+  Eigen::Matrix4Xd y = x;
+  for (int n = 0; n < table.pattern.nodes; ++n) {
+    x.col(kColumns * n).head<3>() = u.segment<3>(3L * n);
+    x.col(kColumns * n + 1).head<3>() = 2.0 * u.segment<3>(3L * n);
+  }
+  multiply<3, kColumns>(table.pattern, matrix, x.data(), y.data());
+  VectorX product(u.size());
+  for (int n = 0; n < table.pattern.nodes; ++n) {
+    product.segment<3>(3L * n) = y.col(kColumns * n).head<3>();
+    EXPECT_LE((y.col(kColumns * n + 1).head<3>() -
+               2.0 * y.col(kColumns * n).head<3>())
+                  .norm(),
+              kRounding * expected.norm());
+  }
   EXPECT_LE((product - expected).norm(), kRounding * expected.norm());
   EXPECT_LE((internal_forces(table, mesh.nodes, lames, u) - expected).norm(),
             kRounding * expected.norm());

@@ -141,9 +141,6 @@ TEST(Hostile, Meshes) {
   EXPECT_THROW(build(mesh, parts::steel(), parts::pulled(kForce)), MeshError);
   EXPECT_THROW(build(TetMesh{}, parts::steel(), parts::pulled(kForce)),
                InvalidInput);
-  EXPECT_THROW(build(block(), parts::steel(), parts::pulled(kForce),
-                     {.solver = SolverKind::Multigrid}),
-               InvalidInput);
 }
 
 TEST(Hostile, NodesInNoElementStayAtRest) {

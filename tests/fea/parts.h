@@ -44,7 +44,7 @@ inline TetMesh distorted_brick(const Vec3& size, int n) {
 
 /// The mesh's stiffness in its own numbering.
 inline ElementTable table_of(const TetMesh& mesh) {
-  return make_element_table(static_cast<int>(mesh.nodes.size()),
+  return make_element_table(one_chunk(static_cast<int>(mesh.nodes.size())),
                             mesh.nodes_per_element(), mesh.elements,
                             mesh.element_region);
 }
