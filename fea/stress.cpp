@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "fea/elastic_law.h"
 #include "fea/tet_element.h"
 
 namespace meniscus {
@@ -24,11 +25,9 @@ std::array<Vec3, Nodes> element_nodes(const TetMesh& mesh, int e) {
   return x;
 }
 
-Stress stress_of(const Mat3& H, const Lame& m) {
-  const double pressure = m.lambda * H.trace();
-  return {pressure + 2.0 * m.mu * H(0, 0), pressure + 2.0 * m.mu * H(1, 1),
-          pressure + 2.0 * m.mu * H(2, 2), m.mu * (H(0, 1) + H(1, 0)),
-          m.mu * (H(1, 2) + H(2, 1)),      m.mu * (H(2, 0) + H(0, 2))};
+Stress stress_of(const Mat3& H, const ElasticLaw& law) {
+  const Mat3 s = law.stress(H);
+  return {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
 }
 
 /// Stresses at the corners and the volume of one element.
@@ -38,7 +37,7 @@ struct CornerStress {
 };
 
 template <int Nodes>
-CornerStress corner_stress(const TetMesh& mesh, int e, const Lame& m,
+CornerStress corner_stress(const TetMesh& mesh, int e, const ElasticLaw& m,
                            const VectorX& u) {
   TetGradients<Nodes> g;
   tet_gradients<Nodes>(element_nodes<Nodes>(mesh, e), g);
@@ -106,16 +105,12 @@ StressField recover_stress(const TetMesh& mesh,
     throw InvalidInput(fmt::format("stress: {} displacements for {} nodes",
                                    displacement.size(), mesh.nodes.size()));
   }
-  std::vector<Lame> lames;
-  lames.reserve(materials.size());
-  for (const Material& material : materials) {
-    lames.push_back(lame(material));
-  }
+  const std::vector<ElasticLaw> laws = elastic_laws(materials);
   const int count = mesh.element_count();
   std::vector<CornerStress> elements(count);
 #pragma omp parallel for schedule(static)
   for (int e = 0; e < count; ++e) {
-    const Lame& m = lames[mesh.element_region[e]];
+    const ElasticLaw& m = laws[mesh.element_region[e]];
     elements[e] = mesh.order == 1 ? corner_stress<4>(mesh, e, m, displacement)
                                   : corner_stress<10>(mesh, e, m, displacement);
   }
