@@ -113,8 +113,10 @@ StressField average_stress(const TetMesh& mesh, const PointStress& points) {
 
 StressField recover_stress(const TetMesh& mesh,
                            const std::vector<Material>& materials,
-                           const VectorX& displacement) {
-  return average_stress(mesh, point_stress(mesh, materials, displacement));
+                           const VectorX& displacement,
+                           const VectorX& temperature_change) {
+  return average_stress(
+      mesh, point_stress(mesh, materials, displacement, temperature_change));
 }
 
 double mesh_volume(const TetMesh& mesh) {

@@ -28,11 +28,12 @@ void find_peak(StressField& field);
 /// the points say.
 StressField average_stress(const TetMesh& mesh, const PointStress& points);
 
-/// average_stress of a displacement, 3 per node [length]. Throws InvalidInput
+/// average_stress of point_stress (point_stress.h). Throws InvalidInput
 /// when sizes or materials do not fit the mesh.
 StressField recover_stress(const TetMesh& mesh,
                            const std::vector<Material>& materials,
-                           const VectorX& displacement);
+                           const VectorX& displacement,
+                           const VectorX& temperature_change = {});
 
 /// Volume [length^3] and mass [mass] by quadrature on curved elements.
 double mesh_volume(const TetMesh& mesh);
