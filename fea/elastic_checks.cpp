@@ -48,13 +48,4 @@ VectorX checked_forces(const TetMesh& mesh, const LoadCase& load_case,
   return f;
 }
 
-bool same_supports(const std::vector<Support>& a,
-                   const std::vector<Support>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const Support& s, const Support& t) {
-                      return s.surface == t.surface && s.fix_x == t.fix_x &&
-                             s.fix_y == t.fix_y && s.fix_z == t.fix_z;
-                    });
-}
-
 }  // namespace meniscus

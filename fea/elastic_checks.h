@@ -15,7 +15,4 @@ void check_arrays(const TetMesh& mesh);
 VectorX checked_forces(const TetMesh& mesh, const LoadCase& load_case,
                        const std::vector<Material>& materials);
 
-bool same_supports(const std::vector<Support>& a,
-                   const std::vector<Support>& b);
-
 }  // namespace meniscus

@@ -84,7 +84,7 @@ ElasticLaw elastic_law(const Material& material) {
   }
   ElasticLaw law;
   law.isotropic = false;
-  const Mat3 R = material_axes(*material.orthotropic);
+  const Mat3 R = unit_axes(material.orthotropic->axes);
   // Energy is the same in both axes: strains turn with the inverse transpose.
   const Mat6 T = stress_rotation(R);
   law.stiffness = T * own_stiffness(*material.orthotropic) * T.transpose();

@@ -7,10 +7,10 @@
 #include "core/timer.h"
 #include "fea/body_loads.h"
 #include "fea/conjugate_gradients.h"
+#include "fea/constrain.h"
 #include "fea/corner_mesh.h"
 #include "fea/elastic_checks.h"
 #include "fea/equilibrium_check.h"
-#include "fea/supports.h"
 
 namespace meniscus {
 
@@ -67,6 +67,7 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
   }
   for (const LoadCase& load_case : load_cases) {
     supports_.push_back(load_case.supports);
+    springs_.push_back(load_case.springs);
     checked_forces(base, load_case, materials);
   }
   order_mesh(base);
@@ -74,7 +75,7 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
   if (const auto failure = assemble(base, matrix)) {
     throw MeshError(failure->message);
   }
-  build_preconditioners(base, matrix);
+  build_preconditioners(base, load_cases, matrix);
 }
 
 void ElasticSystem::order_mesh(const TetMesh& base) {
@@ -96,45 +97,43 @@ void ElasticSystem::order_mesh(const TetMesh& base) {
 
 void ElasticSystem::group_supports(const TetMesh& base,
                                    const std::vector<LoadCase>& load_cases) {
-  std::vector<char> loose(base.nodes.size(), 1);  // in no element
-  for (const int node : base.elements) {
-    loose[node] = 0;
-  }
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
-    const std::vector<char> given = fixed_dofs(base, load_cases[c]);
-    check_held(base, given, load_cases[c].name);
-    std::vector<char> fixed(given.size());
-    for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
-      const std::size_t from = order_.to_mesh[i];
-      for (std::size_t k = 0; k < 3; ++k) {
-        fixed[3 * i + k] = loose[from] != 0 ? 1 : given[3 * from + k];
-      }
-    }
+    check_holding(base, load_cases[c]);
+    Holding holding = make_holding(base, load_cases[c], order_);
     const auto found =
         std::find_if(groups_.begin(), groups_.end(),
-                     [&](const Group& g) { return g.fixed == fixed; });
+                     [&](const Group& g) { return g.holding == holding; });
     if (found != groups_.end()) {
       found->cases.push_back(static_cast<int>(c));
     } else {
-      groups_.push_back({{static_cast<int>(c)}, std::move(fixed), nullptr});
+      groups_.push_back(
+          {{static_cast<int>(c)}, std::move(holding), nullptr, nullptr});
     }
   }
 }
 
-void ElasticSystem::build_preconditioners(const TetMesh& base,
-                                          const BlockMatrix<double>& matrix) {
-  const auto& fixed = groups_.front().fixed;
-  const auto unknowns = std::count(fixed.begin(), fixed.end(), 0);
+void ElasticSystem::build_preconditioners(
+    const TetMesh& base, const std::vector<LoadCase>& load_cases,
+    const BlockMatrix<double>& matrix) {
   multigrid_ = options_.solver == SolverKind::Multigrid ||
                (options_.solver == SolverKind::Automatic && base.order == 2 &&
-                unknowns > kDirectUnknowns);
-  if (!multigrid_) {
-    for (Group& group : groups_) {
-      group.preconditioner =
-          make_direct(shared_->table.pattern, matrix, group.fixed);
-    }
-    return;
+                free_unknowns(groups_.front().holding) > kDirectUnknowns);
+  if (multigrid_) {
+    return build_multigrid(base, load_cases, matrix);
   }
+  for (Group& group : groups_) {
+    const Holding& holding = group.holding;
+    group.preconditioner = make_direct(
+        shared_->table.pattern,
+        holding.plain() ? matrix
+                        : held_matrix(shared_->table.pattern, matrix, holding),
+        holding.fixed);
+  }
+}
+
+void ElasticSystem::build_multigrid(const TetMesh& base,
+                                    const std::vector<LoadCase>& load_cases,
+                                    const BlockMatrix<double>& matrix) {
   if (base.order != 2) {
     throw InvalidInput(
         "elasticity: the multigrid solver needs ten-node elements; choose "
@@ -151,15 +150,35 @@ void ElasticSystem::build_preconditioners(const TetMesh& base,
   }
   shared_->map = std::move(corners.map);
   shared_->smoother = make_smoother_matrix(matrix);
+  std::vector<int> corner_of(base.nodes.size(), -1);  // the mesh's node
+  for (std::size_t c = 0; c < shared_->map.corner.size(); ++c) {
+    corner_of[order_.to_mesh[shared_->map.corner[c]]] = static_cast<int>(c);
+  }
   for (Group& group : groups_) {
-    group.preconditioner =
-        make_multigrid({.pattern = &shared_->table.pattern,
-                        .matrix = &matrix,
-                        .smoother = &shared_->smoother,
-                        .map = &shared_->map,
-                        .coarse_pattern = &corners.table.pattern,
-                        .coarse_matrix = &coarse,
-                        .fixed = &group.fixed});
+    const BlockMatrix<double>* fine = &matrix;
+    BlockMatrix<double> held;
+    BlockMatrix<double> held_coarse = coarse;
+    if (!group.holding.plain()) {
+      held = held_matrix(shared_->table.pattern, matrix, group.holding);
+      fine = &held;
+      group.smoother =
+          std::make_unique<SmootherMatrix>(make_smoother_matrix(held));
+      const LoadCase& load_case = load_cases[group.cases.front()];
+      add_springs(corners.table.pattern,
+                  renumbered(spring_blocks(base, load_case, 1), corner_of),
+                  held_coarse);
+      constrain(corners.table.pattern,
+                corner_freedom(group.holding.oblique, shared_->map.corner),
+                held_coarse);
+    }
+    group.preconditioner = make_multigrid(
+        {.pattern = &shared_->table.pattern,
+         .matrix = fine,
+         .smoother = group.smoother ? group.smoother.get() : &shared_->smoother,
+         .map = &shared_->map,
+         .coarse_pattern = &corners.table.pattern,
+         .coarse_matrix = &held_coarse,
+         .fixed = &group.holding.fixed});
   }
 }
 
@@ -178,7 +197,8 @@ void ElasticSystem::check_same(const TetMesh& mesh,
                     load_cases.size(), supports_.size()));
   }
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
-    if (!same_supports(load_cases[c].supports, supports_[c])) {
+    if (load_cases[c].supports != supports_[c] ||
+        load_cases[c].springs != springs_[c]) {
       throw InvalidInput(fmt::format(
           "load case '{}': its supports differ from the base design's; build "
           "a new model for them",
@@ -246,23 +266,39 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
   result.displacements.resize(load_cases.size());
   result.reactions.resize(load_cases.size());
   result.report.solver = multigrid_ ? "p-multigrid" : "cholmod";
-  const auto& fixed = groups_.front().fixed;
-  result.report.dofs =
-      static_cast<int>(std::count(fixed.begin(), fixed.end(), 0));
+  result.report.dofs = free_unknowns(groups_.front().holding);
   std::vector<VectorX> f;
   for (const LoadCase& load_case : load_cases) {
     f.push_back(to_solver(checked_forces(mesh, load_case, materials_)));
   }
   const Points x = solver_points(mesh);
   for (const Group& group : groups_) {
+    const Holding holding =
+        start == nullptr
+            ? group.holding
+            : make_holding(mesh, load_cases[group.cases.front()], order_);
+    if (!alike(holding, group.holding)) {
+      result.failure = Failure{
+          FailureKind::SolverFailed,
+          fmt::format("load case '{}': the directions in which its supports "
+                      "hold the nodes are no longer the base design's: the "
+                      "surfaces have turned against each other",
+                      load_cases[group.cases.front()].name)};
+      return result;
+    }
+    BlockMatrix<double> held;
+    if (!holding.plain()) {
+      held = held_matrix(shared_->table.pattern, matrix, holding);
+    }
     for (std::size_t first = 0; first < group.cases.size();
          first += kMostColumns) {
       const std::size_t last =
           std::min(first + kMostColumns, group.cases.size());
-      solve_columns(group,
+      solve_columns(group, holding,
                     {group.cases.begin() + static_cast<std::ptrdiff_t>(first),
                      group.cases.begin() + static_cast<std::ptrdiff_t>(last)},
-                    x, f, load_cases, matrix, start, result);
+                    x, f, load_cases, holding.plain() ? matrix : held, start,
+                    result);
     }
   }
   if (!result.failure && load_cases[0].temperature) {
@@ -275,34 +311,37 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
 }
 
 void ElasticSystem::solve_columns(
-    const Group& group, const std::vector<int>& cases, const Points& x,
-    const std::vector<VectorX>& f, const std::vector<LoadCase>& load_cases,
-    const BlockMatrix<double>& matrix, const ElasticSolution* start,
-    ElasticSolution& result) const {
+    const Group& group, const Holding& holding, const std::vector<int>& cases,
+    const Points& x, const std::vector<VectorX>& f,
+    const std::vector<LoadCase>& load_cases, const BlockMatrix<double>& matrix,
+    const ElasticSolution* start, ElasticSolution& result) const {
   Monitor& monitor =
       options_.monitor != nullptr ? *options_.monitor : silent_monitor();
   std::vector<VectorX> right;
   std::vector<VectorX> u;
   for (const int c : cases) {
-    right.push_back(f[c]);
-    u.push_back(start != nullptr && !start->failure
-                    ? to_solver(start->displacements[c])
-                    : VectorX(VectorX::Zero(f[c].size())));
+    right.push_back(project(holding.oblique, f[c]));
+    u.push_back(
+        start != nullptr && !start->failure
+            ? project(holding.oblique, to_solver(start->displacements[c]))
+            : VectorX(VectorX::Zero(f[c].size())));
   }
   const std::vector<CgColumn> columns =
       conjugate_gradients({.pattern = shared_->table.pattern,
                            .matrix = matrix,
                            .preconditioner = *group.preconditioner,
-                           .fixed = group.fixed,
+                           .fixed = holding.fixed,
                            .tolerance = options_.tolerance,
                            .max_iterations = options_.max_iterations,
                            .monitor = monitor},
                           right, u);
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const int c = cases[k];
+    u[k] = project(holding.oblique, std::move(u[k]));
     const VectorX internal = internal_forces(shared_->table, x, laws_, u[k]);
-    const Equilibrium equilibrium =
-        check_equilibrium({x, right[k], internal, u[k], group.fixed, matrix});
+    const Equilibrium equilibrium = check_equilibrium(
+        {x, f[c], internal, spring_forces(holding.springs, u[k]), u[k],
+         holding.fixed, holding.oblique, matrix});
     result.displacements[c] = to_mesh(u[k]);
     result.reactions[c] = to_mesh(equilibrium.reactions);
     ElasticReport& report = result.report;

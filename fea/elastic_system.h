@@ -7,6 +7,7 @@
 
 #include "fea/assembly.h"
 #include "fea/elasticity.h"
+#include "fea/holding.h"
 #include "fea/node_order.h"
 #include "fea/preconditioner.h"
 
@@ -36,10 +37,11 @@ class ElasticSystem {
                         const ElasticSolution* start) const;
 
  private:
-  /// Load cases that fix the same degrees of freedom share a preconditioner.
+  /// Load cases that are held alike share a preconditioner.
   struct Group {
     std::vector<int> cases;
-    std::vector<char> fixed;  // solver's numbering
+    Holding holding;                           // at the base
+    std::unique_ptr<SmootherMatrix> smoother;  // unless plain
     std::unique_ptr<Preconditioner> preconditioner;
   };
 
@@ -53,10 +55,15 @@ class ElasticSystem {
   void order_mesh(const TetMesh& base);
   void group_supports(const TetMesh& base,
                       const std::vector<LoadCase>& load_cases);
+  void build_multigrid(const TetMesh& base,
+                       const std::vector<LoadCase>& load_cases,
+                       const BlockMatrix<double>& matrix);
   void build_preconditioners(const TetMesh& base,
+                             const std::vector<LoadCase>& load_cases,
                              const BlockMatrix<double>& matrix);
-  void solve_columns(const Group& group, const std::vector<int>& cases,
-                     const Points& x, const std::vector<VectorX>& f,
+  void solve_columns(const Group& group, const Holding& holding,
+                     const std::vector<int>& cases, const Points& x,
+                     const std::vector<VectorX>& f,
                      const std::vector<LoadCase>& load_cases,
                      const BlockMatrix<double>& matrix,
                      const ElasticSolution* start,
@@ -71,6 +78,7 @@ class ElasticSystem {
   std::vector<int> elements_;  // the base's, to compare
   std::vector<int> faces_;
   std::vector<std::vector<Support>> supports_;
+  std::vector<std::vector<SpringBed>> springs_;
   NodeOrder order_;
   std::unique_ptr<Shared> shared_;
   std::vector<Group> groups_;

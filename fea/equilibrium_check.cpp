@@ -21,17 +21,27 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
   double load = 0.0;
   double error = 0.0;
   double rounding = 0.0;
-  for (Eigen::Index d = 0; d < input.f.size(); ++d) {
-    if (input.fixed[d] != 0) {
-      result.reactions[d] = input.internal[d] - input.f[d];
-      continue;
+  std::size_t h = 0;
+  for (Eigen::Index i = 0; i < input.f.size() / 3; ++i) {
+    Mat3 P = Mat3::Identity();
+    for (int k = 0; k < 3; ++k) {
+      P(k, k) = input.fixed[3 * i + k] != 0 ? 0.0 : 1.0;
     }
-    const double r = input.f[d] - input.internal[d];
-    const double term =
-        input.matrix.diagonal[9 * (d / 3) + 4 * (d % 3)] * input.u[d];
-    load += input.f[d] * input.f[d];
-    error += r * r;
-    rounding += term * term;
+    if (h < input.oblique.held.size() && input.oblique.held[h] == i) {
+      P = input.oblique.projector[h++];
+    }
+    const Vec3 f = P * input.f.segment<3>(3 * i);
+    const Vec3 pull = input.springs.segment<3>(3 * i);
+    const Vec3 gap =
+        input.f.segment<3>(3 * i) - input.internal.segment<3>(3 * i);
+    const Vec3 diagonal(input.matrix.diagonal[9 * i],
+                        input.matrix.diagonal[9 * i + 4],
+                        input.matrix.diagonal[9 * i + 8]);
+    result.reactions.segment<3>(3 * i) = P * gap - gap - P * pull;
+    load += f.squaredNorm();
+    error += (P * (gap - pull)).squaredNorm();
+    rounding +=
+        diagonal.cwiseProduct(P * input.u.segment<3>(3 * i)).squaredNorm();
   }
   if (load > 0.0) {
     result.residual = std::sqrt(error / load);

@@ -20,7 +20,24 @@ void add_turns(double a, double weight, std::vector<Point>& points) {
   }
 }
 
+/// Corners, then mid-sides (01) (12) (20).
+std::vector<Point> node_points() {
+  std::vector<Point> points;
+  for (int c = 0; c < 3; ++c) {
+    points.push_back({{0.0, 0.0, 0.0}, 0.5});
+    points.back().L[c] = 1.0;
+  }
+  for (int m = 0; m < 3; ++m) {
+    points.push_back({{0.5, 0.5, 0.5}, 0.5});
+    points.back().L[(m + 2) % 3] = 0.0;
+  }
+  return points;
+}
+
 std::vector<Point> rule_points(FaceRule rule) {
+  if (rule == FaceRule::Nodes) {
+    return node_points();
+  }
   std::vector<Point> points;
   if (rule == FaceRule::Three) {
     add_turns(1.0 / 6.0, 1.0 / 3.0, points);
@@ -42,12 +59,13 @@ FaceQuadrature::FaceQuadrature(int order, FaceRule rule) {
     for (int a = 0; a < 3; ++a) {
       const int b = (a + 1) % 3;
       point.shape[a] = order == 1 ? L[a] : L[a] * (2.0 * L[a] - 1.0);
-      point.shape[3 + a] = 4.0 * L[a] * L[b];
+      point.shape[3 + a] = order == 1 ? 0.0 : 4.0 * L[a] * L[b];
       for (int k = 0; k < 2; ++k) {
         point.slope[a][k] =
             kSlope[a][k] * (order == 1 ? 1.0 : 4.0 * L[a] - 1.0);
         point.slope[3 + a][k] =
-            4.0 * (kSlope[a][k] * L[b] + kSlope[b][k] * L[a]);
+            order == 1 ? 0.0
+                       : 4.0 * (kSlope[a][k] * L[b] + kSlope[b][k] * L[a]);
       }
     }
     points_.push_back(point);

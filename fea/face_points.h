@@ -10,7 +10,9 @@ namespace meniscus {
 
 enum class FaceRule {
   Three,  // exact to degree 2; CalculiX's for C3D10
-  Seven   // exact to degree 5 (Radon 1948)
+  Seven,  // exact to degree 5 (Radon 1948)
+  Nodes   // at the face's nodes, in their order, for the normals there; each
+          // with the whole of the area
 };
 
 /// One point of one face.
@@ -23,7 +25,8 @@ struct FacePoint {
 
 class FaceQuadrature {
  public:
-  /// `order`: the mesh's, 1 or 2.
+  /// `order`: the mesh's; 1 also for the corners' plane faces of a ten-node
+  /// mesh, where shape functions of mid-sides are 0.
   FaceQuadrature(int order, FaceRule rule);
 
   int size() const { return static_cast<int>(points_.size()); }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "fea/local_axes.h"
 
 namespace meniscus {
 
@@ -15,10 +16,38 @@ namespace meniscus {
 using ScalarField = std::function<double(const Vec3&)>;
 using VectorField = std::function<Vec3(const Vec3&)>;
 
-/// Fixes components of displacement on a surface.
+enum class SupportKind {
+  Components,  // those that are fixed, along x, y, z or the support's axes
+  Normal,      // the surface slides: no displacement along its normal
+  Symmetry     // the same for a plane, which the surface must be
+};
+
+/// Fixes components of displacement on a surface. Where surfaces meet, a node
+/// is held along all their directions; normals that differ by no more than the
+/// mesh's own facets do count as one.
 struct Support {
   std::string surface;
-  bool fix_x = false, fix_y = false, fix_z = false;
+  bool fix_x = false, fix_y = false, fix_z = false;  // of Components
+  SupportKind kind = SupportKind::Components;
+  std::optional<LocalAxes> axes;  // x, y, z of Components are along these
+
+  bool operator==(const Support&) const = default;
+};
+
+enum class SpringMeasure { PerArea, Total };
+
+/// A bed of springs between a surface and the ground, spread consistently:
+/// traction -stiffness u. All stiffnesses are 0 or above.
+struct SpringBed {
+  std::string surface;
+  Vec3 components =
+      Vec3::Zero();     // along x, y, z or the axes [pressure/length]
+                        // per area, [force/length] in total
+  double normal = 0.0;  // along the surface's normal; the same
+  SpringMeasure measure = SpringMeasure::PerArea;
+  std::optional<LocalAxes> axes;
+
+  bool operator==(const SpringBed&) const = default;
 };
 
 /// A total force spread as uniform traction over a surface [force].
@@ -76,6 +105,7 @@ struct LoadCase {
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<Spin> spin;
   std::optional<Temperature> temperature;
+  std::vector<SpringBed> springs;
 };
 
 }  // namespace meniscus

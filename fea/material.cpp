@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -15,7 +14,6 @@ namespace {
 /// Least eigenvalue of the compliance, made dimensionless, that is told from
 /// 0: that of an isotropic solid with Poisson's ratio 0.4999995.
 constexpr double kLeastCompliance = 1e-6;
-constexpr double kParallel = 1e-6;  // sine between two axes
 
 void check_orthotropic(const Material& material) {
   const Orthotropic& m = *material.orthotropic;
@@ -30,14 +28,12 @@ void check_orthotropic(const Material& material) {
                     m.youngs_moduli[0], m.youngs_moduli[1], m.youngs_moduli[2],
                     m.shear_moduli[0], m.shear_moduli[1], m.shear_moduli[2]));
   }
-  const double sine = m.axis_1.cross(m.axis_2).norm();
-  if (!(sine > kParallel * m.axis_1.norm() * m.axis_2.norm()) ||
-      !std::isfinite(sine)) {
+  if (!span_a_plane(m.axes)) {
     refuse(
         fmt::format("its axes ({}, {}, {}) and ({}, {}, {}) have no length "
                     "or are parallel; give two that span a plane",
-                    m.axis_1.x(), m.axis_1.y(), m.axis_1.z(), m.axis_2.x(),
-                    m.axis_2.y(), m.axis_2.z()));
+                    m.axes.first.x(), m.axes.first.y(), m.axes.first.z(),
+                    m.axes.second.x(), m.axes.second.y(), m.axes.second.z()));
   }
   // Compliance scaled to a diagonal of 1.
   const Vec3& E = m.youngs_moduli;
@@ -106,14 +102,6 @@ Lame lame(const Material& material) {
   const double E = material.youngs_modulus;
   const double nu = material.poisson_ratio;
   return {E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 * E / (1.0 + nu)};
-}
-
-Mat3 material_axes(const Orthotropic& material) {
-  Mat3 R;
-  R.col(0) = material.axis_1.normalized();
-  R.col(2) = R.col(0).cross(material.axis_2).normalized();
-  R.col(1) = R.col(2).cross(R.col(0));
-  return R;
 }
 
 void check_materials(const TetMesh& mesh,

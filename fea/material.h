@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/tet_mesh.h"
+#include "fea/local_axes.h"
 
 namespace meniscus {
 
@@ -16,8 +17,7 @@ struct Orthotropic {
   Vec3 youngs_moduli = Vec3::Zero();   // along axes 1, 2, 3 [pressure], > 0
   Vec3 poisson_ratios = Vec3::Zero();  // 12, 13, 23
   Vec3 shear_moduli = Vec3::Zero();    // 12, 13, 23 [pressure], > 0
-  Vec3 axis_1 = Vec3::UnitX();         // any length but 0
-  Vec3 axis_2 = Vec3::UnitY();         // its part across axis_1 counts
+  LocalAxes axes;                      // 1 and 2; 3 across them
 };
 
 struct Material {
@@ -39,9 +39,6 @@ struct Lame {
   double mu = 0.0;
 };
 Lame lame(const Material& material);
-
-/// Axes 1, 2, 3 of the material as orthonormal columns, right-handed.
-Mat3 material_axes(const Orthotropic& material);
 
 /// Throws InvalidInput, naming the material, for a modulus, Poisson's ratio,
 /// density or expansion out of its range, for orthotropic constants that make

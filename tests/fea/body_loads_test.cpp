@@ -148,8 +148,7 @@ TEST_P(BodyLoads, OrthotropicHeatingFollowsTheMaterialAxes) {
   material.orthotropic = Orthotropic{{9000.0, 700.0, 400.0},
                                      {0.3, 0.4, 0.4},
                                      {600.0, 500.0, 40.0},
-                                     Vec3::UnitZ(),
-                                     Vec3::UnitX()};
+                                     {Vec3::UnitZ(), Vec3::UnitX()}};
   material.thermal_expansion = {4e-6, 3e-5, 5e-5};
   LoadCase load_case = corner_held();
   load_case.temperature = Temperature{.value = 10.0};

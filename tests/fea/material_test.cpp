@@ -19,8 +19,7 @@ Material spruce() {
   m.orthotropic = Orthotropic{{10800.0, 842.0, 464.0},
                               {0.372, 0.467, 0.435},
                               {690.0, 670.0, 32.0},
-                              {1.0, 2.0, -0.5},
-                              {0.3, 1.0, 1.0}};
+                              {{1.0, 2.0, -0.5}, {0.3, 1.0, 1.0}}};
   return m;
 }
 
@@ -32,8 +31,7 @@ Material orthotropic_steel() {
   m.orthotropic = Orthotropic{Vec3::Constant(E),
                               Vec3::Constant(nu),
                               Vec3::Constant(0.5 * E / (1.0 + nu)),
-                              {1.0, -1.0, 3.0},
-                              {0.0, 1.0, 1.0}};
+                              {{1.0, -1.0, 3.0}, {0.0, 1.0, 1.0}}};
   return m;
 }
 
@@ -46,7 +44,7 @@ TEST(OrthotropicLaw, OfEqualConstantsIsTheIsotropicOneInAnyAxes) {
 TEST(OrthotropicLaw, PullAlongAnAxisContractsByItsRatios) {
   const Material material = spruce();
   const Orthotropic& m = *material.orthotropic;
-  const Mat3 R = material_axes(m);
+  const Mat3 R = unit_axes(m.axes);
   EXPECT_LE((R.transpose() * R - Mat3::Identity()).norm(), kRounding);
   EXPECT_GT(R.determinant(), 0.0);
   // Unit stress along axis 1 and along the shear 23, in the mesh's axes.
@@ -108,8 +106,8 @@ TEST_P(OrthotropicElement, PulledBlockTakesTheUniformStrain) {
   }
   // Axes along the mesh's, turned by one place: x is axis 3, y 1, z 2.
   Material material = spruce();
-  material.orthotropic->axis_1 = Vec3::UnitY();
-  material.orthotropic->axis_2 = Vec3::UnitZ();
+  material.orthotropic->axes.first = Vec3::UnitY();
+  material.orthotropic->axes.second = Vec3::UnitZ();
   LoadCase pull;
   pull.name = "pull";
   pull.supports = {{"x0", true, false, false},
@@ -185,9 +183,9 @@ TEST(OrthotropicChecks, RefuseModuliAxesAndExpansions) {
   m.orthotropic->youngs_moduli[2] = INFINITY;
   expect_refused(m, "Young's moduli");
   m = spruce();
-  m.orthotropic->axis_2 = -2.0 * m.orthotropic->axis_1;
+  m.orthotropic->axes.second = -2.0 * m.orthotropic->axes.first;
   expect_refused(m, "parallel");
-  m.orthotropic->axis_1.setZero();
+  m.orthotropic->axes.first.setZero();
   expect_refused(m, "no length");
   m = spruce();
   m.thermal_expansion[1] = NAN;
