@@ -75,10 +75,43 @@ void add_stiffness(const double (*G)[Width], int a, int b, const Lame& m,
   block[8] += both * g2[2] + d;
 }
 
+/// block += C : G_ab, see ElasticLaw::tensor.
+template <int Width>
+void add_stiffness(const double (*G)[Width], int a, int b, const ElasticLaw& m,
+                   double* block) {
+  double g[9];
+  for (int j = 0; j < 3; ++j) {
+    for (int l = 0; l < 3; ++l) {
+      g[3 * j + l] = G[3L * a + j][3L * b + l];
+    }
+  }
+  const double* row = m.tensor.data();
+  for (int k = 0; k < 9; ++k, row += 9) {
+    double sum = 0.0;
+    for (int c = 0; c < 9; ++c) {
+      sum += row[c] * g[c];
+    }
+    block[k] += sum;
+  }
+}
+
+/// Adds the blocks of one element. Law: Lame or ElasticLaw.
+template <int Nodes, class Law>
+void add_blocks(const double (*G)[kPadded<Nodes>], const int* ids,
+                const int* block, const Law& law, BlockMatrix<double>& matrix) {
+  for (int a = 0; a < Nodes; ++a) {
+    add_stiffness(G, a, a, law, matrix.diagonal.data() + 9L * ids[a]);
+    for (int b = 0; b < a; ++b) {
+      add_stiffness(G, a, b, law,
+                    matrix.lower.data() + 9L * block[a * (a - 1) / 2 + b]);
+    }
+  }
+}
+
 /// Adds the blocks of one element; false when it is bad.
 template <int Nodes>
 bool add_element(const ElementTable& table, const Points& x,
-                 const std::vector<Lame>& lames, int e,
+                 const std::vector<ElasticLaw>& laws, int e,
                  BlockMatrix<double>& matrix) {
   const BlockPattern& p = table.pattern;
   constexpr int kPairs = Nodes * (Nodes - 1) / 2;
@@ -91,22 +124,20 @@ bool add_element(const ElementTable& table, const Points& x,
   const std::size_t first = static_cast<std::size_t>(e) * Nodes;
   alignas(32) double G[3 * Nodes][kPadded<Nodes>];
   outer_products<Nodes>(g, table.slot.data() + first, G);
-  const Lame& m = lames[table.region[e]];
+  const ElasticLaw& law = laws[table.region[e]];
   const int* ids = p.element_nodes.data() + first;
   const int* block = p.pair_block.data() + static_cast<std::size_t>(e) * kPairs;
-  for (int a = 0; a < Nodes; ++a) {
-    add_stiffness(G, a, a, m, matrix.diagonal.data() + 9L * ids[a]);
-    for (int b = 0; b < a; ++b) {
-      add_stiffness(G, a, b, m,
-                    matrix.lower.data() + 9L * block[a * (a - 1) / 2 + b]);
-    }
+  if (law.isotropic) {
+    add_blocks<Nodes>(G, ids, block, law.lame, matrix);
+  } else {
+    add_blocks<Nodes>(G, ids, block, law, matrix);
   }
   return true;
 }
 
 template <int Nodes>
 std::optional<int> assemble_all(const ElementTable& table, const Points& x,
-                                const std::vector<Lame>& lames,
+                                const std::vector<ElasticLaw>& laws,
                                 BlockMatrix<double>& matrix) {
   const BlockPattern& p = table.pattern;
   over_chunks(p.chunks, RowOrder::Forward, [&](int chunk) {
@@ -119,7 +150,7 @@ std::optional<int> assemble_all(const ElementTable& table, const Points& x,
   });
   std::atomic<int> bad = p.element_count();
   over_elements(table, [&](int e) {
-    if (!add_element<Nodes>(table, x, lames, e, matrix)) {
+    if (!add_element<Nodes>(table, x, laws, e, matrix)) {
       int least = bad;
       while (e < least && !bad.compare_exchange_weak(least, e)) {
       }
@@ -130,14 +161,14 @@ std::optional<int> assemble_all(const ElementTable& table, const Points& x,
 
 template <int Nodes>
 void add_internal_forces(const ElementTable& table, const Points& x,
-                         const std::vector<Lame>& lames, const VectorX& u,
+                         const std::vector<ElasticLaw>& laws, const VectorX& u,
                          VectorX& f) {
   over_elements(table, [&](int e) {
     std::array<Vec3, Nodes> corner;
     load_nodes<Nodes>(table, x, e, corner);
     TetGradients<Nodes> g;
     tet_gradients<Nodes>(corner, g);
-    const Lame& m = lames[table.region[e]];
+    const ElasticLaw& law = laws[table.region[e]];
     const std::size_t first = static_cast<std::size_t>(e) * Nodes;
     std::array<int, Nodes> ids;
     std::array<Vec3, Nodes> du;  // relative to one node: no rigid shift
@@ -150,9 +181,7 @@ void add_internal_forces(const ElementTable& table, const Points& x,
       for (int a = 1; a < Nodes; ++a) {
         H.noalias() += du[a] * g.gradient[q][a].transpose();
       }
-      Mat3 stress = m.mu * (H + H.transpose());
-      stress.diagonal().array() += m.lambda * H.trace();
-      stress *= g.volume[q];
+      const Mat3 stress = g.volume[q] * law.stress(H);
       for (int a = 0; a < Nodes; ++a) {
         f.segment<3>(3 * ids[a]).noalias() += stress * g.gradient[q][a];
       }
@@ -197,22 +226,22 @@ ElementTable make_element_table(RowChunks chunks, int nodes_per_element,
 }
 
 std::optional<int> assemble(const ElementTable& table, const Points& x,
-                            const std::vector<Lame>& lames,
+                            const std::vector<ElasticLaw>& laws,
                             BlockMatrix<double>& matrix) {
   matrix.diagonal.resize(9L * table.pattern.nodes + kBlockPadding);
   matrix.lower.resize(9L * table.pattern.column.size() + kBlockPadding);
   return table.pattern.nodes_per_element == 4
-             ? assemble_all<4>(table, x, lames, matrix)
-             : assemble_all<10>(table, x, lames, matrix);
+             ? assemble_all<4>(table, x, laws, matrix)
+             : assemble_all<10>(table, x, laws, matrix);
 }
 
 VectorX internal_forces(const ElementTable& table, const Points& x,
-                        const std::vector<Lame>& lames, const VectorX& u) {
+                        const std::vector<ElasticLaw>& laws, const VectorX& u) {
   VectorX f = VectorX::Zero(u.size());
   if (table.pattern.nodes_per_element == 4) {
-    add_internal_forces<4>(table, x, lames, u, f);
+    add_internal_forces<4>(table, x, laws, u, f);
   } else {
-    add_internal_forces<10>(table, x, lames, u, f);
+    add_internal_forces<10>(table, x, laws, u, f);
   }
   return f;
 }

@@ -140,6 +140,7 @@ class Solver {
 
   void iterate(int step) {
     problem_.preconditioner.apply(r_, z_, K);
+    project(z_);  // it knows the base design's held directions
     const Sums<K> rz = dot(r_, z_);
     Sums<K> beta{};
     for (int k = 0; k < K; ++k) {

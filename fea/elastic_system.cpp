@@ -1,23 +1,21 @@
 #include "fea/elastic_system.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/timer.h"
+#include "fea/body_loads.h"
 #include "fea/conjugate_gradients.h"
 #include "fea/corner_mesh.h"
 #include "fea/elastic_checks.h"
 #include "fea/equilibrium_check.h"
-#include "fea/supports.h"
 
 namespace meniscus {
 
 namespace {
 
-/// Below this many free unknowns a direct factor of a ten-node mesh is as
-/// quick as multigrid.
+/// Below this many free unknowns a direct factor is as quick as multigrid.
 constexpr int kDirectUnknowns = 4000;
 
 std::string cause(CgEnd end, const CgColumn& column, int most) {
@@ -59,23 +57,23 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
         "0",
         options.tolerance, options.max_iterations));
   }
-  for (const Material& material : materials) {
-    lames_.push_back(lame(material));
-  }
+  materials_ = materials;
+  laws_ = elastic_laws(materials);
   if (!std::all_of(base.nodes.begin(), base.nodes.end(),
                    [](const Vec3& x) { return x.allFinite(); })) {
     throw MeshError("elasticity: a node position of the mesh is not finite");
   }
   for (const LoadCase& load_case : load_cases) {
     supports_.push_back(load_case.supports);
-    check_loads(base, load_case);
+    springs_.push_back(load_case.springs);
+    checked_forces(base, load_case, materials);
   }
   order_mesh(base);
   group_supports(base, load_cases);
   if (const auto failure = assemble(base, matrix)) {
     throw MeshError(failure->message);
   }
-  build_preconditioners(base, matrix);
+  build_preconditioners(base, load_cases, matrix);
 }
 
 void ElasticSystem::order_mesh(const TetMesh& base) {
@@ -96,87 +94,112 @@ void ElasticSystem::order_mesh(const TetMesh& base) {
 
 void ElasticSystem::group_supports(const TetMesh& base,
                                    const std::vector<LoadCase>& load_cases) {
-  std::vector<char> loose(base.nodes.size(), 1);  // in no element
-  for (const int node : base.elements) {
-    loose[node] = 0;
-  }
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
-    const std::vector<char> given = fixed_dofs(base, load_cases[c]);
-    check_held(base, given, load_cases[c].name);
-    NodeFreedom freedom{static_cast<int>(order_.to_mesh.size()), {}, {}};
-    for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
-      const std::size_t from = order_.to_mesh[i];
-      Vec3 free = Vec3::Zero();
-      for (std::size_t k = 0; k < 3 && loose[from] == 0; ++k) {
-        free[k] = given[3 * from + k] != 0 ? 0.0 : 1.0;
-      }
-      if (!free.isOnes(0.0)) {
-        freedom.held.push_back(static_cast<int>(i));
-        freedom.projector.emplace_back(free.asDiagonal());
-      }
-    }
+    check_holding(base, load_cases[c]);
+    Holding holding = make_holding(base, load_cases[c], order_);
     const auto found =
-        std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) {
-          return g.freedom.held == freedom.held &&
-                 g.freedom.projector == freedom.projector;
-        });
+        std::find_if(groups_.begin(), groups_.end(),
+                     [&](const Group& g) { return g.holding == holding; });
     if (found != groups_.end()) {
       found->cases.push_back(static_cast<int>(c));
     } else {
-      groups_.push_back({{static_cast<int>(c)}, std::move(freedom), nullptr});
+      groups_.push_back(
+          {.cases = {static_cast<int>(c)}, .holding = std::move(holding)});
     }
   }
-  double free = 3.0 * static_cast<double>(base.nodes.size());
-  for (const Mat3& P : groups_.front().freedom.projector) {
-    free -= 3.0 - P.trace();
-  }
-  unknowns_ = static_cast<int>(std::lround(free));
 }
 
-void ElasticSystem::build_preconditioners(const TetMesh& base,
-                                          const BlockMatrix<double>& matrix) {
-  multigrid_ =
-      options_.solver == SolverKind::Multigrid ||
-      (options_.solver == SolverKind::Automatic && unknowns_ > kDirectUnknowns);
-  if (!multigrid_) {
-    for (Group& group : groups_) {
-      group.preconditioner =
-          make_direct(shared_->table.pattern, matrix, group.freedom);
-    }
-    return;
+void ElasticSystem::build_preconditioners(
+    const TetMesh& base, const std::vector<LoadCase>& load_cases,
+    const BlockMatrix<double>& matrix) {
+  multigrid_ = options_.solver == SolverKind::Multigrid ||
+               (options_.solver == SolverKind::Automatic &&
+                free_unknowns(groups_.front().holding) > kDirectUnknowns);
+  if (multigrid_) {
+    return build_multigrid(base, load_cases, matrix);
   }
-  shared_->smoother = make_smoother_matrix(matrix);
-  if (base.order == 1) {
-    const Points x = solver_points(base);
-    for (Group& group : groups_) {
-      group.preconditioner = make_multigrid(
-          {.nodal = {&shared_->table.pattern, &matrix, &shared_->smoother, &x},
-           .freedom = &group.freedom});
-    }
-    return;
+  const BlockPattern& pattern = shared_->table.pattern;
+  for (Group& group : groups_) {
+    const Holding& holding = group.holding;
+    group.preconditioner =
+        holding.springs.at.empty()
+            ? make_direct(pattern, matrix, holding.freedom)
+            : make_direct(pattern,
+                          sprung_matrix(pattern, matrix, holding.springs),
+                          holding.freedom);
   }
+}
+
+CornerMesh ElasticSystem::build_corners(const TetMesh& base,
+                                        BlockMatrix<double>& matrix) {
   CornerMesh corners = make_corner_mesh(base, order_);
-  BlockMatrix<double> coarse;
   if (const auto bad =
-          meniscus::assemble(corners.table, corners.x, lames_, coarse)) {
+          meniscus::assemble(corners.table, corners.x, laws_, matrix)) {
     throw MeshError(fmt::format(
         "element {}: its straight-sided corners enclose no positive volume; "
         "improve the mesh or choose the Cholesky solver",
         corners.element[*bad]));
   }
   shared_->map = std::move(corners.map);
-  shared_->corner_table = std::move(corners.table);
-  shared_->corner_smoother = make_smoother_matrix(coarse);
+  shared_->corner_pattern = corners.table.pattern;
+  shared_->corner_smoother = make_smoother_matrix(matrix);
+  return corners;
+}
+
+void ElasticSystem::build_multigrid(const TetMesh& base,
+                                    const std::vector<LoadCase>& load_cases,
+                                    const BlockMatrix<double>& matrix) {
+  const bool ten_nodes = base.order == 2;
+  shared_->smoother = make_smoother_matrix(matrix);
+  BlockMatrix<double> coarse;
+  const Points x =
+      ten_nodes ? build_corners(base, coarse).x : solver_points(base);
+  const BlockPattern& pattern = shared_->table.pattern;
   for (Group& group : groups_) {
-    group.preconditioner =
-        make_multigrid({.nodal = {&shared_->corner_table.pattern, &coarse,
-                                  &shared_->corner_smoother, &corners.x},
-                        .freedom = &group.freedom,
-                        .fine_pattern = &shared_->table.pattern,
-                        .fine_matrix = &matrix,
-                        .fine_smoother = &shared_->smoother,
-                        .map = &shared_->map});
+    const SpringBlocks& springs = group.holding.springs;
+    const BlockMatrix<double>* fine = &matrix;
+    const BlockMatrix<double>* corner = &coarse;
+    BlockMatrix<double> sprung;
+    BlockMatrix<double> sprung_corner;
+    if (!springs.at.empty()) {
+      sprung = sprung_matrix(pattern, matrix, springs);
+      fine = &sprung;
+      group.smoother =
+          std::make_unique<SmootherMatrix>(make_smoother_matrix(sprung));
+    }
+    if (!springs.at.empty() && ten_nodes) {
+      sprung_corner =
+          sprung_matrix(shared_->corner_pattern, coarse,
+                        corner_springs(base, load_cases[group.cases.front()]));
+      corner = &sprung_corner;
+      group.corner_smoother =
+          std::make_unique<SmootherMatrix>(make_smoother_matrix(sprung_corner));
+    }
+    const SmootherMatrix* smoother =
+        group.smoother ? group.smoother.get() : &shared_->smoother;
+    const SmootherMatrix* corner_smoother = group.corner_smoother
+                                                ? group.corner_smoother.get()
+                                                : &shared_->corner_smoother;
+    MultigridInput input{.nodal = {&pattern, fine, smoother, &x},
+                         .freedom = &group.holding.freedom};
+    if (ten_nodes) {
+      input.nodal = {&shared_->corner_pattern, corner, corner_smoother, &x};
+      input.fine_pattern = &pattern;
+      input.fine_matrix = fine;
+      input.fine_smoother = smoother;
+      input.map = &shared_->map;
+    }
+    group.preconditioner = make_multigrid(input);
   }
+}
+
+SpringBlocks ElasticSystem::corner_springs(const TetMesh& base,
+                                           const LoadCase& load_case) const {
+  std::vector<int> corner_of(base.nodes.size(), -1);  // the mesh's node
+  for (std::size_t c = 0; c < shared_->map.corner.size(); ++c) {
+    corner_of[order_.to_mesh[shared_->map.corner[c]]] = static_cast<int>(c);
+  }
+  return renumbered(spring_blocks(base, load_case, 1), corner_of);
 }
 
 void ElasticSystem::check_same(const TetMesh& mesh,
@@ -194,7 +217,8 @@ void ElasticSystem::check_same(const TetMesh& mesh,
                     load_cases.size(), supports_.size()));
   }
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
-    if (!same_supports(load_cases[c].supports, supports_[c])) {
+    if (load_cases[c].supports != supports_[c] ||
+        load_cases[c].springs != springs_[c]) {
       throw InvalidInput(fmt::format(
           "load case '{}': its supports differ from the base design's; build "
           "a new model for them",
@@ -240,7 +264,7 @@ std::optional<Failure> ElasticSystem::assemble(
                    fmt::format("node {} of the mesh is not finite",
                                order_.to_mesh[place - x.begin()])};
   }
-  const auto bad = meniscus::assemble(shared_->table, x, lames_, matrix);
+  const auto bad = meniscus::assemble(shared_->table, x, laws_, matrix);
   if (!bad) {
     return std::nullopt;
   }
@@ -264,33 +288,54 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
   result.report.solver = !multigrid_       ? "cholmod"
                          : mesh.order == 1 ? "multigrid"
                                            : "p-multigrid";
-  result.report.dofs = unknowns_;
+  result.report.dofs = free_unknowns(groups_.front().holding);
   std::vector<VectorX> f;
   for (const LoadCase& load_case : load_cases) {
-    check_loads(mesh, load_case);
-    f.push_back(to_solver(nodal_forces(mesh, load_case)));
+    f.push_back(to_solver(checked_forces(mesh, load_case, materials_)));
   }
   const Points x = solver_points(mesh);
   for (const Group& group : groups_) {
+    const Holding holding =
+        start == nullptr
+            ? group.holding
+            : make_holding(mesh, load_cases[group.cases.front()], order_);
+    if (!alike(holding, group.holding)) {
+      result.failure = Failure{
+          FailureKind::SolverFailed,
+          fmt::format("load case '{}': the directions in which its supports "
+                      "hold the nodes are no longer the base design's: the "
+                      "surfaces have turned against each other",
+                      load_cases[group.cases.front()].name)};
+      return result;
+    }
+    const bool plain = holding.springs.at.empty();
+    const BlockMatrix<double> sprung =
+        plain ? BlockMatrix<double>{}
+              : sprung_matrix(shared_->table.pattern, matrix, holding.springs);
     for (std::size_t first = 0; first < group.cases.size();
          first += kMostColumns) {
       const std::size_t last =
           std::min(first + kMostColumns, group.cases.size());
-      solve_columns(group,
+      solve_columns(group, holding,
                     {group.cases.begin() + static_cast<std::ptrdiff_t>(first),
                      group.cases.begin() + static_cast<std::ptrdiff_t>(last)},
-                    x, f, load_cases, matrix, start, result);
+                    x, f, load_cases, plain ? matrix : sprung, start, result);
     }
+  }
+  if (!result.failure && load_cases[0].temperature) {
+    result.report.strain_energy =
+        strain_energy(mesh, materials_, result.displacements[0],
+                      temperature_change(mesh, load_cases[0]));
   }
   result.report.solve_seconds = timer.seconds();
   return result;
 }
 
 void ElasticSystem::solve_columns(
-    const Group& group, const std::vector<int>& cases, const Points& x,
-    const std::vector<VectorX>& f, const std::vector<LoadCase>& load_cases,
-    const BlockMatrix<double>& matrix, const ElasticSolution* start,
-    ElasticSolution& result) const {
+    const Group& group, const Holding& holding, const std::vector<int>& cases,
+    const Points& x, const std::vector<VectorX>& f,
+    const std::vector<LoadCase>& load_cases, const BlockMatrix<double>& matrix,
+    const ElasticSolution* start, ElasticSolution& result) const {
   Monitor& monitor =
       options_.monitor != nullptr ? *options_.monitor : silent_monitor();
   std::vector<VectorX> right;
@@ -305,16 +350,17 @@ void ElasticSystem::solve_columns(
       conjugate_gradients({.pattern = shared_->table.pattern,
                            .matrix = matrix,
                            .preconditioner = *group.preconditioner,
-                           .freedom = group.freedom,
+                           .freedom = holding.freedom,
                            .tolerance = options_.tolerance,
                            .max_iterations = options_.max_iterations,
                            .monitor = monitor},
                           right, u);
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const int c = cases[k];
-    const VectorX internal = internal_forces(shared_->table, x, lames_, u[k]);
-    const Equilibrium equilibrium =
-        check_equilibrium({x, right[k], internal, u[k], group.freedom, matrix});
+    const VectorX internal = internal_forces(shared_->table, x, laws_, u[k]);
+    const Equilibrium equilibrium = check_equilibrium(
+        {x, f[c], internal, spring_forces(holding.springs, u[k]), u[k],
+         holding.freedom, matrix});
     result.displacements[c] = to_mesh(u[k]);
     result.reactions[c] = to_mesh(equilibrium.reactions);
     ElasticReport& report = result.report;

@@ -7,8 +7,10 @@
 
 #include "fea/assembly.h"
 #include "fea/elasticity.h"
+#include "fea/holding.h"
 #include "fea/multigrid.h"
 #include "fea/node_order.h"
+#include "fea/preconditioner.h"
 
 namespace meniscus {
 
@@ -36,10 +38,13 @@ class ElasticSystem {
                         const ElasticSolution* start) const;
 
  private:
-  /// Load cases that fix the same degrees of freedom share a preconditioner.
+  /// Load cases that are held alike share a preconditioner.
   struct Group {
     std::vector<int> cases;
-    NodeFreedom freedom;  // solver's numbering
+    Holding holding;  // at the base
+    // With springs; else the shared ones serve.
+    std::unique_ptr<SmootherMatrix> smoother;
+    std::unique_ptr<SmootherMatrix> corner_smoother;
     std::unique_ptr<Preconditioner> preconditioner;
   };
 
@@ -47,7 +52,8 @@ class ElasticSystem {
   struct Shared {
     ElementTable table;
     SmootherMatrix smoother;
-    ElementTable corner_table;
+    // Of ten-node elements:
+    BlockPattern corner_pattern;
     SmootherMatrix corner_smoother;
     CornerMap map;
   };
@@ -55,10 +61,18 @@ class ElasticSystem {
   void order_mesh(const TetMesh& base);
   void group_supports(const TetMesh& base,
                       const std::vector<LoadCase>& load_cases);
+  void build_multigrid(const TetMesh& base,
+                       const std::vector<LoadCase>& load_cases,
+                       const BlockMatrix<double>& matrix);
+  SpringBlocks corner_springs(const TetMesh& base,
+                              const LoadCase& load_case) const;
+  CornerMesh build_corners(const TetMesh& base, BlockMatrix<double>& matrix);
   void build_preconditioners(const TetMesh& base,
+                             const std::vector<LoadCase>& load_cases,
                              const BlockMatrix<double>& matrix);
-  void solve_columns(const Group& group, const std::vector<int>& cases,
-                     const Points& x, const std::vector<VectorX>& f,
+  void solve_columns(const Group& group, const Holding& holding,
+                     const std::vector<int>& cases, const Points& x,
+                     const std::vector<VectorX>& f,
                      const std::vector<LoadCase>& load_cases,
                      const BlockMatrix<double>& matrix,
                      const ElasticSolution* start,
@@ -68,14 +82,15 @@ class ElasticSystem {
   VectorX to_mesh(const VectorX& v) const;
 
   ElasticOptions options_;
-  std::vector<Lame> lames_;
+  std::vector<Material> materials_;
+  std::vector<ElasticLaw> laws_;
   std::vector<int> elements_;  // the base's, to compare
   std::vector<int> faces_;
   std::vector<std::vector<Support>> supports_;
+  std::vector<std::vector<SpringBed>> springs_;
   NodeOrder order_;
   std::unique_ptr<Shared> shared_;
   std::vector<Group> groups_;
-  int unknowns_ = 0;  // free, of the first load case
   bool multigrid_ = false;
 };
 

@@ -23,21 +23,22 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
   double rounding = 0.0;
   std::size_t h = 0;
   for (Eigen::Index i = 0; i < input.f.size() / 3; ++i) {
-    const Vec3 f = input.f.segment<3>(3 * i);
-    Vec3 gap = f - input.internal.segment<3>(3 * i);
-    Vec3 given = f;
+    Mat3 P = Mat3::Identity();
+    if (h < input.freedom.held.size() && input.freedom.held[h] == i) {
+      P = input.freedom.projector[h++];
+    }
+    const Vec3 f = P * input.f.segment<3>(3 * i);
+    const Vec3 pull = input.springs.segment<3>(3 * i);
+    const Vec3 gap =
+        input.f.segment<3>(3 * i) - input.internal.segment<3>(3 * i);
     const Vec3 diagonal(input.matrix.diagonal[9 * i],
                         input.matrix.diagonal[9 * i + 4],
                         input.matrix.diagonal[9 * i + 8]);
-    if (h < input.freedom.held.size() && input.freedom.held[h] == i) {
-      const Mat3& P = input.freedom.projector[h++];
-      result.reactions.segment<3>(3 * i) = P * gap - gap;
-      gap = P * gap;
-      given = P * f;
-    }
-    load += given.squaredNorm();
-    error += gap.squaredNorm();
-    rounding += diagonal.cwiseProduct(input.u.segment<3>(3 * i)).squaredNorm();
+    result.reactions.segment<3>(3 * i) = P * gap - gap - P * pull;
+    load += f.squaredNorm();
+    error += (P * (gap - pull)).squaredNorm();
+    rounding +=
+        diagonal.cwiseProduct(P * input.u.segment<3>(3 * i)).squaredNorm();
   }
   if (load > 0.0) {
     result.residual = std::sqrt(error / load);

@@ -17,14 +17,16 @@ struct EquilibriumInput {
   const Points& x;
   const VectorX& f;         // loads [force]
   const VectorX& internal;  // K u [force]
+  const VectorX& springs;   // S u [force]
   const VectorX& u;         // [length]
   const NodeFreedom& freedom;
   const BlockMatrix<double>& matrix;
 };
 
 struct Equilibrium {
-  VectorX reactions;       // K u - f along held directions [force]
-  double residual = 0.0;   // |f - K u| / |f| on free directions
+  VectorX reactions;       // K u - f along held directions, -S u along free
+                           // ones [force]
+  double residual = 0.0;   // |f - K u - S u| / |f| on free unknowns
   double rounding = 0.0;   // what double precision allows for that residual
   double imbalance = 0.0;  // |sum of reactions and loads| / sum of |loads|,
                            // forces and moments (over the part's size)

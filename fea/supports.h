@@ -1,22 +1,33 @@
-/// Fixed degrees of freedom, and whether they hold the body.
+/// What supports leave free.
 #pragma once
 
 #include <vector>
 
 #include "core/tet_mesh.h"
-#include "fea/loads.h"
+#include "fea/load_case.h"
+#include "fea/node_freedom.h"
 
 namespace meniscus {
 
-/// One flag per degree of freedom, 3 per node: 1 where a support of the load
-/// case fixes it. Throws InvalidInput for an unknown surface and when nothing
-/// is fixed.
-std::vector<char> fixed_dofs(const TetMesh& mesh, const LoadCase& load_case);
+/// One direction that a node is held along.
+struct HeldDirection {
+  int node;
+  Vec3 direction;      // unit
+  double uncertainty;  // kExactDirection; of normals twice what the facets'
+                       // normals around the node differ by, if more
+};
+inline constexpr double kExactDirection = 1e-6;
 
-/// Throws SolverError when a connected part of the mesh can move rigidly
-/// although `fixed` is held: the six rigid motions, restricted to the fixed
-/// degrees of freedom, must have full rank. The message names the motion.
-void check_held(const TetMesh& mesh, const std::vector<char>& fixed,
-                const std::string& load_case);
+/// Of all supports: fixed components first, then normals. Throws InvalidInput:
+/// a surface that is unknown, has no normal or, under symmetry, is no plane;
+/// axes that span none.
+std::vector<HeldDirection> held_directions(const TetMesh& mesh,
+                                           const LoadCase& load_case);
+
+/// Projectors onto the free directions of the nodes that are held, in the
+/// mesh's numbering. A node is held along the span of its directions, taken in
+/// their order; each counts when it leaves the span of those before by more
+/// than their uncertainty.
+NodeFreedom node_freedom(const TetMesh& mesh, std::vector<HeldDirection> held);
 
 }  // namespace meniscus

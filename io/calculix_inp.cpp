@@ -1,7 +1,6 @@
 #include "io/calculix_inp.h"
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <set>
 
@@ -9,52 +8,14 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/calculix_material.h"
+#include "io/calculix_names.h"
 
 namespace meniscus {
 
 namespace {
 
 using Out = std::back_insert_iterator<fmt::memory_buffer>;
-
-constexpr std::size_t kNameLength = 60;  // CalculiX reads 80
-
-std::string plain_name(const std::string& name) {
-  std::string result;
-  for (const char c : name.substr(0, kNameLength)) {
-    const auto u = static_cast<unsigned char>(c);
-    result += u < 128 && (std::isalnum(u) != 0)
-                  ? static_cast<char>(std::toupper(u))
-                  : '_';
-  }
-  if (result.empty() ||
-      std::isalpha(static_cast<unsigned char>(result[0])) == 0) {
-    result.insert(0, "S_");
-  }
-  return result;
-}
-
-/// Distinct deck names for the given ones, in order.
-std::vector<std::string> deck_names(const std::vector<std::string>& names) {
-  std::set<std::string> taken = {"NALL", "EALL"};
-  std::vector<std::string> result;
-  for (const std::string& name : names) {
-    const std::string base = plain_name(name);
-    std::string candidate = base;
-    for (int i = 2; !taken.insert(candidate).second; ++i) {
-      candidate = fmt::format("{}_{}", base, i);
-    }
-    result.push_back(candidate);
-  }
-  return result;
-}
-
-/// One line, so that a title cannot smuggle in keywords.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-  return text;
-}
 
 void write_ids(Out out, const std::vector<int>& ids) {
   constexpr std::size_t kPerLine = 12;  // CalculiX reads at most 16
@@ -82,7 +43,13 @@ class DeckWriter {
     elements();
     surfaces();
     supported_sets();
+    all_elements();
     materials();
+    equations();
+    if (heated()) {  // steps give changes
+      fmt::format_to(out(),
+                     "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n");
+    }
     for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
       step(deck_.steps[s], s);
     }
@@ -120,7 +87,14 @@ class DeckWriter {
             "step '{}' of the deck has {} nodal forces; {} nodes need {}",
             step.name, size, mesh_.nodes.size(), 3 * mesh_.nodes.size()));
       }
-      if (step.supports.empty()) {
+      const auto heated =
+          static_cast<std::size_t>(step.temperature_change.size());
+      if (heated != 0 && heated != mesh_.nodes.size()) {
+        throw InvalidInput(fmt::format(
+            "step '{}' of the deck has {} temperatures for {} nodes", step.name,
+            heated, mesh_.nodes.size()));
+      }
+      if (step.supports.empty() && deck_.equations.empty()) {
         throw InvalidInput(fmt::format(
             "step '{}' of the deck has no support; fix a surface", step.name));
       }
@@ -214,15 +188,40 @@ class DeckWriter {
 
   void materials() {
     for (std::size_t r = 0; r < deck_.materials.size(); ++r) {
-      const DeckMaterial& material = deck_.materials[r];
-      fmt::format_to(out(), "*MATERIAL, NAME={}\n*ELASTIC\n{:.12e}, {:.12e}\n",
-                     material_names_[r], material.youngs_modulus,
-                     material.poisson_ratio);
-      if (material.density > 0.0) {
-        fmt::format_to(out(), "*DENSITY\n{:.12e}\n", material.density);
+      const std::string text =
+          material_text(deck_.materials[r], material_names_[r], r);
+      buffer_.append(text.data(), text.data() + text.size());
+    }
+  }
+
+  bool heated() const {
+    return std::any_of(
+        deck_.steps.begin(), deck_.steps.end(),
+        [](const DeckStep& s) { return s.temperature_change.size() != 0; });
+  }
+
+  void all_elements() {
+    fmt::format_to(out(), "*ELSET, ELSET=EALL\n");
+    for (std::size_t r = 0; r < deck_.materials.size(); ++r) {
+      fmt::format_to(out(), "REGION_{}\n", r);
+    }
+  }
+
+  void equations() {
+    for (const DeckEquation& equation : deck_.equations) {
+      const Vec3& c = equation.coefficients;
+      const int terms = static_cast<int>((c.array() != 0.0).count());
+      fmt::format_to(out(), "*EQUATION\n{}\n", terms);
+      const char* separator = "";
+      for (int k = 0; k < 3; ++k) {
+        const int dof = (equation.dependent + k) % 3;
+        if (c[dof] != 0.0) {
+          fmt::format_to(out(), "{}{}, {}, {:.12e}", separator,
+                         equation.node + 1, dof + 1, c[dof]);
+          separator = ", ";
+        }
       }
-      fmt::format_to(out(), "*SOLID SECTION, ELSET=REGION_{}, MATERIAL={}\n", r,
-                     material_names_[r]);
+      fmt::format_to(out(), "\n");
     }
   }
 
@@ -272,8 +271,9 @@ class DeckWriter {
   }
 
   void forces(const DeckStep& step) {
+    // Both cards in every step: without them the last step's loads stay.
+    fmt::format_to(out(), "*CLOAD, OP=NEW\n");
     if (step.nodal_forces.size() != 0) {
-      fmt::format_to(out(), "*CLOAD, OP=NEW\n");
       for (Eigen::Index i = 0; i < step.nodal_forces.size(); ++i) {
         if (step.nodal_forces[i] != 0.0) {
           fmt::format_to(out(), "{}, {}, {:.12e}\n", i / 3 + 1, i % 3 + 1,
@@ -281,9 +281,8 @@ class DeckWriter {
         }
       }
     }
-    if (!step.pressures.empty()) {
-      fmt::format_to(out(), "*DLOAD, OP=NEW\n");
-    }
+    fmt::format_to(out(), "*DLOAD, OP=NEW\n");
+    body_loads(step);
     for (const DeckPressure& load : step.pressures) {
       const int id = label(load.surface, step);
       for (int f = 0; f < mesh_.face_count(); ++f) {
@@ -293,6 +292,38 @@ class DeckWriter {
                          face_number(f), load.pressure);
         }
       }
+    }
+  }
+
+  void body_loads(const DeckStep& step) {
+    if (!step.gravity.isZero(0.0)) {
+      const double size = step.gravity.norm();
+      const Vec3 d = step.gravity / size;
+      fmt::format_to(out(), "EALL, GRAV, {:.12e}, {:.12e}, {:.12e}, {:.12e}\n",
+                     size, d.x(), d.y(), d.z());
+    }
+    if (step.spin) {
+      const Vec3& p = step.spin->point;
+      const Vec3 a = step.spin->axis.normalized();
+      fmt::format_to(
+          out(),
+          "EALL, CENTRIF, {:.12e}, {:.12e}, {:.12e}, {:.12e}, {:.12e}, "
+          "{:.12e}, {:.12e}\n",
+          step.spin->rate * step.spin->rate, p.x(), p.y(), p.z(), a.x(), a.y(),
+          a.z());
+    }
+  }
+
+  void temperatures(const DeckStep& step) {
+    if (!heated()) {
+      return;
+    }
+    fmt::format_to(out(), "*TEMPERATURE, OP=NEW\n");
+    if (step.temperature_change.size() == 0) {
+      fmt::format_to(out(), "NALL, 0.\n");
+    }
+    for (Eigen::Index i = 0; i < step.temperature_change.size(); ++i) {
+      fmt::format_to(out(), "{}, {:.12e}\n", i + 1, step.temperature_change[i]);
     }
   }
 
@@ -316,13 +347,15 @@ class DeckWriter {
                    one_line(step.name), deck_.solver);
     boundary(step);
     forces(step);
+    temperatures(step);
     if (deck_.output != DeckOutput::Print) {
       fmt::format_to(out(), "*NODE FILE\nU, RF\n*EL FILE\nS\n");
     }
     if (deck_.output != DeckOutput::Viewer) {
       fmt::format_to(out(),
                      "*NODE PRINT, NSET=NALL\nU\n"
-                     "*NODE PRINT, NSET={}, TOTALS=ONLY\nRF\n",
+                     "*NODE PRINT, NSET={}, TOTALS=ONLY\nRF\n"
+                     "*EL PRINT, ELSET=EALL, GLOBAL=YES\nS\n",
                      supported_name(number));
     }
     fmt::format_to(out(), "*END STEP\n");

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,23 @@
 
 namespace meniscus {
 
+/// CalculiX's ENGINEERING CONSTANTS, in axes of their own: axis 1, and one in
+/// the plane of 1 and 2.
+struct DeckOrthotropic {
+  Vec3 youngs_moduli = Vec3::Zero();   // 1, 2, 3 [pressure]
+  Vec3 poisson_ratios = Vec3::Zero();  // 12, 13, 23
+  Vec3 shear_moduli = Vec3::Zero();    // 12, 13, 23 [pressure]
+  Vec3 axis_1 = Vec3::UnitX();
+  Vec3 axis_2 = Vec3::UnitY();
+};
+
 struct DeckMaterial {
   std::string name;
   double youngs_modulus = 0.0;  // [pressure]
   double poisson_ratio = 0.0;
-  double density = 0.0;  // [mass/length^3]; 0: left out
+  double density = 0.0;                        // [mass/length^3]; 0: left out
+  std::optional<DeckOrthotropic> orthotropic;  // instead of the modulus
+  Vec3 thermal_expansion = Vec3::Zero();       // [1/temperature]; 0: left out
 };
 
 /// Displacement components held at zero.
@@ -35,17 +48,36 @@ struct DeckPressure {
   double pressure = 0.0;
 };
 
+/// Centrifugal force.
+struct DeckSpin {
+  Vec3 point = Vec3::Zero();  // on the axis [length]
+  Vec3 axis = Vec3::UnitZ();
+  double rate = 0.0;  // [rad/time]
+};
+
+/// coefficients . u = 0 at a node, solved for component `dependent`, which no
+/// support and no other equation holds. Equations act in all steps.
+struct DeckEquation {
+  int node = 0;  // from 0
+  Vec3 coefficients = Vec3::Zero();
+  int dependent = 0;
+};
+
 /// One load case, one *STEP; nothing carries over from the step before.
 struct DeckStep {
   std::string name;
   std::vector<DeckSupport> supports;
   VectorX nodal_forces;  // [force], 3 per node, written as *CLOAD; or empty
   std::vector<DeckPressure> pressures;
+  Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
+  std::optional<DeckSpin> spin;
+  VectorX temperature_change;  // one per node, or empty [temperature]
 };
 
 enum class DeckOutput {
   Viewer,  // .frd: displacement, reaction, stress
-  Print,   // .dat: displacement of all nodes, sum of reactions, as text
+  Print,   // .dat: displacement of all nodes, sum of reactions, stresses at
+           // integration points, as text
   Both
 };
 
@@ -53,6 +85,7 @@ struct CalculixDeck {
   std::vector<std::string> comments;    // case, units, version; one line each
   std::vector<DeckMaterial> materials;  // one per region
   std::vector<DeckStep> steps;
+  std::vector<DeckEquation> equations;
   std::string solver = "SPOOLES";  // or "ITERATIVE CHOLESKY", ...
   DeckOutput output = DeckOutput::Both;
 };

@@ -53,7 +53,7 @@ TEST(WeakSupports, HingeAlongALineNamesItsAxisAndPoint) {
   EXPECT_THAT(
       [&] { build(mesh, parts::steel(), load_case); },
       testing::ThrowsMessage<SolverError>(AllOf(
-          HasSubstr("rotate about x through"), HasSubstr("fixed are x at 3"))));
+          HasSubstr("rotate about x through"), HasSubstr("held are x at 3"))));
 }
 
 TEST(WeakSupports, APieceApartIsFree) {

@@ -49,6 +49,16 @@ inline ElementTable table_of(const TetMesh& mesh) {
                             mesh.element_region);
 }
 
+/// K u by the solver's product.
+inline VectorX product(const ElementTable& table,
+                       const BlockMatrix<double>& matrix, const VectorX& u) {
+  Eigen::Matrix4Xd x = Eigen::Matrix4Xd::Zero(4, table.pattern.nodes);
+  x.topRows<3>() = u.reshaped(3, table.pattern.nodes);
+  Eigen::Matrix4Xd y = x;
+  multiply<3, 1>(table.pattern, matrix, x.data(), y.data());
+  return Eigen::Matrix3Xd(y.topRows<3>()).reshaped();
+}
+
 /// A quarter of a thick cylinder, 1 <= r <= 2, of the given height, n cells
 /// along the radius: surfaces x0 (bore), x1 (outside), y0 (plane y = 0), y1
 /// (plane x = 0), z0, z1. Ten-node elements are curved.

@@ -38,7 +38,7 @@ std::vector<CalculixStep> run_calculix(const std::string& deck,
 
 std::vector<CalculixStep> read_calculix_dat(const std::string& text,
                                             int node_count) {
-  enum class Block { None, Displacement, Reaction };
+  enum class Block { None, Displacement, Reaction, Stress };
   std::vector<CalculixStep> steps;
   Block block = Block::None;
   std::istringstream lines(text);
@@ -53,8 +53,23 @@ std::vector<CalculixStep> read_calculix_dat(const std::string& text,
       block = Block::Reaction;
       continue;
     }
+    if (line.find("stresses") != std::string::npos) {
+      block = Block::Stress;
+      continue;
+    }
     std::istringstream numbers(line);
     if (steps.empty() || block == Block::None) {
+      continue;
+    }
+    if (block == Block::Stress) {
+      int element = 0;
+      int point = 0;
+      std::array<double, 6> t{};  // xx yy zz xy xz yz
+      if (numbers >> element >> point >> t[0] >> t[1] >> t[2] >> t[3] >> t[4] >>
+          t[5]) {
+        std::swap(t[4], t[5]);
+        steps.back().stress.push_back(t);
+      }
       continue;
     }
     Vec3 v;

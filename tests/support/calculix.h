@@ -1,6 +1,7 @@
 /// Runs CalculiX on a deck and reads what it printed.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -8,10 +9,12 @@
 
 namespace meniscus {
 
-/// One step's *NODE PRINT results.
+/// One step's *NODE PRINT and *EL PRINT results.
 struct CalculixStep {
   VectorX displacement;          // 3 per node, in node order
   Vec3 reaction = Vec3::Zero();  // sum over the supports
+  /// At integration points, element by element: xx yy zz xy yz zx.
+  std::vector<std::array<double, 6>> stress;
 };
 
 bool have_calculix();

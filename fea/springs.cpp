@@ -1,0 +1,180 @@
+#include "fea/springs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "fea/face_points.h"
+#include "fea/loads.h"
+#include "fea/surface_faces.h"
+#include "fea/surface_normals.h"
+
+namespace meniscus {
+
+namespace {
+
+using RowMat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+/// A bed's stiffness per area: `tensor` + normal n n^T.
+struct BedStiffness {
+  Mat3 tensor = Mat3::Zero();
+  double normal = 0.0;
+};
+
+void check(const SpringBed& bed, const LoadCase& load_case) {
+  const auto refuse = [&](const std::string& what) {
+    throw InvalidInput(fmt::format("load case '{}': springs on '{}' {}",
+                                   load_case.name, bed.surface, what));
+  };
+  const Vec3& k = bed.components;
+  if (!k.allFinite() || !std::isfinite(bed.normal) || k.minCoeff() < 0.0 ||
+      bed.normal < 0.0) {
+    refuse(
+        fmt::format("have stiffnesses {}, {}, {} and {} along the normal; "
+                    "all must be 0 or above",
+                    k.x(), k.y(), k.z(), bed.normal));
+  }
+  if (k.isZero(0.0) && bed.normal == 0.0) {
+    refuse("have no stiffness; give one along a component or the normal");
+  }
+  if (bed.axes && !span_a_plane(*bed.axes)) {
+    refuse(
+        "have axes without length or parallel ones; give two that span a "
+        "plane");
+  }
+}
+
+BedStiffness stiffness_of(const TetMesh& mesh, const SpringBed& bed) {
+  const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
+  const double area = surface_weights(mesh, bed.surface).weights.sum();
+  const double scale = bed.measure == SpringMeasure::Total ? 1.0 / area : 1.0;
+  return {scale * axes * bed.components.asDiagonal() * axes.transpose(),
+          scale * bed.normal};
+}
+
+using BlockMap = std::map<std::array<int, 2>, Mat3>;
+
+void add_bed(const TetMesh& mesh, const SpringBed& bed, int order,
+             BlockMap& blocks) {
+  const BedStiffness stiffness = stiffness_of(mesh, bed);
+  const int label = surface_label(mesh, bed.surface);
+  const FaceQuadrature quadrature(order, FaceRule::Seven);
+  const int count = order == 1 ? 3 : 6;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (mesh.face_label[f] != label) {
+      continue;
+    }
+    const auto ids = mesh.face(f);
+    std::array<std::array<Mat3, 6>, 6> sum;
+    for (auto& row : sum) {
+      row.fill(Mat3::Zero());
+    }
+    for (int q = 0; q < quadrature.size(); ++q) {
+      const FacePoint point = quadrature.at(mesh, f, q);
+      const double area = point.normal.norm();
+      const Vec3 n = point.normal / area;
+      const Mat3 k =
+          area * (stiffness.tensor + stiffness.normal * n * n.transpose());
+      for (int a = 0; a < count; ++a) {
+        for (int b = 0; b < count; ++b) {
+          sum[a][b] += point.shape[a] * point.shape[b] * k;
+        }
+      }
+    }
+    for (int a = 0; a < count; ++a) {
+      for (int b = 0; b < count; ++b) {
+        if (ids[a] >= ids[b]) {
+          const auto at = blocks.try_emplace({ids[a], ids[b]}, Mat3::Zero());
+          at.first->second += sum[a][b];
+        }
+      }
+    }
+  }
+}
+
+SpringBlocks as_lists(const BlockMap& blocks) {
+  SpringBlocks result;
+  for (const auto& [at, block] : blocks) {
+    result.at.push_back(at);
+    result.block.push_back(block);
+  }
+  return result;
+}
+
+}  // namespace
+
+SpringBlocks spring_blocks(const TetMesh& mesh, const LoadCase& load_case,
+                           int order) {
+  BlockMap blocks;
+  for (const SpringBed& bed : load_case.springs) {
+    check(bed, load_case);
+    add_bed(mesh, bed, order, blocks);
+  }
+  return as_lists(blocks);
+}
+
+SpringBlocks renumbered(const SpringBlocks& springs,
+                        const std::vector<int>& number) {
+  BlockMap blocks;
+  for (std::size_t k = 0; k < springs.at.size(); ++k) {
+    const int a = number[springs.at[k][0]];
+    const int b = number[springs.at[k][1]];
+    blocks[{std::max(a, b), std::min(a, b)}] = springs.block[k];
+  }
+  return as_lists(blocks);
+}
+
+void add_springs(const BlockPattern& pattern, const SpringBlocks& springs,
+                 BlockMatrix<double>& matrix) {
+  for (std::size_t k = 0; k < springs.at.size(); ++k) {
+    const auto [row, column] = springs.at[k];
+    double* block = matrix.diagonal.data() + 9L * row;
+    if (row != column) {
+      const auto first = pattern.column.begin() + pattern.start[row];
+      const auto last = pattern.column.begin() + pattern.start[row + 1];
+      const auto place = std::lower_bound(first, last, column);
+      block = matrix.lower.data() + 9L * (place - pattern.column.begin());
+    }
+    Eigen::Map<RowMat3>(block) += springs.block[k];
+  }
+}
+
+VectorX spring_forces(const SpringBlocks& springs, const VectorX& u) {
+  VectorX f = VectorX::Zero(u.size());
+  for (std::size_t k = 0; k < springs.at.size(); ++k) {
+    const auto [a, b] = springs.at[k];
+    f.segment<3>(3L * a) += springs.block[k] * u.segment<3>(3L * b);
+    if (a != b) {
+      f.segment<3>(3L * b) += springs.block[k] * u.segment<3>(3L * a);
+    }
+  }
+  return f;
+}
+
+std::vector<HeldDirection> sprung_directions(const TetMesh& mesh,
+                                             const LoadCase& load_case) {
+  std::vector<HeldDirection> held;
+  for (const SpringBed& bed : load_case.springs) {
+    check(bed, load_case);
+    const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
+    const SurfaceNormals normals = surface_normals(mesh, bed.surface);
+    for (std::size_t k = 0; k < normals.nodes.size(); ++k) {
+      for (int c = 0; c < 3; ++c) {
+        if (bed.components[c] > 0.0) {
+          held.push_back({normals.nodes[k], axes.col(c), kExactDirection});
+        }
+      }
+      if (bed.normal > 0.0) {
+        held.push_back({normals.nodes[k], normals.normal[k],
+                        std::max(kExactDirection, 2.0 * normals.spread[k])});
+      }
+    }
+  }
+  return held;
+}
+
+}  // namespace meniscus

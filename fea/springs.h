@@ -1,0 +1,46 @@
+/// Beds of springs as blocks of the stiffness matrix.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/tet_mesh.h"
+#include "fea/block_matrix.h"
+#include "fea/load_case.h"
+#include "fea/supports.h"
+
+namespace meniscus {
+
+/// Blocks of the lower triangle, ascending by row and column.
+struct SpringBlocks {
+  std::vector<std::array<int, 2>> at;  // row >= column
+  std::vector<Mat3> block;             // symmetric [force/length]
+
+  bool operator==(const SpringBlocks&) const = default;
+};
+
+/// S_ab = int N_a N_b (axes diag(components) axes^T + normal n n^T) dA over all
+/// beds of the load case, with seven points a face. `order`: that of the shape
+/// functions; 1 on a ten-node mesh gives the corners' plane faces, which is
+/// what multigrid's four-node level needs. Throws InvalidInput, naming load
+/// case and surface: unknown surfaces, axes that span no plane, stiffnesses
+/// that are negative, not finite or all 0.
+SpringBlocks spring_blocks(const TetMesh& mesh, const LoadCase& load_case,
+                           int order);
+
+/// The same with nodes renumbered.
+SpringBlocks renumbered(const SpringBlocks& springs,
+                        const std::vector<int>& number);
+
+/// Adds the blocks; every pair of them must be in the pattern.
+void add_springs(const BlockPattern& pattern, const SpringBlocks& springs,
+                 BlockMatrix<double>& matrix);
+
+/// S u: what the springs pull with, against u [force].
+VectorX spring_forces(const SpringBlocks& springs, const VectorX& u);
+
+/// The directions that springs pull along, with the uncertainty of normals.
+std::vector<HeldDirection> sprung_directions(const TetMesh& mesh,
+                                             const LoadCase& load_case);
+
+}  // namespace meniscus

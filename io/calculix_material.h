@@ -1,0 +1,15 @@
+/// A region's material as deck text (internal to the deck writer).
+#pragma once
+
+#include <string>
+
+#include "io/calculix_inp.h"
+
+namespace meniscus {
+
+/// *MATERIAL with its constants, orientation if it has one, and the section of
+/// element set REGION_<region>. `name`: as CalculiX takes it.
+std::string material_text(const DeckMaterial& material, const std::string& name,
+                          std::size_t region);
+
+}  // namespace meniscus

@@ -1,0 +1,53 @@
+#include "io/calculix_names.h"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace meniscus {
+
+namespace {
+
+constexpr std::size_t kNameLength = 60;  // CalculiX reads 80
+
+std::string plain_name(const std::string& name) {
+  std::string result;
+  for (const char c : name.substr(0, kNameLength)) {
+    const auto u = static_cast<unsigned char>(c);
+    result += u < 128 && (std::isalnum(u) != 0)
+                  ? static_cast<char>(std::toupper(u))
+                  : '_';
+  }
+  if (result.empty() ||
+      std::isalpha(static_cast<unsigned char>(result[0])) == 0) {
+    result.insert(0, "S_");
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::string> deck_names(const std::vector<std::string>& names) {
+  std::set<std::string> taken = {"NALL", "EALL"};
+  std::vector<std::string> result;
+  for (const std::string& name : names) {
+    const std::string base = plain_name(name);
+    std::string candidate = base;
+    for (int i = 2; !taken.insert(candidate).second; ++i) {
+      candidate = fmt::format("{}_{}", base, i);
+    }
+    result.push_back(candidate);
+  }
+  return result;
+}
+
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  return text;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,229 @@
+/// Our displacements and stresses against CalculiX's (SPOOLES) on the same
+/// mesh, under CalculiX's own loads: *DLOAD pressure, gravity and centrifugal
+/// force, *TEMPERATURE with *EXPANSION, ENGINEERING CONSTANTS.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fea/body_loads.h"
+#include "fea/elasticity.h"
+#include "fea/point_stress.h"
+#include "io/calculix_inp.h"
+#include "tests/support/calculix.h"
+#include "tests/support/shapes.h"
+
+namespace meniscus {
+namespace {
+
+// CalculiX prints seven digits.
+constexpr double kDisplacement = 1e-6;  // of the largest
+constexpr double kStress = 1e-5;        // of the largest
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// A sector of a thick tube, curved with ten nodes.
+TetMesh tube(int order) {
+  TetMesh mesh = shapes::brick({20.0, 0.5 * kPi, 30.0}, 3, 5, 4);
+  if (order == 2) {
+    mesh = shapes::straight_quadratic(mesh);
+  }
+  for (Vec3& x : mesh.nodes) {
+    const double r = 20.0 + x.x();
+    x = Vec3(r * std::cos(x.y()), r * std::sin(x.y()), x.z());
+  }
+  return mesh;
+}
+
+/// Two legs of 50 with a section of 10 x 15, mitred at the corner: x0 is the
+/// end of the lying leg, x1 that of the standing one.
+TetMesh bracket(int order) {
+  TetMesh mesh = shapes::brick({80.0, 10.0, 15.0}, 12, 3, 3);
+  if (order == 2) {
+    mesh = shapes::straight_quadratic(mesh);
+  }
+  for (Vec3& x : mesh.nodes) {
+    const double across = 5.0 - x.y();
+    x = x.x() <= 40.0
+            ? Vec3(x.x() / 40.0 * (40.0 + across), x.y(), x.z())
+            : Vec3(40.0 + across,
+                   x.y() + (x.x() - 40.0) / 40.0 * (40.0 + across), x.z());
+  }
+  return mesh;
+}
+
+TetMesh brick(int order) {
+  const TetMesh mesh = shapes::brick({20.0, 30.0, 40.0}, 3, 4, 5);
+  return order == 1 ? mesh : shapes::straight_quadratic(mesh);
+}
+
+struct Part {
+  std::string name;
+  TetMesh (*make)(int order);
+  std::string foot;  // held
+  std::string head;  // loaded
+  std::string side;
+};
+
+const std::vector<Part>& parts() {
+  static const std::vector<Part> kParts = {
+      {"Brick", brick, "z0", "z1", "x1"},
+      {"Tube", tube, "y0", "y1", "x0"},
+      {"Bracket", bracket, "x0", "x1", "y0"}};
+  return kParts;
+}
+
+Material aluminium() {
+  Material m{"aluminium", 71700.0, 0.33, 2.8e-9, {}};
+  m.thermal_expansion.setConstant(2.3e-5);
+  return m;
+}
+
+Material laminate() {
+  Material m{"laminate", 0.0, 0.0, 1.6e-9, {}};
+  m.orthotropic = Orthotropic{{120000.0, 9000.0, 7000.0},
+                              {0.3, 0.25, 0.4},
+                              {4500.0, 4000.0, 3000.0},
+                              {{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}}};
+  m.thermal_expansion = {1e-6, 2.5e-5, 3e-5};
+  return m;
+}
+
+/// Force, pressure, gravity and spin, temperature.
+std::vector<LoadCase> load_cases(const Part& part) {
+  LoadCase force;
+  force.name = "force";
+  force.supports = {{part.foot, true, true, true}};
+  LoadCase pressure = force;
+  LoadCase weight = force;
+  LoadCase heat = force;
+  force.forces = {{part.head, {300.0, -200.0, 500.0}}};
+  pressure.name = "pressure";
+  pressure.pressures = {{part.side, 3.0}};
+  weight.name = "weight";
+  weight.gravity = {2000.0, -3000.0, -9810.0};
+  weight.spin = Spin{{5.0, -3.0, 2.0}, {1.0, 0.5, 2.0}, 300.0};
+  heat.name = "heat";
+  heat.temperature = Temperature{.field =
+                                     [](const Vec3& x) {
+                                       return 80.0 + 1.5 * x.x() - 0.7 * x.y() +
+                                              0.02 * x.z() * x.z();
+                                     },
+                                 .reference = 20.0};
+  return {force, pressure, weight, heat};
+}
+
+DeckMaterial deck_material(const Material& m) {
+  DeckMaterial result{m.name, m.youngs_modulus, m.poisson_ratio, m.density};
+  result.thermal_expansion = m.thermal_expansion;
+  if (m.orthotropic) {
+    result.orthotropic = DeckOrthotropic{
+        m.orthotropic->youngs_moduli, m.orthotropic->poisson_ratios,
+        m.orthotropic->shear_moduli, m.orthotropic->axes.first,
+        m.orthotropic->axes.second};
+  }
+  return result;
+}
+
+DeckStep deck_step(const TetMesh& mesh, const LoadCase& load_case) {
+  DeckStep step{.name = load_case.name};
+  step.supports = {{load_case.supports[0].surface, {}, true, true, true}};
+  LoadCase forces;
+  forces.forces = load_case.forces;
+  if (!forces.forces.empty()) {
+    step.nodal_forces = nodal_forces(mesh, forces);
+  }
+  for (const SurfacePressure& p : load_case.pressures) {
+    step.pressures.push_back({p.surface, p.pressure});
+  }
+  step.gravity = load_case.gravity;
+  if (load_case.spin) {
+    step.spin = DeckSpin{load_case.spin->point, load_case.spin->axis,
+                         load_case.spin->rate};
+  }
+  step.temperature_change = temperature_change(mesh, load_case);
+  return step;
+}
+
+/// Largest difference over the largest stress component.
+double stress_difference(const std::vector<Stress>& ours,
+                         const std::vector<Stress>& theirs) {
+  double largest = 0.0;
+  double difference = 0.0;
+  for (std::size_t k = 0; k < ours.size(); ++k) {
+    for (int c = 0; c < 6; ++c) {
+      largest = std::max(largest, std::abs(theirs[k][c]));
+      difference = std::max(difference, std::abs(ours[k][c] - theirs[k][c]));
+    }
+  }
+  return difference / largest;
+}
+
+struct Job {
+  int part;
+  int order;
+  bool orthotropic;
+};
+
+class InCalculix : public testing::TestWithParam<Job> {};
+
+TEST_P(InCalculix, EveryLoadGivesTheSameDisplacementsAndStresses) {
+  if (!have_calculix()) {
+    GTEST_SKIP() << "ccx (Debian package calculix-ccx) is not installed";
+  }
+  const Part& part = parts()[GetParam().part];
+  const TetMesh mesh = part.make(GetParam().order);
+  const Material material = GetParam().orthotropic ? laminate() : aluminium();
+  const std::vector<LoadCase> cases = load_cases(part);
+  CalculixDeck deck;
+  deck.materials = {deck_material(material)};
+  deck.output = DeckOutput::Print;
+  for (const LoadCase& load_case : cases) {
+    deck.steps.push_back(deck_step(mesh, load_case));
+  }
+  const auto theirs = run_calculix(calculix_deck(mesh, deck),
+                                   static_cast<int>(mesh.nodes.size()));
+  ASSERT_EQ(theirs.size(), cases.size());
+  const ElasticModel model(mesh, {material}, cases, {.tolerance = 1e-11});
+  ASSERT_FALSE(model.base_solution().failure)
+      << model.base_solution().failure->message;
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    const VectorX& u = model.base_solution().displacements[c];
+    const double apart =
+        (u - theirs[c].displacement).lpNorm<Eigen::Infinity>() /
+        u.lpNorm<Eigen::Infinity>();
+    EXPECT_LE(apart, kDisplacement) << cases[c].name;
+    const PointStress stress =
+        point_stress(mesh, {material}, u, temperature_change(mesh, cases[c]));
+    ASSERT_EQ(stress.stress.size(), theirs[c].stress.size()) << cases[c].name;
+    const double stress_apart =
+        stress_difference(stress.stress, theirs[c].stress);
+    EXPECT_LE(stress_apart, kStress) << cases[c].name;
+    RecordProperty(cases[c].name + "_displacement", std::to_string(apart));
+    RecordProperty(cases[c].name + "_stress", std::to_string(stress_apart));
+  }
+}
+
+std::vector<Job> jobs() {
+  std::vector<Job> all;
+  for (int part = 0; part < 3; ++part) {
+    for (const int order : {1, 2}) {
+      for (const bool orthotropic : {false, true}) {
+        all.push_back({part, order, orthotropic});
+      }
+    }
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, InCalculix, testing::ValuesIn(jobs()),
+                         [](const auto& job) {
+                           return parts()[job.param.part].name +
+                                  (job.param.order == 1 ? "Tet4" : "Tet10") +
+                                  (job.param.orthotropic ? "Orthotropic"
+                                                         : "Isotropic");
+                         });
+
+}  // namespace
+}  // namespace meniscus
