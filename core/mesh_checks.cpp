@@ -61,7 +61,7 @@ class Checker {
     if (facets.size() > kMostFacetsNamed) {
       facets.resize(kMostFacetsNamed);
     }
-    found_.push_back({kind, std::move(facets), position, {}, {}});
+    found_.push_back({kind, std::move(facets), position, {}});
     return true;
   }
 

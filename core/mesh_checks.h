@@ -32,8 +32,8 @@ struct Finding {
   FindingKind kind;
   std::vector<int> facets;  // at most 8 of those concerned, the first lowest
   Vec3 position = Vec3::Zero();
-  std::vector<std::string> surfaces;  // names of the facets' surfaces
   std::string message;  // kind, facet ids, surface names, position, advice
+  std::vector<std::string> surfaces = {};  // names of the facets' surfaces
 };
 
 struct SurfaceCheckOptions {
