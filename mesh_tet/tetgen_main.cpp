@@ -2,6 +2,7 @@
 // because TetGen 1.5 ends its process on some inputs; the only file that sees
 // TetGen. Reads a request on stdin, writes a reply on stdout
 // (mesh_tet/tetgen_protocol.h).
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <dlfcn.h>
@@ -67,6 +68,9 @@ struct Surface {
   std::vector<double> points;
   std::vector<int> facets;
   std::vector<double> holes;
+  std::vector<double> nodes;  // of the background mesh, as what follows
+  std::vector<int> elements;
+  std::vector<double> edges;
 };
 
 Surface read_surface() {
@@ -75,47 +79,84 @@ Surface read_surface() {
   read_all(&r, sizeof r);
   const auto sane = [](std::int64_t n) { return n >= 0 && n <= kMostItems; };
   if (r.magic != kMagic || !sane(r.points) || !sane(r.facets) ||
-      !sane(r.holes) || r.switches[kSwitchesSize - 1] != 0) {
+      !sane(r.holes) || !sane(r.background_nodes) ||
+      !sane(r.background_elements) || r.switches[kSwitchesSize - 1] != 0) {
     end(kBadRequest);
   }
   surface.points.resize(3 * static_cast<std::size_t>(r.points));
   surface.facets.resize(3 * static_cast<std::size_t>(r.facets));
   surface.holes.resize(3 * static_cast<std::size_t>(r.holes));
-  read_all(surface.points.data(), sizeof(double) * surface.points.size());
-  read_all(surface.facets.data(), sizeof(int) * surface.facets.size());
-  read_all(surface.holes.data(), sizeof(double) * surface.holes.size());
+  surface.nodes.resize(3 * static_cast<std::size_t>(r.background_nodes));
+  surface.elements.resize(4 * static_cast<std::size_t>(r.background_elements));
+  surface.edges.resize(static_cast<std::size_t>(r.background_nodes));
+  const auto read = [](auto& list) {
+    read_all(list.data(), sizeof(list[0]) * list.size());
+  };
+  read(surface.points);
+  read(surface.facets);
+  read(surface.holes);
+  read(surface.nodes);
+  read(surface.elements);
+  read(surface.edges);
   std::uint64_t mark = 0;
   read_all(&mark, sizeof mark);
   if (mark != kEndMark) {
     end(kBadRequest);
   }
-  for (const int point : surface.facets) {
-    if (point < 0 || point >= r.points) {
-      end(kBadRequest);
-    }
+  const auto outside = [](const std::vector<int>& ids, std::int64_t count) {
+    return std::any_of(ids.begin(), ids.end(),
+                       [&](int id) { return id < 0 || id >= count; });
+  };
+  if (outside(surface.facets, r.points) ||
+      outside(surface.elements, r.background_nodes)) {
+    end(kBadRequest);
   }
   return surface;
 }
 
-void fill(Surface& surface, int out) {
+/// The sizes asked for; nothing when there are none.
+tetgenio* background(Surface& surface) {
+  if (surface.elements.empty()) {
+    return nullptr;
+  }
+  auto* mesh = new tetgenio;
+  mesh->firstnumber = 0;
+  mesh->pointlist = surface.nodes.data();
+  mesh->numberofpoints = static_cast<int>(surface.request.background_nodes);
+  mesh->pointmtrlist = surface.edges.data();
+  mesh->numberofpointmtrs = 1;
+  mesh->tetrahedronlist = surface.elements.data();
+  mesh->numberoftetrahedra =
+      static_cast<int>(surface.request.background_elements);
+  mesh->numberofcorners = 4;
+  return mesh;
+}
+
+/// Borrowed arrays; the process ends before a destructor would free them.
+tetgenio& hand_over(Surface& surface) {
+  auto& in = *new tetgenio;
   const auto facet_count = static_cast<std::size_t>(surface.request.facets);
-  std::vector<tetgenio::polygon> polygons(facet_count);
-  std::vector<tetgenio::facet> facets(facet_count);
+  in.firstnumber = 0;
+  in.pointlist = surface.points.data();
+  in.numberofpoints = static_cast<int>(surface.request.points);
+  auto& polygons = *new std::vector<tetgenio::polygon>(facet_count);
+  auto& facets = *new std::vector<tetgenio::facet>(facet_count);
   for (std::size_t f = 0; f < facet_count; ++f) {
     polygons[f] = {surface.facets.data() + 3 * f, 3};
     facets[f] = {&polygons[f], 1, nullptr, 0};
   }
-  // Borrowed arrays; the process ends before a destructor would free them.
-  auto& in = *new tetgenio;
-  auto& result = *new tetgenio;
-  in.firstnumber = 0;
-  in.pointlist = surface.points.data();
-  in.numberofpoints = static_cast<int>(surface.request.points);
   in.facetlist = facets.data();
   in.numberoffacets = static_cast<int>(facet_count);
   in.holelist = surface.holes.data();
   in.numberofholes = static_cast<int>(surface.request.holes);
-  tetrahedralize(surface.request.switches, &in, &result);
+  return in;
+}
+
+void fill(Surface& surface, int out) {
+  tetgenio& in = hand_over(surface);
+  auto& result = *new tetgenio;
+  tetrahedralize(surface.request.switches, &in, &result, nullptr,
+                 background(surface));
 
   Reply reply;
   reply.nodes = result.numberofpoints;

@@ -42,6 +42,8 @@ Failure not_a_number(const Case& input, const VectorX& responses) {
 struct ForwardModel::Impl {
   Case input;
   Evaluation frozen;
+  SurfaceMesh unfilled;
+  std::vector<Finding> findings;
   std::optional<FilmModel> film;
   TetMesh base_mesh;  // ten-node, at the initial design
   std::vector<char> curve_edge;
@@ -60,6 +62,8 @@ void ForwardModel::Impl::freeze_mesh(const QuadraticSurface& surface,
       tetrahedralize(surface.base, {.monitor = &monitor});
   if (filled.failure) {
     frozen.failure = filled.failure;
+    unfilled = surface.base;
+    findings = std::move(filled.findings);
     return;
   }
   motion.emplace(filled.mesh, static_cast<int>(surface.base.points.size()));
@@ -140,6 +144,14 @@ ForwardModel::ForwardModel(const Case& input,
 ForwardModel::~ForwardModel() = default;
 ForwardModel::ForwardModel(ForwardModel&&) noexcept = default;
 ForwardModel& ForwardModel::operator=(ForwardModel&&) noexcept = default;
+
+const SurfaceMesh& ForwardModel::unfilled_surface() const {
+  return impl_->unfilled;
+}
+
+const std::vector<Finding>& ForwardModel::findings() const {
+  return impl_->findings;
+}
 
 const std::optional<Failure>& ForwardModel::failure() const {
   return impl_->frozen.failure;
