@@ -54,11 +54,8 @@ std::string encode(const TetgenInput& input) {
   request.points = static_cast<std::int64_t>(input.points->size());
   request.facets = static_cast<std::int64_t>(input.facets->size());
   request.holes = static_cast<std::int64_t>(input.holes.size());
-  if (input.background != nullptr) {
-    request.background_nodes =
-        static_cast<std::int64_t>(input.background->nodes.size());
-    request.background_elements =
-        static_cast<std::int64_t>(input.background->elements.size() / 4);
+  if (input.elements != nullptr) {
+    request.elements = static_cast<std::int64_t>(input.elements->size() / 4);
   }
   if (input.switches.size() >= sizeof request.switches) {
     throw InvalidInput(
@@ -71,11 +68,10 @@ std::string encode(const TetgenInput& input) {
   append(bytes, input.points->data(), sizeof(Vec3) * input.points->size());
   append(bytes, input.facets->data(), sizeof(Triangle) * input.facets->size());
   append(bytes, input.holes.data(), sizeof(Vec3) * input.holes.size());
-  if (input.background != nullptr) {
-    const BackgroundMesh& mesh = *input.background;
-    append(bytes, mesh.nodes.data(), sizeof(Vec3) * mesh.nodes.size());
-    append(bytes, mesh.elements.data(), sizeof(int) * mesh.elements.size());
-    append(bytes, mesh.edges.data(), sizeof(double) * mesh.edges.size());
+  if (input.elements != nullptr) {
+    append(bytes, input.elements->data(), sizeof(int) * input.elements->size());
+    append(bytes, input.largest->data(),
+           sizeof(double) * input.largest->size());
   }
   append(bytes, &tetgen::kEndMark, sizeof tetgen::kEndMark);
   return bytes;

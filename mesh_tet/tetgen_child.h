@@ -10,17 +10,13 @@
 
 namespace meniscus {
 
-/// Tells TetGen how large elements shall be, in between by interpolation.
-struct BackgroundMesh {
-  Points nodes;
-  std::vector<int> elements;  // 4 node ids each
-  std::vector<double> edges;  // target edge per node, positive
-};
-
 struct TetgenInput {
   const Points* points = nullptr;  // finite
   const std::vector<Triangle>* facets = nullptr;
-  const BackgroundMesh* background = nullptr;  // with the switch m
+  // With the switches r and a: the mesh to refine, its corners among `points`,
+  // and the largest volume per element.
+  const std::vector<int>* elements = nullptr;
+  const std::vector<double>* largest = nullptr;
   Points holes = {};     // one point strictly inside each cavity
   std::string switches;  // TetGen's own; see its manual, section 3.2
 };

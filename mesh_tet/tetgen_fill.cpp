@@ -1,11 +1,9 @@
 #include "mesh_tet/tetgen_fill.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <numeric>
-#include <queue>
 
 #include <fmt/format.h>
 
@@ -16,20 +14,19 @@ namespace meniscus {
 
 namespace {
 
-/// Fillings by sizes after the first mesh, each with the sizes at the nodes of
-/// the one before. A third changes little.
-constexpr int kPasses = 2;
-
-/// Growth of the target edge per length, at most.
-constexpr double kGrowth = 0.3;
+/// Largest volume over that of the regular element where sizes vary: the
+/// median element then has the size asked for.
+constexpr double kGradedFactor = 3.0;
 
 /// TetGen's switches. Y: the surface stays. O9/7o/140: flips, smoothing and
 /// new inner points against dihedral angles above 140 degrees, as far as
 /// TetGen can.
-std::string make_switches(const TetrahedralizeOptions& options,
-                          const std::string& size) {
-  return fmt::format("pY{}q{:.6f}/{:.3f}QO9/7o/140", size,
-                     options.radius_edge_ratio, options.min_dihedral_deg);
+std::string make_switches(const char* work,
+                          const TetrahedralizeOptions& options,
+                          const std::string& volume) {
+  return fmt::format("{}YQq{:.6f}/{:.3f}{}O9/7o/140", work,
+                     options.radius_edge_ratio, options.min_dihedral_deg,
+                     volume);
 }
 
 TetgenOutput too_many(double count) {
@@ -52,59 +49,48 @@ double size_at(const TetrahedralizeOptions& options, const Vec3& place) {
   return std::min(size, options.edge.value_or(size));
 }
 
-/// Sizes grow by at most kGrowth x the distance, along the mesh's edges: TetGen
-/// only looks at corners, and a large element would not see a small size amid
-/// its own. Smallest first, so that every node is settled once.
-void limit_growth(BackgroundMesh& sizes) {
-  std::vector<int> start(sizes.nodes.size() + 1, 0);
-  for (const int node : sizes.elements) {
-    ++start[node + 1];
+/// Smallest size at the centroid, on the faces, on the edges and half way to
+/// the corners.
+double element_size(const TetrahedralizeOptions& options, const Frame& frame,
+                    const TetCorners& x) {
+  const Vec3 middle = 0.25 * (x[0] + x[1] + x[2] + x[3]);
+  double least = size_at(options, frame.back(middle));
+  const auto look = [&](const Vec3& place) {
+    least = std::min(least, size_at(options, frame.back(place)));
+  };
+  for (const Vec3& corner : x) {
+    look(0.5 * (middle + corner));
+    look((4.0 * middle - corner) / 3.0);
   }
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<int> star(sizes.elements.size());
-  std::vector<int> next(start.begin(), start.end() - 1);
-  for (std::size_t i = 0; i < sizes.elements.size(); ++i) {
-    star[next[sizes.elements[i]]++] = static_cast<int>(i / 4);
+  for (const Edge& edge : kTetEdges) {
+    look(0.5 * (x[edge[0]] + x[edge[1]]));
   }
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (std::size_t n = 0; n < sizes.nodes.size(); ++n) {
-    queue.emplace(sizes.edges[n], static_cast<int>(n));
-  }
-  while (!queue.empty()) {
-    const auto [size, node] = queue.top();
-    queue.pop();
-    if (size > sizes.edges[node]) {
-      continue;
-    }
-    for (int s = start[node]; s < start[node + 1]; ++s) {
-      for (int k = 0; k < 4; ++k) {
-        const int other = sizes.elements[4 * star[s] + k];
-        const double bound =
-            size + kGrowth * (sizes.nodes[other] - sizes.nodes[node]).norm();
-        if (bound < sizes.edges[other]) {
-          sizes.edges[other] = bound;
-          queue.emplace(bound, other);
-        }
-      }
-    }
-  }
+  return least;
 }
 
-/// Elements of these sizes in the volume of the background.
-double expected_count(const BackgroundMesh& sizes) {
-  double count = 0.0;
-  for (std::size_t i = 0; i < sizes.elements.size(); i += 4) {
-    const int* ids = sizes.elements.data() + i;
-    double edge = 0.0;
-    for (int k = 0; k < 4; ++k) {
-      edge += 0.25 * sizes.edges[ids[k]];
-    }
-    count += std::abs(tet_volume({sizes.nodes[ids[0]], sizes.nodes[ids[1]],
-                                  sizes.nodes[ids[2]], sizes.nodes[ids[3]]})) /
-             regular_volume(edge);
+struct Bounds {
+  std::vector<double> largest;  // volume per element, in the frame
+  double excess = 0.0;          // part of the elements that is too large
+  double expected = 0.0;        // elements after splitting
+};
+
+Bounds find_bounds(const TetgenOutput& output, const Frame& frame,
+                   const TetrahedralizeOptions& options) {
+  Bounds bounds;
+  const std::size_t count = output.elements.size() / 4;
+  bounds.largest.reserve(count);
+  for (std::size_t e = 0; e < count; ++e) {
+    const int* ids = output.elements.data() + 4 * e;
+    const TetCorners x = {output.nodes[ids[0]], output.nodes[ids[1]],
+                          output.nodes[ids[2]], output.nodes[ids[3]]};
+    const double edge = frame.scale * element_size(options, frame, x);
+    const double largest = kGradedFactor * regular_volume(edge);
+    const double volume = std::abs(tet_volume(x));
+    bounds.largest.push_back(largest);
+    bounds.excess += volume > largest ? 1.0 / static_cast<double>(count) : 0.0;
+    bounds.expected += std::max(1.0, volume / largest);
   }
-  return count;
+  return bounds;
 }
 
 /// What is left of the time limit, for a further child.
@@ -114,18 +100,31 @@ TetgenLimits limits_left(const TetrahedralizeOptions& options,
           options.memory_limit, options.monitor};
 }
 
-/// The surface once more, with elements of the edges asked for.
-TetgenOutput fill_again(TetgenInput input, BackgroundMesh sizes,
-                        const TetrahedralizeOptions& options,
-                        const Timer& timer) {
-  limit_growth(sizes);
-  const double count = expected_count(sizes);
-  if (count > kMostElements) {
-    return too_many(count);
+/// The second pass sees sizes between the first's nodes; what is too large
+/// after it lies at the surface, which keeps its size.
+TetgenOutput split(TetgenOutput output, const SurfaceMesh& surface,
+                   const Frame& frame, const TetrahedralizeOptions& options,
+                   const Timer& timer) {
+  constexpr std::array<double, 2> kBearable = {0.0, 0.01};
+  for (const double bearable : kBearable) {
+    const Bounds bounds = find_bounds(output, frame, options);
+    if (bounds.excess <= bearable) {
+      break;
+    }
+    if (bounds.expected > kMostElements) {
+      return too_many(bounds.expected);
+    }
+    output = run_tetgen({.points = &output.nodes,
+                         .facets = &surface.facets,
+                         .elements = &output.elements,
+                         .largest = &bounds.largest,
+                         .switches = make_switches("r", options, "a")},
+                        limits_left(options, timer));
+    if (output.failure) {
+      break;
+    }
   }
-  input.background = &sizes;
-  input.switches = make_switches(options, "m");
-  return run_tetgen(input, limits_left(options, timer));
+  return output;
 }
 
 }  // namespace
@@ -171,30 +170,36 @@ TetgenOutput fill_surface(const SurfaceMesh& surface, const SurfaceFit& fit,
   const TetgenInput input{.points = &points,
                           .facets = &surface.facets,
                           .holes = frame.into(fit.cavities),
-                          .switches = make_switches(options, volume)};
+                          .switches = make_switches("p", options, volume)};
   TetgenOutput output = run_tetgen(input, limits_left(options, timer));
-  for (int pass = 0; options.size && !output.failure && pass < kPasses;
-       ++pass) {
-    BackgroundMesh sizes{
-        std::move(output.nodes), std::move(output.elements), {}};
-    sizes.edges.reserve(sizes.nodes.size());
-    for (const Vec3& p : sizes.nodes) {
-      sizes.edges.push_back(frame.scale * size_at(options, frame.back(p)));
-    }
-    output = fill_again(input, std::move(sizes), options, timer);
+  if (!options.size || output.failure) {
+    return output;
   }
-  return output;
+  return split(std::move(output), surface, frame, options, timer);
 }
 
-TetgenOutput fill_by_sizes(const SurfaceMesh& surface, const SurfaceFit& fit,
-                           const Frame& frame, const BackgroundMesh& sizes,
-                           const TetrahedralizeOptions& options) {
-  const Points points = frame.into(surface.points);
-  return fill_again({.points = &points,
+TetgenOutput split_elements(const SurfaceMesh& surface, const Frame& frame,
+                            const TetMesh& mesh,
+                            const std::vector<double>& edge,
+                            const TetrahedralizeOptions& options) {
+  double expected = 0.0;
+  std::vector<double> largest;
+  largest.reserve(edge.size());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const double volume = kGradedFactor * regular_volume(edge[e]);
+    expected += std::max(1.0, corner_volume(mesh, e) / volume);
+    largest.push_back(volume * std::pow(frame.scale, 3));
+  }
+  if (expected > kMostElements) {
+    return too_many(expected);
+  }
+  const Points points = frame.into(mesh.nodes);
+  return run_tetgen({.points = &points,
                      .facets = &surface.facets,
-                     .holes = frame.into(fit.cavities),
-                     .switches = {}},
-                    sizes, options, Timer());
+                     .elements = &mesh.elements,
+                     .largest = &largest,
+                     .switches = make_switches("r", options, "a")},
+                    limits_left(options, Timer()));
 }
 
 }  // namespace meniscus

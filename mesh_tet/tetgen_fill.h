@@ -27,17 +27,18 @@ double regular_volume(double edge);
 /// TetGen's working memory and time beyond this would exceed any limit.
 inline constexpr double kMostElements = 2e8;
 
-/// Fills `surface`, in passes when options.size asks for sizes. In the frame's
-/// coordinates, as TetGen returns it. Throws InvalidInput for a size that is
-/// not positive, and what run_tetgen throws.
+/// Fills `surface`, then splits elements where options.size asks for it. In
+/// the frame's coordinates, as TetGen returns it. Throws InvalidInput for a
+/// size that is not positive, and what run_tetgen throws.
 TetgenOutput fill_surface(const SurfaceMesh& surface, const SurfaceFit& fit,
                           const Frame& frame,
                           const TetrahedralizeOptions& options);
 
-/// Fills `surface` with elements of the edges that `sizes` tells, which is in
-/// the frame's coordinates.
-TetgenOutput fill_by_sizes(const SurfaceMesh& surface, const SurfaceFit& fit,
-                           const Frame& frame, const BackgroundMesh& sizes,
-                           const TetrahedralizeOptions& options);
+/// Splits the elements of `mesh`, which fills `surface`, where they are larger
+/// than the regular one of their `edge` [length], one each.
+TetgenOutput split_elements(const SurfaceMesh& surface, const Frame& frame,
+                            const TetMesh& mesh,
+                            const std::vector<double>& edge,
+                            const TetrahedralizeOptions& options);
 
 }  // namespace meniscus

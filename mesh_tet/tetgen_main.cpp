@@ -8,6 +8,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <new>
+#include <numeric>
 #include <tetgen.h>
 #include <typeinfo>
 #include <unistd.h>
@@ -68,9 +69,10 @@ struct Surface {
   std::vector<double> points;
   std::vector<int> facets;
   std::vector<double> holes;
-  std::vector<double> nodes;  // of the background mesh, as what follows
-  std::vector<int> elements;
-  std::vector<double> edges;
+  std::vector<int> elements;    // to refine
+  std::vector<double> largest;  // volume of each
+  std::vector<int> markers;     // of facets; TetGen joins those of one plane
+                                // and marker
 };
 
 Surface read_surface() {
@@ -79,25 +81,23 @@ Surface read_surface() {
   read_all(&r, sizeof r);
   const auto sane = [](std::int64_t n) { return n >= 0 && n <= kMostItems; };
   if (r.magic != kMagic || !sane(r.points) || !sane(r.facets) ||
-      !sane(r.holes) || !sane(r.background_nodes) ||
-      !sane(r.background_elements) || r.switches[kSwitchesSize - 1] != 0) {
+      !sane(r.holes) || !sane(r.elements) ||
+      r.switches[kSwitchesSize - 1] != 0) {
     end(kBadRequest);
   }
   surface.points.resize(3 * static_cast<std::size_t>(r.points));
   surface.facets.resize(3 * static_cast<std::size_t>(r.facets));
   surface.holes.resize(3 * static_cast<std::size_t>(r.holes));
-  surface.nodes.resize(3 * static_cast<std::size_t>(r.background_nodes));
-  surface.elements.resize(4 * static_cast<std::size_t>(r.background_elements));
-  surface.edges.resize(static_cast<std::size_t>(r.background_nodes));
+  surface.elements.resize(4 * static_cast<std::size_t>(r.elements));
+  surface.largest.resize(static_cast<std::size_t>(r.elements));
   const auto read = [](auto& list) {
     read_all(list.data(), sizeof(list[0]) * list.size());
   };
   read(surface.points);
   read(surface.facets);
   read(surface.holes);
-  read(surface.nodes);
   read(surface.elements);
-  read(surface.edges);
+  read(surface.largest);
   std::uint64_t mark = 0;
   read_all(&mark, sizeof mark);
   if (mark != kEndMark) {
@@ -108,28 +108,10 @@ Surface read_surface() {
                        [&](int id) { return id < 0 || id >= count; });
   };
   if (outside(surface.facets, r.points) ||
-      outside(surface.elements, r.background_nodes)) {
+      outside(surface.elements, r.points)) {
     end(kBadRequest);
   }
   return surface;
-}
-
-/// The sizes asked for; nothing when there are none.
-tetgenio* background(Surface& surface) {
-  if (surface.elements.empty()) {
-    return nullptr;
-  }
-  auto* mesh = new tetgenio;
-  mesh->firstnumber = 0;
-  mesh->pointlist = surface.nodes.data();
-  mesh->numberofpoints = static_cast<int>(surface.request.background_nodes);
-  mesh->pointmtrlist = surface.edges.data();
-  mesh->numberofpointmtrs = 1;
-  mesh->tetrahedronlist = surface.elements.data();
-  mesh->numberoftetrahedra =
-      static_cast<int>(surface.request.background_elements);
-  mesh->numberofcorners = 4;
-  return mesh;
 }
 
 /// Borrowed arrays; the process ends before a destructor would free them.
@@ -139,6 +121,18 @@ tetgenio& hand_over(Surface& surface) {
   in.firstnumber = 0;
   in.pointlist = surface.points.data();
   in.numberofpoints = static_cast<int>(surface.request.points);
+  if (surface.request.elements > 0) {
+    surface.markers.resize(facet_count);
+    std::iota(surface.markers.begin(), surface.markers.end(), 1);
+    in.tetrahedronlist = surface.elements.data();
+    in.numberoftetrahedra = static_cast<int>(surface.request.elements);
+    in.numberofcorners = 4;
+    in.tetrahedronvolumelist = surface.largest.data();
+    in.trifacelist = surface.facets.data();
+    in.trifacemarkerlist = surface.markers.data();
+    in.numberoftrifaces = static_cast<int>(facet_count);
+    return in;
+  }
   auto& polygons = *new std::vector<tetgenio::polygon>(facet_count);
   auto& facets = *new std::vector<tetgenio::facet>(facet_count);
   for (std::size_t f = 0; f < facet_count; ++f) {
@@ -155,8 +149,7 @@ tetgenio& hand_over(Surface& surface) {
 void fill(Surface& surface, int out) {
   tetgenio& in = hand_over(surface);
   auto& result = *new tetgenio;
-  tetrahedralize(surface.request.switches, &in, &result, nullptr,
-                 background(surface));
+  tetrahedralize(surface.request.switches, &in, &result);
 
   Reply reply;
   reply.nodes = result.numberofpoints;

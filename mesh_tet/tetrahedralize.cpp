@@ -221,21 +221,24 @@ std::optional<Failure> run(const SurfaceMesh& surface,
   return take(surface, fit, frame, output, options, result);
 }
 
-std::optional<Failure> resize(const SurfaceMesh& surface, const TetMesh& mesh,
+std::optional<Failure> refine(const SurfaceMesh& surface, const TetMesh& mesh,
                               const std::vector<double>& node_edge,
                               const TetrahedralizeOptions& options,
                               Tetrahedralization& result) {
-  const SurfaceFit fit = fit_surface(surface);
-  const Frame frame(surface.points, mean_edge_length(surface));
-  BackgroundMesh sizes{frame.into(mesh.nodes), mesh.elements, node_edge};
-  for (double& edge : sizes.edges) {
-    edge *= frame.scale;
+  std::vector<double> edge;
+  edge.reserve(static_cast<std::size_t>(mesh.element_count()));
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    double& least = edge.emplace_back(node_edge[mesh.element(e)[0]]);
+    for (const int node : mesh.element(e)) {
+      least = std::min(least, node_edge[node]);
+    }
   }
+  const Frame frame(surface.points, mean_edge_length(surface));
   const Timer timer;
   const TetgenOutput output =
-      fill_by_sizes(surface, fit, frame, sizes, options);
+      split_elements(surface, frame, mesh, edge, options);
   result.tetgen_seconds = timer.seconds();
-  return take(surface, fit, frame, output, options, result);
+  return take(surface, fit_surface(surface), frame, output, options, result);
 }
 
 /// Runs `work` on a result; clears the mesh when it fails.
@@ -265,7 +268,7 @@ Tetrahedralization tetrahedralize(const SurfaceMesh& surface,
   });
 }
 
-Tetrahedralization resize_tets(const SurfaceMesh& surface, const TetMesh& mesh,
+Tetrahedralization refine_tets(const SurfaceMesh& surface, const TetMesh& mesh,
                                const std::vector<double>& node_edge,
                                const TetrahedralizeOptions& options) {
   const auto good = [](double edge) {
@@ -275,14 +278,14 @@ Tetrahedralization resize_tets(const SurfaceMesh& surface, const TetMesh& mesh,
       node_edge.size() != mesh.nodes.size() ||
       !std::all_of(node_edge.begin(), node_edge.end(), good)) {
     throw InvalidInput(fmt::format(
-        "resize_tets: needs the four-node mesh of its surface and a positive "
+        "refine_tets: needs the four-node mesh of its surface and a positive "
         "edge per node; found order {}, {} faces for {} facets, {} edges for "
         "{} nodes",
         mesh.order, mesh.face_count(), surface.facets.size(), node_edge.size(),
         mesh.nodes.size()));
   }
   return timed(options, [&](Tetrahedralization& result) {
-    return resize(surface, mesh, node_edge, options, result);
+    return refine(surface, mesh, node_edge, options, result);
   });
 }
 

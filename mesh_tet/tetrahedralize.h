@@ -21,9 +21,8 @@ namespace meniscus {
 /// average at less than half of it; 2.1 makes the average the regular one.
 inline constexpr double kVolumeFactor = 2.1;
 
-/// Target edge [length] at a place, positive and finite. It is lowered where it
-/// grows by more than 0.3 per length; a feature narrower than the distance of
-/// the surface points around may be missed.
+/// Target edge [length] at a place, positive and finite; asked at 15 places an
+/// element, so that a feature between them may be missed.
 using SizeField = std::function<double(const Vec3&)>;
 
 /// Meshes whose smallest dihedral angle is below this are refused [degree]:
@@ -64,11 +63,11 @@ struct Tetrahedralization {
 Tetrahedralization tetrahedralize(const SurfaceMesh& surface,
                                   const TetrahedralizeOptions& options = {});
 
-/// The surface of `mesh`, made by tetrahedralize from `surface`, filled anew
-/// with elements of the edges [length] that `node_edge` asks for, one positive
-/// number per node of `mesh`, linear between them: for adaptive refinement.
-/// The surface keeps its own size. Same errors and failures.
-Tetrahedralization resize_tets(const SurfaceMesh& surface, const TetMesh& mesh,
+/// The elements of `mesh`, made by tetrahedralize from `surface`, split until
+/// they have the least edge [length] that `node_edge` asks for at their corners
+/// (positive, one per node of `mesh`): for adaptive refinement. The surface
+/// keeps its own size. Same errors and failures.
+Tetrahedralization refine_tets(const SurfaceMesh& surface, const TetMesh& mesh,
                                const std::vector<double>& node_edge,
                                const TetrahedralizeOptions& options = {});
 

@@ -51,7 +51,7 @@ void expect_size(const std::vector<double>& ratio) {
   ASSERT_FALSE(ratio.empty());
   EXPECT_GT(quantile(ratio, 0.5), 0.75);
   EXPECT_LT(quantile(ratio, 0.5), 1.25);
-  EXPECT_GT(quantile(ratio, 0.05), 0.5);
+  EXPECT_GT(quantile(ratio, 0.05), 0.4);
   EXPECT_LT(quantile(ratio, 0.99), 1.7);
 }
 
@@ -143,7 +143,7 @@ TEST(SizeField, RefusesSizesThatAreNone) {
   EXPECT_EQ(result.failure->kind, FailureKind::MeshingFailed);
 }
 
-TEST(ResizeTets, IsFineWhereAsked) {
+TEST(RefineTets, SplitsWhereAsked) {
   const SurfaceMesh surface = shapes::sphere(1.0, 3);
   const auto coarse = tetrahedralize(surface);
   ASSERT_FALSE(coarse.failure);
@@ -151,7 +151,7 @@ TEST(ResizeTets, IsFineWhereAsked) {
   for (const Vec3& p : coarse.mesh.nodes) {
     edge.push_back((p - Vec3(0.2, 0.1, 0)).norm() < 0.4 ? 0.05 : 1.0);
   }
-  const auto fine = resize_tets(surface, coarse.mesh, edge);
+  const auto fine = refine_tets(surface, coarse.mesh, edge);
   ASSERT_FALSE(fine.failure) << fine.failure->message;
   const auto inside = [](const Vec3& x) {
     return (x - Vec3(0.2, 0.1, 0)).norm() < 0.35;
@@ -167,17 +167,17 @@ TEST(ResizeTets, IsFineWhereAsked) {
   EXPECT_GE(fine.quality.min_dihedral_deg, 5.0);
 }
 
-TEST(ResizeTets, RefusesWhatDoesNotFit) {
+TEST(RefineTets, RefusesWhatDoesNotFit) {
   const SurfaceMesh surface = shapes::sphere(1.0, 1);
   const auto result = tetrahedralize(surface);
   ASSERT_FALSE(result.failure);
   std::vector<double> edge(result.mesh.nodes.size(), 0.1);
-  EXPECT_THROW(resize_tets(shapes::sphere(1.0, 2), result.mesh, edge),
+  EXPECT_THROW(refine_tets(shapes::sphere(1.0, 2), result.mesh, edge),
                InvalidInput);
   edge[3] = 0.0;
-  EXPECT_THROW(resize_tets(surface, result.mesh, edge), InvalidInput);
+  EXPECT_THROW(refine_tets(surface, result.mesh, edge), InvalidInput);
   edge.pop_back();
-  EXPECT_THROW(resize_tets(surface, result.mesh, edge), InvalidInput);
+  EXPECT_THROW(refine_tets(surface, result.mesh, edge), InvalidInput);
 }
 
 }  // namespace
