@@ -142,6 +142,9 @@ std::string describe_failure(const ChildResult& child,
   constexpr const char* kReport =
       "this is a fault inside TetGen; another element edge often helps";
   switch (child.exit_code) {
+    case tetgen::kBadRequest:
+      return "TetGen's helper did not understand the request; install program "
+             "and helper from one build";
     case tetgen::kOutOfMemory:
     case tetgen::kTetgenCode + 1:
       return fmt::format(kMemory, limits.memory / 1e6);

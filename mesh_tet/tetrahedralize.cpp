@@ -158,24 +158,25 @@ std::optional<Failure> finish(const SurfaceMesh& surface,
                               const TetrahedralizeOptions& options,
                               TetMesh& mesh, TetQuality& quality) {
   quality = tet_quality(mesh);
-  if (quality.min_dihedral_deg < options.improve_below_deg) {
+  if (quality.min_dihedral_deg < options.improve_below_deg ||
+      find_breach(quality, options.bounds)) {
     improve_tets(mesh, static_cast<int>(surface.points.size()),
-                 {.below_deg = options.improve_below_deg});
+                 {.below_deg = std::max(options.improve_below_deg,
+                                        options.bounds.min_dihedral_deg)});
     const std::string fault = attach_surface(surface, mesh);
     if (!fault.empty()) {
       throw MeshError(fmt::format("improving elements broke one: {}", fault));
     }
     quality = tet_quality(mesh);
   }
-  if (quality.min_dihedral_deg >= kLeastDihedralDeg) {
+  const auto breach = find_breach(quality, options.bounds);
+  if (!breach) {
     return std::nullopt;
   }
-  const Vec3& at = mesh.nodes[mesh.element(quality.worst_element)[0]];
   return meshing_failure(fmt::format(
-      "the best mesh has a dihedral angle of {:.3g} degrees near ({:.6g}, "
-      "{:.6g}, {:.6g}), the least is {}; remesh the surface more evenly "
-      "there, or change the element edge",
-      quality.min_dihedral_deg, at.x(), at.y(), at.z(), kLeastDihedralDeg));
+      "the best mesh has {} ({}); remesh the surface more evenly there, or "
+      "change the element edge",
+      breach->what, place_of(mesh, breach->element)));
 }
 
 /// The mesh in `result` from what TetGen returned.

@@ -25,10 +25,6 @@ inline constexpr double kVolumeFactor = 2.1;
 /// element, so that a feature between them may be missed.
 using SizeField = std::function<double(const Vec3&)>;
 
-/// Meshes whose smallest dihedral angle is below this are refused [degree]:
-/// ten-node elements lose about a digit of conditioning per decade of angle.
-inline constexpr double kLeastDihedralDeg = 1.0;
-
 struct TetrahedralizeOptions {
   std::optional<double> edge =
       std::nullopt;                 // target edge inside [length], positive;
@@ -40,6 +36,7 @@ struct TetrahedralizeOptions {
                                     // where the surface does not allow it
   double improve_below_deg = 10.0;  // inner nodes around elements with smaller
                                     // dihedral angles are moved to enlarge them
+  QualityBounds bounds = {};        // meshes that break them are refused
   double time_limit = 300.0;        // of the child [s]
   double memory_limit = 8e9;        // of the child [byte]
   Monitor* monitor = nullptr;       // may stop it: Interrupted

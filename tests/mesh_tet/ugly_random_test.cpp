@@ -80,8 +80,8 @@ class Ugly {
     const int count = 1 + below(10);
     for (int i = 0; i < count; ++i) {
       const Triangle& t = mesh.facets[below(mesh.facets.size())];
-      mesh.points[t[0]] +=
-          (1.0 - magnitude(-9, 0)) * (mesh.points[t[1]] - mesh.points[t[0]]);
+      mesh.points[t[0]] += (1.0 - magnitude(below(2) == 0 ? -9 : -1, 0)) *
+                           (mesh.points[t[1]] - mesh.points[t[0]]);
     }
     return mesh;
   }
@@ -116,7 +116,7 @@ class Ugly {
   SurfaceMesh flat() {
     SurfaceMesh mesh = body();
     const Vec3 normal = vector(1.0).normalized();
-    const double factor = below(4) == 0 ? 0.0 : magnitude(-12, -1);
+    const double factor = below(4) == 0 ? 0.0 : magnitude(-4, -0.5);
     for (Vec3& p : mesh.points) {
       p -= (1.0 - factor) * normal.dot(p) * normal;
     }
@@ -182,12 +182,12 @@ class Ugly {
     return mesh;
   }
   SurfaceMesh bodies() {
-    std::array<int, 27> body{};
+    std::array<int, 8> body{};
     for (int& b : body) {
-      b = below(4) - 1;
+      b = below(5) - 1;
     }
-    SurfaceMesh mesh = shapes::cubes({3, 3, 3}, 1, [&](int i, int j, int k) {
-      return body.at(static_cast<std::size_t>(9 * i + 3 * j + k));
+    SurfaceMesh mesh = shapes::cubes({2, 2, 2}, 1, [&](int i, int j, int k) {
+      return body.at(static_cast<std::size_t>(4 * i + 2 * j + k));
     });
     if (below(2) == 0) {
       mesh = shapes::cubes({3, 2, 2}, 2, [](int i, int, int) { return i; });
@@ -280,7 +280,7 @@ bool check(const SurfaceMesh& surface, Outcome outcome) {
   EXPECT_NE(outcome, Outcome::Failure);
   const double expected = enclosed_volume(surface);
   EXPECT_NEAR(mesh_volume(result.mesh), expected, 1e-9 * expected);
-  EXPECT_GE(result.quality.min_dihedral_deg, kLeastDihedralDeg);
+  EXPECT_GE(result.quality.min_dihedral_deg, QualityBounds{}.min_dihedral_deg);
   return true;
 }
 
