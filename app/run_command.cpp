@@ -86,6 +86,9 @@ void Run::write_all(RunResult& result, const EvaluationFields& fields) {
       }
     }
   }
+  for (const std::string& name : write_unfilled(fields, folder_)) {
+    result.warnings.push_back("look at the surface in " + name);
+  }
   result.output_seconds = timer.seconds();
   result.total_seconds += result.output_seconds;
   write_summary(input_, result, store_.all(), kProgramVersion, folder_);

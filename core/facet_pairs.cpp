@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/facet_tree.h"
+
 namespace meniscus {
 
 namespace {
@@ -235,6 +237,14 @@ PairVerdict judge_pair(const SurfaceMesh& mesh, int f, int g,
     verdict.state = PairState::TooClose;
   }
   return verdict;
+}
+
+bool for_each_near_pair(const SurfaceMesh& mesh, std::vector<int> facets,
+                        double tolerance,
+                        const std::function<bool(int, int)>& visit,
+                        std::int64_t most_steps) {
+  return FacetTree(mesh, std::move(facets), tolerance)
+      .visit_pairs(visit, most_steps);
 }
 
 }  // namespace meniscus

@@ -1,7 +1,9 @@
 /// Do two facets cross, or come too near? And which pairs are worth asking.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "core/surface_mesh.h"
@@ -23,11 +25,13 @@ struct PairVerdict {
 /// extended precision, then the distance of corners and edges (Ericson 2005).
 PairVerdict judge_pair(const SurfaceMesh& mesh, int f, int g, double tolerance);
 
-/// Calls visit(f, g), f != g, once for every pair of `facets` whose bounding
+/// Calls visit(f, g), f < g, once for every pair of `facets` whose bounding
 /// boxes are within `tolerance`, in a fixed order, until visit returns false.
-/// A bounding-box tree: O(n log n + pairs).
-void for_each_near_pair(const SurfaceMesh& mesh, std::vector<int> facets,
-                        double tolerance,
-                        const std::function<bool(int, int)>& visit);
+/// A bounding-box tree: O(n log n + pairs). Gives up, with false, after
+/// comparing `most_steps` pairs of boxes.
+bool for_each_near_pair(
+    const SurfaceMesh& mesh, std::vector<int> facets, double tolerance,
+    const std::function<bool(int, int)>& visit,
+    std::int64_t most_steps = std::numeric_limits<std::int64_t>::max());
 
 }  // namespace meniscus

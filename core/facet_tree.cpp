@@ -1,138 +1,146 @@
-#include <algorithm>
-#include <array>
+#include "core/facet_tree.h"
+
+#include <cmath>
+#include <limits>
 #include <utility>
 
-#include "core/facet_pairs.h"
+#include <Eigen/Geometry>
 
 namespace meniscus {
 
 namespace {
 
-struct Box {
-  Vec3 low;
-  Vec3 high;
-};
-
-bool overlap(const Box& a, const Box& b) {
-  return (a.low.array() <= b.high.array()).all() &&
-         (b.low.array() <= a.high.array()).all();
-}
-
 constexpr int kLeafSize = 4;
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Facets first .. last - 1 of the tree's order; inner nodes have children.
-struct Node {
-  Box box;
-  int first = 0;
-  int last = 0;
-  std::array<int, 2> child = {-1, -1};
-};
-
-class Tree {
- public:
-  Tree(const SurfaceMesh& mesh, std::vector<int> facets, double tolerance)
-      : facets_(std::move(facets)) {
-    boxes_.resize(mesh.facets.size());
-    const Vec3 margin = Vec3::Constant(0.5 * tolerance);
-    for (const int f : facets_) {
-      const Triangle& t = mesh.facets[f];
-      const Vec3& a = mesh.points[t[0]];
-      const Vec3& b = mesh.points[t[1]];
-      const Vec3& c = mesh.points[t[2]];
-      boxes_[f] = {a.cwiseMin(b).cwiseMin(c) - margin,
-                   a.cwiseMax(b).cwiseMax(c) + margin};
-    }
-    if (!facets_.empty()) {
-      build(0, static_cast<int>(facets_.size()));
-    }
+/// Where the ray meets the facet, or kNever.
+double meet(const SurfaceMesh& mesh, int facet, const Vec3& origin,
+            const Vec3& direction) {
+  const Triangle& t = mesh.facets[facet];
+  const Vec3 a = mesh.points[t[0]] - origin;
+  const Vec3 b = mesh.points[t[1]] - origin;
+  const Vec3 c = mesh.points[t[2]] - origin;
+  const double u = direction.dot(b.cross(c));
+  const double v = direction.dot(c.cross(a));
+  const double w = direction.dot(a.cross(b));
+  const bool inside =
+      (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+  const double sum = u + v + w;
+  if (!inside || sum == 0.0) {
+    return kNever;
   }
-
-  void visit_pairs(const std::function<bool(int, int)>& visit) const {
-    if (nodes_.empty()) {
-      return;
-    }
-    std::vector<std::array<int, 2>> stack = {{0, 0}};
-    while (!stack.empty()) {
-      const auto [i, j] = stack.back();
-      stack.pop_back();
-      const Node& a = nodes_[i];
-      const Node& b = nodes_[j];
-      if (i != j && !overlap(a.box, b.box)) {
-        continue;
-      }
-      const bool leaf_a = a.child[0] < 0;
-      const bool leaf_b = b.child[0] < 0;
-      if (leaf_a && leaf_b) {
-        if (!visit_leaves(a, b, i == j, visit)) {
-          return;
-        }
-      } else if (i == j) {
-        stack.push_back({a.child[0], a.child[0]});
-        stack.push_back({a.child[1], a.child[1]});
-        stack.push_back({a.child[0], a.child[1]});
-      } else if (leaf_b || (!leaf_a && a.last - a.first >= b.last - b.first)) {
-        stack.push_back({a.child[0], j});
-        stack.push_back({a.child[1], j});
-      } else {
-        stack.push_back({i, b.child[0]});
-        stack.push_back({i, b.child[1]});
-      }
-    }
-  }
-
- private:
-  bool visit_leaves(const Node& a, const Node& b, bool same,
-                    const std::function<bool(int, int)>& visit) const {
-    for (int i = a.first; i < a.last; ++i) {
-      for (int j = same ? i + 1 : b.first; j < b.last; ++j) {
-        const int f = facets_[i];
-        const int g = facets_[j];
-        if (overlap(boxes_[f], boxes_[g]) &&
-            !visit(std::min(f, g), std::max(f, g))) {
-          return false;
-        }
-      }
-    }
-    return true;
-  }
-
-  int build(int first, int last) {
-    const int id = static_cast<int>(nodes_.size());
-    Node node{boxes_[facets_[first]], first, last, {-1, -1}};
-    for (int i = first + 1; i < last; ++i) {
-      const Box& box = boxes_[facets_[i]];
-      node.box.low = node.box.low.cwiseMin(box.low);
-      node.box.high = node.box.high.cwiseMax(box.high);
-    }
-    nodes_.push_back(node);
-    if (last - first > kLeafSize) {
-      int axis = 0;
-      (node.box.high - node.box.low).maxCoeff(&axis);
-      const int middle = (first + last) / 2;
-      const auto key = [&](int f) {
-        return std::pair{boxes_[f].low[axis] + boxes_[f].high[axis], f};
-      };
-      std::nth_element(facets_.begin() + first, facets_.begin() + middle,
-                       facets_.begin() + last,
-                       [&](int f, int g) { return key(f) < key(g); });
-      const int low = build(first, middle);
-      const int high = build(middle, last);
-      nodes_[id].child = {low, high};
-    }
-    return id;
-  }
-
-  std::vector<int> facets_;
-  std::vector<Box> boxes_;
-  std::vector<Node> nodes_;
-};
+  const double at =
+      (u * a + v * b + w * c).dot(direction) / sum / direction.squaredNorm();
+  return at > 0.0 ? at : kNever;
+}
 
 }  // namespace
 
-void for_each_near_pair(const SurfaceMesh& mesh, std::vector<int> facets,
-                        double tolerance,
-                        const std::function<bool(int, int)>& visit) {
-  Tree(mesh, std::move(facets), tolerance).visit_pairs(visit);
+FacetTree::FacetTree(const SurfaceMesh& mesh, std::vector<int> facets,
+                     double tolerance)
+    : mesh_(mesh), facets_(std::move(facets)) {
+  boxes_.resize(mesh.facets.size());
+  const Vec3 margin = Vec3::Constant(0.5 * tolerance);
+  for (const int f : facets_) {
+    const Triangle& t = mesh.facets[f];
+    const Vec3& a = mesh.points[t[0]];
+    const Vec3& b = mesh.points[t[1]];
+    const Vec3& c = mesh.points[t[2]];
+    boxes_[f] = {a.cwiseMin(b).cwiseMin(c) - margin,
+                 a.cwiseMax(b).cwiseMax(c) + margin};
+  }
+  if (!facets_.empty()) {
+    nodes_.reserve(facets_.size());
+    build(0, static_cast<int>(facets_.size()));
+  }
+  std::vector<Box> ordered;
+  ordered.reserve(facets_.size());
+  for (const int f : facets_) {
+    ordered.push_back(boxes_[f]);
+  }
+  boxes_.swap(ordered);
+}
+
+int FacetTree::build(int first, int last) {
+  const int id = static_cast<int>(nodes_.size());
+  Node node{boxes_[facets_[first]], first, last, -1};
+  for (int i = first + 1; i < last; ++i) {
+    const Box& box = boxes_[facets_[i]];
+    node.box.low = node.box.low.cwiseMin(box.low);
+    node.box.high = node.box.high.cwiseMax(box.high);
+  }
+  nodes_.push_back(node);
+  if (last - first > kLeafSize) {
+    int axis = 0;
+    (node.box.high - node.box.low).maxCoeff(&axis);
+    const int middle = (first + last) / 2;
+    const auto key = [&](int f) {
+      return std::pair{boxes_[f].low[axis] + boxes_[f].high[axis], f};
+    };
+    std::nth_element(facets_.begin() + first, facets_.begin() + middle,
+                     facets_.begin() + last,
+                     [&](int f, int g) { return key(f) < key(g); });
+    build(first, middle);
+    nodes_[id].second_child = build(middle, last);
+  }
+  return id;
+}
+
+/// Where the ray enters the box; kNever when it misses it.
+double FacetTree::reach(const Box& box, const Vec3& origin,
+                        const Vec3& inverse) const {
+  double enter = 0.0;
+  double leave = kNever;
+  for (int k = 0; k < 3; ++k) {
+    const double low = (box.low[k] - origin[k]) * inverse[k];
+    const double high = (box.high[k] - origin[k]) * inverse[k];
+    enter = std::max(enter, std::min(low, high));
+    leave = std::min(leave, std::max(low, high));
+  }
+  // Rounding of the bounds must not lose a facet in a flat box.
+  return enter <= leave * (1.0 + 1e-12) ? enter * (1.0 - 1e-12) : kNever;
+}
+
+std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
+                                           const Vec3& direction,
+                                           const std::vector<int>& part_of,
+                                           int part) const {
+  RayHit best{-1, kNever};
+  const Vec3 inverse = direction.cwiseInverse();
+  std::vector<int> stack;
+  if (!nodes_.empty()) {
+    stack.push_back(0);
+  }
+  while (!stack.empty()) {
+    const int id = stack.back();
+    stack.pop_back();
+    const Node& node = nodes_[id];
+    if (!(reach(node.box, origin, inverse) <= best.distance)) {
+      continue;
+    }
+    if (node.second_child >= 0) {
+      const double near = reach(nodes_[id + 1].box, origin, inverse);
+      const double far = reach(nodes_[node.second_child].box, origin, inverse);
+      stack.push_back(near <= far ? node.second_child : id + 1);
+      stack.push_back(near <= far ? id + 1 : node.second_child);
+      continue;
+    }
+    for (int i = node.first; i < node.last; ++i) {
+      const int f = facets_[i];
+      if (part_of[f] == part) {
+        continue;
+      }
+      const double at = meet(mesh_, f, origin, direction);
+      if (at < best.distance ||
+          (at == best.distance && at < kNever && f < best.facet)) {
+        best = {f, at};
+      }
+    }
+  }
+  if (best.facet < 0) {
+    return std::nullopt;
+  }
+  return best;
 }
 
 }  // namespace meniscus

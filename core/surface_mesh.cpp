@@ -27,13 +27,31 @@ double surface_area(const SurfaceMesh& mesh, int label) {
   return 0.5 * sum;
 }
 
+int body_of_side(const SurfaceMesh& mesh, int side) {
+  const FacetBodies bodies =
+      mesh.facet_bodies.empty() ? FacetBodies{} : mesh.facet_bodies[side / 2];
+  return side % 2 == 0 ? bodies.behind : bodies.front;
+}
+
+int body_count(const SurfaceMesh& mesh) {
+  int count = mesh.facet_bodies.empty() && !mesh.facets.empty() ? 1 : 0;
+  for (const FacetBodies& bodies : mesh.facet_bodies) {
+    count = std::max({count, bodies.behind + 1, bodies.front + 1});
+  }
+  return count;
+}
+
 double enclosed_volume(const SurfaceMesh& mesh) {
   if (mesh.points.empty()) {
     return 0.0;
   }
   const Vec3 origin = mesh.points.front();  // keeps the terms small
   double sum = 0.0;
-  for (const Triangle& t : mesh.facets) {
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (!mesh.facet_bodies.empty() && mesh.facet_bodies[f].front >= 0) {
+      continue;  // gives to one body what it takes from the other
+    }
+    const Triangle& t = mesh.facets[f];
     const Vec3 a = mesh.points[t[0]] - origin;
     const Vec3 b = mesh.points[t[1]] - origin;
     const Vec3 c = mesh.points[t[2]] - origin;

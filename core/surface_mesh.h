@@ -10,11 +10,19 @@
 
 namespace meniscus {
 
+/// The bodies on the two sides of a facet; -1: none, outside or in a cavity.
+struct FacetBodies {
+  int behind = 0;  // the facet's normal points out of it; never -1
+  int front = -1;  // other than the one behind
+};
+
 struct SurfaceMesh {
   Points points;                    // [length]
   std::vector<Triangle> facets;     // point ids
   std::vector<int> facet_label;     // one per facet: index into labels
   std::vector<std::string> labels;  // surface names ("skin", "left_pad")
+  std::vector<FacetBodies> facet_bodies = {};  // one per facet; empty: body 0
+                                               // behind each, none in front
 
   /// Index of `name` in labels, or -1.
   int label_of(const std::string& name) const;
@@ -29,13 +37,20 @@ struct QuadraticSurface {
   std::vector<Triangle> facet_edges;  // per facet: edges (01), (12), (20)
 };
 
+/// The body on a side: 2 f behind facet f, 2 f + 1 in front of it. Bodies may
+/// share facets, edges and points.
+int body_of_side(const SurfaceMesh& mesh, int side);
+
+/// Number of bodies: the largest number of one, plus 1.
+int body_count(const SurfaceMesh& mesh);
+
 /// Twice the facet's area times its unit normal: (b - a) x (c - a).
 Vec3 area_vector2(const SurfaceMesh& mesh, int facet);
 
 /// Sum of facet areas [length^2]; of one label when `label` is not negative.
 double surface_area(const SurfaceMesh& mesh, int label = -1);
 
-/// Signed volume enclosed by a closed, outward surface [length^3].
+/// Signed volume enclosed by closed, outward bodies, all together [length^3].
 double enclosed_volume(const SurfaceMesh& mesh);
 
 /// Every edge once, first id < second id, in order of first appearance; and

@@ -13,7 +13,8 @@ namespace meniscus {
 /// element is VTK's and CalculiX's: corners 0..3 with positive volume
 /// (det[x1-x0, x2-x0, x3-x0] > 0), then mid-sides (01) (12) (02) (03) (13)
 /// (23). Boundary faces are outward: corners counter-clockwise from outside,
-/// then, for order 2, mid-sides (01) (12) (20).
+/// then, for order 2, mid-sides (01) (12) (20). Where two bodies meet, their
+/// interface is a face too, outward from the body of face_element.
 ///
 /// Nodes of the surface mesh that was filled come first, with their numbers;
 /// for order 2, corners come before mid-sides.
@@ -26,6 +27,8 @@ struct TetMesh {
   std::vector<int> faces;           // nodes_per_face() ids each
   std::vector<int> face_label;      // one per face: index into labels
   std::vector<int> face_element;    // one per face: the element behind it
+  std::vector<int> face_front;      // one per face: the element in front where
+                                    // two bodies meet, else -1; may be empty
   std::vector<std::string> labels;  // surface names
 
   int nodes_per_element() const { return order == 1 ? 4 : 10; }

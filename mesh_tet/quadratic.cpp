@@ -60,6 +60,7 @@ TetMesh quadratic_topology(const TetMesh& linear,
   mesh.element_region = linear.element_region;
   mesh.face_label = linear.face_label;
   mesh.face_element = linear.face_element;
+  mesh.face_front = linear.face_front;
   mesh.labels = linear.labels;
   EdgeNumbers numbers(linear.elements.size());
   for (const Edge& e : surface.edges) {

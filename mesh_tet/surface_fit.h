@@ -2,19 +2,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/surface_mesh.h"
 
 namespace meniscus {
 
 struct SurfaceFit {
-  double volume = 0.0;  // enclosed, cavities taken off [length^3]
-  Points cavities;      // a point strictly inside each cavity
-  std::string problem;  // why it cannot be filled; empty when it can
+  std::vector<double> volumes;  // per body, cavities taken off [length^3]
+  double volume = 0.0;          // of all bodies [length^3]
+  Points cavities;              // a point strictly inside each cavity
+  std::string problem;          // why it cannot be filled; empty when it can
 };
 
-/// Components of negative volume are cavities and must lie inside a component
-/// of positive volume. `surface` must be closed and oriented.
+/// `surface` must have no finding of check_surface. O(n log n).
 SurfaceFit fit_surface(const SurfaceMesh& surface);
 
 }  // namespace meniscus

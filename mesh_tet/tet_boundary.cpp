@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -103,43 +104,121 @@ class SideTable {
   std::vector<Side> sides_;
 };
 
-std::string problem_of(int smallest, const Side* sides, int count) {
-  const std::string corners =
-      fmt::format("({}, {}, {})", smallest, sides[0].middle, sides[0].largest);
-  const int facet = -1 - sides[0].owner;
-  if (facet < 0) {
-    if (count == 1) {
+/// Regions grow from the facets through all faces that are none.
+class RegionFiller {
+ public:
+  explicit RegionFiller(int elements) : parent_(elements), body_(elements, -1) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  void join(int e, int f) { parent_[root(e)] = root(f); }
+
+  /// To be called when all are joined; what is wrong, if anything.
+  std::string claim(int e, int body, int facet) {
+    int& owner = body_[root(e)];
+    if (owner >= 0 && owner != body) {
       return fmt::format(
-          "element {} has the boundary face {}, which is no facet of the "
-          "surface",
-          sides[0].owner, corners);
+          "element {} behind or before facet {} belongs to body {} and to "
+          "body {}",
+          e, facet, owner, body);
     }
-    if (count > 2 || sides[0].even == sides[1].even) {
-      return fmt::format("elements {} and {} overlap at face {}",
-                         sides[0].owner, sides[1].owner, corners);
-    }
+    owner = body;
     return {};
   }
+
+  std::vector<int> regions() {
+    std::vector<int> result(parent_.size());
+    for (std::size_t e = 0; e < parent_.size(); ++e) {
+      result[e] = body_[root(static_cast<int>(e))];
+    }
+    return result;
+  }
+
+ private:
+  int root(int e) {
+    while (parent_[e] != e) {
+      parent_[e] = parent_[parent_[e]];
+      e = parent_[e];
+    }
+    return e;
+  }
+  std::vector<int> parent_;
+  std::vector<int> body_;
+};
+
+std::string inner_problem(int smallest, const Side* sides, int count) {
   if (count == 1) {
-    return fmt::format("facet {} {} is missing from the mesh", facet, corners);
+    return fmt::format(
+        "element {} has the boundary face ({}, {}, {}), which is no facet of "
+        "the surface",
+        sides[0].owner, smallest, sides[0].middle, sides[0].largest);
   }
-  if (count > 2) {
-    return fmt::format("facet {} {} has {} elements instead of one", facet,
-                       corners, count - 1);
-  }
-  if (sides[0].even != sides[1].even) {
-    return fmt::format("facet {} {} has its element outside", facet, corners);
+  if (count > 2 || sides[0].even == sides[1].even) {
+    return fmt::format("elements {} and {} overlap at face ({}, {}, {})",
+                       sides[0].owner, sides[1].owner, smallest,
+                       sides[0].middle, sides[0].largest);
   }
   return {};
+}
+
+/// Puts the elements on a facet's sides into the mesh.
+std::string take_facet(const SurfaceMesh& surface, int facet, const Side* sides,
+                       int count, TetMesh& mesh) {
+  int& behind = mesh.face_element[facet];
+  int front = -1;
+  for (int i = 1; i < count; ++i) {
+    int& place = sides[i].even == sides[0].even ? behind : front;
+    if (place >= 0 || sides[i].owner < 0) {
+      return fmt::format("facet {} is there twice or has overlapping elements",
+                         facet);
+    }
+    place = sides[i].owner;
+  }
+  const int before = body_of_side(surface, 2 * facet + 1);
+  if (behind < 0) {
+    return fmt::format("facet {} has no element behind it", facet);
+  }
+  if ((front >= 0) != (before >= 0)) {
+    return fmt::format("facet {} has {} element in front of it", facet,
+                       front >= 0 ? "an" : "no");
+  }
+  if (!mesh.face_front.empty()) {
+    mesh.face_front[facet] = front;
+  }
+  return {};
+}
+
+std::string fill_regions(const SurfaceMesh& surface, RegionFiller& filler,
+                         TetMesh& mesh) {
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    std::string problem =
+        filler.claim(mesh.face_element[f], surface.facet_bodies[f].behind, f);
+    if (problem.empty() && mesh.face_front[f] >= 0) {
+      problem =
+          filler.claim(mesh.face_front[f], surface.facet_bodies[f].front, f);
+    }
+    if (!problem.empty()) {
+      return problem;
+    }
+  }
+  mesh.element_region = filler.regions();
+  const auto lost =
+      std::find(mesh.element_region.begin(), mesh.element_region.end(), -1);
+  return lost == mesh.element_region.end()
+             ? std::string()
+             : fmt::format("element {} belongs to no body",
+                           lost - mesh.element_region.begin());
 }
 
 }  // namespace
 
 std::string attach_surface(const SurfaceMesh& surface, TetMesh& mesh) {
   const std::size_t count = surface.facets.size();
+  const bool bodies = !surface.facet_bodies.empty();
   mesh.labels = surface.labels;
   mesh.face_label = surface.facet_label;
   mesh.face_element.assign(count, -1);
+  mesh.face_front.assign(bodies ? count : 0, -1);
   mesh.faces.resize(3 * count);
   for (std::size_t f = 0; f < count; ++f) {
     std::copy(surface.facets[f].begin(), surface.facets[f].end(),
@@ -147,14 +226,27 @@ std::string attach_surface(const SurfaceMesh& surface, TetMesh& mesh) {
   }
   std::string problem;
   const SideTable table(surface, mesh);
+  RegionFiller filler(bodies ? mesh.element_count() : 0);
   table.for_each_triangle([&](int smallest, const Side* sides, int number) {
-    if (problem.empty()) {
-      problem = problem_of(smallest, sides, number);
+    if (!problem.empty()) {
+      return;
     }
-    if (sides[0].owner < 0 && number > 1) {
-      mesh.face_element[-1 - sides[0].owner] = sides[1].owner;
+    const int facet = -1 - sides[0].owner;
+    if (facet >= 0) {
+      problem = take_facet(surface, facet, sides, number, mesh);
+      return;
+    }
+    problem = inner_problem(smallest, sides, number);
+    if (bodies && problem.empty()) {
+      filler.join(sides[0].owner, sides[1].owner);
     }
   });
+  if (bodies && problem.empty()) {
+    problem = fill_regions(surface, filler, mesh);
+  }
+  if (!bodies) {
+    mesh.element_region.assign(mesh.element_count(), 0);
+  }
   return problem;
 }
 

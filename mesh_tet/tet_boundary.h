@@ -9,10 +9,11 @@
 namespace meniscus {
 
 /// Fills the faces of `mesh` (order 1, elements of positive volume) with the
-/// facets of `surface`, facet f as face f, with their labels and the element
-/// behind. Returns what is wrong, empty if nothing: a facet without element or
-/// with two, a face inside out, a boundary face that is no facet, or elements
-/// that overlap. Linear time.
+/// facets of `surface`, facet f as face f, with their labels and the elements
+/// on their sides, and the elements' regions with the bodies that the facets
+/// name. Returns what is wrong, empty if nothing: a facet that lacks an element
+/// or has one too many, a boundary face that is no facet, elements that
+/// overlap, or facets that put an element into two bodies. Linear time.
 std::string attach_surface(const SurfaceMesh& surface, TetMesh& mesh);
 
 }  // namespace meniscus

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 namespace meniscus {
 
@@ -27,6 +29,59 @@ std::array<Vec3, 4> face_normals2(const TetCorners& x) {
   return normals;
 }
 
+std::array<double, 6> cosines_between(const std::array<Vec3, 4>& normals) {
+  std::array<double, 4> norm;
+  for (int f = 0; f < 4; ++f) {
+    norm[f] = normals[f].norm();
+  }
+  std::array<double, 6> cosines;
+  for (int e = 0; e < 6; ++e) {
+    const auto [f, g] = kFacesAtEdge[e];
+    const double norms = norm[f] * norm[g];
+    cosines[e] =
+        norms > 0.0 ? std::clamp(-normals[f].dot(normals[g]) / norms, -1.0, 1.0)
+                    : 1.0;
+  }
+  return cosines;
+}
+
+/// Bin of ten degrees in the histogram, without arc cosines.
+int bin_of(double cosine) {
+  static const std::array<double, 17> kBounds = [] {
+    std::array<double, 17> bounds{};
+    for (int i = 0; i < 17; ++i) {
+      bounds[i] = std::cos(10.0 * (i + 1) / kDegree);
+    }
+    return bounds;
+  }();
+  int bin = 0;
+  while (bin < 17 && cosine <= kBounds[bin]) {
+    ++bin;
+  }
+  return bin;
+}
+
+struct Lengths {
+  double shortest = std::numeric_limits<double>::infinity();
+  double longest = 0.0;
+  double largest_area = 0.0;
+};
+
+Lengths measure(const TetCorners& x, const std::array<Vec3, 4>& normals) {
+  Lengths lengths;
+  for (const Edge& edge : kTetEdges) {
+    const double length2 = (x[edge[1]] - x[edge[0]]).squaredNorm();
+    lengths.longest = std::max(lengths.longest, length2);
+    lengths.shortest = std::min(lengths.shortest, length2);
+  }
+  lengths.longest = std::sqrt(lengths.longest);
+  lengths.shortest = std::sqrt(lengths.shortest);
+  for (const Vec3& n : normals) {
+    lengths.largest_area = std::max(lengths.largest_area, 0.5 * n.norm());
+  }
+  return lengths;
+}
+
 double circumradius(const TetCorners& x, double volume) {
   const Vec3 a = x[1] - x[0];
   const Vec3 b = x[2] - x[0];
@@ -44,15 +99,7 @@ double tet_volume(const TetCorners& x) {
 }
 
 std::array<double, 6> dihedral_cosines(const TetCorners& x) {
-  const auto normals = face_normals2(x);
-  std::array<double, 6> cosines;
-  for (int e = 0; e < 6; ++e) {
-    const Vec3& n = normals[kFacesAtEdge[e][0]];
-    const Vec3& m = normals[kFacesAtEdge[e][1]];
-    const double norms = n.norm() * m.norm();
-    cosines[e] = norms > 0.0 ? std::clamp(-n.dot(m) / norms, -1.0, 1.0) : 1.0;
-  }
-  return cosines;
+  return cosines_between(face_normals2(x));
 }
 
 TetQuality tet_quality(const TetMesh& mesh) {
@@ -63,38 +110,92 @@ TetQuality tet_quality(const TetMesh& mesh) {
   double largest = -1.0;  // cosine
   double smallest = 1.0;
   quality.min_volume = std::numeric_limits<double>::infinity();
+  const auto raise = [](double& most, int& which, double value, int e) {
+    if (value > most || std::isnan(value)) {
+      most = value;
+      which = e;
+    }
+  };
   for (int e = 0; e < mesh.element_count(); ++e) {
     const auto ids = mesh.element(e);
     const TetCorners x = {mesh.nodes[ids[0]], mesh.nodes[ids[1]],
                           mesh.nodes[ids[2]], mesh.nodes[ids[3]]};
-    for (const double c : dihedral_cosines(x)) {
-      if (c > largest) {
-        largest = c;
-        quality.worst_element = e;
+    const auto normals = face_normals2(x);
+    for (const double c : cosines_between(normals)) {
+      ++quality.dihedral_histogram[bin_of(c)];
+      raise(largest, quality.worst_element, c, e);
+      if (c < smallest) {
+        smallest = c;
+        quality.largest_dihedral_element = e;
       }
-      smallest = std::min(smallest, c);
     }
     const double volume = tet_volume(x);
-    double longest = 0.0;
-    double shortest = std::numeric_limits<double>::infinity();
-    for (const Edge& edge : kTetEdges) {
-      const double length = (x[edge[1]] - x[edge[0]]).norm();
-      longest = std::max(longest, length);
-      shortest = std::min(shortest, length);
-    }
-    double area = 0.0;
-    for (const Vec3& n : face_normals2(x)) {
-      area = std::max(area, 0.5 * n.norm());
-    }
-    quality.max_aspect =
-        std::max(quality.max_aspect, longest * area / (3.0 * std::abs(volume)));
-    quality.max_radius_edge =
-        std::max(quality.max_radius_edge, circumradius(x, volume) / shortest);
+    const Lengths lengths = measure(x, normals);
+    raise(quality.max_aspect, quality.aspect_element,
+          lengths.longest * lengths.largest_area / (3.0 * std::abs(volume)), e);
+    raise(quality.max_radius_edge, quality.radius_edge_element,
+          circumradius(x, volume) / lengths.shortest, e);
     quality.min_volume = std::min(quality.min_volume, volume);
   }
   quality.min_dihedral_deg = kDegree * std::acos(largest);
   quality.max_dihedral_deg = kDegree * std::acos(smallest);
   return quality;
+}
+
+std::optional<QualityBreach> find_breach(const TetQuality& quality,
+                                         const QualityBounds& bounds) {
+  const auto say = [](const char* measure, double value, const char* relation,
+                      double bound, int element) {
+    return QualityBreach{
+        fmt::format("{} of {:.3g}, {} {:.3g}", measure, value, relation, bound),
+        element};
+  };
+  if (!(quality.min_dihedral_deg >= bounds.min_dihedral_deg)) {
+    return say("a dihedral angle", quality.min_dihedral_deg,
+               "degrees: the least is", bounds.min_dihedral_deg,
+               quality.worst_element);
+  }
+  if (!(quality.max_dihedral_deg <= bounds.max_dihedral_deg)) {
+    return say("a dihedral angle", quality.max_dihedral_deg,
+               "degrees: the most is", bounds.max_dihedral_deg,
+               quality.largest_dihedral_element);
+  }
+  if (!(quality.max_aspect <= bounds.max_aspect)) {
+    return say("an aspect", quality.max_aspect, "the most is",
+               bounds.max_aspect, quality.aspect_element);
+  }
+  if (!(quality.max_radius_edge <= bounds.max_radius_edge)) {
+    return say("a radius-edge ratio", quality.max_radius_edge, "the most is",
+               bounds.max_radius_edge, quality.radius_edge_element);
+  }
+  return std::nullopt;
+}
+
+std::string place_of(const TetMesh& mesh, int element) {
+  if (element < 0 || element >= mesh.element_count()) {
+    return "nowhere";
+  }
+  const auto ids = mesh.element(element).first(4);
+  Vec3 at = Vec3::Zero();
+  for (const int id : ids) {
+    at += 0.25 * mesh.nodes[id];
+  }
+  std::string text =
+      fmt::format("near ({:.6g}, {:.6g}, {:.6g})", at.x(), at.y(), at.z());
+  std::set<int> labels;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(f).first(3);
+    if (std::any_of(face.begin(), face.end(), [&](int node) {
+          return std::find(ids.begin(), ids.end(), node) != ids.end();
+        })) {
+      labels.insert(mesh.face_label[f]);
+    }
+  }
+  for (const int label : labels) {
+    text += fmt::format("{}'{}'", label == *labels.begin() ? " at " : ", ",
+                        mesh.labels[label]);
+  }
+  return text;
 }
 
 }  // namespace meniscus

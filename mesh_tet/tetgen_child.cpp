@@ -54,6 +54,9 @@ std::string encode(const TetgenInput& input) {
   request.points = static_cast<std::int64_t>(input.points->size());
   request.facets = static_cast<std::int64_t>(input.facets->size());
   request.holes = static_cast<std::int64_t>(input.holes.size());
+  if (input.elements != nullptr) {
+    request.elements = static_cast<std::int64_t>(input.elements->size() / 4);
+  }
   if (input.switches.size() >= sizeof request.switches) {
     throw InvalidInput(
         fmt::format("TetGen switches '{}' are longer than {} characters",
@@ -65,6 +68,11 @@ std::string encode(const TetgenInput& input) {
   append(bytes, input.points->data(), sizeof(Vec3) * input.points->size());
   append(bytes, input.facets->data(), sizeof(Triangle) * input.facets->size());
   append(bytes, input.holes.data(), sizeof(Vec3) * input.holes.size());
+  if (input.elements != nullptr) {
+    append(bytes, input.elements->data(), sizeof(int) * input.elements->size());
+    append(bytes, input.largest->data(),
+           sizeof(double) * input.largest->size());
+  }
   append(bytes, &tetgen::kEndMark, sizeof tetgen::kEndMark);
   return bytes;
 }
@@ -134,6 +142,9 @@ std::string describe_failure(const ChildResult& child,
   constexpr const char* kReport =
       "this is a fault inside TetGen; another element edge often helps";
   switch (child.exit_code) {
+    case tetgen::kBadRequest:
+      return "TetGen's helper did not understand the request; install program "
+             "and helper from one build";
     case tetgen::kOutOfMemory:
     case tetgen::kTetgenCode + 1:
       return fmt::format(kMemory, limits.memory / 1e6);

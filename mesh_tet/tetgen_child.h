@@ -13,7 +13,11 @@ namespace meniscus {
 struct TetgenInput {
   const Points* points = nullptr;  // finite
   const std::vector<Triangle>* facets = nullptr;
-  Points holes;          // one point strictly inside each cavity
+  // With the switches r and a: the mesh to refine, its corners among `points`,
+  // and the largest volume per element.
+  const std::vector<int>* elements = nullptr;
+  const std::vector<double>* largest = nullptr;
+  Points holes = {};     // one point strictly inside each cavity
   std::string switches;  // TetGen's own; see its manual, section 3.2
 };
 

@@ -2,11 +2,13 @@
 // because TetGen 1.5 ends its process on some inputs; the only file that sees
 // TetGen. Reads a request on stdin, writes a reply on stdout
 // (mesh_tet/tetgen_protocol.h).
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <new>
+#include <numeric>
 #include <tetgen.h>
 #include <typeinfo>
 #include <unistd.h>
@@ -67,6 +69,10 @@ struct Surface {
   std::vector<double> points;
   std::vector<int> facets;
   std::vector<double> holes;
+  std::vector<int> elements;    // to refine
+  std::vector<double> largest;  // volume of each
+  std::vector<int> markers;     // of facets; TetGen joins those of one plane
+                                // and marker
 };
 
 Surface read_surface() {
@@ -75,46 +81,74 @@ Surface read_surface() {
   read_all(&r, sizeof r);
   const auto sane = [](std::int64_t n) { return n >= 0 && n <= kMostItems; };
   if (r.magic != kMagic || !sane(r.points) || !sane(r.facets) ||
-      !sane(r.holes) || r.switches[kSwitchesSize - 1] != 0) {
+      !sane(r.holes) || !sane(r.elements) ||
+      r.switches[kSwitchesSize - 1] != 0) {
     end(kBadRequest);
   }
   surface.points.resize(3 * static_cast<std::size_t>(r.points));
   surface.facets.resize(3 * static_cast<std::size_t>(r.facets));
   surface.holes.resize(3 * static_cast<std::size_t>(r.holes));
-  read_all(surface.points.data(), sizeof(double) * surface.points.size());
-  read_all(surface.facets.data(), sizeof(int) * surface.facets.size());
-  read_all(surface.holes.data(), sizeof(double) * surface.holes.size());
+  surface.elements.resize(4 * static_cast<std::size_t>(r.elements));
+  surface.largest.resize(static_cast<std::size_t>(r.elements));
+  const auto read = [](auto& list) {
+    read_all(list.data(), sizeof(list[0]) * list.size());
+  };
+  read(surface.points);
+  read(surface.facets);
+  read(surface.holes);
+  read(surface.elements);
+  read(surface.largest);
   std::uint64_t mark = 0;
   read_all(&mark, sizeof mark);
   if (mark != kEndMark) {
     end(kBadRequest);
   }
-  for (const int point : surface.facets) {
-    if (point < 0 || point >= r.points) {
-      end(kBadRequest);
-    }
+  const auto outside = [](const std::vector<int>& ids, std::int64_t count) {
+    return std::any_of(ids.begin(), ids.end(),
+                       [&](int id) { return id < 0 || id >= count; });
+  };
+  if (outside(surface.facets, r.points) ||
+      outside(surface.elements, r.points)) {
+    end(kBadRequest);
   }
   return surface;
 }
 
-void fill(Surface& surface, int out) {
+/// Borrowed arrays; the process ends before a destructor would free them.
+tetgenio& hand_over(Surface& surface) {
+  auto& in = *new tetgenio;
   const auto facet_count = static_cast<std::size_t>(surface.request.facets);
-  std::vector<tetgenio::polygon> polygons(facet_count);
-  std::vector<tetgenio::facet> facets(facet_count);
+  in.firstnumber = 0;
+  in.pointlist = surface.points.data();
+  in.numberofpoints = static_cast<int>(surface.request.points);
+  if (surface.request.elements > 0) {
+    surface.markers.resize(facet_count);
+    std::iota(surface.markers.begin(), surface.markers.end(), 1);
+    in.tetrahedronlist = surface.elements.data();
+    in.numberoftetrahedra = static_cast<int>(surface.request.elements);
+    in.numberofcorners = 4;
+    in.tetrahedronvolumelist = surface.largest.data();
+    in.trifacelist = surface.facets.data();
+    in.trifacemarkerlist = surface.markers.data();
+    in.numberoftrifaces = static_cast<int>(facet_count);
+    return in;
+  }
+  auto& polygons = *new std::vector<tetgenio::polygon>(facet_count);
+  auto& facets = *new std::vector<tetgenio::facet>(facet_count);
   for (std::size_t f = 0; f < facet_count; ++f) {
     polygons[f] = {surface.facets.data() + 3 * f, 3};
     facets[f] = {&polygons[f], 1, nullptr, 0};
   }
-  // Borrowed arrays; the process ends before a destructor would free them.
-  auto& in = *new tetgenio;
-  auto& result = *new tetgenio;
-  in.firstnumber = 0;
-  in.pointlist = surface.points.data();
-  in.numberofpoints = static_cast<int>(surface.request.points);
   in.facetlist = facets.data();
   in.numberoffacets = static_cast<int>(facet_count);
   in.holelist = surface.holes.data();
   in.numberofholes = static_cast<int>(surface.request.holes);
+  return in;
+}
+
+void fill(Surface& surface, int out) {
+  tetgenio& in = hand_over(surface);
+  auto& result = *new tetgenio;
   tetrahedralize(surface.request.switches, &in, &result);
 
   Reply reply;

@@ -7,17 +7,19 @@
 
 namespace meniscus::tetgen {
 
-inline constexpr std::uint64_t kMagic = 0x4d45'4e54'4554'0001;  // last: version
+inline constexpr std::uint64_t kMagic = 0x4d45'4e54'4554'0002;  // last: version
 inline constexpr std::uint64_t kEndMark = 0x454e'444d'4152'4b21;
 inline constexpr int kSwitchesSize = 120;
 
-/// Followed by points (3 doubles each), facets (3 int32 each), holes (3
-/// doubles each) and the end mark.
+/// Followed by points (3 doubles each), facets (3 int32 each), holes (3 doubles
+/// each), elements to refine (4 int32 each), the largest volume of each (a
+/// double), and the end mark.
 struct Request {
   std::uint64_t magic = kMagic;
   std::int64_t points = 0;
   std::int64_t facets = 0;
   std::int64_t holes = 0;
+  std::int64_t elements = 0;
   char switches[kSwitchesSize] = {};  // ends with a zero byte
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -11,7 +10,7 @@
 #include "mesh_tet/improve_tets.h"
 #include "mesh_tet/surface_fit.h"
 #include "mesh_tet/tet_boundary.h"
-#include "mesh_tet/tetgen_child.h"
+#include "mesh_tet/tetgen_fill.h"
 
 namespace meniscus {
 
@@ -19,9 +18,6 @@ namespace {
 
 /// The mesh has the surface's volume up to rounding; more is a wrong mesh.
 constexpr double kVolumeTolerance = 1e-9;
-
-/// TetGen's working memory and time beyond this would exceed any limit.
-constexpr double kMostElements = 2e8;
 
 Failure surface_failure(const std::string& message) {
   return {FailureKind::SurfaceInvalid, message};
@@ -53,26 +49,6 @@ void check(const TetrahedralizeOptions& options) {
           "radius_edge_ratio", options.radius_edge_ratio, "at least 1");
 }
 
-/// Maps the surface to an edge of about 1 around the origin, by a power of
-/// two: TetGen's absolute constants then suit any unit of length.
-struct Frame {
-  Vec3 center;
-  double scale;
-
-  Frame(const Points& points, double edge)
-      : scale(std::exp2(-std::round(std::log2(edge)))) {
-    Vec3 low = points.front();
-    Vec3 high = points.front();
-    for (const Vec3& p : points) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    center = 0.5 * low + 0.5 * high;
-  }
-  Vec3 into(const Vec3& p) const { return scale * (p - center); }
-  Vec3 back(const Vec3& p) const { return p / scale + center; }
-};
-
 /// Elements from TetGen's, every volume positive. Its corners are ordered
 /// the other way round.
 std::string take_elements(const TetgenOutput& output, TetMesh& mesh) {
@@ -90,7 +66,6 @@ std::string take_elements(const TetgenOutput& output, TetMesh& mesh) {
       return fmt::format("element {} is flat", e / 4);
     }
   }
-  mesh.element_region.assign(mesh.elements.size() / 4, 0);
   return {};
 }
 
@@ -115,25 +90,28 @@ std::string take_nodes(const SurfaceMesh& surface, const Frame& frame,
   return {};
 }
 
-std::string check_volume(const TetMesh& mesh, double expected) {
-  double volume = 0.0;
+std::string check_volumes(const TetMesh& mesh, const SurfaceFit& fit) {
+  std::vector<double> volumes(fit.volumes.size(), 0.0);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const double v = corner_volume(mesh, e);
     if (!(v > 0.0)) {
       return fmt::format("element {} has no volume", e);
     }
-    volume += v;
+    volumes[mesh.element_region[e]] += v;
   }
-  if (!(std::abs(volume - expected) <= kVolumeTolerance * expected)) {
-    return fmt::format("the mesh has volume {:.12g}, the surface {:.12g}",
-                       volume, expected);
+  for (std::size_t b = 0; b < volumes.size(); ++b) {
+    const double off = volumes[b] - fit.volumes[b];
+    if (!(std::abs(off) <= kVolumeTolerance * fit.volume)) {
+      return fmt::format("body {} has volume {:.12g}, its surface {:.12g}", b,
+                         volumes[b], fit.volumes[b]);
+    }
   }
   return {};
 }
 
 /// The mesh from TetGen's answer; returns why it is none, or nothing.
 std::string find_fault(const SurfaceMesh& surface, const Frame& frame,
-                       const TetgenOutput& output, double volume,
+                       const TetgenOutput& output, const SurfaceFit& fit,
                        TetMesh& mesh) {
   if (output.elements.empty()) {
     return "it has no elements";
@@ -145,17 +123,18 @@ std::string find_fault(const SurfaceMesh& surface, const Frame& frame,
   if (fault.empty()) {
     fault = attach_surface(surface, mesh);
   }
-  return fault.empty() ? check_volume(mesh, volume) : fault;
+  return fault.empty() ? check_volumes(mesh, fit) : fault;
 }
 
-std::optional<Failure> find_surface_fault(const SurfaceMesh& surface) {
+std::optional<Failure> find_surface_fault(const SurfaceMesh& surface,
+                                          std::vector<Finding>& findings) {
   if (surface.facets.empty() ||
       surface.facet_label.size() != surface.facets.size()) {
     return surface_failure(
         fmt::format("the surface has {} facets and {} facet labels",
                     surface.facets.size(), surface.facet_label.size()));
   }
-  const std::vector<Finding> findings = check_surface(surface);
+  findings = check_surface(surface);
   if (!findings.empty()) {
     return surface_failure(summary(findings));
   }
@@ -174,93 +153,42 @@ std::optional<Failure> find_surface_fault(const SurfaceMesh& surface) {
   return std::nullopt;
 }
 
-/// TetGen's switches. Y: the surface stays. O9/7o/140: flips, smoothing and
-/// new inner points against dihedral angles above 140 degrees, as far as
-/// TetGen can.
-std::string make_switches(const TetrahedralizeOptions& options,
-                          double largest_volume) {
-  return fmt::format("pYQq{:.6f}/{:.3f}a{:.12f}O9/7o/140",
-                     options.radius_edge_ratio, options.min_dihedral_deg,
-                     largest_volume);
-}
-
-TetgenOutput fill(const SurfaceMesh& surface, const SurfaceFit& fit,
-                  const Frame& frame, const std::string& switches,
-                  const TetrahedralizeOptions& options) {
-  Points points;
-  points.reserve(surface.points.size());
-  for (const Vec3& p : surface.points) {
-    points.push_back(frame.into(p));
-  }
-  TetgenInput input{&points, &surface.facets, {}, switches};
-  for (const Vec3& p : fit.cavities) {
-    input.holes.push_back(frame.into(p));
-  }
-  return run_tetgen(
-      input, {options.time_limit, options.memory_limit, options.monitor});
-}
-
 /// Mends the worst elements; refuses a mesh that stays too poor.
 std::optional<Failure> finish(const SurfaceMesh& surface,
                               const TetrahedralizeOptions& options,
                               TetMesh& mesh, TetQuality& quality) {
   quality = tet_quality(mesh);
-  if (quality.min_dihedral_deg < options.improve_below_deg) {
+  if (quality.min_dihedral_deg < options.improve_below_deg ||
+      find_breach(quality, options.bounds)) {
     improve_tets(mesh, static_cast<int>(surface.points.size()),
-                 {.below_deg = options.improve_below_deg});
+                 {.below_deg = std::max(options.improve_below_deg,
+                                        options.bounds.min_dihedral_deg)});
     const std::string fault = attach_surface(surface, mesh);
     if (!fault.empty()) {
       throw MeshError(fmt::format("improving elements broke one: {}", fault));
     }
     quality = tet_quality(mesh);
   }
-  if (quality.min_dihedral_deg >= kLeastDihedralDeg) {
+  const auto breach = find_breach(quality, options.bounds);
+  if (!breach) {
     return std::nullopt;
   }
-  const Vec3& at = mesh.nodes[mesh.element(quality.worst_element)[0]];
   return meshing_failure(fmt::format(
-      "the best mesh has a dihedral angle of {:.3g} degrees near ({:.6g}, "
-      "{:.6g}, {:.6g}), the least is {}; remesh the surface more evenly "
-      "there, or change the element edge",
-      quality.min_dihedral_deg, at.x(), at.y(), at.z(), kLeastDihedralDeg));
+      "the best mesh has {} ({}); remesh the surface more evenly there, or "
+      "change the element edge",
+      breach->what, place_of(mesh, breach->element)));
 }
 
-std::optional<Failure> run(const SurfaceMesh& surface,
-                           const TetrahedralizeOptions& options,
-                           Tetrahedralization& result) {
-  if (auto failure = find_surface_fault(surface)) {
-    return failure;
-  }
-  const SurfaceFit fit = fit_surface(surface);
-  if (!fit.problem.empty()) {
-    return surface_failure(fit.problem);
-  }
-  if (!(fit.volume > 0.0)) {
-    return surface_failure(
-        fmt::format("the surface encloses the volume {:.6g}, which cannot be "
-                    "filled; are its facets inside out?",
-                    fit.volume));
-  }
-  const double edge = options.edge.value_or(mean_edge_length(surface));
-  const double bound =
-      kVolumeFactor * edge * edge * edge / (6.0 * std::numbers::sqrt2);
-  if (fit.volume / bound > kMostElements) {
-    return meshing_failure(fmt::format(
-        "elements of edge {:.6g} in a volume of {:.6g} would be more than "
-        "{:.0e}; enlarge the edge",
-        edge, fit.volume, kMostElements));
-  }
-  const Frame frame(surface.points, edge);
-  const Timer timer;
-  const TetgenOutput output =
-      fill(surface, fit, frame,
-           make_switches(options, bound * std::pow(frame.scale, 3)), options);
-  result.tetgen_seconds = timer.seconds();
+/// The mesh in `result` from what TetGen returned.
+std::optional<Failure> take(const SurfaceMesh& surface, const SurfaceFit& fit,
+                            const Frame& frame, const TetgenOutput& output,
+                            const TetrahedralizeOptions& options,
+                            Tetrahedralization& result) {
   if (output.failure) {
     return meshing_failure(*output.failure);
   }
   const std::string fault =
-      find_fault(surface, frame, output, fit.volume, result.mesh);
+      find_fault(surface, frame, output, fit, result.mesh);
   if (!fault.empty()) {
     return meshing_failure(fmt::format(
         "TetGen's mesh cannot be used: {}; try another element edge", fault));
@@ -268,23 +196,98 @@ std::optional<Failure> run(const SurfaceMesh& surface,
   return finish(surface, options, result.mesh, result.quality);
 }
 
-}  // namespace
+std::optional<Failure> run(const SurfaceMesh& surface,
+                           const TetrahedralizeOptions& options,
+                           Tetrahedralization& result) {
+  if (auto failure = find_surface_fault(surface, result.findings)) {
+    return failure;
+  }
+  const SurfaceFit fit = fit_surface(surface);
+  if (!fit.problem.empty()) {
+    return surface_failure(fit.problem);
+  }
+  for (std::size_t b = 0; b < fit.volumes.size(); ++b) {
+    if (!(fit.volume > 0.0) || !(fit.volumes[b] >= 0.0)) {
+      return surface_failure(
+          fmt::format("body {} encloses the volume {:.6g}, which cannot be "
+                      "filled; are its facets inside out?",
+                      b, fit.volumes[b]));
+    }
+  }
+  const Frame frame(surface.points,
+                    options.edge.value_or(mean_edge_length(surface)));
+  const Timer timer;
+  const TetgenOutput output = fill_surface(surface, fit, frame, options);
+  result.tetgen_seconds = timer.seconds();
+  return take(surface, fit, frame, output, options, result);
+}
 
-Tetrahedralization tetrahedralize(const SurfaceMesh& surface,
-                                  const TetrahedralizeOptions& options) {
+std::optional<Failure> refine(const SurfaceMesh& surface, const TetMesh& mesh,
+                              const std::vector<double>& node_edge,
+                              const TetrahedralizeOptions& options,
+                              Tetrahedralization& result) {
+  std::vector<double> edge;
+  edge.reserve(static_cast<std::size_t>(mesh.element_count()));
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    double& least = edge.emplace_back(node_edge[mesh.element(e)[0]]);
+    for (const int node : mesh.element(e)) {
+      least = std::min(least, node_edge[node]);
+    }
+  }
+  const Frame frame(surface.points, mean_edge_length(surface));
+  const Timer timer;
+  const TetgenOutput output =
+      split_elements(surface, frame, mesh, edge, options);
+  result.tetgen_seconds = timer.seconds();
+  return take(surface, fit_surface(surface), frame, output, options, result);
+}
+
+/// Runs `work` on a result; clears the mesh when it fails.
+template <class Work>
+Tetrahedralization timed(const TetrahedralizeOptions& options, Work work) {
   check(options);
   const Timer timer;
   Tetrahedralization result;
   if (options.monitor != nullptr) {
     throw_if_stopped(*options.monitor, "mesh");
   }
-  result.failure = run(surface, options, result);
+  result.failure = work(result);
   if (result.failure) {
     result.mesh = {};
     result.quality = {};
   }
   result.seconds = timer.seconds();
   return result;
+}
+
+}  // namespace
+
+Tetrahedralization tetrahedralize(const SurfaceMesh& surface,
+                                  const TetrahedralizeOptions& options) {
+  return timed(options, [&](Tetrahedralization& result) {
+    return run(surface, options, result);
+  });
+}
+
+Tetrahedralization refine_tets(const SurfaceMesh& surface, const TetMesh& mesh,
+                               const std::vector<double>& node_edge,
+                               const TetrahedralizeOptions& options) {
+  const auto good = [](double edge) {
+    return std::isfinite(edge) && edge > 0.0;
+  };
+  if (mesh.order != 1 || mesh.faces.size() != 3 * surface.facets.size() ||
+      node_edge.size() != mesh.nodes.size() ||
+      !std::all_of(node_edge.begin(), node_edge.end(), good)) {
+    throw InvalidInput(fmt::format(
+        "refine_tets: needs the four-node mesh of its surface and a positive "
+        "edge per node; found order {}, {} faces for {} facets, {} edges for "
+        "{} nodes",
+        mesh.order, mesh.face_count(), surface.facets.size(), node_edge.size(),
+        mesh.nodes.size()));
+  }
+  return timed(options, [&](Tetrahedralization& result) {
+    return refine(surface, mesh, node_edge, options, result);
+  });
 }
 
 }  // namespace meniscus

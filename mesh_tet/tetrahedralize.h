@@ -1,12 +1,14 @@
-/// Closed labelled surface in, four-node tetrahedra out, the surface kept
+/// Closed labelled bodies in, four-node tetrahedra out, the surface kept
 /// vertex for vertex (node i is surface point i, face f is facet f). TetGen
 /// 1.5 runs in a child process with a time and a memory limit, because it ends
 /// its process on some inputs (docs/decisions).
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "core/error.h"
+#include "core/mesh_checks.h"
 #include "core/monitor.h"
 #include "core/surface_mesh.h"
 #include "core/tet_mesh.h"
@@ -19,38 +21,51 @@ namespace meniscus {
 /// average at less than half of it; 2.1 makes the average the regular one.
 inline constexpr double kVolumeFactor = 2.1;
 
-/// Meshes whose smallest dihedral angle is below this are refused [degree]:
-/// ten-node elements lose about a digit of conditioning per decade of angle.
-inline constexpr double kLeastDihedralDeg = 1.0;
+/// Target edge [length] at a place, positive and finite; asked at 15 places an
+/// element, so that a feature between them may be missed.
+using SizeField = std::function<double(const Vec3&)>;
 
 struct TetrahedralizeOptions {
   std::optional<double> edge =
       std::nullopt;                 // target edge inside [length], positive;
                                     // automatic: the surface's mean edge
+  SizeField size = {};              // target edge by place, at most `edge`; the
+                                    // surface keeps its own
   double radius_edge_ratio = 1.4;   // TetGen's quality bound, at least 1
   double min_dihedral_deg = 15.0;   // TetGen's aim, 0 to 18; not reached
                                     // where the surface does not allow it
   double improve_below_deg = 10.0;  // inner nodes around elements with smaller
                                     // dihedral angles are moved to enlarge them
+  QualityBounds bounds = {};        // meshes that break them are refused
   double time_limit = 300.0;        // of the child [s]
   double memory_limit = 8e9;        // of the child [byte]
   Monitor* monitor = nullptr;       // may stop it: Interrupted
 };
 
 struct Tetrahedralization {
-  TetMesh mesh;  // order 1, region 0, faces and labels as the surface's
+  TetMesh mesh;  // order 1, regions, faces and labels as the surface's
   TetQuality quality;
   std::optional<Failure> failure;  // then the mesh is empty
+  std::vector<Finding> findings;   // what is wrong with the surface
   double seconds = 0.0;            // all of it
   double tetgen_seconds = 0.0;     // of the child
 };
 
-/// Fills `surface`: closed, outward; closed components of negative volume
-/// inside others are cavities. Bad surfaces give SurfaceInvalid, all that goes
-/// wrong in TetGen or with its mesh MeshingFailed. Throws InvalidInput for
-/// options out of range, IoError when the helper is missing, Interrupted when
-/// the monitor asks to stop. Same input, same bits. Thread safe.
+/// Fills the bodies of `surface`, which may share facets; what no body claims
+/// inside is a cavity. Elements have their body's number as region. Bad
+/// surfaces give SurfaceInvalid, all that goes wrong in TetGen or with its mesh
+/// MeshingFailed. Throws InvalidInput for options out of range, IoError when
+/// the helper is missing, Interrupted when the monitor asks to stop. Same
+/// input, same bits. Thread safe.
 Tetrahedralization tetrahedralize(const SurfaceMesh& surface,
                                   const TetrahedralizeOptions& options = {});
+
+/// The elements of `mesh`, made by tetrahedralize from `surface`, split until
+/// they have the least edge [length] that `node_edge` asks for at their corners
+/// (positive, one per node of `mesh`): for adaptive refinement. The surface
+/// keeps its own size. Same errors and failures.
+Tetrahedralization refine_tets(const SurfaceMesh& surface, const TetMesh& mesh,
+                               const std::vector<double>& node_edge,
+                               const TetrahedralizeOptions& options = {});
 
 }  // namespace meniscus

@@ -4,6 +4,7 @@
 
 #include "core/timer.h"
 #include "mesh_tet/mesh_motion.h"
+#include "mesh_tet/motion_check.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tet_quality.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -14,16 +15,11 @@ namespace meniscus {
 
 namespace {
 
-TetFigures figures(const TetMesh& mesh) {
-  const TetQuality quality = tet_quality(mesh);
+TetFigures figures(const TetMesh& mesh, const TetQuality& quality) {
   return {.nodes = static_cast<int>(mesh.nodes.size()),
           .elements = mesh.element_count(),
           .min_dihedral_deg = quality.min_dihedral_deg,
           .max_dihedral_deg = quality.max_dihedral_deg};
-}
-
-std::string position_text(const Vec3& x) {
-  return fmt::format("({:.4g}, {:.4g}, {:.4g})", x.x(), x.y(), x.z());
 }
 
 Failure not_a_number(const Case& input, const VectorX& responses) {
@@ -42,6 +38,8 @@ Failure not_a_number(const Case& input, const VectorX& responses) {
 struct ForwardModel::Impl {
   Case input;
   Evaluation frozen;
+  SurfaceMesh unfilled;
+  std::vector<Finding> findings;
   std::optional<FilmModel> film;
   TetMesh base_mesh;  // ten-node, at the initial design
   std::vector<char> curve_edge;
@@ -60,11 +58,13 @@ void ForwardModel::Impl::freeze_mesh(const QuadraticSurface& surface,
       tetrahedralize(surface.base, {.monitor = &monitor});
   if (filled.failure) {
     frozen.failure = filled.failure;
+    unfilled = surface.base;
+    findings = std::move(filled.findings);
     return;
   }
   motion.emplace(filled.mesh, static_cast<int>(surface.base.points.size()));
   base_mesh = make_quadratic(filled.mesh, surface, &curve_edge);
-  frozen.tet = figures(base_mesh);
+  frozen.tet = figures(base_mesh, filled.quality);
 }
 
 void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
@@ -114,19 +114,10 @@ void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
 bool ForwardModel::Impl::place_nodes(const QuadraticSurface& surface,
                                      TetMesh& mesh, Evaluation& result) const {
   move_quadratic(mesh, motion->move(surface.base.points), surface, curve_edge);
-  result.tet = figures(mesh);
-  const int inverted = find_inverted(mesh);
-  if (inverted < 0) {
-    return true;
-  }
-  result.failure = Failure{
-      FailureKind::ElementsInverted,
-      fmt::format("element {} at {} is turned inside out: this design is too "
-                  "far from the initial one for its mesh; choose an initial "
-                  "design nearer to it, or narrower bounds",
-                  inverted,
-                  position_text(mesh.nodes[mesh.element(inverted)[0]]))};
-  return false;
+  TetQuality quality;
+  result.failure = check_moved(mesh, {}, &quality);
+  result.tet = figures(mesh, quality);
+  return !result.failure;
 }
 
 ForwardModel::ForwardModel(const Case& input,
@@ -140,6 +131,14 @@ ForwardModel::ForwardModel(const Case& input,
 ForwardModel::~ForwardModel() = default;
 ForwardModel::ForwardModel(ForwardModel&&) noexcept = default;
 ForwardModel& ForwardModel::operator=(ForwardModel&&) noexcept = default;
+
+const SurfaceMesh& ForwardModel::unfilled_surface() const {
+  return impl_->unfilled;
+}
+
+const std::vector<Finding>& ForwardModel::findings() const {
+  return impl_->findings;
+}
 
 const std::optional<Failure>& ForwardModel::failure() const {
   return impl_->frozen.failure;

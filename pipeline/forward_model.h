@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/mesh_checks.h"
 #include "core/monitor.h"
 #include "evolve/film_model.h"
 #include "fea/elasticity.h"
@@ -41,9 +42,10 @@ struct Evaluation {
 
 /// The fields behind an evaluation, for files and pictures.
 struct EvaluationFields {
-  SurfaceMesh film;          // at the film's own resolution
-  QuadraticSurface surface;  // as meshed
-  TetMesh mesh;              // ten-node
+  std::vector<Finding> findings;  // why `surface.base` could not be filled
+  SurfaceMesh film;               // at the film's own resolution
+  QuadraticSurface surface;       // as meshed
+  TetMesh mesh;                   // ten-node
   ElasticSolution solution;
   StressField stress;  // of the first load case; filled in once, at the end
   EvaluatedCase inputs;
@@ -67,6 +69,11 @@ class ForwardModel {
   ForwardModel& operator=(ForwardModel&&) noexcept;
 
   const std::optional<Failure>& failure() const;
+
+  /// The surface that could not be filled, with what is wrong with it; no
+  /// facets unless failure() is of that kind.
+  const SurfaceMesh& unfilled_surface() const;
+  const std::vector<Finding>& findings() const;
 
   /// Figures of the freeze itself: its film report and seconds per stage.
   const Evaluation& frozen() const;

@@ -335,6 +335,25 @@ std::vector<std::string> write_meshes(const Case& input,
   return names;
 }
 
+std::vector<std::string> write_unfilled(const EvaluationFields& fields,
+                                        const std::filesystem::path& folder) {
+  if (fields.surface.base.facets.empty() || !fields.mesh.nodes.empty()) {
+    return {};
+  }
+  write_findings_vtp(folder / "findings.vtp", fields.surface.base,
+                     fields.findings);
+  // Broken corners cannot be drawn; the findings leave them out.
+  const auto broken = [](const Finding& finding) {
+    return finding.kind == FindingKind::BadIndex ||
+           finding.kind == FindingKind::NotFinite;
+  };
+  if (std::any_of(fields.findings.begin(), fields.findings.end(), broken)) {
+    return {"findings.vtp"};
+  }
+  write_vtp(folder / "unfilled_surface.vtp", fields.surface.base);
+  return {"findings.vtp", "unfilled_surface.vtp"};
+}
+
 SurfaceMesh settle_again(const FilmSystem& system, double edge) {
   const FilmModel model =
       FilmModel::freeze(system, {.edge = edge, .refinements = 0});

@@ -53,6 +53,12 @@ std::vector<std::string> write_meshes(const Case& input,
                                       const EvaluationFields& fields,
                                       const std::filesystem::path& folder);
 
+/// Where a surface could not be filled, for the eye: findings.vtp (places and
+/// facets at fault) and unfilled_surface.vtp. Returns the names written, none
+/// when there is no such surface. Throws IoError.
+std::vector<std::string> write_unfilled(const EvaluationFields& fields,
+                                        const std::filesystem::path& folder);
+
 /// The closed surface of a design, settled from its curves at another edge
 /// length. Throws MeshError where there is no stable film.
 SurfaceMesh settle_again(const FilmSystem& system, double edge);

@@ -237,6 +237,10 @@ RunResult StudyRunner::run(EvaluationFields* fields) {
                                   model_->failure()->message);
     result_.start = model_->frozen();
     result_.best = model_->frozen();
+    if (fields != nullptr) {
+      fields->surface.base = model_->unfilled_surface();
+      fields->findings = model_->findings();
+    }
     result_.total_seconds = timer_.seconds();
     return result_;
   }

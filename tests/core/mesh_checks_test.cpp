@@ -211,6 +211,113 @@ TEST(MeshChecks, FindsPartsInsideOutButAllowsHollows) {
       1);
 }
 
+TEST(MeshChecks, SolidInsideASolidIsBadlyNested) {
+  const SurfaceMesh block = shapes::box(Vec3(4, 4, 4), 2);
+  const SurfaceMesh ball = shapes::sphere(1.0, 2);
+  const auto findings = check_surface(joined(block, ball, Vec3(2, 2, 2)));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].kind, FindingKind::BadNesting);
+  EXPECT_EQ(findings[0].surfaces.size(), 2U);
+  // A core in a hollow is fine, a hollow in the hollow is not.
+  const SurfaceMesh hollow = joined(block, turned_over(ball), Vec3(2, 2, 2));
+  SurfaceMesh core = shapes::sphere(0.5, 1);
+  EXPECT_TRUE(check_surface(joined(hollow, core, Vec3(2, 2, 2))).empty());
+  EXPECT_EQ(
+      count_of(check_surface(joined(hollow, turned_over(core), Vec3(2, 2, 2))),
+               FindingKind::NegativeVolume),
+      1);
+}
+
+TEST(MeshChecks, BodiesMayShareFacetsEdgesAndPoints) {
+  const auto checker = [](int i, int j, int k) { return 4 * i + 2 * j + k; };
+  const auto eight = check_surface(shapes::cubes({2, 2, 2}, 2, checker));
+  EXPECT_TRUE(eight.empty()) << summary(eight);
+  const auto diagonal = [](int i, int j, int) { return i == j ? i : -1; };
+  const auto two = check_surface(shapes::cubes({2, 2, 1}, 1, diagonal));
+  EXPECT_TRUE(two.empty()) << summary(two);
+  const auto shell = [](int i, int j, int k) {
+    return i == 1 && j == 1 && k == 1 ? 1 : 0;
+  };
+  const auto inner = check_surface(shapes::cubes({3, 3, 3}, 1, shell));
+  EXPECT_TRUE(inner.empty()) << summary(inner);
+}
+
+TEST(MeshChecks, FindsBodiesThatDoNotFit) {
+  const auto halves = [](int i, int, int) { return i; };
+  const SurfaceMesh sound = shapes::cubes({2, 1, 1}, 2, halves);
+  ASSERT_TRUE(check_surface(sound).empty());
+  const auto inside = [&](std::size_t f) { return sound.facet_label[f] == 1; };
+  SurfaceMesh open = sound;  // the interface left out
+  SurfaceMesh swapped = sound;
+  SurfaceMesh third = sound;
+  open.facets.clear();
+  open.facet_label.clear();
+  open.facet_bodies.clear();
+  for (std::size_t f = 0; f < sound.facets.size(); ++f) {
+    if (inside(f)) {
+      std::swap(swapped.facet_bodies[f].behind, swapped.facet_bodies[f].front);
+      third.facet_bodies[f].behind = 2;
+    } else {
+      open.facets.push_back(sound.facets[f]);
+      open.facet_label.push_back(sound.facet_label[f]);
+      open.facet_bodies.push_back(sound.facet_bodies[f]);
+    }
+  }
+  EXPECT_EQ(count_of(check_surface(open), FindingKind::BodyMismatch), 8);
+  EXPECT_GT(count_of(check_surface(swapped), FindingKind::BodyMismatch), 0);
+  EXPECT_GT(count_of(check_surface(third), FindingKind::BodyMismatch), 0);
+  SurfaceMesh wrong = sound;
+  wrong.facet_bodies[3] = {-1, 0};
+  wrong.facet_bodies[4] = {1, 1};
+  wrong.facet_bodies[5] = {0, 1 << 30};
+  EXPECT_EQ(count_of(check_surface(wrong), FindingKind::BadIndex), 3);
+  wrong.facet_bodies.resize(7);
+  EXPECT_GT(count_of(check_surface(wrong), FindingKind::BadIndex), 3);
+  // Touching along an edge is one body's fault, not two bodies'.
+  const auto same = [](int i, int j, int) { return i == j ? 0 : -1; };
+  EXPECT_EQ(count_of(check_surface(shapes::cubes({2, 2, 1}, 1, same)),
+                     FindingKind::NonManifoldEdge),
+            1);
+}
+
+TEST(MeshChecks, FindsABodyInTheWrongBody) {
+  SurfaceMesh mesh = shapes::box(Vec3(4, 4, 4), 2);
+  const std::size_t block = mesh.facets.size();
+  mesh = joined(mesh, shapes::sphere(1.0, 2), Vec3(2, 2, 2));
+  mesh.facet_bodies.assign(mesh.facets.size(), {0, -1});
+  for (std::size_t f = block; f < mesh.facets.size(); ++f) {
+    mesh.facet_bodies[f] = {1, 0};
+  }
+  EXPECT_TRUE(check_surface(mesh).empty());
+  for (std::size_t f = block; f < mesh.facets.size(); ++f) {
+    mesh.facet_bodies[f] = {1, 2};
+  }
+  EXPECT_EQ(count_of(check_surface(mesh), FindingKind::BadNesting), 1);
+}
+
+// Everything meets everything: a comparison of all pairs would take minutes.
+TEST(MeshChecks, EndsSoonOnFacetsThatAllMeet) {
+  constexpr int kFacets = 60000;
+  SurfaceMesh fan;
+  fan.labels = {"fan"};
+  fan.points = {Vec3(0, 0, -1), Vec3(0, 0, 1)};
+  for (int i = 0; i < kFacets; ++i) {
+    const double angle = 2.0 * M_PI * i / kFacets;
+    fan.points.emplace_back(std::cos(angle), std::sin(angle), 0.0);
+    fan.facets.push_back({0, 1, i + 2});
+    fan.facet_label.push_back(0);
+  }
+  const Timer timer;
+  const auto findings = check_surface(fan);
+  constexpr double kLimit = 10.0;  // [s]
+  EXPECT_LT(timer.seconds(), kLimit);
+  EXPECT_GT(count_of(findings, FindingKind::NonManifoldEdge), 0);
+  for (const Finding& f : findings) {
+    EXPECT_LE(f.facets.size(), 8U);
+    EXPECT_LT(f.message.size(), 500U);
+  }
+}
+
 TEST(MeshChecks, EndsOnARandomSoupAndRepeats) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> at(-1.0, 1.0);

@@ -69,7 +69,7 @@ void expect_fills(const Tetrahedralization& result,
   for (int e = 0; e < mesh.element_count(); ++e) {
     EXPECT_GT(corner_volume(mesh, e), 0.0);
   }
-  EXPECT_GE(result.quality.min_dihedral_deg, kLeastDihedralDeg);
+  EXPECT_GE(result.quality.min_dihedral_deg, QualityBounds{}.min_dihedral_deg);
   EXPECT_GT(result.quality.min_volume, 0.0);
 }
 

@@ -55,6 +55,67 @@ SurfaceMesh box(const Vec3& size, int n) {
   return mesh;
 }
 
+SurfaceMesh cubes(const std::array<int, 3>& count, int n,
+                  const std::function<int(int, int, int)>& body_at) {
+  SurfaceMesh mesh;
+  mesh.labels = {"outside", "inside"};
+  std::map<std::array<int, 3>, int> ids;
+  const auto id_of = [&](const std::array<int, 3>& at) {
+    const auto [found, added] =
+        ids.emplace(at, static_cast<int>(mesh.points.size()));
+    if (added) {
+      mesh.points.push_back(Vec3(at[0], at[1], at[2]) / n);
+    }
+    return found->second;
+  };
+  const auto body = [&](const std::array<int, 3>& cube) {
+    for (int k = 0; k < 3; ++k) {
+      if (cube[k] < 0 || cube[k] >= count[k]) {
+        return -1;
+      }
+    }
+    return body_at(cube[0], cube[1], cube[2]);
+  };
+  // The face of cube `low` towards `axis`, its normal along the axis if `up`.
+  const auto add_face = [&](const std::array<int, 3>& low, int axis, bool up,
+                            const FacetBodies& bodies) {
+    for (int square = 0; square < n * n; ++square) {
+      std::array<int, 4> p{};
+      for (int k = 0; k < 4; ++k) {
+        std::array<int, 3> at = {low[0] * n, low[1] * n, low[2] * n};
+        at[axis] += n;
+        at[(axis + 1) % 3] += square % n + (k == 1 || k == 2 ? 1 : 0);
+        at[(axis + 2) % 3] += square / n + (k >= 2 ? 1 : 0);
+        p[k] = id_of(at);
+      }
+      for (const Triangle& t :
+           {Triangle{p[0], p[1], p[2]}, Triangle{p[0], p[2], p[3]}}) {
+        mesh.facets.push_back(up ? t : Triangle{t[0], t[2], t[1]});
+        mesh.facet_label.push_back(bodies.front < 0 ? 0 : 1);
+        mesh.facet_bodies.push_back(bodies);
+      }
+    }
+  };
+  for (int i = -1; i < count[0]; ++i) {
+    for (int j = -1; j < count[1]; ++j) {
+      for (int k = -1; k < count[2]; ++k) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const std::array<int, 3> low = {i, j, k};
+          std::array<int, 3> high = low;
+          ++high[axis];
+          const int a = body(low);
+          const int b = body(high);
+          const bool up = b < 0 || (a >= 0 && a < b);
+          if (a != b) {
+            add_face(low, axis, up, up ? FacetBodies{a, b} : FacetBodies{b, a});
+          }
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
 SurfaceMesh sphere(double radius, int levels) {
   SurfaceMesh mesh;
   mesh.labels = {"sphere"};

@@ -1,6 +1,8 @@
 /// Small named shapes that many tests use.
 #pragma once
 
+#include <functional>
+
 #include "core/surface_mesh.h"
 #include "core/tet_mesh.h"
 
@@ -12,6 +14,13 @@ SurfaceMesh box(const Vec3& size, int n);
 
 /// Icosahedron refined `levels` times onto the sphere; label "sphere".
 SurfaceMesh sphere(double radius, int levels);
+
+/// Cubes of edge 1 / `n` x n squares a face, at integer places 0 .. count - 1;
+/// `body_at` names each cube's body, -1 for none. Facets lie wherever bodies
+/// differ and point out of the lower body number; labels "outside" and "inside"
+/// (between two bodies).
+SurfaceMesh cubes(const std::array<int, 3>& count, int n,
+                  const std::function<int(int, int, int)>& body_at);
 
 /// Box of nx x ny x nz cells, six tetrahedra a cell (conforming), order 1;
 /// labels x0 x1 y0 y1 z0 z1.
