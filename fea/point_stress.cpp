@@ -63,15 +63,6 @@ void element_points(const TetMesh& mesh, int e, const ElasticLaw& law,
 
 }  // namespace
 
-std::vector<Lame> lame_constants(const std::vector<Material>& materials) {
-  std::vector<Lame> lames;
-  lames.reserve(materials.size());
-  for (const Material& material : materials) {
-    lames.push_back(lame(material));
-  }
-  return lames;
-}
-
 PointStress point_stress(const TetMesh& mesh,
                          const std::vector<Material>& materials,
                          const VectorX& displacement,

@@ -31,7 +31,4 @@ PointStress point_stress(const TetMesh& mesh,
                          const VectorX& displacement,
                          const VectorX& temperature_change = {});
 
-/// Lame's constants of all materials, in their order.
-std::vector<Lame> lame_constants(const std::vector<Material>& materials);
-
 }  // namespace meniscus

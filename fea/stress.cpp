@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fea/node_elements.h"
+#include "fea/patch_recovery.h"
 #include "fea/tet_element.h"
 
 namespace meniscus {
@@ -115,8 +116,9 @@ StressField recover_stress(const TetMesh& mesh,
                            const std::vector<Material>& materials,
                            const VectorX& displacement,
                            const VectorX& temperature_change) {
-  return average_stress(
-      mesh, point_stress(mesh, materials, displacement, temperature_change));
+  return nodal_stress(
+      mesh, recover_by_patches(mesh, point_stress(mesh, materials, displacement,
+                                                  temperature_change)));
 }
 
 double mesh_volume(const TetMesh& mesh) {
