@@ -1,18 +1,61 @@
 #include "fea/stress.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include <fmt/format.h>
-
-#include "core/error.h"
+#include "fea/node_elements.h"
 #include "fea/tet_element.h"
 
 namespace meniscus {
 
 namespace {
 
-using Stress = std::array<double, 6>;
+/// Stresses at the four corners of an element: its own everywhere for four
+/// nodes, linearly from the four points for ten.
+std::array<Stress, 4> corner_stresses(const PointStress& points, int e) {
+  std::array<Stress, 4> corner;
+  const Stress* point = &points.stress[points.index(e)];
+  if (points.points_per_element == 1) {
+    corner.fill(point[0]);
+    return corner;
+  }
+  for (int k = 0; k < 6; ++k) {
+    const double sum = point[0][k] + point[1][k] + point[2][k] + point[3][k];
+    for (int c = 0; c < 4; ++c) {
+      corner[c][k] =
+          (point[c][k] - kTetRuleLow * sum) / (kTetRuleHigh - kTetRuleLow);
+    }
+  }
+  return corner;
+}
+
+/// The mean of what the elements around `node` say, weighted by volume.
+Stress mean_at(const TetMesh& mesh, const PointStress& points,
+               const std::vector<std::array<Stress, 4>>& corners,
+               const NodeElements& around, int node) {
+  Stress sum{};
+  double weight = 0.0;
+  for (const int e : around.of(node)) {
+    const auto ids = mesh.element(e);
+    const int a =
+        static_cast<int>(std::find(ids.begin(), ids.end(), node) - ids.begin());
+    const Stress& from = corners[e][a < 4 ? a : kTetEdges[a - 4][0]];
+    const Stress& to = corners[e][a < 4 ? a : kTetEdges[a - 4][1]];
+    double volume = 0.0;
+    for (int q = 0; q < points.points_per_element; ++q) {
+      volume += points.volume[points.index(e, q)];
+    }
+    weight += volume;
+    for (int k = 0; k < 6; ++k) {
+      sum[k] += volume * 0.5 * (from[k] + to[k]);
+    }
+  }
+  if (weight != 0.0) {
+    for (double& s : sum) {
+      s /= weight;
+    }
+  }
+  return sum;
+}
 
 template <int Nodes>
 std::array<Vec3, Nodes> element_nodes(const TetMesh& mesh, int e) {
@@ -24,65 +67,6 @@ std::array<Vec3, Nodes> element_nodes(const TetMesh& mesh, int e) {
   return x;
 }
 
-Stress stress_of(const Mat3& H, const Lame& m) {
-  const double pressure = m.lambda * H.trace();
-  return {pressure + 2.0 * m.mu * H(0, 0), pressure + 2.0 * m.mu * H(1, 1),
-          pressure + 2.0 * m.mu * H(2, 2), m.mu * (H(0, 1) + H(1, 0)),
-          m.mu * (H(1, 2) + H(2, 1)),      m.mu * (H(2, 0) + H(0, 2))};
-}
-
-/// Stresses at the corners and the volume of one element.
-struct CornerStress {
-  std::array<Stress, 4> corner;
-  double volume = 0.0;
-};
-
-template <int Nodes>
-CornerStress corner_stress(const TetMesh& mesh, int e, const Lame& m,
-                           const VectorX& u) {
-  TetGradients<Nodes> g;
-  tet_gradients<Nodes>(element_nodes<Nodes>(mesh, e), g);
-  const auto ids = mesh.element(e);
-  CornerStress result;
-  std::array<Stress, kTetPoints<Nodes>> point;
-  for (int q = 0; q < kTetPoints<Nodes>; ++q) {
-    Mat3 H = Mat3::Zero();
-    for (int a = 1; a < Nodes; ++a) {
-      const Vec3 du = u.segment<3>(3L * ids[a]) - u.segment<3>(3L * ids[0]);
-      H.noalias() += du * g.gradient[q][a].transpose();
-    }
-    point[q] = stress_of(H, m);
-    result.volume += g.volume[q];
-  }
-  if constexpr (Nodes == 4) {
-    result.corner.fill(point[0]);
-  } else {
-    for (int k = 0; k < 6; ++k) {
-      const double sum = point[0][k] + point[1][k] + point[2][k] + point[3][k];
-      for (int c = 0; c < 4; ++c) {
-        result.corner[c][k] =
-            (point[c][k] - kTetRuleLow * sum) / (kTetRuleHigh - kTetRuleLow);
-      }
-    }
-  }
-  return result;
-}
-
-/// Adds an element's stresses, times its volume, to its nodes.
-void spread(const TetMesh& mesh, int e, const CornerStress& s,
-            std::vector<Stress>& nodal, std::vector<double>& weight) {
-  const auto ids = mesh.element(e);
-  for (int a = 0; a < mesh.nodes_per_element(); ++a) {
-    weight[ids[a]] += s.volume;
-    const int from = a < 4 ? a : kTetEdges[a - 4][0];
-    const int to = a < 4 ? a : kTetEdges[a - 4][1];
-    for (int k = 0; k < 6; ++k) {
-      nodal[ids[a]][k] +=
-          s.volume * 0.5 * (s.corner[from][k] + s.corner[to][k]);
-    }
-  }
-}
-
 double element_volume(const TetMesh& mesh, int e) {
   return mesh.order == 1 ? corner_volume(mesh, e)
                          : quadratic_volume(element_nodes<10>(mesh, e));
@@ -90,55 +74,47 @@ double element_volume(const TetMesh& mesh, int e) {
 
 }  // namespace
 
-double von_mises(const Stress& s) {
-  const double a = s[0] - s[1];
-  const double b = s[1] - s[2];
-  const double c = s[2] - s[0];
-  return std::sqrt(0.5 * (a * a + b * b + c * c) +
-                   3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+void find_peak(StressField& field) {
+  const int count = static_cast<int>(field.nodal.size());
+  field.von_mises.resize(field.nodal.size());
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < count; ++i) {
+    field.von_mises[i] = von_mises(field.nodal[i]);
+  }
+  field.max_von_mises = 0.0;
+  field.max_node = 0;
+  for (int i = 0; i < count; ++i) {
+    if (field.von_mises[i] > field.max_von_mises) {
+      field.max_von_mises = field.von_mises[i];
+      field.max_node = i;
+    }
+  }
+}
+
+StressField average_stress(const TetMesh& mesh, const PointStress& points) {
+  const int elements = mesh.element_count();
+  const int nodes = static_cast<int>(mesh.nodes.size());
+  const int width = mesh.nodes_per_element();
+  const NodeElements around = node_elements(mesh.elements, width, width, nodes);
+  std::vector<std::array<Stress, 4>> corners(elements);
+  StressField field;
+  field.nodal.resize(mesh.nodes.size());
+#pragma omp parallel for schedule(static)
+  for (int e = 0; e < elements; ++e) {
+    corners[e] = corner_stresses(points, e);
+  }
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < nodes; ++i) {
+    field.nodal[i] = mean_at(mesh, points, corners, around, i);
+  }
+  find_peak(field);
+  return field;
 }
 
 StressField recover_stress(const TetMesh& mesh,
                            const std::vector<Material>& materials,
                            const VectorX& displacement) {
-  check_materials(mesh, materials);
-  if (displacement.size() != static_cast<Eigen::Index>(3 * mesh.nodes.size())) {
-    throw InvalidInput(fmt::format("stress: {} displacements for {} nodes",
-                                   displacement.size(), mesh.nodes.size()));
-  }
-  std::vector<Lame> lames;
-  lames.reserve(materials.size());
-  for (const Material& material : materials) {
-    lames.push_back(lame(material));
-  }
-  const int count = mesh.element_count();
-  std::vector<CornerStress> elements(count);
-#pragma omp parallel for schedule(static)
-  for (int e = 0; e < count; ++e) {
-    const Lame& m = lames[mesh.element_region[e]];
-    elements[e] = mesh.order == 1 ? corner_stress<4>(mesh, e, m, displacement)
-                                  : corner_stress<10>(mesh, e, m, displacement);
-  }
-  StressField field;
-  field.nodal.assign(mesh.nodes.size(), Stress{});
-  field.von_mises.assign(mesh.nodes.size(), 0.0);
-  std::vector<double> weight(mesh.nodes.size(), 0.0);
-  for (int e = 0; e < count; ++e) {
-    spread(mesh, e, elements[e], field.nodal, weight);
-  }
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    if (weight[i] != 0.0) {
-      for (double& s : field.nodal[i]) {
-        s /= weight[i];
-      }
-    }
-    field.von_mises[i] = von_mises(field.nodal[i]);
-    if (field.von_mises[i] > field.max_von_mises) {
-      field.max_von_mises = field.von_mises[i];
-      field.max_node = static_cast<int>(i);
-    }
-  }
-  return field;
+  return average_stress(mesh, point_stress(mesh, materials, displacement));
 }
 
 double mesh_volume(const TetMesh& mesh) {

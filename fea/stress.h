@@ -1,32 +1,38 @@
 /// Nodal stresses.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "core/tet_mesh.h"
 #include "fea/material.h"
+#include "fea/point_stress.h"
+#include "fea/stress_measures.h"
 
 namespace meniscus {
 
-/// Stress by averaging element extrapolations at nodes (volume-weighted).
 /// Six components per node: xx yy zz xy yz zx [pressure].
 struct StressField {
-  std::vector<std::array<double, 6>> nodal;
+  std::vector<Stress> nodal;
   std::vector<double> von_mises;  // per node [pressure]
   double max_von_mises = 0.0;
   int max_node = 0;
 };
 
-/// Ten-node elements: from the four points of the stiffness rule linearly to
-/// the corners, mid-sides the mean of their ends; as CalculiX does.
-/// `displacement`: 3 per node [length]. Throws InvalidInput when sizes or
-/// materials do not fit the mesh.
+/// Fills in von Mises stresses and their peak from `field.nodal`.
+void find_peak(StressField& field);
+
+/// Means of element extrapolations at nodes, weighted by volume. Ten-node
+/// elements: from the four points of the stiffness rule linearly to the
+/// corners, mid-sides the mean of their ends; as CalculiX does. One order less
+/// accurate than patch recovery (patch_recovery.h), and never far from what
+/// the points say.
+StressField average_stress(const TetMesh& mesh, const PointStress& points);
+
+/// average_stress of a displacement, 3 per node [length]. Throws InvalidInput
+/// when sizes or materials do not fit the mesh.
 StressField recover_stress(const TetMesh& mesh,
                            const std::vector<Material>& materials,
                            const VectorX& displacement);
-
-double von_mises(const std::array<double, 6>& stress);
 
 /// Volume [length^3] and mass [mass] by quadrature on curved elements.
 double mesh_volume(const TetMesh& mesh);

@@ -1,0 +1,35 @@
+/// Stresses where the finite-element solution knows them best: at the
+/// integration points of the stiffness rule (tet_element.h; one point for
+/// four-node elements, CalculiX's four for ten-node ones).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/tet_mesh.h"
+#include "fea/stress_measures.h"
+
+namespace meniscus {
+
+/// Point q of element e stands at index e * points_per_element + q.
+struct PointStress {
+  int points_per_element = 1;
+  std::vector<Stress> stress;  // [pressure]
+  Points position;             // [length]
+  std::vector<double> volume;  // weight x det J [length^3]
+
+  std::size_t index(int element, int point = 0) const {
+    return static_cast<std::size_t>(element) * points_per_element + point;
+  }
+};
+
+/// `displacement`: 3 per node [length]. The same bits for any number of
+/// threads. Throws InvalidInput when sizes or materials do not fit the mesh.
+PointStress point_stress(const TetMesh& mesh,
+                         const std::vector<Material>& materials,
+                         const VectorX& displacement);
+
+/// Lame's constants of all materials, in their order.
+std::vector<Lame> lame_constants(const std::vector<Material>& materials);
+
+}  // namespace meniscus
