@@ -74,10 +74,46 @@ void add_stiffness(const double (*G)[Width], int a, int b, const Lame& m,
   block[8] += both * g2[2] + d;
 }
 
+/// block += C : G_ab, see ElasticLaw::tensor.
+template <int Width>
+void add_stiffness(const double (*G)[Width], int a, int b, const ElasticLaw& m,
+                   double* block) {
+  double g[9];
+  for (int j = 0; j < 3; ++j) {
+    for (int l = 0; l < 3; ++l) {
+      g[3 * j + l] = G[3L * a + j][3L * b + l];
+    }
+  }
+  const double* row = m.tensor.data();
+  for (int k = 0; k < 9; ++k, row += 9) {
+    double sum = 0.0;
+    for (int c = 0; c < 9; ++c) {
+      sum += row[c] * g[c];
+    }
+    block[k] += sum;
+  }
+}
+
+/// Adds the blocks of rows [low, high) of one element. Law: Lame or ElasticLaw.
+template <int Nodes, class Law>
+void add_element(const double (*G)[kPadded<Nodes>], const int* ids,
+                 const int* block, const Law& law, int low, int high,
+                 BlockMatrix<double>& matrix) {
+  for (int a = 0; a < Nodes; ++a) {
+    if (ids[a] >= low && ids[a] < high) {
+      add_stiffness(G, a, a, law, matrix.diagonal.data() + 9L * ids[a]);
+      for (int b = 0; b < a; ++b) {
+        add_stiffness(G, a, b, law,
+                      matrix.lower.data() + 9L * block[a * (a - 1) / 2 + b]);
+      }
+    }
+  }
+}
+
 /// Adds the blocks of rows [low, high); returns the first bad element.
 template <int Nodes>
 int assemble_rows(const ElementTable& table, const Points& x,
-                  const std::vector<Lame>& lames, int low, int high,
+                  const std::vector<ElasticLaw>& laws, int low, int high,
                   BlockMatrix<double>& matrix) {
   const BlockPattern& p = table.pattern;
   constexpr int kPairs = Nodes * (Nodes - 1) / 2;
@@ -97,17 +133,13 @@ int assemble_rows(const ElementTable& table, const Points& x,
       bad = std::min(bad, e);
     }
     outer_products<Nodes>(g, table.slot.data() + first, G);
-    const Lame& m = lames[table.region[e]];
+    const ElasticLaw& law = laws[table.region[e]];
     const int* block =
         p.pair_block.data() + static_cast<std::size_t>(e) * kPairs;
-    for (int a = 0; a < Nodes; ++a) {
-      if (ids[a] >= low && ids[a] < high) {
-        add_stiffness(G, a, a, m, matrix.diagonal.data() + 9L * ids[a]);
-        for (int b = 0; b < a; ++b) {
-          add_stiffness(G, a, b, m,
-                        matrix.lower.data() + 9L * block[a * (a - 1) / 2 + b]);
-        }
-      }
+    if (law.isotropic) {
+      add_element<Nodes>(G, ids, block, law.lame, low, high, matrix);
+    } else {
+      add_element<Nodes>(G, ids, block, law, low, high, matrix);
     }
   }
   return bad;
@@ -115,7 +147,7 @@ int assemble_rows(const ElementTable& table, const Points& x,
 
 template <int Nodes>
 std::optional<int> assemble_all(const ElementTable& table, const Points& x,
-                                const std::vector<Lame>& lames,
+                                const std::vector<ElasticLaw>& laws,
                                 BlockMatrix<double>& matrix) {
   const BlockPattern& p = table.pattern;
   int bad = p.element_count();
@@ -137,21 +169,21 @@ std::optional<int> assemble_all(const ElementTable& table, const Points& x,
               matrix.diagonal.begin() + 9L * high, 0.0);
     std::fill(matrix.lower.begin() + 9L * p.start[low],
               matrix.lower.begin() + 9L * p.start[high], 0.0);
-    bad = assemble_rows<Nodes>(table, x, lames, low, high, matrix);
+    bad = assemble_rows<Nodes>(table, x, laws, low, high, matrix);
   }
   return bad == p.element_count() ? std::nullopt : std::optional(bad);
 }
 
 template <int Nodes>
 void add_internal_forces(const ElementTable& table, const Points& x,
-                         const std::vector<Lame>& lames, const VectorX& u,
+                         const std::vector<ElasticLaw>& laws, const VectorX& u,
                          VectorX& f) {
   std::array<Vec3, Nodes> corner;
   TetGradients<Nodes> g;
   for (int e = 0; e < table.pattern.element_count(); ++e) {
     load_nodes<Nodes>(table, x, e, corner);
     tet_gradients<Nodes>(corner, g);
-    const Lame& m = lames[table.region[e]];
+    const ElasticLaw& law = laws[table.region[e]];
     const std::size_t first = static_cast<std::size_t>(e) * Nodes;
     std::array<int, Nodes> ids;
     std::array<Vec3, Nodes> du;  // relative to one node: no rigid shift
@@ -164,9 +196,7 @@ void add_internal_forces(const ElementTable& table, const Points& x,
       for (int a = 1; a < Nodes; ++a) {
         H.noalias() += du[a] * g.gradient[q][a].transpose();
       }
-      Mat3 stress = m.mu * (H + H.transpose());
-      stress.diagonal().array() += m.lambda * H.trace();
-      stress *= g.volume[q];
+      const Mat3 stress = g.volume[q] * law.stress(H);
       for (int a = 0; a < Nodes; ++a) {
         f.segment<3>(3 * ids[a]).noalias() += stress * g.gradient[q][a];
       }
@@ -201,22 +231,22 @@ ElementTable make_element_table(int nodes, int nodes_per_element,
 }
 
 std::optional<int> assemble(const ElementTable& table, const Points& x,
-                            const std::vector<Lame>& lames,
+                            const std::vector<ElasticLaw>& laws,
                             BlockMatrix<double>& matrix) {
   matrix.diagonal.resize(9L * table.pattern.nodes);
   matrix.lower.resize(9L * table.pattern.column.size());
   return table.pattern.nodes_per_element == 4
-             ? assemble_all<4>(table, x, lames, matrix)
-             : assemble_all<10>(table, x, lames, matrix);
+             ? assemble_all<4>(table, x, laws, matrix)
+             : assemble_all<10>(table, x, laws, matrix);
 }
 
 VectorX internal_forces(const ElementTable& table, const Points& x,
-                        const std::vector<Lame>& lames, const VectorX& u) {
+                        const std::vector<ElasticLaw>& laws, const VectorX& u) {
   VectorX f = VectorX::Zero(u.size());
   if (table.pattern.nodes_per_element == 4) {
-    add_internal_forces<4>(table, x, lames, u, f);
+    add_internal_forces<4>(table, x, laws, u, f);
   } else {
-    add_internal_forces<10>(table, x, lames, u, f);
+    add_internal_forces<10>(table, x, laws, u, f);
   }
   return f;
 }

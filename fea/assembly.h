@@ -1,11 +1,11 @@
-/// Stiffness matrices and internal forces of isotropic linear elasticity.
+/// Stiffness matrices and internal forces of linear elasticity.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "fea/block_matrix.h"
-#include "fea/material.h"
+#include "fea/elastic_law.h"
 
 namespace meniscus {
 
@@ -23,17 +23,18 @@ ElementTable make_element_table(int nodes, int nodes_per_element,
                                 std::vector<int> region);
 
 /// Fills `matrix` with K_ab = sum over points of V (lambda g_a g_b^T +
-/// mu g_b g_a^T + mu g_a . g_b I). Each block adds its elements in their
-/// order, whatever the number of threads. `x`: the solver's nodes; `lames`:
+/// mu g_b g_a^T + mu g_a . g_b I), or C g_a g_b^T where a material is not
+/// isotropic. Each block adds its elements in their
+/// order, whatever the number of threads. `x`: the solver's nodes; `laws`:
 /// one per region. Returns the first element (solver's) whose Jacobian
 /// determinant is not positive at a point; the matrix is then of no use.
 std::optional<int> assemble(const ElementTable& table, const Points& x,
-                            const std::vector<Lame>& lames,
+                            const std::vector<ElasticLaw>& laws,
                             BlockMatrix<double>& matrix);
 
 /// Nodal forces that hold the body in displacement u: f = K u, computed from
 /// displacement gradients, so that rigid motions give none [force].
 VectorX internal_forces(const ElementTable& table, const Points& x,
-                        const std::vector<Lame>& lames, const VectorX& u);
+                        const std::vector<ElasticLaw>& laws, const VectorX& u);
 
 }  // namespace meniscus

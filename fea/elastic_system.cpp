@@ -58,9 +58,7 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
         "0",
         options.tolerance, options.max_iterations));
   }
-  for (const Material& material : materials) {
-    lames_.push_back(lame(material));
-  }
+  laws_ = elastic_laws(materials);
   if (!std::all_of(base.nodes.begin(), base.nodes.end(),
                    [](const Vec3& x) { return x.allFinite(); })) {
     throw MeshError("elasticity: a node position of the mesh is not finite");
@@ -143,7 +141,7 @@ void ElasticSystem::build_preconditioners(const TetMesh& base,
   CornerMesh corners = make_corner_mesh(base, order_);
   BlockMatrix<double> coarse;
   if (const auto bad =
-          meniscus::assemble(corners.table, corners.x, lames_, coarse)) {
+          meniscus::assemble(corners.table, corners.x, laws_, coarse)) {
     throw MeshError(fmt::format(
         "element {}: its straight-sided corners enclose no positive volume; "
         "improve the mesh or choose the Cholesky solver",
@@ -224,7 +222,7 @@ std::optional<Failure> ElasticSystem::assemble(
                    fmt::format("node {} of the mesh is not finite",
                                order_.to_mesh[place - x.begin()])};
   }
-  const auto bad = meniscus::assemble(shared_->table, x, lames_, matrix);
+  const auto bad = meniscus::assemble(shared_->table, x, laws_, matrix);
   if (!bad) {
     return std::nullopt;
   }
@@ -296,7 +294,7 @@ void ElasticSystem::solve_columns(
                           right, u);
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const int c = cases[k];
-    const VectorX internal = internal_forces(shared_->table, x, lames_, u[k]);
+    const VectorX internal = internal_forces(shared_->table, x, laws_, u[k]);
     const Equilibrium equilibrium =
         check_equilibrium({x, right[k], internal, u[k], group.fixed, matrix});
     result.displacements[c] = to_mesh(u[k]);

@@ -66,7 +66,7 @@ class ElasticSystem {
   VectorX to_mesh(const VectorX& v) const;
 
   ElasticOptions options_;
-  std::vector<Lame> lames_;
+  std::vector<ElasticLaw> laws_;
   std::vector<int> elements_;  // the base's, to compare
   std::vector<int> faces_;
   std::vector<std::vector<Support>> supports_;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -10,7 +12,55 @@ namespace meniscus {
 
 namespace {
 
-void check(const Material& m) {
+/// Least eigenvalue of the compliance, made dimensionless, that is told from
+/// 0: that of an isotropic solid with Poisson's ratio 0.4999995.
+constexpr double kLeastCompliance = 1e-6;
+constexpr double kParallel = 1e-6;  // sine between two axes
+
+void check_orthotropic(const Material& material) {
+  const Orthotropic& m = *material.orthotropic;
+  const auto refuse = [&](const std::string& what) {
+    throw InvalidInput(fmt::format("material '{}': {}", material.name, what));
+  };
+  if (!(m.youngs_moduli.minCoeff() > 0.0) || !m.youngs_moduli.allFinite() ||
+      !(m.shear_moduli.minCoeff() > 0.0) || !m.shear_moduli.allFinite()) {
+    refuse(
+        fmt::format("Young's moduli are {}, {}, {} and shear moduli {}, {}, "
+                    "{}; all must be above 0",
+                    m.youngs_moduli[0], m.youngs_moduli[1], m.youngs_moduli[2],
+                    m.shear_moduli[0], m.shear_moduli[1], m.shear_moduli[2]));
+  }
+  const double sine = m.axis_1.cross(m.axis_2).norm();
+  if (!(sine > kParallel * m.axis_1.norm() * m.axis_2.norm()) ||
+      !std::isfinite(sine)) {
+    refuse(
+        fmt::format("its axes ({}, {}, {}) and ({}, {}, {}) have no length "
+                    "or are parallel; give two that span a plane",
+                    m.axis_1.x(), m.axis_1.y(), m.axis_1.z(), m.axis_2.x(),
+                    m.axis_2.y(), m.axis_2.z()));
+  }
+  // Compliance scaled to a diagonal of 1.
+  const Vec3& E = m.youngs_moduli;
+  const Vec3& nu = m.poisson_ratios;
+  Mat3 S = Mat3::Identity();
+  S(0, 1) = S(1, 0) = -nu[0] * std::sqrt(E[1] / E[0]);
+  S(0, 2) = S(2, 0) = -nu[1] * std::sqrt(E[2] / E[0]);
+  S(1, 2) = S(2, 1) = -nu[2] * std::sqrt(E[2] / E[1]);
+  const double least =
+      S.allFinite()
+          ? Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues().minCoeff()
+          : -1.0;
+  if (!(least > kLeastCompliance)) {
+    refuse(fmt::format(
+        "its stiffness is not positive definite (least relative eigenvalue of "
+        "the compliance {:.3g}): Poisson's ratios 12, 13, 23 = {}, {}, {} are "
+        "too large; each must stay below sqrt(E_i / E_j), and all three "
+        "together be smaller still",
+        least, nu[0], nu[1], nu[2]));
+  }
+}
+
+void check_isotropic(const Material& m) {
   if (!(m.youngs_modulus > 0.0) || !std::isfinite(m.youngs_modulus)) {
     throw InvalidInput(
         fmt::format("material '{}': Young's modulus is {}; it must be above 0",
@@ -21,6 +71,27 @@ void check(const Material& m) {
         "material '{}': Poisson's ratio is {}; it must lie between -1 and 0.5, "
         "both excluded (for a nearly incompressible solid try 0.49)",
         m.name, m.poisson_ratio));
+  }
+  const Vec3& a = m.thermal_expansion;
+  if (a[0] != a[1] || a[1] != a[2]) {
+    throw InvalidInput(fmt::format(
+        "material '{}' is isotropic, but its thermal expansions are {}, {}, "
+        "{}; give one number, or an orthotropic material",
+        m.name, a[0], a[1], a[2]));
+  }
+}
+
+void check(const Material& m) {
+  if (!m.thermal_expansion.allFinite()) {
+    throw InvalidInput(
+        fmt::format("material '{}': its thermal expansion is not a finite "
+                    "number",
+                    m.name));
+  }
+  if (m.orthotropic) {
+    check_orthotropic(m);
+  } else {
+    check_isotropic(m);
   }
   if (!(m.density >= 0.0) || !std::isfinite(m.density)) {
     throw InvalidInput(
@@ -35,6 +106,14 @@ Lame lame(const Material& material) {
   const double E = material.youngs_modulus;
   const double nu = material.poisson_ratio;
   return {E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 * E / (1.0 + nu)};
+}
+
+Mat3 material_axes(const Orthotropic& material) {
+  Mat3 R;
+  R.col(0) = material.axis_1.normalized();
+  R.col(2) = R.col(0).cross(material.axis_2).normalized();
+  R.col(1) = R.col(2).cross(R.col(0));
+  return R;
 }
 
 void check_materials(const TetMesh& mesh,

@@ -11,8 +11,8 @@ namespace meniscus {
 namespace {
 
 template <int Nodes>
-void element_points(const TetMesh& mesh, int e, const Lame& m, const VectorX& u,
-                    PointStress& out) {
+void element_points(const TetMesh& mesh, int e, const ElasticLaw& law,
+                    const VectorX& u, PointStress& out) {
   static const auto kShapes = [] {
     std::array<std::array<double, Nodes>, kTetPoints<Nodes>> shapes;
     for (int q = 0; q < kTetPoints<Nodes>; ++q) {
@@ -39,22 +39,13 @@ void element_points(const TetMesh& mesh, int e, const Lame& m, const VectorX& u,
       position += kShapes[q][a] * x[a];
     }
     const std::size_t at = out.index(e, q);
-    out.stress[at] = stress_of_gradient(H, m);
+    out.stress[at] = stress_of_gradient(H, law);
     out.position[at] = position;
     out.volume[at] = g.volume[q];
   }
 }
 
 }  // namespace
-
-std::vector<Lame> lame_constants(const std::vector<Material>& materials) {
-  std::vector<Lame> lames;
-  lames.reserve(materials.size());
-  for (const Material& material : materials) {
-    lames.push_back(lame(material));
-  }
-  return lames;
-}
 
 PointStress point_stress(const TetMesh& mesh,
                          const std::vector<Material>& materials,
@@ -64,7 +55,7 @@ PointStress point_stress(const TetMesh& mesh,
     throw InvalidInput(fmt::format("stress: {} displacements for {} nodes",
                                    displacement.size(), mesh.nodes.size()));
   }
-  const std::vector<Lame> lames = lame_constants(materials);
+  const std::vector<ElasticLaw> laws = elastic_laws(materials);
   const int count = mesh.element_count();
   PointStress out;
   out.points_per_element = mesh.order == 1 ? kTetPoints<4> : kTetPoints<10>;
@@ -74,11 +65,11 @@ PointStress point_stress(const TetMesh& mesh,
   out.volume.resize(points);
 #pragma omp parallel for schedule(static)
   for (int e = 0; e < count; ++e) {
-    const Lame& m = lames[mesh.element_region[e]];
+    const ElasticLaw& law = laws[mesh.element_region[e]];
     if (mesh.order == 1) {
-      element_points<4>(mesh, e, m, displacement, out);
+      element_points<4>(mesh, e, law, displacement, out);
     } else {
-      element_points<10>(mesh, e, m, displacement, out);
+      element_points<10>(mesh, e, law, displacement, out);
     }
   }
   return out;

@@ -29,7 +29,4 @@ PointStress point_stress(const TetMesh& mesh,
                          const std::vector<Material>& materials,
                          const VectorX& displacement);
 
-/// Lame's constants of all materials, in their order.
-std::vector<Lame> lame_constants(const std::vector<Material>& materials);
-
 }  // namespace meniscus

@@ -71,18 +71,18 @@ TEST_P(Element, StiffnessIsSymmetricWithSixZeroEigenvalues) {
 TEST_P(Element, RigidMotionGivesNoForce) {
   const TetMesh mesh = single_element(GetParam());
   const ElementTable table = parts::table_of(mesh);
-  const std::vector<Lame> lames = {lame(parts::steel())};
+  const std::vector<ElasticLaw> laws = {lame(parts::steel())};
   const VectorX u = rigid_motion(mesh, {1.0, -2.0, 0.5}, {0.3, 0.2, -0.7});
-  const VectorX f = internal_forces(table, mesh.nodes, lames, u);
+  const VectorX f = internal_forces(table, mesh.nodes, laws, u);
   EXPECT_LE(f.norm(), kRounding * parts::steel().youngs_modulus * u.norm());
 }
 
 TEST_P(Element, InternalForcesAreTheStiffnessTimesTheDisplacement) {
   const TetMesh mesh = single_element(GetParam());
   const ElementTable table = parts::table_of(mesh);
-  const std::vector<Lame> lames = {lame(parts::steel())};
+  const std::vector<ElasticLaw> laws = {lame(parts::steel())};
   BlockMatrix<double> matrix;
-  ASSERT_FALSE(assemble(table, mesh.nodes, lames, matrix));
+  ASSERT_FALSE(assemble(table, mesh.nodes, laws, matrix));
   VectorX u(3 * table.pattern.nodes);
   for (Eigen::Index d = 0; d < u.size(); ++d) {
     u[d] = std::sin(static_cast<double>(d) + 1.0);
@@ -91,7 +91,7 @@ TEST_P(Element, InternalForcesAreTheStiffnessTimesTheDisplacement) {
   VectorX product = VectorX::Zero(u.size());
   multiply<1>(table.pattern, matrix, u.data(), product.data());
   EXPECT_LE((product - expected).norm(), kRounding * expected.norm());
-  EXPECT_LE((internal_forces(table, mesh.nodes, lames, u) - expected).norm(),
+  EXPECT_LE((internal_forces(table, mesh.nodes, laws, u) - expected).norm(),
             kRounding * expected.norm());
 }
 
