@@ -110,6 +110,15 @@ SurfaceWeights surface_weights(const TetMesh& mesh,
 
 VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case) {
   VectorX f = VectorX::Zero(static_cast<Eigen::Index>(3 * mesh.nodes.size()));
+  if (load_case.nodal.size() != 0) {
+    if (load_case.nodal.size() != f.size() || !load_case.nodal.allFinite()) {
+      throw InvalidInput(fmt::format(
+          "load case '{}': its {} nodal forces must be finite and 3 "
+          "for each of {} nodes",
+          load_case.name, load_case.nodal.size(), mesh.nodes.size()));
+    }
+    f = load_case.nodal;
+  }
   for (const SurfaceForce& force : load_case.forces) {
     check_finite(force.total.allFinite(), load_case, force.surface);
     const SurfaceWeights w = surface_weights(mesh, force.surface);

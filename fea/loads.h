@@ -31,6 +31,7 @@ struct LoadCase {
   std::vector<Support> supports;
   std::vector<SurfaceForce> forces;
   std::vector<SurfacePressure> pressures;
+  VectorX nodal;  // forces at nodes, 3 per node; empty: none [force]
 };
 
 /// Consistent weights of a surface: integral of each node's shape function

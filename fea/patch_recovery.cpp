@@ -63,8 +63,10 @@ class Recovery {
         }
         corner_patches(i, patches);
         if (patches.front() == i) {
-          patch_[i] = fit_patch(points_, around_.of(i),
-                                mesh_.nodes[nodes_.node[i]], mesh_.order);
+          // Quadratics seen from one side only overshoot.
+          patch_[i] =
+              fit_patch(points_, around_.of(i), mesh_.nodes[nodes_.node[i]],
+                        inner_[i] != 0 ? mesh_.order : 1);
         }
       }
     }
@@ -84,7 +86,13 @@ class Recovery {
     return ends;
   }
 
-  /// Surrounded corners of the elements around corner i that also hold `with`.
+  static void sort_unique(std::vector<int>& ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  }
+
+  /// Adds the surrounded corners of the elements around corner i that also
+  /// hold `with`.
   void add_neighbours(int i, int with, std::vector<int>& patches) const {
     for (const int e : around_.of(i)) {
       const auto corners = nodes_.element(e).first<4>();
@@ -97,13 +105,31 @@ class Recovery {
         }
       }
     }
-    std::sort(patches.begin(), patches.end());
-    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+    sort_unique(patches);
+  }
+
+  /// The same one element farther, for corners in the edges of a body.
+  void add_far_neighbours(int i, std::vector<int>& patches) const {
+    for (const int e : around_.of(i)) {
+      for (const int c : nodes_.element(e).first<4>()) {
+        for (const int f : around_.of(c)) {
+          for (const int d : nodes_.element(f).first<4>()) {
+            if (inner_[d] != 0) {
+              patches.push_back(d);
+            }
+          }
+        }
+      }
+    }
+    sort_unique(patches);
   }
 
   void corner_patches(int i, std::vector<int>& patches) const {
     if (inner_[i] == 0) {
       add_neighbours(i, i, patches);
+      if (patches.empty()) {
+        add_far_neighbours(i, patches);
+      }
     }
     if (patches.empty()) {
       patches.push_back(i);
@@ -124,6 +150,7 @@ class Recovery {
       std::vector<int> others;
       corner_patches(ends[1], others);
       patches.insert(patches.end(), others.begin(), others.end());
+      sort_unique(patches);
     }
   }
 

@@ -23,9 +23,10 @@ struct RecoveredStress {
 /// nodes, complete quadratic for ten) is fitted by least squares to the points
 /// of these elements. A corner takes its own polynomial, a mid-side the mean of
 /// its two ends', a node on the region's boundary the mean of those of the
-/// surrounded corners in its elements. Where there are none (a wall one element
-/// thick) a corner's own elements serve, with a lower order if they are few.
-/// The same bits for any number of threads.
+/// surrounded corners in its elements, or one element farther. Where there are
+/// none (a wall one element thick) a linear polynomial of a corner's own
+/// elements serves: quadratics seen from one side overshoot. The same bits for
+/// any number of threads.
 RecoveredStress recover_by_patches(const TetMesh& mesh,
                                    const PointStress& points);
 

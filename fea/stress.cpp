@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fea/node_elements.h"
+#include "fea/patch_recovery.h"
 #include "fea/tet_element.h"
 
 namespace meniscus {
@@ -114,7 +115,9 @@ StressField average_stress(const TetMesh& mesh, const PointStress& points) {
 StressField recover_stress(const TetMesh& mesh,
                            const std::vector<Material>& materials,
                            const VectorX& displacement) {
-  return average_stress(mesh, point_stress(mesh, materials, displacement));
+  return nodal_stress(
+      mesh,
+      recover_by_patches(mesh, point_stress(mesh, materials, displacement)));
 }
 
 double mesh_volume(const TetMesh& mesh) {

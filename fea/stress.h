@@ -28,8 +28,10 @@ void find_peak(StressField& field);
 /// the points say.
 StressField average_stress(const TetMesh& mesh, const PointStress& points);
 
-/// average_stress of a displacement, 3 per node [length]. Throws InvalidInput
-/// when sizes or materials do not fit the mesh.
+/// Nodal stresses by patch recovery (patch_recovery.h) of a displacement, 3 per
+/// node [length]; where materials meet, those of the side with the larger von
+/// Mises stress. Throws InvalidInput when sizes or materials do not fit the
+/// mesh.
 StressField recover_stress(const TetMesh& mesh,
                            const std::vector<Material>& materials,
                            const VectorX& displacement);

@@ -1,0 +1,37 @@
+/// Recovered minus computed stress: what error estimates integrate.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fea/patch_recovery.h"
+
+namespace meniscus {
+
+/// At the fourteen points of fine_tet_rule() (tet_shape.h). The stiffness
+/// rule's own points would miss part of the error: there it is smallest.
+struct PointDifferences {
+  std::array<Stress, 14> recovered_minus_computed;  // [pressure]
+  std::array<Stress, 14> computed;                  // [pressure]
+  std::array<double, 14> volume;                    // weight x det J [length^3]
+};
+
+/// `displacement` (3 per node) and `recovered` are on loan.
+class StressDifference {
+ public:
+  StressDifference(const TetMesh& mesh, const std::vector<Material>& materials,
+                   const VectorX& displacement,
+                   const RecoveredStress& recovered);
+  PointDifferences of(int element) const;
+
+ private:
+  template <int Nodes>
+  PointDifferences differences(int element) const;
+
+  const TetMesh& mesh_;
+  const VectorX& u_;
+  const RecoveredStress& recovered_;
+  std::vector<ElasticLaw> laws_;
+};
+
+}  // namespace meniscus
