@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "fea/safety_factor.h"
+
 namespace meniscus {
 
 namespace {
@@ -11,16 +13,12 @@ namespace {
 // Beyond this part of the part's size, rotations are no longer small.
 constexpr double kLargeDisplacement = 0.05;
 
-/// The lowest yield strength of all bodies, if any is given.
-std::optional<double> lowest_yield(const EvaluatedCase& numbers) {
-  std::optional<double> lowest;
-  for (const Material& material : numbers.materials) {
-    if (material.yield_strength) {
-      lowest = std::min(lowest.value_or(*material.yield_strength),
-                        *material.yield_strength);
-    }
-  }
-  return lowest;
+/// The least safety factor of the part under a load case.
+SafetyFactors weakest(const EvaluationFields& fields, const VectorX& u) {
+  const auto& materials = fields.inputs.materials;
+  return safety_factors(
+      fields.mesh, materials,
+      recover_by_patches(fields.mesh, point_stress(fields.mesh, materials, u)));
 }
 
 double largest_displacement(const VectorX& u) {
@@ -36,25 +34,28 @@ double largest_displacement(const VectorX& u) {
 std::vector<std::string> part_warnings(const Case& input,
                                        const EvaluationFields& fields) {
   std::vector<std::string> warnings;
-  const std::optional<double> yield = lowest_yield(fields.inputs);
+  const auto& materials = fields.inputs.materials;
+  const bool may_yield = std::any_of(
+      materials.begin(), materials.end(),
+      [](const Material& m) { return m.yield_strength.has_value(); });
   const double size = bounding_diagonal(fields.mesh.nodes);
   for (std::size_t k = 0; k < fields.inputs.load_cases.size(); ++k) {
     const std::string& name = fields.inputs.load_cases[k].name;
     const VectorX& u = fields.solution.displacements[k];
-    const StressField other =
-        k == 0 ? StressField{}
-               : recover_stress(fields.mesh, fields.inputs.materials, u);
-    const StressField& stress = k == 0 ? fields.stress : other;
-    if (yield && stress.max_von_mises > *yield) {
-      const Vec3& x =
-          fields.mesh.nodes[static_cast<std::size_t>(stress.max_node)];
+    const SafetyFactors safety =
+        may_yield ? weakest(fields, u) : SafetyFactors{.smallest = 1.0};
+    if (safety.smallest < 1.0) {
+      const Vec3& x = fields.mesh.nodes[static_cast<std::size_t>(safety.node)];
+      const Material& material =
+          materials[static_cast<std::size_t>(safety.region)];
       warnings.push_back(fmt::format(
           "stress above yield: load case '{}' reaches {:.4g} {} at ({:.4g}, "
-          "{:.4g}, {:.4g}), the material yields at {:.4g} {}; a linear "
-          "analysis does not hold there (at a clamped edge the value grows "
-          "with every refinement)",
-          name, stress.max_von_mises, input.units.pressure, x.x(), x.y(), x.z(),
-          *yield, input.units.pressure));
+          "{:.4g}, {:.4g}), '{}' yields at {:.4g} {} (safety factor {:.3g}); a "
+          "linear analysis does not hold there (at a clamped edge the value "
+          "grows with every refinement)",
+          name, safety.von_mises, input.units.pressure, x.x(), x.y(), x.z(),
+          material.name, *material.yield_strength, input.units.pressure,
+          safety.smallest));
     }
     const double largest = largest_displacement(u);
     if (largest > kLargeDisplacement * size) {

@@ -8,9 +8,9 @@
 
 namespace meniscus {
 
-/// Sentences for stress above the material's yield strength (with the place)
-/// and for displacements that are not small against the part. Looks at every
-/// load case.
+/// Sentences for stress above yield (the place with the least safety factor,
+/// each body against its own material) and for displacements that are not small
+/// against the part. Looks at every load case.
 std::vector<std::string> part_warnings(const Case& input,
                                        const EvaluationFields& fields);
 
