@@ -36,12 +36,16 @@ void check_arrays(const TetMesh& mesh) {
   }
 }
 
-void check_loads(const TetMesh& mesh, const LoadCase& load_case) {
-  if (!(nodal_forces(mesh, load_case).norm() > 0.0)) {
+VectorX checked_forces(const TetMesh& mesh, const LoadCase& load_case,
+                       const std::vector<Material>& materials) {
+  VectorX f = nodal_forces(mesh, load_case, materials);
+  if (!(f.norm() > 0.0)) {
     throw InvalidInput(fmt::format(
-        "load case '{}' has no load: give a force or a pressure that is not 0",
+        "load case '{}' has no load: give a force, a pressure, gravity or a "
+        "temperature that is not 0",
         load_case.name));
   }
+  return f;
 }
 
 bool same_supports(const std::vector<Support>& a,

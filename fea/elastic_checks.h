@@ -11,8 +11,9 @@ namespace meniscus {
 /// Throws InvalidInput unless the arrays of the mesh fit each other.
 void check_arrays(const TetMesh& mesh);
 
-/// Throws InvalidInput when the load case has no load on the mesh.
-void check_loads(const TetMesh& mesh, const LoadCase& load_case);
+/// The load case's nodal forces; throws InvalidInput when there are none.
+VectorX checked_forces(const TetMesh& mesh, const LoadCase& load_case,
+                       const std::vector<Material>& materials);
 
 bool same_supports(const std::vector<Support>& a,
                    const std::vector<Support>& b);

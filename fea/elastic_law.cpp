@@ -59,7 +59,9 @@ Vec6 stress_components(const Mat3& t) {
 }
 
 ElasticLaw::ElasticLaw(const Lame& constants)
-    : lame(constants), stiffness(isotropic_stiffness(constants)) {}
+    : lame(constants),
+      stiffness(isotropic_stiffness(constants)),
+      compliance(stiffness.inverse()) {}
 
 Mat3 ElasticLaw::stress(const Mat3& H) const {
   if (isotropic) {
@@ -77,6 +79,7 @@ ElasticLaw elastic_law(const Material& material) {
   if (!material.orthotropic) {
     ElasticLaw law(lame(material));
     law.expansion.head<3>() = material.thermal_expansion;
+    law.heat_stress = law.stiffness * law.expansion;
     return law;
   }
   ElasticLaw law;
@@ -88,6 +91,8 @@ ElasticLaw elastic_law(const Material& material) {
   law.expansion = stress_components(
       R * material.thermal_expansion.asDiagonal() * R.transpose());
   law.expansion.tail<3>() *= 2.0;
+  law.compliance = law.stiffness.inverse();
+  law.heat_stress = law.stiffness * law.expansion;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       for (int k = 0; k < 3; ++k) {
@@ -99,6 +104,31 @@ ElasticLaw elastic_law(const Material& material) {
     }
   }
   return law;
+}
+
+Stress stress_of_gradient(const Mat3& gradient, const ElasticLaw& law) {
+  if (law.isotropic) {
+    return stress_of_gradient(gradient, law.lame);
+  }
+  const Mat3 s = law.stress(gradient);
+  return {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
+}
+
+Strain strain_of(const Stress& stress, const ElasticLaw& law) {
+  if (law.isotropic) {
+    return strain_of(stress, law.lame);
+  }
+  const Vec6 e = law.compliance * Eigen::Map<const Vec6>(stress.data());
+  return {e[0], e[1], e[2], 0.5 * e[3], 0.5 * e[4], 0.5 * e[5]};
+}
+
+double complementary_product(const Stress& a, const Stress& b,
+                             const ElasticLaw& law) {
+  if (law.isotropic) {
+    return complementary_product(a, b, law.lame);
+  }
+  return Eigen::Map<const Vec6>(a.data()).dot(law.compliance *
+                                              Eigen::Map<const Vec6>(b.data()));
 }
 
 std::vector<ElasticLaw> elastic_laws(const std::vector<Material>& materials) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fea/material.h"
+#include "fea/stress_measures.h"
 
 namespace meniscus {
 
@@ -18,9 +19,12 @@ struct ElasticLaw {
   ElasticLaw(const Lame& constants);  // NOLINT: a Lame is a law
 
   bool isotropic = true;
-  Lame lame;                      // of isotropic ones [pressure]
-  Mat6 stiffness = Mat6::Zero();  // [pressure]
-  Vec6 expansion = Vec6::Zero();  // [1/temperature]
+  Lame lame;                       // of isotropic ones [pressure]
+  Mat6 stiffness = Mat6::Zero();   // [pressure]
+  Mat6 compliance = Mat6::Zero();  // its inverse [1/pressure]
+  Vec6 expansion = Vec6::Zero();   // [1/temperature]
+  /// Stress that holds a degree of expansion back [pressure/temperature].
+  Vec6 heat_stress = Vec6::Zero();
   /// Of others: row 3 i + k, column 3 j + l is C_ijkl, so that a block of the
   /// stiffness matrix is K_ik = C_ijkl sum of V g_j g_l [pressure].
   Eigen::Matrix<double, 9, 9, Eigen::RowMajor> tensor;
@@ -32,6 +36,12 @@ struct ElasticLaw {
 /// Materials must have passed check_materials().
 ElasticLaw elastic_law(const Material& material);
 std::vector<ElasticLaw> elastic_laws(const std::vector<Material>& materials);
+
+/// As for isotropic materials, see stress_measures.h.
+Stress stress_of_gradient(const Mat3& gradient, const ElasticLaw& law);
+Strain strain_of(const Stress& stress, const ElasticLaw& law);
+double complementary_product(const Stress& a, const Stress& b,
+                             const ElasticLaw& law);
 
 /// The symmetric tensor of six stress components, and back.
 Mat3 stress_tensor(const Vec6& stress);

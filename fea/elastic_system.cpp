@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/timer.h"
+#include "fea/body_loads.h"
 #include "fea/conjugate_gradients.h"
 #include "fea/corner_mesh.h"
 #include "fea/elastic_checks.h"
@@ -58,6 +59,7 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
         "0",
         options.tolerance, options.max_iterations));
   }
+  materials_ = materials;
   laws_ = elastic_laws(materials);
   if (!std::all_of(base.nodes.begin(), base.nodes.end(),
                    [](const Vec3& x) { return x.allFinite(); })) {
@@ -65,7 +67,7 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
   }
   for (const LoadCase& load_case : load_cases) {
     supports_.push_back(load_case.supports);
-    check_loads(base, load_case);
+    checked_forces(base, load_case, materials);
   }
   order_mesh(base);
   group_supports(base, load_cases);
@@ -249,8 +251,7 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
       static_cast<int>(std::count(fixed.begin(), fixed.end(), 0));
   std::vector<VectorX> f;
   for (const LoadCase& load_case : load_cases) {
-    check_loads(mesh, load_case);
-    f.push_back(to_solver(nodal_forces(mesh, load_case)));
+    f.push_back(to_solver(checked_forces(mesh, load_case, materials_)));
   }
   const Points x = solver_points(mesh);
   for (const Group& group : groups_) {
@@ -263,6 +264,11 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
                      group.cases.begin() + static_cast<std::ptrdiff_t>(last)},
                     x, f, load_cases, matrix, start, result);
     }
+  }
+  if (!result.failure && load_cases[0].temperature) {
+    result.report.strain_energy =
+        strain_energy(mesh, materials_, result.displacements[0],
+                      temperature_change(mesh, load_cases[0]));
   }
   result.report.solve_seconds = timer.seconds();
   return result;

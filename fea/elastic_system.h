@@ -66,6 +66,7 @@ class ElasticSystem {
   VectorX to_mesh(const VectorX& v) const;
 
   ElasticOptions options_;
+  std::vector<Material> materials_;
   std::vector<ElasticLaw> laws_;
   std::vector<int> elements_;  // the base's, to compare
   std::vector<int> faces_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "fea/elastic_law.h"
 #include "fea/stress_difference.h"
 
 namespace meniscus {
@@ -13,10 +14,9 @@ double EnergyError::relative() const {
 
 EnergyError estimate_error(const TetMesh& mesh,
                            const std::vector<Material>& materials,
-                           const VectorX& displacement,
-                           const RecoveredStress& recovered) {
-  const StressDifference difference(mesh, materials, displacement, recovered);
-  const std::vector<Mat6> inverse = compliances(materials);
+                           const StressedSolution& solution) {
+  const StressDifference difference(mesh, materials, solution);
+  const std::vector<ElasticLaw> laws = elastic_laws(materials);
   const int count = mesh.element_count();
   std::vector<double> energy(count);
   EnergyError result;
@@ -24,14 +24,14 @@ EnergyError estimate_error(const TetMesh& mesh,
 #pragma omp parallel for schedule(static)
   for (int e = 0; e < count; ++e) {
     const PointDifferences d = difference.of(e);
-    const Mat6& C = inverse[mesh.element_region[e]];
+    const ElasticLaw& law = laws[mesh.element_region[e]];
     double error = 0.0;
     double whole = 0.0;
     for (std::size_t q = 0; q < d.volume.size(); ++q) {
       const Stress& s = d.recovered_minus_computed[q];
-      error += d.volume[q] * complementary_product(s, s, C);
-      whole +=
-          d.volume[q] * complementary_product(d.computed[q], d.computed[q], C);
+      error += d.volume[q] * complementary_product(s, s, law);
+      whole += d.volume[q] *
+               complementary_product(d.computed[q], d.computed[q], law);
     }
     result.element[e] = std::sqrt(error);
     energy[e] = whole;
@@ -51,11 +51,9 @@ ResponseError response_error(const TetMesh& mesh,
                              const std::vector<Material>& materials,
                              const StressedSolution& primal,
                              const StressedSolution& dual) {
-  const StressDifference first(mesh, materials, primal.displacement,
-                               primal.stress);
-  const StressDifference second(mesh, materials, dual.displacement,
-                                dual.stress);
-  const std::vector<Mat6> inverse = compliances(materials);
+  const StressDifference first(mesh, materials, primal);
+  const StressDifference second(mesh, materials, dual);
+  const std::vector<ElasticLaw> laws = elastic_laws(materials);
   const int count = mesh.element_count();
   ResponseError result;
   result.element.resize(count);
@@ -63,12 +61,12 @@ ResponseError response_error(const TetMesh& mesh,
   for (int e = 0; e < count; ++e) {
     const PointDifferences p = first.of(e);
     const PointDifferences d = second.of(e);
-    const Mat6& C = inverse[mesh.element_region[e]];
+    const ElasticLaw& law = laws[mesh.element_region[e]];
     double sum = 0.0;
     for (std::size_t q = 0; q < p.volume.size(); ++q) {
-      sum +=
-          p.volume[q] * complementary_product(p.recovered_minus_computed[q],
-                                              d.recovered_minus_computed[q], C);
+      sum += p.volume[q] * complementary_product(p.recovered_minus_computed[q],
+                                                 d.recovered_minus_computed[q],
+                                                 law);
     }
     result.element[e] = sum;
   }

@@ -20,18 +20,18 @@ struct EnergyError {
   double relative() const;
 };
 
-/// `displacement`: 3 per node [length]; `recovered`: its stresses. The same
-/// bits for any number of threads. Throws InvalidInput when they do not fit.
-EnergyError estimate_error(const TetMesh& mesh,
-                           const std::vector<Material>& materials,
-                           const VectorX& displacement,
-                           const RecoveredStress& recovered);
-
 /// A solution under one load case with its recovered stresses, on loan.
 struct StressedSolution {
-  const VectorX& displacement;
+  const VectorX& displacement;  // 3 per node [length]
   const RecoveredStress& stress;
+  VectorX temperature_change;  // as point_stress() takes it
 };
+
+/// The same bits for any number of threads. Throws InvalidInput when the parts
+/// do not fit each other.
+EnergyError estimate_error(const TetMesh& mesh,
+                           const std::vector<Material>& materials,
+                           const StressedSolution& solution);
 
 /// Error of a linear functional J of the displacement by dual weighting
 /// (Becker and Rannacher, An optimal control approach to a posteriori error

@@ -2,86 +2,101 @@
 
 #include <cmath>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "fea/body_loads.h"
+#include "fea/face_points.h"
+#include "fea/load_checks.h"
+#include "fea/remote_load.h"
 #include "fea/surface_faces.h"
 
 namespace meniscus {
 
 namespace {
 
-constexpr int kFacePoints = 3;
-
-/// Shape functions and their derivatives at one point of a face.
-struct FacePoint {
-  std::array<double, 6> shape{};
-  std::array<std::array<double, 2>, 6> slope{};
-};
-
-/// Points (1/6, 1/6, 2/3) and their turns, weight 1/6 each: exact to degree 2.
-FacePoint face_point(int order, int q) {
-  std::array<double, 3> L = {1.0 / 6.0, 1.0 / 6.0, 1.0 / 6.0};
-  L[q] = 2.0 / 3.0;
-  constexpr double kSlope[3][2] = {{-1.0, -1.0}, {1.0, 0.0}, {0.0, 1.0}};
-  FacePoint point;
-  for (int a = 0; a < 3; ++a) {
-    const int b = (a + 1) % 3;
-    point.shape[a] = order == 1 ? L[a] : L[a] * (2.0 * L[a] - 1.0);
-    point.shape[3 + a] = 4.0 * L[a] * L[b];
-    for (int k = 0; k < 2; ++k) {
-      point.slope[a][k] = kSlope[a][k] * (order == 1 ? 1.0 : 4.0 * L[a] - 1.0);
-      point.slope[3 + a][k] = 4.0 * (kSlope[a][k] * L[b] + kSlope[b][k] * L[a]);
-    }
-  }
-  return point;
+std::string named(const char* what, const std::string& surface) {
+  return fmt::format("the {} on surface '{}'", what, surface);
 }
 
-/// Calls visit(node, integral of N over the face, integral of N times the
-/// outward normal) for every face of the label and every node of the face.
-template <class Visit>
-void for_face_nodes(const TetMesh& mesh, int label, const Visit& visit) {
-  std::array<FacePoint, kFacePoints> points;
-  for (int q = 0; q < kFacePoints; ++q) {
-    points[q] = face_point(mesh.order, q);
-  }
-  const int count = mesh.nodes_per_face();
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    if (mesh.face_label[f] != label) {
-      continue;
-    }
-    const auto ids = mesh.face(f);
-    std::array<double, 6> area{};
-    std::array<Vec3, 6> normal;
-    normal.fill(Vec3::Zero());
-    for (const FacePoint& point : points) {
-      Vec3 u = Vec3::Zero();
-      Vec3 v = Vec3::Zero();
-      for (int a = 0; a < count; ++a) {
-        u += point.slope[a][0] * mesh.nodes[ids[a]];
-        v += point.slope[a][1] * mesh.nodes[ids[a]];
-      }
-      const Vec3 n = u.cross(v) / 6.0;
-      const double dA = n.norm();
-      for (int a = 0; a < count; ++a) {
-        area[a] += point.shape[a] * dA;
-        normal[a] += point.shape[a] * n;
-      }
-    }
-    for (int a = 0; a < count; ++a) {
-      visit(ids[a], area[a], normal[a]);
-    }
+/// Adds traction(point) [force per area, times the point's area] to f.
+template <class Traction>
+void spread(const TetMesh& mesh, const std::string& surface, FaceRule rule,
+            const Traction& traction, VectorX& f) {
+  surface_weights(mesh, surface);  // refuses a surface without area
+  over_face_points(mesh, surface_label(mesh, surface), rule,
+                   [&](int face, const FacePoint& point) {
+                     const Vec3 force = traction(point);
+                     const auto ids = mesh.face(face);
+                     for (std::size_t a = 0; a < ids.size(); ++a) {
+                       f.segment<3>(3L * ids[a]) += point.shape[a] * force;
+                     }
+                   });
+}
+
+void add_force(const TetMesh& mesh, const LoadCase& load_case,
+               const SurfaceForce& load, VectorX& f) {
+  require_finite(load.total, load_case, named("force", load.surface));
+  const SurfaceWeights w = surface_weights(mesh, load.surface);
+  const Vec3 traction = load.total / w.weights.sum();
+  for (std::size_t k = 0; k < w.nodes.size(); ++k) {
+    f.segment<3>(3L * w.nodes[k]) +=
+        w.weights[static_cast<Eigen::Index>(k)] * traction;
   }
 }
 
-void check_finite(bool finite, const LoadCase& load_case,
-                  const std::string& surface) {
-  if (!finite) {
-    throw InvalidInput(
-        fmt::format("load case '{}': the load on surface '{}' is not a finite "
-                    "number",
-                    load_case.name, surface));
+void add_pressure(const TetMesh& mesh, const LoadCase& load_case,
+                  const SurfacePressure& load, VectorX& f) {
+  const std::string what = named("pressure", load.surface);
+  if (!load.field) {
+    require_finite(load.pressure, load_case, what);
+    return spread(
+        mesh, load.surface, FaceRule::Three,
+        [&](const FacePoint& point) -> Vec3 {
+          return -load.pressure * point.normal;
+        },
+        f);
+  }
+  spread(
+      mesh, load.surface, FaceRule::Seven,
+      [&](const FacePoint& point) -> Vec3 {
+        return -field_value(load.field, point.position, load_case, what) *
+               point.normal;
+      },
+      f);
+}
+
+void add_traction(const TetMesh& mesh, const LoadCase& load_case,
+                  const SurfaceTraction& load, VectorX& f) {
+  const std::string what = named("traction", load.surface);
+  if (!load.field) {
+    require_finite(load.traction, load_case, what);
+    return spread(
+        mesh, load.surface, FaceRule::Three,
+        [&](const FacePoint& point) -> Vec3 {
+          return point.normal.norm() * load.traction;
+        },
+        f);
+  }
+  spread(
+      mesh, load.surface, FaceRule::Seven,
+      [&](const FacePoint& point) -> Vec3 {
+        return point.normal.norm() *
+               field_value(load.field, point.position, load_case, what);
+      },
+      f);
+}
+
+void add_remote(const TetMesh& mesh, const LoadCase& load_case,
+                const RemoteLoad& load, VectorX& f) {
+  require_finite(load.force, load_case, named("remote force", load.surface));
+  require_finite(load.moment, load_case, named("moment", load.surface));
+  require_finite(load.point, load_case,
+                 named("point of the remote load", load.surface));
+  const SurfaceWeights w = surface_weights(mesh, load.surface);
+  const Points forces = remote_forces(mesh, w, load);
+  for (std::size_t k = 0; k < w.nodes.size(); ++k) {
+    f.segment<3>(3L * w.nodes[k]) += forces[k];
   }
 }
 
@@ -93,9 +108,14 @@ SurfaceWeights surface_weights(const TetMesh& mesh,
   SurfaceWeights result;
   result.nodes = surface_nodes(mesh, label);
   VectorX all = VectorX::Zero(static_cast<Eigen::Index>(mesh.nodes.size()));
-  for_face_nodes(mesh, label, [&](int node, double area, const Vec3&) {
-    all[node] += area;
-  });
+  over_face_points(mesh, label, FaceRule::Three,
+                   [&](int face, const FacePoint& point) {
+                     const double area = point.normal.norm();
+                     const auto ids = mesh.face(face);
+                     for (std::size_t a = 0; a < ids.size(); ++a) {
+                       all[ids[a]] += point.shape[a] * area;
+                     }
+                   });
   result.weights.resize(static_cast<Eigen::Index>(result.nodes.size()));
   for (std::size_t k = 0; k < result.nodes.size(); ++k) {
     result.weights[static_cast<Eigen::Index>(k)] = all[result.nodes[k]];
@@ -108,7 +128,8 @@ SurfaceWeights surface_weights(const TetMesh& mesh,
   return result;
 }
 
-VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case) {
+VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case,
+                     const std::vector<Material>& materials) {
   VectorX f = VectorX::Zero(static_cast<Eigen::Index>(3 * mesh.nodes.size()));
   if (load_case.nodal.size() != 0) {
     if (load_case.nodal.size() != f.size() || !load_case.nodal.allFinite()) {
@@ -119,23 +140,20 @@ VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case) {
     }
     f = load_case.nodal;
   }
-  for (const SurfaceForce& force : load_case.forces) {
-    check_finite(force.total.allFinite(), load_case, force.surface);
-    const SurfaceWeights w = surface_weights(mesh, force.surface);
-    const Vec3 traction = force.total / w.weights.sum();
-    for (std::size_t k = 0; k < w.nodes.size(); ++k) {
-      f.segment<3>(3L * w.nodes[k]) +=
-          w.weights[static_cast<Eigen::Index>(k)] * traction;
-    }
+  for (const SurfaceForce& load : load_case.forces) {
+    add_force(mesh, load_case, load, f);
   }
   for (const SurfacePressure& load : load_case.pressures) {
-    check_finite(std::isfinite(load.pressure), load_case, load.surface);
-    surface_weights(mesh, load.surface);  // refuses a surface without area
-    for_face_nodes(mesh, surface_label(mesh, load.surface),
-                   [&](int node, double, const Vec3& normal) {
-                     f.segment<3>(3L * node) -= load.pressure * normal;
-                   });
+    add_pressure(mesh, load_case, load, f);
   }
+  for (const SurfaceTraction& load : load_case.tractions) {
+    add_traction(mesh, load_case, load, f);
+  }
+  for (const RemoteLoad& load : load_case.remote_loads) {
+    add_remote(mesh, load_case, load, f);
+  }
+  add_body_forces(mesh, load_case, materials, f);
+  add_thermal_forces(mesh, load_case, materials, f);
   return f;
 }
 

@@ -1,38 +1,14 @@
-/// Supports and loads on named surfaces, and the weights of a surface.
+/// Nodal forces of load cases, and the weights of a surface.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "core/tet_mesh.h"
+#include "fea/load_case.h"
+#include "fea/material.h"
 
 namespace meniscus {
-
-/// Fixes components of displacement on a surface.
-struct Support {
-  std::string surface;
-  bool fix_x = false, fix_y = false, fix_z = false;
-};
-
-/// A total force spread as uniform traction over a surface [force].
-struct SurfaceForce {
-  std::string surface;
-  Vec3 total = Vec3::Zero();
-};
-
-/// Pressure on a surface, positive into the solid [pressure].
-struct SurfacePressure {
-  std::string surface;
-  double pressure = 0.0;
-};
-
-struct LoadCase {
-  std::string name;
-  std::vector<Support> supports;
-  std::vector<SurfaceForce> forces;
-  std::vector<SurfacePressure> pressures;
-  VectorX nodal;  // forces at nodes, 3 per node; empty: none [force]
-};
 
 /// Consistent weights of a surface: integral of each node's shape function
 /// over it, by the three-point rule (CalculiX's own for C3D10) [length^2].
@@ -44,9 +20,15 @@ struct SurfaceWeights {
 /// Throws InvalidInput for a surface that is unknown, has no faces or no area.
 SurfaceWeights surface_weights(const TetMesh& mesh, const std::string& surface);
 
-/// Nodal forces of a load case, 3 per node [force]. Throws InvalidInput for a
-/// surface that is unknown or has no area, and for numbers that are not finite.
-VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case);
+/// Consistent nodal forces of a load case, 3 per node, those of expansion
+/// included [force]. Numbers act by CalculiX's rules (three points a face, the
+/// stiffness rule in an element), fields on surfaces by seven points a face.
+/// `materials`: one per region, needed where gravity, spin or temperature act.
+/// Throws InvalidInput, naming load case and surface: unknown surfaces or ones
+/// without area, numbers that are not finite, a material that is missing, has
+/// no density under gravity or spin, or no expansion under a temperature.
+VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case,
+                     const std::vector<Material>& materials = {});
 
 /// Area-weighted mean displacement of a surface along `direction` (made unit)
 /// [length]. `displacement`: 3 per node.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "fea/elastic_law.h"
 #include "fea/tet_element.h"
 #include "fea/tet_shape.h"
 
@@ -10,9 +11,17 @@ namespace meniscus {
 
 namespace {
 
+/// Takes out what `change` degrees of free expansion do not stress.
+void relieve(const ElasticLaw& law, double change, Stress& stress) {
+  for (int k = 0; k < 6; ++k) {
+    stress[k] -= law.heat_stress[k] * change;
+  }
+}
+
 template <int Nodes>
 void element_points(const TetMesh& mesh, int e, const ElasticLaw& law,
-                    const VectorX& u, PointStress& out) {
+                    const VectorX& u, const VectorX& temperature_change,
+                    PointStress& out) {
   static const auto kShapes = [] {
     std::array<std::array<double, Nodes>, kTetPoints<Nodes>> shapes;
     for (int q = 0; q < kTetPoints<Nodes>; ++q) {
@@ -40,6 +49,13 @@ void element_points(const TetMesh& mesh, int e, const ElasticLaw& law,
     }
     const std::size_t at = out.index(e, q);
     out.stress[at] = stress_of_gradient(H, law);
+    if (temperature_change.size() != 0) {
+      double change = 0.0;
+      for (int a = 0; a < Nodes; ++a) {
+        change += kShapes[q][a] * temperature_change[ids[a]];
+      }
+      relieve(law, change, out.stress[at]);
+    }
     out.position[at] = position;
     out.volume[at] = g.volume[q];
   }
@@ -49,11 +65,19 @@ void element_points(const TetMesh& mesh, int e, const ElasticLaw& law,
 
 PointStress point_stress(const TetMesh& mesh,
                          const std::vector<Material>& materials,
-                         const VectorX& displacement) {
+                         const VectorX& displacement,
+                         const VectorX& temperature_change) {
   check_materials(mesh, materials);
   if (displacement.size() != static_cast<Eigen::Index>(3 * mesh.nodes.size())) {
     throw InvalidInput(fmt::format("stress: {} displacements for {} nodes",
                                    displacement.size(), mesh.nodes.size()));
+  }
+  if (temperature_change.size() != 0 &&
+      temperature_change.size() !=
+          static_cast<Eigen::Index>(mesh.nodes.size())) {
+    throw InvalidInput(fmt::format("stress: {} temperatures for {} nodes",
+                                   temperature_change.size(),
+                                   mesh.nodes.size()));
   }
   const std::vector<ElasticLaw> laws = elastic_laws(materials);
   const int count = mesh.element_count();
@@ -67,9 +91,9 @@ PointStress point_stress(const TetMesh& mesh,
   for (int e = 0; e < count; ++e) {
     const ElasticLaw& law = laws[mesh.element_region[e]];
     if (mesh.order == 1) {
-      element_points<4>(mesh, e, law, displacement, out);
+      element_points<4>(mesh, e, law, displacement, temperature_change, out);
     } else {
-      element_points<10>(mesh, e, law, displacement, out);
+      element_points<10>(mesh, e, law, displacement, temperature_change, out);
     }
   }
   return out;

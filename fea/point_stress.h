@@ -23,10 +23,12 @@ struct PointStress {
   }
 };
 
-/// `displacement`: 3 per node [length]. The same bits for any number of
+/// `displacement`: 3 per node [length]; `temperature_change`: one per node, or
+/// empty (fea/temperature.h) [temperature]. The same bits for any number of
 /// threads. Throws InvalidInput when sizes or materials do not fit the mesh.
 PointStress point_stress(const TetMesh& mesh,
                          const std::vector<Material>& materials,
-                         const VectorX& displacement);
+                         const VectorX& displacement,
+                         const VectorX& temperature_change = {});
 
 }  // namespace meniscus

@@ -114,10 +114,11 @@ StressField average_stress(const TetMesh& mesh, const PointStress& points) {
 
 StressField recover_stress(const TetMesh& mesh,
                            const std::vector<Material>& materials,
-                           const VectorX& displacement) {
+                           const VectorX& displacement,
+                           const VectorX& temperature_change) {
   return nodal_stress(
-      mesh,
-      recover_by_patches(mesh, point_stress(mesh, materials, displacement)));
+      mesh, recover_by_patches(mesh, point_stress(mesh, materials, displacement,
+                                                  temperature_change)));
 }
 
 double mesh_volume(const TetMesh& mesh) {

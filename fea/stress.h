@@ -28,13 +28,14 @@ void find_peak(StressField& field);
 /// the points say.
 StressField average_stress(const TetMesh& mesh, const PointStress& points);
 
-/// Nodal stresses by patch recovery (patch_recovery.h) of a displacement, 3 per
-/// node [length]; where materials meet, those of the side with the larger von
-/// Mises stress. Throws InvalidInput when sizes or materials do not fit the
+/// Nodal stresses by patch recovery (patch_recovery.h) of point_stress
+/// (point_stress.h); where materials meet, those of the side with the larger
+/// von Mises stress. Throws InvalidInput when sizes or materials do not fit the
 /// mesh.
 StressField recover_stress(const TetMesh& mesh,
                            const std::vector<Material>& materials,
-                           const VectorX& displacement);
+                           const VectorX& displacement,
+                           const VectorX& temperature_change = {});
 
 /// Volume [length^3] and mass [mass] by quadrature on curved elements.
 double mesh_volume(const TetMesh& mesh);

@@ -4,7 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "fea/patch_recovery.h"
+#include "fea/elastic_law.h"
+#include "fea/error_estimate.h"
 
 namespace meniscus {
 
@@ -16,12 +17,11 @@ struct PointDifferences {
   std::array<double, 14> volume;                    // weight x det J [length^3]
 };
 
-/// `displacement` (3 per node) and `recovered` are on loan.
+/// All arguments are on loan.
 class StressDifference {
  public:
   StressDifference(const TetMesh& mesh, const std::vector<Material>& materials,
-                   const VectorX& displacement,
-                   const RecoveredStress& recovered);
+                   const StressedSolution& solution);
   PointDifferences of(int element) const;
 
  private:
@@ -29,8 +29,7 @@ class StressDifference {
   PointDifferences differences(int element) const;
 
   const TetMesh& mesh_;
-  const VectorX& u_;
-  const RecoveredStress& recovered_;
+  const StressedSolution& solution_;
   std::vector<ElasticLaw> laws_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
@@ -40,39 +39,29 @@ PrincipalFrame principal_frame(const Stress& stress) {
   return frame;
 }
 
-Stress stress_of_gradient(const Mat3& H, const ElasticLaw& law) {
-  const Mat3 s = law.stress(H);
-  return {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0)};
+Stress stress_of_gradient(const Mat3& H, const Lame& m) {
+  const double pressure = m.lambda * H.trace();
+  return {pressure + 2.0 * m.mu * H(0, 0), pressure + 2.0 * m.mu * H(1, 1),
+          pressure + 2.0 * m.mu * H(2, 2), m.mu * (H(0, 1) + H(1, 0)),
+          m.mu * (H(1, 2) + H(2, 1)),      m.mu * (H(2, 0) + H(0, 2))};
 }
 
-Mat6 compliance(const ElasticLaw& law) {
-  return law.stiffness.ldlt().solve(Mat6::Identity());
+Strain strain_of(const Stress& s, const Lame& m) {
+  const double half = 0.5 / m.mu;
+  const double common =
+      half * m.lambda / (3.0 * m.lambda + 2.0 * m.mu) * (s[0] + s[1] + s[2]);
+  return {half * s[0] - common, half * s[1] - common, half * s[2] - common,
+          half * s[3],          half * s[4],          half * s[5]};
 }
 
-std::vector<Mat6> compliances(const std::vector<Material>& materials) {
-  std::vector<Mat6> all;
-  all.reserve(materials.size());
-  for (const Material& material : materials) {
-    all.push_back(compliance(elastic_law(material)));
-  }
-  return all;
+double complementary_product(const Stress& a, const Stress& b, const Lame& m) {
+  const Strain e = strain_of(b, m);
+  return a[0] * e[0] + a[1] * e[1] + a[2] * e[2] +
+         2.0 * (a[3] * e[3] + a[4] * e[4] + a[5] * e[5]);
 }
 
-Strain strain_of(const Stress& stress, const Mat6& compliance) {
-  Strain strain;
-  Eigen::Map<Vec6>(strain.data()) =
-      compliance * Eigen::Map<const Vec6>(stress.data());
-  return strain;
-}
-
-double complementary_product(const Stress& a, const Stress& b,
-                             const Mat6& compliance) {
-  return Eigen::Map<const Vec6>(a.data()).dot(compliance *
-                                              Eigen::Map<const Vec6>(b.data()));
-}
-
-double strain_energy_density(const Stress& stress, const Mat6& compliance) {
-  return 0.5 * complementary_product(stress, stress, compliance);
+double strain_energy_density(const Stress& stress, const Lame& material) {
+  return 0.5 * complementary_product(stress, stress, material);
 }
 
 }  // namespace meniscus

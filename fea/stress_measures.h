@@ -1,13 +1,12 @@
 /// What one stress says: invariants, strain, energy. Stress has six
-/// components xx yy zz xy yz zx [pressure], strain the same with doubled shears
-/// (gamma) [1].
+/// components xx yy zz xy yz zx [pressure], strain the same with tensor (not
+/// engineering) shears [1].
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "core/types.h"
-#include "fea/elastic_law.h"
+#include "fea/material.h"
 
 namespace meniscus {
 
@@ -28,21 +27,17 @@ struct PrincipalFrame {
 PrincipalFrame principal_frame(const Stress& stress);
 
 /// Stress of a displacement gradient H_ij = du_i/dx_j.
-Stress stress_of_gradient(const Mat3& gradient, const ElasticLaw& law);
-
-/// Strain = compliance x stress [1/pressure].
-Mat6 compliance(const ElasticLaw& law);
-std::vector<Mat6> compliances(const std::vector<Material>& materials);
+Stress stress_of_gradient(const Mat3& gradient, const Lame& material);
 
 /// Elastic strain of a stress.
-Strain strain_of(const Stress& stress, const Mat6& compliance);
+Strain strain_of(const Stress& stress, const Lame& material);
 
 /// a : C^-1 : b; half of it with a = b is the strain energy density
 /// [pressure].
 double complementary_product(const Stress& a, const Stress& b,
-                             const Mat6& compliance);
+                             const Lame& material);
 
 /// (stress : strain) / 2 [pressure].
-double strain_energy_density(const Stress& stress, const Mat6& compliance);
+double strain_energy_density(const Stress& stress, const Lame& material);
 
 }  // namespace meniscus

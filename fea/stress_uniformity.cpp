@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "fea/elastic_law.h"
 #include "fea/nearest_point.h"
 #include "fea/surface_faces.h"
 
@@ -152,7 +153,7 @@ StressUniformity stress_uniformity(const TetMesh& mesh,
                                    const PointStress& points,
                                    const std::vector<char>& excluded) {
   check_materials(mesh, materials);
-  const std::vector<Mat6> inverse = compliances(materials);
+  const std::vector<ElasticLaw> laws = elastic_laws(materials);
   std::vector<double> mises;
   std::vector<double> energy;
   std::vector<double> volumes;
@@ -163,8 +164,9 @@ StressUniformity stress_uniformity(const TetMesh& mesh,
     for (int q = 0; q < points.points_per_element; ++q) {
       const std::size_t at = points.index(e, q);
       mises.push_back(von_mises(points.stress[at]));
-      energy.push_back(strain_energy_density(points.stress[at],
-                                             inverse[mesh.element_region[e]]));
+      const Stress& s = points.stress[at];
+      energy.push_back(
+          0.5 * complementary_product(s, s, laws[mesh.element_region[e]]));
       volumes.push_back(points.volume[at]);
     }
   }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/tet_mesh.h"
-#include "fea/loads.h"
+#include "fea/load_case.h"
 
 namespace meniscus {
 

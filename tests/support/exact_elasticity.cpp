@@ -111,7 +111,6 @@ template <int Nodes>
 Norms norms(const TetMesh& mesh, const Field& field, const VectorX& u) {
   Norms sum;
   const ElasticLaw law = elastic_law(field.material());
-  const Mat6 inverse = compliance(law);
   for_volume_points<Nodes>(
       mesh, [&](int e, const auto& x, const auto& N, const Barycentric& L,
                 const Vec3& place, double volume) {
@@ -129,10 +128,10 @@ Norms norms(const TetMesh& mesh, const Field& field, const VectorX& u) {
           d[k] = found[k] - exact.stress[k];
         }
         sum.l2 += volume * (here - exact.u).squaredNorm();
-        sum.energy += volume * complementary_product(d, d, inverse);
+        sum.energy += volume * complementary_product(d, d, law);
         sum.l2_exact += volume * exact.u.squaredNorm();
         sum.energy_exact +=
-            volume * complementary_product(exact.stress, exact.stress, inverse);
+            volume * complementary_product(exact.stress, exact.stress, law);
       });
   return {std::sqrt(sum.l2), std::sqrt(sum.energy), std::sqrt(sum.l2_exact),
           std::sqrt(sum.energy_exact)};

@@ -9,8 +9,8 @@
 
 #include "core/dual.h"
 #include "core/tet_mesh.h"
+#include "fea/elastic_law.h"
 #include "fea/loads.h"
-#include "fea/stress_measures.h"
 
 namespace meniscus::exact {
 

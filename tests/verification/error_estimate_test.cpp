@@ -105,11 +105,11 @@ TEST_P(Estimate, IsCloseToTheTrueError) {
         recover_by_patches(mesh, point_stress(mesh, {material}, u));
     const RecoveredStress sz =
         recover_by_patches(mesh, point_stress(mesh, {material}, z));
-    const EnergyError energy = estimate_error(mesh, {material}, u, su);
+    const EnergyError energy = estimate_error(mesh, {material}, {u, su, {}});
     const exact::Norms norms = exact::error_norms(mesh, p.field, u);
     const double ratio = energy.error / norms.energy;
     const ResponseError response =
-        response_error(mesh, {material}, {u, su}, {z, sz});
+        response_error(mesh, {material}, {u, su, {}}, {z, sz, {}});
     const double value =
         mean_displacement(mesh, p.response_surface, p.direction, u);
     const double error = exact::mean_displacement(
