@@ -21,12 +21,11 @@ struct RecoveredStress {
 /// error estimates, part 1 (1992): about every corner that elements of one
 /// region surround, a polynomial of the element's order (linear for four
 /// nodes, complete quadratic for ten) is fitted by least squares to the points
-/// of these elements. A corner takes its own polynomial, a mid-side the mean of
-/// its two ends', a node on the region's boundary the mean of those of the
-/// surrounded corners in its elements, or one element farther. Where there are
-/// none (a wall one element thick) a linear polynomial of a corner's own
-/// elements serves: quadratics seen from one side overshoot. The same bits for
-/// any number of threads.
+/// of these elements; the corner takes its value, a mid-side the mean of its
+/// two ends'. On a region's boundary the paper extrapolates from inside, which
+/// cuts peaks off; here the polynomial is fitted to two rings of elements, the
+/// nearer points weighing more (docs/verification.md has both). The same bits
+/// for any number of threads.
 RecoveredStress recover_by_patches(const TetMesh& mesh,
                                    const PointStress& points);
 

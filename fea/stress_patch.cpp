@@ -115,7 +115,7 @@ Stress StressPatch::at(const Vec3& x) const {
 }
 
 StressPatch fit_patch(const PointStress& points, std::span<const int> elements,
-                      const Vec3& centre, int degree) {
+                      const Vec3& centre, const PatchOptions& options) {
   StressPatch patch;
   patch.centre = centre;
   double reach = 0.0;
@@ -131,14 +131,26 @@ StressPatch fit_patch(const PointStress& points, std::span<const int> elements,
   for (const int e : elements) {
     for (int q = 0; q < points.points_per_element; ++q) {
       const std::size_t at = points.index(e, q);
-      normal.add(
-          sample((points.position[at] - centre) * scale, points.stress[at]));
+      const Vec3 y = points.position[at] - centre;
+      double root = 1.0;  // of the weight
+      if (options.reach) {
+        const double d = y.squaredNorm() / (*options.reach * *options.reach);
+        if (d >= 1.0) {
+          continue;
+        }
+        root = (1.0 - d) * (1.0 - d);
+      }
+      Row row = sample(y * scale, points.stress[at]);
+      for (double& term : row) {
+        term *= root;
+      }
+      normal.add(row);
     }
   }
   normal.finish();
   constexpr int kLinear = 4;
   const bool alone = elements.size() == 1 && normal.samples() == kLinear;
-  if (degree == 2 && normal.samples() >= 2 * kTerms &&
+  if (options.degree == 2 && normal.samples() >= 2 * kTerms &&
       solve<kTerms>(normal, patch)) {
     return patch;
   }

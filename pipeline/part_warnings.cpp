@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "fea/body_loads.h"
 #include "fea/safety_factor.h"
 
 namespace meniscus {
@@ -14,11 +15,15 @@ namespace {
 constexpr double kLargeDisplacement = 0.05;
 
 /// The least safety factor of the part under a load case.
-SafetyFactors weakest(const EvaluationFields& fields, const VectorX& u) {
+SafetyFactors weakest(const EvaluationFields& fields, std::size_t load_case) {
   const auto& materials = fields.inputs.materials;
+  const VectorX& u = fields.solution.displacements[load_case];
+  const VectorX heat =
+      temperature_change(fields.mesh, fields.inputs.load_cases[load_case]);
   return safety_factors(
       fields.mesh, materials,
-      recover_by_patches(fields.mesh, point_stress(fields.mesh, materials, u)));
+      recover_by_patches(fields.mesh,
+                         point_stress(fields.mesh, materials, u, heat)));
 }
 
 double largest_displacement(const VectorX& u) {
@@ -43,7 +48,7 @@ std::vector<std::string> part_warnings(const Case& input,
     const std::string& name = fields.inputs.load_cases[k].name;
     const VectorX& u = fields.solution.displacements[k];
     const SafetyFactors safety =
-        may_yield ? weakest(fields, u) : SafetyFactors{.smallest = 1.0};
+        may_yield ? weakest(fields, k) : SafetyFactors{.smallest = 1.0};
     if (safety.smallest < 1.0) {
       const Vec3& x = fields.mesh.nodes[static_cast<std::size_t>(safety.node)];
       const Material& material =

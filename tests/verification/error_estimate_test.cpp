@@ -52,7 +52,7 @@ std::vector<Problem> problems() {
            {fix_x("x0"), fix_y("y0"), fix_z("z0")},
            {"inner", "outer"},
            exact::BodyForce::None,
-           "inner",
+           "outer",
            Vec3::Ones()},
           {"hole in a plate",
            exact::hole_in_plate(steel, 1.0, 100.0),
@@ -81,8 +81,8 @@ std::vector<Problem> problems() {
            {fix_x("x0"), fix_y("y0"), fix_z("z0")},
            {"x0", "x1", "y0", "y1", "z0", "z1"},
            exact::BodyForce::Included,
-           "y1",
-           Vec3::UnitX()}};
+           "x1",
+           Vec3::UnitZ()}};
 }
 
 class Estimate : public testing::TestWithParam<int> {};

@@ -1,0 +1,221 @@
+/// Orders of convergence and stress concentrations on exact solutions.
+#include <functional>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "fea/patch_recovery.h"
+#include "tests/fea/parts.h"
+#include "tests/support/exact_elasticity.h"
+#include "tests/support/mapped_shapes.h"
+
+namespace meniscus {
+namespace {
+
+// Measured orders may fall short of theory by this on meshes that are not yet
+// fine.
+constexpr double kOrderSlack = 0.25;
+
+Support fix_x(const char* s) { return {s, true, false, false}; }
+Support fix_y(const char* s) { return {s, false, true, false}; }
+Support fix_z(const char* s) { return {s, false, false, true}; }
+
+VectorX solve(const TetMesh& mesh, const Material& material,
+              LoadCase load_case) {
+  load_case.name = "exact";
+  const ElasticModel model(mesh, {material}, {load_case});
+  EXPECT_FALSE(model.base_solution().failure);
+  return model.base_solution().displacements[0];
+}
+
+int node_at(const TetMesh& mesh, const Vec3& x) {
+  int best = 0;
+  for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i) {
+    if ((mesh.nodes[i] - x).norm() < (mesh.nodes[best] - x).norm()) {
+      best = i;
+    }
+  }
+  return best;
+}
+
+struct Orders {
+  double l2 = 0.0;
+  double energy = 0.0;
+};
+
+/// Solves at n, 2 n, ... and returns the last observed orders.
+Orders observe(const char* name, const exact::Field& field,
+               const std::vector<int>& sizes,
+               const std::function<TetMesh(int)>& mesh_of,
+               const std::function<LoadCase(const TetMesh&)>& load_of) {
+  exact::Norms last;
+  Orders orders;
+  for (const int n : sizes) {
+    const TetMesh mesh = mesh_of(n);
+    const VectorX u = solve(mesh, field.material(), load_of(mesh));
+    const exact::Norms norms = exact::error_norms(mesh, field, u);
+    if (last.l2 > 0.0) {
+      orders = {std::log2(last.l2 / norms.l2),
+                std::log2(last.energy / norms.energy)};
+    }
+    std::cout << fmt::format(
+        "{} n {}: {} elements, L2 {:.2e} (order {:.2f}), energy {:.2e} (order "
+        "{:.2f})\n",
+        name, n, mesh.element_count(), norms.l2 / norms.l2_exact, orders.l2,
+        norms.energy / norms.energy_exact, orders.energy);
+    last = norms;
+  }
+  return orders;
+}
+
+/// 0 on the plane x = 0, which is held.
+exact::Field manufactured() {
+  return {parts::steel(), [](const exact::DualVec& x) -> exact::DualVec {
+            const exact::Dual g =
+                1e-3 * sin(2.0 * x[0]) * cos(1.5 * x[1]) * exp(0.5 * x[2]);
+            return {g, -0.7 * g, 0.4 * g};
+          }};
+}
+
+class Manufactured : public testing::TestWithParam<int> {};
+
+TEST_P(Manufactured, ErrorsFallAtTheirOrders) {
+  const int p = GetParam();
+  const exact::Field field = manufactured();
+  const Orders orders = observe(
+      p == 1 ? "manufactured, four-node" : "manufactured, ten-node", field,
+      p == 1 ? std::vector<int>{4, 8, 16} : std::vector<int>{2, 4, 8},
+      [p](int n) {
+        const TetMesh mesh = parts::distorted_brick({1.0, 1.0, 1.0}, n);
+        return p == 1 ? mesh : shapes::straight_quadratic(mesh);
+      },
+      [&](const TetMesh& mesh) {
+        LoadCase load{.supports = {parts::hold("x0")}};
+        load.nodal = exact::loads(mesh, field, {"x1", "y0", "y1", "z0", "z1"},
+                                  exact::BodyForce::Included);
+        return load;
+      });
+  EXPECT_NEAR(orders.l2, p + 1.0, kOrderSlack);
+  EXPECT_NEAR(orders.energy, p, kOrderSlack);
+}
+INSTANTIATE_TEST_SUITE_P(Orders, Manufactured, testing::Values(1, 2));
+
+/// The same mesh with mid-side nodes in the middle of straight edges.
+TetMesh straightened(TetMesh mesh) {
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto ids = mesh.element(e);
+    for (int m = 0; m < 6; ++m) {
+      mesh.nodes[ids[4 + m]] = 0.5 * (mesh.nodes[ids[kTetEdges[m][0]]] +
+                                      mesh.nodes[ids[kTetEdges[m][1]]]);
+    }
+  }
+  return mesh;
+}
+
+LoadCase sphere_pressure(const TetMesh& /*mesh*/) {
+  return {.supports = {fix_x("x0"), fix_y("y0"), fix_z("z0")},
+          .pressures = {{.surface = "inner", .pressure = 100.0}}};
+}
+
+TEST(ThickSphere, CurvedElementsKeepTheirOrdersStraightOnesDoNot) {
+  const exact::Field field =
+      exact::thick_sphere(parts::steel(), 1.0, 2.0, 100.0);
+  const auto shell = [](int n) { return shapes::octant_shell(1.0, 2.0, n, n); };
+  const Orders curved = observe("thick sphere, curved", field, {4, 8, 16},
+                                shell, sphere_pressure);
+  EXPECT_NEAR(curved.l2, 3.0, kOrderSlack);
+  EXPECT_NEAR(curved.energy, 2.0, kOrderSlack);
+  const Orders straight = observe(
+      "thick sphere, straight", field, {4, 8, 16},
+      [&](int n) { return straightened(shell(n)); }, sphere_pressure);
+  EXPECT_NEAR(straight.l2, 2.0, kOrderSlack);
+}
+
+TEST(ThickSphere, HoopStressesConverge) {
+  const double p = 100.0;
+  double last = 0.0;
+  for (const int n : {4, 8}) {
+    const TetMesh mesh = shapes::octant_shell(1.0, 2.0, 2 * n, n);
+    const VectorX u = solve(mesh, parts::steel(), sphere_pressure(mesh));
+    const StressField stress = recover_stress(mesh, {parts::steel()}, u);
+    const double inside =
+        stress.nodal[node_at(mesh, {1.0, 0.0, 0.0})][1] / (p * 5.0 / 7.0) - 1.0;
+    const double outside =
+        stress.nodal[node_at(mesh, {2.0, 0.0, 0.0})][1] / (p * 3.0 / 14.0) -
+        1.0;
+    std::cout << fmt::format(
+        "thick sphere n {}: hoop stress off by {:.2e} inside, {:.2e} outside\n",
+        n, inside, outside);
+    const double error = std::max(std::abs(inside), std::abs(outside));
+    if (n == 8) {
+      EXPECT_LT(error, 0.01);
+      EXPECT_GT(last / error, 3.0);  // order 2 at least
+    }
+    last = error;
+  }
+}
+
+/// A concentrated stress at a place against its exact value as meshes refine.
+struct Peak {
+  const char* name;
+  exact::Field field;
+  TetMesh (*mesh)(int n);
+  std::vector<Support> supports;
+  Vec3 place;
+  int component;
+  double exact;  // [pressure]
+};
+
+void expect_peak(const Peak& peak) {
+  double last = 0.0;
+  for (const int n : {2, 4, 8}) {
+    const TetMesh mesh = peak.mesh(n);
+    LoadCase load{.supports = peak.supports};
+    load.nodal =
+        exact::loads(mesh, peak.field, {"outer"}, exact::BodyForce::None);
+    const VectorX u = solve(mesh, parts::steel(), load);
+    const PointStress points = point_stress(mesh, {parts::steel()}, u);
+    const int node = node_at(mesh, peak.place);
+    const double found = nodal_stress(mesh, recover_by_patches(mesh, points))
+                             .nodal[node][peak.component];
+    const double averaged =
+        average_stress(mesh, points).nodal[node][peak.component];
+    const double error = std::abs(found / peak.exact - 1.0);
+    std::cout << fmt::format(
+        "{} n {}: {} elements, peak {:.4f} (averages {:.4f}), exact {:.4f}\n",
+        peak.name, n, mesh.element_count(), found, averaged, peak.exact);
+    if (n == 8) {
+      EXPECT_LT(error, 0.01);
+      EXPECT_GT(last / error, 2.0);  // order 1 at least
+    }
+    last = error;
+  }
+}
+
+TEST(StressConcentration, OfAHoleInAPlateIsThree) {
+  expect_peak({"hole in a plate",
+               exact::hole_in_plate(parts::steel(), 1.0, 1.0),
+               [](int n) {
+                 return shapes::quarter_ring(1.0, 4.0, 1.0, 2 * n, 2 * n, n);
+               },
+               {fix_x("x0"), fix_y("y0"), fix_z("z0"), fix_z("z1")},
+               {0.0, 1.0, 0.0},
+               0,
+               3.0});
+}
+
+TEST(StressConcentration, OfASphericalCavityIsGoodiers) {
+  const double nu = parts::steel().poisson_ratio;
+  expect_peak(
+      {"spherical cavity",
+       exact::spherical_cavity(parts::steel(), 1.0),
+       [](int n) { return shapes::octant_shell(1.0, 4.0, 2 * n, 2 * n); },
+       {fix_x("x0"), fix_y("y0"), fix_z("z0")},
+       {1.0, 0.0, 0.0},
+       2,
+       (27.0 - 15.0 * nu) / (2.0 * (7.0 - 5.0 * nu))});
+}
+
+}  // namespace
+}  // namespace meniscus
