@@ -1,4 +1,4 @@
-#include "fea/size_field.h"
+#include "fea/edge_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,16 +18,16 @@ constexpr double kDimensions = 3.0;
 constexpr double kHuge = 1e300;
 
 void check(const TetMesh& mesh, const EnergyError& error,
-           const SizeFieldOptions& o) {
+           const EdgeFieldOptions& o) {
   if (!(o.relative_error > 0.0) || !(o.most_refinement >= 1.0) ||
       !(o.most_coarsening >= 1.0) || !(o.growth > 0.0)) {
     throw InvalidInput(fmt::format(
-        "size field: relative_error is {}, growth {} (both must be above 0), "
+        "edge field: relative_error is {}, growth {} (both must be above 0), "
         "most_refinement {}, most_coarsening {} (both at least 1)",
         o.relative_error, o.growth, o.most_refinement, o.most_coarsening));
   }
   if (error.element.size() != static_cast<std::size_t>(mesh.element_count())) {
-    throw InvalidInput(fmt::format("size field: errors of {} elements for {}",
+    throw InvalidInput(fmt::format("edge field: errors of {} elements for {}",
                                    error.element.size(), mesh.element_count()));
   }
 }
@@ -44,7 +44,7 @@ double mean_edge(const TetMesh& mesh, int e) {
 /// Old edge over new edge per element, between the bounds. What the bounds
 /// take from some elements the others make up for, as far as they can.
 std::vector<double> refinements(const TetMesh& mesh, const EnergyError& error,
-                                const SizeFieldOptions& o, double target) {
+                                const EdgeFieldOptions& o, double target) {
   const double power = 2.0 / (2.0 * mesh.order + kDimensions);
   std::vector<double> ratio(error.element.size());
   std::vector<double> weight(error.element.size());
@@ -104,13 +104,13 @@ void limit_growth(const TetMesh& mesh, double growth,
 
 }  // namespace
 
-SizeField size_field(const TetMesh& mesh, const EnergyError& error,
-                     const SizeFieldOptions& options) {
+EdgeField edge_field(const TetMesh& mesh, const EnergyError& error,
+                     const EdgeFieldOptions& options) {
   check(mesh, error, options);
   const double whole = std::hypot(error.energy_norm, error.error);
   const std::vector<double> ratio =
       refinements(mesh, error, options, options.relative_error * whole);
-  SizeField field;
+  EdgeField field;
   field.growth = options.growth;
   field.points.assign(mesh.nodes.begin(),
                       mesh.nodes.begin() + mesh.corner_count);
@@ -136,10 +136,10 @@ SizeField size_field(const TetMesh& mesh, const EnergyError& error,
   return field;
 }
 
-std::function<double(const Vec3&)> SizeField::function() const {
+std::function<double(const Vec3&)> EdgeField::function() const {
   struct Lookup {
     NearestPoint nearest;
-    SizeField field;
+    EdgeField field;
   };
   const auto lookup =
       std::make_shared<const Lookup>(Lookup{NearestPoint(points), *this});

@@ -9,7 +9,7 @@
 
 namespace meniscus {
 
-struct SizeFieldOptions {
+struct EdgeFieldOptions {
   double relative_error = 0.02;  // wanted of EnergyError::relative(); > 0
   double most_refinement = 4.0;  // old edge over new edge, at most; >= 1
   double most_coarsening = 2.0;  // new edge over old edge, at most; >= 1
@@ -18,7 +18,7 @@ struct SizeFieldOptions {
 
 /// Edge lengths at the corners of a mesh, changing by no more than `growth`
 /// along any edge of it.
-struct SizeField {
+struct EdgeField {
   Points points;               // the corners [length]
   std::vector<double> length;  // per corner [length]
   double growth = 0.5;
@@ -36,7 +36,7 @@ struct SizeField {
 /// Oliver, Criteria to achieve nearly optimal meshes in the h-adaptive finite
 /// element method, 1996): in d = 3 dimensions each edge is divided by
 /// c |e|^(2 / (2 p + d)). Throws InvalidInput for options out of range.
-SizeField size_field(const TetMesh& mesh, const EnergyError& error,
-                     const SizeFieldOptions& options = {});
+EdgeField edge_field(const TetMesh& mesh, const EnergyError& error,
+                     const EdgeFieldOptions& options = {});
 
 }  // namespace meniscus

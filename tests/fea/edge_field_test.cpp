@@ -1,4 +1,4 @@
-#include "fea/size_field.h"
+#include "fea/edge_field.h"
 
 #include <random>
 
@@ -55,7 +55,7 @@ EnergyError errors(const TetMesh& mesh, const Density& density) {
   return error;
 }
 
-class Sizes : public testing::TestWithParam<int> {
+class Edges : public testing::TestWithParam<int> {
  protected:
   static TetMesh cube(int n) {
     const TetMesh mesh = shapes::brick({1.0, 1.0, 1.0}, n, n, n);
@@ -63,14 +63,14 @@ class Sizes : public testing::TestWithParam<int> {
   }
 };
 
-TEST_P(Sizes, OfEvenErrorsAreEvenAndReachTheTarget) {
+TEST_P(Edges, OfEvenErrorsAreEvenAndReachTheTarget) {
   const int p = GetParam();
   const TetMesh mesh = cube(6);
   const EnergyError error = errors(mesh, [](const Vec3&) { return 0.01; });
   // The order p means: the error over 2^p wants edges halved.
   const double target = error.relative() / std::pow(2.0, p);
-  const SizeField field =
-      size_field(mesh, error, {.relative_error = target, .growth = 1e6});
+  const EdgeField field =
+      edge_field(mesh, error, {.relative_error = target, .growth = 1e6});
   const double longest =
       *std::max_element(field.length.begin(), field.length.end());
   const double shortest =
@@ -82,13 +82,13 @@ TEST_P(Sizes, OfEvenErrorsAreEvenAndReachTheTarget) {
               1e-6 * target);
 }
 
-TEST_P(Sizes, AreFineWhereTheErrorIsAndGrowGently) {
+TEST_P(Edges, AreFineWhereTheErrorIsAndGrowGently) {
   const TetMesh mesh = cube(8);
   const EnergyError error = errors(
       mesh, [](const Vec3& x) { return std::exp(-40.0 * x.squaredNorm()); });
   constexpr double kGrowth = 0.4;
-  const SizeField field =
-      size_field(mesh, error,
+  const EdgeField field =
+      edge_field(mesh, error,
                  {.relative_error = 0.3 * error.relative(), .growth = kGrowth});
   const auto h = field.function();
   EXPECT_LT(h({0.0, 0.0, 0.0}), 0.6 * h({1.0, 1.0, 1.0}));
@@ -105,31 +105,31 @@ TEST_P(Sizes, AreFineWhereTheErrorIsAndGrowGently) {
   }
 }
 
-TEST_P(Sizes, StayWithinTheBoundsAndTellWhatTheyMiss) {
+TEST_P(Edges, StayWithinTheBoundsAndTellWhatTheyMiss) {
   const TetMesh mesh = cube(4);
   const EnergyError error = errors(mesh, [](const Vec3&) { return 0.01; });
-  const SizeField fine = size_field(
+  const EdgeField fine = edge_field(
       mesh, error,
       {.relative_error = 1e-9, .most_refinement = 3.0, .growth = 1e6});
   EXPECT_NEAR(fine.elements, 27.0 * mesh.element_count(), 1e-6);
   EXPECT_GT(fine.error, 1e-9);
-  const SizeField coarse = size_field(
+  const EdgeField coarse = edge_field(
       mesh, error,
       {.relative_error = 0.99, .most_coarsening = 2.0, .growth = 1e6});
   EXPECT_NEAR(coarse.elements, mesh.element_count() / 8.0, 1e-6);
 }
 
-TEST_P(Sizes, RefuseOptionsOutOfRange) {
+TEST_P(Edges, RefuseOptionsOutOfRange) {
   const TetMesh mesh = cube(1);
   const EnergyError error = errors(mesh, [](const Vec3&) { return 0.01; });
-  EXPECT_THROW(size_field(mesh, error, {.relative_error = 0.0}), InvalidInput);
-  EXPECT_THROW(size_field(mesh, error, {.most_refinement = 0.5}), InvalidInput);
-  EXPECT_THROW(size_field(mesh, error, {.most_coarsening = 0.5}), InvalidInput);
-  EXPECT_THROW(size_field(mesh, error, {.growth = 0.0}), InvalidInput);
-  EXPECT_THROW(size_field(mesh, EnergyError{}, {}), InvalidInput);
+  EXPECT_THROW(edge_field(mesh, error, {.relative_error = 0.0}), InvalidInput);
+  EXPECT_THROW(edge_field(mesh, error, {.most_refinement = 0.5}), InvalidInput);
+  EXPECT_THROW(edge_field(mesh, error, {.most_coarsening = 0.5}), InvalidInput);
+  EXPECT_THROW(edge_field(mesh, error, {.growth = 0.0}), InvalidInput);
+  EXPECT_THROW(edge_field(mesh, EnergyError{}, {}), InvalidInput);
 }
 
-INSTANTIATE_TEST_SUITE_P(Orders, Sizes, testing::Values(1, 2));
+INSTANTIATE_TEST_SUITE_P(Orders, Edges, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace meniscus
