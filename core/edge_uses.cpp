@@ -64,12 +64,12 @@ void sort_around(const SurfaceMesh& mesh, std::span<EdgeUse> uses) {
   }
   const Vec3& from = mesh.points[uses[0].edge[0]];
   const Vec3 along = mesh.points[uses[0].edge[1]] - from;
-  const auto [u, v] = axes_across(along.normalized());
+  const auto axes = axes_across(along.normalized());
   const auto angle = [&](const EdgeUse& use) {
     const Triangle& t = mesh.facets[use.facet];
     const int apex = t[0] + t[1] + t[2] - use.edge[0] - use.edge[1];
     const Vec3 arm = mesh.points[apex] - from;
-    return std::atan2(v.dot(arm), u.dot(arm));
+    return std::atan2(axes.second.dot(arm), axes.first.dot(arm));
   };
   std::sort(uses.begin(), uses.end(), [&](const EdgeUse& x, const EdgeUse& y) {
     return std::pair{angle(x), x.facet} < std::pair{angle(y), y.facet};

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
-
 #include "core/error.h"
 #include "core/linear_solve.h"
 #include "fea/block_kernels.h"
 #include "fea/block_sweeps.h"
+#include "fea/level_setup.h"
+#include "fea/level_transfers.h"
 #include "fea/smoothed_aggregation.h"
 
 namespace meniscus {
@@ -19,99 +19,6 @@ namespace {
 constexpr int kDirectUnknowns = 1500;
 /// Cycles over the coarser levels for one on the finest: they cost little.
 constexpr int kCoarseCycles = 2;
-
-using RowMat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-NodeFreedom corner_freedom(const NodeFreedom& fine, const CornerMap& map) {
-  NodeFreedom result;
-  result.nodes = static_cast<int>(map.corner.size());
-  for (std::size_t k = 0; k < fine.held.size(); ++k) {
-    const auto at =
-        std::lower_bound(map.corner.begin(), map.corner.end(), fine.held[k]);
-    if (at != map.corner.end() && *at == fine.held[k]) {
-      result.held.push_back(static_cast<int>(at - map.corner.begin()));
-      result.projector.push_back(fine.projector[k]);
-    }
-  }
-  return result;
-}
-
-/// Inverses of the scaled diagonal blocks on the free directions.
-std::vector<double> inverse_blocks(const BlockMatrix<double>& matrix,
-                                   double scale, const NodeFreedom& freedom) {
-  std::vector<double> inverse(9L * freedom.nodes);
-#pragma omp parallel for schedule(static) if (freedom.nodes >= kParallelRows)
-  for (int i = 0; i < freedom.nodes; ++i) {
-    Eigen::Map<RowMat3>(inverse.data() + 9L * i) =
-        (Eigen::Map<const RowMat3>(matrix.diagonal.data() + 9L * i) / scale)
-            .inverse();
-  }
-  for (std::size_t k = 0; k < freedom.held.size(); ++k) {
-    const long at = 9L * freedom.held[k];
-    const Mat3& P = freedom.projector[k];
-    const RowMat3 D =
-        Eigen::Map<const RowMat3>(matrix.diagonal.data() + at) / scale;
-    const RowMat3 within = P * D * P + (Mat3::Identity() - P);
-    Eigen::Map<RowMat3>(inverse.data() + at) = P * within.inverse() * P;
-  }
-  return inverse;
-}
-
-/// The same for motions of aggregates; those that are none have a zero row.
-std::vector<double> inverse_blocks(const BlockMatrix<double>& matrix,
-                                   int nodes) {
-  using Mat6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-  std::vector<double> inverse(36L * nodes);
-#pragma omp parallel for schedule(static) if (nodes >= kParallelRows)
-  for (int i = 0; i < nodes; ++i) {
-    Mat6 D = Eigen::Map<const Mat6>(matrix.diagonal.data() + 36L * i);
-    Mat6 none = Mat6::Zero();
-    for (int k = 0; k < 6; ++k) {
-      none(k, k) = D(k, k) > 0.0 ? 0.0 : 1.0;
-    }
-    Eigen::Map<Mat6>(inverse.data() + 36L * i) = (D + none).inverse() - none;
-  }
-  return inverse;
-}
-
-template <int B>
-std::vector<float> padded(const std::vector<double>& blocks) {
-  const std::size_t rows = blocks.size() / B;
-  std::vector<float> result(rows * kLanes<B>, 0.0F);
-  for (std::size_t r = 0; r < rows; ++r) {
-    for (int c = 0; c < B; ++c) {
-      result[r * kLanes<B> + c] = static_cast<float>(blocks[r * B + c]);
-    }
-  }
-  return result;
-}
-
-/// Translations and rotations about the middle, in units of the part's size.
-std::vector<double> rigid_motions(const Points& x, const NodeFreedom& freedom) {
-  Vec3 centre = Vec3::Zero();
-  for (const Vec3& p : x) {
-    centre += p / static_cast<double>(x.size());
-  }
-  double size = 0.0;
-  for (const Vec3& p : x) {
-    size = std::max(size, (p - centre).norm());
-  }
-  using Motions = Eigen::Matrix<double, 3, kRigidMotions, Eigen::RowMajor>;
-  std::vector<double> result(18 * x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 d = (x[i] - centre) / size;
-    Motions m;
-    m << 1, 0, 0, 0, d.z(), -d.y(),  //
-        0, 1, 0, -d.z(), 0, d.x(),   //
-        0, 0, 1, d.y(), -d.x(), 0;
-    Eigen::Map<Motions>(result.data() + 18 * i) = m;
-  }
-  for (std::size_t k = 0; k < freedom.held.size(); ++k) {
-    Eigen::Map<Motions> m(result.data() + 18L * freedom.held[k]);
-    m = (freedom.projector[k] * m).eval();
-  }
-  return result;
-}
 
 /// A level's smoother. Vectors as block_sweeps.h has them.
 struct Level {
@@ -138,53 +45,6 @@ void backward(const Level& level, const float* r, float* x, float* upper) {
   const SweepMatrix m{level.pattern, level.lower, level.inverse.data()};
   level.block == 3 ? sweep_backward<3, K>(m, r, x, upper)
                    : sweep_backward<6, K>(m, r, x, upper);
-}
-
-/// coarse = -P^T upper; both with padding, the coarse one's garbage.
-template <int B, int K>
-void restrict_motions(const Prolongation& P, const float* upper,
-                      float* coarse) {
-  constexpr std::ptrdiff_t kFine = K * kLanes<B>;
-  constexpr std::ptrdiff_t kCoarse = K * kLanes<6>;
-  const int count = static_cast<int>(P.row_start.size()) - 1;
-#pragma omp parallel for schedule(static) if (count >= kParallelRows)
-  for (int a = 0; a < count; ++a) {
-    Eigen::Map<Eigen::Array<float, kCoarse, 1>> sum(coarse + a * kCoarse);
-    sum.setZero();
-    for (int t = P.row_start[a]; t < P.row_start[a + 1]; ++t) {
-      const float* block =
-          P.value.data() + static_cast<std::ptrdiff_t>(6 * B) * P.block[t];
-      const float* u = upper + P.row[t] * kFine;
-      for (int k = 0; k < K; ++k) {
-        for (int r = 0; r < B; ++r) {
-          lanes<6>(coarse + a * kCoarse + k * kLanes<6>) -=
-              lanes<6>(block + 6 * r) * u[k * kLanes<B> + r];
-        }
-      }
-    }
-  }
-}
-
-/// x += P e.
-template <int B, int K>
-void prolong_motions(const Prolongation& P, const float* e, float* x) {
-  constexpr std::ptrdiff_t kFine = K * kLanes<B>;
-  constexpr std::ptrdiff_t kCoarse = K * kLanes<6>;
-  const int count = static_cast<int>(P.start.size()) - 1;
-#pragma omp parallel for schedule(static) if (count >= kParallelRows)
-  for (int i = 0; i < count; ++i) {
-    for (int k = 0; k < K; ++k) {
-      for (int r = 0; r < B; ++r) {
-        Lanes<float, 6> sum = Lanes<float, 6>::Zero();
-        for (int b = P.start[i]; b < P.start[i + 1]; ++b) {
-          sum += lanes<6>(P.value.data() +
-                          static_cast<std::ptrdiff_t>(6 * B) * b + 6 * r) *
-                 lanes<6>(e + P.column[b] * kCoarse + k * kLanes<6>);
-        }
-        x[i * kFine + k * kLanes<B> + r] += sum.sum();
-      }
-    }
-  }
 }
 
 /// The free directions in single precision.
@@ -370,10 +230,10 @@ class Multigrid final : public Preconditioner {
     if (map_ != nullptr && l == 0) {
       fine_held_.apply<K>(upper.data());
       std::vector<float> right(levels_[1].size(K));
-      restrict_corners<K>(upper.data(), right.data());
+      restrict_corners<K>(*map_, nodal_factor_, upper.data(), right.data());
       nodal_held_.apply<K>(right.data());
       cycle<K>(1, right, e);
-      prolong_corners<K>(e.data(), x.data());
+      prolong_corners<K>(*map_, e.data(), x.data());
       fine_held_.apply<K>(x.data());
       return;
     }
@@ -389,47 +249,6 @@ class Multigrid final : public Preconditioner {
       restrict_motions<6, K>(P, upper.data(), right.data());
       cycle<K>(l + 1, right, e);
       prolong_motions<6, K>(P, e.data(), x.data());
-    }
-  }
-
-  template <int K>
-  void restrict_corners(const float* upper, float* coarse) const {
-    using Node = Eigen::Array<float, 4 * K, 1>;
-    const auto at = [&](int node) {
-      return Eigen::Map<const Node>(upper +
-                                    static_cast<std::ptrdiff_t>(4 * K) * node);
-    };
-    const int count = static_cast<int>(map_->corner.size());
-#pragma omp parallel for schedule(static) if (count >= kParallelRows)
-    for (int c = 0; c < count; ++c) {
-      Node mids = Node::Zero();
-      for (int k = map_->around_start[c]; k < map_->around_start[c + 1]; ++k) {
-        mids += at(map_->around[k]);
-      }
-      Eigen::Map<Node>(coarse + static_cast<std::ptrdiff_t>(4 * K) * c) =
-          -nodal_factor_ * (at(map_->corner[c]) + 0.5F * mids);
-    }
-  }
-
-  template <int K>
-  void prolong_corners(const float* e, float* x) const {
-    using Node = Eigen::Array<float, 4 * K, 1>;
-    const auto coarse = [&](int c) {
-      return Eigen::Map<const Node>(e + static_cast<std::ptrdiff_t>(4 * K) * c);
-    };
-    const auto fine = [&](int node) {
-      return Eigen::Map<Node>(x + static_cast<std::ptrdiff_t>(4 * K) * node);
-    };
-    const int corners = static_cast<int>(map_->corner.size());
-#pragma omp parallel for schedule(static) if (corners >= kParallelRows)
-    for (int c = 0; c < corners; ++c) {
-      fine(map_->corner[c]) += coarse(c);
-    }
-    const int mids = static_cast<int>(map_->mid.size());
-#pragma omp parallel for schedule(static) if (mids >= kParallelRows)
-    for (int m = 0; m < mids; ++m) {
-      fine(map_->mid[m]) +=
-          0.5F * (coarse(map_->ends[m][0]) + coarse(map_->ends[m][1]));
     }
   }
 
