@@ -69,7 +69,7 @@ void sort_around(const SurfaceMesh& mesh, std::span<EdgeUse> uses) {
     const Triangle& t = mesh.facets[use.facet];
     const int apex = t[0] + t[1] + t[2] - use.edge[0] - use.edge[1];
     const Vec3 arm = mesh.points[apex] - from;
-    return std::atan2(axes.second.dot(arm), axes.first.dot(arm));
+    return std::atan2(axes[1].dot(arm), axes[0].dot(arm));
   };
   std::sort(uses.begin(), uses.end(), [&](const EdgeUse& x, const EdgeUse& y) {
     return std::pair{angle(x), x.facet} < std::pair{angle(y), y.facet};

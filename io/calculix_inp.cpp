@@ -348,10 +348,11 @@ class DeckWriter {
     boundary(step);
     forces(step);
     temperatures(step);
-    if (deck_.output != DeckOutput::Print) {
+    if (deck_.output == DeckOutput::Viewer ||
+        deck_.output == DeckOutput::Both) {
       fmt::format_to(out(), "*NODE FILE\nU, RF\n*EL FILE\nS\n");
     }
-    if (deck_.output != DeckOutput::Viewer) {
+    if (deck_.output == DeckOutput::Print || deck_.output == DeckOutput::Both) {
       fmt::format_to(out(),
                      "*NODE PRINT, NSET=NALL\nU\n"
                      "*NODE PRINT, NSET={}, TOTALS=ONLY\nRF\n"

@@ -78,7 +78,8 @@ enum class DeckOutput {
   Viewer,  // .frd: displacement, reaction, stress
   Print,   // .dat: displacement of all nodes, sum of reactions, stresses at
            // integration points, as text
-  Both
+  Both,
+  Nothing  // to time the solution alone
 };
 
 struct CalculixDeck {

@@ -1,0 +1,191 @@
+#include "tests/support/elastic_race.h"
+
+#include <chrono>
+#include <cmath>
+#include <omp.h>
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "core/memory.h"
+#include "io/calculix_inp.h"
+#include "mesh_tet/tetrahedralize.h"
+#include "tests/support/mapped_shapes.h"
+#include "tests/support/measured_child.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
+
+namespace meniscus {
+
+namespace {
+
+Material aluminium() { return {"aluminium", 70000.0, 0.33, 2.7e-9, {}}; }
+
+ElasticPart loaded(TetMesh mesh, const std::string& held,
+                   const std::string& pulled) {
+  ElasticPart part;
+  part.moved = mesh;
+  double size = 0.0;
+  for (const Vec3& x : mesh.nodes) {
+    size = std::max(size, x.cwiseAbs().maxCoeff());
+  }
+  for (Vec3& x : part.moved.nodes) {
+    const Vec3 s = 3.0 / size * x;
+    x += 0.01 * size * Vec3(std::sin(s.y()), std::sin(s.z()), std::sin(s.x()));
+  }
+  part.mesh = std::move(mesh);
+  part.materials = {aluminium()};
+  part.load_case.name = "service";
+  part.load_case.supports = {
+      {.surface = held, .fix_x = true, .fix_y = true, .fix_z = true}};
+  part.load_case.forces = {{pulled, {300.0, -100.0, -1000.0}}};
+  return part;
+}
+
+/// Cells along a side, from those at scale 1.
+int cells(double count, double scale) {
+  return std::max(1, static_cast<int>(std::lround(count * std::cbrt(scale))));
+}
+
+TetMesh tet_block(double count, double scale) {
+  const double edge = 100.0 / cells(count, scale);
+  SurfaceMesh surface = shapes::box({200.0, 100.0, 100.0}, cells(count, scale));
+  Tetrahedralization result = tetrahedralize(surface, {.edge = edge});
+  if (result.failure) {
+    throw std::runtime_error(result.failure->message);
+  }
+  return std::move(result.mesh);
+}
+
+ElasticPart tube(double scale) {
+  return loaded(shapes::quarter_ring(20.0, 22.0, 35.0, cells(4, scale),
+                                     cells(70, scale), cells(68, scale)),
+                "z0", "z1");
+}
+
+ElasticPart block(double scale) {
+  return loaded(shapes::straight_quadratic(tet_block(26.0, scale)), "x0", "x1");
+}
+
+ElasticPart linear_block(double scale) {
+  return loaded(tet_block(26.0, scale), "x0", "x1");
+}
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) +
+           1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string solve(ElasticPart (*make)(double), double scale, int threads) {
+  keep_freed_memory();  // as the program does
+  omp_set_num_threads(threads);
+  const ElasticPart part = make(scale);
+  const double start = cpu_seconds();
+  const ElasticModel model(part.mesh, part.materials, {part.load_case});
+  const ElasticSolution& base = model.base_solution();
+  if (base.failure) {
+    throw std::runtime_error(base.failure->message);
+  }
+  const double before = wall_seconds();
+  const StressField stress =
+      recover_stress(part.mesh, part.materials, base.displacements[0]);
+  const double stress_seconds = wall_seconds() - before;
+  const double first = cpu_seconds();
+  const double wall = wall_seconds();
+  const ElasticSolution next = model.solve(part.moved);
+  recover_stress(part.moved, part.materials, next.displacements[0]);
+  const double next_seconds = cpu_seconds() - first;
+  const double next_wall = wall_seconds() - wall;
+  if (next.failure) {
+    throw std::runtime_error(next.failure->message);
+  }
+  return fmt::format("{} {} {} {} {} {} {} {} {} {}", part.mesh.element_count(),
+                     base.report.dofs, base.report.iterations,
+                     base.report.setup_seconds, base.report.solve_seconds,
+                     stress_seconds, first - start, next_seconds, next_wall,
+                     base.displacements[0].lpNorm<Eigen::Infinity>());
+}
+
+}  // namespace
+
+void PrintTo(const ElasticWork& work, std::ostream* out) { *out << work.name; }
+
+const std::vector<ElasticWork>& elastic_works() {
+  static const std::vector<ElasticWork> works = {
+      {"tube", tube, 20, 5, 40, 15, 40, 80},
+      {"block", block, 20, 5, 40, 15, 40, 80},
+      {"linear_block", linear_block, 3, 1.5, 8, 4, 3, 8}};
+  return works;
+}
+
+ElasticPart large_block(double scale) {
+  return loaded(shapes::straight_quadratic(tet_block(42.0, scale)), "x0", "x1");
+}
+
+ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads) {
+  const MeasuredChild child =
+      measure_forked([&] { return solve(make, scale, threads); });
+  ElasticRun run;
+  run.peak_bytes = child.peak_bytes;
+  run.message = child.output;
+  if (child.succeeded) {
+    std::istringstream text(child.output);
+    run.solved = static_cast<bool>(text >> run.elements >> run.dofs >>
+                                   run.iterations >> run.setup_seconds >>
+                                   run.solve_seconds >> run.stress_seconds >>
+                                   run.user_seconds >> run.next_seconds >>
+                                   run.next_wall_seconds >> run.largest);
+  }
+  return run;
+}
+
+CalculixTime time_calculix(ElasticPart (*make)(double), double scale,
+                           const std::string& solver, double time_limit) {
+  const TempFolder folder;
+  const MeasuredChild deck = measure_forked([&] {
+    const ElasticPart part = make(scale);
+    CalculixDeck deck;
+    deck.materials = {{.name = "aluminium",
+                       .youngs_modulus = part.materials[0].youngs_modulus,
+                       .poisson_ratio = part.materials[0].poisson_ratio}};
+    DeckStep step{.name = "service"};
+    step.supports = {{.surface = part.load_case.supports[0].surface,
+                      .fix_x = true,
+                      .fix_y = true,
+                      .fix_z = true}};
+    step.nodal_forces = nodal_forces(part.mesh, part.load_case, part.materials);
+    deck.steps = {step};
+    deck.solver = solver;
+    deck.output = DeckOutput::Nothing;
+    write_calculix_inp(folder / "job.inp", part.mesh, deck);
+    return std::string();
+  });
+  CalculixTime time;
+  if (!deck.succeeded) {
+    return time;
+  }
+  const MeasuredChild child =
+      measure_program({"env", "OMP_NUM_THREADS=1", "ccx", "-i", "job"},
+                      folder.path(), time_limit);
+  time.ended =
+      child.succeeded && child.output.find("Job finished") != std::string::npos;
+  time.user_seconds = child.user_seconds + child.system_seconds;
+  time.wall_seconds = child.wall_seconds;
+  time.peak_bytes = child.peak_bytes;
+  return time;
+}
+
+}  // namespace meniscus

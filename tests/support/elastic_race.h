@@ -1,0 +1,73 @@
+/// The works of the elasticity's speed table: from a mesh in memory to
+/// stresses, this program's solver and CalculiX on the same meshes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/tet_mesh.h"
+#include "fea/elasticity.h"
+
+namespace meniscus {
+
+/// A part held at one end and loaded at the other.
+struct ElasticPart {
+  TetMesh mesh;
+  TetMesh moved;  // about 1 % of its size away
+  std::vector<Material> materials;
+  LoadCase load_case;
+};
+
+struct ElasticWork {
+  std::string name;
+  /// `scale`: one over the number of elements.
+  ElasticPart (*make)(double scale) = nullptr;
+  // Ratios of CPU seconds to CalculiX's default and to its best.
+  double least_default = 0.0;
+  double least_best = 0.0;
+  double aim_default = 0.0;
+  double aim_best = 0.0;
+  // The same for the next design, to its default.
+  double least_next = 0.0;
+  double aim_next = 0.0;
+};
+
+void PrintTo(const ElasticWork& work, std::ostream* out);
+
+/// A curved thin tube and a solid block of ten-node elements, a block of
+/// four-node ones; about 115,000 elements at scale 1.
+const std::vector<ElasticWork>& elastic_works();
+
+/// A block of about 480,000 ten-node elements.
+ElasticPart large_block(double scale);
+
+/// What our solver took, in a child process of its own.
+struct ElasticRun {
+  bool solved = false;
+  std::string message;  // why not
+  int elements = 0;
+  int dofs = 0;
+  int iterations = 0;
+  double setup_seconds = 0.0;   // wall clock: order, pattern, assembly, levels
+  double solve_seconds = 0.0;   // wall clock
+  double stress_seconds = 0.0;  // wall clock
+  double user_seconds = 0.0;    // CPU, user and system, of all of it
+  double next_seconds = 0.0;    // CPU of the next design, stresses included
+  double next_wall_seconds = 0.0;
+  double peak_bytes = 0.0;  // of the whole process, both meshes included
+  double largest = 0.0;     // displacement [length]
+};
+ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads);
+
+struct CalculixTime {
+  bool ended = false;
+  double user_seconds = 0.0;  // CPU, user and system, of the whole program
+  double wall_seconds = 0.0;
+  double peak_bytes = 0.0;
+};
+
+/// `solver` as CalculixDeck has it. Nothing is printed.
+CalculixTime time_calculix(ElasticPart (*make)(double), double scale,
+                           const std::string& solver, double time_limit);
+
+}  // namespace meniscus
