@@ -290,6 +290,7 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
                                            : "p-multigrid";
   result.report.dofs = free_unknowns(groups_.front().holding);
   std::vector<VectorX> f;
+  f.reserve(load_cases.size());
   for (const LoadCase& load_case : load_cases) {
     f.push_back(to_solver(checked_forces(mesh, load_case, materials_)));
   }
