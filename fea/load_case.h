@@ -13,8 +13,8 @@ namespace meniscus {
 
 /// Values at places [length]. They may throw ExpressionError; what is not
 /// finite is refused with the place.
-using ScalarField = std::function<double(const Vec3&)>;
-using VectorField = std::function<Vec3(const Vec3&)>;
+using ScalarOfPlace = std::function<double(const Vec3&)>;
+using VectorOfPlace = std::function<Vec3(const Vec3&)>;
 
 enum class SupportKind {
   Components,  // those that are fixed, along x, y, z or the support's axes
@@ -60,14 +60,14 @@ struct SurfaceForce {
 struct SurfacePressure {
   std::string surface;
   double pressure = 0.0;
-  ScalarField field;  // instead of `pressure`, where it is set
+  ScalarOfPlace field;  // instead of `pressure`, where it is set
 };
 
 /// Force per area of a surface [pressure].
 struct SurfaceTraction {
   std::string surface;
   Vec3 traction = Vec3::Zero();
-  VectorField field;  // instead of `traction`, where it is set
+  VectorOfPlace field;  // instead of `traction`, where it is set
 };
 
 /// A force at a point and a moment, carried by a surface without stiffening it:
@@ -91,7 +91,7 @@ struct Spin {
 /// are. Free expansion is the material's expansion times (T - reference).
 struct Temperature {
   double value = 0.0;
-  ScalarField field;  // instead of `value`, where it is set
+  ScalarOfPlace field;  // instead of `value`, where it is set
   double reference = 0.0;
 };
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/responses.h"
+
 namespace meniscus {
 
 namespace {
@@ -43,7 +45,7 @@ std::vector<std::string> part_warnings(const Case& input,
     const VectorX& u = fields.solution.displacements[k];
     const StressField other =
         k == 0 ? StressField{}
-               : recover_stress(fields.mesh, fields.inputs.materials, u);
+               : load_case_stress(fields.mesh, fields.inputs, k, u);
     const StressField& stress = k == 0 ? fields.stress : other;
     if (yield && stress.max_von_mises > *yield) {
       const Vec3& x =
