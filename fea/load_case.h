@@ -13,7 +13,7 @@ namespace meniscus {
 
 /// Values at places [length]. They may throw ExpressionError; what is not
 /// finite is refused with the place.
-using ScalarOfPlace = std::function<double(const Vec3&)>;
+using NumberOfPlace = std::function<double(const Vec3&)>;
 using VectorOfPlace = std::function<Vec3(const Vec3&)>;
 
 enum class SupportKind {
@@ -60,7 +60,7 @@ struct SurfaceForce {
 struct SurfacePressure {
   std::string surface;
   double pressure = 0.0;
-  ScalarOfPlace field;  // instead of `pressure`, where it is set
+  NumberOfPlace field;  // instead of `pressure`, where it is set
 };
 
 /// Force per area of a surface [pressure].
@@ -91,7 +91,7 @@ struct Spin {
 /// are. Free expansion is the material's expansion times (T - reference).
 struct Temperature {
   double value = 0.0;
-  ScalarOfPlace field;  // instead of `value`, where it is set
+  NumberOfPlace field;  // instead of `value`, where it is set
   double reference = 0.0;
 };
 

@@ -15,7 +15,7 @@ double value_at(const Expression& expression, const Vec3& x) {
   return expression.evaluate(std::span<const double>(x.data(), 3));
 }
 
-ScalarOfPlace field_of(const PlaceQuantity& place, const CaseValues& values) {
+NumberOfPlace field_of(const PlaceQuantity& place, const CaseValues& values) {
   return [expression = values.of_place(place)](const Vec3& x) {
     return value_at(expression, x);
   };
