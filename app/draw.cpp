@@ -31,6 +31,16 @@ std::vector<std::string> draw(const Case& input, const EvaluationFields& fields,
   for (const Support& support : load_case.supports) {
     job.supports.push_back(support.surface);
   }
+  for (const SpringBed& bed : load_case.springs) {
+    job.supports.push_back(bed.surface);
+  }
+  for (const RemoteLoad& load : load_case.remote_loads) {
+    if (load.force.norm() > 0.0) {
+      job.loads.push_back({.surface = load.surface,
+                           .direction = load.force,
+                           .label = load_label(load.force, input.units.force)});
+    }
+  }
   for (const SurfaceForce& force : load_case.forces) {
     job.loads.push_back({.surface = force.surface,
                          .direction = force.total,

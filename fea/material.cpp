@@ -77,7 +77,9 @@ void check_isotropic(const Material& m) {
   }
 }
 
-void check(const Material& m) {
+}  // namespace
+
+void check_material(const Material& m) {
   if (!m.thermal_expansion.allFinite()) {
     throw InvalidInput(
         fmt::format("material '{}': its thermal expansion is not a finite "
@@ -96,8 +98,6 @@ void check(const Material& m) {
   }
 }
 
-}  // namespace
-
 Lame lame(const Material& material) {
   const double E = material.youngs_modulus;
   const double nu = material.poisson_ratio;
@@ -107,7 +107,7 @@ Lame lame(const Material& material) {
 void check_materials(const TetMesh& mesh,
                      const std::vector<Material>& materials) {
   for (const Material& material : materials) {
-    check(material);
+    check_material(material);
   }
   const int count = static_cast<int>(materials.size());
   if (static_cast<int>(mesh.element_region.size()) != mesh.element_count()) {

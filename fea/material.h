@@ -41,9 +41,11 @@ struct Lame {
 Lame lame(const Material& material);
 
 /// Throws InvalidInput, naming the material, for a modulus, Poisson's ratio,
-/// density or expansion out of its range, for orthotropic constants that make
-/// no positive definite stiffness, and for a region of `mesh` without a
-/// material.
+/// density or expansion out of its range, and for orthotropic constants that
+/// make no positive definite stiffness.
+void check_material(const Material& material);
+
+/// The same for all, and for a region of `mesh` without a material.
 void check_materials(const TetMesh& mesh,
                      const std::vector<Material>& materials);
 

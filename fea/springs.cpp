@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -56,10 +56,13 @@ BedStiffness stiffness_of(const TetMesh& mesh, const SpringBed& bed) {
           scale * bed.normal};
 }
 
-using BlockMap = std::map<std::array<int, 2>, Mat3>;
+struct Entry {
+  std::array<int, 2> at;
+  Mat3 block;
+};
 
 void add_bed(const TetMesh& mesh, const SpringBed& bed, int order,
-             BlockMap& blocks) {
+             std::vector<Entry>& entries) {
   const BedStiffness stiffness = stiffness_of(mesh, bed);
   const int label = surface_label(mesh, bed.surface);
   const FaceQuadrature quadrature(order, FaceRule::Seven);
@@ -88,19 +91,25 @@ void add_bed(const TetMesh& mesh, const SpringBed& bed, int order,
     for (int a = 0; a < count; ++a) {
       for (int b = 0; b < count; ++b) {
         if (ids[a] >= ids[b]) {
-          const auto at = blocks.try_emplace({ids[a], ids[b]}, Mat3::Zero());
-          at.first->second += sum[a][b];
+          entries.push_back({{ids[a], ids[b]}, sum[a][b]});
         }
       }
     }
   }
 }
 
-SpringBlocks as_lists(const BlockMap& blocks) {
+/// Sorted, with the entries of one place added in their order.
+SpringBlocks merged(std::vector<Entry> entries) {
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return a.at < b.at; });
   SpringBlocks result;
-  for (const auto& [at, block] : blocks) {
-    result.at.push_back(at);
-    result.block.push_back(block);
+  for (const Entry& entry : entries) {
+    if (result.at.empty() || result.at.back() != entry.at) {
+      result.at.push_back(entry.at);
+      result.block.push_back(entry.block);
+    } else {
+      result.block.back() += entry.block;
+    }
   }
   return result;
 }
@@ -109,23 +118,23 @@ SpringBlocks as_lists(const BlockMap& blocks) {
 
 SpringBlocks spring_blocks(const TetMesh& mesh, const LoadCase& load_case,
                            int order) {
-  BlockMap blocks;
+  std::vector<Entry> entries;
   for (const SpringBed& bed : load_case.springs) {
     check(bed, load_case);
-    add_bed(mesh, bed, order, blocks);
+    add_bed(mesh, bed, order, entries);
   }
-  return as_lists(blocks);
+  return merged(std::move(entries));
 }
 
 SpringBlocks renumbered(const SpringBlocks& springs,
                         const std::vector<int>& number) {
-  BlockMap blocks;
+  std::vector<Entry> entries;
   for (std::size_t k = 0; k < springs.at.size(); ++k) {
     const int a = number[springs.at[k][0]];
     const int b = number[springs.at[k][1]];
-    blocks[{std::max(a, b), std::min(a, b)}] = springs.block[k];
+    entries.push_back({{std::max(a, b), std::min(a, b)}, springs.block[k]});
   }
-  return as_lists(blocks);
+  return merged(std::move(entries));
 }
 
 void add_springs(const BlockPattern& pattern, const SpringBlocks& springs,

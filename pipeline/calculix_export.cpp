@@ -1,45 +1,186 @@
 #include "pipeline/calculix_export.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "fea/body_loads.h"
 #include "fea/loads.h"
+#include "fea/supports.h"
 
 namespace meniscus {
 
 namespace {
 
-DeckStep step_of(const LoadCase& load_case, const TetMesh& mesh) {
-  DeckStep step{.name = load_case.name};
-  for (const Support& s : load_case.supports) {
-    step.supports.push_back({.surface = s.surface,
-                             .fix_x = s.fix_x,
-                             .fix_y = s.fix_y,
-                             .fix_z = s.fix_z});
+constexpr double kNothing = 1e-12;  // a coefficient that rounding left
+
+DeckMaterial material_of(const Material& m) {
+  DeckMaterial result{.name = m.name,
+                      .youngs_modulus = m.youngs_modulus,
+                      .poisson_ratio = m.poisson_ratio,
+                      .density = m.density};
+  result.thermal_expansion = m.thermal_expansion;
+  if (m.orthotropic) {
+    const Orthotropic& o = *m.orthotropic;
+    result.orthotropic =
+        DeckOrthotropic{o.youngs_moduli, o.poisson_ratios, o.shear_moduli,
+                        o.axes.first, o.axes.second};
   }
-  LoadCase forces = load_case;
-  forces.pressures.clear();
-  if (!forces.forces.empty()) {
-    step.nodal_forces = nodal_forces(mesh, forces);
+  return result;
+}
+
+bool along_axes(const LoadCase& load_case) {
+  return std::all_of(load_case.supports.begin(), load_case.supports.end(),
+                     [](const Support& s) {
+                       return s.kind == SupportKind::Components && !s.axes;
+                     });
+}
+
+/// Rows of the held directions, each solved for a component of its own: that
+/// component has coefficient 1, and 0 in all other rows.
+std::vector<DeckEquation> solved_rows(int node, const Mat3& projector) {
+  Mat3 rows = Mat3::Identity() - projector;
+  std::vector<DeckEquation> result;
+  for (int k = 0; k < 3; ++k) {
+    Eigen::Index row = 0;
+    Eigen::Index column = 0;
+    if (rows.bottomRows(3 - k).cwiseAbs().maxCoeff(&row, &column) < kNothing) {
+      break;
+    }
+    rows.row(k).swap(rows.row(k + row));
+    rows.row(k) /= rows(k, column);
+    for (int r = 0; r < 3; ++r) {
+      if (r != k) {
+        rows.row(r) -= (rows(r, column) * rows.row(k)).eval();
+      }
+    }
+    result.push_back({node, Vec3::Zero(), static_cast<int>(column)});
   }
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    const Vec3 row = rows.row(static_cast<Eigen::Index>(k));
+    result[k].coefficients = row.unaryExpr(
+        [](double x) { return std::abs(x) > kNothing ? x : 0.0; });
+  }
+  return result;
+}
+
+/// Supports of nodes held along the axes; equations for the others.
+struct HeldNodes {
+  std::vector<DeckSupport> supports;
+  std::vector<DeckEquation> equations;
+};
+
+HeldNodes held_nodes(const TetMesh& mesh, const LoadCase& load_case) {
+  const NodeFreedom freedom =
+      node_freedom(mesh, held_directions(mesh, load_case));
+  HeldNodes result;
+  std::map<std::array<bool, 3>, std::vector<int>> fixed;
+  for (std::size_t h = 0; h < freedom.held.size(); ++h) {
+    std::array<bool, 3> fix{};
+    for (const DeckEquation& row :
+         solved_rows(freedom.held[h], freedom.projector[h])) {
+      if ((row.coefficients.array() != 0.0).count() == 1) {
+        fix[row.dependent] = true;
+      } else {
+        result.equations.push_back(row);
+      }
+    }
+    if (fix[0] || fix[1] || fix[2]) {
+      fixed[fix].push_back(freedom.held[h]);
+    }
+  }
+  for (const auto& [fix, nodes] : fixed) {
+    result.supports.push_back({"", nodes, fix[0], fix[1], fix[2]});
+  }
+  return result;
+}
+
+bool same(const std::vector<DeckEquation>& a,
+          const std::vector<DeckEquation>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const DeckEquation& x, const DeckEquation& y) {
+                      return x.node == y.node && x.dependent == y.dependent &&
+                             x.coefficients == y.coefficients;
+                    });
+}
+
+/// What the deck has no card for goes into nodal forces.
+void add_loads(const LoadCase& load_case, const TetMesh& mesh, DeckStep& step) {
+  LoadCase rest{.name = load_case.name};
+  rest.forces = load_case.forces;
+  rest.tractions = load_case.tractions;
+  rest.remote_loads = load_case.remote_loads;
   for (const SurfacePressure& p : load_case.pressures) {
-    step.pressures.push_back({p.surface, p.pressure});
+    if (p.field) {
+      rest.pressures.push_back(p);
+    } else {
+      step.pressures.push_back({p.surface, p.pressure});
+    }
   }
-  return step;
+  if (!rest.forces.empty() || !rest.tractions.empty() ||
+      !rest.remote_loads.empty() || !rest.pressures.empty()) {
+    step.nodal_forces = nodal_forces(mesh, rest);
+  }
+  step.gravity = load_case.gravity;
+  if (load_case.spin) {
+    step.spin = DeckSpin{load_case.spin->point, load_case.spin->axis,
+                         load_case.spin->rate};
+  }
+  step.temperature_change = temperature_change(mesh, load_case);
 }
 
 }  // namespace
 
-CalculixDeck calculix_deck_of(const Case& input, const EvaluatedCase& numbers,
+CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
+                              const std::vector<LoadCase>& load_cases,
                               const TetMesh& mesh) {
   CalculixDeck deck;
+  for (const Material& m : materials) {
+    deck.materials.push_back(material_of(m));
+  }
+  for (const LoadCase& load_case : load_cases) {
+    if (!load_case.springs.empty()) {
+      throw InvalidInput(fmt::format(
+          "load case '{}' stands on springs, which a deck of this version "
+          "cannot hold; fix the surface '{}' instead, or export another format",
+          load_case.name, load_case.springs.front().surface));
+    }
+    DeckStep step{.name = load_case.name};
+    std::vector<DeckEquation> equations;
+    if (along_axes(load_case)) {
+      for (const Support& s : load_case.supports) {
+        step.supports.push_back({.surface = s.surface,
+                                 .fix_x = s.fix_x,
+                                 .fix_y = s.fix_y,
+                                 .fix_z = s.fix_z});
+      }
+    } else {
+      HeldNodes held = held_nodes(mesh, load_case);
+      step.supports = std::move(held.supports);
+      equations = std::move(held.equations);
+    }
+    if (!deck.steps.empty() && !same(equations, deck.equations)) {
+      throw InvalidInput(fmt::format(
+          "load case '{}' is held along other oblique directions than '{}'; a "
+          "deck has one set of equations for all its steps: export a case with "
+          "one of them",
+          load_case.name, deck.steps.front().name));
+    }
+    deck.equations = std::move(equations);
+    add_loads(load_case, mesh, step);
+    deck.steps.push_back(std::move(step));
+  }
+  return deck;
+}
+
+CalculixDeck calculix_deck_of(const Case& input, const EvaluatedCase& numbers,
+                              const TetMesh& mesh) {
+  CalculixDeck deck =
+      calculix_deck_of(numbers.materials, numbers.load_cases, mesh);
   deck.comments = {"case: " + input.title, "units: " + input.units.name};
-  for (const Material& m : numbers.materials) {
-    deck.materials.push_back({.name = m.name,
-                              .youngs_modulus = m.youngs_modulus,
-                              .poisson_ratio = m.poisson_ratio,
-                              .density = m.density});
-  }
-  for (const LoadCase& load_case : numbers.load_cases) {
-    deck.steps.push_back(step_of(load_case, mesh));
-  }
   return deck;
 }
 

@@ -2,15 +2,23 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "io/calculix_inp.h"
 #include "pipeline/forward_model.h"
 
 namespace meniscus {
 
-/// The deck of fields.mesh: materials, one step per load case with its
-/// supports; forces as nodal loads (CalculiX has no surface load along a given
-/// direction), pressures as CalculiX's own *DLOAD.
+/// The deck of a mesh: materials, one step per load case. Numbers that CalculiX
+/// has a card for go there (*DLOAD pressure, gravity, spin; *TEMPERATURE),
+/// other loads become nodal forces; oblique supports become equations. Throws
+/// InvalidInput for springs, and for load cases with different oblique
+/// supports.
+CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
+                              const std::vector<LoadCase>& load_cases,
+                              const TetMesh& mesh);
+
+/// The same for a case, with its title and units.
 CalculixDeck calculix_deck_of(const Case& input, const EvaluatedCase& numbers,
                               const TetMesh& mesh);
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "evolve/fields.h"
+#include "pipeline/case_loads.h"
 #include "pipeline/case_values.h"
 
 namespace meniscus {
@@ -212,32 +213,6 @@ void check_places(const Case& input, const EvaluatedCase& numbers,
   }
 }
 
-Material material_of(const MaterialEntry& entry, const CaseValues& values) {
-  Material material{.name = entry.name};
-  material.youngs_modulus = values.positive(entry.youngs_modulus);
-  material.poisson_ratio = values.at(
-      entry.poisson_ratio, [](double x) { return x > -1.0 && x < 0.5; },
-      "above -1 and below 0.5");
-  material.density = values.at(
-      entry.density, [](double x) { return x >= 0.0; }, "0 or above");
-  if (entry.yield_strength) {
-    material.yield_strength = values.positive(*entry.yield_strength);
-  }
-  return material;
-}
-
-LoadCase load_case_of(const LoadCaseEntry& entry, const CaseValues& values) {
-  LoadCase load_case{.name = entry.name, .supports = entry.supports};
-  for (const LoadEntry& load : entry.loads) {
-    if (load.force) {
-      load_case.forces.push_back({load.surface, values.at(*load.force)});
-    } else {
-      load_case.pressures.push_back({load.surface, values.at(*load.pressure)});
-    }
-  }
-  return load_case;
-}
-
 Vec3 direction_of(const Case& input, const ResponseEntry& response,
                   const CaseValues& values) {
   const std::size_t before = values.problems().size();
@@ -278,7 +253,8 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
   }
   for (const BodyEntry& body : input.bodies) {
     result.materials.push_back(material_of(
-        input.materials[static_cast<std::size_t>(body.material)], values));
+        input, input.materials[static_cast<std::size_t>(body.material)],
+        values));
   }
   for (const LoadCaseEntry& entry : input.load_cases) {
     result.load_cases.push_back(load_case_of(entry, values));

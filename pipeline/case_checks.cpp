@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/case_loads.h"
 
 namespace meniscus {
 
@@ -148,22 +149,39 @@ void check_loads(const Case& input, const EvaluatedCase& numbers,
                  CaseProblems& problems) {
   for (std::size_t k = 0; k < numbers.load_cases.size(); ++k) {
     const LoadCase& load_case = numbers.load_cases[k];
-    const bool loaded =
-        std::any_of(load_case.forces.begin(), load_case.forces.end(),
-                    [](const SurfaceForce& f) { return f.total.norm() > 0; }) ||
-        std::any_of(load_case.pressures.begin(), load_case.pressures.end(),
-                    [](const SurfacePressure& p) { return p.pressure != 0; });
-    if (!loaded) {
+    if (!is_loaded(load_case)) {
       problems.add(input.load_cases[k].line,
                    fmt::format("load case '{}' has no load that is not 0; a "
                                "part without load has nothing to report",
                                load_case.name));
     }
   }
+  const bool expands = std::any_of(
+      numbers.materials.begin(), numbers.materials.end(),
+      [](const Material& m) { return !m.thermal_expansion.isZero(0.0); });
+  for (std::size_t k = 0; k < numbers.load_cases.size() && !expands; ++k) {
+    if (numbers.load_cases[k].temperature) {
+      problems.add(input.load_cases[k].line,
+                   fmt::format("load case '{}' has a temperature, but no "
+                               "material has a thermal expansion; give one",
+                               numbers.load_cases[k].name));
+    }
+  }
   for (std::size_t k = 0; k < numbers.materials.size(); ++k) {
     const MaterialEntry& entry =
         input.materials[static_cast<std::size_t>(input.bodies[k].material)];
-    if (numbers.materials[k].density == 0.0) {
+    if (numbers.materials[k].density != 0.0) {
+      continue;
+    }
+    const auto weighs =
+        std::find_if(numbers.load_cases.begin(), numbers.load_cases.end(),
+                     [](const LoadCase& c) { return has_weight(c); });
+    if (weighs != numbers.load_cases.end()) {
+      problems.add(entry.density.line,
+                   fmt::format("materials.{}.density is 0, but load case '{}' "
+                               "has gravity or spin; give its mass per volume",
+                               entry.name, weighs->name));
+    } else {
       problems.warn(entry.density.line,
                     fmt::format("materials.{}.density is 0; masses will be 0",
                                 entry.name));
@@ -179,6 +197,16 @@ void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
     const Material& b = other.materials[k];
     const MaterialEntry& entry =
         input.materials[static_cast<std::size_t>(input.bodies[k].material)];
+    const bool weighs =
+        std::any_of(initial.load_cases.begin(), initial.load_cases.end(),
+                    [](const LoadCase& c) { return has_weight(c); });
+    if (weighs && a.density != b.density) {
+      problems.add_text(
+          fmt::format("{}: {} depends on a design variable; it cannot in this "
+                      "version where "
+                      "gravity or spin acts",
+                      place(input, entry.density.line), entry.density.key));
+    }
     const bool stiffer = a.youngs_modulus != b.youngs_modulus;
     if (stiffer || a.poisson_ratio != b.poisson_ratio) {
       const Quantity& moved =

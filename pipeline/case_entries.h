@@ -105,18 +105,38 @@ struct MaterialEntry {
   std::string name;
   Quantity youngs_modulus, poisson_ratio, density;
   std::optional<Quantity> yield_strength;
+  std::optional<Orthotropic> orthotropic;  // instead of modulus and ratio
+  Vec3 thermal_expansion = Vec3::Zero();
   SourceLine line = 0;
 };
 
+enum class LoadKind {
+  Force,
+  Remote,  // force or moment through a point
+  Pressure,
+  Traction,
+  Gravity,
+  Spin,
+  Temperature
+};
+
+/// What the kind does not need is empty.
 struct LoadEntry {
+  LoadKind kind = LoadKind::Force;
   std::string surface;
-  std::optional<QuantityVector> force;  // total, else pressure
-  std::optional<Quantity> pressure;
+  QuantityVector vector;  // force, gravity, axis of spin
+  QuantityVector moment;
+  QuantityVector at;    // the remote point; on the axis of spin
+  PlaceQuantity place;  // pressure, temperature
+  std::array<PlaceQuantity, 3> traction;
+  Quantity number;  // rate of spin, reference temperature
+  SourceLine line = 0;
 };
 
 struct LoadCaseEntry {
   std::string name;
   std::vector<Support> supports;
+  std::vector<SpringBed> springs;
   std::vector<LoadEntry> loads;
   SourceLine line = 0;
 };

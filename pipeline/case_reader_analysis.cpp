@@ -12,83 +12,6 @@ namespace meniscus {
 
 namespace {
 
-/// The surface that a load, support or response acts on: a film or solid that
-/// encloses a body.
-std::string surface_of(CaseContext& context, const CaseTable& table,
-                       const Case& result) {
-  std::string surface = table.text("on").value_or("");
-  if (!table.has("on")) {
-    return surface;
-  }
-  const std::vector<std::string> known = surface_names(result);
-  const bool encloses = std::any_of(
-      result.bodies.begin(), result.bodies.end(), [&](const BodyEntry& body) {
-        return std::find(body.enclosed_by.begin(), body.enclosed_by.end(),
-                         surface) != body.enclosed_by.end();
-      });
-  if (std::find(known.begin(), known.end(), surface) == known.end()) {
-    context.problems.unknown(table.line("on"), "surface", surface, known);
-  } else if (context.bodies_good && !encloses) {
-    context.problems.add(table.line("on"),
-                         fmt::format("surface '{}' encloses no body, so "
-                                     "nothing can act on it; add it to a "
-                                     "body's enclosed_by",
-                                     surface));
-  }
-  return surface;
-}
-
-Support read_support(CaseContext& context, const CaseTable& table,
-                     const Case& result) {
-  Support support{.surface = surface_of(context, table, result)};
-  const auto fix = table.text("fix");
-  if (fix &&
-      (fix->empty() || fix->find_first_not_of("xyz") != std::string::npos)) {
-    context.problems.add(table.line("fix"),
-                         fmt::format("{}.fix is '{}'; expected some of \"xyz\"",
-                                     table.path(), *fix));
-  }
-  if (fix) {
-    support.fix_x = fix->find('x') != std::string::npos;
-    support.fix_y = fix->find('y') != std::string::npos;
-    support.fix_z = fix->find('z') != std::string::npos;
-  }
-  return support;
-}
-
-LoadEntry read_load(CaseContext& context, const CaseTable& table,
-                    const Case& result) {
-  LoadEntry load{.surface = surface_of(context, table, result)};
-  load.pressure = table.quantity("pressure");
-  if (table.has("force") || !load.pressure) {
-    load.force = table.vector_or_zero("force");
-  }
-  if (table.has("force") == table.has("pressure")) {
-    context.problems.add(
-        table.line(),
-        fmt::format("{} on '{}' has {}; expected one of force = [x, y, z] and "
-                    "pressure",
-                    table.path(), load.surface,
-                    table.has("force") ? "both a force and a pressure"
-                                       : "neither a force nor a pressure"));
-  }
-  return load;
-}
-
-void read_load_cases(CaseContext& context, const toml::table& root,
-                     Case& result) {
-  for (const CaseTable& table : named_tables(context, root, "load_cases")) {
-    LoadCaseEntry load_case{.name = table.name(), .line = table.line()};
-    for (const CaseTable& support : table.tables("supports", "support")) {
-      load_case.supports.push_back(read_support(context, support, result));
-    }
-    for (const CaseTable& load : table.tables("loads", "load")) {
-      load_case.loads.push_back(read_load(context, load, result));
-    }
-    result.load_cases.push_back(std::move(load_case));
-  }
-}
-
 int index_of_load_case(CaseContext& context, const CaseTable& table,
                        const Case& result) {
   const auto wanted = table.text("load_case");
@@ -139,7 +62,7 @@ void read_responses(CaseContext& context, const toml::table& root,
       check_belongs(context, table, *kind, "on", mean);
       check_belongs(context, table, *kind, "direction", mean);
     }
-    response.surface = surface_of(context, table, result);
+    response.surface = surface_on(context, table, result);
     response.direction = table.vector_or_zero("direction");
     response.load_case = index_of_load_case(context, table, result);
     result.responses.push_back(std::move(response));

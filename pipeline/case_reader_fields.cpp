@@ -225,56 +225,6 @@ std::vector<double> CaseTable::constants(const char* key) const {
   return result;
 }
 
-std::optional<QuantityVector> CaseTable::vector(const char* key) const {
-  if (!has(key)) {
-    return std::nullopt;
-  }
-  const toml::array* array = node(key)->as_array();
-  if (array == nullptr || array->size() != 3) {
-    note(key, "[x, y, z]");
-    return std::nullopt;
-  }
-  QuantityVector result;
-  bool good = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    auto component =
-        read_quantity(*context_, *array->get(k), dimension(key),
-                      fmt::format("{}.{}[{}]", path_, key, "xyz"[k]));
-    good = good && component.has_value();
-    result[k] = std::move(component).value_or(Quantity{});
-  }
-  return good ? std::optional(result) : std::nullopt;
-}
-
-std::vector<QuantityVector> CaseTable::vectors(const char* key) const {
-  std::vector<QuantityVector> result;
-  if (!has(key)) {
-    return result;
-  }
-  const toml::array* array = node(key)->as_array();
-  const bool points =
-      array != nullptr && !array->empty() &&
-      std::all_of(array->begin(), array->end(), [](const toml::node& item) {
-        return item.is_array() && item.as_array()->size() == 3;
-      });
-  if (!points) {
-    note(key, "points: [[x, y, z], [x, y, z], ...]");
-    return result;
-  }
-  for (std::size_t p = 0; p < array->size(); ++p) {
-    QuantityVector point;
-    for (std::size_t k = 0; k < 3; ++k) {
-      point[k] =
-          read_quantity(*context_, *array->get(p)->as_array()->get(k),
-                        dimension(key),
-                        fmt::format("{}.{}[{}][{}]", path_, key, p, "xyz"[k]))
-              .value_or(Quantity{});
-    }
-    result.push_back(std::move(point));
-  }
-  return result;
-}
-
 std::vector<CaseTable> CaseTable::tables(const char* key,
                                          const char* spec) const {
   std::vector<CaseTable> result;

@@ -3,6 +3,7 @@
 /// line. Part of the case-file reader; nothing else sees TOML.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -71,6 +72,10 @@ class CaseTable {
   std::vector<double> constants(const char* key) const;
   std::optional<QuantityVector> vector(const char* key) const;
   std::vector<QuantityVector> vectors(const char* key) const;
+  std::optional<Vec3> constant_vector(const char* key) const;
+  std::optional<std::array<PlaceQuantity, 3>> place_vector(
+      const char* key) const;
+  std::optional<LocalAxes> axes(const char* key) const;
   /// The array's tables, checked against the vocabulary's table `spec`.
   std::vector<CaseTable> tables(const char* key, const char* spec) const;
 
@@ -81,6 +86,8 @@ class CaseTable {
   const toml::node* node(const char* key) const { return table_->get(key); }
 
  private:
+  std::optional<Vec3> constants_of(const toml::node& node, const char* key,
+                                   const std::string& path) const;
   void note(const char* key, const std::string& expected) const;
   std::optional<Dimension> dimension(const char* key) const;
 

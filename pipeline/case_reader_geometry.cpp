@@ -146,12 +146,68 @@ void read_solids(CaseContext& context, const toml::table& root, Case& result) {
   }
 }
 
+/// Notes keys of one kind of material that the other has or this one lacks.
+void check_material(CaseContext& context, const CaseTable& table,
+                    bool orthotropic) {
+  const std::vector<const char*> isotropic_keys = {"youngs_modulus",
+                                                   "poisson_ratio"};
+  const std::vector<const char*> orthotropic_keys = {
+      "youngs_moduli", "poisson_ratios", "shear_moduli"};
+  const auto& needed = orthotropic ? orthotropic_keys : isotropic_keys;
+  auto foreign = orthotropic ? isotropic_keys : orthotropic_keys;
+  foreign.push_back(orthotropic ? "thermal_expansion" : "thermal_expansions");
+  if (!orthotropic) {
+    foreign.push_back("axes");
+  }
+  const char* kind = orthotropic ? "orthotropic" : "isotropic";
+  for (const char* key : needed) {
+    if (!table.has(key)) {
+      context.problems.add(table.line(),
+                           fmt::format("{} is {} and has no '{}'; add it",
+                                       table.path(), kind, key));
+    }
+  }
+  for (const char* key : foreign) {
+    if (table.has(key)) {
+      context.problems.add(
+          table.line(key),
+          fmt::format("{}.{} does not belong to an {} material (which has {}); "
+                      "take it out",
+                      table.path(), key, kind, fmt::join(needed, ", ")));
+    }
+  }
+}
+
+Orthotropic read_orthotropic(const CaseTable& table) {
+  Orthotropic result;
+  result.youngs_moduli =
+      table.constant_vector("youngs_moduli").value_or(Vec3::Ones());
+  result.poisson_ratios =
+      table.constant_vector("poisson_ratios").value_or(Vec3::Zero());
+  result.shear_moduli =
+      table.constant_vector("shear_moduli").value_or(Vec3::Ones());
+  result.axes = table.axes("axes").value_or(LocalAxes{});
+  return result;
+}
+
 void read_materials(CaseContext& context, const toml::table& root,
                     Case& result) {
   for (const CaseTable& table : named_tables(context, root, "materials")) {
     MaterialEntry material{.name = table.name(), .line = table.line()};
-    material.youngs_modulus = table.quantity_or_zero("youngs_modulus");
-    material.poisson_ratio = table.quantity_or_zero("poisson_ratio");
+    const bool orthotropic = table.has("youngs_moduli") ||
+                             table.has("poisson_ratios") ||
+                             table.has("shear_moduli");
+    check_material(context, table, orthotropic);
+    if (orthotropic) {
+      material.orthotropic = read_orthotropic(table);
+      material.thermal_expansion =
+          table.constant_vector("thermal_expansions").value_or(Vec3::Zero());
+    } else {
+      material.youngs_modulus = table.quantity_or_zero("youngs_modulus");
+      material.poisson_ratio = table.quantity_or_zero("poisson_ratio");
+      material.thermal_expansion.setConstant(
+          table.constant("thermal_expansion").value_or(0.0));
+    }
     material.density = table.quantity_or_zero("density");
     material.yield_strength = table.quantity("yield_strength");
     result.materials.push_back(std::move(material));

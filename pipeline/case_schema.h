@@ -17,16 +17,19 @@ enum class KeyType {
   Name,    // of something defined elsewhere in the file
   Names,   // array of names
   Integer,
-  Quantity,     // number, expression or "value unit"
-  Constant,     // a quantity that no design variable moves
-  Place,        // a quantity, or an expression that also knows x, y, z
-  Vector,       // array of three quantities
-  Vectors,      // array of arrays of three quantities
-  Bounds,       // array of two constants
-  Constants,    // array of constants
-  ConstantMap,  // inline table: response = constant, of its dimension
-  Supports,     // array of inline tables: table "support"
-  Loads         // array of inline tables: table "load"
+  Quantity,        // number, expression or "value unit"
+  Constant,        // a quantity that no design variable moves
+  Place,           // a quantity, or an expression that also knows x, y, z
+  Vector,          // array of three quantities
+  Vectors,         // array of arrays of three quantities
+  ConstantVector,  // array of three constants
+  PlaceVector,     // array of three places
+  Axes,            // two arrays of three constants
+  Bounds,          // array of two constants
+  Constants,       // array of constants
+  ConstantMap,     // inline table: response = constant, of its dimension
+  Supports,        // array of inline tables: table "support"
+  Loads            // array of inline tables: table "load"
 };
 
 struct KeySpec {

@@ -33,6 +33,12 @@ const char* type_text(const KeySpec& key) {
       return "3 quantities";
     case K::Vectors:
       return "points";
+    case K::ConstantVector:
+      return "3 constants";
+    case K::PlaceVector:
+      return "3 quantities of x, y, z";
+    case K::Axes:
+      return "2 directions";
     case K::Bounds:
       return "2 constants";
     case K::Constants:
@@ -132,7 +138,11 @@ Json type_schema(const KeySpec& key) {
     case K::Place:
       return quantity;
     case K::Vector:
+    case K::ConstantVector:
+    case K::PlaceVector:
       return array(quantity, 3, 3);
+    case K::Axes:
+      return array(array(quantity, 3, 3), 2, 2);
     case K::Vectors:
       return array(array(quantity, 3, 3), 3, 0);
     case K::Bounds:

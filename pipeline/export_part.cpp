@@ -4,6 +4,7 @@
 
 #include "io/stl.h"
 #include "pipeline/calculix_export.h"
+#include "pipeline/responses.h"
 #include "pipeline/results.h"
 #include "pipeline/stored_case.h"
 
@@ -59,8 +60,8 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
     }
     write_calculix_inp(file, fields.mesh, deck);
   } else if (options.format == "vtu") {
-    fields.stress = recover_stress(fields.mesh, fields.inputs.materials,
-                                   fields.solution.displacements.front());
+    fields.stress = load_case_stress(fields.mesh, fields.inputs, 0,
+                                     fields.solution.displacements.front());
     write_part(file, input, fields);
   } else {
     throw InvalidInput(fmt::format(

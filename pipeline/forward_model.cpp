@@ -178,7 +178,14 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
   }
 
   Timer fea_timer;
-  ElasticSolution solution = impl_->elasticity->solve(mesh, inputs.load_cases);
+  ElasticSolution solution;
+  try {
+    solution = impl_->elasticity->solve(mesh, inputs.load_cases);
+  } catch (const InvalidInput& error) {
+    // A load or support that this design's surface cannot take.
+    result.failure = Failure{FailureKind::SolverFailed, error.what()};
+    return result;
+  }
   result.fea = solution.report;
   result.seconds.fea = fea_timer.seconds();
   if (solution.failure) {

@@ -1,8 +1,21 @@
 #include "pipeline/responses.h"
 
+#include "fea/body_loads.h"
+
 namespace meniscus {
 
 namespace {
+
+/// Half the work of the loads, where they all go into the solid.
+double energy_of(const ResponseInput& fields, const LoadCase& load_case,
+                 const VectorX& u) {
+  const auto& materials = fields.numbers.materials;
+  if (load_case.springs.empty() && !load_case.temperature) {
+    return 0.5 * nodal_forces(fields.mesh, load_case, materials).dot(u);
+  }
+  return strain_energy(fields.mesh, materials, u,
+                       temperature_change(fields.mesh, load_case));
+}
 
 double value_of(const ResponseEntry& response, const Vec3& direction,
                 const ResponseInput& fields) {
@@ -16,12 +29,10 @@ double value_of(const ResponseEntry& response, const Vec3& direction,
     case ResponseKind::Volume:
       return mesh_volume(fields.mesh);
     case ResponseKind::MaxVonMises:
-      return recover_stress(fields.mesh, fields.numbers.materials, u)
+      return load_case_stress(fields.mesh, fields.numbers, load_case, u)
           .max_von_mises;
     case ResponseKind::StrainEnergy:
-      return 0.5 *
-             nodal_forces(fields.mesh, fields.numbers.load_cases[load_case])
-                 .dot(u);
+      return energy_of(fields, fields.numbers.load_cases[load_case], u);
     case ResponseKind::FilmArea:
       return fields.film.area;
   }
@@ -29,6 +40,13 @@ double value_of(const ResponseEntry& response, const Vec3& direction,
 }
 
 }  // namespace
+
+StressField load_case_stress(const TetMesh& mesh, const EvaluatedCase& numbers,
+                             std::size_t load_case, const VectorX& u) {
+  return recover_stress(
+      mesh, numbers.materials, u,
+      temperature_change(mesh, numbers.load_cases[load_case]));
+}
 
 VectorX respond(const Case& input, const ResponseInput& fields) {
   VectorX values(static_cast<Eigen::Index>(input.responses.size()));

@@ -18,6 +18,10 @@ struct ResponseInput {
 /// where the fields are not.
 VectorX respond(const Case& input, const ResponseInput& fields);
 
+/// Nodal stresses of one load case, its expansion taken out. `u`: 3 per node.
+StressField load_case_stress(const TetMesh& mesh, const EvaluatedCase& numbers,
+                             std::size_t load_case, const VectorX& u);
+
 /// Position of a response of the case; it must exist.
 int response_index(const Case& input, const std::string& name);
 

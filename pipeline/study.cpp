@@ -10,6 +10,7 @@
 #include "optimize/problem.h"
 #include "pipeline/match_targets.h"
 #include "pipeline/part_warnings.h"
+#include "pipeline/responses.h"
 #include "pipeline/results.h"
 
 namespace meniscus {
@@ -168,8 +169,8 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
     return;
   }
   last_fields_.stress =
-      recover_stress(last_fields_.mesh, last_fields_.inputs.materials,
-                     last_fields_.solution.displacements.front());
+      load_case_stress(last_fields_.mesh, last_fields_.inputs, 0,
+                       last_fields_.solution.displacements.front());
   for (std::string& warning : part_warnings(input_, last_fields_)) {
     result_.warnings.push_back(std::move(warning));
   }

@@ -172,6 +172,23 @@ TEST(Springs, BlockSinksAndShortens) {
   }
 }
 
+// The stiffer, the closer to a fixed surface, and never a wrong answer.
+TEST(Springs, StiffOnesActAsAFixedSurface) {
+  const TetMesh mesh = turned(bar(2));
+  LoadCase fixed = parts::pulled({5.0, 2.0, -3.0});
+  LoadCase sprung = fixed;
+  sprung.supports.clear();
+  for (const auto kind : {SolverKind::Cholesky, SolverKind::Multigrid}) {
+    const VectorX exact = solve(mesh, fixed, kind).displacements[0];
+    for (const double stiffness : {1e9, 1e12}) {
+      sprung.springs = {
+          {.surface = "x0", .components = Vec3::Constant(stiffness)}};
+      EXPECT_LE(difference(solve(mesh, sprung, kind).displacements[0], exact),
+                1e7 / stiffness);
+    }
+  }
+}
+
 /// Lame: bore held along its normals, pressure p outside, plane strain:
 /// u = A (r - 1 / r) with stress_r(2) = -p.
 double held_bore(double r, double pressure) {

@@ -238,8 +238,8 @@ const Mistake kMistakes[] = {
     {"ZeroLoad", "force = [\"load\", 0, 0]", "force = [0, \"load - load\", 0]",
      "50: load case 'service' has no load that is not 0"},
     {"LoadWithoutForce", ", force = [\"load\", 0, 0]", "",
-     "52: load_cases.service.loads on 'head_pad' has neither a force nor a "
-     "pressure"},
+     "52: load_cases.service.loads on 'head_pad' has no load; expected one of "
+     "force, moment"},
     {"UnknownKeyOfLoad", "force = [\"load\"", "torque = 1, force = [\"load\"",
      "52: unknown key 'torque' in load_cases.service.loads"},
     {"LoadOnNothing", "loads = [{ on = \"head_pad\"",
