@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "fea/body_loads.h"
 #include "io/stl.h"
 #include "pipeline/calculix_export.h"
 #include "pipeline/results.h"
@@ -59,8 +60,10 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
     }
     write_calculix_inp(file, fields.mesh, deck);
   } else if (options.format == "vtu") {
-    fields.stress = recover_stress(fields.mesh, fields.inputs.materials,
-                                   fields.solution.displacements.front());
+    fields.stress = recover_stress(
+        fields.mesh, fields.inputs.materials,
+        fields.solution.displacements.front(),
+        temperature_change(fields.mesh, fields.inputs.load_cases.front()));
     write_part(file, input, fields);
   } else {
     throw InvalidInput(fmt::format(

@@ -1,5 +1,7 @@
 #include "pipeline/responses.h"
 
+#include "fea/body_loads.h"
+
 namespace meniscus {
 
 namespace {
@@ -8,20 +10,25 @@ double value_of(const ResponseEntry& response, const Vec3& direction,
                 const ResponseInput& fields) {
   const auto load_case = static_cast<std::size_t>(response.load_case);
   const VectorX& u = fields.solution.displacements[load_case];
+  const LoadCase& loads = fields.numbers.load_cases[load_case];
+  const auto& materials = fields.numbers.materials;
   switch (response.kind) {
     case ResponseKind::MeanDisplacement:
       return mean_displacement(fields.mesh, response.surface, direction, u);
     case ResponseKind::Mass:
-      return mesh_mass(fields.mesh, fields.numbers.materials);
+      return mesh_mass(fields.mesh, materials);
     case ResponseKind::Volume:
       return mesh_volume(fields.mesh);
     case ResponseKind::MaxVonMises:
-      return recover_stress(fields.mesh, fields.numbers.materials, u)
+      return recover_stress(fields.mesh, materials, u,
+                            temperature_change(fields.mesh, loads))
           .max_von_mises;
     case ResponseKind::StrainEnergy:
-      return 0.5 *
-             nodal_forces(fields.mesh, fields.numbers.load_cases[load_case])
-                 .dot(u);
+      if (loads.temperature) {  // forces of expansion are no load's work
+        return strain_energy(fields.mesh, materials, u,
+                             temperature_change(fields.mesh, loads));
+      }
+      return 0.5 * nodal_forces(fields.mesh, loads, materials).dot(u);
     case ResponseKind::FilmArea:
       return fields.film.area;
   }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/timer.h"
+#include "fea/body_loads.h"
 #include "optimize/problem.h"
 #include "pipeline/match_targets.h"
 #include "pipeline/part_warnings.h"
@@ -167,9 +168,11 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
     result_.message = result_.best->failure->message;
     return;
   }
-  last_fields_.stress =
-      recover_stress(last_fields_.mesh, last_fields_.inputs.materials,
-                     last_fields_.solution.displacements.front());
+  last_fields_.stress = recover_stress(
+      last_fields_.mesh, last_fields_.inputs.materials,
+      last_fields_.solution.displacements.front(),
+      temperature_change(last_fields_.mesh,
+                         last_fields_.inputs.load_cases.front()));
   for (std::string& warning : part_warnings(input_, last_fields_)) {
     result_.warnings.push_back(std::move(warning));
   }
