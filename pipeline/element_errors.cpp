@@ -10,10 +10,15 @@ namespace meniscus {
 
 namespace {
 
-/// The load case's supports under a unit force spread over the response's
-/// surface: the load whose work is the mean displacement.
-LoadCase dual_load(const LoadCase& load_case, const ResponseEntry& response,
-                   const Vec3& direction) {
+/// The load case's supports under a force spread over the response's surface:
+/// the load whose work is the mean displacement times `force`. It is as large
+/// as the load case's own, for the solver starts from that one's solution.
+struct DualLoad {
+  LoadCase load;
+  double force = 1.0;
+};
+DualLoad dual_load(const EvaluationFields& fields, const LoadCase& load_case,
+                   const ResponseEntry& response, const Vec3& direction) {
   LoadCase dual = load_case;
   dual.forces = {{response.surface, direction.normalized()}};
   dual.pressures.clear();
@@ -23,7 +28,11 @@ LoadCase dual_load(const LoadCase& load_case, const ResponseEntry& response,
   dual.spin.reset();
   dual.temperature.reset();
   dual.nodal.resize(0);
-  return dual;
+  const auto& materials = fields.inputs.materials;
+  const double force = nodal_forces(fields.mesh, load_case, materials).norm() /
+                       nodal_forces(fields.mesh, dual, materials).norm();
+  dual.forces.front().total *= force;
+  return {std::move(dual), force};
 }
 
 RecoveredStress recovered(const EvaluationFields& fields, const VectorX& u,
@@ -76,9 +85,9 @@ std::vector<std::vector<std::size_t>> duals_needed(const Case& input,
 
 }  // namespace
 
-std::optional<ElementErrors> estimate_element_errors(
-    const Case& input, const EvaluationFields& fields,
-    const ElasticModel& model) {
+ElementErrors estimate_element_errors(const Case& input,
+                                      const EvaluationFields& fields,
+                                      const ElasticModel& model) {
   const auto& load_cases = fields.inputs.load_cases;
   ElementErrors errors;
   errors.responses =
@@ -102,12 +111,15 @@ std::optional<ElementErrors> estimate_element_errors(
   const auto needed = duals_needed(input, load_cases.size());
   for (std::size_t round = 0;; ++round) {
     std::vector<LoadCase> loads = load_cases;
+    std::vector<double> force(load_cases.size(), 1.0);
     bool any = false;
     for (std::size_t k = 0; k < load_cases.size(); ++k) {
       if (round < needed[k].size()) {
         const std::size_t r = needed[k][round];
-        loads[k] = dual_load(load_cases[k], input.responses[r],
-                             fields.inputs.response_directions[r]);
+        DualLoad dual = dual_load(fields, load_cases[k], input.responses[r],
+                                  fields.inputs.response_directions[r]);
+        loads[k] = std::move(dual.load);
+        force[k] = dual.force;
         any = true;
       }
     }
@@ -116,12 +128,14 @@ std::optional<ElementErrors> estimate_element_errors(
     }
     const ElasticSolution duals = model.solve(fields.mesh, loads);
     if (duals.failure) {
-      return std::nullopt;
+      errors.failure = duals.failure;
+      return errors;
     }
     for (std::size_t k = 0; k < load_cases.size(); ++k) {
       if (round < needed[k].size()) {
         errors.responses[static_cast<Eigen::Index>(needed[k][round])] =
-            dual_weighted(fields, k, primals[k], duals.displacements[k]);
+            dual_weighted(fields, k, primals[k], duals.displacements[k]) /
+            force[k];
       }
     }
   }

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "core/error.h"
 #include "pipeline/forward_model.h"
 
 namespace meniscus {
@@ -13,13 +14,14 @@ struct ElementErrors {
   /// Per response: what it would change by if the elements were exact, in its
   /// units; not a number where there is no estimate (max_von_mises).
   VectorX responses;
+  std::optional<Failure> failure;  // a dual solution's; then the rest is void
 };
 
 /// By recovered stresses; mean displacements by dual weighting
 /// (fea/error_estimate.h): one more solution each, `model` being the elasticity
-/// that solved `fields`. None when a dual solution fails.
-std::optional<ElementErrors> estimate_element_errors(
-    const Case& input, const EvaluationFields& fields,
-    const ElasticModel& model);
+/// that solved `fields`.
+ElementErrors estimate_element_errors(const Case& input,
+                                      const EvaluationFields& fields,
+                                      const ElasticModel& model);
 
 }  // namespace meniscus

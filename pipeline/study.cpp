@@ -178,8 +178,14 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
   }
   if (options_.estimate_errors) {
     monitor_.progress({.stage = "error", .detail = "dual solutions"});
-    result_.element_errors =
+    ElementErrors errors =
         estimate_element_errors(input_, last_fields_, model_->elasticity());
+    if (errors.failure) {
+      result_.warnings.push_back("no estimate of the elements' errors: " +
+                                 errors.failure->message);
+    } else {
+      result_.element_errors = std::move(errors);
+    }
   }
   if (fields != nullptr) {
     *fields = std::move(last_fields_);

@@ -64,22 +64,42 @@ double value(const Part& p, std::size_t r) {
                                  p.fields.inputs.response_directions[r], u);
 }
 
+TEST(ElementErrors, DoNotDependOnTheSizeOfTheLoad) {
+  Part p = part(2);
+  const ElementErrors errors =
+      estimate_element_errors(p.input, p.fields, *p.model);
+  constexpr double kLarge = 1e6;  // far from a dual's unit force
+  for (LoadCase& load_case : p.fields.inputs.load_cases) {
+    load_case.forces.front().total *= kLarge;
+  }
+  p.model.emplace(p.fields.mesh, p.fields.inputs.materials,
+                  p.fields.inputs.load_cases);
+  p.fields.solution = p.model->base_solution();
+  const ElementErrors large =
+      estimate_element_errors(p.input, p.fields, *p.model);
+  ASSERT_FALSE(large.failure);
+  for (Eigen::Index r = 0; r < 3; ++r) {
+    EXPECT_NEAR(large.responses[r], kLarge * errors.responses[r],
+                1e-5 * std::abs(kLarge * errors.responses[r]));
+  }
+}
+
 TEST(ElementErrors, PredictWhatAFinerMeshGives) {
   const Part coarse = part(3);
   const Part fine = part(7);
   const auto errors =
       estimate_element_errors(coarse.input, coarse.fields, *coarse.model);
-  ASSERT_TRUE(errors);
-  EXPECT_GT(errors->energy, 0.001);
-  EXPECT_LT(errors->energy, 0.2);
+  ASSERT_FALSE(errors.failure);
+  EXPECT_GT(errors.energy, 0.001);
+  EXPECT_LT(errors.energy, 0.2);
   for (std::size_t r = 0; r < 4; ++r) {
     const double change = value(fine, r) - value(coarse, r);
-    const double estimate = errors->responses[static_cast<Eigen::Index>(r)];
+    const double estimate = errors.responses[static_cast<Eigen::Index>(r)];
     EXPECT_GT(estimate / change, 0.5) << r;
     EXPECT_LT(estimate / change, 2.0) << r;
   }
-  EXPECT_TRUE(std::isnan(errors->responses[4]));
-  EXPECT_EQ(errors->responses[5], 0.0);
+  EXPECT_TRUE(std::isnan(errors.responses[4]));
+  EXPECT_EQ(errors.responses[5], 0.0);
 }
 
 }  // namespace
