@@ -7,6 +7,7 @@ namespace meniscus {
 SafetyFactors safety_factors(const TetMesh& mesh,
                              const std::vector<Material>& materials,
                              const RecoveredStress& stress) {
+  check_materials(mesh, materials);
   constexpr double kNever = std::numeric_limits<double>::infinity();
   SafetyFactors result;
   result.nodal.assign(mesh.nodes.size(), kNever);

@@ -17,6 +17,8 @@ struct SafetyFactors {
   double von_mises = 0.0;  // there [pressure]
 };
 
+/// `stress` must be of this mesh. Throws InvalidInput where materials do not
+/// fit the mesh.
 SafetyFactors safety_factors(const TetMesh& mesh,
                              const std::vector<Material>& materials,
                              const RecoveredStress& stress);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "fea/body_loads.h"
 #include "io/stl.h"
 #include "pipeline/calculix_export.h"
 #include "pipeline/responses.h"

@@ -146,6 +146,10 @@ const std::optional<Failure>& ForwardModel::failure() const {
 
 const Evaluation& ForwardModel::frozen() const { return impl_->frozen; }
 
+const ElasticModel& ForwardModel::elasticity() const {
+  return *impl_->elasticity;
+}
+
 Evaluation ForwardModel::evaluate(const VectorX& design,
                                   EvaluationFields* fields) const {
   Evaluation result;

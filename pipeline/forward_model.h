@@ -78,6 +78,9 @@ class ForwardModel {
   /// Figures of the freeze itself: its film report and seconds per stage.
   const Evaluation& frozen() const;
 
+  /// The elasticity that evaluate() solves with.
+  const ElasticModel& elasticity() const;
+
   /// A pure function of (model, design). `fields`, when given, receives the
   /// meshes and the solution.
   Evaluation evaluate(const VectorX& design,

@@ -198,6 +198,11 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
   json["responses"] =
       value_map(names, best != nullptr ? best->responses : VectorX());
   json["response_errors"] = value_map(names, result.response_errors);
+  if (result.element_errors) {
+    json["element_errors"] = {
+        {"energy", result.element_errors->energy},
+        {"responses", value_map(names, result.element_errors->responses)}};
+  }
   json["parameter_errors"] =
       value_map(design_names(input), result.design_errors);
   if (result.start) {

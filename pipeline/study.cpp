@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/timer.h"
+#include "fea/body_loads.h"
 #include "optimize/problem.h"
 #include "pipeline/match_targets.h"
 #include "pipeline/part_warnings.h"
@@ -174,6 +175,17 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
   for (std::string& warning : part_warnings(input_, last_fields_)) {
     result_.warnings.push_back(std::move(warning));
   }
+  if (options_.estimate_errors) {
+    monitor_.progress({.stage = "error", .detail = "dual solutions"});
+    ElementErrors errors =
+        estimate_element_errors(input_, last_fields_, model_->elasticity());
+    if (errors.failure) {
+      result_.warnings.push_back("no estimate of the elements' errors: " +
+                                 errors.failure->message);
+    } else {
+      result_.element_errors = std::move(errors);
+    }
+  }
   if (fields != nullptr) {
     *fields = std::move(last_fields_);
   }
@@ -201,6 +213,12 @@ void StudyRunner::estimate_errors() {
     result_.response_errors =
         kErrorPerChange *
         (there.responses - result_.best->responses).cwiseAbs();
+    if (result_.element_errors) {  // no smaller than the elements' own part
+      result_.response_errors = result_.response_errors.binaryExpr(
+          result_.element_errors->responses, [](double all, double part) {
+            return std::isfinite(part) ? std::max(all, std::abs(part)) : all;
+          });
+    }
     if (targets_ && jacobian_.size() > 0) {
       const Eigen::MatrixXd inverse =
           jacobian_.completeOrthogonalDecomposition().pseudoInverse();

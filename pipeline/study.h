@@ -7,6 +7,7 @@
 
 #include "core/monitor.h"
 #include "pipeline/case.h"
+#include "pipeline/element_errors.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/study_store.h"
 
@@ -39,7 +40,8 @@ struct RunResult {
   std::vector<Constraint> constraints;
   VectorX response_errors;  // estimated discretisation errors; may be empty
   VectorX design_errors;    // of the matched variables; may be empty
-  int evaluations = 0;      // finite-difference ones included
+  std::optional<ElementErrors> element_errors;  // the elements' part of them
+  int evaluations = 0;  // finite-difference ones included
   int failed_evaluations = 0;
   StageSeconds seconds;  // summed over freeze, evaluations, error estimate
   double output_seconds = 0.0;

@@ -133,6 +133,49 @@ TEST_P(Estimate, IsCloseToTheTrueError) {
   }
 }
 
+/// The corners of a ten-node mesh with their four-node elements.
+TetMesh four_node(const TetMesh& mesh) {
+  TetMesh linear = mesh;
+  linear.order = 1;
+  linear.nodes.resize(mesh.corner_count);
+  linear.elements.clear();
+  linear.faces.clear();
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto corners = mesh.element(e).first<4>();
+    linear.elements.insert(linear.elements.end(), corners.begin(),
+                           corners.end());
+  }
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = mesh.face(f).first<3>();
+    linear.faces.insert(linear.faces.end(), corners.begin(), corners.end());
+  }
+  return linear;
+}
+
+TEST(EstimateOfFourNodeElements, IsCloseToTheTrueError) {
+  for (const int which : {1, 2, 3}) {
+    const Problem p = problems()[which];
+    const Material material = p.field.material();
+    const TetMesh mesh = four_node(p.mesh(8));
+    LoadCase load{.name = "load", .supports = p.supports};
+    load.nodal = exact::loads(mesh, p.field, p.loaded, p.body);
+    const ElasticModel model(mesh, {material}, {load});
+    ASSERT_FALSE(model.base_solution().failure);
+    const VectorX& u = model.base_solution().displacements[0];
+    const EnergyError energy = estimate_error(
+        mesh, {material},
+        {u, recover_by_patches(mesh, point_stress(mesh, {material}, u)), {}});
+    const exact::Norms norms = exact::error_norms(mesh, p.field, u);
+    std::cout << fmt::format(
+        "{}, four-node: {} elements, energy error {:.3e} of {:.3e}, "
+        "effectivity {:.3f}\n",
+        p.name, mesh.element_count(), norms.energy, norms.energy_exact,
+        energy.error / norms.energy);
+    EXPECT_GT(energy.error / norms.energy, kLeast);
+    EXPECT_LT(energy.error / norms.energy, kMost);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Problems, Estimate, testing::Range(0, 4));
 
 }  // namespace

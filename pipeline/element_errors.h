@@ -1,0 +1,27 @@
+/// The finite elements' own part of the error of an evaluated design.
+#pragma once
+
+#include <optional>
+
+#include "core/error.h"
+#include "pipeline/forward_model.h"
+
+namespace meniscus {
+
+/// It knows nothing of the errors of films and of the meshed surface.
+struct ElementErrors {
+  double energy = 0.0;  // relative error in energy, of the worst load case
+  /// Per response: what it would change by if the elements were exact, in its
+  /// units; not a number where there is no estimate (max_von_mises).
+  VectorX responses;
+  std::optional<Failure> failure;  // a dual solution's; then the rest is void
+};
+
+/// By recovered stresses; mean displacements by dual weighting
+/// (fea/error_estimate.h): one more solution each, `model` being the elasticity
+/// that solved `fields`.
+ElementErrors estimate_element_errors(const Case& input,
+                                      const EvaluationFields& fields,
+                                      const ElasticModel& model);
+
+}  // namespace meniscus
