@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh_tet/tet_cavity.h"
 #include "mesh_tet/tet_editor.h"
 
 namespace meniscus {
@@ -123,7 +124,7 @@ class Improver {
       mend(e, report);
     }
     return report.moved - before.moved + report.flipped - before.flipped +
-           report.split - before.split;
+           report.added - before.added;
   }
 
   void finish() { tets_.finish(); }
@@ -145,8 +146,8 @@ class Improver {
     const double before = tets_.merit(e);
     if (remove_edge(e) || remove_face(e)) {
       ++report.flipped;
-    } else if (split_edge(e)) {
-      ++report.split;
+    } else if (split_edge(e) || insert_node(e)) {
+      ++report.added;
     }
     if (tets_.alive(e) && tets_.merit(e) == before) {
       tried_[e] = 1;
@@ -326,6 +327,36 @@ class Improver {
     tets_.drop_last_node();
     settled_.pop_back();
     return false;
+  }
+
+  /// A node beside a bad element, most often one that lies flat on the
+  /// surface, in the best of some cavities that take the bad one away.
+  bool insert_node(int e) {
+    const std::array<int, 1> seeds = {e};
+    double floor = kNodeGain * std::max(tets_.merit(e), 0.0);
+    std::optional<Cavity> best;
+    Vec3 place;
+    for (const Vec3& candidate : places_beside(tets_, e)) {
+      auto cavity = grow_cavity(tets_, seeds, candidate, floor);
+      if (cavity) {
+        floor = std::max(floor, cavity->merit);
+        best = std::move(cavity);
+        place = candidate;
+      }
+    }
+    if (!best) {
+      return false;
+    }
+    const int node = tets_.add_node(place);
+    settled_.push_back(0);
+    std::vector<TetNodes> fresh;
+    for (const auto& face : best->faces) {
+      fresh.push_back({face[0], face[2], face[1], node});
+    }
+    unsettle(best->elements);
+    tets_.replace(best->elements, fresh);
+    smooth(node);
+    return true;
   }
 
   TetEditor tets_;
