@@ -14,6 +14,10 @@ namespace {
 
 constexpr std::size_t kLongestRing = 7;
 constexpr double kFlipGain = 1.05;  // of the merit; a flip costs nothing
+// A few seconds where most elements are bad, as in plates of one layer; some
+// ten evaluations an element are usual.
+constexpr std::int64_t kFreeEvaluations = 20'000'000;
+constexpr std::int64_t kEvaluationsPerElement = 300;
 constexpr double kNodeGain = 1.44;  // worth a node: 20 % of the sine
 
 /// Along the axes and the diagonals of space.
@@ -108,6 +112,8 @@ class Improver {
   Improver(TetMesh& mesh, int fixed, double bound)
       : tets_(mesh, fixed),
         bound_(bound),
+        budget_(kFreeEvaluations +
+                kEvaluationsPerElement * mesh.element_count()),
         directions_(make_directions()),
         settled_(mesh.nodes.size(), 0) {}
 
@@ -121,6 +127,9 @@ class Improver {
     }
     const ImproveReport before = report;
     for (const int e : bad) {
+      if (tets_.evaluations() > budget_) {
+        return 0;
+      }
       mend(e, report);
     }
     return report.moved - before.moved + report.flipped - before.flipped +
@@ -361,6 +370,7 @@ class Improver {
 
   TetEditor tets_;
   double bound_;  // of the merit
+  std::int64_t budget_;
   std::array<Vec3, 14> directions_;
   std::vector<char> settled_;  // nodes that gain nothing where they are
   std::vector<char> tried_;    // elements that nothing helped

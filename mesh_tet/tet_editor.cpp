@@ -79,6 +79,7 @@ TetCorners TetEditor::corners(const TetNodes& nodes) const {
 }
 
 double TetEditor::merit_of(const TetNodes& nodes) const {
+  ++evaluations_;
   return tet_merit(corners(nodes));
 }
 
@@ -97,6 +98,7 @@ double TetEditor::star_merit_at(int node, const Vec3& place,
     const TetNodes ids = nodes(e);
     TetCorners x = corners(ids);
     x[std::find(ids.begin(), ids.end(), node) - ids.begin()] = place;
+    ++evaluations_;
     least = std::min(least, tet_merit(x));
     if (!(least > floor)) {
       break;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,6 +41,9 @@ class TetEditor {
 
   double merit_of(const TetNodes& nodes) const;
 
+  /// Merits computed so far: what the work costs, the same on every machine.
+  std::int64_t evaluations() const { return evaluations_; }
+
   /// The elements around an inner edge, and the nodes of the ring, in right-
   /// handed order about a -> b, the first not repeated; nothing when the edge
   /// belongs to the surface.
@@ -71,6 +75,7 @@ class TetEditor {
 
   TetMesh& mesh_;
   int fixed_;
+  mutable std::int64_t evaluations_ = 0;
   std::vector<double> merit_;
   std::vector<char> alive_;
   std::vector<std::vector<int>> star_;
