@@ -158,8 +158,8 @@ std::vector<std::optional<Surrounding>> find_surroundings(
     std::array<Surrounding, 3> seen;
     int votes = 0;
     for (const Vec3& direction : kDirections) {
-      const int from = points.outermost(part, direction);
-      if (from >= 0 && votes < 3) {
+      const int from = votes < 3 ? points.outermost(part, direction) : -1;
+      if (from >= 0) {
         seen[votes++] = look(mesh, chambers, tree, from, direction, part);
       }
     }

@@ -115,7 +115,8 @@ std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
     const int id = stack.back();
     stack.pop_back();
     const Node& node = nodes_[id];
-    if (!(reach(node.box, origin, inverse) <= best.distance)) {
+    const double enter = reach(node.box, origin, inverse);
+    if (enter == kNever || enter > best.distance) {
       continue;
     }
     if (node.second_child >= 0) {

@@ -6,22 +6,26 @@
 namespace meniscus {
 
 struct ImproveOptions {
-  double below_deg = 10.0;  // elements with a smaller dihedral angle
-  int rounds = 6;           // of moving nodes and splitting edges, at most
+  double below_deg = 10.0;  // elements with a smaller dihedral angle, or one
+                            // nearer to 180 degrees than this
+  int rounds = 6;           // over the bad elements, at most
 };
 
 struct ImproveReport {
-  int moved = 0;  // nodes, counted once a move
-  int split = 0;  // edges
+  int moved = 0;    // nodes, counted once a move
+  int flipped = 0;  // edges or faces removed
+  int added = 0;    // nodes, on edges or in cavities
 };
 
-/// Moves inner nodes to maximise the smallest sine of a dihedral angle among
-/// their elements (Freitag and Ollivier-Gooch 1997, here by pattern search).
-/// A bad element whose nodes cannot move gets a new node on an inner edge,
-/// which then moves; kept when the worst of the edge's elements gets better.
-/// `mesh` is of order 1 with positive volumes; its first `fixed` nodes and the
-/// faces among them stay, new elements come last: face_element must be found
-/// again when edges were split. Deterministic.
+/// Maximises the smallest sine of a dihedral angle, element by bad element
+/// (Freitag and Ollivier-Gooch 1997): moves inner nodes (by pattern search),
+/// removes inner edges with up to 7 elements around (the best of all
+/// triangulations of their ring, Klincsek 1980) and faces, splits inner edges,
+/// puts nodes into cavities.
+/// Every step makes the worst element that it touches better.
+/// `mesh` is of order 1 with positive volumes; its first `fixed` nodes and its
+/// faces stay, new nodes come last. Element numbers change: face_element must
+/// be found again. Deterministic.
 ImproveReport improve_tets(TetMesh& mesh, int fixed,
                            const ImproveOptions& options);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
@@ -15,13 +16,12 @@ namespace {
 
 /// One side of a triangle, kept at its smallest corner.
 struct Side {
-  int middle, largest;  // the other corners
-  int owner;            // element; for a facet -1 - facet
-  bool even;            // (smallest, middle, largest) runs as the triangle
+  std::uint64_t others;  // the other corners, the larger in the low bits
+  int owner;             // element; for a facet -1 - facet
+  bool even;             // (smallest, middle, largest) runs as the triangle
 
-  bool same_corners(const Side& other) const {
-    return middle == other.middle && largest == other.largest;
-  }
+  int middle() const { return static_cast<int>(others >> 32); }
+  int largest() const { return static_cast<int>(others & 0xffffffffU); }
 };
 
 struct Sorted {
@@ -56,14 +56,16 @@ class SideTable {
     sides_.resize(start_.back());
     std::vector<int> next(start_.begin(), start_.end() - 1);
     for_each(surface, mesh, [&](const Sorted& s, int owner) {
-      sides_[next[s.corners[0]]++] = {s.corners[1], s.corners[2], owner,
-                                      s.even};
+      sides_[next[s.corners[0]]++] = {
+          (static_cast<std::uint64_t>(s.corners[1]) << 32) |
+              static_cast<std::uint32_t>(s.corners[2]),
+          owner, s.even};
     });
     for (std::size_t n = 0; n + 1 < start_.size(); ++n) {
       std::sort(sides_.begin() + start_[n], sides_.begin() + start_[n + 1],
                 [](const Side& a, const Side& b) {
-                  return std::tie(a.middle, a.largest, a.owner) <
-                         std::tie(b.middle, b.largest, b.owner);
+                  return a.others < b.others ||
+                         (a.others == b.others && a.owner < b.owner);
                 });
     }
   }
@@ -76,7 +78,7 @@ class SideTable {
       const auto end = sides_.begin() + start_[n + 1];
       while (first != end) {
         auto last = first + 1;
-        while (last != end && last->same_corners(*first)) {
+        while (last != end && last->others == first->others) {
           ++last;
         }
         visit(static_cast<int>(n), &*first, static_cast<int>(last - first));
@@ -151,12 +153,12 @@ std::string inner_problem(int smallest, const Side* sides, int count) {
     return fmt::format(
         "element {} has the boundary face ({}, {}, {}), which is no facet of "
         "the surface",
-        sides[0].owner, smallest, sides[0].middle, sides[0].largest);
+        sides[0].owner, smallest, sides[0].middle(), sides[0].largest());
   }
   if (count > 2 || sides[0].even == sides[1].even) {
     return fmt::format("elements {} and {} overlap at face ({}, {}, {})",
                        sides[0].owner, sides[1].owner, smallest,
-                       sides[0].middle, sides[0].largest);
+                       sides[0].middle(), sides[0].largest());
   }
   return {};
 }

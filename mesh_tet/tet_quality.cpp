@@ -29,7 +29,83 @@ std::array<Vec3, 4> face_normals2(const TetCorners& x) {
   return normals;
 }
 
-std::array<double, 6> cosines_between(const std::array<Vec3, 4>& normals) {
+/// Cosines times their absolute values: the same order without square roots.
+std::array<double, 6> squares_between(const std::array<Vec3, 4>& normals) {
+  std::array<double, 4> norm2;
+  for (int f = 0; f < 4; ++f) {
+    norm2[f] = normals[f].squaredNorm();
+  }
+  std::array<double, 6> squares;
+  for (int e = 0; e < 6; ++e) {
+    const auto [f, g] = kFacesAtEdge[e];
+    const double norms = norm2[f] * norm2[g];
+    const double dot = -normals[f].dot(normals[g]);
+    squares[e] = norms > 0.0 ? dot * std::abs(dot) / norms : 1.0;
+  }
+  return squares;
+}
+
+double degrees_of(double square) {
+  const double cosine = std::copysign(std::sqrt(std::abs(square)), square);
+  return kDegree * std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+/// Bin of ten degrees in the histogram.
+int bin_of(double square) {
+  static const std::array<double, 17> kBounds = [] {
+    std::array<double, 17> bounds{};
+    for (int i = 0; i < 17; ++i) {
+      const double cosine = std::cos(10.0 * (i + 1) / kDegree);
+      bounds[i] = cosine * std::abs(cosine);
+    }
+    return bounds;
+  }();
+  int bin = 0;
+  for (const double bound : kBounds) {
+    bin += square <= bound ? 1 : 0;
+  }
+  return bin;
+}
+
+/// Squares of the measures of shape.
+struct Shape {
+  double aspect2 = 0.0;
+  double radius_edge2 = 0.0;
+};
+
+Shape shape_of(const TetCorners& x, const std::array<Vec3, 4>& normals,
+               double volume) {
+  double shortest2 = std::numeric_limits<double>::infinity();
+  double longest2 = 0.0;
+  for (const Edge& edge : kTetEdges) {
+    const double length2 = (x[edge[1]] - x[edge[0]]).squaredNorm();
+    longest2 = std::max(longest2, length2);
+    shortest2 = std::min(shortest2, length2);
+  }
+  double normal2 = 0.0;
+  for (const Vec3& n : normals) {
+    normal2 = std::max(normal2, n.squaredNorm());
+  }
+  const Vec3 a = x[1] - x[0];
+  const Vec3 b = x[2] - x[0];
+  const Vec3 c = x[3] - x[0];
+  const Vec3 around = a.squaredNorm() * b.cross(c) +
+                      b.squaredNorm() * c.cross(a) +
+                      c.squaredNorm() * a.cross(b);
+  // Radius |around| / 12 V; height 3 V over the area |normal| / 2.
+  const double volume2 = volume * volume;
+  return {longest2 * normal2 / (36.0 * volume2),
+          around.squaredNorm() / (144.0 * volume2 * shortest2)};
+}
+
+}  // namespace
+
+double tet_volume(const TetCorners& x) {
+  return (x[1] - x[0]).cross(x[2] - x[0]).dot(x[3] - x[0]) / 6.0;
+}
+
+std::array<double, 6> dihedral_cosines(const TetCorners& x) {
+  const auto normals = face_normals2(x);
   std::array<double, 4> norm;
   for (int f = 0; f < 4; ++f) {
     norm[f] = normals[f].norm();
@@ -45,69 +121,12 @@ std::array<double, 6> cosines_between(const std::array<Vec3, 4>& normals) {
   return cosines;
 }
 
-/// Bin of ten degrees in the histogram, without arc cosines.
-int bin_of(double cosine) {
-  static const std::array<double, 17> kBounds = [] {
-    std::array<double, 17> bounds{};
-    for (int i = 0; i < 17; ++i) {
-      bounds[i] = std::cos(10.0 * (i + 1) / kDegree);
-    }
-    return bounds;
-  }();
-  int bin = 0;
-  while (bin < 17 && cosine <= kBounds[bin]) {
-    ++bin;
-  }
-  return bin;
-}
-
-struct Lengths {
-  double shortest = std::numeric_limits<double>::infinity();
-  double longest = 0.0;
-  double largest_area = 0.0;
-};
-
-Lengths measure(const TetCorners& x, const std::array<Vec3, 4>& normals) {
-  Lengths lengths;
-  for (const Edge& edge : kTetEdges) {
-    const double length2 = (x[edge[1]] - x[edge[0]]).squaredNorm();
-    lengths.longest = std::max(lengths.longest, length2);
-    lengths.shortest = std::min(lengths.shortest, length2);
-  }
-  lengths.longest = std::sqrt(lengths.longest);
-  lengths.shortest = std::sqrt(lengths.shortest);
-  for (const Vec3& n : normals) {
-    lengths.largest_area = std::max(lengths.largest_area, 0.5 * n.norm());
-  }
-  return lengths;
-}
-
-double circumradius(const TetCorners& x, double volume) {
-  const Vec3 a = x[1] - x[0];
-  const Vec3 b = x[2] - x[0];
-  const Vec3 c = x[3] - x[0];
-  return (a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) +
-          c.squaredNorm() * a.cross(b))
-             .norm() /
-         (12.0 * std::abs(volume));
-}
-
-}  // namespace
-
-double tet_volume(const TetCorners& x) {
-  return (x[1] - x[0]).cross(x[2] - x[0]).dot(x[3] - x[0]) / 6.0;
-}
-
-std::array<double, 6> dihedral_cosines(const TetCorners& x) {
-  return cosines_between(face_normals2(x));
-}
-
 TetQuality tet_quality(const TetMesh& mesh) {
   TetQuality quality;
   if (mesh.element_count() == 0) {
     return quality;
   }
-  double largest = -1.0;  // cosine
+  double largest = -1.0;  // of signed squared cosines
   double smallest = 1.0;
   quality.min_volume = std::numeric_limits<double>::infinity();
   const auto raise = [](double& most, int& which, double value, int e) {
@@ -121,7 +140,7 @@ TetQuality tet_quality(const TetMesh& mesh) {
     const TetCorners x = {mesh.nodes[ids[0]], mesh.nodes[ids[1]],
                           mesh.nodes[ids[2]], mesh.nodes[ids[3]]};
     const auto normals = face_normals2(x);
-    for (const double c : cosines_between(normals)) {
+    for (const double c : squares_between(normals)) {
       ++quality.dihedral_histogram[bin_of(c)];
       raise(largest, quality.worst_element, c, e);
       if (c < smallest) {
@@ -130,15 +149,16 @@ TetQuality tet_quality(const TetMesh& mesh) {
       }
     }
     const double volume = tet_volume(x);
-    const Lengths lengths = measure(x, normals);
-    raise(quality.max_aspect, quality.aspect_element,
-          lengths.longest * lengths.largest_area / (3.0 * std::abs(volume)), e);
+    const Shape shape = shape_of(x, normals, volume);
+    raise(quality.max_aspect, quality.aspect_element, shape.aspect2, e);
     raise(quality.max_radius_edge, quality.radius_edge_element,
-          circumradius(x, volume) / lengths.shortest, e);
+          shape.radius_edge2, e);
     quality.min_volume = std::min(quality.min_volume, volume);
   }
-  quality.min_dihedral_deg = kDegree * std::acos(largest);
-  quality.max_dihedral_deg = kDegree * std::acos(smallest);
+  quality.max_aspect = std::sqrt(quality.max_aspect);
+  quality.max_radius_edge = std::sqrt(quality.max_radius_edge);
+  quality.min_dihedral_deg = degrees_of(largest);
+  quality.max_dihedral_deg = degrees_of(smallest);
   return quality;
 }
 

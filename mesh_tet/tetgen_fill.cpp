@@ -18,13 +18,13 @@ namespace {
 /// median element then has the size asked for.
 constexpr double kGradedFactor = 3.0;
 
-/// TetGen's switches. Y: the surface stays. O9/7o/140: flips, smoothing and
-/// new inner points against dihedral angles above 140 degrees, as far as
-/// TetGen can.
+/// TetGen's switches. Y: the surface stays. F: no list of faces. O9/7o/140:
+/// flips, smoothing and new inner points against dihedral angles above 140
+/// degrees, as far as TetGen can.
 std::string make_switches(const char* work,
                           const TetrahedralizeOptions& options,
                           const std::string& volume) {
-  return fmt::format("{}YQq{:.6f}/{:.3f}{}O9/7o/140", work,
+  return fmt::format("{}YQFq{:.6f}/{:.3f}{}O9/7o/140", work,
                      options.radius_edge_ratio, options.min_dihedral_deg,
                      volume);
 }
@@ -47,6 +47,11 @@ double size_at(const TetrahedralizeOptions& options, const Vec3& place) {
         place.x(), place.y(), place.z(), size));
   }
   return std::min(size, options.edge.value_or(size));
+}
+
+double first_edge(const SurfaceMesh& surface,
+                  const TetrahedralizeOptions& options) {
+  return options.edge ? *options.edge : mean_edge_length(surface);
 }
 
 /// Smallest size at the centroid, on the faces, on the edges and half way to
@@ -153,24 +158,31 @@ double regular_volume(double edge) {
   return edge * edge * edge / (6.0 * std::numbers::sqrt2);
 }
 
+std::string fill_switches(const SurfaceMesh& surface, const Frame& frame,
+                          const TetrahedralizeOptions& options) {
+  if (!options.edge && options.size) {
+    return make_switches("p", options, "");
+  }
+  const double largest = kVolumeFactor * std::pow(frame.scale, 3) *
+                         regular_volume(first_edge(surface, options));
+  return make_switches("p", options, fmt::format("a{:.12f}", largest));
+}
+
 TetgenOutput fill_surface(const SurfaceMesh& surface, const SurfaceFit& fit,
                           const Frame& frame,
                           const TetrahedralizeOptions& options) {
   const Timer timer;
-  std::string volume;
-  if (options.edge || !options.size) {
-    const double edge = options.edge.value_or(mean_edge_length(surface));
-    const double largest = kVolumeFactor * regular_volume(edge);
-    if (fit.volume / largest > kMostElements) {
-      return too_many(fit.volume / largest);
-    }
-    volume = fmt::format("a{:.12f}", largest * std::pow(frame.scale, 3));
+  const double count =
+      fit.volume /
+      (kVolumeFactor * regular_volume(first_edge(surface, options)));
+  if ((options.edge || !options.size) && count > kMostElements) {
+    return too_many(count);
   }
   const Points points = frame.into(surface.points);
   const TetgenInput input{.points = &points,
                           .facets = &surface.facets,
                           .holes = frame.into(fit.cavities),
-                          .switches = make_switches("p", options, volume)};
+                          .switches = fill_switches(surface, frame, options)};
   TetgenOutput output = run_tetgen(input, limits_left(options, timer));
   if (!options.size || output.failure) {
     return output;

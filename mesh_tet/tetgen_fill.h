@@ -1,6 +1,7 @@
 /// How TetGen is asked to fill a surface: units, switches, passes.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mesh_tet/surface_fit.h"
@@ -26,6 +27,10 @@ double regular_volume(double edge);
 
 /// TetGen's working memory and time beyond this would exceed any limit.
 inline constexpr double kMostElements = 2e8;
+
+/// TetGen's switches for the first filling of `surface`.
+std::string fill_switches(const SurfaceMesh& surface, const Frame& frame,
+                          const TetrahedralizeOptions& options);
 
 /// Fills `surface`, then splits elements where options.size asks for it. In
 /// the frame's coordinates, as TetGen returns it. Throws InvalidInput for a

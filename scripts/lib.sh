@@ -11,7 +11,7 @@ build_packages=(
 run_packages=(xvfb libudunits2-data)
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
-  calculix-ccx evolver evolver-doc admesh git locales python3
+  calculix-ccx evolver evolver-doc tetgen admesh git locales python3
 )
 
 fuzz_packages=(clang libclang-rt-14-dev)

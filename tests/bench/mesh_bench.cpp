@@ -1,5 +1,8 @@
-// Seconds of tet meshing, quadratic elements and mesh motion.
+// The mesher side by side with the program tetgen, then seconds of tet meshing,
+// quadratic elements and mesh motion. `--race` leaves the latter out.
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <numbers>
 
 #include <benchmark/benchmark.h>
@@ -7,6 +10,7 @@
 #include "mesh_tet/mesh_motion.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
+#include "tests/support/mesh_race.h"
 #include "tests/support/shapes.h"
 
 namespace {
@@ -109,4 +113,38 @@ void quadratic_move_and_check(benchmark::State& state) {
 }
 BENCHMARK(quadratic_move_and_check)->Unit(benchmark::kMillisecond);
 
+void race() {
+  constexpr int kRuns = 5;
+  constexpr double kMega = 1e6;
+  std::printf(
+      "CPU seconds (user and system), one thread, the least of %d runs.\n"
+      "%-8s %9s %8s | %8s %8s %7s | %8s %8s | %6s %6s\n",
+      kRuns, "part", "facets", "tets", "ours", "helper", "MB", "tetgen",
+      "itself", "ratio", "angle");
+  for (const MeshWork& work : mesh_works()) {
+    const MeshRun own = run_mesher(work, kRuns);
+    if (!own.succeeded) {
+      std::printf("%-8s %s\n", work.name.c_str(), own.message.c_str());
+      continue;
+    }
+    const MeshRun peer =
+        have_tetgen() ? run_tetgen_program(work, kRuns) : MeshRun{};
+    std::printf(
+        "%-8s %9zu %8d | %8.3f %8.3f %7.0f | %8.3f %8.3f | %6.2f %6.1f\n",
+        work.name.c_str(), work.surface.facets.size(), own.elements,
+        own.seconds, own.tetgen_seconds, own.peak_bytes / kMega, peer.seconds,
+        peer.tetgen_seconds, own.seconds / peer.seconds, own.min_dihedral_deg);
+  }
+  std::fflush(stdout);
+}
+
 }  // namespace
+
+int main(int argc, char** argv) {
+  race();
+  if (argc > 1 && std::strcmp(argv[1], "--race") == 0) {
+    return 0;
+  }
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -295,6 +295,33 @@ TEST(MeshChecks, FindsABodyInTheWrongBody) {
   EXPECT_EQ(count_of(check_surface(mesh), FindingKind::BadNesting), 1);
 }
 
+TEST(MeshChecks, ManyPartsAreNestedQuickly) {
+  constexpr int kRow = 40;
+  const SurfaceMesh ball = shapes::sphere(1.0, 0);
+  const SurfaceMesh hollow = turned_over(shapes::sphere(0.5, 0));
+  SurfaceMesh mesh;
+  mesh.labels = {"ball"};
+  const auto add = [&](const SurfaceMesh& part, const Vec3& shift) {
+    const int first = static_cast<int>(mesh.points.size());
+    for (const Vec3& p : part.points) {
+      mesh.points.push_back(p + shift);
+    }
+    for (const Triangle& t : part.facets) {
+      mesh.facets.push_back({first + t[0], first + t[1], first + t[2]});
+      mesh.facet_label.push_back(0);
+    }
+  };
+  for (int i = 0; i < kRow * kRow; ++i) {
+    const Vec3 place(3.0 * (i % kRow), 3.0 * static_cast<int>(i / kRow), 0.0);
+    add(ball, place);
+    add(hollow, place);
+  }
+  const Timer timer;
+  EXPECT_TRUE(check_surface(mesh).empty());
+  constexpr double kLimit = 5.0;  // [s]
+  EXPECT_LT(timer.seconds(), kLimit);
+}
+
 // Everything meets everything: a comparison of all pairs would take minutes.
 TEST(MeshChecks, EndsSoonOnFacetsThatAllMeet) {
   constexpr int kFacets = 60000;

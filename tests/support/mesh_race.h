@@ -1,0 +1,42 @@
+/// The mesher side by side with the program `tetgen` on the same surfaces.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/surface_mesh.h"
+
+namespace meniscus {
+
+struct MeshWork {
+  std::string name;
+  SurfaceMesh surface;
+  double edge = 0.0;  // of the elements [length]
+};
+
+/// At full size about 115,000 to 170,000 elements; each level of `coarser`
+/// leaves about an eighth of them.
+std::vector<MeshWork> mesh_works(int coarser = 0);
+
+/// CPU seconds, user and system, helper processes included.
+struct MeshRun {
+  bool succeeded = false;
+  int elements = 0;
+  double seconds = 0.0;         // the least of the runs
+  double tetgen_seconds = 0.0;  // ours: of the helper; theirs: as it prints
+  double wall_seconds = 0.0;
+  double peak_bytes = 0.0;
+  double min_dihedral_deg = 0.0;
+  std::string message;
+};
+
+/// From the surface in memory to the checked, improved mesh in memory.
+MeshRun run_mesher(const MeshWork& work, int runs);
+
+bool have_tetgen();
+
+/// The same switches, coordinates in the same frame. It reads a .smesh file
+/// (a few per cent of its time) and writes none.
+MeshRun run_tetgen_program(const MeshWork& work, int runs);
+
+}  // namespace meniscus
