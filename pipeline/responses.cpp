@@ -21,7 +21,6 @@ double value_of(const ResponseEntry& response, const Vec3& direction,
                 const ResponseInput& fields) {
   const auto load_case = static_cast<std::size_t>(response.load_case);
   const VectorX& u = fields.solution.displacements[load_case];
-  const LoadCase& loads = fields.numbers.load_cases[load_case];
   const auto& materials = fields.numbers.materials;
   switch (response.kind) {
     case ResponseKind::MeanDisplacement:
