@@ -173,7 +173,9 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
       last_fields_.solution.displacements.front(),
       temperature_change(last_fields_.mesh,
                          last_fields_.inputs.load_cases.front()));
-  for (std::string& warning : part_warnings(input_, last_fields_)) {
+  result_.stress = stress_figures(last_fields_);
+  for (std::string& warning :
+       part_warnings(input_, last_fields_, result_.stress)) {
     result_.warnings.push_back(std::move(warning));
   }
   if (options_.estimate_errors) {
