@@ -180,8 +180,10 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
   }
   if (options_.estimate_errors) {
     monitor_.progress({.stage = "error", .detail = "dual solutions"});
+    const Timer timer;
     ElementErrors errors =
         estimate_element_errors(input_, last_fields_, model_->elasticity());
+    result_.seconds.fea += timer.seconds();
     if (errors.failure) {
       result_.warnings.push_back("no estimate of the elements' errors: " +
                                  errors.failure->message);
