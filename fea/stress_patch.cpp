@@ -117,6 +117,7 @@ Stress StressPatch::at(const Vec3& x) const {
 StressPatch fit_patch(const PointStress& points, std::span<const int> elements,
                       const Vec3& centre, const PatchOptions& options) {
   StressPatch patch;
+  patch.coefficient.setZero();
   patch.centre = centre;
   double reach = 0.0;
   for (const int e : elements) {
@@ -133,7 +134,7 @@ StressPatch fit_patch(const PointStress& points, std::span<const int> elements,
       const std::size_t at = points.index(e, q);
       const Vec3 y = points.position[at] - centre;
       double root = 1.0;  // of the weight
-      if (options.reach) {
+      if (options.reach && *options.reach > 0.0) {
         const double d = y.squaredNorm() / (*options.reach * *options.reach);
         if (d >= 1.0) {
           continue;

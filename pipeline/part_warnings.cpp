@@ -4,27 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "fea/body_loads.h"
-#include "fea/safety_factor.h"
-
 namespace meniscus {
 
 namespace {
 
 // Beyond this part of the part's size, rotations are no longer small.
 constexpr double kLargeDisplacement = 0.05;
-
-/// The least safety factor of the part under a load case.
-SafetyFactors weakest(const EvaluationFields& fields, std::size_t load_case) {
-  const auto& materials = fields.inputs.materials;
-  const VectorX& u = fields.solution.displacements[load_case];
-  const VectorX heat =
-      temperature_change(fields.mesh, fields.inputs.load_cases[load_case]);
-  return safety_factors(
-      fields.mesh, materials,
-      recover_by_patches(fields.mesh,
-                         point_stress(fields.mesh, materials, u, heat)));
-}
 
 double largest_displacement(const VectorX& u) {
   double largest = 0.0;
@@ -34,40 +19,37 @@ double largest_displacement(const VectorX& u) {
   return largest;
 }
 
+std::string yield_warning(const Case& input, const StressFigures& figures) {
+  const StressFigures::Safety& s = *figures.safety;
+  return fmt::format(
+      "stress above yield: load case '{}' reaches {:.4g} {} at ({:.4g}, "
+      "{:.4g}, {:.4g}), '{}' yields at {:.4g} {} (safety factor {:.3g}); a "
+      "linear analysis does not hold there (at a clamped edge the value grows "
+      "with every refinement)",
+      figures.load_case, s.von_mises, input.units.pressure, s.position.x(),
+      s.position.y(), s.position.z(), s.material, s.yield_strength,
+      input.units.pressure, s.factor);
+}
+
 }  // namespace
 
-std::vector<std::string> part_warnings(const Case& input,
-                                       const EvaluationFields& fields) {
+std::vector<std::string> part_warnings(
+    const Case& input, const EvaluationFields& fields,
+    const std::vector<StressFigures>& stress) {
   std::vector<std::string> warnings;
-  const auto& materials = fields.inputs.materials;
-  const bool may_yield = std::any_of(
-      materials.begin(), materials.end(),
-      [](const Material& m) { return m.yield_strength.has_value(); });
   const double size = bounding_diagonal(fields.mesh.nodes);
-  for (std::size_t k = 0; k < fields.inputs.load_cases.size(); ++k) {
-    const std::string& name = fields.inputs.load_cases[k].name;
-    const VectorX& u = fields.solution.displacements[k];
-    const SafetyFactors safety =
-        may_yield ? weakest(fields, k) : SafetyFactors{.smallest = 1.0};
-    if (safety.smallest < 1.0) {
-      const Vec3& x = fields.mesh.nodes[static_cast<std::size_t>(safety.node)];
-      const Material& material =
-          materials[static_cast<std::size_t>(safety.region)];
-      warnings.push_back(fmt::format(
-          "stress above yield: load case '{}' reaches {:.4g} {} at ({:.4g}, "
-          "{:.4g}, {:.4g}), '{}' yields at {:.4g} {} (safety factor {:.3g}); a "
-          "linear analysis does not hold there (at a clamped edge the value "
-          "grows with every refinement)",
-          name, safety.von_mises, input.units.pressure, x.x(), x.y(), x.z(),
-          material.name, *material.yield_strength, input.units.pressure,
-          safety.smallest));
+  for (std::size_t k = 0; k < stress.size(); ++k) {
+    if (stress[k].safety && stress[k].safety->factor < 1.0) {
+      warnings.push_back(yield_warning(input, stress[k]));
     }
-    const double largest = largest_displacement(u);
+    const double largest =
+        largest_displacement(fields.solution.displacements[k]);
     if (largest > kLargeDisplacement * size) {
       warnings.push_back(fmt::format(
           "deflection not small: load case '{}' moves a point by {:.4g} {}, "
           "{:.1f} % of the part's size; a linear analysis does not hold",
-          name, largest, input.units.length, 100.0 * largest / size));
+          stress[k].load_case, largest, input.units.length,
+          100.0 * largest / size));
     }
   }
   return warnings;

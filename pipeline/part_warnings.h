@@ -4,14 +4,15 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/forward_model.h"
+#include "pipeline/stress_figures.h"
 
 namespace meniscus {
 
 /// Sentences for stress above yield (the place with the least safety factor,
 /// each body against its own material) and for displacements that are not small
-/// against the part. Looks at every load case.
-std::vector<std::string> part_warnings(const Case& input,
-                                       const EvaluationFields& fields);
+/// against the part. `stress`: stress_figures() of the fields, every load case.
+std::vector<std::string> part_warnings(
+    const Case& input, const EvaluationFields& fields,
+    const std::vector<StressFigures>& stress);
 
 }  // namespace meniscus

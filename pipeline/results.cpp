@@ -218,6 +218,7 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
     json["tet"] = tet_json(best->tet);
     json["fea"] = fea_json(best->fea);
   }
+  json["stress"] = stress_json(result.stress);
   json["seconds"] = seconds_json(result.seconds);
   json["seconds"]["output"] = result.output_seconds;
   json["seconds"]["total"] = result.total_seconds;

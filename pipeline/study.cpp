@@ -172,13 +172,17 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
   last_fields_.stress =
       load_case_stress(last_fields_.mesh, last_fields_.inputs, 0,
                        last_fields_.solution.displacements.front());
-  for (std::string& warning : part_warnings(input_, last_fields_)) {
+  result_.stress = stress_figures(last_fields_);
+  for (std::string& warning :
+       part_warnings(input_, last_fields_, result_.stress)) {
     result_.warnings.push_back(std::move(warning));
   }
   if (options_.estimate_errors) {
     monitor_.progress({.stage = "error", .detail = "dual solutions"});
+    const Timer timer;
     ElementErrors errors =
         estimate_element_errors(input_, last_fields_, model_->elasticity());
+    result_.seconds.fea += timer.seconds();
     if (errors.failure) {
       result_.warnings.push_back("no estimate of the elements' errors: " +
                                  errors.failure->message);

@@ -9,6 +9,7 @@
 #include "pipeline/case.h"
 #include "pipeline/element_errors.h"
 #include "pipeline/forward_model.h"
+#include "pipeline/stress_figures.h"
 #include "pipeline/study_store.h"
 
 namespace meniscus {
@@ -40,6 +41,7 @@ struct RunResult {
   std::vector<Constraint> constraints;
   VectorX response_errors;  // estimated discretisation errors; may be empty
   VectorX design_errors;    // of the matched variables; may be empty
+  std::vector<StressFigures> stress;  // of the best design, per load case
   std::optional<ElementErrors> element_errors;  // the elements' part of them
   int evaluations = 0;  // finite-difference ones included
   int failed_evaluations = 0;

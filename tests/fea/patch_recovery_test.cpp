@@ -1,5 +1,8 @@
 #include "fea/patch_recovery.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <omp.h>
 
@@ -143,6 +146,24 @@ TEST_P(PatchRecovery, KnowsTheCornersThatElementsSurround) {
                   x.z() < 1.5);
     }
   }
+}
+
+TEST_P(PatchRecovery, SurvivesElementsWithoutSizeAndStressesThatAreNoNumbers) {
+  const TetMesh mesh = brick_of(GetParam(), {1.0, 1.0, 1.0}, 2, 2, 2);
+  PointStress points = sampled(mesh, 1);
+  for (Vec3& x : points.position) {
+    x.setConstant(0.5);  // all in one place
+  }
+  const RecoveredStress flat = recover_by_patches(mesh, points);
+  for (const Stress& s : flat.value) {
+    EXPECT_TRUE(std::isfinite(von_mises(s)));
+  }
+  points = sampled(mesh, 1);
+  points.stress[0][0] = std::numeric_limits<double>::quiet_NaN();
+  const RecoveredStress lost = recover_by_patches(mesh, points);
+  EXPECT_TRUE(std::any_of(
+      lost.value.begin(), lost.value.end(),
+      [](const Stress& s) { return std::isnan(s[0]); }));  // not hidden
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, PatchRecovery, testing::Values(1, 2));

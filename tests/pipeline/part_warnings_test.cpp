@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/fea/parts.h"
 
@@ -47,14 +48,17 @@ Case in_newtons() {
   return input;
 }
 
+std::vector<std::string> warnings_of(const EvaluationFields& fields) {
+  return part_warnings(in_newtons(), fields, stress_figures(fields));
+}
+
 TEST(PartWarnings, AreNoneForASoundPart) {
-  EXPECT_THAT(part_warnings(in_newtons(), pulled_bar(101.0, 200.0, 2e5)),
-              IsEmpty());
+  EXPECT_THAT(warnings_of(pulled_bar(101.0, 200.0, 2e5)), IsEmpty());
 }
 
 TEST(PartWarnings, HoldEachBodyAgainstItsOwnYieldStrength) {
   EXPECT_THAT(
-      part_warnings(in_newtons(), pulled_bar(200.0, 80.0, 2e5)),
+      warnings_of(pulled_bar(200.0, 80.0, 2e5)),
       ElementsAre(AllOf(HasSubstr("stress above yield: load case 'pull'"),
                         HasSubstr("reaches 100 MPa"),
                         HasSubstr("'far' yields at 80 MPa"),
@@ -62,8 +66,37 @@ TEST(PartWarnings, HoldEachBodyAgainstItsOwnYieldStrength) {
 }
 
 TEST(PartWarnings, TellOfDeflectionsThatAreNotSmall) {
-  EXPECT_THAT(part_warnings(in_newtons(), pulled_bar(200.0, 200.0, 1e3)),
+  EXPECT_THAT(warnings_of(pulled_bar(200.0, 200.0, 1e3)),
               ElementsAre(HasSubstr("deflection not small")));
+}
+
+TEST(StressFigures, TellThePeakItsPlaceAndHowEvenThePartIs) {
+  const EvaluationFields fields = pulled_bar(200.0, 80.0, 2e5);
+  const std::vector<StressFigures> figures = stress_figures(fields);
+  ASSERT_EQ(figures.size(), 1U);
+  constexpr double kSolver = 1e-6;
+  EXPECT_EQ(figures[0].load_case, "pull");
+  EXPECT_NEAR(figures[0].max_von_mises, 100.0, kSolver);
+  ASSERT_TRUE(figures[0].safety);
+  EXPECT_NEAR(figures[0].safety->factor, 0.8, kSolver);
+  EXPECT_EQ(figures[0].safety->material, "far");
+  EXPECT_GE(figures[0].safety->position.x(), 2.0 - kSolver);
+  EXPECT_NEAR(figures[0].uniformity.von_mises.gini, 0.0, kSolver);
+  EXPECT_NEAR(figures[0].uniformity.von_mises.volume, 4.0, kSolver);
+  const nlohmann::ordered_json json = stress_json(figures);
+  EXPECT_NEAR(json["pull"]["safety_factor"]["smallest"].get<double>(), 0.8,
+              kSolver);
+  EXPECT_EQ(json["pull"]["von_mises"]["histogram"].size(), 50U);
+}
+
+TEST(StressFigures, KnowNoSafetyWithoutAYieldStrength) {
+  EvaluationFields fields = pulled_bar(200.0, 80.0, 2e5);
+  for (Material& material : fields.inputs.materials) {
+    material.yield_strength.reset();
+  }
+  const std::vector<StressFigures> figures = stress_figures(fields);
+  EXPECT_FALSE(figures[0].safety);
+  EXPECT_FALSE(stress_json(figures)["pull"].contains("safety_factor"));
 }
 
 }  // namespace
