@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -42,12 +43,12 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return 0;
 }
 
-// Does the segment p q pass through the triangle, ends off its plane?
-bool pierces(const Vec3& p, const Vec3& q, const Corners& t) {
+// Where the segment p q passes through the triangle, its ends off the plane.
+std::optional<Vec3> pierce(const Vec3& p, const Vec3& q, const Corners& t) {
   const int side_p = orientation(t[0], t[1], t[2], p);
   const int side_q = orientation(t[0], t[1], t[2], q);
   if (side_p * side_q >= 0) {
-    return false;
+    return std::nullopt;
   }
   int positive = 0;
   int negative = 0;
@@ -56,7 +57,14 @@ bool pierces(const Vec3& p, const Vec3& q, const Corners& t) {
     positive += side > 0 ? 1 : 0;
     negative += side < 0 ? 1 : 0;
   }
-  return (positive == 0) != (negative == 0);
+  if ((positive == 0) == (negative == 0)) {
+    return std::nullopt;
+  }
+  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double height_p = std::abs(n.dot(p - t[0]));
+  const double height_q = std::abs(n.dot(q - t[0]));
+  const double sum = height_p + height_q;
+  return sum > 0.0 ? Vec3(p + height_p / sum * (q - p)) : p;
 }
 
 double point_segment2(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -164,79 +172,101 @@ bool folded(const Corners& s, const Corners& t, int apex_s, int apex_t,
          u.normalized().cross(v.normalized()).norm() * height < gap;
 }
 
+struct Shared {
+  std::array<bool, 3> s{};
+  std::array<bool, 3> t{};
+  int count = 0;
+};
+
+Shared shared_corners(const Triangle& f, const Triangle& g) {
+  Shared shared;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (f[i] == g[j]) {
+        shared.s[i] = shared.t[j] = true;
+        ++shared.count;
+      }
+    }
+  }
+  return shared;
+}
+
+std::optional<Vec3> find_crossing(const Corners& s, const Corners& t,
+                                  const Shared& shared) {
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    if (!shared.s[k] && !shared.s[next]) {
+      if (const auto at = pierce(s[k], s[next], t)) {
+        return at;
+      }
+    }
+    if (!shared.t[k] && !shared.t[next]) {
+      if (const auto at = pierce(t[k], t[next], s)) {
+        return at;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+// Facets with one common corner that no plane separates. In one plane they
+// overlap around it; a corner on the other facet makes a fold without crossing.
+bool overlap_at_corner(const Corners& s, const Corners& t, const Shared& shared,
+                       double rounding) {
+  const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
+  bool touching = std::all_of(s.begin(), s.end(), [&](const Vec3& p) {
+    return std::abs(n.dot(p - t[0])) <= rounding;
+  });
+  const double reach = rounding * rounding;
+  for (int k = 0; k < 3; ++k) {
+    touching = touching ||
+               (!shared.s[k] && point_triangle2(s[k], t) <= reach) ||
+               (!shared.t[k] && point_triangle2(t[k], s) <= reach);
+  }
+  return touching;
+}
+
 }  // namespace
 
 PairVerdict judge_pair(const SurfaceMesh& mesh, int f, int g,
                        double tolerance) {
-  const Triangle& tf = mesh.facets[f];
-  const Triangle& tg = mesh.facets[g];
   const Corners s = corners_of(mesh, f);
   const Corners t = corners_of(mesh, g);
-  std::array<bool, 3> shared_s{};
-  std::array<bool, 3> shared_t{};
-  int shared = 0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      if (tf[i] == tg[j]) {
-        shared_s[i] = shared_t[j] = true;
-        ++shared;
-      }
-    }
-  }
+  const Shared shared = shared_corners(mesh.facets[f], mesh.facets[g]);
   PairVerdict verdict;
   verdict.position = (s[0] + s[1] + s[2] + t[0] + t[1] + t[2]) / 6.0;
   // Neighbours touch by right: a thousandth of the tolerance is rounding.
   const double rounding = 1e-3 * tolerance;
-  if (shared >= 3) {
+  const auto crossing_if = [&](bool crosses) {
+    verdict.state = crosses ? PairState::Crossing : PairState::Apart;
+    return verdict;
+  };
+  if (shared.count >= 3) {
     return verdict;  // a duplicate, found elsewhere
   }
-  if (shared == 2) {
+  if (shared.count == 2) {
     const auto apex = [](const std::array<bool, 3>& common) {
       return !common[0] ? 0 : !common[1] ? 1 : 2;
     };
-    if (folded(s, t, apex(shared_s), apex(shared_t), rounding)) {
-      verdict.state = PairState::Crossing;
-    }
+    return crossing_if(folded(s, t, apex(shared.s), apex(shared.t), rounding));
+  }
+  const double gap = shared.count == 0 ? tolerance : rounding;
+  if (separated(s, t, shared.t, gap) || separated(t, s, shared.s, gap)) {
     return verdict;
   }
-  const double gap = shared == 0 ? tolerance : rounding;
-  if (separated(s, t, shared_t, gap) || separated(t, s, shared_s, gap)) {
-    return verdict;
+  if (const auto at = find_crossing(s, t, shared)) {
+    verdict.position = *at;
+    return crossing_if(true);
   }
-  for (int k = 0; k < 3; ++k) {
-    const int next = (k + 1) % 3;
-    const bool s_free = !shared_s[k] && !shared_s[next];
-    const bool t_free = !shared_t[k] && !shared_t[next];
-    if ((s_free && pierces(s[k], s[next], t)) ||
-        (t_free && pierces(t[k], t[next], s))) {
-      verdict.state = PairState::Crossing;
-      return verdict;
-    }
-  }
-  if (shared == 1) {
-    // Not separated and in one plane: they overlap around the shared corner.
-    // A corner on the other facet makes a fold without crossing.
-    const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-    const bool flat = std::all_of(s.begin(), s.end(), [&](const Vec3& p) {
-      return std::abs(n.dot(p - t[0])) <= rounding;
-    });
-    bool touching = flat;
-    for (int k = 0; k < 3; ++k) {
-      const double reach = rounding * rounding;
-      touching = touching ||
-                 (!shared_s[k] && point_triangle2(s[k], t) <= reach) ||
-                 (!shared_t[k] && point_triangle2(t[k], s) <= reach);
-    }
-    verdict.state = touching ? PairState::Crossing : PairState::Apart;
-    return verdict;
+  if (shared.count == 1) {
+    return crossing_if(overlap_at_corner(s, t, shared, rounding));
   }
   const double gap2 = distance2(s, t);
-  if (gap2 <= rounding * rounding) {
-    verdict.state = PairState::Crossing;
-  } else if (gap2 < tolerance * tolerance) {
+  if (gap2 > rounding * rounding && gap2 < tolerance * tolerance) {
     verdict.state = PairState::TooClose;
+    return verdict;
   }
-  return verdict;
+  return crossing_if(gap2 <= rounding * rounding);
 }
 
 bool for_each_near_pair(const SurfaceMesh& mesh, std::vector<int> facets,

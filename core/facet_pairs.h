@@ -14,7 +14,7 @@ enum class PairState { Apart, Crossing, TooClose };
 
 struct PairVerdict {
   PairState state = PairState::Apart;
-  Vec3 position = Vec3::Zero();
+  Vec3 position = Vec3::Zero();  // on both where they cross, else between
 };
 
 /// Facets f and g of finite, sound corners and an area above zero. Touching

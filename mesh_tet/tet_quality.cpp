@@ -164,29 +164,29 @@ TetQuality tet_quality(const TetMesh& mesh) {
 
 std::optional<QualityBreach> find_breach(const TetQuality& quality,
                                          const QualityBounds& bounds) {
-  const auto say = [](const char* measure, double value, const char* relation,
-                      double bound, int element) {
-    return QualityBreach{
-        fmt::format("{} of {:.3g}, {} {:.3g}", measure, value, relation, bound),
-        element};
+  const auto say = [](const char* what, double value, double bound,
+                      int element) {
+    return QualityBreach{fmt::format(fmt::runtime(what), value, bound),
+                         element};
   };
   if (!(quality.min_dihedral_deg >= bounds.min_dihedral_deg)) {
-    return say("a dihedral angle", quality.min_dihedral_deg,
-               "degrees: the least is", bounds.min_dihedral_deg,
+    return say("a dihedral angle of {:.3g} degrees, the least is {:.3g}",
+               quality.min_dihedral_deg, bounds.min_dihedral_deg,
                quality.worst_element);
   }
   if (!(quality.max_dihedral_deg <= bounds.max_dihedral_deg)) {
-    return say("a dihedral angle", quality.max_dihedral_deg,
-               "degrees: the most is", bounds.max_dihedral_deg,
+    return say("a dihedral angle of {:.4g} degrees, the most is {:.4g}",
+               quality.max_dihedral_deg, bounds.max_dihedral_deg,
                quality.largest_dihedral_element);
   }
   if (!(quality.max_aspect <= bounds.max_aspect)) {
-    return say("an aspect", quality.max_aspect, "the most is",
+    return say("an aspect of {:.3g}, the most is {:.3g}", quality.max_aspect,
                bounds.max_aspect, quality.aspect_element);
   }
   if (!(quality.max_radius_edge <= bounds.max_radius_edge)) {
-    return say("a radius-edge ratio", quality.max_radius_edge, "the most is",
-               bounds.max_radius_edge, quality.radius_edge_element);
+    return say("a radius-edge ratio of {:.3g}, the most is {:.3g}",
+               quality.max_radius_edge, bounds.max_radius_edge,
+               quality.radius_edge_element);
   }
   return std::nullopt;
 }

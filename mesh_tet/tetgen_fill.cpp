@@ -15,8 +15,8 @@ namespace meniscus {
 namespace {
 
 /// Largest volume over that of the regular element where sizes vary: the
-/// median element then has the size asked for.
-constexpr double kGradedFactor = 3.0;
+/// median element then has about the size asked for.
+constexpr double kGradedFactor = 3.5;
 
 /// TetGen's switches. Y: the surface stays. F: no list of faces. O9/7o/140:
 /// flips, smoothing and new inner points against dihedral angles above 140

@@ -158,6 +158,23 @@ TEST(MeshChecks, FindsCrossingSpheres) {
   EXPECT_TRUE(check_surface(joined(a, a, Vec3(2.1, 0, 0))).empty());
 }
 
+TEST(MeshChecks, CrossingsLieOnBothSurfaces) {
+  const SurfaceMesh a = shapes::box(Vec3(2, 2, 2), 3);
+  const Vec3 shift(1.1, 0.9, 1.2);
+  int crossings = 0;
+  for (const Finding& f : check_surface(joined(a, a, shift))) {
+    if (f.kind == FindingKind::Crossing) {
+      ++crossings;
+      const auto depth = [](const Vec3& x) {  // of a point in the box
+        return std::min(x.minCoeff(), (Vec3(2, 2, 2) - x).minCoeff());
+      };
+      EXPECT_NEAR(depth(f.position), 0.0, 1e-9);
+      EXPECT_NEAR(depth(f.position - shift), 0.0, 1e-9);
+    }
+  }
+  EXPECT_GT(crossings, 10);
+}
+
 TEST(MeshChecks, FindsBoxesThatLieOnEachOther) {
   const SurfaceMesh a = shapes::box(Vec3::Ones(), 2);
   const auto same = check_surface(joined(a, a, Vec3::Zero()));

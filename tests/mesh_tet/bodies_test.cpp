@@ -196,6 +196,7 @@ TEST(Bodies, TenNodeElementsCurveAtTheInterfaceToo) {
     error[level] = std::abs(region_volume(mesh, 1) - kExact);
   }
   EXPECT_GT(std::log2(error[0] / error[1]), 3.5);
+  RecordProperty("rate", std::to_string(std::log2(error[0] / error[1])));
 }
 
 TEST(Bodies, MotionCarriesTheInterface) {

@@ -76,6 +76,8 @@ TEST(ImproveTets, RandomPartsHaveNoBadElements) {
   constexpr double kLeast = 8.0;  // TetGen alone: 1 degree for the worst part
   constexpr double kMost = 171.0;
   int better = 0;
+  double least = 180.0;
+  double least_raw = 180.0;
   for (int i = 0; i < kParts; ++i) {
     SCOPED_TRACE(i);
     const SurfaceMesh surface = random_part(static_cast<unsigned>(i));
@@ -92,8 +94,12 @@ TEST(ImproveTets, RandomPartsHaveNoBadElements) {
     ASSERT_FALSE(raw.failure) << raw.failure->message;
     EXPECT_GE(result.quality.min_dihedral_deg, raw.quality.min_dihedral_deg);
     better += result.quality.min_dihedral_deg > raw.quality.min_dihedral_deg;
+    least = std::min(least, result.quality.min_dihedral_deg);
+    least_raw = std::min(least_raw, raw.quality.min_dihedral_deg);
   }
   RecordProperty("better", better);
+  RecordProperty("least", std::to_string(least));
+  RecordProperty("least_raw", std::to_string(least_raw));
 }
 
 TEST(ImproveTets, StretchedSurfaceBecomesUsable) {

@@ -49,6 +49,11 @@ double quantile(const std::vector<double>& sorted, double part) {
 
 void expect_size(const std::vector<double>& ratio) {
   ASSERT_FALSE(ratio.empty());
+  for (const int percent : {5, 50, 99}) {
+    ::testing::Test::RecordProperty(
+        "p" + std::to_string(percent),
+        std::to_string(quantile(ratio, 0.01 * percent)));
+  }
   EXPECT_GT(quantile(ratio, 0.5), 0.75);
   EXPECT_LT(quantile(ratio, 0.5), 1.25);
   EXPECT_GT(quantile(ratio, 0.05), 0.4);
