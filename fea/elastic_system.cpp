@@ -17,6 +17,9 @@ namespace {
 
 /// Below this many free unknowns a direct factor is as quick as multigrid.
 constexpr int kDirectUnknowns = 4000;
+/// Up to this many a factor in double precision (a minute, 2 GB) is tried where
+/// multigrid does not converge.
+constexpr int kSecondChance = 200000;
 
 std::string cause(CgEnd end, const CgColumn& column, int most) {
   switch (end) {
@@ -347,15 +350,29 @@ void ElasticSystem::solve_columns(
                     ? to_solver(start->displacements[c])
                     : VectorX(VectorX::Zero(f[c].size())));
   }
-  const std::vector<CgColumn> columns =
-      conjugate_gradients({.pattern = shared_->table.pattern,
-                           .matrix = matrix,
-                           .preconditioner = *group.preconditioner,
-                           .freedom = holding.freedom,
-                           .tolerance = options_.tolerance,
-                           .max_iterations = options_.max_iterations,
-                           .monitor = monitor},
-                          right, u);
+  const auto solve_with = [&](const Preconditioner& preconditioner) {
+    return conjugate_gradients({.pattern = shared_->table.pattern,
+                                .matrix = matrix,
+                                .preconditioner = preconditioner,
+                                .freedom = holding.freedom,
+                                .tolerance = options_.tolerance,
+                                .max_iterations = options_.max_iterations,
+                                .monitor = monitor},
+                               right, u);
+  };
+  std::vector<CgColumn> columns = solve_with(*group.preconditioner);
+  const bool converged = std::all_of(
+      columns.begin(), columns.end(),
+      [](const CgColumn& column) { return column.end == CgEnd::Converged; });
+  if (!converged && multigrid_ && free_unknowns(holding) <= kSecondChance) {
+    // Single precision is lost on supports that hardly hold.
+    for (VectorX& v : u) {
+      v.setZero();
+    }
+    columns = solve_with(
+        *make_direct(shared_->table.pattern, matrix, holding.freedom));
+    result.report.solver = "cholmod after multigrid";
+  }
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const int c = cases[k];
     const VectorX internal = internal_forces(shared_->table, x, laws_, u[k]);
