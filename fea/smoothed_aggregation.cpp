@@ -102,7 +102,7 @@ class Coarsening {
   }
 
  private:
-  Dense<B, B> A(int i, int k) const {
+  Dense<B, B> coupling(int i, int k) const {
     const auto block = block_at<B, B>(fine_.matrix->lower, rows_.block[k]);
     return rows_.node[k] < i ? Dense<B, B>(block)
                              : Dense<B, B>(block.transpose());
@@ -129,7 +129,7 @@ class Coarsening {
         Eigen::Matrix<double, B, 1> sum =
             diagonal(i) * x.template segment<B>(B * i);
         for (int k = rows_.start[i]; k < rows_.start[i + 1]; ++k) {
-          sum += A(i, k) * x.template segment<B>(B * rows_.node[k]);
+          sum += coupling(i, k) * x.template segment<B>(B * rows_.node[k]);
         }
         y.template segment<B>(B * i) = inverse(i) * sum;
       }
@@ -186,7 +186,7 @@ class Coarsening {
       };
       add(i, diagonal(i));
       for (int k = rows_.start[i]; k < rows_.start[i + 1]; ++k) {
-        add(rows_.node[k], A(i, k));
+        add(rows_.node[k], coupling(i, k));
       }
       for (int k = P.start[i]; k < P.start[i + 1]; ++k) {
         auto block = block_at<B, kM>(P_, k);
@@ -257,7 +257,7 @@ class Coarsening {
       };
       add(i, diagonal(i));
       for (int k = rows_.start[i]; k < rows_.start[i + 1]; ++k) {
-        add(rows_.node[k], A(i, k));
+        add(rows_.node[k], coupling(i, k));
       }
     }
   }

@@ -73,6 +73,8 @@ struct Surface {
   std::vector<double> largest;  // volume of each
   std::vector<int> markers;     // of facets; TetGen joins those of one plane
                                 // and marker
+  std::vector<tetgenio::polygon> polygons;
+  std::vector<tetgenio::facet> borders;
 };
 
 Surface read_surface() {
@@ -116,7 +118,7 @@ Surface read_surface() {
 
 /// Borrowed arrays; the process ends before a destructor would free them.
 tetgenio& hand_over(Surface& surface) {
-  auto& in = *new tetgenio;
+  static tetgenio& in = *new tetgenio;
   const auto facet_count = static_cast<std::size_t>(surface.request.facets);
   in.firstnumber = 0;
   in.pointlist = surface.points.data();
@@ -133,8 +135,10 @@ tetgenio& hand_over(Surface& surface) {
     in.numberoftrifaces = static_cast<int>(facet_count);
     return in;
   }
-  auto& polygons = *new std::vector<tetgenio::polygon>(facet_count);
-  auto& facets = *new std::vector<tetgenio::facet>(facet_count);
+  std::vector<tetgenio::polygon>& polygons = surface.polygons;
+  std::vector<tetgenio::facet>& facets = surface.borders;
+  polygons.resize(facet_count);
+  facets.resize(facet_count);
   for (std::size_t f = 0; f < facet_count; ++f) {
     polygons[f] = {surface.facets.data() + 3 * f, 3};
     facets[f] = {&polygons[f], 1, nullptr, 0};
@@ -148,7 +152,7 @@ tetgenio& hand_over(Surface& surface) {
 
 void fill(Surface& surface, int out) {
   tetgenio& in = hand_over(surface);
-  auto& result = *new tetgenio;
+  static tetgenio& result = *new tetgenio;
   tetrahedralize(surface.request.switches, &in, &result);
 
   Reply reply;
