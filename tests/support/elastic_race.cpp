@@ -66,11 +66,11 @@ ElasticPart tube(double scale) {
 }
 
 ElasticPart block(double scale) {
-  return loaded(shapes::straight_quadratic(tet_block(26.0, scale)), "x0", "x1");
+  return loaded(shapes::straight_quadratic(tet_block(19.5, scale)), "x0", "x1");
 }
 
 ElasticPart linear_block(double scale) {
-  return loaded(tet_block(26.0, scale), "x0", "x1");
+  return loaded(tet_block(19.5, scale), "x0", "x1");
 }
 
 double cpu_seconds() {
@@ -132,7 +132,7 @@ const std::vector<ElasticWork>& elastic_works() {
 }
 
 ElasticPart large_block(double scale) {
-  return loaded(shapes::straight_quadratic(tet_block(42.0, scale)), "x0", "x1");
+  return loaded(shapes::straight_quadratic(tet_block(31.4, scale)), "x0", "x1");
 }
 
 ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads) {
