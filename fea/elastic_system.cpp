@@ -18,7 +18,7 @@ namespace {
 /// Below this many free unknowns a direct factor is as quick as multigrid.
 constexpr int kDirectUnknowns = 4000;
 /// Up to this many a factor in double precision (a minute, 2 GB) is tried where
-/// multigrid does not converge.
+/// multigrid is not positive definite.
 constexpr int kSecondChance = 200000;
 
 std::string cause(CgEnd end, const CgColumn& column, int most) {
@@ -361,10 +361,10 @@ void ElasticSystem::solve_columns(
                                right, u);
   };
   std::vector<CgColumn> columns = solve_with(*group.preconditioner);
-  const bool converged = std::all_of(
+  const bool lost = std::any_of(
       columns.begin(), columns.end(),
-      [](const CgColumn& column) { return column.end == CgEnd::Converged; });
-  if (!converged && multigrid_ && free_unknowns(holding) <= kSecondChance) {
+      [](const CgColumn& column) { return column.end == CgEnd::NotPositive; });
+  if (lost && multigrid_ && free_unknowns(holding) <= kSecondChance) {
     // Single precision is lost on supports that hardly hold.
     for (VectorX& v : u) {
       v.setZero();
