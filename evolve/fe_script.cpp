@@ -55,14 +55,17 @@ class Runner {
 
   void run() {
     run(statements_);
-    const auto found = macros_.find(options_.macro);
+    if (!options_.macro) {
+      return;
+    }
+    const auto found = macros_.find(*options_.macro);
     if (found == macros_.end()) {
       std::vector<std::string> known;
       for (const auto& [macro, body] : macros_) {
         known.push_back(macro);
       }
       throw InvalidInput(fmt::format(
-          "{}: there is no macro '{}'; it has: {}", name_, options_.macro,
+          "{}: there is no macro '{}'; it has: {}", name_, *options_.macro,
           known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
     }
     run(*found->second);

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "core/monitor.h"
@@ -22,7 +23,7 @@
 namespace meniscus {
 
 struct FeScriptOptions {
-  std::string macro = "gogo";
+  std::optional<std::string> macro;  // none: the `read` section only
   long most_steps = 1'000'000;  // commands and loop rounds in all
   Monitor* monitor = nullptr;
 };
@@ -33,7 +34,8 @@ struct FeScriptResult {
   int iterations = 0;  // of g and hessian
 };
 
-/// Runs the commands of the file's `read` section, then the macro. Throws
+/// Runs the commands of the file's `read` section, then the macro if one is
+/// named. Throws
 /// InvalidInput "file:line:column: what" for commands and names that are not
 /// known, for wrong syntax, endless loops and a macro that is not there.
 FeScriptResult run_fe_script(const FeFile& file,

@@ -13,6 +13,7 @@
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
 #include "evolve/pop.h"
+#include "evolve/pop_search.h"
 #include "evolve/slide_vertices.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
@@ -24,7 +25,6 @@ namespace {
 
 constexpr double kEnoughFacets = 2000.0;
 constexpr double kDescentResidual = 1e-6;  // x tension x edge
-constexpr int kMostPops = 10;
 // Facets below which vertices slide: there what facets miss is more than a
 // rounding, and the shapes that sliding leaves do not matter.
 constexpr std::size_t kSlid = 2000;
@@ -104,17 +104,12 @@ FilmState descend_by_levels(FilmComplex& complex, int refinements,
   return state_after(complex, report, steps);
 }
 
-FilmState run_macro(const FeFile& file, const DatafileOptions& options,
-                    DatafileResult& result) {
-  FeScriptResult script =
-      run_fe_script(file, options.parameters,
-                    {.macro = *options.macro, .monitor = options.monitor});
-  result.complex = std::move(script.complex);
-  result.printed = std::move(script.output);
+/// The film as it is, with the verdict on it.
+FilmState judge_macro(FilmComplex& complex, int iterations) {
   DescentReport now =
-      descend_to_rest(result.complex, {.max_steps = 0, .most_restore = 0.0});
+      descend_to_rest(complex, {.max_steps = 0, .most_restore = 0.0});
   now.message = "the macro ended here";
-  FilmState state = state_after(result.complex, now, script.iterations);
+  FilmState state = state_after(complex, now, iterations);
   if (state.report.residual > state.report.residual_bound) {
     state.report.verdict = fmt::format(
         "not at rest: the macro ended at a residual of {:.3g} (bound {:.3g})",
@@ -143,27 +138,33 @@ FilmState settle(FilmComplex& complex, const FindOptions& options) {
   return lower;
 }
 
-/// Settled, popped and settled again. Films without junctions to pop are
-/// settled once.
+/// Settled; where junctions are to pop or there is no stable film, the
+/// histories of pops are searched from the start and from the start at rest,
+/// and the lowest films that they end at are settled in turn.
 FilmState settle_and_pop(FilmComplex& complex, const FindOptions& options,
                          int& popped) {
-  FilmComplex coarse = complex;
+  FilmComplex raw = complex;
   FilmState state = settle(complex, options);
-  for (int round = 0; round < kMostPops; ++round) {
-    // The start is popped: its refinements are those of the popped film.
-    FilmComplex settled = coarse;
-    equiangulate(settled, FlipRule::AnglesOnly);
-    find_equilibrium(settled, {.settle = options.settle});
-    const int here = pop_edges(settled).popped + pop_vertices(settled).popped;
-    if (here == 0) {
-      break;
-    }
-    popped += here;
-    coarse = settled;
-    complex = std::move(settled);
-    state = settle(complex, options);
+  FilmComplex rested = raw;
+  equiangulate(rested, FlipRule::AnglesOnly);
+  find_equilibrium(rested, {.settle = options.settle});
+  FilmComplex probe = rested;
+  if (!state.failure &&
+      pop_edges(probe).popped + pop_vertices(probe).popped == 0) {
+    return state;
   }
-  return state;
+  std::optional<FilmState> lowest;
+  for (PoppedFilm& film :
+       search_pops({raw, rested}, {.monitor = options.settle.monitor})) {
+    FilmState found = settle(film.complex, options);
+    if (!found.failure &&
+        (!lowest || found.report.energy < lowest->report.energy)) {
+      lowest = std::move(found);
+      complex = std::move(film.complex);
+      popped = film.popped;
+    }
+  }
+  return lowest ? std::move(*lowest) : std::move(state);
 }
 
 }  // namespace
@@ -172,12 +173,17 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
                                const DatafileOptions& options) {
   const Timer timer;
   const FeFile file = read_fe(read_file(path), path.filename().string());
+  // Commands of the file that stand outside its macros are part of the film.
+  FeScriptResult script =
+      run_fe_script(file, options.parameters,
+                    {.macro = options.macro, .monitor = options.monitor});
   DatafileResult result;
-  result.complex = complex_of(file, options.parameters);
+  result.complex = std::move(script.complex);
+  result.printed = std::move(script.output);
   const int refinements = refinements_of(result.complex, options);
   FilmState state;
   if (options.macro) {
-    state = run_macro(file, options, result);
+    state = judge_macro(result.complex, script.iterations);
   } else if (options.method == DatafileMethod::Newton) {
     const FindOptions find{.refinements = refinements,
                            .settle = {.monitor = options.monitor}};

@@ -51,7 +51,7 @@ read
 )";
 
 FeScriptResult run(const std::string& commands,
-                   const FeScriptOptions& options = {}) {
+                   const FeScriptOptions& options = {.macro = "gogo"}) {
   static std::vector<std::unique_ptr<FeFile>> keep;
   keep.push_back(std::make_unique<FeFile>(read_fe(kCube + commands, "a.fe")));
   return run_fe_script(*keep.back(), {}, options);
@@ -62,7 +62,7 @@ std::string output_of(const std::string& body) {
 }
 
 std::string message_of(const std::string& commands,
-                       const FeScriptOptions& options = {}) {
+                       const FeScriptOptions& options = {.macro = "gogo"}) {
   try {
     run(commands, options);
   } catch (const InvalidInput& error) {
@@ -162,7 +162,7 @@ TEST(FeScript, RefusesByNameAndLine) {
 }
 
 TEST(FeScript, EndlessMacrosAreStopped) {
-  FeScriptOptions few;
+  FeScriptOptions few{.macro = "gogo"};
   few.most_steps = 1000;
   EXPECT_THAT(message_of("gogo := { while 1 do nn := 1 }", few),
               HasSubstr("does not end within 1000 commands"));

@@ -14,12 +14,10 @@
 
 #include "core/child_process.h"
 #include "core/find_program.h"
-#include "evolve/descent.h"
 #include "evolve/fe_complex.h"
 #include "evolve/find_equilibrium.h"
-#include "evolve/grooming.h"
-#include "evolve/pop.h"
 #include "pipeline/datafile.h"
+#include "tests/support/not_here.h"
 #include "tests/support/temp_folder.h"
 
 namespace meniscus {
@@ -101,7 +99,7 @@ class EvolverDump : public ::testing::TestWithParam<Dumped> {};
 TEST_P(EvolverDump, IsAtRest) {
   const Dumped& sampled = GetParam();
   if (const std::string why = missing(sampled.name); !why.empty()) {
-    GTEST_SKIP() << why;
+    MENISCUS_NOT_HERE(why);
   }
   const Ran ran = run_evolver(sample(sampled.name), sampled.commands);
   const FilmComplex complex = complex_of(read_fe(ran.dump, "film.dmp"));
@@ -157,7 +155,7 @@ class RawSample : public ::testing::TestWithParam<Raw> {};
 TEST_P(RawSample, EndsNoHigherThanEvolver) {
   const Raw& raw = GetParam();
   if (const std::string why = missing(raw.name); !why.empty()) {
-    GTEST_SKIP() << why;
+    MENISCUS_NOT_HERE(why);
   }
   const std::string text =
       raw.prepare.empty() ? sample(raw.name)
@@ -199,18 +197,19 @@ INSTANTIATE_TEST_SUITE_P(
 // depend on their facets.
 TEST(EvolverSamples, CatPopsIntoTwoPolygons) {
   if (const std::string why = missing("cat"); !why.empty()) {
-    GTEST_SKIP() << why;
+    MENISCUS_NOT_HERE(why);
   }
   const Ran ran = run_evolver(
       sample("cat"),
       "r; u; r; g 400; t .05; o; g 20; hessian_seek; hessian_seek;");
-  FilmComplex complex = complex_of(read_fe(sample("cat"), "cat.fe"));
-  const FilmState found = find_equilibrium(complex, {.refinements = 2});
+  const TempFolder folder;
+  std::ofstream(folder / "cat.fe") << sample("cat");
+  const DatafileResult found =
+      evolve_datafile(folder / "cat.fe", {.refinements = 2});
   ASSERT_TRUE(found.failure);
   EXPECT_EQ(found.failure->kind, FailureKind::FilmPinched);
-  collapse_tiny_edges(complex, 0.1);
-  EXPECT_EQ(pop_vertices(complex).popped, 1);
-  const FilmState disks = find_equilibrium(complex, {});
+  const DatafileResult disks =
+      evolve_datafile(folder / "cat.fe", {.refinements = 2, .pop = true});
   EXPECT_FALSE(disks.failure) << disks.report.verdict;
   EXPECT_LT(disks.report.energy, (1.0 + kAbove) * ran.energy);
   constexpr double kRadius = 1.5088795;
@@ -219,52 +218,24 @@ TEST(EvolverSamples, CatPopsIntoTwoPolygons) {
   EXPECT_NEAR(disks.report.energy, polygons, kSame * polygons);
 }
 
-/// Commands of one letter on a film, after Surface Evolver's: o pop, g 20
-/// steps down in every direction, t and T remove edges under 0.1 and 0.3, u
-/// flip; then Newton.
-FilmState popped(FilmComplex complex, const std::string& commands) {
-  for (const char command : commands) {
-    if (command == 'o') {
-      pop_edges(complex);
-      pop_vertices(complex);
-    } else if (command == 'g') {
-      const FilmEnergy energy(complex, FilmMotion::Anywhere);
-      Points& points = complex.mesh.points;
-      descend(energy, targets_of(complex), energy.space().directions(points),
-              points,
-              {.method = DescentMethod::ConjugateGradients, .max_steps = 20});
-    } else if (command == 'u') {
-      equiangulate(complex);
-    } else {
-      collapse_tiny_edges(complex, command == 't' ? 0.1 : 0.3);
-    }
-  }
-  return find_equilibrium(complex, {});
-}
-
-// octa.fe: the raw film is a saddle that must pop, edges first. At which of
-// several films at rest that ends is a matter of history: Surface Evolver's
-// macro is the record of a trial sequence. These were found by a random search
-// over such commands; the best of a few is taken.
+// octa.fe: the raw film is a saddle that must pop. At which of several films at
+// rest that ends is a matter of history: Surface Evolver's macro is the record
+// of a trial sequence. Here histories are searched.
 TEST(EvolverSamples, OctaPopsToTheCentralPoint) {
   if (const std::string why = missing("octa"); !why.empty()) {
-    GTEST_SKIP() << why;
+    MENISCUS_NOT_HERE(why);
   }
   const Ran ran =
       run_evolver(sample("octa"), "gogo; hessian_seek; hessian_seek;");
-  const FilmComplex raw = complex_of(read_fe(sample("octa"), "octa.fe"));
-  double least = INFINITY;
-  for (const char* commands :
-       {"ogtogTogutogutogg", "ogtoguTogutogtogg", "ogtoguTogutogutogg"}) {
-    const FilmState found = popped(raw, commands);
-    if (!found.failure) {
-      least = std::min(least, found.report.energy);
-    }
-  }
+  const TempFolder folder;
+  std::ofstream(folder / "octa.fe") << sample("octa");
+  const DatafileResult found =
+      evolve_datafile(folder / "octa.fe", {.pop = true});
+  EXPECT_FALSE(found.failure) << found.report.verdict;
   // All films are flat: their area does not depend on their facets.
   constexpr double kFlat = 16.0 * std::numbers::sqrt2;
   EXPECT_NEAR(ran.energy, kFlat, kSame * kFlat);
-  EXPECT_NEAR(least, kFlat, kSame * kFlat);
+  EXPECT_NEAR(found.report.energy, kFlat, kSame * kFlat);
 }
 
 // tankex.fe: contact angles of 45 degrees in a corner of 90 keep no film away
@@ -272,7 +243,7 @@ TEST(EvolverSamples, OctaPopsToTheCentralPoint) {
 // film thins at the corner for as long as it is let, and says nothing.
 TEST(EvolverSamples, TankexRunsOutOfItsTank) {
   if (const std::string why = missing("tankex"); !why.empty()) {
-    GTEST_SKIP() << why;
+    MENISCUS_NOT_HERE(why);
   }
   const Ran ran = run_evolver(sample("tankex"), "g 5; r; g 5; r; g 5;");
   const FilmComplex dumped = complex_of(read_fe(ran.dump, "tankex.dmp"));

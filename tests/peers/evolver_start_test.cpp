@@ -9,6 +9,7 @@
 #include "tests/support/delaunay_curves.h"
 #include "tests/support/evolver.h"
 #include "tests/support/film_complexes.h"
+#include "tests/support/not_here.h"
 
 namespace meniscus {
 namespace {
@@ -41,7 +42,7 @@ void expect_same_film(const FilmComplex& start,
                       const std::vector<double>& volumes,
                       const Expected& expected) {
   if (!have_evolver()) {
-    GTEST_SKIP() << "evolver (Debian package evolver) is not installed";
+    MENISCUS_NOT_HERE("evolver (Debian package evolver) is not installed");
   }
   const EvolverRun run = run_evolver(start, {.refinements = 2,
                                              .script = EvolverScript::Typical,

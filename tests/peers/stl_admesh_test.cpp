@@ -6,6 +6,7 @@
 #include "core/child_process.h"
 #include "core/find_program.h"
 #include "io/stl.h"
+#include "tests/support/not_here.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 TEST(StlAdmesh, FindsTheSurfaceClosedAndItsVolume) {
   if (!find_program("admesh")) {
-    GTEST_SKIP() << "admesh is not installed";
+    MENISCUS_NOT_HERE("admesh is not installed");
   }
   const TempFolder folder;
   const SurfaceMesh mesh = shapes::sphere(25.0, 3);

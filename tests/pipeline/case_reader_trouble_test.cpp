@@ -9,7 +9,7 @@
 #include "case_text.h"
 #include "core/error.h"
 #include "pipeline/case_reader.h"
-#include "scratch_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace meniscus {
 namespace {
@@ -363,17 +363,18 @@ TEST(CaseTrouble, ASurfaceHasTwoSides) {
 }
 
 TEST(CaseTrouble, FilesThatAreNone) {
-  const ScratchFolder folder("cases");
-  EXPECT_THAT(read_case_file(folder.path() + "/no.toml").problems,
-              ElementsAre(folder.path() + "/no.toml: there is no such file"));
-  EXPECT_THAT(read_case_file(folder.path()).problems,
+  const TempFolder folder;
+  EXPECT_THAT(
+      read_case_file(folder.path().string() + "/no.toml").problems,
+      ElementsAre(folder.path().string() + "/no.toml: there is no such file"));
+  EXPECT_THAT(read_case_file(folder.path().string()).problems,
               ElementsAre(HasSubstr("this is a folder; name the case file")));
   EXPECT_THAT(read_case_file("").problems,
               ElementsAre(HasSubstr("there is no such file")));
   EXPECT_THAT(problems_of(""), ElementsAre(HasSubstr("the file is empty")));
   EXPECT_THAT(problems_of(" \r\n\t\n"),
               ElementsAre(HasSubstr("the file is empty")));
-  const std::string large = folder.path() + "/large.toml";
+  const std::string large = folder.path().string() + "/large.toml";
   std::ofstream(large) << std::string(10U << 20U, 'x');
   EXPECT_THAT(read_case_file(large).problems,
               ElementsAre(HasSubstr("larger than 4 MB: not a case file")));

@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 
 #include "core/error.h"
-#include "tests/pipeline/scratch_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace meniscus {
 namespace {
@@ -45,39 +45,40 @@ pid_t locked_by_child(const std::string& folder) {
 }
 
 TEST(RunLock, RefusesASecondInTheSameProcess) {
-  const ScratchFolder folder("lock");
+  const TempFolder folder;
   {
-    RunLock lock(folder.path());
-    EXPECT_THAT(refusal(folder.path()), HasSubstr("this process"));
+    RunLock lock(folder.path().string());
+    EXPECT_THAT(refusal(folder.path().string()), HasSubstr("this process"));
     const RunLock moved(std::move(lock));
-    EXPECT_NE(refusal(folder.path()), "");
+    EXPECT_NE(refusal(folder.path().string()), "");
   }
-  EXPECT_EQ(refusal(folder.path()), "");
+  EXPECT_EQ(refusal(folder.path().string()), "");
 }
 
 TEST(RunLock, NamesTheProcessThatHasIt) {
-  const ScratchFolder folder("lock");
-  const pid_t child = locked_by_child(folder.path());
-  EXPECT_THAT(refusal(folder.path()),
+  const TempFolder folder;
+  const pid_t child = locked_by_child(folder.path().string());
+  EXPECT_THAT(refusal(folder.path().string()),
               HasSubstr(fmt::format("process {} on ", child)));
-  EXPECT_NE(refusal(folder.path()), "");  // refusing has not dropped it
+  EXPECT_NE(refusal(folder.path().string()),
+            "");  // refusing has not dropped it
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  EXPECT_EQ(refusal(folder.path()), "");
+  EXPECT_EQ(refusal(folder.path().string()), "");
 }
 
 TEST(RunLock, AForkedChildDoesNotKeepIt) {
-  const ScratchFolder folder("lock");
+  const TempFolder folder;
   pid_t child = 0;
   {
-    const RunLock lock(folder.path());
+    const RunLock lock(folder.path().string());
     child = fork();
     if (child == 0) {
       pause();
       _exit(0);
     }
   }
-  const pid_t other = locked_by_child(folder.path());
+  const pid_t other = locked_by_child(folder.path().string());
   EXPECT_GT(other, 0);
   for (const pid_t pid : {child, other}) {
     kill(pid, SIGKILL);
@@ -86,13 +87,13 @@ TEST(RunLock, AForkedChildDoesNotKeepIt) {
 }
 
 TEST(RunLock, MakesTheFolderAndRefusesAFile) {
-  const ScratchFolder folder("lock");
-  const std::string inner = folder.path() + "/Träger 1/run";
+  const TempFolder folder;
+  const std::string inner = folder.path().string() + "/Träger 1/run";
   { const RunLock lock(inner); }
   EXPECT_TRUE(std::filesystem::exists(inner + "/.lock"));
-  std::ofstream(folder.path() + "/file") << "x";
-  EXPECT_THROW(RunLock(folder.path() + "/file"), IoError);
-  EXPECT_THROW(RunLock(folder.path() + "/file/below"), IoError);
+  std::ofstream(folder.path().string() + "/file") << "x";
+  EXPECT_THROW(RunLock(folder.path().string() + "/file"), IoError);
+  EXPECT_THROW(RunLock(folder.path().string() + "/file/below"), IoError);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include "tests/pipeline/scratch_folder.h"
+#include "tests/support/temp_folder.h"
 
 namespace meniscus {
 namespace {
@@ -51,8 +51,8 @@ EvaluationRecord record_of(int i) {
   return record;
 }
 
-std::string file_of(const ScratchFolder& folder) {
-  return folder.path() + "/study.sqlite";
+std::string file_of(const TempFolder& folder) {
+  return folder.path().string() + "/study.sqlite";
 }
 
 std::string contents(const std::string& path) {
@@ -79,7 +79,7 @@ void run_sql(const std::string& path, const char* sql) {
 }
 
 TEST(StudyStore, BringsBackTheSameBits) {
-  const ScratchFolder folder("bits");
+  const TempFolder folder;
   EvaluationRecord record = record_of(1);
   record.inputs = pair(5e-324, -1.0 / 3.0);
   record.responses[0] = std::numeric_limits<double>::max();
@@ -89,11 +89,11 @@ TEST(StudyStore, BringsBackTheSameBits) {
   failed.mismatch.reset();
   failed.failure = Failure{FailureKind::FilmPinched, "neck at (1, 2, 3)"};
   {
-    StudyStore store = StudyStore::start(folder.path(), kMeta);
+    StudyStore store = StudyStore::start(folder.path().string(), kMeta);
     EXPECT_EQ(store.append(record), 1);
     EXPECT_EQ(store.append(failed), 2);
   }
-  const StudyStore store = StudyStore::read(folder.path());
+  const StudyStore store = StudyStore::read(folder.path().string());
   EXPECT_EQ(store.meta().case_text, kMeta.case_text);
   EXPECT_EQ(store.meta().schema_version, 1);
   EXPECT_EQ(store.meta().created.size(), 20U) << store.meta().created;
@@ -117,8 +117,8 @@ TEST(StudyStore, BringsBackTheSameBits) {
 }
 
 TEST(StudyStore, FindsByExactBitsOnly) {
-  const ScratchFolder folder("find");
-  StudyStore store = StudyStore::start(folder.path(), kMeta);
+  const TempFolder folder;
+  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
   EvaluationRecord record = record_of(1);
   record.inputs = pair(0.0, 0.3);
   store.append(record);
@@ -130,65 +130,65 @@ TEST(StudyStore, FindsByExactBitsOnly) {
 }
 
 TEST(StudyStore, ResumesWhatIsThereOrStarts) {
-  const ScratchFolder folder("resume");
-  { StudyStore::resume(folder.path(), kMeta).append(record_of(1)); }
-  StudyStore store = StudyStore::resume(folder.path(), kMeta);
+  const TempFolder folder;
+  { StudyStore::resume(folder.path().string(), kMeta).append(record_of(1)); }
+  StudyStore store = StudyStore::resume(folder.path().string(), kMeta);
   EXPECT_EQ(store.size(), 1);
   EXPECT_EQ(store.append(record_of(2)), 2);
 }
 
 TEST(StudyStore, RefusesToResumeAnotherCase) {
-  const ScratchFolder folder("case");
-  { StudyStore::start(folder.path(), kMeta).append(record_of(1)); }
+  const TempFolder folder;
+  { StudyStore::start(folder.path().string(), kMeta).append(record_of(1)); }
   StudyMeta other = kMeta;
   other.case_hash = "xyz";
   EXPECT_THAT(
       message_of<InvalidInput>(
-          [&] { StudyStore::resume(folder.path(), other); }),
+          [&] { StudyStore::resume(folder.path().string(), other); }),
       AllOf(HasSubstr("another case"), HasSubstr("abc"), HasSubstr("xyz")));
-  EXPECT_EQ(StudyStore::read(folder.path()).size(), 1);
+  EXPECT_EQ(StudyStore::read(folder.path().string()).size(), 1);
 }
 
 TEST(StudyStore, StartKeepsOlderStudies) {
-  const ScratchFolder folder("older");
+  const TempFolder folder;
   for (int i = 1; i <= 3; ++i) {
-    StudyStore store = StudyStore::start(folder.path(), kMeta);
+    StudyStore store = StudyStore::start(folder.path().string(), kMeta);
     EXPECT_EQ(store.size(), 0);
     for (int k = 0; k < i; ++k) {
       store.append(record_of(k + 1));
     }
   }
-  EXPECT_EQ(StudyStore::read(folder.path()).size(), 3);
+  EXPECT_EQ(StudyStore::read(folder.path().string()).size(), 3);
   for (int i = 1; i <= 2; ++i) {
-    const ScratchFolder copy("copy");
-    fs::copy(fmt::format("{}/study-{}.sqlite", folder.path(), i),
+    const TempFolder copy;
+    fs::copy(fmt::format("{}/study-{}.sqlite", folder.path().string(), i),
              file_of(copy));
-    EXPECT_EQ(StudyStore::read(copy.path()).size(), i);
+    EXPECT_EQ(StudyStore::read(copy.path().string()).size(), i);
   }
 }
 
 TEST(StudyStore, TwoRunsInOneFolderAreRefused) {
-  const ScratchFolder folder("two");
-  StudyStore store = StudyStore::start(folder.path(), kMeta);
+  const TempFolder folder;
+  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
   EXPECT_THAT(message_of<InvalidInput>(
-                  [&] { StudyStore::start(folder.path(), kMeta); }),
+                  [&] { StudyStore::start(folder.path().string(), kMeta); }),
               HasSubstr("another run"));
-  EXPECT_THROW(StudyStore::resume(folder.path(), kMeta), InvalidInput);
+  EXPECT_THROW(StudyStore::resume(folder.path().string(), kMeta), InvalidInput);
   EXPECT_EQ(store.append(record_of(1)), 1);
 }
 
 TEST(StudyStore, CanBeReadWhileARunWrites) {
-  const ScratchFolder folder("watch");
-  StudyStore store = StudyStore::start(folder.path(), kMeta);
+  const TempFolder folder;
+  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
   store.append(record_of(1));
-  StudyStore reader = StudyStore::read(folder.path());
+  StudyStore reader = StudyStore::read(folder.path().string());
   EXPECT_EQ(reader.size(), 1);
   store.append(record_of(2));
   EXPECT_EQ(reader.size(), 2);
   EXPECT_THROW(reader.append(record_of(3)), InvalidInput);
-  EXPECT_THAT(
-      message_of<IoError>([&] { StudyStore::read(folder.path() + "/none"); }),
-      HasSubstr("no study"));
+  EXPECT_THAT(message_of<IoError>(
+                  [&] { StudyStore::read(folder.path().string() + "/none"); }),
+              HasSubstr("no study"));
 }
 
 // Writes records until it is killed, telling each number once it is stored.
@@ -203,14 +203,14 @@ TEST(StudyStore, CanBeReadWhileARunWrites) {
 }
 
 TEST(StudyStore, KillLosesNothingFinished) {
-  const ScratchFolder folder("kill");
+  const TempFolder folder;
   int before = 0;
   for (int round = 0; round < 12; ++round) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     const pid_t child = fork();
     if (child == 0) {
-      write_forever(folder.path(), ends[1]);
+      write_forever(folder.path().string(), ends[1]);
     }
     close(ends[1]);
     // From the creation of the file to the middle of the work.
@@ -223,7 +223,7 @@ TEST(StudyStore, KillLosesNothingFinished) {
       told = number;
     }
     close(ends[0]);
-    const StudyStore store = StudyStore::resume(folder.path(), kMeta);
+    const StudyStore store = StudyStore::resume(folder.path().string(), kMeta);
     const std::vector<EvaluationRecord> all = store.all();
     // The one under way when the kill came may be there or not.
     EXPECT_GE(static_cast<int>(all.size()), told);
@@ -239,62 +239,67 @@ TEST(StudyStore, KillLosesNothingFinished) {
 }
 
 TEST(StudyStore, ADamagedFileIsNamedAndLeftAlone) {
-  const ScratchFolder folder("damage");
+  const TempFolder folder;
   const std::string garbage(5000, '\x5a');
   std::ofstream(file_of(folder), std::ios::binary) << garbage;
-  EXPECT_THAT(
-      message_of<IoError>([&] { StudyStore::resume(folder.path(), kMeta); }),
-      AllOf(HasSubstr("study.sqlite is damaged"), HasSubstr("left")));
-  EXPECT_THROW(StudyStore::read(folder.path()), IoError);
+  EXPECT_THAT(message_of<IoError>(
+                  [&] { StudyStore::resume(folder.path().string(), kMeta); }),
+              AllOf(HasSubstr("study.sqlite is damaged"), HasSubstr("left")));
+  EXPECT_THROW(StudyStore::read(folder.path().string()), IoError);
   EXPECT_EQ(contents(file_of(folder)), garbage);
-  EXPECT_EQ(StudyStore::start(folder.path(), kMeta).append(record_of(1)), 1);
-  EXPECT_EQ(contents(folder.path() + "/study-1.sqlite"), garbage);
+  EXPECT_EQ(
+      StudyStore::start(folder.path().string(), kMeta).append(record_of(1)), 1);
+  EXPECT_EQ(contents(folder.path().string() + "/study-1.sqlite"), garbage);
 }
 
 TEST(StudyStore, ATruncatedFileIsNamedAndLeftAlone) {
-  const ScratchFolder folder("truncated");
+  const TempFolder folder;
   {
-    StudyStore store = StudyStore::start(folder.path(), kMeta);
+    StudyStore store = StudyStore::start(folder.path().string(), kMeta);
     for (int i = 1; i <= 100; ++i) {
       store.append(record_of(i));
     }
   }
   fs::resize_file(file_of(folder), fs::file_size(file_of(folder)) / 2);
   const std::string half = contents(file_of(folder));
-  EXPECT_THAT(
-      message_of<IoError>([&] { StudyStore::resume(folder.path(), kMeta); }),
-      HasSubstr("damaged"));
+  EXPECT_THAT(message_of<IoError>(
+                  [&] { StudyStore::resume(folder.path().string(), kMeta); }),
+              HasSubstr("damaged"));
   EXPECT_EQ(contents(file_of(folder)), half);
 }
 
 TEST(StudyStore, AnEmptyFileIsAsGoodAsNone) {
-  const ScratchFolder folder("empty");
+  const TempFolder folder;
   std::ofstream(file_of(folder), std::ios::binary) << "";
-  EXPECT_THAT(message_of<IoError>([&] { StudyStore::read(folder.path()); }),
-              HasSubstr("no study yet"));
-  EXPECT_EQ(StudyStore::resume(folder.path(), kMeta).append(record_of(1)), 1);
+  EXPECT_THAT(
+      message_of<IoError>([&] { StudyStore::read(folder.path().string()); }),
+      HasSubstr("no study yet"));
+  EXPECT_EQ(
+      StudyStore::resume(folder.path().string(), kMeta).append(record_of(1)),
+      1);
 }
 
 TEST(StudyStore, AnotherVersionOrProgramIsRefusedByName) {
-  const ScratchFolder folder("version");
-  EXPECT_EQ(StudyStore::start(folder.path(), kMeta).append(record_of(1)), 1);
+  const TempFolder folder;
+  EXPECT_EQ(
+      StudyStore::start(folder.path().string(), kMeta).append(record_of(1)), 1);
   run_sql(file_of(folder), "PRAGMA user_version = 7");
   EXPECT_THAT(message_of<InvalidInput>(
-                  [&] { StudyStore::resume(folder.path(), kMeta); }),
+                  [&] { StudyStore::resume(folder.path().string(), kMeta); }),
               AllOf(HasSubstr("schema version 7"), HasSubstr("version 1")));
-  EXPECT_THROW(StudyStore::read(folder.path()), InvalidInput);
+  EXPECT_THROW(StudyStore::read(folder.path().string()), InvalidInput);
 
-  const ScratchFolder foreign("foreign");
+  const TempFolder foreign;
   run_sql(file_of(foreign), "CREATE TABLE birds (name TEXT)");
   EXPECT_THAT(message_of<InvalidInput>(
-                  [&] { StudyStore::resume(foreign.path(), kMeta); }),
+                  [&] { StudyStore::resume(foreign.path().string(), kMeta); }),
               HasSubstr("another program"));
 }
 
 TEST(StudyStore, ALockedDatabaseIsWaitedForAndThenNamed) {
-  const ScratchFolder folder("locked");
+  const TempFolder folder;
   StudyStore store =
-      StudyStore::start(folder.path(), kMeta, {.busy_timeout = 0.05});
+      StudyStore::start(folder.path().string(), kMeta, {.busy_timeout = 0.05});
   sqlite3* other = nullptr;
   ASSERT_EQ(sqlite3_open(file_of(folder).c_str(), &other), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr),
@@ -307,7 +312,7 @@ TEST(StudyStore, ALockedDatabaseIsWaitedForAndThenNamed) {
 }
 
 TEST(StudyStore, AFullDiskIsNamedAndKeepsWhatIsFinished) {
-  const ScratchFolder folder("full");
+  const TempFolder folder;
   const pid_t child = fork();
   if (child == 0) {
     // A limit on file size stands in for the disk: the kernel refuses to
@@ -315,7 +320,7 @@ TEST(StudyStore, AFullDiskIsNamedAndKeepsWhatIsFinished) {
     signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{200000, 200000};
     setrlimit(RLIMIT_FSIZE, &limit);
-    StudyStore store = StudyStore::start(folder.path(), kMeta);
+    StudyStore store = StudyStore::start(folder.path().string(), kMeta);
     EvaluationRecord record = record_of(1);
     const std::string message = message_of<IoError>([&] {
       for (int i = 1; i < 10000; ++i) {
@@ -331,13 +336,13 @@ TEST(StudyStore, AFullDiskIsNamedAndKeepsWhatIsFinished) {
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  const StudyStore store = StudyStore::resume(folder.path(), kMeta);
+  const StudyStore store = StudyStore::resume(folder.path().string(), kMeta);
   EXPECT_GT(store.size(), 20);
 }
 
 TEST(StudyStore, RefusesARecordThatDoesNotFit) {
-  const ScratchFolder folder("fit");
-  StudyStore store = StudyStore::start(folder.path(), kMeta);
+  const TempFolder folder;
+  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
   EvaluationRecord record = record_of(1);
   record.inputs.conservativeResize(1);
   EXPECT_THROW(store.append(record), InvalidInput);

@@ -15,6 +15,7 @@
 #include "core/find_program.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
+#include "tests/support/not_here.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
@@ -117,7 +118,7 @@ void expect_picture(const std::string& path, int width, int height) {
 
 TEST_F(PictureTest, DrawsAllKinds) {
   if (!find_program("Xvfb")) {
-    GTEST_SKIP() << "Xvfb is not installed";
+    MENISCUS_NOT_HERE("Xvfb is not installed");
   }
   // Neither a display nor a home folder is needed.
   const Variable display("DISPLAY", nullptr);
@@ -135,7 +136,7 @@ TEST_F(PictureTest, DrawsAllKinds) {
 
 TEST_F(PictureTest, OneBadJobDoesNotStopTheNext) {
   if (!find_program("Xvfb")) {
-    GTEST_SKIP() << "Xvfb is not installed";
+    MENISCUS_NOT_HERE("Xvfb is not installed");
   }
   std::vector<PictureJob> jobs = {job(PictureKind::Part, "a.png"),
                                   job(PictureKind::Film, "b.png")};
