@@ -199,8 +199,14 @@ Points FilmEnergy::gradient(const Points& points,
     sum[t[2]] += at_c;
     sum[t[0]] -= at_b + at_c;
   }
+  add_term_gradients(points, -1, sum);
+  return sum;
+}
+
+void FilmEnergy::add_term_gradients(const Points& points, int functional,
+                                    Points& sum) const {
   for (const auto& term : terms_) {
-    if (term->functional() != -1) {
+    if (term->functional() != functional) {
       continue;
     }
     for (const FilmTerm::Element& e : term->elements()) {
@@ -212,7 +218,6 @@ Points FilmEnergy::gradient(const Points& points,
       }
     }
   }
-  return sum;
 }
 
 Points FilmEnergy::functional_gradient(const Points& points,
@@ -235,19 +240,7 @@ Points FilmEnergy::functional_gradient(const Points& points,
       sum[t[2]] += w * a.cross(b);
     }
   }
-  for (const auto& term : terms_) {
-    if (term->functional() != functional) {
-      continue;
-    }
-    for (const FilmTerm::Element& e : term->elements()) {
-      const Triangle& t = facets_[e.facet];
-      const FacetJet jet =
-          term->jet(e, corners_of(points, t), JetOrder::Gradient);
-      for (int k = 0; k < 3; ++k) {
-        sum[t[k]] += jet.gradient.segment<3>(3 * k);
-      }
-    }
-  }
+  add_term_gradients(points, functional, sum);
   return sum;
 }
 

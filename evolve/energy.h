@@ -105,6 +105,8 @@ class FilmEnergy {
 
  private:
   Vec3 cone_origin(const Points& points) const;
+  void add_term_gradients(const Points& points, int functional,
+                          Points& sum) const;
   void find_floating(const FilmComplex& complex);
   void build_pattern();
   void add_terms(const Points& points, const VectorX& pressure,

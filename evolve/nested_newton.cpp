@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "evolve/held_pressure.h"
+
 namespace meniscus {
 
 namespace {
@@ -57,25 +59,6 @@ void NestedNewton::evaluate(const Points& points) {
     constraints_.col(k) = functional_.col(held_[k]);
   }
   constraints_.rightCols(rigid.cols()) = rigid;
-}
-
-void NestedNewton::guess_pressure() {
-  pressure_ = VectorX::Zero(energy_.functionals());
-  for (int b = 0; b < energy_.functionals(); ++b) {
-    pressure_[b] = targets_.bodies[b].pressure.value_or(0.0);
-  }
-  if (held_.empty()) {
-    return;
-  }
-  const VectorX weight = metric_.cwiseMax(1e-300).cwiseInverse();
-  const auto held = static_cast<Eigen::Index>(held_.size());
-  const Eigen::MatrixXd b = constraints_.leftCols(held);
-  const Eigen::MatrixXd normal = b.transpose() * weight.asDiagonal() * b;
-  const VectorX right = b.transpose() * weight.cwiseProduct(residual());
-  const VectorX found = normal.completeOrthogonalDecomposition().solve(right);
-  for (Eigen::Index k = 0; k < held; ++k) {
-    pressure_[held_[k]] = found[k];
-  }
 }
 
 VectorX NestedNewton::residual() const {
@@ -207,7 +190,8 @@ NestedResult NestedNewton::run(const Points& start, const VectorX& pressure,
   if (pressure.size() == energy_.functionals()) {
     pressure_ = pressure;
   } else {
-    guess_pressure();
+    pressure_ =
+        guess_pressures(targets_, held_, gradient_, functional_, metric_);
   }
   double before = std::numeric_limits<double>::infinity();
   double first = 0.0;

@@ -60,7 +60,6 @@ class NestedNewton {
     int iterations = 0;
   };
   void evaluate(const Points& points);
-  void guess_pressure();
   VectorX residual() const;
   double residual_norm(const VectorX& r) const;
   VectorX missing() const;

@@ -6,6 +6,8 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
+#include "evolve/held_pressure.h"
+
 namespace meniscus {
 
 namespace {
@@ -66,27 +68,6 @@ void FilmNewton::evaluate() {
     constraints_.col(k) = volumes_dh_.col(held_[k]);
   }
   constraints_.rightCols(rigid.cols()) = rigid;
-}
-
-/// Pressures of the held bodies that leave the least residual.
-void FilmNewton::guess_pressure() {
-  pressure_ = VectorX::Zero(energy_.functionals());
-  for (int b = 0; b < energy_.functionals(); ++b) {
-    pressure_[b] = targets_.bodies[b].pressure.value_or(0.0);
-  }
-  if (held_.empty()) {
-    return;
-  }
-  const VectorX weight = metric_.cwiseMax(1e-300).cwiseInverse();
-  const auto held = static_cast<Eigen::Index>(held_.size());
-  const Eigen::MatrixXd b = constraints_.leftCols(held);
-  const VectorX right =
-      b.transpose() * weight.cwiseProduct(residual_of(pressure_));
-  const Eigen::MatrixXd normal = b.transpose() * weight.asDiagonal() * b;
-  const VectorX found = normal.completeOrthogonalDecomposition().solve(right);
-  for (Eigen::Index k = 0; k < held; ++k) {
-    pressure_[held_[k]] = found[k];
-  }
 }
 
 VectorX FilmNewton::residual_of(const VectorX& pressure) const {
@@ -298,7 +279,7 @@ NewtonResult FilmNewton::run(const Points& base, const Points& directions,
   shift_ = 0.0;
   accept(
       trial_at(start.size() > 0 ? start : VectorX::Zero(energy_.unknowns())));
-  guess_pressure();
+  pressure_ = guess_pressures(targets_, held_, gradient_, volumes_dh_, metric_);
   NewtonResult result;
   int short_steps = 0;
   for (;; ++result.iterations) {

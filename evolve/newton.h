@@ -55,7 +55,6 @@ class FilmNewton {
     VectorX volume;
   };
   void evaluate();
-  void guess_pressure();
   VectorX residual_of(const VectorX& pressure) const;
   double residual_norm() const;
   bool volumes_hold() const;

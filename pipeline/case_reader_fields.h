@@ -86,6 +86,8 @@ class CaseTable {
   const toml::node* node(const char* key) const { return table_->get(key); }
 
  private:
+  /// Of three items; null with a problem noted where it is anything else.
+  const toml::array* three(const char* key, const char* wanted) const;
   std::optional<Vec3> constants_of(const toml::node& node, const char* key,
                                    const std::string& path) const;
   void note(const char* key, const std::string& expected) const;

@@ -6,25 +6,51 @@
 
 namespace meniscus {
 
-std::optional<QuantityVector> CaseTable::vector(const char* key) const {
-  if (!has(key)) {
-    return std::nullopt;
-  }
-  const toml::array* array = node(key)->as_array();
-  if (array == nullptr || array->size() != 3) {
-    note(key, "[x, y, z]");
-    return std::nullopt;
-  }
-  QuantityVector result;
+namespace {
+
+const toml::array* triple(const toml::node& node) {
+  const toml::array* array = node.as_array();
+  return array != nullptr && array->size() == 3 ? array : nullptr;
+}
+
+/// read(item, path) of each component; all are read, so that all are reported.
+template <class Read>
+auto components(const toml::array& array, const std::string& path,
+                const Read& read) {
+  using Component = typename decltype(read(array[0], path))::value_type;
+  std::array<Component, 3> result;
   bool good = true;
   for (std::size_t k = 0; k < 3; ++k) {
-    auto component =
-        read_quantity(*context_, *array->get(k), dimension(key),
-                      fmt::format("{}.{}[{}]", path_, key, "xyz"[k]));
+    auto component = read(array[k], fmt::format("{}[{}]", path, "xyz"[k]));
     good = good && component.has_value();
-    result[k] = std::move(component).value_or(Quantity{});
+    result[k] = std::move(component).value_or(Component{});
   }
-  return good ? std::optional(result) : std::nullopt;
+  return good ? std::optional(std::move(result)) : std::nullopt;
+}
+
+}  // namespace
+
+const toml::array* CaseTable::three(const char* key, const char* wanted) const {
+  if (!has(key)) {
+    return nullptr;
+  }
+  const toml::array* array = triple(*node(key));
+  if (array == nullptr) {
+    note(key, wanted);
+  }
+  return array;
+}
+
+std::optional<QuantityVector> CaseTable::vector(const char* key) const {
+  const toml::array* array = three(key, "[x, y, z]");
+  if (array == nullptr) {
+    return std::nullopt;
+  }
+  return components(*array, fmt::format("{}.{}", path_, key),
+                    [&](const toml::node& item, const std::string& path) {
+                      return read_quantity(*context_, item, dimension(key),
+                                           path);
+                    });
 }
 
 std::vector<QuantityVector> CaseTable::vectors(const char* key) const {
@@ -36,22 +62,20 @@ std::vector<QuantityVector> CaseTable::vectors(const char* key) const {
   const bool points =
       array != nullptr && !array->empty() &&
       std::all_of(array->begin(), array->end(), [](const toml::node& item) {
-        return item.is_array() && item.as_array()->size() == 3;
+        return triple(item) != nullptr;
       });
   if (!points) {
     note(key, "points: [[x, y, z], [x, y, z], ...]");
     return result;
   }
   for (std::size_t p = 0; p < array->size(); ++p) {
-    QuantityVector point;
-    for (std::size_t k = 0; k < 3; ++k) {
-      point[k] =
-          read_quantity(*context_, *array->get(p)->as_array()->get(k),
-                        dimension(key),
-                        fmt::format("{}.{}[{}][{}]", path_, key, p, "xyz"[k]))
-              .value_or(Quantity{});
-    }
-    result.push_back(std::move(point));
+    result.push_back(
+        components(
+            *triple((*array)[p]), fmt::format("{}.{}[{}]", path_, key, p),
+            [&](const toml::node& item, const std::string& path) {
+              return read_quantity(*context_, item, dimension(key), path);
+            })
+            .value_or(QuantityVector{}));
   }
   return result;
 }
@@ -59,28 +83,19 @@ std::vector<QuantityVector> CaseTable::vectors(const char* key) const {
 std::optional<Vec3> CaseTable::constants_of(const toml::node& node,
                                             const char* key,
                                             const std::string& path) const {
-  const toml::array* array = node.as_array();
-  if (array == nullptr || array->size() != 3) {
+  const toml::array* array = triple(node);
+  if (array == nullptr) {
     return std::nullopt;
   }
-  Vec3 result;
-  bool good = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto value = read_constant(*context_, *array->get(k), dimension(key),
-                                     fmt::format("{}[{}]", path, "xyz"[k]));
-    good = good && value.has_value();
-    result[static_cast<Eigen::Index>(k)] = value.value_or(0.0);
-  }
-  return good ? std::optional(result) : std::nullopt;
+  const auto values = components(
+      *array, path, [&](const toml::node& item, const std::string& at) {
+        return read_constant(*context_, item, dimension(key), at);
+      });
+  return values ? std::optional(Vec3(values->data())) : std::nullopt;
 }
 
 std::optional<Vec3> CaseTable::constant_vector(const char* key) const {
-  if (!has(key)) {
-    return std::nullopt;
-  }
-  const toml::array* array = node(key)->as_array();
-  if (array == nullptr || array->size() != 3) {
-    note(key, "three constants");
+  if (three(key, "three constants") == nullptr) {
     return std::nullopt;
   }
   return constants_of(*node(key), key, fmt::format("{}.{}", path_, key));
@@ -88,24 +103,15 @@ std::optional<Vec3> CaseTable::constant_vector(const char* key) const {
 
 std::optional<std::array<PlaceQuantity, 3>> CaseTable::place_vector(
     const char* key) const {
-  if (!has(key)) {
+  const toml::array* array = three(key, "[x, y, z]");
+  if (array == nullptr) {
     return std::nullopt;
   }
-  const toml::array* array = node(key)->as_array();
-  if (array == nullptr || array->size() != 3) {
-    note(key, "[x, y, z]");
-    return std::nullopt;
-  }
-  std::array<PlaceQuantity, 3> result;
-  bool good = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    auto component =
-        read_place_quantity(*context_, *array->get(k), dimension(key),
-                            fmt::format("{}.{}[{}]", path_, key, "xyz"[k]));
-    good = good && component.has_value();
-    result[k] = std::move(component).value_or(PlaceQuantity{});
-  }
-  return good ? std::optional(result) : std::nullopt;
+  return components(*array, fmt::format("{}.{}", path_, key),
+                    [&](const toml::node& item, const std::string& path) {
+                      return read_place_quantity(*context_, item,
+                                                 dimension(key), path);
+                    });
 }
 
 std::optional<LocalAxes> CaseTable::axes(const char* key) const {

@@ -24,9 +24,9 @@ SurfaceMesh ball(int levels) {
                         levels);
 }
 
-/// 5,120 facets; elements of this edge in 1/100 mm.
-void fill_bracket_volume(benchmark::State& state) {
-  const SurfaceMesh surface = ball(4);
+/// A ball of `levels` refinements; elements of an edge in 1/100 mm.
+void fill_ball(benchmark::State& state, int levels) {
+  const SurfaceMesh surface = ball(levels);
   Tetrahedralization result;
   for (auto _ : state) {
     result = tetrahedralize(
@@ -36,24 +36,17 @@ void fill_bracket_volume(benchmark::State& state) {
   state.counters["min_dihedral"] = result.quality.min_dihedral_deg;
   state.counters["tetgen_s"] = result.tetgen_seconds;
 }
-BENCHMARK(fill_bracket_volume)
+// 5,120 facets.
+BENCHMARK_CAPTURE(fill_ball, bracket_volume, 4)
     ->Arg(485)
     ->Arg(870)
     ->Arg(1380)
     ->Unit(benchmark::kMillisecond);
-
-/// 20,480 facets, elements of the surface's own size and coarser.
-void fill_fine_surface(benchmark::State& state) {
-  const SurfaceMesh surface = ball(5);
-  Tetrahedralization result;
-  for (auto _ : state) {
-    result = tetrahedralize(
-        surface, {.edge = static_cast<double>(state.range(0)) / 100.0});
-  }
-  state.counters["tets"] = result.mesh.element_count();
-  state.counters["min_dihedral"] = result.quality.min_dihedral_deg;
-}
-BENCHMARK(fill_fine_surface)->Arg(485)->Arg(285)->Unit(benchmark::kMillisecond);
+// 20,480 facets, elements of the surface's own size and coarser.
+BENCHMARK_CAPTURE(fill_ball, fine_surface, 5)
+    ->Arg(485)
+    ->Arg(285)
+    ->Unit(benchmark::kMillisecond);
 
 struct Model {
   SurfaceMesh surface = ball(4);
