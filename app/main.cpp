@@ -9,6 +9,7 @@
 #include "app/exit_code.h"
 #include "core/error.h"
 #include "core/memory.h"
+#include "core/thread_waits.h"
 
 namespace {
 
@@ -156,6 +157,7 @@ int run_program(int argc, char** argv) {
 
 /// What escapes a command becomes a message and an exit code.
 int main(int argc, char** argv) {
+  meniscus::wait_asleep(argv);
   meniscus::keep_freed_memory();
   try {
     return run_program(argc, argv);

@@ -47,5 +47,7 @@ function(meniscus_add_test name)
     set(alone RUN_SERIAL TRUE)
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" ${alone})
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" ${alone}
+      # As the program has it (core/thread_waits.h).
+      ENVIRONMENT OMP_WAIT_POLICY=passive)
 endfunction()

@@ -53,20 +53,41 @@ struct RowSum {
     }
   }
 
+  void add(const RowSum& other) {
+    for (int k = 0; k < K; ++k) {
+      for (int r = 0; r < B; ++r) {
+        partial[k][r] += other.partial[k][r];
+      }
+    }
+  }
+
   Real component(int k, int r) const { return partial[k][r].sum(); }
 };
 
-/// y += A^T x.
+/// The components of a node's x, each in all lanes: held in registers, where a
+/// store to y would make the compiler read them anew.
 template <int B, int K, class Real>
-inline void add_transposed(const Real* A, const Real* x, Real* y) {
-  for (int k = 0; k < K; ++k) {
-    const Real* xk = x + k * kLanes<B>;
-    Lanes<Real, B> sum = lanes<B>(y + k * kLanes<B>);
-    for (int r = 0; r < B; ++r) {
-      sum += lanes<B>(A + B * r) * xk[r];
+struct Spread {
+  Lanes<Real, B> component[K][B];
+
+  explicit Spread(const Real* x) {
+    for (int k = 0; k < K; ++k) {
+      for (int r = 0; r < B; ++r) {
+        component[k][r].setConstant(x[k * kLanes<B> + r]);
+      }
     }
-    lanes<B>(y + k * kLanes<B>) = sum;
   }
-}
+
+  /// y += A^T x.
+  void add_transposed(const Real* A, Real* y) const {
+    for (int k = 0; k < K; ++k) {
+      Lanes<Real, B> sum = lanes<B>(y + k * kLanes<B>);
+      for (int r = 0; r < B; ++r) {
+        sum += lanes<B>(A + B * r) * component[k][r];
+      }
+      lanes<B>(y + k * kLanes<B>) = sum;
+    }
+  }
+};
 
 }  // namespace meniscus

@@ -8,6 +8,9 @@ namespace meniscus {
 
 namespace {
 
+/// Numbers of a matrix that a product asks for before it needs them.
+constexpr std::ptrdiff_t kAhead = 128;
+
 /// Elements around each node: `place` holds element * nodes_per_element +
 /// local position, grouped by node.
 struct NodeElements {
@@ -80,28 +83,30 @@ BlockPattern make_pattern(RowChunks chunks, int nodes_per_element,
   return pattern;
 }
 
-template <int B, int K>
-void multiply(const BlockPattern& pattern, const BlockMatrix<double>& matrix,
-              const double* x, double* y) {
+template <int B, int K, class Real>
+void multiply(const BlockPattern& pattern, const Real* diagonal,
+              const Real* lower, const Real* x, Real* y) {
   constexpr std::ptrdiff_t kWidth = K * kLanes<B>;
   over_chunks(pattern.chunks, RowOrder::Forward, [&](int chunk) {
     for (int i = pattern.chunks.first[chunk];
          i < pattern.chunks.first[chunk + 1]; ++i) {
-      const double* xi = x + i * kWidth;
-      RowSum<B, K, double> sum;
-      for (int k = pattern.start[i]; k < pattern.start[i + 1]; ++k) {
-        const double* block =
-            matrix.lower.data() + static_cast<std::ptrdiff_t>(B * B) * k;
-        const std::ptrdiff_t j = pattern.column[k] * kWidth;
-        sum.add(block, x + j);
-        add_transposed<B, K>(block, xi, y + j);
+      const Spread<B, K, Real> xi(x + i * kWidth);
+      RowSum<B, K, Real> sum;
+      const int last = pattern.start[i + 1];
+      const int* column = pattern.column.data();
+      const Real* block =
+          lower + static_cast<std::ptrdiff_t>(B * B) * pattern.start[i];
+      for (int k = pattern.start[i]; k < last; ++k, block += B * B) {
+        const std::ptrdiff_t at = column[k] * kWidth;
+        __builtin_prefetch(block + kAhead);
+        sum.add(block, x + at);
+        xi.add_transposed(block, y + at);
       }
       // Only rows after i add to y_i: it has not been written before.
-      double* yi = y + i * kWidth;
-      std::fill_n(yi, kWidth, 0.0);
-      add_transposed<B, K>(
-          matrix.diagonal.data() + static_cast<std::ptrdiff_t>(B * B) * i, xi,
-          yi);  // it is symmetric
+      Real* yi = y + i * kWidth;
+      std::fill_n(yi, kWidth, Real(0));
+      xi.add_transposed(diagonal + static_cast<std::ptrdiff_t>(B * B) * i,
+                        yi);  // symmetric
       for (int k = 0; k < K; ++k) {
         for (int r = 0; r < B; ++r) {
           yi[k * kLanes<B> + r] += sum.component(k, r);
@@ -111,14 +116,17 @@ void multiply(const BlockPattern& pattern, const BlockMatrix<double>& matrix,
   });
 }
 
-#define MENISCUS_MULTIPLY(K)                                              \
-  template void multiply<3, K>(const BlockPattern&,                       \
-                               const BlockMatrix<double>&, const double*, \
-                               double*);
-MENISCUS_MULTIPLY(1)
-MENISCUS_MULTIPLY(2)
-MENISCUS_MULTIPLY(3)
-MENISCUS_MULTIPLY(4)
+#define MENISCUS_MULTIPLY(K, Real)                                            \
+  template void multiply<3, K>(const BlockPattern&, const Real*, const Real*, \
+                               const Real*, Real*);
+MENISCUS_MULTIPLY(1, double)
+MENISCUS_MULTIPLY(2, double)
+MENISCUS_MULTIPLY(3, double)
+MENISCUS_MULTIPLY(4, double)
+MENISCUS_MULTIPLY(1, float)
+MENISCUS_MULTIPLY(2, float)
+MENISCUS_MULTIPLY(3, float)
+MENISCUS_MULTIPLY(4, float)
 #undef MENISCUS_MULTIPLY
 
 }  // namespace meniscus

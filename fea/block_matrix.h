@@ -48,9 +48,15 @@ struct BlockMatrix {
 
 /// y = A x for K vectors of padded layout: component c of node n and column k
 /// stands at (n K + k) kLanes<B> + c. The padding of x must be zero, that of y
-/// becomes garbage.
+/// becomes garbage. `diagonal`, `lower`: as in BlockMatrix.
+template <int B, int K, class Real>
+void multiply(const BlockPattern& pattern, const Real* diagonal,
+              const Real* lower, const Real* x, Real* y);
+
 template <int B, int K>
 void multiply(const BlockPattern& pattern, const BlockMatrix<double>& matrix,
-              const double* x, double* y);
+              const double* x, double* y) {
+  multiply<B, K>(pattern, matrix.diagonal.data(), matrix.lower.data(), x, y);
+}
 
 }  // namespace meniscus

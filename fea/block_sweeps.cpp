@@ -13,15 +13,25 @@ inline void relax_row(const SweepMatrix& matrix, int i, const float* r,
   constexpr int kLane = kLanes<B>;
   constexpr std::ptrdiff_t kWidth = K * kLane;
   const BlockPattern& p = *matrix.pattern;
+  // Two sums, so that one addition need not wait for the last.
   RowSum<B, K, float> sum;
+  RowSum<B, K, float> odd;
+  const auto add = [&](RowSum<B, K, float>& to, int k) {
+    to.add(matrix.lower + static_cast<std::ptrdiff_t>(B * B) * k,
+           x + p.column[k] * kWidth);
+  };
   // Blocks in the order of the sweep, so that memory streams one way.
-  const int first = p.start[i];
-  const int last = p.start[i + 1];
-  for (int n = 0; n < last - first; ++n) {
-    const int k = Backward ? last - 1 - n : first + n;
-    sum.add(matrix.lower + static_cast<std::ptrdiff_t>(B * B) * k,
-            x + p.column[k] * kWidth);
+  const int count = p.start[i + 1] - p.start[i];
+  const int first = Backward ? p.start[i + 1] - 1 : p.start[i];
+  constexpr int kStep = Backward ? -1 : 1;
+  for (int n = 0; n + 1 < count; n += 2) {
+    add(sum, first + kStep * n);
+    add(odd, first + kStep * (n + 1));
   }
+  if (count % 2 != 0) {
+    add(sum, first + kStep * (count - 1));
+  }
+  sum.add(odd);
   const float* inverse =
       matrix.inverse + static_cast<std::ptrdiff_t>(B * kLane) * i;
   for (int k = 0; k < K; ++k) {
@@ -41,9 +51,13 @@ inline void scatter_row(const SweepMatrix& matrix, int i, const float* x,
                         float* upper) {
   constexpr std::ptrdiff_t kWidth = K * kLanes<B>;
   const BlockPattern& p = *matrix.pattern;
-  for (int k = p.start[i]; k < p.start[i + 1]; ++k) {
-    add_transposed<B, K>(matrix.lower + static_cast<std::ptrdiff_t>(B * B) * k,
-                         x + i * kWidth, upper + p.column[k] * kWidth);
+  const Spread<B, K, float> xi(x + i * kWidth);
+  const int last = p.start[i + 1];
+  const int* column = p.column.data();
+  const float* block =
+      matrix.lower + static_cast<std::ptrdiff_t>(B * B) * p.start[i];
+  for (int k = p.start[i]; k < last; ++k, block += B * B) {
+    xi.add_transposed(block, upper + column[k] * kWidth);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -109,7 +110,7 @@ class Solver {
     }
     project(r_);
     project(u_);
-    load_ = dot(r_, r_);
+    const Sums<K> load = dot(r_, r_);
     const bool zero_start =
         std::all_of(u_.begin(), u_.end(), [](double v) { return v == 0.0; });
     if (!zero_start) {
@@ -121,19 +122,21 @@ class Solver {
       });
       project(r_);
     }
-    const Sums<K> rr = dot(r_, r_);
+    // Of the solution: u . A u + 2 u . r + (error) . A (error), the last of
+    // which the steps add up (Hestenes, Stiefel 1952).
+    const Sums<K> uq = dot(u_, q_);
+    const Sums<K> ur = dot(u_, r_);
     columns_.resize(K);
     for (int k = 0; k < K; ++k) {
       live_[k] = true;
       ++open_;
-      if (load_[k] == 0.0) {  // all load on held directions: stays at rest
+      energy_[k] = uq[k] + 2.0 * ur[k];
+      if (load[k] == 0.0) {  // all load on held directions: stays at rest
         for (int i = 0; i < nodes_; ++i) {
           at(u_, i, k).setZero();
           at(r_, i, k).setZero();
         }
         close(k, CgEnd::Converged);
-      } else {
-        judge(k, rr[k]);
       }
     }
   }
@@ -142,6 +145,10 @@ class Solver {
     problem_.preconditioner.apply(r_, z_, K);
     project(z_);  // it knows the base design's held directions
     const Sums<K> rz = dot(r_, z_);
+    judge(step, rz);
+    if (open_ == 0) {
+      return;
+    }
     Sums<K> beta{};
     for (int k = 0; k < K; ++k) {
       beta[k] = step > 0 && live_[k] ? rz[k] / rz_[k] : 0.0;
@@ -156,12 +163,13 @@ class Solver {
     const Sums<K> pq = dot(p_, q_);
     Sums<K> alpha{};
     for (int k = 0; k < K; ++k) {
-      if (live_[k] && !(std::isfinite(rz[k]) && std::isfinite(pq[k]))) {
+      if (live_[k] && !std::isfinite(pq[k])) {
         close(k, CgEnd::NotFinite);
-      } else if (live_[k] && !(rz[k] > 0.0 && pq[k] > 0.0)) {
+      } else if (live_[k] && !(pq[k] > 0.0)) {
         close(k, CgEnd::NotPositive);
       }
       alpha[k] = live_[k] ? rz[k] / pq[k] : 0.0;
+      energy_[k] += alpha[k] * rz[k];
     }
     over_nodes([&](int i, Sums<K>&) {
       for (int k = 0; k < K; ++k) {
@@ -170,25 +178,36 @@ class Solver {
       }
     });
     project(r_);
-    const Sums<K> rr = dot(r_, r_);
-    for (int k = 0; k < K; ++k) {
-      if (live_[k]) {
-        columns_[k].iterations = step + 1;
-        judge(k, rr[k]);
-      }
-    }
     problem_.monitor.progress(
         {.stage = "fea",
-         .detail = fmt::format("step {}, residual {:.1e}", step + 1,
-                               columns_[0].residual)});
+         .detail = fmt::format("step {}, error {:.1e}", step + 1,
+                               columns_[0].error)});
   }
 
-  void judge(int k, double rr) {
-    columns_[k].residual = std::sqrt(rr / load_[k]);
-    if (!std::isfinite(columns_[k].residual)) {
-      close(k, CgEnd::NotFinite);
-    } else if (columns_[k].residual <= problem_.tolerance) {
-      close(k, CgEnd::Converged);
+  /// Ends columns that have arrived or cannot go on.
+  void judge(int step, const Sums<K>& rz) {
+    for (int k = 0; k < K; ++k) {
+      if (!live_[k]) {
+        continue;
+      }
+      CgColumn& column = columns_[k];
+      column.iterations = step;
+      const bool started = energy_[k] > 0.0;
+      column.error = started && rz[k] >= 0.0
+                         ? std::sqrt(rz[k] / energy_[k])
+                         : std::numeric_limits<double>::infinity();
+      if (!std::isfinite(rz[k])) {
+        close(k, CgEnd::NotFinite);
+      } else if (column.error <= problem_.tolerance) {
+        // M r is at hand, and is most of what is missing. A start that serves
+        // is left as it is: the same design again gives the same bits.
+        for (int i = 0; i < nodes_ && step > 0; ++i) {
+          at(u_, i, k) += at(z_, i, k);
+        }
+        close(k, CgEnd::Converged);
+      } else if (!(rz[k] > 0.0)) {
+        close(k, CgEnd::NotPositive);
+      }
     }
   }
 
@@ -201,7 +220,7 @@ class Solver {
   const CgProblem& problem_;
   const int nodes_;
   Vec u_, r_, z_, p_, q_;
-  Sums<K> load_{};
+  Sums<K> energy_{};  // u . A u of the solution, as far as known
   Sums<K> rz_{};
   std::array<bool, K> live_{};
   int open_ = 0;

@@ -17,7 +17,9 @@ struct CgProblem {
   const BlockMatrix<double>& matrix;
   const Preconditioner& preconditioner;
   const NodeFreedom& freedom;  // held directions stay 0
-  double tolerance = 1e-10;    // |f - A u| / |f| per right-hand side
+  /// Of each solution, relative, in the energy norm: sqrt(r . M r / u . A u),
+  /// the error itself where the preconditioner M is the inverse.
+  double tolerance = 1e-10;
   int max_iterations = 400;
   Monitor& monitor;
 };
@@ -27,7 +29,7 @@ enum class CgEnd { Converged, TooManyIterations, NotPositive, NotFinite };
 struct CgColumn {
   CgEnd end = CgEnd::Converged;
   int iterations = 0;
-  double residual = 0.0;  // relative; of the recurrence
+  double error = 0.0;  // relative, in the energy norm, estimated
 };
 
 /// Solves A u = f on the free directions. `f`, `u`: K <= kMostColumns vectors,

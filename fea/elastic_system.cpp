@@ -25,10 +25,10 @@ std::string cause(CgEnd end, const CgColumn& column, int most) {
   switch (end) {
     case CgEnd::TooManyIterations:
       return fmt::format(
-          "no convergence in {} iterations (relative residual {:.2e}): the "
+          "no convergence in {} iterations (relative error {:.2e}): the "
           "design is too far from the base design, the material too nearly "
           "incompressible, or elements are badly shaped",
-          most, column.residual);
+          most, column.error);
     case CgEnd::NotPositive:
       return "the stiffness matrix is not positive definite: the supports are "
              "too weak or an element is inverted";

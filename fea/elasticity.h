@@ -39,10 +39,11 @@ struct ElasticSolution {
 enum class SolverKind { Automatic, Cholesky, Multigrid };
 
 struct ElasticOptions {
-  /// Automatic: multigrid for ten-node meshes of more than 4,000 unknowns,
-  /// else Cholesky. Multigrid needs ten-node elements.
+  /// Automatic: multigrid above 4,000 unknowns, else Cholesky.
   SolverKind solver = SolverKind::Automatic;
-  double tolerance = 1e-10;  // |f - K u| / |f| per load case
+  /// Relative error of the displacement in the energy norm, per load case, as
+  /// the preconditioner estimates it.
+  double tolerance = 1e-10;
   int max_iterations = 400;
   Monitor* monitor = nullptr;  // not owned; must outlive the model
 };

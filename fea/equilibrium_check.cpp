@@ -12,6 +12,8 @@ namespace {
 /// Rounding of the largest terms of a row, with room for their sum.
 constexpr double kRounding = 1e-14;
 constexpr double kImbalance = 1e-9;
+/// A residual's norm weighs short waves more than the energy norm does.
+constexpr double kShortWaves = 1e4;
 
 }  // namespace
 
@@ -70,7 +72,7 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
 std::optional<Failure> judge(const Equilibrium& equilibrium, double tolerance,
                              const std::string& load_case) {
   const double residual_bound =
-      std::max(10.0 * tolerance, equilibrium.rounding);
+      std::max(kShortWaves * tolerance, equilibrium.rounding);
   if (!(equilibrium.residual <= residual_bound)) {
     return Failure{
         FailureKind::SolverFailed,

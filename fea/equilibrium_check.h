@@ -34,7 +34,8 @@ struct Equilibrium {
 };
 Equilibrium check_equilibrium(const EquilibriumInput& input);
 
-/// Nothing when residual and imbalance are within their bounds.
+/// Nothing when residual and imbalance are within their bounds. `tolerance`: of
+/// the solution in the energy norm.
 std::optional<Failure> judge(const Equilibrium& equilibrium, double tolerance,
                              const std::string& load_case);
 

@@ -12,18 +12,22 @@ void restrict_motions(const Prolongation& P, const float* upper,
   const int count = static_cast<int>(P.row_start.size()) - 1;
 #pragma omp parallel for schedule(static) if (count >= kParallelRows)
   for (int a = 0; a < count; ++a) {
-    Eigen::Map<Eigen::Array<float, kCoarse, 1>> sum(coarse + a * kCoarse);
-    sum.setZero();
+    Lanes<float, 6> sum[K];
+    for (Lanes<float, 6>& column : sum) {
+      column.setZero();
+    }
     for (int t = P.row_start[a]; t < P.row_start[a + 1]; ++t) {
       const float* block =
-          P.value.data() + static_cast<std::ptrdiff_t>(6 * B) * P.block[t];
+          P.row_value.data() + static_cast<std::ptrdiff_t>(6 * B) * t;
       const float* u = upper + P.row[t] * kFine;
       for (int k = 0; k < K; ++k) {
         for (int r = 0; r < B; ++r) {
-          lanes<6>(coarse + a * kCoarse + k * kLanes<6>) -=
-              lanes<6>(block + 6 * r) * u[k * kLanes<B> + r];
+          sum[k] -= lanes<6>(block + 6 * r) * u[k * kLanes<B> + r];
         }
       }
+    }
+    for (int k = 0; k < K; ++k) {
+      lanes<6>(coarse + a * kCoarse + k * kLanes<6>) = sum[k];
     }
   }
 }

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "core/error.h"
 #include "core/linear_solve.h"
 #include "fea/block_kernels.h"
 #include "fea/block_sweeps.h"
+#include "fea/chebyshev.h"
 #include "fea/level_setup.h"
 #include "fea/level_transfers.h"
 #include "fea/smoothed_aggregation.h"
@@ -17,8 +19,14 @@ namespace {
 
 /// Up to this many unknowns a level is solved by its Cholesky factor.
 constexpr int kDirectUnknowns = 1500;
-/// Cycles over the coarser levels for one on the finest: they cost little.
-constexpr int kCoarseCycles = 2;
+/// Below ten-node elements cycles cost little: as many as reduce every error
+/// to this, by Chebyshev's iteration, are done for one on the finest level.
+constexpr double kNodalReduction = 0.5;
+constexpr int kMostNodalCycles = 6;
+/// Of Lanczos' process for the lowest eigenvalue of such a cycle, and what the
+/// highest is over 1, its bound without rounding.
+constexpr int kLanczosSteps = 12;
+constexpr double kHighest = 1.02;
 
 /// A level's smoother. Vectors as block_sweeps.h has them.
 struct Level {
@@ -88,6 +96,9 @@ class Multigrid final : public Preconditioner {
       scale_ = input.nodal.smoother->scale;
     }
     build(input.nodal);
+    if (map_ != nullptr) {
+      accelerate_nodal(input.nodal);
+    }
   }
 
   void apply(const std::vector<double>& r, std::vector<double>& z,
@@ -212,14 +223,106 @@ class Multigrid final : public Preconditioner {
     const Level& level = levels_[l];
     x.assign(level.size(K), 0.0F);
     std::vector<float> upper(level.size(K), 0.0F);
-    const int cycles =
-        map_ != nullptr && static_cast<int>(l) == 1 ? kCoarseCycles : 1;
-    for (int c = 0; c < cycles; ++c) {
-      forward<K>(level, right.data(), x.data(), upper.data());
-      correct<K>(l, upper, x);
-      std::fill(upper.begin(), upper.end(), 0.0F);
-      backward<K>(level, right.data(), x.data(), upper.data());
+    forward<K>(level, right.data(), x.data(), upper.data());
+    correct<K>(l, upper, x);
+    std::fill(upper.begin(), upper.end(), 0.0F);
+    backward<K>(level, right.data(), x.data(), upper.data());
+  }
+
+  template <int K>
+  void multiply_nodal(const std::vector<float>& x,
+                      std::vector<float>& y) const {
+    const Level& level = levels_[nodal_at()];
+    multiply<3, K>(*level.pattern, nodal_diagonal_.data(), level.lower,
+                   x.data(), y.data());
+  }
+
+  /// Several cycles on the nodal level below ten-node elements.
+  template <int K>
+  void nodal_cycles(std::vector<float>& right, std::vector<float>& x) const {
+    cycle<K>(1, right, x);
+    if (nodal_steps_.size() == 1) {
+      return;
     }
+    const auto first = static_cast<float>(nodal_steps_[0].take);
+    for (float& value : x) {
+      value *= first;
+    }
+    std::vector<float> d = x;
+    std::vector<float> q(x.size());
+    std::vector<float> z;
+    for (std::size_t s = 1; s < nodal_steps_.size(); ++s) {
+      const auto keep = static_cast<float>(nodal_steps_[s].keep);
+      const auto take = static_cast<float>(nodal_steps_[s].take);
+      multiply_nodal<K>(d, q);
+      for (std::size_t i = 0; i < q.size(); ++i) {
+        right[i] -= q[i];
+      }
+      cycle<K>(1, right, z);
+      for (std::size_t i = 0; i < q.size(); ++i) {
+        d[i] = keep * d[i] + take * z[i];
+        x[i] += d[i];
+      }
+    }
+  }
+
+  /// Chooses the cycles on the nodal level by its cycle's lowest eigenvalue.
+  void accelerate_nodal(const NodalLevel& nodal) {
+    const double scale = nodal.smoother->scale;
+    nodal_diagonal_.reserve(nodal.matrix->diagonal.size());
+    for (const double value : nodal.matrix->diagonal) {
+      nodal_diagonal_.push_back(static_cast<float>(value / scale));
+    }
+    const double lowest = lowest_eigenvalue();
+    nodal_steps_ = chebyshev_steps(std::min(lowest, 1.0), kHighest,
+                                   kNodalReduction, kMostNodalCycles);
+  }
+
+  /// Of one cycle times the matrix on the nodal level: Lanczos' process by
+  /// conjugate gradients from a fixed random start.
+  double lowest_eigenvalue() const {
+    std::vector<float> r(levels_[1].size(1));
+    std::minstd_rand random;
+    for (float& value : r) {
+      value = static_cast<float>(random()) /
+                  static_cast<float>(std::minstd_rand::max()) -
+              0.5F;
+    }
+    nodal_held_.apply<1>(r.data());
+    const auto dot = [](const std::vector<float>& a,
+                        const std::vector<float>& b) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        sum += i % 4 < 3 ? static_cast<double>(a[i]) * b[i] : 0.0;
+      }
+      return sum;
+    };
+    std::vector<double> alpha;
+    std::vector<double> beta;
+    std::vector<float> z;
+    std::vector<float> p(r.size(), 0.0F);
+    std::vector<float> q(r.size());
+    double last = 0.0;
+    for (int k = 0; k < kLanczosSteps; ++k) {
+      cycle<1>(1, r, z);
+      const double rz = dot(r, z);
+      const double b = k > 0 ? rz / last : 0.0;
+      last = rz;
+      for (std::size_t i = 0; i < p.size(); ++i) {
+        p[i] = z[i] + static_cast<float>(b) * p[i];
+      }
+      multiply_nodal<1>(p, q);
+      const double pq = dot(p, q);
+      if (!(rz > 0.0 && pq > 0.0)) {
+        break;
+      }
+      alpha.push_back(rz / pq);
+      beta.push_back(b);
+      for (std::size_t i = 0; i < r.size(); ++i) {
+        r[i] -= static_cast<float>(alpha.back()) * q[i];
+      }
+    }
+    return alpha.empty() ? 1.0 : lowest_ritz_value(alpha, beta);
   }
 
   /// Adds the coarse correction of the residual, which is -upper.
@@ -232,7 +335,7 @@ class Multigrid final : public Preconditioner {
       std::vector<float> right(levels_[1].size(K));
       restrict_corners<K>(*map_, nodal_factor_, upper.data(), right.data());
       nodal_held_.apply<K>(right.data());
-      cycle<K>(1, right, e);
+      nodal_cycles<K>(right, e);
       prolong_corners<K>(*map_, e.data(), x.data());
       fine_held_.apply<K>(x.data());
       return;
@@ -290,6 +393,9 @@ class Multigrid final : public Preconditioner {
   HeldNodes nodal_held_;
   double scale_ = 1.0;         // of the finest level's matrix
   float nodal_factor_ = 1.0F;  // finest scale over the nodal level's
+  // Below ten-node elements:
+  std::vector<float> nodal_diagonal_;
+  std::vector<ChebyshevStep> nodal_steps_;
   std::vector<Level> levels_;  // those with a smoother
   std::vector<std::unique_ptr<OwnLevel>> own_;
   std::unique_ptr<SymmetricFactor> factor_;

@@ -219,11 +219,16 @@ class Coarsening {
                      P.row_start.begin());
     P.row.resize(P.column.size());
     P.block.resize(P.column.size());
+    P.row_value.resize(P.value.size());
     std::vector<int> next(P.row_start.begin(), P.row_start.end() - 1);
     for (int i = 0; i < n_; ++i) {
       for (int k = P.start[i]; k < P.start[i + 1]; ++k) {
-        P.row[next[P.column[k]]] = i;
-        P.block[next[P.column[k]]++] = k;
+        const int t = next[P.column[k]]++;
+        P.row[t] = i;
+        P.block[t] = k;
+        std::copy_n(
+            P.value.begin() + static_cast<std::ptrdiff_t>(B * kM) * k, B * kM,
+            P.row_value.begin() + static_cast<std::ptrdiff_t>(B * kM) * t);
       }
     }
   }

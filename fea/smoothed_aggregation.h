@@ -32,10 +32,12 @@ struct Prolongation {
   std::vector<int> start;   // per fine node
   std::vector<int> column;  // aggregate
   std::vector<float> value;
-  // The transpose's index: per aggregate, fine nodes and their blocks.
+  // By aggregate: fine nodes, which block it is above, and a copy of the block,
+  // so that restriction streams through memory as interpolation does.
   std::vector<int> row_start;
   std::vector<int> row;
   std::vector<int> block;
+  std::vector<float> row_value;
 };
 
 struct AggregateLevel {

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "core/thread_waits.h"
 #include "tests/support/calculix.h"
 #include "tests/support/elastic_race.h"
 
@@ -179,4 +180,7 @@ int run(int count, char** words) {
 }  // namespace
 }  // namespace meniscus
 
-int main(int count, char** words) { return meniscus::run(count, words); }
+int main(int count, char** words) {
+  meniscus::wait_asleep(words);  // as the program does
+  return meniscus::run(count, words);
+}

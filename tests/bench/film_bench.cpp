@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "core/thread_waits.h"
 #include "tests/support/evolver.h"
 #include "tests/support/film_complexes.h"
 #include "tests/support/film_race.h"
@@ -194,4 +195,7 @@ int run(int count, char** words) {
 }  // namespace
 }  // namespace meniscus
 
-int main(int count, char** words) { return meniscus::run(count, words); }
+int main(int count, char** words) {
+  meniscus::wait_asleep(words);  // as the program does
+  return meniscus::run(count, words);
+}

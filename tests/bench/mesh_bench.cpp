@@ -7,6 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "core/thread_waits.h"
 #include "mesh_tet/mesh_motion.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -134,6 +135,7 @@ void race() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  meniscus::wait_asleep(argv);  // as the program does
   race();
   if (argc > 1 && std::strcmp(argv[1], "--race") == 0) {
     return 0;

@@ -9,6 +9,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "core/thread_waits.h"
 #include "core/timer.h"
 #include "fea/stress.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -117,6 +118,7 @@ void print_table() {
 }  // namespace meniscus
 
 int main(int argc, char** argv) {
+  meniscus::wait_asleep(argv);  // as the program does
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   meniscus::print_table();

@@ -14,6 +14,9 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr double kSolvers = 1e-8;  // what two solvers may differ by
+// Iterations of problems alike: the number of cycles on the corner mesh is
+// chosen from a random start, and one more or less shows.
+constexpr double kAlike = 1.25;
 constexpr double kBalance = 1e-9;  // reactions against loads
 constexpr double kExact = 1e-9;    // fields that elements have exactly
 
@@ -112,7 +115,7 @@ TEST_P(Supports, LocalAxesTurnWithThePart) {
   const ElasticSolution b = solve(turned(mesh), oblique, GetParam());
   EXPECT_LE(difference(b.displacements[0], turned(a.displacements[0])),
             kSolvers);
-  EXPECT_LE(b.report.iterations, a.report.iterations + 2);
+  EXPECT_LE(b.report.iterations, kAlike * a.report.iterations);
 }
 
 TEST_P(Supports, SpringsTurnWithThePart) {
@@ -243,7 +246,7 @@ TEST(CurvedSupports, MultigridConvergesAsFastAsWithFixedComponents) {
       solve(mesh, parts::tube_pressure(5.0), SolverKind::Multigrid);
   EXPECT_LE(difference(held.displacements[0], direct.displacements[0]),
             kSolvers);
-  EXPECT_LE(held.report.iterations, fixed.report.iterations + 3);
+  EXPECT_LE(held.report.iterations, kAlike * fixed.report.iterations);
 }
 
 TEST(CurvedSupports, NextDesignTurnsItsNormals) {

@@ -11,6 +11,7 @@
 
 #include <fmt/core.h>
 
+#include "core/thread_waits.h"
 #include "evolve/find_equilibrium.h"
 #include "tests/support/film_complexes.h"
 
@@ -108,7 +109,8 @@ std::string settle(const Work& work) {
 }  // namespace
 }  // namespace meniscus
 
-int main() {
+int main(int, char** words) {
+  meniscus::wait_asleep(words);  // as the program does
   const std::vector<meniscus::Work> works = meniscus::works();
   std::vector<std::string> first;
   for (const meniscus::Work& work : works) {

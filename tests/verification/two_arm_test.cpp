@@ -113,9 +113,9 @@ TEST(TwoArm, TheDesignMapIsSmooth) {
   EXPECT_LT(departure(difference, 4),
             kQuartic * difference.cwiseAbs().maxCoeff());
   EXPECT_LT(departure(objective, 4), kQuartic * at_start);
-  // What even the eighth degree misses is noise: solvers stop at 1e-10, and
-  // the responses converge twice as fast.
-  constexpr double kNoise = 1e-10;
+  // What even the eighth degree misses is noise: the solver stops at 1e-10 in
+  // the energy norm, and the objective is made of squares of differences.
+  constexpr double kNoise = 1e-9;
   EXPECT_LT(departure(objective, 8), kNoise * objective.cwiseAbs().maxCoeff());
 }
 
