@@ -1,5 +1,8 @@
 #include "fea/buckling.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "core/timer.h"
@@ -44,6 +47,32 @@ NodalMatrix weakening(const TetMesh& mesh, const ElasticOperator& op,
   return geometric_stiffness(*op.table, op.x, op.order->element, stress);
 }
 
+/// All but the shapes.
+BucklingModes judged(const EigenPairs& pairs, const BucklingOptions& options,
+                     const std::string& load_case) {
+  const double floor = 1.0 / options.largest;
+  BucklingModes modes;
+  modes.iterations = pairs.iterations;
+  modes.failure =
+      why_not(pairs, fmt::format("load case '{}': buckling", load_case));
+  modes.none_below = options.largest;
+  if (pairs.end == EigenEnd::TooManyIterations) {
+    const double theta = pairs.theta[0];
+    const double spread = pairs.residuals[0] * std::max(std::abs(theta), floor);
+    if (theta <= spread) {  // nothing says that there is a factor at all
+      modes.failure.reset();
+      modes.none_below = 1.0 / std::max(theta + spread, floor);
+      return modes;
+    }
+  }
+  for (Eigen::Index k = 0; k < pairs.theta.size() && pairs.theta[k] >= floor;
+       ++k) {
+    modes.factors.push_back(1.0 / pairs.theta[k]);
+    modes.residuals.push_back(pairs.residuals[k]);
+  }
+  return modes;
+}
+
 }  // namespace
 
 BucklingModes buckling_modes(const ElasticModel& model, const TetMesh& mesh,
@@ -62,17 +91,10 @@ BucklingModes buckling_modes(const ElasticModel& model, const TetMesh& mesh,
        .floor = 1.0 / options.largest,
        .max_iterations = options.max_iterations,
        .monitor = options.monitor});
-  BucklingModes modes;
-  modes.failure =
-      why_not(pairs, fmt::format("load case '{}': buckling", loads.name));
-  modes.iterations = pairs.iterations;
-  for (Eigen::Index k = 0; k < pairs.theta.size(); ++k) {
-    if (!(pairs.theta[k] * options.largest >= 1.0)) {
-      break;
-    }
-    modes.factors.push_back(1.0 / pairs.theta[k]);
-    modes.residuals.push_back(pairs.residuals[k]);
-    const VectorX x = to_mesh(*op.order, pairs.x.col(k));
+  BucklingModes modes = judged(pairs, options, loads.name);
+  for (std::size_t k = 0; k < modes.factors.size(); ++k) {
+    const VectorX x =
+        to_mesh(*op.order, pairs.x.col(static_cast<Eigen::Index>(k)));
     modes.shapes.push_back(with_fixed_sign(x / largest_of_nodes(x)));
   }
   modes.seconds = timer.seconds();

@@ -20,9 +20,9 @@ struct BucklingOptions {
   int count = 1;            // smallest factors
   double tolerance = 1e-6;  // residual of each mode, see eigenpairs.h
   LoadSense sense = LoadSense::AsGiven;
-  /// Factors above this are not looked for; it also ends the search where
-  /// nothing is compressed.
-  double largest = 1e6;
+  /// Factors above this are not looked for, which ends the search where little
+  /// is compressed.
+  double largest = 1e4;
   int max_iterations = 200;
   Monitor* monitor = nullptr;  // not owned
 };
@@ -35,6 +35,9 @@ struct BucklingModes {
   /// the largest components positive [1].
   std::vector<VectorX> shapes;
   std::vector<double> residuals;  // relative, per factor
+  /// Without factors: the search saw none below this; `largest`, or less where
+  /// it ended early.
+  double none_below = 0.0;
   int iterations = 0;
   double seconds = 0.0;
   /// No convergence; what there is, is kept.

@@ -21,6 +21,9 @@ constexpr double kDependent = 1e-9;
 /// A settled vector is left alone until its residual has grown by this.
 constexpr double kUnsettled = 2.0;
 
+/// Iterations in which an eigenvalue above the floor shows itself.
+constexpr int kEnoughToRise = 8;
+
 /// A fixed sequence of numbers in (-1, 1): splitmix64.
 double noise(std::uint64_t index) {
   std::uint64_t z = (index + 1) * 0x9E3779B97F4A7C15ULL;
@@ -77,7 +80,11 @@ class Solver {
     return std::max({std::abs(theta_[k]), options_.floor, 1e-300});
   }
   bool settled(Eigen::Index k) const {
-    return residuals_[k] <= options_.tolerance;
+    return residuals_[k] <= options_.tolerance || below_floor(k);
+  }
+  bool below_floor(Eigen::Index k) const {
+    return iterations_ >= kEnoughToRise &&
+           theta_[k] + residuals_[k] * scale(k) <= options_.floor;
   }
   EigenPairs finish();
 

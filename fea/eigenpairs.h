@@ -23,9 +23,8 @@ struct EigenOptions {
   /// Bound of the residual, see EigenPairs; theta's own error is about its
   /// square over the relative gap.
   double tolerance = 1e-6;
-  /// Eigenvalues below this need only be told from it: their residual counts
-  /// against it. Where A has no positive eigenvalue, theta creeps towards 0 and
-  /// nothing else would end it.
+  /// Eigenvalues below this need only be known to be so: where A has no
+  /// positive one, theta creeps towards 0 and nothing else would end it.
   double floor = 0.0;
   int max_iterations = 200;
   Monitor* monitor = nullptr;  // not owned

@@ -26,7 +26,7 @@ double shift_of(const TetMesh& mesh, const std::vector<Material>& materials,
   const double mass = mesh_mass(mesh, materials);
   double stiffest = 0.0;
   for (const ElasticLaw& law : laws) {
-    stiffest = std::max(stiffest, law.tensor.diagonal().maxCoeff());
+    stiffest = std::max(stiffest, law.stiffness.diagonal().maxCoeff());
   }
   Vec3 low = mesh.nodes[mesh.elements[0]];
   Vec3 high = low;
