@@ -52,8 +52,8 @@ NaturalModes solve(const TetMesh& mesh, const ElasticOperator& op,
                    const ModeOptions& options) {
   const Timer timer;
   check(options);
-  const NodalMatrix M =
-      mass_matrix(*op.table, op.x, densities(mesh, *op.materials));
+  const NodalMatrix M = mass_matrix(
+      *op.table, op.x, densities(mesh, *op.materials), options.mass);
   const EigenPairs pairs = largest_eigenpairs(
       {op.table->pattern, op.K, M, *op.preconditioner, op.freedom}, start,
       {.count = options.count + static_cast<int>(start.cols()),

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/monitor.h"
 #include "fea/elasticity.h"
+#include "fea/nodal_matrix.h"
 
 namespace meniscus {
 
@@ -16,6 +17,7 @@ struct ModeOptions {
   double tolerance = 1e-6;  // residual of each mode, see eigenpairs.h;
                             // omega^2 is off by about its square
   int max_iterations = 200;
+  MassRule mass = MassRule::Exact;
   Monitor* monitor = nullptr;  // not owned
 };
 

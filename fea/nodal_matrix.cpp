@@ -50,7 +50,7 @@ NodalMatrix assemble_nodal(const ElementTable& table, const Points& x,
   return A;
 }
 
-ElementMatrix<4> mass_of(const std::array<Vec3, 4>& x) {
+ElementMatrix<4> exact_mass(const std::array<Vec3, 4>& x) {
   TetGradients<4> g;
   tet_gradients<4>(x, g);
   ElementMatrix<4> m;
@@ -59,7 +59,7 @@ ElementMatrix<4> mass_of(const std::array<Vec3, 4>& x) {
   return m;
 }
 
-ElementMatrix<10> mass_of(const std::array<Vec3, 10>& x) {
+ElementMatrix<10> exact_mass(const std::array<Vec3, 10>& x) {
   static const auto kShapes = [] {
     std::vector<Eigen::Matrix<double, 10, 1>> shapes;
     for (const TetRulePoint& point : fine_tet_rule()) {
@@ -75,6 +75,19 @@ ElementMatrix<10> mass_of(const std::array<Vec3, 10>& x) {
         point.weight / 6.0 * gradient_at<10>(x, x, point.L).determinant;
     m.noalias() += (volume * kShapes[q]) * kShapes[q].transpose();
     ++q;
+  }
+  return m;
+}
+
+template <int Nodes>
+ElementMatrix<Nodes> mass_at_points(const std::array<Vec3, Nodes>& x) {
+  TetGradients<Nodes> g;
+  tet_gradients<Nodes>(x, g);
+  ElementMatrix<Nodes> m = ElementMatrix<Nodes>::Zero();
+  for (int q = 0; q < kTetPoints<Nodes>; ++q) {
+    const std::array<double, Nodes> N = tet_shapes<Nodes>(rule_point<Nodes>(q));
+    const Eigen::Map<const Eigen::Matrix<double, Nodes, 1>> shape(N.data());
+    m.noalias() += (g.volume[q] * shape) * shape.transpose();
   }
   return m;
 }
@@ -110,10 +123,13 @@ NodalMatrix geometric(const ElementTable& table, const Points& x,
 
 template <int Nodes>
 NodalMatrix mass(const ElementTable& table, const Points& x,
-                 const std::vector<double>& density) {
+                 const std::vector<double>& density, MassRule rule) {
   return assemble_nodal<Nodes>(
       table, x, [&](int e, const std::array<Vec3, Nodes>& nodes) {
-        return ElementMatrix<Nodes>(density[table.region[e]] * mass_of(nodes));
+        const ElementMatrix<Nodes> m = rule == MassRule::Exact
+                                           ? exact_mass(nodes)
+                                           : mass_at_points<Nodes>(nodes);
+        return ElementMatrix<Nodes>(density[table.region[e]] * m);
       });
 }
 
@@ -167,9 +183,10 @@ void add_scaled(double factor, const NodalMatrix& A,
 }
 
 NodalMatrix mass_matrix(const ElementTable& table, const Points& x,
-                        const std::vector<double>& density) {
-  return table.pattern.nodes_per_element == 4 ? mass<4>(table, x, density)
-                                              : mass<10>(table, x, density);
+                        const std::vector<double>& density, MassRule rule) {
+  return table.pattern.nodes_per_element == 4
+             ? mass<4>(table, x, density, rule)
+             : mass<10>(table, x, density, rule);
 }
 
 NodalMatrix geometric_stiffness(const ElementTable& table, const Points& x,

@@ -26,11 +26,18 @@ void multiply(const BlockPattern& pattern, const NodalMatrix& matrix,
 void add_scaled(double factor, const NodalMatrix& A,
                 BlockMatrix<double>& matrix);
 
-/// Consistent mass: M_ab = int rho N_a N_b dV, exact for four nodes and for
-/// straight ten-node elements, by the rule of degree five on curved ones
-/// [mass]. `density`: one per region [mass/length^3]; `x`: the solver's nodes.
+/// Where the mass is integrated.
+enum class MassRule {
+  Exact,           // for four nodes and straight ten-node elements; the rule of
+                   // degree five on curved ones
+  StiffnessPoints  // as CalculiX 2.20 does: one point, or four
+};
+
+/// Consistent mass: M_ab = int rho N_a N_b dV [mass]. `density`: one per region
+/// [mass/length^3]; `x`: the solver's nodes.
 NodalMatrix mass_matrix(const ElementTable& table, const Points& x,
-                        const std::vector<double>& density);
+                        const std::vector<double>& density,
+                        MassRule rule = MassRule::Exact);
 
 /// Geometric stiffness of the stress state: x^T K_g x = int sigma : (grad u^T
 /// grad u) dV, by the stiffness rule at whose points the stresses stand
