@@ -240,21 +240,11 @@ Points ElasticSystem::solver_points(const TetMesh& mesh) const {
 }
 
 VectorX ElasticSystem::to_solver(const VectorX& v) const {
-  VectorX w(v.size());
-  for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
-    w.segment<3>(static_cast<Eigen::Index>(3 * i)) =
-        v.segment<3>(3L * order_.to_mesh[i]);
-  }
-  return w;
+  return meniscus::to_solver(order_, v);
 }
 
 VectorX ElasticSystem::to_mesh(const VectorX& v) const {
-  VectorX w(v.size());
-  for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
-    w.segment<3>(3L * order_.to_mesh[i]) =
-        v.segment<3>(static_cast<Eigen::Index>(3 * i));
-  }
-  return w;
+  return meniscus::to_mesh(order_, v);
 }
 
 std::optional<Failure> ElasticSystem::assemble(

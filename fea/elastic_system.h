@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fea/assembly.h"
+#include "fea/elastic_operator.h"
 #include "fea/elasticity.h"
 #include "fea/holding.h"
 #include "fea/multigrid.h"
@@ -36,6 +37,11 @@ class ElasticSystem {
                         const std::vector<LoadCase>& load_cases,
                         const BlockMatrix<double>& matrix,
                         const ElasticSolution* start) const;
+
+  /// See ElasticModel::operator_at().
+  ElasticOperator operator_at(const TetMesh& mesh,
+                              const std::vector<LoadCase>& load_cases,
+                              int load_case) const;
 
  private:
   /// Load cases that are held alike share a preconditioner.

@@ -57,4 +57,11 @@ ElasticSolution ElasticModel::solve(
   return result;
 }
 
+ElasticOperator ElasticModel::operator_at(
+    const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
+    int load_case) const {
+  impl_->system.check_same(mesh, load_cases);
+  return impl_->system.operator_at(mesh, load_cases, load_case);
+}
+
 }  // namespace meniscus

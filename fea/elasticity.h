@@ -48,6 +48,8 @@ struct ElasticOptions {
   Monitor* monitor = nullptr;  // not owned; must outlive the model
 };
 
+struct ElasticOperator;
+
 /// The elasticity of one mesh topology. Built once at the base design:
 /// sparsity, orderings, factors and smoother. solve() then assembles the
 /// stiffness of any mesh of the same topology and solves it by conjugate
@@ -76,6 +78,14 @@ class ElasticModel {
   /// The same under other loads; names and supports must be the base's.
   ElasticSolution solve(const TetMesh& mesh,
                         const std::vector<LoadCase>& load_cases) const;
+
+  /// The stiffness of `mesh`, held as in load case `load_case` (index), for
+  /// eigenvalue problems; it must not outlive the model. Throws InvalidInput as
+  /// solve() does, MeshError (inverted element) and SolverError (supports that
+  /// turned against each other).
+  ElasticOperator operator_at(const TetMesh& mesh,
+                              const std::vector<LoadCase>& load_cases,
+                              int load_case) const;
 
  private:
   struct Impl;

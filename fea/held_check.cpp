@@ -190,11 +190,10 @@ void add_direction(const HeldDirection& held, const Vec3& x,
   }
 }
 
-}  // namespace
-
-void check_held(const TetMesh& mesh, const std::vector<HeldDirection>& held,
-                const std::string& load_case) {
-  const Parts parts = find_parts(mesh);
+/// Per part, the rigid motions that `held` leaves, as columns.
+std::vector<Eigen::MatrixXd> free_per_part(
+    const TetMesh& mesh, const std::vector<HeldDirection>& held,
+    const Parts& parts) {
   std::vector<Resistance> resistances(parts.frames.size());
   for (const HeldDirection& h : held) {
     const int part = parts.of_node[h.node];
@@ -203,23 +202,59 @@ void check_held(const TetMesh& mesh, const std::vector<HeldDirection>& held,
                     resistances[part]);
     }
   }
-  for (std::size_t p = 0; p < parts.frames.size(); ++p) {
-    const Eigen::SelfAdjointEigenSolver<Mat6> eigen(resistances[p].total());
+  std::vector<Eigen::MatrixXd> motions;
+  for (const Resistance& resistance : resistances) {
+    const Eigen::SelfAdjointEigenSolver<Mat6> eigen(resistance.total());
     const double bound = kFreeMotion * std::max(eigen.eigenvalues()[5], 1e-300);
     int free = 0;
     while (free < 6 && !(eigen.eigenvalues()[free] > bound)) {
       ++free;
     }
-    if (free > 0) {
+    motions.emplace_back(eigen.eigenvectors().leftCols(free));
+  }
+  return motions;
+}
+
+}  // namespace
+
+void check_held(const TetMesh& mesh, const std::vector<HeldDirection>& held,
+                const std::string& load_case) {
+  const Parts parts = find_parts(mesh);
+  const auto motions = free_per_part(mesh, held, parts);
+  for (std::size_t p = 0; p < motions.size(); ++p) {
+    if (motions[p].cols() > 0) {
       const RigidFrame& frame = parts.frames[p];
       throw SolverError(fmt::format(
           "load case '{}': the supports are too weak: the part around ({:.4g}, "
           "{:.4g}, {:.4g}) can {} ({}); fix more components or surfaces",
           load_case, frame.centre.x(), frame.centre.y(), frame.centre.z(),
-          describe(eigen.eigenvectors().leftCols(free), frame),
-          list_held(held)));
+          describe(motions[p], frame), list_held(held)));
     }
   }
+}
+
+Eigen::MatrixXd free_motions(const TetMesh& mesh,
+                             const std::vector<HeldDirection>& held) {
+  const Parts parts = find_parts(mesh);
+  const auto motions = free_per_part(mesh, held, parts);
+  std::vector<Eigen::Index> first = {0};
+  for (const Eigen::MatrixXd& motion : motions) {
+    first.push_back(first.back() + motion.cols());
+  }
+  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(
+      static_cast<Eigen::Index>(3 * mesh.nodes.size()), first.back());
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    const int part = parts.of_node[i];
+    if (part < 0) {
+      continue;
+    }
+    for (int k = 0; k < 3; ++k) {
+      u.block(static_cast<Eigen::Index>(3 * i) + k, first[part], 1,
+              motions[part].cols()) =
+          parts.frames[part].row(mesh.nodes[i], k).transpose() * motions[part];
+    }
+  }
+  return u;
 }
 
 }  // namespace meniscus

@@ -17,4 +17,10 @@ namespace meniscus {
 void check_held(const TetMesh& mesh, const std::vector<HeldDirection>& held,
                 const std::string& load_case);
 
+/// The rigid motions that `held` leaves to the connected parts of the mesh:
+/// displacements, 3 per node, one motion a column; no columns where all is
+/// held.
+Eigen::MatrixXd free_motions(const TetMesh& mesh,
+                             const std::vector<HeldDirection>& held);
+
 }  // namespace meniscus

@@ -166,6 +166,14 @@ struct Resolution {
   std::vector<double> export_edges;
 };
 
+/// Eigenvalues of the best design.
+struct AnalysisEntry {
+  int frequencies = 0;  // lowest natural ones
+  int supports_of = 0;  // held as in this load case: index
+  /// Smallest factors per load case; without it one, roughly; 0: none.
+  std::optional<int> buckling;
+};
+
 enum class StudyKind { Analyse, Match };
 
 struct StudyEntry {

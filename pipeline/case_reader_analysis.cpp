@@ -12,9 +12,10 @@ namespace meniscus {
 
 namespace {
 
+/// The load case that `key` names; the first when left out or wrong.
 int index_of_load_case(CaseContext& context, const CaseTable& table,
-                       const Case& result) {
-  const auto wanted = table.text("load_case");
+                       const Case& result, const char* key = "load_case") {
+  const auto wanted = table.text(key);
   if (!wanted) {
     return 0;
   }
@@ -25,8 +26,7 @@ int index_of_load_case(CaseContext& context, const CaseTable& table,
     }
     known.push_back(entry.name);
   }
-  context.problems.unknown(table.line("load_case"), "load case", *wanted,
-                           known);
+  context.problems.unknown(table.line(key), "load case", *wanted, known);
   return 0;
 }
 
@@ -160,6 +160,27 @@ void check_match(CaseContext& context, const CaseTable& table,
   }
 }
 
+/// More modes at once would take more memory than the part's own solve.
+constexpr int kMostModes = 50;
+
+void read_eigenvalues(CaseContext& context, const toml::table& root,
+                      Case& result) {
+  const auto table = single_table(context, root, "analysis");
+  if (!table) {
+    return;
+  }
+  AnalysisEntry& analysis = result.analysis;
+  analysis.frequencies =
+      table->integer_within("frequencies", 0, kMostModes).value_or(0);
+  analysis.buckling = table->integer_within("buckling", 0, kMostModes);
+  analysis.supports_of =
+      index_of_load_case(context, *table, result, "supports_of");
+  if (result.load_cases.empty() && context.problems.empty()) {
+    context.problems.add(table->line(),
+                         "analysis needs a load case: its supports and loads");
+  }
+}
+
 void read_study(CaseContext& context, const toml::table& root, Case& result) {
   const auto table = single_table(context, root, "study");
   if (!table) {
@@ -193,6 +214,7 @@ void read_analysis(CaseContext& context, const toml::table& root,
                    Case& result) {
   read_load_cases(context, root, result);
   read_responses(context, root, result);
+  read_eigenvalues(context, root, result);
   read_study(context, root, result);
 }
 

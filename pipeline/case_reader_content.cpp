@@ -101,7 +101,7 @@ std::string canonical_text(const toml::table& root) {
   std::string text = "meniscus-case-1;";
   for (const auto& [key, node] : root) {
     const std::string name(key.str());
-    if (name == "title") {
+    if (name == "title" || name == "analysis") {
       continue;
     }
     write(name, text);

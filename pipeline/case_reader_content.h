@@ -13,7 +13,7 @@ namespace meniscus {
 /// spacing, the order of tables and of keys, and 8 against 8.0 make no
 /// difference; the order of entries within a table does ([curves.a] before
 /// [curves.b]), because models follow it. Left out is what no evaluation
-/// depends on: title, resolution.export, study.tolerance, study.method and
+/// depends on: title, analysis, resolution.export, study.tolerance, study.method and
 /// study.max_evaluations.
 std::string canonical_text(const toml::table& root);
 

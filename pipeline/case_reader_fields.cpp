@@ -178,6 +178,19 @@ std::optional<int> CaseTable::positive_integer(const char* key) const {
   return std::nullopt;
 }
 
+std::optional<int> CaseTable::integer_within(const char* key, int least,
+                                             int most) const {
+  if (!has(key)) {
+    return std::nullopt;
+  }
+  const auto value = node(key)->value_exact<std::int64_t>();
+  if (value && *value >= least && *value <= most) {
+    return static_cast<int>(*value);
+  }
+  note(key, fmt::format("a whole number from {} to {}", least, most));
+  return std::nullopt;
+}
+
 std::optional<Quantity> CaseTable::quantity(const char* key) const {
   if (!has(key)) {
     return std::nullopt;

@@ -232,6 +232,18 @@ std::vector<TableSpec> make_tables() {
         {"load_case", K::Name, D::None, false,
          "of mean_displacement, max_von_mises, strain_energy; the first when "
          "left out"}}},
+      {"analysis",
+       false,
+       N::Optional,
+       "Vibration and buckling of the best design",
+       {{"frequencies", K::Integer, D::None, false,
+         "how many natural frequencies, lowest first; none when left out"},
+        {"supports_of", K::Name, D::None, false,
+         "of frequencies: the load case whose supports and springs hold the "
+         "part; the first when left out"},
+        {"buckling", K::Integer, D::None, false,
+         "how many buckling factors per load case, smallest first; 0: none; "
+         "the first to three digits when left out"}}},
       {"study",
        false,
        N::Optional,

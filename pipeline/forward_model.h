@@ -40,6 +40,13 @@ struct Evaluation {
   StageSeconds seconds;
 };
 
+/// A mode of vibration or buckling, 3 per node.
+struct ModeShape {
+  std::string name;   // "mode_1", "buckling_service_1"
+  std::string value;  // for people
+  VectorX shape;
+};
+
 /// The fields behind an evaluation, for files and pictures.
 struct EvaluationFields {
   std::vector<Finding> findings;  // why `surface.base` could not be filled
@@ -48,6 +55,7 @@ struct EvaluationFields {
   TetMesh mesh;                   // ten-node
   ElasticSolution solution;
   StressField stress;  // of the first load case; filled in once, at the end
+  std::vector<ModeShape> modes;  // that the case asks for; the same
   EvaluatedCase inputs;
 };
 

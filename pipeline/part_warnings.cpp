@@ -55,4 +55,25 @@ std::vector<std::string> part_warnings(
   return warnings;
 }
 
+std::vector<std::string> buckling_warnings(const EigenFigures& figures) {
+  std::vector<std::string> warnings;
+  for (const BucklingFigures& b : figures.buckling) {
+    if (!b.modes.factors.empty() && b.modes.factors.front() < 1.0) {
+      warnings.push_back(fmt::format(
+          "buckling factor below 1: the part of load case '{}' buckles at "
+          "{:.3g} of its loads; a linear analysis does not hold",
+          b.load_case, b.modes.factors.front()));
+    }
+    if (b.modes.failure) {
+      warnings.push_back("no certain buckling factor: " +
+                         b.modes.failure->message);
+    }
+  }
+  if (figures.frequencies && figures.frequencies->modes.failure) {
+    warnings.push_back("not all natural frequencies: " +
+                       figures.frequencies->modes.failure->message);
+  }
+  return warnings;
+}
+
 }  // namespace meniscus

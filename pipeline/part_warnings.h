@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/eigen_figures.h"
 #include "pipeline/stress_figures.h"
 
 namespace meniscus {
@@ -14,5 +15,9 @@ namespace meniscus {
 std::vector<std::string> part_warnings(
     const Case& input, const EvaluationFields& fields,
     const std::vector<StressFigures>& stress);
+
+/// Sentences for buckling factors below 1, and for eigenvalues that could not
+/// be found.
+std::vector<std::string> buckling_warnings(const EigenFigures& figures);
 
 }  // namespace meniscus

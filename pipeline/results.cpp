@@ -66,6 +66,12 @@ MeshFields part_fields(const Case& input, const EvaluationFields& fields) {
   out.notes = {{"title", input.title},
                {"length_unit", input.units.length},
                {"load_case", input.load_cases.front().name}};
+  for (const ModeShape& mode : fields.modes) {
+    out.points.push_back(
+        node_field(mode.name.c_str(), "", 3, mode.shape.data(),
+                   static_cast<std::size_t>(mode.shape.size())));
+    out.notes.emplace_back(mode.name, mode.value);
+  }
   return out;
 }
 
@@ -219,6 +225,9 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
     json["fea"] = fea_json(best->fea);
   }
   json["stress"] = stress_json(result.stress);
+  if (result.eigen) {
+    add_eigen_json(*result.eigen, json);
+  }
   json["seconds"] = seconds_json(result.seconds);
   json["seconds"]["output"] = result.output_seconds;
   json["seconds"]["total"] = result.total_seconds;
@@ -253,6 +262,9 @@ std::string result_text(const Case& input, const RunResult& result) {
   for (const Constraint& c : result.constraints) {
     text += fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n", c.name,
                         c.value, c.bound);
+  }
+  if (result.eigen) {
+    text += eigen_text(*result.eigen);
   }
   text += fmt::format(
       "  film: {}, {} facets, residual {:.1e} (bound {:.1e}), smallest "

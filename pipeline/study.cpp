@@ -64,6 +64,7 @@ class StudyRunner {
   ResidualAnswer answer(const MatchTargets& targets,
                         const EvaluationRecord& record);
   void finish_best(EvaluationFields* fields);
+  void solve_eigenproblems();
   void estimate_errors();
   void warn();
 
@@ -177,6 +178,7 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
        part_warnings(input_, last_fields_, result_.stress)) {
     result_.warnings.push_back(std::move(warning));
   }
+  solve_eigenproblems();
   if (options_.estimate_errors) {
     monitor_.progress({.stage = "error", .detail = "dual solutions"});
     const Timer timer;
@@ -192,6 +194,17 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
   }
   if (fields != nullptr) {
     *fields = std::move(last_fields_);
+  }
+}
+
+void StudyRunner::solve_eigenproblems() {
+  monitor_.progress({.stage = "fea", .detail = "buckling, frequencies"});
+  result_.eigen = eigen_figures(input_, last_fields_, model_->elasticity(),
+                                options_.monitor);
+  result_.seconds.fea += result_.eigen->seconds;
+  last_fields_.modes = mode_shapes(input_, *result_.eigen);
+  for (std::string& warning : buckling_warnings(*result_.eigen)) {
+    result_.warnings.push_back(std::move(warning));
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/monitor.h"
 #include "pipeline/case.h"
+#include "pipeline/eigen_figures.h"
 #include "pipeline/element_errors.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/stress_figures.h"
@@ -43,6 +44,7 @@ struct RunResult {
   VectorX design_errors;    // of the matched variables; may be empty
   std::vector<StressFigures> stress;  // of the best design, per load case
   std::optional<ElementErrors> element_errors;  // the elements' part of them
+  std::optional<EigenFigures> eigen;            // of the best design
   int evaluations = 0;  // finite-difference ones included
   int failed_evaluations = 0;
   StageSeconds seconds;  // summed over freeze, evaluations, error estimate

@@ -13,8 +13,10 @@ namespace meniscus {
 
 bool have_calculix() { return find_program("ccx").has_value(); }
 
-std::vector<CalculixStep> run_calculix(const std::string& deck,
-                                       int node_count) {
+namespace {
+
+/// What ccx wrote into its .dat file.
+std::string run_for_dat(const std::string& deck) {
   const TempFolder folder;
   std::ofstream(folder / "job.inp") << deck;
   ChildOptions options;
@@ -33,7 +35,43 @@ std::vector<CalculixStep> run_calculix(const std::string& deck,
         "ccx " + describe_end(result) + ":\n" +
         result.output.substr(result.output.size() - shown) + result.error_tail);
   }
-  return read_calculix_dat(text.str(), node_count);
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<CalculixStep> run_calculix(const std::string& deck,
+                                       int node_count) {
+  return read_calculix_dat(run_for_dat(deck), node_count);
+}
+
+std::vector<double> run_calculix_eigenvalues(std::string deck,
+                                             const std::string& procedure) {
+  const std::string card = "*STATIC, SOLVER=SPOOLES\n";
+  const std::size_t at = deck.find(card);
+  if (at == std::string::npos || deck.find(card, at + 1) != std::string::npos) {
+    throw std::runtime_error("the deck must have one step by SPOOLES");
+  }
+  deck.replace(at, card.size(), procedure + "\n");
+  std::istringstream lines(run_for_dat(deck));
+  std::vector<double> values;
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("P A R T I C I P A T I O N") != std::string::npos) {
+      break;
+    }
+    if (line.find("O U T P U T") != std::string::npos) {
+      inside = true;
+      continue;
+    }
+    std::istringstream numbers(line);
+    int mode = 0;
+    double value = 0.0;
+    if (inside && numbers >> mode >> value) {
+      values.push_back(value);
+    }
+  }
+  return values;
 }
 
 std::vector<CalculixStep> read_calculix_dat(const std::string& text,

@@ -23,6 +23,11 @@ bool have_calculix();
 /// the end of its output when it fails.
 std::vector<CalculixStep> run_calculix(const std::string& deck, int node_count);
 
+/// The same for a deck of one static step, with its procedure exchanged for
+/// "*FREQUENCY\n6" or "*BUCKLE\n2": omega^2 [1/time^2], or buckling factors.
+std::vector<double> run_calculix_eigenvalues(std::string deck,
+                                             const std::string& procedure);
+
 /// Reads the text of a .dat file with the displacement of all nodes and total
 /// forces per step.
 std::vector<CalculixStep> read_calculix_dat(const std::string& text,

@@ -1,0 +1,23 @@
+/// What frequencies and buckling make of eigenpairs alike.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/error.h"
+#include "fea/eigenpairs.h"
+
+namespace meniscus {
+
+/// Why there is no answer; nothing when the pairs converged.
+std::optional<Failure> why_not(const EigenPairs& pairs,
+                               const std::string& what);
+
+/// x or -x: the first of the components within a millionth of the largest is
+/// positive.
+VectorX with_fixed_sign(VectorX x);
+
+/// The largest length of a node's three numbers.
+double largest_of_nodes(const VectorX& x);
+
+}  // namespace meniscus

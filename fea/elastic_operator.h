@@ -1,0 +1,31 @@
+/// A stiffness matrix on its free directions together with what inverts it
+/// approximately, in the solver's numbering: what eigenvalue problems need.
+#pragma once
+
+#include <vector>
+
+#include "fea/assembly.h"
+#include "fea/material.h"
+#include "fea/node_freedom.h"
+#include "fea/node_order.h"
+#include "fea/preconditioner.h"
+
+namespace meniscus {
+
+struct ElasticOperator {
+  // Of the model, not owned:
+  const ElementTable* table;
+  const NodeOrder* order;
+  const std::vector<Material>* materials;
+  const Preconditioner* preconditioner;
+
+  BlockMatrix<double> K;  // with springs
+  NodeFreedom freedom;
+  Points x;  // of solver's nodes [length]
+};
+
+/// Vectors of 3 per node from the mesh's numbering into the solver's, and back.
+VectorX to_solver(const NodeOrder& order, const VectorX& v);
+VectorX to_mesh(const NodeOrder& order, const VectorX& v);
+
+}  // namespace meniscus

@@ -1,0 +1,105 @@
+#include "fea/modes.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "fea/eigen_shapes.h"
+#include "fea/eigenpairs.h"
+#include "fea/elastic_operator.h"
+#include "fea/shifted_system.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// omega^2 over the shift: below this a motion is rigid. Rounding leaves 1e-12
+/// there, a slender part's lowest bending some 1e-3.
+constexpr double kRigid = 1e-7;
+
+std::vector<double> densities(const TetMesh& mesh,
+                              const std::vector<Material>& materials) {
+  std::vector<double> density;
+  for (const Material& material : materials) {
+    density.push_back(material.density);
+  }
+  for (const int region : mesh.element_region) {
+    if (!(density[region] > 0.0)) {
+      throw InvalidInput(
+          fmt::format("natural frequencies: material '{}' of region {} has "
+                      "density {}; give its mass per volume",
+                      materials[region].name, region, density[region]));
+    }
+  }
+  return density;
+}
+
+void check(const ModeOptions& options) {
+  if (options.count < 1 || !(options.tolerance > 0.0) ||
+      options.max_iterations < 1) {
+    throw InvalidInput(fmt::format(
+        "natural frequencies: count is {}, tolerance {}, max_iterations {}; "
+        "all must be above 0",
+        options.count, options.tolerance, options.max_iterations));
+  }
+}
+
+/// K is the operator's, shifted by shift M; `start`: motions left free.
+NaturalModes solve(const TetMesh& mesh, const ElasticOperator& op,
+                   const Columns& start, double shift,
+                   const ModeOptions& options) {
+  const Timer timer;
+  check(options);
+  const NodalMatrix M = mass_matrix(
+      *op.table, op.x, densities(mesh, *op.materials), options.mass);
+  const EigenPairs pairs = largest_eigenpairs(
+      {op.table->pattern, op.K, M, *op.preconditioner, op.freedom}, start,
+      {.count = options.count + static_cast<int>(start.cols()),
+       .tolerance = options.tolerance,
+       .max_iterations = options.max_iterations,
+       .monitor = options.monitor});
+  NaturalModes modes;
+  modes.failure = why_not(pairs, "natural frequencies");
+  modes.iterations = pairs.iterations;
+  for (Eigen::Index k = 0; k < pairs.theta.size(); ++k) {
+    const double square = 1.0 / pairs.theta[k] - shift;
+    if (square < kRigid * shift) {
+      ++modes.rigid_motions;
+      continue;
+    }
+    modes.frequencies.push_back(std::sqrt(square) / (2.0 * kPi));
+    modes.residuals.push_back(pairs.residuals[k]);
+    modes.shapes.push_back(with_fixed_sign(
+        to_mesh(*op.order, pairs.x.col(k) / std::sqrt(pairs.theta[k]))));
+  }
+  modes.seconds = timer.seconds();
+  return modes;
+}
+
+}  // namespace
+
+NaturalModes natural_modes(const ElasticModel& model, const TetMesh& mesh,
+                           const std::vector<LoadCase>& load_cases,
+                           int load_case, const ModeOptions& options) {
+  const Timer timer;
+  NaturalModes modes =
+      solve(mesh, model.operator_at(mesh, load_cases, load_case), Columns(),
+            0.0, options);
+  modes.seconds = timer.seconds();
+  return modes;
+}
+
+NaturalModes natural_modes(const TetMesh& mesh,
+                           const std::vector<Material>& materials,
+                           const LoadCase& held, const ModeOptions& options) {
+  const Timer timer;
+  const ShiftedSystem system(mesh, materials, held);
+  NaturalModes modes = solve(mesh, system.shifted(), system.free_motions(),
+                             system.shift(), options);
+  modes.seconds = timer.seconds();
+  return modes;
+}
+
+}  // namespace meniscus

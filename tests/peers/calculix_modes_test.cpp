@@ -1,0 +1,120 @@
+/// Our natural frequencies and buckling factors against CalculiX's (*FREQUENCY,
+/// *BUCKLE; ARPACK over SPOOLES) on the same mesh.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "fea/buckling.h"
+#include "fea/modes.h"
+#include "pipeline/calculix_export.h"
+#include "tests/support/calculix.h"
+#include "tests/support/shapes.h"
+
+namespace meniscus {
+namespace {
+
+// CalculiX prints seven digits.
+constexpr double kFactor = 1e-5;
+
+Material aluminium() { return {"aluminium", 71700.0, 0.33, 2.8e-9, {}}; }
+
+Material laminate() {
+  Material m{"laminate", 0.0, 0.0, 1.6e-9, {}};
+  m.orthotropic = Orthotropic{{120000.0, 9000.0, 7000.0},
+                              {0.3, 0.25, 0.4},
+                              {4500.0, 4000.0, 3000.0},
+                              {{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}}};
+  return m;
+}
+
+/// A strut of 60 x 6 x 4, or the same bent around a quarter of a circle.
+TetMesh part(int order, bool bent) {
+  TetMesh mesh = shapes::brick({60.0, 6.0, 4.0}, 14, 3, 2);
+  if (order == 2) {
+    mesh = shapes::straight_quadratic(mesh);
+  }
+  if (bent) {
+    const double radius = 120.0 / std::numbers::pi;
+    for (Vec3& x : mesh.nodes) {
+      const double angle = x.x() / radius;
+      const double r = radius + x.z();
+      x = Vec3(r * std::sin(angle), x.y(), r * std::cos(angle) - radius);
+    }
+  }
+  return mesh;
+}
+
+struct Job {
+  const char* name;
+  int order;
+  bool bent;
+  bool orthotropic;
+};
+
+class EigenvaluesInCalculix : public testing::TestWithParam<Job> {
+ protected:
+  void SetUp() override {
+    if (!have_calculix()) {
+      GTEST_SKIP() << "ccx (Debian package calculix-ccx) is not installed";
+    }
+  }
+
+  std::string deck() const {
+    CalculixDeck result = calculix_deck_of({material_}, cases_, mesh_);
+    result.output = DeckOutput::Nothing;
+    return calculix_deck(mesh_, result);
+  }
+
+  static LoadCase pushed() {
+    LoadCase load_case;
+    load_case.name = "push";
+    load_case.supports = {{"x0", true, true, true}};
+    load_case.forces = {{"x1", {-500.0, 30.0, 0.0}}};
+    return load_case;
+  }
+
+  TetMesh mesh_ = part(GetParam().order, GetParam().bent);
+  Material material_ = GetParam().orthotropic ? laminate() : aluminium();
+  std::vector<LoadCase> cases_ = {pushed()};
+};
+
+TEST_P(EigenvaluesInCalculix, FrequenciesAreTheSame) {
+  const auto theirs = run_calculix_eigenvalues(deck(), "*FREQUENCY\n6");
+  ASSERT_EQ(theirs.size(), 6U);
+  const NaturalModes ours =
+      natural_modes(mesh_, {material_}, cases_[0],
+                    {.count = 6, .mass = MassRule::StiffnessPoints});
+  ASSERT_EQ(ours.frequencies.size(), 6U);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const double square =
+        std::pow(2.0 * std::numbers::pi * ours.frequencies[k], 2);
+    EXPECT_NEAR(square / theirs[k], 1.0, kFactor) << k;
+  }
+}
+
+TEST_P(EigenvaluesInCalculix, BucklingFactorsAreTheSame) {
+  const auto theirs =
+      run_calculix_eigenvalues(deck(), "*BUCKLE\n2,1e-8,20,1000");
+  ASSERT_EQ(theirs.size(), 2U);
+  const ElasticModel model(mesh_, {material_}, cases_);
+  const BucklingModes ours =
+      buckling_modes(model, mesh_, cases_, 0,
+                     model.base_solution().displacements[0], {.count = 2});
+  ASSERT_EQ(ours.factors.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(ours.factors[k] / theirs[k], 1.0, kFactor) << k;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Parts, EigenvaluesInCalculix,
+    testing::Values(Job{"StrutTet4", 1, false, false},
+                    Job{"StrutTet10", 2, false, false},
+                    Job{"BentTet10", 2, true, false},
+                    Job{"BentTet4Orthotropic", 1, true, true},
+                    Job{"StrutTet10Orthotropic", 2, false, true}),
+    [](const auto& job) { return job.param.name; });
+
+}  // namespace
+}  // namespace meniscus
