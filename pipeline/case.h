@@ -32,6 +32,7 @@ struct Case {
   std::vector<LoadCaseEntry> load_cases;
   std::vector<ResponseEntry> responses;
   Resolution resolution;
+  AnalysisEntry analysis;
   StudyEntry study;
 };
 

@@ -12,6 +12,7 @@
 #include "evolve/film_system.h"
 #include "evolve/thicken.h"
 #include "fea/elasticity.h"
+#include "fea/stress_uniformity.h"
 
 namespace meniscus {
 
@@ -139,6 +140,18 @@ struct LoadCaseEntry {
   std::vector<SpringBed> springs;
   std::vector<LoadEntry> loads;
   SourceLine line = 0;
+};
+
+/// A zone that stress figures leave out.
+struct ExclusionEntry {
+  ExclusionZone zone;
+  std::string key;  // "analysis.exclude[0]", for messages
+  SourceLine line = 0;
+};
+
+struct AnalysisEntry {
+  bool adapt = false;  // one round of adaptive refinement
+  std::vector<ExclusionEntry> exclude;
 };
 
 enum class ResponseKind {

@@ -192,6 +192,7 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
 void read_analysis(CaseContext& context, const toml::table& root,
                    Case& result) {
   read_load_cases(context, root, result);
+  read_analysis_table(context, root, result);
   read_responses(context, root, result);
   read_study(context, root, result);
 }

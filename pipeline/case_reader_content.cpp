@@ -46,7 +46,7 @@ void write(const toml::node& node, std::string& text) {
   } else if (node.is_number()) {
     text += fmt::format("#{};", *node.value<double>());
   } else {
-    std::ostringstream other;  // booleans and dates, which no key takes
+    std::ostringstream other;  // booleans, and dates, which no key takes
     other << toml::node_view<const toml::node>(node);
     write(other.str(), text);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/monitor.h"
+#include "pipeline/adaptation.h"
 #include "pipeline/case.h"
 #include "pipeline/element_errors.h"
 #include "pipeline/forward_model.h"
@@ -41,7 +42,9 @@ struct RunResult {
   std::vector<Constraint> constraints;
   VectorX response_errors;  // estimated discretisation errors; may be empty
   VectorX design_errors;    // of the matched variables; may be empty
-  std::vector<StressFigures> stress;  // of the best design, per load case
+  std::vector<StressFigures> stress;     // of the best design, per load case
+  Exclusion exclusion;                   // what these leave out
+  std::optional<Adaptation> adaptation;  // at the initial design
   std::optional<ElementErrors> element_errors;  // the elements' part of them
   int evaluations = 0;  // finite-difference ones included
   int failed_evaluations = 0;
