@@ -12,7 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kErrorWanted = 0.5;  // of that there is
+constexpr double kErrorWanted =
+    0.4;  // of that there is; singular edges keep more
 constexpr double kMostRefinement = 2.0;
 // A facet is halved when that brings its edges nearer to what is wanted.
 constexpr double kHalve = 0.70710678;

@@ -219,8 +219,9 @@ std::vector<TableSpec> make_tables() {
        "How the part is analysed and what counts of it",
        {{"adapt", K::Flag, D::None, false,
          "one round of adaptive refinement of the frozen model: elements and "
-         "surface are halved where that halves the estimated error at the "
-         "initial design with the fewest elements; false when left out"},
+         "surface are halved where that should leave 40 % of the estimated "
+         "error at the initial design, with the fewest elements; false when "
+         "left out"},
         {"exclude", K::Zones, D::None, false,
          "zones that stress figures leave out: peaks, safety factors, "
          "distributions and max_von_mises responses. Elements whose centre is "

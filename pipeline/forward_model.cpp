@@ -168,9 +168,12 @@ bool ForwardModel::Impl::adapt(const EvaluatedCase& inputs, Monitor& monitor) {
   film->split_facets(plan.split);
   for (const double factor : kEdgeFactors) {
     frozen.failure.reset();
-    if (freeze_mesh(
-            {.edge = factor * edge, .size = plan.size, .monitor = &monitor},
-            monitor)) {
+    if (freeze_mesh({.edge = factor * edge,
+                     .size = plan.size,
+                     .radius_edge_ratio = kGradedRadiusEdge,
+                     .min_dihedral_deg = kGradedDihedral,
+                     .monitor = &monitor},
+                    monitor)) {
       break;
     }
   }

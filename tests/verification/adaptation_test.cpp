@@ -78,7 +78,11 @@ Solved adapted(const NestedSurface& nested, const Solved& coarse) {
   }
   const RefinementPlan plan = plan_refinement(coarse.mesh, share);
   const double edge = mean_edge_length(nested.surface().base);
-  return solve(nested.split(plan.split), {.edge = edge, .size = plan.size});
+  return solve(nested.split(plan.split),
+               {.edge = edge,
+                .size = plan.size,
+                .radius_edge_ratio = kGradedRadiusEdge,
+                .min_dihedral_deg = kGradedDihedral});
 }
 
 TEST(Adaptation, ErrsLessThanUniformMeshesOfAsManyElements) {
