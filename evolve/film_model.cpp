@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <numeric>
 
 #include <fmt/format.h>
 
+#include "core/surface_nodes.h"
 #include "core/timer.h"
 #include "evolve/carry.h"
 #include "evolve/equilibrium.h"
@@ -17,6 +18,10 @@
 namespace meniscus {
 
 namespace {
+
+/// Refinements whose vertices a meshed surface uses: a split facet's corners
+/// are of the first, its mid-sides of the second.
+constexpr int kMeshedLevels = 2;
 
 constexpr int kHalvings = 1;  // the start is this many times coarser
 
@@ -81,17 +86,14 @@ std::string no_value(const ExpressionError& error) {
 
 struct FilmModel::Impl {
   FilmComplex complex;        // finest level, at the reference film
-  std::vector<Edge> parents;  // of the first refinement's new vertices
-  int corner_count = 0;       // vertices of the meshed level
-  SurfaceMesh meshed;         // facets and labels of the meshed level
+  std::vector<Edge> parents;  // of the first refinements' new vertices
+  SurfaceMesh meshed;         // the meshed level at the reference film
   std::optional<FilmEnergy> energy;
   std::optional<Carry> carry;
   FilmTargets targets;
   FilmState reference;
-  double usual_neck = 0.0;            // of the reference [length]
-  std::vector<Edge> edges;            // of the meshed level
-  std::vector<Triangle> facet_edges;  // per meshed facet
-  std::vector<int> mid_vertex;        // per edge: fine vertex, -1 for straight
+  double usual_neck = 0.0;  // of the reference [length]
+  SurfaceNodes nodes;       // the meshed level's, facets split
 
   FilmTargets targets_of_system(const FilmSystem& system) const;
   void check_fields(const FilmSystem& system) const;
@@ -99,7 +101,8 @@ struct FilmModel::Impl {
   void find_reference(const FilmSystem& initial,
                       const FilmModelOptions& options,
                       const SettleOptions& settle);
-  void list_mid_sides();
+  EdgeMiddles middles() const;
+  std::vector<char> straight() const;
   FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,
                             int parts, const SettleOptions& options) const;
 };
@@ -188,20 +191,22 @@ std::vector<Curve> FilmModel::Impl::curves_of_system(
   return result;
 }
 
-void FilmModel::Impl::list_mid_sides() {
-  list_edges(meshed.facets, edges, facet_edges);
-  std::map<Edge, int> fine;
+EdgeMiddles FilmModel::Impl::middles() const {
+  EdgeMiddles result;
+  const auto first = static_cast<int>(meshed.points.size());
   for (std::size_t k = 0; k < parents.size(); ++k) {
-    const Edge& e = parents[k];
-    fine[{std::min(e[0], e[1]), std::max(e[0], e[1])}] =
-        corner_count + static_cast<int>(k);
+    const auto [a, b] = parents[k];
+    result[{std::min(a, b), std::max(a, b)}] = first + static_cast<int>(k);
   }
-  for (const Edge& e : edges) {
-    const auto at = fine.find(e);
-    const bool curved = at != fine.end() &&
-                        complex.vertices[at->second].kind != VertexKind::InCap;
-    mid_vertex.push_back(curved ? at->second : -1);
+  return result;
+}
+
+std::vector<char> FilmModel::Impl::straight() const {
+  std::vector<char> result;
+  for (const ComplexVertex& vertex : complex.vertices) {
+    result.push_back(vertex.kind == VertexKind::InCap ? 1 : 0);
   }
+  return result;
 }
 
 void FilmModel::Impl::find_reference(const FilmSystem& initial,
@@ -215,13 +220,12 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   reference = find_equilibrium(
       complex, {.edge = options.edge, .halvings = kHalvings, .settle = settle});
   meshed = complex.mesh;
-  corner_count = static_cast<int>(complex.mesh.points.size());
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
     Refinement finer = refine(complex);
     complex = std::move(finer.complex);
-    if (level == 0) {
-      parents = std::move(finer.parents);
+    if (level < kMeshedLevels) {
+      parents.insert(parents.end(), finer.parents.begin(), finer.parents.end());
     }
     if (!reference.failure) {
       energy.emplace(complex);
@@ -288,7 +292,12 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   } catch (const ExpressionError& error) {
     throw InvalidInput(no_value(error));
   }
-  impl->list_mid_sides();
+  std::vector<int> corner(impl->meshed.points.size());
+  std::iota(corner.begin(), corner.end(), 0);
+  SurfaceMesh topology = impl->meshed;
+  topology.points.clear();
+  impl->nodes = surface_nodes(std::move(topology), std::move(corner),
+                              impl->middles(), impl->straight());
   if (impl->reference.failure || !impl->energy) {
     impl->energy.emplace(impl->complex);
   }
@@ -349,21 +358,12 @@ FilmState FilmModel::settle(const FilmSystem& system,
 }
 
 QuadraticSurface FilmModel::surface(const Points& points) const {
-  QuadraticSurface result;
-  result.base.facets = impl_->meshed.facets;
-  result.base.facet_label = impl_->meshed.facet_label;
-  result.base.labels = impl_->meshed.labels;
-  result.base.points.assign(points.begin(),
-                            points.begin() + impl_->corner_count);
-  result.edges = impl_->edges;
-  result.facet_edges = impl_->facet_edges;
-  for (std::size_t e = 0; e < impl_->edges.size(); ++e) {
-    const int v = impl_->mid_vertex[e];
-    result.mid.push_back(v >= 0 ? points[v]
-                                : 0.5 * (points[impl_->edges[e][0]] +
-                                         points[impl_->edges[e][1]]));
-  }
-  return result;
+  return impl_->nodes.at(points);
+}
+
+void FilmModel::split_facets(const std::vector<char>& marked) {
+  impl_->nodes = meniscus::split_facets(impl_->nodes, marked, impl_->middles(),
+                                        impl_->straight());
 }
 
 SurfaceMesh FilmModel::fine_mesh(const Points& points) const {

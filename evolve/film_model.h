@@ -100,6 +100,13 @@ class FilmModel {
   /// `points` with constant weights.
   QuadraticSurface surface(const Points& points) const;
 
+  /// Halves the edges of the marked facets (one char per facet of surface()) in
+  /// all that surface() gives from now on: for adaptive meshes, before anything
+  /// is built on it. New corners are vertices of the film's first refinement;
+  /// their mid-sides lie on the film where it has two. Throws MeshError where
+  /// it has none.
+  void split_facets(const std::vector<char>& marked);
+
   /// All facets at the film's own resolution (caps included), for files and
   /// pictures.
   SurfaceMesh fine_mesh(const Points& points) const;

@@ -6,7 +6,8 @@ namespace meniscus {
 
 SafetyFactors safety_factors(const TetMesh& mesh,
                              const std::vector<Material>& materials,
-                             const RecoveredStress& stress) {
+                             const RecoveredStress& stress,
+                             const std::vector<char>& excluded) {
   check_materials(mesh, materials);
   constexpr double kNever = std::numeric_limits<double>::infinity();
   SafetyFactors result;
@@ -14,6 +15,9 @@ SafetyFactors safety_factors(const TetMesh& mesh,
   result.smallest = kNever;
   std::vector<int> region(stress.value.size(), -1);
   for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!excluded.empty() && excluded[e] != 0) {
+      continue;
+    }
     for (const int copy : stress.nodes.element(e)) {
       region[copy] = mesh.element_region[e];
     }

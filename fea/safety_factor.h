@@ -17,10 +17,12 @@ struct SafetyFactors {
   double von_mises = 0.0;  // there [pressure]
 };
 
-/// `stress` must be of this mesh. Throws InvalidInput where materials do not
-/// fit the mesh.
+/// Of elements that are not excluded (one char per element, or empty); nodes
+/// of none have an infinite factor. `stress` must be of this mesh. Throws
+/// InvalidInput where materials do not fit the mesh.
 SafetyFactors safety_factors(const TetMesh& mesh,
                              const std::vector<Material>& materials,
-                             const RecoveredStress& stress);
+                             const RecoveredStress& stress,
+                             const std::vector<char>& excluded = {});
 
 }  // namespace meniscus

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -114,7 +115,48 @@ SpringBlocks merged(std::vector<Entry> entries) {
   return result;
 }
 
+/// Along a fixed direction, or the normal where there is none.
+SpringSet spring_set(const TetMesh& mesh, const SpringBed& bed,
+                     double stiffness, const std::optional<Vec3>& direction) {
+  const double whole = bed.measure == SpringMeasure::Total
+                           ? surface_weights(mesh, bed.surface).weights.sum()
+                           : 1.0;
+  SpringSet set{.stiffness = stiffness};
+  over_face_points(mesh, surface_label(mesh, bed.surface), FaceRule::Seven,
+                   [&](int f, const FacePoint& point) {
+                     const double area = point.normal.norm();
+                     const Vec3 along = std::sqrt(area / whole) *
+                                        direction.value_or(point.normal / area);
+                     const auto ids = mesh.face(f);
+                     SpringSet::Spring& spring = set.springs.emplace_back();
+                     spring.nodes.assign(ids.begin(), ids.end());
+                     for (std::size_t a = 0; a < ids.size(); ++a) {
+                       spring.coefficients.push_back(point.shape[a] * along);
+                     }
+                   });
+  return set;
+}
+
 }  // namespace
+
+std::vector<SpringSet> spring_sets(const TetMesh& mesh,
+                                   const LoadCase& load_case) {
+  std::vector<SpringSet> sets;
+  for (const SpringBed& bed : load_case.springs) {
+    check(bed, load_case);
+    const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
+    for (int c = 0; c < 3; ++c) {
+      if (bed.components[c] > 0.0) {
+        sets.push_back(
+            spring_set(mesh, bed, bed.components[c], Vec3(axes.col(c))));
+      }
+    }
+    if (bed.normal > 0.0) {
+      sets.push_back(spring_set(mesh, bed, bed.normal, std::nullopt));
+    }
+  }
+  return sets;
+}
 
 SpringBlocks spring_blocks(const TetMesh& mesh, const LoadCase& load_case,
                            int order) {

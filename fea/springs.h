@@ -39,6 +39,25 @@ void add_springs(const BlockPattern& pattern, const SpringBlocks& springs,
 /// S u: what the springs pull with, against u [force].
 VectorX spring_forces(const SpringBlocks& springs, const VectorX& u);
 
+/// Springs of one stiffness k: each pulls with k e on e = sum c_a . u_a.
+struct SpringSet {
+  double stiffness = 0.0;  // [pressure/length] per area, [force/length] in
+                           // total; above 0
+  struct Spring {
+    std::vector<int> nodes;  // of a face
+    Points coefficients;     // c_a: root of the share of the area x shape
+                             // function x direction
+  };
+  std::vector<Spring> springs;
+};
+
+/// The same beds as springs: S = sum of k c c^T, the quadrature of
+/// spring_blocks point by point, for programs that know springs and no beds.
+/// A set for each component and normal that has a stiffness. Throws what
+/// spring_blocks throws.
+std::vector<SpringSet> spring_sets(const TetMesh& mesh,
+                                   const LoadCase& load_case);
+
 /// The directions that springs pull along, with the uncertainty of normals.
 std::vector<HeldDirection> sprung_directions(const TetMesh& mesh,
                                              const LoadCase& load_case);

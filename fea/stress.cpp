@@ -92,6 +92,25 @@ void find_peak(StressField& field) {
   }
 }
 
+void find_peak(const TetMesh& mesh, const std::vector<char>& excluded,
+               StressField& field) {
+  field.max_von_mises = 0.0;
+  field.max_node = 0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (excluded[e] != 0) {
+      continue;
+    }
+    for (const int i : mesh.element(e)) {
+      const double s = field.von_mises[i];
+      if (s > field.max_von_mises ||
+          (s == field.max_von_mises && i < field.max_node)) {
+        field.max_von_mises = s;
+        field.max_node = i;
+      }
+    }
+  }
+}
+
 StressField average_stress(const TetMesh& mesh, const PointStress& points) {
   const int elements = mesh.element_count();
   const int nodes = static_cast<int>(mesh.nodes.size());

@@ -21,6 +21,11 @@ struct StressField {
 /// Fills in von Mises stresses and their peak from `field.nodal`.
 void find_peak(StressField& field);
 
+/// The peak among nodes of elements that are not excluded (one char per
+/// element): `field`'s von Mises stresses must be there.
+void find_peak(const TetMesh& mesh, const std::vector<char>& excluded,
+               StressField& field);
+
 /// Means of element extrapolations at nodes, weighted by volume. Ten-node
 /// elements: from the four points of the stiffness rule linearly to the
 /// corners, mid-sides the mean of their ends; as CalculiX does. One order less

@@ -60,6 +60,21 @@ void exclude_box(const TetMesh& mesh, const ExclusionZone::Box& box,
   }
 }
 
+void exclude_ball(const TetMesh& mesh, const ExclusionZone::Ball& ball,
+                  std::vector<char>& excluded) {
+  if (!(ball.radius > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "exclusion zone: the ball about ({}, {}, {}) has radius {}; it must be "
+        "above 0",
+        ball.center.x(), ball.center.y(), ball.center.z(), ball.radius));
+  }
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if ((centre(mesh, e) - ball.center).norm() <= ball.radius) {
+      excluded[e] = 1;
+    }
+  }
+}
+
 void check_values(const std::vector<double>& values,
                   const std::vector<double>& volumes) {
   if (values.empty() || values.size() != volumes.size()) {
@@ -87,15 +102,18 @@ std::vector<char> excluded_elements(const TetMesh& mesh,
                                     const std::vector<ExclusionZone>& zones) {
   std::vector<char> excluded(mesh.element_count(), 0);
   for (const ExclusionZone& zone : zones) {
-    if (zone.surface.empty() && !zone.box) {
+    if (zone.surface.empty() && !zone.box && !zone.ball) {
       throw InvalidInput(
-          "exclusion zone: give a surface with a distance, or a box");
+          "exclusion zone: give a surface with a distance, a box or a ball");
     }
     if (!zone.surface.empty()) {
       exclude_near(mesh, zone, excluded);
     }
     if (zone.box) {
       exclude_box(mesh, *zone.box, excluded);
+    }
+    if (zone.ball) {
+      exclude_ball(mesh, *zone.ball, excluded);
     }
   }
   return excluded;

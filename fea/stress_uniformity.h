@@ -20,12 +20,17 @@ struct ExclusionZone {
     Vec3 high = Vec3::Zero();  // [length]
   };
   std::optional<Box> box;  // elements with their centre in it
+  struct Ball {
+    Vec3 center = Vec3::Zero();  // [length]
+    double radius = 0.0;         // [length]
+  };
+  std::optional<Ball> ball;  // the same
 };
 
 /// One char per element: 1 where it is left out. Ask once, at a model's base
 /// design: the same elements must then count in every design. Throws
-/// InvalidInput for an unknown surface, a distance that is not positive, an
-/// empty box, and a zone with neither.
+/// InvalidInput for an unknown surface, a distance or radius that is not
+/// positive, an empty box, and a zone with none of them.
 std::vector<char> excluded_elements(const TetMesh& mesh,
                                     const std::vector<ExclusionZone>& zones);
 

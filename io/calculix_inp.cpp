@@ -10,6 +10,7 @@
 #include "io/atomic_file.h"
 #include "io/calculix_material.h"
 #include "io/calculix_names.h"
+#include "io/calculix_springs.h"
 
 namespace meniscus {
 
@@ -46,6 +47,7 @@ class DeckWriter {
     all_elements();
     materials();
     equations();
+    add(springs_text(mesh_, deck_.springs));
     if (heated()) {  // steps give changes
       fmt::format_to(out(),
                      "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n");
@@ -58,6 +60,9 @@ class DeckWriter {
 
  private:
   Out out() { return std::back_inserter(buffer_); }
+  void add(const std::string& text) {
+    buffer_.append(text.data(), text.data() + text.size());
+  }
 
   int label(const std::string& surface, const DeckStep& step) const {
     const int id = mesh_.label_of(surface);
@@ -80,7 +85,8 @@ class DeckWriter {
           "the deck has {} materials for {} regions; give one per region",
           deck_.materials.size(), regions));
     }
-    for (const DeckStep& step : deck_.steps) {
+    for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
+      const DeckStep& step = deck_.steps[s];
       const auto size = static_cast<std::size_t>(step.nodal_forces.size());
       if (size != 0 && size != 3 * mesh_.nodes.size()) {
         throw InvalidInput(fmt::format(
@@ -94,7 +100,8 @@ class DeckWriter {
             "step '{}' of the deck has {} temperatures for {} nodes", step.name,
             heated, mesh_.nodes.size()));
       }
-      if (step.supports.empty() && deck_.equations.empty()) {
+      if (step.supports.empty() && deck_.equations.empty() &&
+          !have_springs(deck_.springs, s)) {
         throw InvalidInput(fmt::format(
             "step '{}' of the deck has no support; fix a surface", step.name));
       }
@@ -188,9 +195,7 @@ class DeckWriter {
 
   void materials() {
     for (std::size_t r = 0; r < deck_.materials.size(); ++r) {
-      const std::string text =
-          material_text(deck_.materials[r], material_names_[r], r);
-      buffer_.append(text.data(), text.data() + text.size());
+      add(material_text(deck_.materials[r], material_names_[r], r));
     }
   }
 
@@ -346,6 +351,7 @@ class DeckWriter {
     fmt::format_to(out(), "** load case '{}'\n*STEP\n*STATIC, SOLVER={}\n",
                    one_line(step.name), deck_.solver);
     boundary(step);
+    add(springs_boundary_text(deck_.springs, number));
     forces(step);
     temperatures(step);
     if (deck_.output == DeckOutput::Viewer ||

@@ -63,6 +63,20 @@ struct DeckEquation {
   int dependent = 0;
 };
 
+/// Springs of one stiffness: each pulls with stiffness x e on
+/// e = sum coefficients . u over its nodes. Written as SPRING1 elements on
+/// nodes of their own, tied to the mesh by *EQUATION, that are held to the
+/// ground in the steps where they act.
+struct DeckSprings {
+  double stiffness = 0.0;  // above 0
+  struct Spring {
+    std::vector<int> nodes;  // of the mesh, from 0
+    Points coefficients;     // one per node, not all 0
+  };
+  std::vector<Spring> springs;
+  std::vector<int> steps;  // where they act, from 0
+};
+
 /// One load case, one *STEP; nothing carries over from the step before.
 struct DeckStep {
   std::string name;
@@ -87,6 +101,7 @@ struct CalculixDeck {
   std::vector<DeckMaterial> materials;  // one per region
   std::vector<DeckStep> steps;
   std::vector<DeckEquation> equations;
+  std::vector<DeckSprings> springs;
   std::string solver = "SPOOLES";  // or "ITERATIVE CHOLESKY", ...
   DeckOutput output = DeckOutput::Both;
 };

@@ -29,6 +29,32 @@ std::string make_switches(const char* work,
                      volume);
 }
 
+/// Points that TetGen may add where sizes vary: ten times what such meshes
+/// have. Between some graded facets it splits without end; a time limit alone
+/// would make the answer depend on the machine.
+int most_new_points(double elements) {
+  constexpr double kPointsPerElement = 3.0;
+  constexpr double kAtLeast = 2000.0;
+  return static_cast<int>(std::max(kAtLeast, kPointsPerElement * elements));
+}
+
+/// Runs TetGen with that bound; reaching it is a failure.
+TetgenOutput run_bounded(TetgenInput input, double elements,
+                         const TetgenLimits& limits) {
+  const int most = most_new_points(elements);
+  input.switches += fmt::format("S{}", most);
+  const std::size_t before = input.points->size();
+  TetgenOutput output = run_tetgen(input, limits);
+  if (!output.failure &&
+      output.nodes.size() >= before + static_cast<std::size_t>(most)) {
+    output.failure = fmt::format(
+        "TetGen went on splitting elements after {} new points, for {:.0f} "
+        "elements asked for; try another size",
+        most, elements);
+  }
+  return output;
+}
+
 TetgenOutput too_many(double count) {
   TetgenOutput output;
   output.failure = fmt::format(
@@ -119,12 +145,12 @@ TetgenOutput split(TetgenOutput output, const SurfaceMesh& surface,
     if (bounds.expected > kMostElements) {
       return too_many(bounds.expected);
     }
-    output = run_tetgen({.points = &output.nodes,
-                         .facets = &surface.facets,
-                         .elements = &output.elements,
-                         .largest = &bounds.largest,
-                         .switches = make_switches("r", options, "a")},
-                        limits_left(options, timer));
+    output = run_bounded({.points = &output.nodes,
+                          .facets = &surface.facets,
+                          .elements = &output.elements,
+                          .largest = &bounds.largest,
+                          .switches = make_switches("r", options, "a")},
+                         bounds.expected, limits_left(options, timer));
     if (output.failure) {
       break;
     }
@@ -183,11 +209,15 @@ TetgenOutput fill_surface(const SurfaceMesh& surface, const SurfaceFit& fit,
                           .facets = &surface.facets,
                           .holes = frame.into(fit.cavities),
                           .switches = fill_switches(surface, frame, options)};
-  TetgenOutput output = run_tetgen(input, limits_left(options, timer));
-  if (!options.size || output.failure) {
-    return output;
+  if (!options.size) {
+    return run_tetgen(input, limits_left(options, timer));
   }
-  return split(std::move(output), surface, frame, options, timer);
+  TetgenOutput output =
+      run_bounded(input, count + static_cast<double>(surface.facets.size()),
+                  limits_left(options, timer));
+  return output.failure
+             ? output
+             : split(std::move(output), surface, frame, options, timer);
 }
 
 TetgenOutput split_elements(const SurfaceMesh& surface, const Frame& frame,
@@ -206,12 +236,12 @@ TetgenOutput split_elements(const SurfaceMesh& surface, const Frame& frame,
     return too_many(expected);
   }
   const Points points = frame.into(mesh.nodes);
-  return run_tetgen({.points = &points,
-                     .facets = &surface.facets,
-                     .elements = &mesh.elements,
-                     .largest = &largest,
-                     .switches = make_switches("r", options, "a")},
-                    limits_left(options, Timer()));
+  return run_bounded({.points = &points,
+                      .facets = &surface.facets,
+                      .elements = &mesh.elements,
+                      .largest = &largest,
+                      .switches = make_switches("r", options, "a")},
+                     expected, limits_left(options, Timer()));
 }
 
 }  // namespace meniscus

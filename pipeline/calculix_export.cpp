@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "fea/body_loads.h"
 #include "fea/loads.h"
+#include "fea/springs.h"
 #include "fea/supports.h"
 
 namespace meniscus {
@@ -132,6 +133,37 @@ void add_loads(const LoadCase& load_case, const TetMesh& mesh, DeckStep& step) {
   step.temperature_change = temperature_change(mesh, load_case);
 }
 
+/// The springs of load case `step`, together with those of an earlier one that
+/// stands on the same beds.
+void add_springs(const std::vector<LoadCase>& load_cases, std::size_t step,
+                 const TetMesh& mesh, CalculixDeck& deck) {
+  const LoadCase& load_case = load_cases[step];
+  if (load_case.springs.empty()) {
+    return;
+  }
+  const auto number = static_cast<int>(step);
+  const auto same_beds = std::find_if(
+      load_cases.begin(), load_cases.begin() + number,
+      [&](const LoadCase& c) { return c.springs == load_case.springs; });
+  const auto earlier = static_cast<int>(same_beds - load_cases.begin());
+  if (earlier < number) {
+    for (DeckSprings& set : deck.springs) {
+      if (set.steps.front() == earlier) {
+        set.steps.push_back(number);
+      }
+    }
+    return;
+  }
+  for (SpringSet& set : spring_sets(mesh, load_case)) {
+    DeckSprings springs{.stiffness = set.stiffness, .steps = {number}};
+    for (SpringSet::Spring& spring : set.springs) {
+      springs.springs.push_back(
+          {std::move(spring.nodes), std::move(spring.coefficients)});
+    }
+    deck.springs.push_back(std::move(springs));
+  }
+}
+
 }  // namespace
 
 CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
@@ -142,12 +174,6 @@ CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
     deck.materials.push_back(material_of(m));
   }
   for (const LoadCase& load_case : load_cases) {
-    if (!load_case.springs.empty()) {
-      throw InvalidInput(fmt::format(
-          "load case '{}' stands on springs, which a deck of this version "
-          "cannot hold; fix the surface '{}' instead, or export another format",
-          load_case.name, load_case.springs.front().surface));
-    }
     DeckStep step{.name = load_case.name};
     std::vector<DeckEquation> equations;
     if (along_axes(load_case)) {
@@ -171,6 +197,7 @@ CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
     }
     deck.equations = std::move(equations);
     add_loads(load_case, mesh, step);
+    add_springs(load_cases, deck.steps.size(), mesh, deck);
     deck.steps.push_back(std::move(step));
   }
   return deck;

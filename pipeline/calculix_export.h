@@ -11,9 +11,9 @@ namespace meniscus {
 
 /// The deck of a mesh: materials, one step per load case. Numbers that CalculiX
 /// has a card for go there (*DLOAD pressure, gravity, spin; *TEMPERATURE),
-/// other loads become nodal forces; oblique supports become equations. Throws
-/// InvalidInput for springs, and for load cases with different oblique
-/// supports.
+/// other loads become nodal forces; oblique supports become equations, beds of
+/// springs SPRING1 elements. Throws InvalidInput for load cases with different
+/// oblique supports.
 CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
                               const std::vector<LoadCase>& load_cases,
                               const TetMesh& mesh);

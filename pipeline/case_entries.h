@@ -12,6 +12,7 @@
 #include "evolve/film_system.h"
 #include "evolve/thicken.h"
 #include "fea/elasticity.h"
+#include "fea/stress_uniformity.h"
 
 namespace meniscus {
 
@@ -141,6 +142,23 @@ struct LoadCaseEntry {
   SourceLine line = 0;
 };
 
+/// A zone that stress figures leave out.
+struct ExclusionEntry {
+  ExclusionZone zone;
+  std::string key;  // "analysis.exclude[0]", for messages
+  SourceLine line = 0;
+};
+
+struct AnalysisEntry {
+  bool adapt = false;  // one round of adaptive refinement
+  std::vector<ExclusionEntry> exclude;
+  // Eigenvalues of the best design:
+  int frequencies = 0;  // lowest natural ones
+  int supports_of = 0;  // held as in this load case: index
+  /// Smallest factors per load case; without it one, roughly; 0: none.
+  std::optional<int> buckling;
+};
+
 enum class ResponseKind {
   MeanDisplacement,
   Mass,
@@ -164,14 +182,6 @@ struct Resolution {
   double film = 0.0;    // edge of its nested refinement [length]
   int refinements = 1;  // film = fea / 2^refinements
   std::vector<double> export_edges;
-};
-
-/// Eigenvalues of the best design.
-struct AnalysisEntry {
-  int frequencies = 0;  // lowest natural ones
-  int supports_of = 0;  // held as in this load case: index
-  /// Smallest factors per load case; without it one, roughly; 0: none.
-  std::optional<int> buckling;
 };
 
 enum class StudyKind { Analyse, Match };

@@ -163,13 +163,15 @@ void check_match(CaseContext& context, const CaseTable& table,
 /// More modes at once would take more memory than the part's own solve.
 constexpr int kMostModes = 50;
 
-void read_eigenvalues(CaseContext& context, const toml::table& root,
-                      Case& result) {
+void read_analysis_table(CaseContext& context, const toml::table& root,
+                         Case& result) {
   const auto table = single_table(context, root, "analysis");
   if (!table) {
     return;
   }
   AnalysisEntry& analysis = result.analysis;
+  analysis.adapt = table->flag("adapt").value_or(false);
+  read_zones(context, *table, result);
   analysis.frequencies =
       table->integer_within("frequencies", 0, kMostModes).value_or(0);
   analysis.buckling = table->integer_within("buckling", 0, kMostModes);
@@ -213,8 +215,8 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
 void read_analysis(CaseContext& context, const toml::table& root,
                    Case& result) {
   read_load_cases(context, root, result);
+  read_analysis_table(context, root, result);
   read_responses(context, root, result);
-  read_eigenvalues(context, root, result);
   read_study(context, root, result);
 }
 

@@ -32,6 +32,12 @@ void write_table(const toml::table& table, const std::set<std::string>& skip,
   text += '}';
 }
 
+bool holds_only(const toml::table& table, const std::set<std::string>& keys) {
+  return std::all_of(table.begin(), table.end(), [&](const auto& entry) {
+    return keys.count(std::string(entry.first.str())) > 0;
+  });
+}
+
 void write(const toml::node& node, std::string& text) {
   if (const toml::table* table = node.as_table()) {
     write_table(*table, {}, text);
@@ -46,7 +52,7 @@ void write(const toml::node& node, std::string& text) {
   } else if (node.is_number()) {
     text += fmt::format("#{};", *node.value<double>());
   } else {
-    std::ostringstream other;  // booleans and dates, which no key takes
+    std::ostringstream other;  // booleans, and dates, which no key takes
     other << toml::node_view<const toml::node>(node);
     write(other.str(), text);
   }
@@ -95,22 +101,27 @@ std::size_t skip_string(std::string_view text, std::size_t at) {
 }  // namespace
 
 std::string canonical_text(const toml::table& root) {
+  static const std::set<std::string> eigenvalues = {"frequencies",
+                                                    "supports_of", "buckling"};
   static const std::set<std::string> ordered = {
       "design", "curves", "films",     "solids",     "bodies",
       "walls",  "fields", "materials", "load_cases", "responses"};
   std::string text = "meniscus-case-1;";
   for (const auto& [key, node] : root) {
     const std::string name(key.str());
-    if (name == "title" || name == "analysis") {
+    const toml::table* table = node.as_table();
+    if (name == "title" || (name == "analysis" && table != nullptr &&
+                            holds_only(*table, eigenvalues))) {
       continue;
     }
     write(name, text);
     text += '=';
-    const toml::table* table = node.as_table();
     if (table != nullptr && ordered.count(name) > 0) {
       write_entries(*table, text);
     } else if (table != nullptr && name == "study") {
       write_table(*table, {"tolerance", "method", "max_evaluations"}, text);
+    } else if (table != nullptr && name == "analysis") {
+      write_table(*table, eigenvalues, text);
     } else if (table != nullptr && name == "resolution") {
       write_table(*table, {"export"}, text);
     } else {

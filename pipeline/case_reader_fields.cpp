@@ -166,6 +166,17 @@ std::vector<std::string> CaseTable::names(const char* key) const {
   return result;
 }
 
+std::optional<bool> CaseTable::flag(const char* key) const {
+  if (!has(key)) {
+    return std::nullopt;
+  }
+  if (const auto* value = node(key)->as_boolean()) {
+    return value->get();
+  }
+  note(key, "true or false");
+  return std::nullopt;
+}
+
 std::optional<int> CaseTable::positive_integer(const char* key) const {
   if (!has(key)) {
     return std::nullopt;
@@ -250,7 +261,8 @@ std::vector<CaseTable> CaseTable::tables(const char* key,
       std::all_of(array->begin(), array->end(),
                   [](const toml::node& n) { return n.is_table(); });
   if (!good) {
-    note(key, "tables, at least one: [{ on = \"...\", ... }]");
+    note(key, fmt::format("tables, at least one: [{{ {} = \"...\", ... }}]",
+                          case_table(spec).keys.front().key));
     return result;
   }
   for (const toml::node& item : *array) {

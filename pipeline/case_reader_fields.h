@@ -65,6 +65,7 @@ class CaseTable {
   std::optional<std::string> text(const char* key) const;
   std::optional<std::string> choice(const char* key) const;
   std::vector<std::string> names(const char* key) const;
+  std::optional<bool> flag(const char* key) const;
   std::optional<int> positive_integer(const char* key) const;
   std::optional<int> integer_within(const char* key, int least, int most) const;
   std::optional<Quantity> quantity(const char* key) const;

@@ -195,9 +195,9 @@ void read_load(CaseContext& context, const CaseTable& table, const Case& result,
 }  // namespace
 
 std::string surface_on(CaseContext& context, const CaseTable& table,
-                       const Case& result) {
-  std::string surface = table.text("on").value_or("");
-  if (!table.has("on")) {
+                       const Case& result, const char* key) {
+  std::string surface = table.text(key).value_or("");
+  if (!table.has(key)) {
     return surface;
   }
   const std::vector<std::string> known = surface_names(result);
@@ -207,9 +207,9 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
                          surface) != body.enclosed_by.end();
       });
   if (std::find(known.begin(), known.end(), surface) == known.end()) {
-    context.problems.unknown(table.line("on"), "surface", surface, known);
+    context.problems.unknown(table.line(key), "surface", surface, known);
   } else if (context.bodies_good && !encloses) {
-    context.problems.add(table.line("on"),
+    context.problems.add(table.line(key),
                          fmt::format("surface '{}' encloses no body, so "
                                      "nothing can act on it; add it to a "
                                      "body's enclosed_by",

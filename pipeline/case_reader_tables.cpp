@@ -26,7 +26,7 @@ void check_top(CaseContext& context, const toml::table& root) {
                                               key.key, key.doc));
         }
       }
-    } else if (name != "support" && name != "load") {
+    } else if (!is_entry_table(name)) {
       known.push_back(name);
       const bool needed = spec.need == TableNeed::Always ||
                           (spec.need == TableNeed::ForParts && !only_walls);

@@ -30,16 +30,19 @@ void read_geometry(CaseContext& context, const toml::table& root, Case& result);
 void read_walls(CaseContext& context, const toml::table& root, Case& result);
 void read_fields(CaseContext& context, const toml::table& root, Case& result);
 
-/// The surface that a load, support or response names with `on`: a film or
-/// solid that encloses a body; empty without the key.
+/// The surface that a load, support or response names with `key`: a film
+/// or solid that encloses a body; empty without the key.
 std::string surface_on(CaseContext& context, const CaseTable& table,
-                       const Case& result);
+                       const Case& result, const char* key = "on");
 
 /// Supports and loads; after the geometry.
 void read_load_cases(CaseContext& context, const toml::table& root,
                      Case& result);
 
-/// Load cases, responses, study; after the geometry.
+/// What stress figures leave out, from [analysis]; after the geometry.
+void read_zones(CaseContext& context, const CaseTable& table, Case& result);
+
+/// Load cases, analysis, responses, study; after the geometry.
 void read_analysis(CaseContext& context, const toml::table& root, Case& result);
 
 }  // namespace meniscus

@@ -213,6 +213,41 @@ std::vector<TableSpec> make_tables() {
          "of all bodies; they expand from the reference"},
         {"reference", K::Quantity, D::None, false,
          "of temperature: where nothing has expanded; 0 when left out"}}},
+      {"analysis",
+       false,
+       N::Optional,
+       "How the part is analysed, what counts of it, vibration and buckling",
+       {{"adapt", K::Flag, D::None, false,
+         "one round of adaptive refinement of the frozen model: elements and "
+         "surface are halved where that should leave 40 % of the estimated "
+         "error at the initial design, with the fewest elements; false when "
+         "left out"},
+        {"exclude", K::Zones, D::None, false,
+         "zones that stress figures leave out: peaks, safety factors, "
+         "distributions and max_von_mises responses. Elements whose centre is "
+         "in one at the initial design, for every design"},
+        {"frequencies", K::Integer, D::None, false,
+         "how many natural frequencies, lowest first; none when left out"},
+        {"supports_of", K::Name, D::None, false,
+         "of frequencies: the load case whose supports and springs hold the "
+         "part; the first when left out"},
+        {"buckling", K::Integer, D::None, false,
+         "how many buckling factors per load case, smallest first; 0: none; "
+         "the first to three digits when left out"}}},
+      {"exclude",
+       false,
+       N::Optional,
+       "A zone: near and distance, center and radius (a ball), or low and high "
+       "(a box)",
+       {{"near", K::Name, D::None, false, "a surface"},
+        {"distance", K::Constant, D::Length, false,
+         "from the nearest node of that surface; above 0"},
+        {"center", K::ConstantVector, D::Length, false, "of a ball"},
+        {"radius", K::Constant, D::Length, false, "of a ball; above 0"},
+        {"low", K::ConstantVector, D::Length, false,
+         "of a box along x, y, z: the least coordinates"},
+        {"high", K::ConstantVector, D::Length, false,
+         "of a box: the largest; above low"}}},
       {"responses",
        true,
        N::ForParts,
@@ -232,18 +267,6 @@ std::vector<TableSpec> make_tables() {
         {"load_case", K::Name, D::None, false,
          "of mean_displacement, max_von_mises, strain_energy; the first when "
          "left out"}}},
-      {"analysis",
-       false,
-       N::Optional,
-       "Vibration and buckling of the best design",
-       {{"frequencies", K::Integer, D::None, false,
-         "how many natural frequencies, lowest first; none when left out"},
-        {"supports_of", K::Name, D::None, false,
-         "of frequencies: the load case whose supports and springs hold the "
-         "part; the first when left out"},
-        {"buckling", K::Integer, D::None, false,
-         "how many buckling factors per load case, smallest first; 0: none; "
-         "the first to three digits when left out"}}},
       {"study",
        false,
        N::Optional,
@@ -293,6 +316,10 @@ std::vector<std::string> split_choices(const char* choices) {
     rest = bar == std::string::npos ? "" : rest.substr(bar + 1);
   }
   return parts;
+}
+
+bool is_entry_table(const std::string& name) {
+  return name == "support" || name == "load" || name == "exclude";
 }
 
 bool is_later_table(const std::string& name) {

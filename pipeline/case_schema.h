@@ -17,6 +17,7 @@ enum class KeyType {
   Name,    // of something defined elsewhere in the file
   Names,   // array of names
   Integer,
+  Flag,            // true or false
   Quantity,        // number, expression or "value unit"
   Constant,        // a quantity that no design variable moves
   Place,           // a quantity, or an expression that also knows x, y, z
@@ -29,7 +30,8 @@ enum class KeyType {
   Constants,       // array of constants
   ConstantMap,     // inline table: response = constant, of its dimension
   Supports,        // array of inline tables: table "support"
-  Loads            // array of inline tables: table "load"
+  Loads,           // array of inline tables: table "load"
+  Zones            // array of inline tables: table "exclude"
 };
 
 struct KeySpec {
@@ -67,6 +69,9 @@ const KeySpec* find_key(const TableSpec& table, const std::string& key);
 
 /// The parts of "a|b|c".
 std::vector<std::string> split_choices(const char* choices);
+
+/// Tables of the entries of an array, not of the file's own.
+bool is_entry_table(const std::string& name);
 
 /// Tables of later versions: refused by name instead of "unknown".
 bool is_later_table(const std::string& name);

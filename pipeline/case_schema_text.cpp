@@ -23,6 +23,8 @@ const char* type_text(const KeySpec& key) {
       return "names";
     case K::Integer:
       return "integer";
+    case K::Flag:
+      return "true or false";
     case K::Quantity:
       return "quantity";
     case K::Constant:
@@ -49,15 +51,17 @@ const char* type_text(const KeySpec& key) {
       return "supports";
     case K::Loads:
       return "loads";
+    case K::Zones:
+      return "zones";
   }
   return "";
 }
 
 const char* dimension_text(const KeySpec& key) {
-  const bool quantity = key.type != K::Text && key.type != K::Choice &&
-                        key.type != K::Name && key.type != K::Names &&
-                        key.type != K::Integer && key.type != K::Supports &&
-                        key.type != K::Loads;
+  const bool quantity =
+      key.type != K::Text && key.type != K::Choice && key.type != K::Name &&
+      key.type != K::Names && key.type != K::Integer && key.type != K::Flag &&
+      key.type != K::Supports && key.type != K::Loads && key.type != K::Zones;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -82,8 +86,8 @@ std::string heading(const TableSpec& table) {
   if (name.empty()) {
     return "Top of the file";
   }
-  if (name == "support" || name == "load") {
-    return fmt::format("Entries of `{}s`", name);
+  if (is_entry_table(name)) {
+    return fmt::format("Entries of `{}{}`", name, name == "exclude" ? "" : "s");
   }
   return fmt::format("`[{}{}]`", name, table.named_entries ? ".NAME" : "");
 }
@@ -133,6 +137,8 @@ Json type_schema(const KeySpec& key) {
       return array(text, 1, 0);
     case K::Integer:
       return {{"type", "integer"}};
+    case K::Flag:
+      return {{"type", "boolean"}};
     case K::Quantity:
     case K::Constant:
     case K::Place:
@@ -155,6 +161,8 @@ Json type_schema(const KeySpec& key) {
       return array(object_schema(case_table("support")), 1, 0);
     case K::Loads:
       return array(object_schema(case_table("load")), 1, 0);
+    case K::Zones:
+      return array(object_schema(case_table("exclude")), 1, 0);
   }
   return {};
 }
@@ -168,7 +176,7 @@ std::string json_schema() {
   Json for_parts = Json::array();
   for (const TableSpec& table : case_tables()) {
     const std::string name = table.name;
-    if (name.empty() || name == "support" || name == "load") {
+    if (name.empty() || is_entry_table(name)) {
       continue;
     }
     if (name == "parameters") {

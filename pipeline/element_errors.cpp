@@ -1,6 +1,7 @@
 #include "pipeline/element_errors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "fea/body_loads.h"
@@ -35,40 +36,52 @@ DualLoad dual_load(const EvaluationFields& fields, const LoadCase& load_case,
   return {std::move(dual), force};
 }
 
-RecoveredStress recovered(const EvaluationFields& fields, const VectorX& u,
-                          const VectorX& temperature) {
-  return recover_by_patches(
-      fields.mesh,
-      point_stress(fields.mesh, fields.inputs.materials, u, temperature));
-}
-
-/// A load case's solution with its stresses and its error in energy.
-struct Primal {
-  VectorX temperature;
-  RecoveredStress stress;
-  EnergyError energy;
-};
-
-Primal primal(const EvaluationFields& fields, std::size_t load_case) {
-  const VectorX& u = fields.solution.displacements[load_case];
-  Primal result;
-  result.temperature =
-      temperature_change(fields.mesh, fields.inputs.load_cases[load_case]);
-  result.stress = recovered(fields, u, result.temperature);
-  result.energy = estimate_error(fields.mesh, fields.inputs.materials,
-                                 {u, result.stress, result.temperature});
-  return result;
-}
-
-double dual_weighted(const EvaluationFields& fields, std::size_t load_case,
-                     const Primal& primal, const VectorX& dual) {
-  const RecoveredStress stress = recovered(fields, dual, {});
-  return response_error(fields.mesh, fields.inputs.materials,
+ResponseError dual_weighted(const EvaluationFields& fields,
+                            std::size_t load_case, const VectorX& dual) {
+  const auto& materials = fields.inputs.materials;
+  const PartStress& primal = fields.stresses[load_case];
+  const RecoveredStress stress = recover_by_patches(
+      fields.mesh, point_stress(fields.mesh, materials, dual));
+  return response_error(fields.mesh, materials,
                         {fields.solution.displacements[load_case],
-                         primal.stress, primal.temperature},
-                        {dual, stress, {}})
-      .value;
+                         primal.recovered, primal.temperature_change},
+                        {dual, stress, {}});
 }
+
+/// Sums shares of errors that have different units.
+class Shares {
+ public:
+  explicit Shares(int elements)
+      : share_(static_cast<std::size_t>(elements), 0.0) {}
+
+  /// `part(e)`: not negative.
+  template <class Part>
+  void add(const Part& part) {
+    double sum = 0.0;
+    for (std::size_t e = 0; e < share_.size(); ++e) {
+      sum += part(e);
+    }
+    if (!(sum > 0.0)) {
+      return;
+    }
+    for (std::size_t e = 0; e < share_.size(); ++e) {
+      share_[e] += part(e) / sum;
+    }
+    ++count_;
+  }
+
+  std::vector<double> mean() const {
+    std::vector<double> mean = share_;
+    for (double& s : mean) {
+      s /= std::max(count_, 1);
+    }
+    return mean;
+  }
+
+ private:
+  std::vector<double> share_;
+  int count_ = 0;
+};
 
 /// Responses that need a dual solution, by load case.
 std::vector<std::vector<std::size_t>> duals_needed(const Case& input,
@@ -92,17 +105,19 @@ ElementErrors estimate_element_errors(const Case& input,
   ElementErrors errors;
   errors.responses =
       VectorX::Zero(static_cast<Eigen::Index>(input.responses.size()));
-  std::vector<Primal> primals;
+  const std::vector<PartStress>& primals = fields.stresses;
+  Shares shares(fields.mesh.element_count());
   for (std::size_t k = 0; k < load_cases.size(); ++k) {
-    primals.push_back(primal(fields, k));
-    errors.energy = std::max(errors.energy, primals[k].energy.relative());
+    errors.energy = std::max(errors.energy, primals[k].error.relative());
+    const std::vector<double>& e = primals[k].error.element;
+    shares.add([&](std::size_t i) { return e[i] * e[i]; });
   }
   for (std::size_t r = 0; r < input.responses.size(); ++r) {
     const ResponseEntry& response = input.responses[r];
     const auto k = static_cast<std::size_t>(response.load_case);
     double& error = errors.responses[static_cast<Eigen::Index>(r)];
     if (response.kind == ResponseKind::StrainEnergy) {
-      error = 0.5 * primals[k].energy.error * primals[k].energy.error;
+      error = 0.5 * primals[k].error.error * primals[k].error.error;
     } else if (response.kind == ResponseKind::MaxVonMises) {
       error = std::numeric_limits<double>::quiet_NaN();
     }
@@ -124,6 +139,7 @@ ElementErrors estimate_element_errors(const Case& input,
       }
     }
     if (!any) {
+      errors.share = shares.mean();
       return errors;
     }
     const ElasticSolution duals = model.solve(fields.mesh, loads);
@@ -133,9 +149,11 @@ ElementErrors estimate_element_errors(const Case& input,
     }
     for (std::size_t k = 0; k < load_cases.size(); ++k) {
       if (round < needed[k].size()) {
+        const ResponseError error =
+            dual_weighted(fields, k, duals.displacements[k]);
         errors.responses[static_cast<Eigen::Index>(needed[k][round])] =
-            dual_weighted(fields, k, primals[k], duals.displacements[k]) /
-            force[k];
+            error.value / force[k];
+        shares.add([&](std::size_t i) { return std::abs(error.element[i]); });
       }
     }
   }

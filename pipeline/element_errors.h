@@ -14,12 +14,15 @@ struct ElementErrors {
   /// Per response: what it would change by if the elements were exact, in its
   /// units; not a number where there is no estimate (max_von_mises).
   VectorX responses;
+  /// Per element: its share of all these errors, the mean over load cases (in
+  /// energy) and responses; the sum is 1, or 0 where there is no error.
+  std::vector<double> share;
   std::optional<Failure> failure;  // a dual solution's; then the rest is void
 };
 
 /// By recovered stresses; mean displacements by dual weighting
 /// (fea/error_estimate.h): one more solution each, `model` being the elasticity
-/// that solved `fields`.
+/// that solved `fields`, whose stresses must be there.
 ElementErrors estimate_element_errors(const Case& input,
                                       const EvaluationFields& fields,
                                       const ElasticModel& model);

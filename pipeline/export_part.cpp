@@ -61,8 +61,8 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
     }
     write_calculix_inp(file, fields.mesh, deck);
   } else if (options.format == "vtu") {
-    fields.stress = load_case_stress(fields.mesh, fields.inputs, 0,
-                                     fields.solution.displacements.front());
+    fields.stresses =
+        part_stresses(fields.mesh, fields.inputs, fields.solution);
     write_part(file, input, fields);
   } else {
     throw InvalidInput(fmt::format(

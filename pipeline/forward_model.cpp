@@ -1,5 +1,8 @@
 #include "pipeline/forward_model.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "core/timer.h"
@@ -8,12 +11,19 @@
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tet_quality.h"
 #include "mesh_tet/tetrahedralize.h"
+#include "pipeline/adaptation.h"
 #include "pipeline/responses.h"
 #include "pipeline/walls.h"
 
 namespace meniscus {
 
 namespace {
+
+/// So that the mid-sides of halved facets are on the film too.
+constexpr int kAdaptiveRefinements = 2;
+
+// TetGen now and then leaves a flat element; another edge, and it does not.
+constexpr std::array<double, 3> kEdgeFactors = {1.0, 1.1, 0.9};
 
 TetFigures figures(const TetMesh& mesh, const TetQuality& quality) {
   return {.nodes = static_cast<int>(mesh.nodes.size()),
@@ -45,56 +55,64 @@ struct ForwardModel::Impl {
   std::vector<char> curve_edge;
   std::optional<MeshMotion> motion;
   std::optional<ElasticModel> elasticity;
+  Exclusion exclusion;
+  std::optional<Adaptation> adaptation;
 
   void freeze(const ForwardModelOptions& options);
-  void freeze_mesh(const QuadraticSurface& surface, Monitor& monitor);
+  bool freeze_film(const EvaluatedCase& inputs,
+                   const ForwardModelOptions& options, Monitor& monitor);
+  bool freeze_mesh(const TetrahedralizeOptions& options, Monitor& monitor);
+  bool freeze_elasticity(const EvaluatedCase& inputs, Monitor& monitor);
+  bool adapt(const EvaluatedCase& inputs, Monitor& monitor);
+  AdaptedState state(const EvaluatedCase& inputs) const;
+  VectorX responses(const EvaluatedCase& inputs, const FilmReport& film_report,
+                    const TetMesh& mesh, const ElasticSolution& solution) const;
   bool place_nodes(const QuadraticSurface& surface, TetMesh& mesh,
                    Evaluation& result) const;
 };
 
-void ForwardModel::Impl::freeze_mesh(const QuadraticSurface& surface,
+bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
+                                     const ForwardModelOptions& options,
                                      Monitor& monitor) {
-  Tetrahedralization filled =
-      tetrahedralize(surface.base, {.monitor = &monitor});
+  const Timer timer;
+  monitor.progress({.stage = "film", .detail = "settling the start"});
+  int refinements = input.resolution.refinements;
+  if (input.analysis.adapt) {
+    refinements = std::max(refinements, kAdaptiveRefinements);
+  }
+  film.emplace(FilmModel::freeze(inputs.film_system,
+                                 {.edge = inputs.fea_edge * options.edge_factor,
+                                  .refinements = refinements,
+                                  .monitor = &monitor}));
+  frozen.film = film->reference().report;
+  frozen.failure = film->reference().failure;
+  frozen.seconds.film = timer.seconds();
+  return !frozen.failure;
+}
+
+bool ForwardModel::Impl::freeze_mesh(const TetrahedralizeOptions& options,
+                                     Monitor& monitor) {
+  const Timer timer;
+  monitor.progress({.stage = "mesh", .detail = "filling the surface"});
+  const QuadraticSurface surface = film->surface(film->reference().points);
+  Tetrahedralization filled = tetrahedralize(surface.base, options);
   if (filled.failure) {
     frozen.failure = filled.failure;
     unfilled = surface.base;
     findings = std::move(filled.findings);
-    return;
+  } else {
+    motion.emplace(filled.mesh, static_cast<int>(surface.base.points.size()));
+    curve_edge.clear();
+    base_mesh = make_quadratic(filled.mesh, surface, &curve_edge);
+    frozen.tet = figures(base_mesh, filled.quality);
   }
-  motion.emplace(filled.mesh, static_cast<int>(surface.base.points.size()));
-  base_mesh = make_quadratic(filled.mesh, surface, &curve_edge);
-  frozen.tet = figures(base_mesh, filled.quality);
+  frozen.seconds.mesh += timer.seconds();
+  return !frozen.failure;
 }
 
-void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
-  Monitor& monitor =
-      options.monitor != nullptr ? *options.monitor : silent_monitor();
-  frozen.design = initial_design(input);
-  const EvaluatedCase inputs = meniscus::evaluate(input, frozen.design);
-
-  Timer film_timer;
-  monitor.progress({.stage = "film", .detail = "settling the start"});
-  film.emplace(FilmModel::freeze(inputs.film_system,
-                                 {.edge = inputs.fea_edge * options.edge_factor,
-                                  .refinements = input.resolution.refinements,
-                                  .monitor = &monitor}));
-  frozen.film = film->reference().report;
-  frozen.seconds.film = film_timer.seconds();
-  if (film->reference().failure) {
-    frozen.failure = film->reference().failure;
-    return;
-  }
-
-  Timer mesh_timer;
-  monitor.progress({.stage = "mesh", .detail = "filling the surface"});
-  freeze_mesh(film->surface(film->reference().points), monitor);
-  frozen.seconds.mesh = mesh_timer.seconds();
-  if (frozen.failure) {
-    return;
-  }
-
-  Timer fea_timer;
+bool ForwardModel::Impl::freeze_elasticity(const EvaluatedCase& inputs,
+                                           Monitor& monitor) {
+  const Timer timer;
   monitor.progress({.stage = "fea",
                     .detail = fmt::format("{} ten-node tetrahedra",
                                           base_mesh.element_count())});
@@ -108,7 +126,89 @@ void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
   } catch (const MeshError& error) {
     frozen.failure = Failure{FailureKind::ElementsInverted, error.what()};
   }
-  frozen.seconds.fea = fea_timer.seconds();
+  frozen.seconds.fea += timer.seconds();
+  return !frozen.failure;
+}
+
+VectorX ForwardModel::Impl::responses(const EvaluatedCase& inputs,
+                                      const FilmReport& film_report,
+                                      const TetMesh& mesh,
+                                      const ElasticSolution& solution) const {
+  return respond(input,
+                 {inputs, film_report, mesh, solution, exclusion.element});
+}
+
+AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
+  EvaluationFields fields;
+  fields.mesh = base_mesh;
+  fields.inputs = inputs;
+  fields.solution = elasticity->base_solution();
+  fields.stresses = part_stresses(fields.mesh, inputs, fields.solution);
+  return {
+      .tet = frozen.tet,
+      .dofs = frozen.fea.dofs,
+      .responses = responses(inputs, frozen.film, fields.mesh, fields.solution),
+      .errors = estimate_element_errors(input, fields, *elasticity)};
+}
+
+/// A finer mesh where the first one errs, and the elasticity on it.
+bool ForwardModel::Impl::adapt(const EvaluatedCase& inputs, Monitor& monitor) {
+  const Timer timer;
+  monitor.progress({.stage = "adapt", .detail = "errors of the first mesh"});
+  Adaptation round{.before = state(inputs), .after = {}};
+  frozen.seconds.fea += timer.seconds();
+  if (round.before.errors.failure) {
+    frozen.failure = round.before.errors.failure;
+    return false;
+  }
+  const RefinementPlan plan =
+      plan_refinement(base_mesh, round.before.errors.share);
+  const double edge =
+      mean_edge_length(film->surface(film->reference().points).base);
+  film->split_facets(plan.split);
+  for (const double factor : kEdgeFactors) {
+    frozen.failure.reset();
+    if (freeze_mesh({.edge = factor * edge,
+                     .size = plan.size,
+                     .radius_edge_ratio = kGradedRadiusEdge,
+                     .min_dihedral_deg = kGradedDihedral,
+                     .monitor = &monitor},
+                    monitor)) {
+      break;
+    }
+  }
+  if (frozen.failure) {
+    frozen.failure->message =
+        "the adapted mesh (analysis.adapt): " + frozen.failure->message;
+    return false;
+  }
+  exclusion = choose_exclusion(input, base_mesh, EmptyZones::Allowed);
+  if (!freeze_elasticity(inputs, monitor)) {
+    return false;
+  }
+  const Timer after_timer;
+  round.after = state(inputs);
+  frozen.seconds.fea += after_timer.seconds();
+  frozen.failure = round.after.errors.failure;
+  adaptation = std::move(round);
+  return !frozen.failure;
+}
+
+void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
+  Monitor& monitor =
+      options.monitor != nullptr ? *options.monitor : silent_monitor();
+  frozen.design = initial_design(input);
+  const EvaluatedCase inputs = meniscus::evaluate(input, frozen.design);
+  if (!freeze_film(inputs, options, monitor) ||
+      !freeze_mesh({.monitor = &monitor}, monitor)) {
+    return;
+  }
+  exclusion = choose_exclusion(
+      input, base_mesh,
+      options.edge_factor > 1.0 ? EmptyZones::Allowed : EmptyZones::Refused);
+  if (freeze_elasticity(inputs, monitor) && input.analysis.adapt) {
+    adapt(inputs, monitor);
+  }
 }
 
 bool ForwardModel::Impl::place_nodes(const QuadraticSurface& surface,
@@ -148,6 +248,10 @@ const Evaluation& ForwardModel::frozen() const { return impl_->frozen; }
 
 const ElasticModel& ForwardModel::elasticity() const {
   return *impl_->elasticity;
+}
+
+const Adaptation* ForwardModel::adaptation() const {
+  return impl_->adaptation ? &*impl_->adaptation : nullptr;
 }
 
 Evaluation ForwardModel::evaluate(const VectorX& design,
@@ -197,7 +301,7 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
     return result;
   }
   result.responses =
-      respond(impl_->input, {inputs, film_state.report, mesh, solution});
+      impl_->responses(inputs, film_state.report, mesh, solution);
   if (!result.responses.allFinite()) {
     result.failure = not_a_number(impl_->input, result.responses);
     result.responses.resize(0);
@@ -209,6 +313,7 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
     fields->mesh = std::move(mesh);
     fields->solution = std::move(solution);
     fields->inputs = inputs;
+    fields->exclusion = impl_->exclusion;
   }
   return result;
 }

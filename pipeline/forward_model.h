@@ -12,6 +12,8 @@
 #include "evolve/film_model.h"
 #include "fea/elasticity.h"
 #include "pipeline/case.h"
+#include "pipeline/exclusion.h"
+#include "pipeline/part_stress.h"
 
 namespace meniscus {
 
@@ -54,22 +56,27 @@ struct EvaluationFields {
   QuadraticSurface surface;       // as meshed
   TetMesh mesh;                   // ten-node
   ElasticSolution solution;
-  StressField stress;  // of the first load case; filled in once, at the end
-  std::vector<ModeShape> modes;  // that the case asks for; the same
+  std::vector<PartStress> stresses;  // per load case; found once, at the end
+  std::vector<ModeShape> modes;      // that the case asks for; the same
   EvaluatedCase inputs;
+  Exclusion exclusion;  // the model's
 };
 
+struct Adaptation;  // pipeline/adaptation.h
+
 struct ForwardModelOptions {
-  double edge_factor = 1.0;  // x all edge lengths of the case's resolution
+  double edge_factor = 1.0;  // x all edge lengths of the case's resolution;
+                             // above 1, exclusion zones may be empty
   Monitor* monitor = nullptr;
 };
 
 class ForwardModel {
  public:
-  /// Freezes films, tetrahedra and elasticity at the case's initial design.
+  /// Freezes films, tetrahedra and elasticity at the case's initial design,
+  /// with analysis.adapt after one round of adaptive refinement there.
   /// When that design cannot be evaluated, failure() says why and the model
-  /// must not be used. Throws what its stages throw for wrong input, and for a
-  /// case with walls.
+  /// must not be used. Throws what its stages throw for wrong input
+  /// (choose_exclusion too), and for a case with walls.
   explicit ForwardModel(const Case& input,
                         const ForwardModelOptions& options = {});
   ~ForwardModel();
@@ -88,6 +95,9 @@ class ForwardModel {
 
   /// The elasticity that evaluate() solves with.
   const ElasticModel& elasticity() const;
+
+  /// What a case with analysis.adapt was adapted from and to; else null.
+  const Adaptation* adaptation() const;
 
   /// A pure function of (model, design). `fields`, when given, receives the
   /// meshes and the solution.

@@ -19,14 +19,14 @@ double largest_displacement(const VectorX& u) {
   return largest;
 }
 
-std::string yield_warning(const Case& input, const StressFigures& figures) {
-  const StressFigures::Safety& s = *figures.safety;
+std::string yield_warning(const Case& input, const std::string& load_case,
+                          const StressFigures::Safety& s, const char* where) {
   return fmt::format(
-      "stress above yield: load case '{}' reaches {:.4g} {} at ({:.4g}, "
+      "stress above yield{}: load case '{}' reaches {:.4g} {} at ({:.4g}, "
       "{:.4g}, {:.4g}), '{}' yields at {:.4g} {} (safety factor {:.3g}); a "
       "linear analysis does not hold there (at a clamped edge the value grows "
       "with every refinement)",
-      figures.load_case, s.von_mises, input.units.pressure, s.position.x(),
+      where, load_case, s.von_mises, input.units.pressure, s.position.x(),
       s.position.y(), s.position.z(), s.material, s.yield_strength,
       input.units.pressure, s.factor);
 }
@@ -40,7 +40,13 @@ std::vector<std::string> part_warnings(
   const double size = bounding_diagonal(fields.mesh.nodes);
   for (std::size_t k = 0; k < stress.size(); ++k) {
     if (stress[k].safety && stress[k].safety->factor < 1.0) {
-      warnings.push_back(yield_warning(input, stress[k]));
+      warnings.push_back(
+          yield_warning(input, stress[k].load_case, *stress[k].safety, ""));
+    }
+    const auto& out = stress[k].excluded;
+    if (out && out->safety && out->safety->factor < 1.0) {
+      warnings.push_back(yield_warning(input, stress[k].load_case, *out->safety,
+                                       " in an exclusion zone"));
     }
     const double largest =
         largest_displacement(fields.solution.displacements[k]);

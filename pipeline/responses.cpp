@@ -30,7 +30,8 @@ double value_of(const ResponseEntry& response, const Vec3& direction,
     case ResponseKind::Volume:
       return mesh_volume(fields.mesh);
     case ResponseKind::MaxVonMises:
-      return load_case_stress(fields.mesh, fields.numbers, load_case, u)
+      return load_case_stress(fields.mesh, fields.numbers, load_case, u,
+                              fields.excluded)
           .max_von_mises;
     case ResponseKind::StrainEnergy:
       return energy_of(fields, fields.numbers.load_cases[load_case], u);
@@ -43,10 +44,15 @@ double value_of(const ResponseEntry& response, const Vec3& direction,
 }  // namespace
 
 StressField load_case_stress(const TetMesh& mesh, const EvaluatedCase& numbers,
-                             std::size_t load_case, const VectorX& u) {
-  return recover_stress(
-      mesh, numbers.materials, u,
-      temperature_change(mesh, numbers.load_cases[load_case]));
+                             std::size_t load_case, const VectorX& u,
+                             const std::vector<char>& excluded) {
+  StressField field =
+      recover_stress(mesh, numbers.materials, u,
+                     temperature_change(mesh, numbers.load_cases[load_case]));
+  if (!excluded.empty()) {
+    find_peak(mesh, excluded, field);
+  }
+  return field;
 }
 
 VectorX respond(const Case& input, const ResponseInput& fields) {

@@ -48,21 +48,47 @@ Field node_field(const char* name, const std::string& unit, int components,
           .values = {values, values + count}};
 }
 
+Field element_field(const char* name, const std::string& unit) {
+  return {.name = name, .unit = unit};
+}
+
+/// What elements have of the first load case: stresses at integration points,
+/// one after the other, and their errors.
+std::vector<Field> element_fields(const Case& input,
+                                  const EvaluationFields& fields) {
+  const PartStress& first = fields.stresses.front();
+  Field stress = element_field("point_stress", input.units.pressure);
+  stress.components = 6 * first.points.points_per_element;
+  for (const Stress& s : first.points.stress) {
+    stress.values.insert(stress.values.end(), s.begin(), s.end());
+  }
+  Field error = element_field("energy_error", "");
+  error.values = first.error.element;
+  Field excluded = element_field("excluded", "");
+  excluded.values.assign(fields.exclusion.element.begin(),
+                         fields.exclusion.element.end());
+  excluded.values.resize(first.error.element.size(), 0.0);
+  return {std::move(stress), std::move(error), std::move(excluded)};
+}
+
 MeshFields part_fields(const Case& input, const EvaluationFields& fields) {
   const VectorX& u = fields.solution.displacements.front();
+  const StressField nodal =
+      nodal_stress(fields.mesh, fields.stresses.front().recovered);
   MeshFields out;
   out.points.push_back(node_field("displacement", input.units.length, 3,
                                   u.data(),
                                   static_cast<std::size_t>(u.size())));
   Field stress{.name = "stress", .unit = input.units.pressure, .components = 6};
-  for (const auto& s : fields.stress.nodal) {
+  for (const auto& s : nodal.nodal) {
     // xx yy zz xy yz zx: VTK's order of a symmetric tensor too.
     stress.values.insert(stress.values.end(), s.begin(), s.end());
   }
   out.points.push_back(std::move(stress));
   out.points.push_back(node_field("von_mises", input.units.pressure, 1,
-                                  fields.stress.von_mises.data(),
-                                  fields.stress.von_mises.size()));
+                                  nodal.von_mises.data(),
+                                  nodal.von_mises.size()));
+  out.cells = element_fields(input, fields);
   out.notes = {{"title", input.title},
                {"length_unit", input.units.length},
                {"load_case", input.load_cases.front().name}};
@@ -89,21 +115,6 @@ Json value_map(const std::vector<std::string>& names, const VectorX& values) {
     map[names[static_cast<std::size_t>(k)]] = values[k];
   }
   return map;
-}
-
-/// "12.3 mm" with `digits` significant digits.
-std::string quantity(double value, const std::string& unit, int digits = 6) {
-  const std::string number = fmt::format("{:.{}g}", value, digits);
-  return unit.empty() ? number : number + " " + unit;
-}
-
-std::string with_error(double value, const VectorX& errors, Eigen::Index k,
-                       const std::string& unit) {
-  std::string text = quantity(value, unit);
-  if (k < errors.size()) {
-    text += "  +- " + quantity(errors[k], unit, 2);
-  }
-  return text;
 }
 
 }  // namespace
@@ -154,28 +165,6 @@ Evaluation to_evaluation(const EvaluationRecord& record) {
   return evaluation;
 }
 
-std::string describe(const Case& input, const EvaluationRecord& record) {
-  std::string text =
-      fmt::format("evaluation {} ({}):", record.number, record.phase);
-  for (Eigen::Index k = 0; k < record.inputs.size(); ++k) {
-    text += fmt::format(" {} = {}", record.input_names[k],
-                        quantity(record.inputs[k], ""));
-  }
-  if (record.failure) {
-    return text + "; cannot evaluate here: " + record.failure->message;
-  }
-  for (Eigen::Index k = 0; k < record.responses.size(); ++k) {
-    text +=
-        fmt::format("{} {} = {}", k == 0 ? ";" : ",", record.response_names[k],
-                    quantity(record.responses[k],
-                             response_unit(input, static_cast<int>(k))));
-  }
-  if (record.mismatch) {
-    text += fmt::format("; mismatch {:.3g}", *record.mismatch);
-  }
-  return text;
-}
-
 nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
                                    const std::string& program_version) {
   Json json;
@@ -224,61 +213,21 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
     json["tet"] = tet_json(best->tet);
     json["fea"] = fea_json(best->fea);
   }
+  if (result.adaptation) {
+    json["adaptation"] = adaptation_json(input, *result.adaptation);
+  }
   json["stress"] = stress_json(result.stress);
   if (result.eigen) {
     add_eigen_json(*result.eigen, json);
+  }
+  if (!result.exclusion.zones.empty()) {
+    json["exclusion"] = exclusion_json(result.exclusion);
   }
   json["seconds"] = seconds_json(result.seconds);
   json["seconds"]["output"] = result.output_seconds;
   json["seconds"]["total"] = result.total_seconds;
   json["warnings"] = result.warnings;
   return json;
-}
-
-std::string result_text(const Case& input, const RunResult& result) {
-  std::string text;
-  if (!result.best || result.best->responses.size() == 0) {
-    return text;
-  }
-  const Evaluation& best = *result.best;
-  const std::vector<std::string> designs = design_names(input);
-  for (Eigen::Index k = 0; k < best.design.size(); ++k) {
-    text +=
-        fmt::format("  {:<20} {}\n", designs[k],
-                    with_error(best.design[k], result.design_errors, k, ""));
-  }
-  const std::vector<std::string> names = response_names(input);
-  for (Eigen::Index k = 0; k < best.responses.size(); ++k) {
-    const std::string unit = response_unit(input, static_cast<int>(k));
-    text += fmt::format(
-        "  {:<20} {}", names[k],
-        with_error(best.responses[k], result.response_errors, k, unit));
-    if (result.start && result.start->responses.size() > k) {
-      text += "   (at the start " + quantity(result.start->responses[k], unit) +
-              ")";
-    }
-    text += "\n";
-  }
-  for (const Constraint& c : result.constraints) {
-    text += fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n", c.name,
-                        c.value, c.bound);
-  }
-  if (result.eigen) {
-    text += eigen_text(*result.eigen);
-  }
-  text += fmt::format(
-      "  film: {}, {} facets, residual {:.1e} (bound {:.1e}), smallest "
-      "eigenvalue {:.3g}\n"
-      "  elements: {} ten-node tetrahedra, {} unknowns, dihedral angles {:.1f} "
-      "to {:.1f} degrees\n"
-      "  {} evaluations in {:.1f} s (film {:.1f}, mesh {:.1f}, elasticity "
-      "{:.1f})\n",
-      best.film.verdict, best.film.facets, best.film.residual,
-      best.film.residual_bound, best.film.min_eigenvalue, best.tet.elements,
-      best.fea.dofs, best.tet.min_dihedral_deg, best.tet.max_dihedral_deg,
-      result.evaluations, result.total_seconds, result.seconds.film,
-      result.seconds.mesh, result.seconds.fea);
-  return text;
 }
 
 RunResult result_so_far(const Case& input,
@@ -293,26 +242,6 @@ RunResult result_so_far(const Case& input,
     result.best = to_evaluation(best_record(input, records));
   }
   return result;
-}
-
-std::string film_text(const Case& input, const FilmReport& film) {
-  std::string text = fmt::format(
-      "film: {}\n  {} vertices, {} facets, area {:.8g} {}, energy {:.8g} {}\n"
-      "  residual {:.2e} {} (bound {:.2e}), smallest eigenvalue {:.4g}, index "
-      "{}\n  smallest neck {:.4g} {} at ({:.4g}, {:.4g}, {:.4g})\n",
-      film.verdict, film.vertices, film.facets, film.area,
-      input.units.unit_of(Dimension::Area), film.energy,
-      input.units.unit_of(Dimension::Energy), film.residual, input.units.force,
-      film.residual_bound, film.min_eigenvalue, film.index, film.smallest_neck,
-      input.units.length, film.neck_position.x(), film.neck_position.y(),
-      film.neck_position.z());
-  for (const BodyState& body : film.bodies) {
-    text += fmt::format("  body {}: volume {:.8g} {}, pressure {:.6g} {}\n",
-                        body.name, body.volume,
-                        input.units.unit_of(Dimension::Volume), body.pressure,
-                        input.units.pressure);
-  }
-  return text;
 }
 
 void write_film(const Case& input, const SurfaceMesh& film,

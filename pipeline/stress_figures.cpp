@@ -4,8 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fea/body_loads.h"
-
 namespace meniscus {
 
 namespace {
@@ -27,33 +25,63 @@ Json uniformity_json(const Uniformity& u) {
           {"histogram", u.histogram}};
 }
 
+std::optional<StressFigures::Safety> safety_of(
+    const TetMesh& mesh, const std::vector<Material>& materials,
+    const RecoveredStress& stress, const std::vector<char>& excluded) {
+  const SafetyFactors safety =
+      safety_factors(mesh, materials, stress, excluded);
+  if (!std::isfinite(safety.smallest)) {
+    return std::nullopt;
+  }
+  const Material& weakest = materials[static_cast<std::size_t>(safety.region)];
+  return StressFigures::Safety{
+      .factor = safety.smallest,
+      .von_mises = safety.von_mises,
+      .position = mesh.nodes[static_cast<std::size_t>(safety.node)],
+      .material = weakest.name,
+      .yield_strength = *weakest.yield_strength};
+}
+
+std::vector<char> complement(std::vector<char> excluded) {
+  for (char& e : excluded) {
+    e = e == 0 ? 1 : 0;
+  }
+  return excluded;
+}
+
 StressFigures figures_of(const EvaluationFields& fields,
                          std::size_t load_case) {
   const TetMesh& mesh = fields.mesh;
   const auto& materials = fields.inputs.materials;
   const LoadCase& loads = fields.inputs.load_cases[load_case];
-  const PointStress points =
-      point_stress(mesh, materials, fields.solution.displacements[load_case],
-                   temperature_change(mesh, loads));
-  const RecoveredStress recovered = recover_by_patches(mesh, points);
-  const StressField nodal = nodal_stress(mesh, recovered);
-  StressFigures figures{
-      .load_case = loads.name,
-      .max_von_mises = nodal.max_von_mises,
-      .position = mesh.nodes[static_cast<std::size_t>(nodal.max_node)]};
-  const SafetyFactors safety = safety_factors(mesh, materials, recovered);
-  if (std::isfinite(safety.smallest)) {
-    const Material& weakest =
-        materials[static_cast<std::size_t>(safety.region)];
-    figures.safety = StressFigures::Safety{
-        .factor = safety.smallest,
-        .von_mises = safety.von_mises,
-        .position = mesh.nodes[static_cast<std::size_t>(safety.node)],
-        .material = weakest.name,
-        .yield_strength = *weakest.yield_strength};
+  const std::vector<char>& excluded = fields.exclusion.element;
+  const PointStress& points = fields.stresses[load_case].points;
+  const RecoveredStress& recovered = fields.stresses[load_case].recovered;
+  StressField nodal = nodal_stress(mesh, recovered);
+  const auto place = [&] {
+    return mesh.nodes[static_cast<std::size_t>(nodal.max_node)];
+  };
+  StressFigures figures{.load_case = loads.name};
+  if (fields.exclusion.all.elements > 0) {
+    const std::vector<char> counted = complement(excluded);
+    find_peak(mesh, counted, nodal);
+    figures.excluded =
+        StressFigures::Excluded{nodal.max_von_mises, place(),
+                                safety_of(mesh, materials, recovered, counted)};
+    find_peak(mesh, excluded, nodal);
   }
-  figures.uniformity = stress_uniformity(mesh, materials, points);
+  figures.max_von_mises = nodal.max_von_mises;
+  figures.position = place();
+  figures.safety = safety_of(mesh, materials, recovered, excluded);
+  figures.uniformity = stress_uniformity(mesh, materials, points, excluded);
   return figures;
+}
+
+Json safety_json(const StressFigures::Safety& safety) {
+  return {{"smallest", safety.factor},
+          {"von_mises", safety.von_mises},
+          {"position", place_json(safety.position)},
+          {"material", safety.material}};
 }
 
 }  // namespace
@@ -72,10 +100,14 @@ Json stress_json(const std::vector<StressFigures>& figures) {
     Json entry = {{"max_von_mises", f.max_von_mises},
                   {"position", place_json(f.position)}};
     if (f.safety) {
-      entry["safety_factor"] = {{"smallest", f.safety->factor},
-                                {"von_mises", f.safety->von_mises},
-                                {"position", place_json(f.safety->position)},
-                                {"material", f.safety->material}};
+      entry["safety_factor"] = safety_json(*f.safety);
+    }
+    if (f.excluded) {
+      entry["excluded"] = {{"max_von_mises", f.excluded->max_von_mises},
+                           {"position", place_json(f.excluded->position)}};
+      if (f.excluded->safety) {
+        entry["excluded"]["safety_factor"] = safety_json(*f.excluded->safety);
+      }
     }
     entry["von_mises"] = uniformity_json(f.uniformity.von_mises);
     entry["energy_density"] = uniformity_json(f.uniformity.energy_density);

@@ -15,7 +15,7 @@ namespace meniscus {
 
 struct StressFigures {
   std::string load_case;
-  double max_von_mises = 0.0;    // of nodal stresses [pressure]
+  double max_von_mises = 0.0;    // of nodal stresses that count [pressure]
   Vec3 position = Vec3::Zero();  // of that [length]
   /// Where the part is nearest to yield, against each body's own material; none
   /// where no material has a yield strength.
@@ -27,9 +27,17 @@ struct StressFigures {
     double yield_strength = 0.0;  // its [pressure]
   };
   std::optional<Safety> safety;
-  StressUniformity uniformity;  // of the whole part
+  StressUniformity uniformity;  // of the elements that count
+  /// The same peaks of the zones that do not count, so that nothing is hidden.
+  struct Excluded {
+    double max_von_mises = 0.0;
+    Vec3 position = Vec3::Zero();
+    std::optional<Safety> safety;
+  };
+  std::optional<Excluded> excluded;  // where there are zones
 };
 
+/// Of `fields.stresses`; elements of `fields.exclusion` are left out.
 std::vector<StressFigures> stress_figures(const EvaluationFields& fields);
 
 /// result.json's "stress": an entry per load case (docs/results.md).

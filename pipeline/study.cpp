@@ -170,10 +170,10 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
     result_.message = result_.best->failure->message;
     return;
   }
-  last_fields_.stress =
-      load_case_stress(last_fields_.mesh, last_fields_.inputs, 0,
-                       last_fields_.solution.displacements.front());
+  last_fields_.stresses = part_stresses(last_fields_.mesh, last_fields_.inputs,
+                                        last_fields_.solution);
   result_.stress = stress_figures(last_fields_);
+  result_.exclusion = last_fields_.exclusion;
   for (std::string& warning :
        part_warnings(input_, last_fields_, result_.stress)) {
     result_.warnings.push_back(std::move(warning));
@@ -279,6 +279,9 @@ RunResult StudyRunner::run(EvaluationFields* fields) {
     }
     result_.total_seconds = timer_.seconds();
     return result_;
+  }
+  if (const Adaptation* adaptation = model_->adaptation()) {
+    result_.adaptation = *adaptation;
   }
   const bool matches = input_.study.kind == StudyKind::Match;
   const EvaluationRecord start = [&] {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/monitor.h"
+#include "pipeline/adaptation.h"
 #include "pipeline/case.h"
 #include "pipeline/eigen_figures.h"
 #include "pipeline/element_errors.h"
@@ -42,7 +43,9 @@ struct RunResult {
   std::vector<Constraint> constraints;
   VectorX response_errors;  // estimated discretisation errors; may be empty
   VectorX design_errors;    // of the matched variables; may be empty
-  std::vector<StressFigures> stress;  // of the best design, per load case
+  std::vector<StressFigures> stress;     // of the best design, per load case
+  Exclusion exclusion;                   // what these leave out
+  std::optional<Adaptation> adaptation;  // at the initial design
   std::optional<ElementErrors> element_errors;  // the elements' part of them
   std::optional<EigenFigures> eigen;            // of the best design
   int evaluations = 0;  // finite-difference ones included

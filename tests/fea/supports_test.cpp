@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "fea/springs.h"
 #include "tests/fea/parts.h"
 
 namespace meniscus {
@@ -176,6 +177,36 @@ TEST(Springs, BlockSinksAndShortens) {
 }
 
 // The stiffer, the closer to a fixed surface, and never a wrong answer.
+TEST(Springs, OneByOneAreTheirBed) {
+  for (const int order : {1, 2}) {
+    const TetMesh mesh = turned(bar(order));
+    LoadCase load_case{.name = "beds"};
+    load_case.springs = {{"x0", {2.0, 0.0, 3.0}, 5.0},
+                         {.surface = "y1",
+                          .components = {7.0, 1.0, 0.0},
+                          .measure = SpringMeasure::Total,
+                          .axes = LocalAxes{{1.0, 1.0, 0.0}, Vec3::UnitZ()}}};
+    const std::vector<SpringSet> sets = spring_sets(mesh, load_case);
+    EXPECT_EQ(sets.size(), 5U);
+    const VectorX u = VectorX::Random(3 * static_cast<int>(mesh.nodes.size()));
+    VectorX f = VectorX::Zero(u.size());
+    for (const SpringSet& set : sets) {
+      for (const SpringSet::Spring& spring : set.springs) {
+        double e = 0.0;
+        for (std::size_t a = 0; a < spring.nodes.size(); ++a) {
+          e += spring.coefficients[a].dot(u.segment<3>(3 * spring.nodes[a]));
+        }
+        for (std::size_t a = 0; a < spring.nodes.size(); ++a) {
+          f.segment<3>(3 * spring.nodes[a]) +=
+              set.stiffness * e * spring.coefficients[a];
+        }
+      }
+    }
+    const VectorX bed = spring_forces(spring_blocks(mesh, load_case, order), u);
+    EXPECT_LT((f - bed).norm(), 1e-13 * bed.norm());
+  }
+}
+
 TEST(Springs, StiffOnesActAsAFixedSurface) {
   const TetMesh mesh = turned(bar(2));
   LoadCase fixed = parts::pulled({5.0, 2.0, -3.0});

@@ -26,9 +26,17 @@ CalculixDeck deck() {
   return deck;
 }
 
+CalculixDeck on_springs() {
+  CalculixDeck result = deck();
+  result.steps.push_back({"sprung"});
+  result.springs = {
+      {1e-7 / 3.0, {{{0, 1, 2}, Points(3, Vec3(-1.0, 2e-9, 3e7) / 3.0)}}, {1}}};
+  return result;
+}
+
 // CalculiX reads 20 characters of every number and 132 of a line.
 TEST(CalculixInp, KeepsFieldsAndLinesShort) {
-  std::istringstream lines(calculix_deck(brick(), deck()));
+  std::istringstream lines(calculix_deck(brick(), on_springs()));
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("*")) {
       continue;
@@ -83,6 +91,16 @@ TEST(CalculixInp, NamesWhatDoesNotFit) {
                 d.steps[0].supports[0] = {"", {7777}, true, true, true};
               }),
               HasSubstr("7777"));
+  EXPECT_THAT(refusal([](auto& d) {
+                d = on_springs();
+                d.springs[0].springs[0].nodes[1] = 7777;
+              }),
+              HasSubstr("spring of set 1"));
+  EXPECT_THAT(refusal([](auto& d) {
+                d = on_springs();
+                d.springs[0].stiffness = 0.0;
+              }),
+              HasSubstr("stiffness 0"));
   EXPECT_THAT(refusal([](auto& d) { d.materials.clear(); }),
               HasSubstr("0 materials for 1 regions"));
   EXPECT_THAT(refusal([](auto& d) { d.steps[0].nodal_forces.resize(5); }),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "fea/body_loads.h"
@@ -197,6 +198,58 @@ TEST(ObliqueInCalculix, SlidingPlanesGiveTheSameDisplacements) {
   const VectorX& u = model.base_solution().displacements[0];
   EXPECT_LE((u - theirs.at(0).displacement).lpNorm<Eigen::Infinity>(),
             kDisplacement * u.lpNorm<Eigen::Infinity>());
+}
+
+/// Beds of every kind under two of three load cases; the third is clamped.
+std::vector<LoadCase> on_springs(const Part& part) {
+  LoadCase components{.name = "components"};
+  components.springs = {{part.foot, {40.0, 25.0, 60.0}},
+                        {.surface = part.side, .normal = 3.0}};
+  components.forces = {{part.head, {300.0, -200.0, 500.0}}};
+  LoadCase clamped{.name = "clamped"};
+  clamped.supports = {{part.foot, true, true, true}};
+  clamped.pressures = {{part.side, 3.0}};
+  LoadCase oblique{.name = "oblique"};
+  oblique.springs = {{.surface = part.foot,
+                      .components = {9e4, 4e4, 7e4},
+                      .measure = SpringMeasure::Total,
+                      .axes = LocalAxes{{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}}}};
+  oblique.gravity = {2000.0, -3000.0, -9810.0};
+  LoadCase again = oblique;
+  again.name = "again";
+  again.forces = {{part.head, {10.0, 20.0, -30.0}}};
+  return {components, clamped, oblique, again};
+}
+
+TEST(SpringsInCalculix, GiveTheSameDisplacementsInEveryStep) {
+  if (!have_calculix()) {
+    GTEST_SKIP() << "ccx (Debian package calculix-ccx) is not installed";
+  }
+  for (const Part& part : parts()) {
+    for (const int order : {1, 2}) {
+      const TetMesh mesh = part.make(order);
+      const std::vector<LoadCase> cases = on_springs(part);
+      CalculixDeck deck = calculix_deck_of({aluminium()}, cases, mesh);
+      EXPECT_EQ(deck.springs.size(), 7U);  // 3 + 1, 3 for two load cases
+      deck.output = DeckOutput::Print;
+      const auto theirs = run_calculix(calculix_deck(mesh, deck),
+                                       static_cast<int>(mesh.nodes.size()));
+      ASSERT_EQ(theirs.size(), cases.size());
+      for (std::size_t c = 0; c < cases.size(); ++c) {
+        // A model takes load cases that are held alike.
+        const ElasticModel model(mesh, {aluminium()}, {cases[c]},
+                                 {.tolerance = 1e-11});
+        const VectorX& u = model.base_solution().displacements[0];
+        const double apart =
+            (u - theirs[c].displacement).lpNorm<Eigen::Infinity>() /
+            u.lpNorm<Eigen::Infinity>();
+        EXPECT_LE(apart, kDisplacement)
+            << part.name << order << " " << cases[c].name;
+        RecordProperty(part.name + std::to_string(order) + cases[c].name,
+                       fmt::format("{:.1e}", apart));
+      }
+    }
+  }
 }
 
 std::vector<Job> jobs() {

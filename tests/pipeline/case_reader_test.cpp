@@ -280,6 +280,8 @@ TEST(CaseHash, CoversWhatEvaluationsDependOn) {
                            "study.max_evaluations=3", "resolution.export=[2]"}),
             base);
   // What does count, through the file or through an override.
+  EXPECT_EQ(hash(strut() + "[analysis]\nfrequencies = 2\n"), base);
+  EXPECT_NE(hash(strut() + "[analysis]\nadapt = true\n"), base);
   EXPECT_NE(hash(changed(strut(), "load = 1000.0", "load = 2000.0")), base);
   EXPECT_EQ(hash(changed(strut(), "load = 1000.0", "load = 2000.0")),
             hash(strut(), {"load=2000"}));

@@ -129,6 +129,11 @@ TEST(CaseTables, AreFoundByName) {
   EXPECT_FALSE(is_later_table("walls"));
 }
 
+TEST(CaseSchema, TheReferenceIsCurrent) {
+  EXPECT_THAT(file_text(MENISCUS_SOURCE_DIR "/docs/case-file.md"),
+              testing::EndsWith(schema_markdown()));
+}
+
 TEST(CaseSchema, TheFileForEditorsIsCurrent) {
   EXPECT_EQ(file_text(MENISCUS_SOURCE_DIR "/docs/case.schema.json"),
             json_schema());

@@ -50,6 +50,8 @@ Part part(int n) {
   p.model.emplace(p.fields.mesh, p.fields.inputs.materials,
                   p.fields.inputs.load_cases);
   p.fields.solution = p.model->base_solution();
+  p.fields.stresses =
+      part_stresses(p.fields.mesh, p.fields.inputs, p.fields.solution);
   return p;
 }
 
@@ -75,6 +77,8 @@ TEST(ElementErrors, DoNotDependOnTheSizeOfTheLoad) {
   p.model.emplace(p.fields.mesh, p.fields.inputs.materials,
                   p.fields.inputs.load_cases);
   p.fields.solution = p.model->base_solution();
+  p.fields.stresses =
+      part_stresses(p.fields.mesh, p.fields.inputs, p.fields.solution);
   const ElementErrors large =
       estimate_element_errors(p.input, p.fields, *p.model);
   ASSERT_FALSE(large.failure);

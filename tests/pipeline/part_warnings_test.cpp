@@ -38,6 +38,7 @@ EvaluationFields pulled_bar(double near_yield, double far_yield,
   fields.inputs.load_cases = {pull};
   fields.solution = ElasticModel(fields.mesh, fields.inputs.materials, {pull})
                         .base_solution();
+  fields.stresses = part_stresses(fields.mesh, fields.inputs, fields.solution);
   return fields;
 }
 

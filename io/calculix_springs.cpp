@@ -1,0 +1,110 @@
+#include "io/calculix_springs.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+using Out = std::back_insert_iterator<fmt::memory_buffer>;
+
+bool acts(const DeckSprings& set, std::size_t step) {
+  return std::find(set.steps.begin(), set.steps.end(),
+                   static_cast<int>(step)) != set.steps.end();
+}
+
+void check(const TetMesh& mesh, const DeckSprings& set, std::size_t number) {
+  if (!(set.stiffness > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "springs {} of the deck have stiffness {}; it must be above 0", number,
+        set.stiffness));
+  }
+  const int count = static_cast<int>(mesh.nodes.size());
+  for (const DeckSprings::Spring& spring : set.springs) {
+    const bool fits =
+        spring.nodes.size() == spring.coefficients.size() &&
+        std::all_of(spring.nodes.begin(), spring.nodes.end(),
+                    [&](int node) { return node >= 0 && node < count; });
+    if (!fits) {
+      throw InvalidInput(fmt::format(
+          "a spring of set {} of the deck has {} nodes, {} coefficients; the "
+          "mesh has {} nodes",
+          number, spring.nodes.size(), spring.coefficients.size(), count));
+    }
+  }
+}
+
+/// -d + g + sum c . u = 0: component 1 of the spring's node is what the spring
+/// feels, component 2 its ground.
+void equation(Out out, const DeckSprings::Spring& spring, int node) {
+  std::vector<std::string> terms = {fmt::format("{}, 1, -1.", node),
+                                    fmt::format("{}, 2, 1.", node)};
+  for (std::size_t a = 0; a < spring.nodes.size(); ++a) {
+    for (int k = 0; k < 3; ++k) {
+      if (const double c = spring.coefficients[a][k]; c != 0.0) {
+        terms.push_back(
+            fmt::format("{}, {}, {:.12e}", spring.nodes[a] + 1, k + 1, c));
+      }
+    }
+  }
+  constexpr std::size_t kPerLine = 4;  // terms that CalculiX reads of a line
+  fmt::format_to(out, "*EQUATION\n{}\n", terms.size());
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const bool last = k + 1 == terms.size() || k % kPerLine == kPerLine - 1;
+    fmt::format_to(out, "{}{}", terms[k], last ? "\n" : ", ");
+  }
+}
+
+}  // namespace
+
+std::string springs_text(const TetMesh& mesh,
+                         const std::vector<DeckSprings>& springs) {
+  fmt::memory_buffer buffer;
+  const Out out = std::back_inserter(buffer);
+  int node = static_cast<int>(mesh.nodes.size()) + 1;
+  int element = mesh.element_count() + 1;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    const DeckSprings& set = springs[s];
+    check(mesh, set, s + 1);
+    const int first = node;
+    fmt::format_to(out, "*NODE, NSET=SPRING_NODES_{}\n", s + 1);
+    for (const DeckSprings::Spring& spring : set.springs) {
+      const Vec3& x = mesh.nodes[static_cast<std::size_t>(spring.nodes[0])];
+      fmt::format_to(out, "{}, {:.12e}, {:.12e}, {:.12e}\n", node++, x.x(),
+                     x.y(), x.z());
+    }
+    fmt::format_to(out, "*ELEMENT, TYPE=SPRING1, ELSET=SPRINGS_{}\n", s + 1);
+    for (int k = first; k < node; ++k) {
+      fmt::format_to(out, "{}, {}\n", element++, k);
+    }
+    fmt::format_to(out, "*SPRING, ELSET=SPRINGS_{}\n1\n{:.12e}\n", s + 1,
+                   set.stiffness);
+    for (std::size_t k = 0; k < set.springs.size(); ++k) {
+      equation(out, set.springs[k], first + static_cast<int>(k));
+    }
+  }
+  return fmt::to_string(buffer);
+}
+
+std::string springs_boundary_text(const std::vector<DeckSprings>& springs,
+                                  std::size_t step) {
+  std::string text;
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    // A ground that is not held follows, and the spring pulls with nothing.
+    text += fmt::format("SPRING_NODES_{}, {}, 3\n", s + 1,
+                        acts(springs[s], step) ? 2 : 3);
+  }
+  return text;
+}
+
+bool have_springs(const std::vector<DeckSprings>& springs, std::size_t step) {
+  return std::any_of(springs.begin(), springs.end(),
+                     [step](const DeckSprings& s) { return acts(s, step); });
+}
+
+}  // namespace meniscus

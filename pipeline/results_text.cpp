@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include "pipeline/eigen_figures.h"
+#include "pipeline/results.h"
+
+namespace meniscus {
+
+namespace {
+
+/// "12.3 mm" with `digits` significant digits.
+std::string quantity(double value, const std::string& unit, int digits = 6) {
+  const std::string number = fmt::format("{:.{}g}", value, digits);
+  return unit.empty() ? number : number + " " + unit;
+}
+
+std::string with_error(double value, const VectorX& errors, Eigen::Index k,
+                       const std::string& unit) {
+  std::string text = quantity(value, unit);
+  if (k < errors.size()) {
+    text += "  +- " + quantity(errors[k], unit, 2);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string describe(const Case& input, const EvaluationRecord& record) {
+  std::string text =
+      fmt::format("evaluation {} ({}):", record.number, record.phase);
+  for (Eigen::Index k = 0; k < record.inputs.size(); ++k) {
+    text += fmt::format(" {} = {}", record.input_names[k],
+                        quantity(record.inputs[k], ""));
+  }
+  if (record.failure) {
+    return text + "; cannot evaluate here: " + record.failure->message;
+  }
+  for (Eigen::Index k = 0; k < record.responses.size(); ++k) {
+    text +=
+        fmt::format("{} {} = {}", k == 0 ? ";" : ",", record.response_names[k],
+                    quantity(record.responses[k],
+                             response_unit(input, static_cast<int>(k))));
+  }
+  if (record.mismatch) {
+    text += fmt::format("; mismatch {:.3g}", *record.mismatch);
+  }
+  return text;
+}
+
+std::string result_text(const Case& input, const RunResult& result) {
+  std::string text;
+  if (!result.best || result.best->responses.size() == 0) {
+    return text;
+  }
+  const Evaluation& best = *result.best;
+  const std::vector<std::string> designs = design_names(input);
+  for (Eigen::Index k = 0; k < best.design.size(); ++k) {
+    text +=
+        fmt::format("  {:<20} {}\n", designs[k],
+                    with_error(best.design[k], result.design_errors, k, ""));
+  }
+  const std::vector<std::string> names = response_names(input);
+  for (Eigen::Index k = 0; k < best.responses.size(); ++k) {
+    const std::string unit = response_unit(input, static_cast<int>(k));
+    text += fmt::format(
+        "  {:<20} {}", names[k],
+        with_error(best.responses[k], result.response_errors, k, unit));
+    if (result.start && result.start->responses.size() > k) {
+      text += "   (at the start " + quantity(result.start->responses[k], unit) +
+              ")";
+    }
+    text += "\n";
+  }
+  for (const Constraint& c : result.constraints) {
+    text += fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n", c.name,
+                        c.value, c.bound);
+  }
+  for (const ExclusionShare& zone : result.exclusion.zones) {
+    text += fmt::format(
+        "  left out of stress figures: {}: {} elements, {:.2g} % of the "
+        "volume\n",
+        zone.where, zone.elements, 100.0 * zone.volume_share);
+  }
+  if (result.eigen) {
+    text += eigen_text(*result.eigen);
+  }
+  if (result.adaptation) {
+    const AdaptedState& before = result.adaptation->before;
+    const AdaptedState& after = result.adaptation->after;
+    text += fmt::format(
+        "  adapted: {} elements with an energy error of {:.2g} % to {} with "
+        "{:.2g} %\n",
+        before.tet.elements, 100.0 * before.errors.energy, after.tet.elements,
+        100.0 * after.errors.energy);
+  }
+  text += fmt::format(
+      "  film: {}, {} facets, residual {:.1e} (bound {:.1e}), smallest "
+      "eigenvalue {:.3g}\n"
+      "  elements: {} ten-node tetrahedra, {} unknowns, dihedral angles {:.1f} "
+      "to {:.1f} degrees\n"
+      "  {} evaluations in {:.1f} s (film {:.1f}, mesh {:.1f}, elasticity "
+      "{:.1f})\n",
+      best.film.verdict, best.film.facets, best.film.residual,
+      best.film.residual_bound, best.film.min_eigenvalue, best.tet.elements,
+      best.fea.dofs, best.tet.min_dihedral_deg, best.tet.max_dihedral_deg,
+      result.evaluations, result.total_seconds, result.seconds.film,
+      result.seconds.mesh, result.seconds.fea);
+  return text;
+}
+
+std::string film_text(const Case& input, const FilmReport& film) {
+  std::string text = fmt::format(
+      "film: {}\n  {} vertices, {} facets, area {:.8g} {}, energy {:.8g} {}\n"
+      "  residual {:.2e} {} (bound {:.2e}), smallest eigenvalue {:.4g}, index "
+      "{}\n  smallest neck {:.4g} {} at ({:.4g}, {:.4g}, {:.4g})\n",
+      film.verdict, film.vertices, film.facets, film.area,
+      input.units.unit_of(Dimension::Area), film.energy,
+      input.units.unit_of(Dimension::Energy), film.residual, input.units.force,
+      film.residual_bound, film.min_eigenvalue, film.index, film.smallest_neck,
+      input.units.length, film.neck_position.x(), film.neck_position.y(),
+      film.neck_position.z());
+  for (const BodyState& body : film.bodies) {
+    text += fmt::format("  body {}: volume {:.8g} {}, pressure {:.6g} {}\n",
+                        body.name, body.volume,
+                        input.units.unit_of(Dimension::Volume), body.pressure,
+                        input.units.pressure);
+  }
+  return text;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,90 @@
+#include "core/surface_nodes.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/mesh_checks.h"
+#include "tests/support/nested_surface.h"
+#include "tests/support/shapes.h"
+
+namespace meniscus {
+namespace {
+
+constexpr double kRounding = 1e-14;
+
+std::vector<char> marks(const SurfaceMesh& mesh, int every) {
+  std::vector<char> marked(mesh.facets.size(), 0);
+  for (std::size_t f = 0; f < marked.size();
+       f += static_cast<std::size_t>(every)) {
+    marked[f] = 1;
+  }
+  return marked;
+}
+
+/// Closed, each label's area and the volume as before, all mid-sides half way:
+/// the levels are flat, so a mid-side that is another edge's shows.
+void expect_same_shape(const QuadraticSurface& split,
+                       const SurfaceMesh& before) {
+  EXPECT_TRUE(check_surface(split.base).empty());
+  EXPECT_NEAR(enclosed_volume(split.base), enclosed_volume(before),
+              kRounding * 100.0);
+  for (std::size_t l = 0; l < before.labels.size(); ++l) {
+    EXPECT_NEAR(surface_area(split.base, static_cast<int>(l)),
+                surface_area(before, static_cast<int>(l)), kRounding * 100.0);
+  }
+  for (std::size_t e = 0; e < split.edges.size(); ++e) {
+    const Vec3 half = 0.5 * (split.base.points[split.edges[e][0]] +
+                             split.base.points[split.edges[e][1]]);
+    EXPECT_NEAR((split.mid[e] - half).norm(), 0.0, kRounding);
+  }
+  for (std::size_t p = 0; p < before.points.size(); ++p) {
+    EXPECT_EQ(split.base.points[p], before.points[p]);
+  }
+}
+
+TEST(SplitFacets, KeepsTheShapeWithAnyMarks) {
+  const SurfaceMesh box = shapes::box({1.0, 2.0, 3.0}, 4);
+  for (const int levels : {1, 2}) {
+    const NestedSurface nested = nested_surface(box, levels);
+    for (const int every : {1, 2, 3, 7, 50}) {
+      expect_same_shape(nested.split(marks(box, every)), box);
+    }
+  }
+}
+
+TEST(SplitFacets, AddsPointsNowhereElse) {
+  const SurfaceMesh ball = shapes::sphere(1.0, 3);
+  const NestedSurface nested = nested_surface(ball, 2);
+  std::vector<char> marked(ball.facets.size(), 0);
+  EXPECT_EQ(nested.split(marked).base.facets, ball.facets);
+  marked[7] = 1;  // one in four, three neighbours in two
+  const QuadraticSurface split = nested.split(marked);
+  EXPECT_EQ(split.base.facets.size(), ball.facets.size() + 3U + 3U);
+  EXPECT_EQ(split.base.points.size(), ball.points.size() + 3U);
+}
+
+TEST(SplitFacets, PutsMidSidesOnTheFinestPoints) {
+  NestedSurface nested = nested_surface(shapes::sphere(1.0, 2), 2);
+  for (Vec3& x : nested.points) {
+    x.normalize();  // the levels now bulge
+  }
+  const QuadraticSurface split = nested.split(marks(shapes::sphere(1.0, 2), 3));
+  for (const Vec3& m : split.mid) {
+    EXPECT_NEAR(m.norm(), 1.0, kRounding);
+  }
+  nested.straight.assign(nested.points.size(), 1);
+  const QuadraticSurface straight =
+      nested.split(marks(shapes::sphere(1.0, 2), 3));
+  for (const Vec3& m : straight.mid) {
+    EXPECT_LT(m.norm(), 1.0 - 1e-4);
+  }
+}
+
+TEST(SplitFacets, NeedMiddlesAndMarksThatFit) {
+  const SurfaceMesh box = shapes::box({1.0, 1.0, 1.0}, 1);
+  EXPECT_THROW(nested_surface(box, 0).split(marks(box, 1)), MeshError);
+  EXPECT_THROW(nested_surface(box, 1).split({1, 0}), MeshError);
+}
+
+}  // namespace
+}  // namespace meniscus

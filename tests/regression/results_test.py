@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""result.json and docs/results.md have the same keys; exclusion zones and
+adaptive refinement from a case file to the files of a run."""
+import json
+import re
+import unittest
+
+import program
+from program import ProgramTest
+
+CASE = """title = "A strut"
+units = "mm-N-MPa"
+
+[parameters]
+load = 1000.0
+
+[design.foot]
+initial = 25.0
+bounds = [20.0, 32.0]
+
+[curves.base]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = "foot"
+
+[curves.head]
+kind = "circle"
+center = [0, 0, 60]
+normal = [0, 0, 1]
+radius = 20
+
+[films.skin]
+kind = "branch"
+curves = ["base", "head"]
+
+[solids.sole]
+kind = "cap"
+curve = "base"
+
+[solids.top]
+kind = "cap"
+curve = "head"
+
+[bodies.part]
+enclosed_by = ["skin", "sole", "top"]
+volume = 9e4
+material = "aluminium"
+
+[resolution]
+fea = 12.0
+
+[materials.aluminium]
+youngs_modulus = 71700.0
+poisson_ratio = 0.33
+density = 2.8e-9
+yield_strength = 400
+
+[load_cases.push]
+supports = [{ on = "sole", fix = "xyz" }]
+loads = [{ on = "top", force = ["load", 0, 0] }]
+
+[responses.sway]
+kind = "mean_displacement"
+on = "top"
+direction = [1, 0, 0]
+
+[responses.summit]
+kind = "max_von_mises"
+"""
+
+ANALYSIS = """
+[analysis]
+adapt = true
+exclude = [{ near = "sole", distance = 10 }]
+"""
+
+STUDY = """
+[study]
+kind = "match"
+targets = { sway = 5.8e-3 }
+tolerance = 0.005
+"""
+
+# What the case calls things: no keys of the schema.
+NAMES = {"foot", "load", "sway", "summit", "push", "part", "sway = 0.0058"}
+
+
+def no_number(text):
+    raise ValueError(f"{text} is no JSON")
+
+
+def nested_keys(value):
+    if isinstance(value, list):
+        return set().union(*map(nested_keys, value))
+    if not isinstance(value, dict):
+        return set()
+    return set(value).union(*map(nested_keys, value.values())) - NAMES
+
+
+def documented():
+    """Top-level keys with the nested ones that their row names."""
+    text = (program.ROOT / "docs" / "results.md").read_text()
+    table = text.split("\n## result.json\n")[1].split("\n## ")[0]
+    rows = {}
+    for line in table.splitlines():
+        if line.startswith("| `"):
+            keys, meaning = re.split(r"(?<!\\)\|", line)[1:3]
+            for key in re.findall(r"`(\w+)`", keys):
+                rows[key] = set(re.findall(r"`(\w+)`", meaning))
+    return rows
+
+
+class Results(ProgramTest):
+    def run_case(self, text, name="out"):
+        path = self.folder / "case.toml"
+        path.write_text(text)
+        out = self.folder / name
+        self.expect(self.call("run", path, "--out", out, "--no-pictures"), 0)
+        return out, json.loads((out / "result.json").read_text(),
+                               parse_constant=no_number)
+
+    def test_every_key_is_documented_and_every_documented_key_occurs(self):
+        _, result = self.run_case(CASE + ANALYSIS + STUDY)
+        rows = documented()
+        self.assertEqual(set(result), set(rows))
+        for key, value in result.items():
+            self.assertEqual(nested_keys(value), rows[key], key)
+        # A peak has no estimate of the elements' error: null, not NaN.
+        self.assertIsNone(result["element_errors"]["responses"]["summit"])
+        after = result["adaptation"]["after"]
+        self.assertIsNone(after["response_errors"]["summit"])
+        self.assertLess(after["energy_error"],
+                        result["adaptation"]["before"]["energy_error"])
+        self.assertEqual(after["elements"], result["tet"]["elements"])
+        self.assertAlmostEqual(after["responses"]["sway"],
+                               result["start"]["responses"]["sway"], 9)
+
+    def test_an_exclusion_takes_the_clamp_out_of_the_peak(self):
+        _, whole = self.run_case(CASE, "whole")
+        _, counted = self.run_case(CASE + ANALYSIS.replace("true", "false"))
+        stress = counted["stress"]["push"]
+        self.assertEqual(set(counted) - set(whole), {"exclusion"})
+        share = counted["exclusion"]["volume_share"]
+        self.assertGreater(share, 0.1)
+        self.assertLess(share, 0.4)
+        self.assertEqual(stress["excluded"]["max_von_mises"],
+                         whole["stress"]["push"]["max_von_mises"])
+        self.assertEqual(stress["max_von_mises"],
+                         counted["responses"]["summit"])
+        self.assertLess(stress["max_von_mises"],
+                        whole["responses"]["summit"])
+
+    def test_a_zone_without_elements_is_refused_by_line(self):
+        path = self.folder / "case.toml"
+        path.write_text(CASE + ANALYSIS.replace("10", "0.001"))
+        line = self.line_of(path, "exclude")
+        self.expect(self.call("run", path, "--out", self.folder / "out"), 2,
+                    rf"case.toml:{line}: analysis.exclude\[0\]: no element")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
