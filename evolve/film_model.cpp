@@ -8,6 +8,7 @@
 
 #include "core/surface_nodes.h"
 #include "core/timer.h"
+#include "evolve/body_sides.h"
 #include "evolve/carry.h"
 #include "evolve/equilibrium.h"
 #include "evolve/fields.h"
@@ -296,6 +297,7 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   std::iota(corner.begin(), corner.end(), 0);
   SurfaceMesh topology = impl->meshed;
   topology.points.clear();
+  topology.facet_bodies = facet_bodies(impl->complex, topology.facet_label);
   impl->nodes = surface_nodes(std::move(topology), std::move(corner),
                               impl->middles(), impl->straight());
   if (impl->reference.failure || !impl->energy) {

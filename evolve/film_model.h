@@ -96,8 +96,9 @@ class FilmModel {
 
   /// The closed surface for meshing, from any state's points: corners at the
   /// meshed resolution, mid-sides from the finer film (on straight edges when
-  /// refinements = 0). Labels are the names of films and caps. Linear in
-  /// `points` with constant weights.
+  /// refinements = 0). Labels are the names of films and caps; facet_bodies
+  /// tells several bodies apart, in the system's order. Linear in `points` with
+  /// constant weights.
   QuadraticSurface surface(const Points& points) const;
 
   /// Halves the edges of the marked facets (one char per facet of surface()) in

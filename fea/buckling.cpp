@@ -89,6 +89,7 @@ BucklingModes buckling_modes(const ElasticModel& model, const TetMesh& mesh,
       {.count = options.count,
        .tolerance = options.tolerance,
        .floor = 1.0 / options.largest,
+       .guards = options.guards,
        .max_iterations = options.max_iterations,
        .monitor = options.monitor});
   BucklingModes modes = judged(pairs, options, loads.name);

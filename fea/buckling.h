@@ -23,6 +23,7 @@ struct BucklingOptions {
   /// Factors above this are not looked for, which ends the search where little
   /// is compressed.
   double largest = 1e4;
+  int guards = 2;  // see eigenpairs.h
   int max_iterations = 200;
   Monitor* monitor = nullptr;  // not owned
 };

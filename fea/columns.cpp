@@ -50,23 +50,6 @@ void unpad(const std::vector<double>& padded, ColumnsOut x) {
   }
 }
 
-/// product(padded x, padded y, K) for the columns, up to four at a time.
-template <class Product>
-void by_fours(const NodeFreedom& freedom, const ColumnsIn& x, ColumnsOut y,
-              const Product& product) {
-  std::vector<double> from;
-  std::vector<double> to;
-  for (Eigen::Index first = 0; first < x.cols(); first += kMostColumns) {
-    const Eigen::Index K =
-        std::min<Eigen::Index>(kMostColumns, x.cols() - first);
-    pad(x.middleCols(first, K), from);
-    to.assign(from.size(), 0.0);
-    product(from, to, static_cast<int>(K));
-    unpad(to, y.middleCols(first, K));
-  }
-  project(freedom, y);
-}
-
 template <class Matrix>
 void multiply_any(const BlockPattern& pattern, const Matrix& A, const double* x,
                   double* y, int K) {
@@ -129,23 +112,38 @@ void project(const NodeFreedom& freedom, ColumnsOut v) {
   }
 }
 
-void apply(const BlockPattern& pattern, const BlockMatrix<double>& A,
-           const NodeFreedom& freedom, const ColumnsIn& x, ColumnsOut y) {
-  by_fours(freedom, x, y, [&](const auto& from, auto& to, int K) {
-    multiply_any(pattern, A, from.data(), to.data(), K);
+/// product(padded x, padded y, K) for the columns, up to four at a time.
+template <class Product>
+void ColumnProducts::by_fours(const ColumnsIn& x, ColumnsOut y,
+                              const Product& product) {
+  for (Eigen::Index first = 0; first < x.cols(); first += kMostColumns) {
+    const Eigen::Index K =
+        std::min<Eigen::Index>(kMostColumns, x.cols() - first);
+    pad(x.middleCols(first, K), from_);
+    to_.resize(from_.size());
+    product(from_, to_, static_cast<int>(K));
+    unpad(to_, y.middleCols(first, K));
+  }
+  project(freedom_, y);
+}
+
+void ColumnProducts::apply(const BlockMatrix<double>& A, const ColumnsIn& x,
+                           ColumnsOut y) {
+  by_fours(x, y, [&](const auto& from, auto& to, int K) {
+    multiply_any(pattern_, A, from.data(), to.data(), K);
   });
 }
 
-void apply(const BlockPattern& pattern, const NodalMatrix& A,
-           const NodeFreedom& freedom, const ColumnsIn& x, ColumnsOut y) {
-  by_fours(freedom, x, y, [&](const auto& from, auto& to, int K) {
-    multiply_any(pattern, A, from.data(), to.data(), K);
+void ColumnProducts::apply(const NodalMatrix& A, const ColumnsIn& x,
+                           ColumnsOut y) {
+  by_fours(x, y, [&](const auto& from, auto& to, int K) {
+    multiply_any(pattern_, A, from.data(), to.data(), K);
   });
 }
 
-void apply(const Preconditioner& A, const NodeFreedom& freedom,
-           const ColumnsIn& x, ColumnsOut y) {
-  by_fours(freedom, x, y,
+void ColumnProducts::apply(const Preconditioner& A, const ColumnsIn& x,
+                           ColumnsOut y) {
+  by_fours(x, y,
            [&](const auto& from, auto& to, int K) { A.apply(from, to, K); });
 }
 

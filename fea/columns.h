@@ -27,11 +27,24 @@ void subtract(const ColumnsIn& a, const Eigen::MatrixXd& C, ColumnsOut b);
 void project(const NodeFreedom& freedom, ColumnsOut v);
 
 /// y = A x, up to four columns at a time, then projected. `x` is projected.
-void apply(const BlockPattern& pattern, const BlockMatrix<double>& A,
-           const NodeFreedom& freedom, const ColumnsIn& x, ColumnsOut y);
-void apply(const BlockPattern& pattern, const NodalMatrix& A,
-           const NodeFreedom& freedom, const ColumnsIn& x, ColumnsOut y);
-void apply(const Preconditioner& A, const NodeFreedom& freedom,
-           const ColumnsIn& x, ColumnsOut y);
+class ColumnProducts {
+ public:
+  /// Both are kept: they must outlive this.
+  ColumnProducts(const BlockPattern& pattern, const NodeFreedom& freedom)
+      : pattern_(pattern), freedom_(freedom) {}
+
+  void apply(const BlockMatrix<double>& A, const ColumnsIn& x, ColumnsOut y);
+  void apply(const NodalMatrix& A, const ColumnsIn& x, ColumnsOut y);
+  void apply(const Preconditioner& A, const ColumnsIn& x, ColumnsOut y);
+
+ private:
+  template <class Product>
+  void by_fours(const ColumnsIn& x, ColumnsOut y, const Product& product);
+
+  const BlockPattern& pattern_;
+  const NodeFreedom& freedom_;
+  std::vector<double> from_;  // up to four columns in padded layout
+  std::vector<double> to_;
+};
 
 }  // namespace meniscus

@@ -13,9 +13,6 @@ namespace meniscus {
 
 namespace {
 
-/// Vectors beyond those asked for: they lift convergence off the gap behind
-/// the last one, and catch eigenvalues that are nearly equal.
-constexpr int kGuards = 2;
 /// Eigenvalues of a scaled Gram matrix below this are linear dependence.
 constexpr double kDependent = 1e-9;
 /// A settled vector is left alone until its residual has grown by this.
@@ -64,7 +61,8 @@ class Solver {
   Solver(const EigenProblem& problem, const EigenOptions& options)
       : problem_(problem),
         options_(options),
-        rows_(3L * problem.pattern.nodes) {}
+        rows_(3L * problem.pattern.nodes),
+        products_(problem.pattern, problem.freedom) {}
 
   EigenPairs run(const Columns& start);
 
@@ -91,6 +89,7 @@ class Solver {
   const EigenProblem& problem_;
   const EigenOptions& options_;
   Eigen::Index rows_;
+  ColumnProducts products_;
   Eigen::Index m_ = 0;  // columns of X
   Eigen::Index p_ = 0;  // of P
   Eigen::Index w_ = 0;  // of W
@@ -109,24 +108,25 @@ Eigen::Index Solver::block_size(Eigen::Index given) const {
   for (const Mat3& P : problem_.freedom.projector) {
     free -= 3.0 - P.trace();
   }
-  const Eigen::Index wanted =
-      std::max<Eigen::Index>(options_.count, given) + kGuards;
-  const Eigen::Index fours =
-      (wanted + kMostColumns - 1) / kMostColumns * kMostColumns;
-  return std::min<Eigen::Index>(fours, std::lround(free));
+  Eigen::Index block =
+      std::max<Eigen::Index>(options_.count, given) + options_.guards;
+  if (block > kMostColumns) {  // whole fours cost no more
+    block = (block + kMostColumns - 1) / kMostColumns * kMostColumns;
+  }
+  return std::min<Eigen::Index>(block, std::lround(free));
 }
 
 void Solver::apply_both(Eigen::Index first, Eigen::Index count) {
-  apply(problem_.pattern, problem_.K, problem_.freedom,
-        S_.middleCols(first, count), KS_.middleCols(first, count));
-  apply(problem_.pattern, problem_.A, problem_.freedom,
-        S_.middleCols(first, count), AS_.middleCols(first, count));
+  products_.apply(problem_.K, S_.middleCols(first, count),
+                  KS_.middleCols(first, count));
+  products_.apply(problem_.A, S_.middleCols(first, count),
+                  AS_.middleCols(first, count));
 }
 
 void Solver::begin(const Columns& start) {
   m_ = block_size(start.cols());
   for (Columns* block : {&S_, &KS_, &AS_}) {
-    block->setZero(rows_, 3 * m_);
+    block->resize(rows_, 3 * m_);
   }
   const Eigen::Index given = std::min(start.cols(), m_);
   auto X = S_.leftCols(m_);
@@ -137,12 +137,14 @@ void Solver::begin(const Columns& start) {
   }
   project(problem_.freedom, X);
   // One step of inverse iteration leaves little of the roughness.
-  apply(problem_.pattern, problem_.A, problem_.freedom,
-        S_.middleCols(given, m_ - given), AS_.middleCols(given, m_ - given));
-  apply(problem_.preconditioner, problem_.freedom,
-        AS_.middleCols(given, m_ - given), S_.middleCols(given, m_ - given));
-  S_.leftCols(given) = start.leftCols(given);
-  project(problem_.freedom, S_.leftCols(given));
+  products_.apply(problem_.A, S_.middleCols(given, m_ - given),
+                  AS_.middleCols(given, m_ - given));
+  products_.apply(problem_.preconditioner, AS_.middleCols(given, m_ - given),
+                  S_.middleCols(given, m_ - given));
+  if (given > 0) {
+    S_.leftCols(given) = start.leftCols(given);
+    project(problem_.freedom, S_.leftCols(given));
+  }
   apply_both(0, m_);
 }
 
@@ -210,8 +212,8 @@ void Solver::measure() {
       moving.push_back(k);
     }
   }
-  apply(problem_.preconditioner, problem_.freedom, R.leftCols(w_),
-        S_.middleCols(at, w_));
+  products_.apply(problem_.preconditioner, R.leftCols(w_),
+                  S_.middleCols(at, w_));
   const VectorX square = gram(R.leftCols(w_), S_.middleCols(at, w_)).diagonal();
   residuals_.conservativeResize(m_);
   settled_norms_.conservativeResizeLike(VectorX::Zero(m_));

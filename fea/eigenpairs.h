@@ -26,6 +26,9 @@ struct EigenOptions {
   /// Eigenvalues below this need only be known to be so: where A has no
   /// positive one, theta creeps towards 0 and nothing else would end it.
   double floor = 0.0;
+  /// Vectors beyond `count`: they lift convergence off the gap behind the last
+  /// one, and catch eigenvalues that are nearly equal.
+  int guards = 2;
   int max_iterations = 200;
   Monitor* monitor = nullptr;  // not owned
 };

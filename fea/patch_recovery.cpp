@@ -7,7 +7,6 @@
 #include "fea/stress_patch.h"
 
 namespace meniscus {
-extern thread_local double gw;
 
 namespace {
 

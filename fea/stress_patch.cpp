@@ -52,22 +52,26 @@ class Normal {
   static constexpr int kBatch = 4;
   static constexpr int kVector = 4;
 
+  /// Two rows at a time, so that each value read serves twice.
   template <int Row>
-  void add_row() {
+  void add_rows() {
     constexpr int kFirst = Row / kVector * kVector;
     for (int j = kFirst; j < kWidth; ++j) {
-      double sum = sum_[Row][j];
+      double first = sum_[Row][j];
+      double second = sum_[Row + 1][j];
       for (int q = 0; q < kBatch; ++q) {
-        sum += batch_[q][Row] * batch_[q][j];
+        first += batch_[q][Row] * batch_[q][j];
+        second += batch_[q][Row + 1] * batch_[q][j];
       }
-      sum_[Row][j] = sum;
+      sum_[Row][j] = first;
+      sum_[Row + 1][j] = second;
     }
   }
-  template <int... Rows>
-  void add_rows(std::integer_sequence<int, Rows...>) {
-    (add_row<Rows>(), ...);
+  template <int... Pairs>
+  void add_pairs(std::integer_sequence<int, Pairs...>) {
+    (add_rows<2 * Pairs>(), ...);
   }
-  void flush() { add_rows(std::make_integer_sequence<int, kTerms>()); }
+  void flush() { add_pairs(std::make_integer_sequence<int, kTerms / 2>()); }
 
   alignas(64) double sum_[kTerms][kWidth] = {};
   alignas(64) std::array<Row, kBatch> batch_;

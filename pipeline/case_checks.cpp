@@ -181,6 +181,12 @@ void check_loads(const Case& input, const EvaluatedCase& numbers,
                    fmt::format("materials.{}.density is 0, but load case '{}' "
                                "has gravity or spin; give its mass per volume",
                                entry.name, weighs->name));
+    } else if (input.analysis.frequencies > 0) {
+      problems.add(entry.density.line,
+                   fmt::format("materials.{}.density is 0, but natural "
+                               "frequencies are asked for; give its mass per "
+                               "volume",
+                               entry.name));
     } else {
       problems.warn(entry.density.line,
                     fmt::format("materials.{}.density is 0; masses will be 0",

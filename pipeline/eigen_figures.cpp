@@ -22,6 +22,7 @@ BucklingOptions buckling_options(const AnalysisEntry& analysis,
   if (!analysis.buckling) {
     return {.tolerance = kRoughly,
             .largest = kLargestOfInterest,
+            .guards = 1,
             .max_iterations = kRoughIterations,
             .monitor = monitor};
   }

@@ -139,6 +139,9 @@ TEST(AnalysisTable, WrongNumbersAndNamesAreRefused) {
               ElementsAre(HasSubstr("did you mean 'service'?")));
   EXPECT_THAT(problems("frequency = 3"),
               ElementsAre(HasSubstr("did you mean 'frequencies'?")));
+  EXPECT_THAT(problems_of(changed(strut(), "2.8e-9", "0") +
+                          "[analysis]\nfrequencies = 1\n"),
+              ElementsAre(HasSubstr("density is 0, but natural frequencies")));
   EXPECT_THAT(problems_of(tube("films = [\"skin\"]\nthickness = 2\n") +
                           "[analysis]\nfrequencies = 2\n"),
               ElementsAre(HasSubstr("analysis needs a load case")));

@@ -119,6 +119,29 @@ class Loads(ProgramTest):
         self.assertAlmostEqual(values["growth"] / growth, 1.0, 6)
         self.assertLess(values["heat_stress"], 1e-3)
 
+    def test_frequencies_and_factors_reach_the_result(self):
+        path = self.folder / "case.toml"
+        path.write_text(CASE + """
+[analysis]
+frequencies = 8
+supports_of = "weight"
+buckling = 1
+""")
+        out = self.folder / "out"
+        done = self.call("run", path, "--out", out, "--no-pictures")
+        self.expect(done, 0)
+        result = self.result(out)
+        # A rigid part on springs: one mode goes straight up.
+        up = (2e4 / result["responses"]["mass"]) ** 0.5 / 6.283185307179586
+        found = result["natural_frequencies"]
+        self.assertEqual(found["supports_of"], "weight")
+        self.assertEqual(len(found["values"]), 8)
+        self.assertLess(min(abs(f / up - 1) for f in found["values"]), 0.01)
+        self.assertLess(max(found["residuals"]), 2e-6)
+        self.assertEqual(set(result["buckling"]),
+                         {"weight", "push", "heat", "turn"})
+        self.assertIn(b'Name="mode_8"', (out / "part.vtu").read_bytes())
+
     def test_no_density_under_gravity_is_told_before_work(self):
         path = self.folder / "case.toml"
         path.write_text(CASE.replace("density = 2.8e-9", "density = 0"))

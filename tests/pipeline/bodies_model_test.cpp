@@ -1,0 +1,103 @@
+/// Two bodies of their own materials that share a plate.
+#include <gtest/gtest.h>
+
+#include "case_text.h"
+#include "pipeline/forward_model.h"
+
+namespace meniscus {
+namespace {
+
+/// The strut cut at half its height.
+std::string cut_strut() {
+  std::string text = changed(strut(), "fea = 6.0\nfilm = 3.0", "fea = 10.0");
+  text = changed(text, "[curves.head]",
+                 "[curves.waist]\nkind = \"circle\"\ncenter = [0, 0, 30]\n"
+                 "normal = [0, 0, 1]\nradius = 19\n\n[curves.head]");
+  text = changed(text,
+                 "[films.skin]\nkind = \"branch\"\n"
+                 "curves = [\"base\", \"head\"]",
+                 "[films.lower]\nkind = \"loft\"\ncurves = [\"base\", "
+                 "\"waist\"]\n\n[films.upper]\nkind = \"loft\"\n"
+                 "curves = [\"waist\", \"head\"]\n\n[solids.plate]\n"
+                 "kind = \"cap\"\ncurve = \"waist\"");
+  text = changed(text,
+                 "[bodies.part]\nenclosed_by = [\"skin\", \"foot_pad\", "
+                 "\"head_pad\"]\nvolume = 9e4\nmaterial = \"aluminium\"",
+                 "[bodies.foot]\nenclosed_by = [\"lower\", \"foot_pad\", "
+                 "\"plate\"]\nvolume = 4.2e4\nmaterial = \"alloy\"\n\n"
+                 "[bodies.neck]\nenclosed_by = [\"upper\", \"plate\", "
+                 "\"head_pad\"]\nvolume = 3.6e4\nmaterial = \"aluminium\"");
+  text = changed(text, "[\"load\", 0, 0]", "[0, 0, \"-load\"]");
+  text = changed(text, "direction = [1, 0, 0]", "direction = [0, 0, -1]");
+  text =
+      changed(text, "targets = { sway = 0.01 }", "targets = { sway = 0.001 }");
+  return text + R"(
+[materials.alloy]
+youngs_modulus = 71700.0
+poisson_ratio = 0.33
+density = 8e-9
+
+[responses.plate_sinks]
+kind = "mean_displacement"
+on = "plate"
+direction = [0, 0, -1]
+)";
+}
+
+struct Cut {
+  Evaluation evaluation;
+  EvaluationFields fields;
+};
+
+Cut evaluated(const std::string& text) {
+  const CaseReading reading = read_case_text(text, "case.toml");
+  EXPECT_TRUE(reading.problems.empty()) << reading.problems.front();
+  const ForwardModel model(*reading.input);
+  EXPECT_FALSE(model.failure()) << model.failure()->message;
+  Cut cut;
+  cut.evaluation = model.evaluate(initial_design(*reading.input), &cut.fields);
+  EXPECT_FALSE(cut.evaluation.failure);
+  return cut;
+}
+
+TEST(Bodies, FillTheirOwnRegionsWithTheirOwnMaterials) {
+  const Cut cut = evaluated(cut_strut());
+  std::array<double, 2> volume{};
+  for (int e = 0; e < cut.fields.mesh.element_count(); ++e) {
+    volume.at(cut.fields.mesh.element_region[e]) +=
+        corner_volume(cut.fields.mesh, e);
+  }
+  const auto& bodies = cut.evaluation.film.bodies;
+  constexpr double kFlatFacets = 0.03;  // of the meshed level, films are finer
+  EXPECT_NEAR(volume[0] / bodies[0].volume, 1.0, kFlatFacets);
+  EXPECT_NEAR(volume[1] / bodies[1].volume, 1.0, kFlatFacets);
+  EXPECT_NEAR(bodies[0].volume, 4.2e4, 1e-3);
+  EXPECT_NEAR(cut.evaluation.responses[1],
+              8e-9 * bodies[0].volume + 2.8e-9 * bodies[1].volume,
+              kFlatFacets * cut.evaluation.responses[1]);
+}
+
+TEST(Bodies, ASofterFootSinksMoreAndTheNeckOnItDoesNot) {
+  const Cut stiff = evaluated(cut_strut());
+  const Cut soft = evaluated(
+      changed(cut_strut(), "[materials.alloy]\nyoungs_modulus = 71700.0",
+              "[materials.alloy]\nyoungs_modulus = 35850.0"));
+  const auto& a = stiff.evaluation.responses;
+  const auto& b = soft.evaluation.responses;
+  constexpr double kAcross = 0.05;  // the plate bends the two a little
+  EXPECT_NEAR(b[2] / a[2], 2.0, 2.0 * kAcross);
+  EXPECT_NEAR((b[0] - b[2]) / (a[0] - a[2]), 1.0, kAcross);
+}
+
+TEST(Bodies, FollowTheDesignOnOneMesh) {
+  const CaseReading reading = read_case_text(cut_strut(), "case.toml");
+  const ForwardModel model(*reading.input);
+  const Evaluation moved = model.evaluate(VectorX::Constant(1, 23.0));
+  ASSERT_FALSE(moved.failure) << moved.failure->message;
+  EXPECT_EQ(moved.tet.elements, model.frozen().tet.elements);
+  EXPECT_EQ(model.evaluate(VectorX::Constant(1, 23.0)).responses,
+            moved.responses);
+}
+
+}  // namespace
+}  // namespace meniscus
