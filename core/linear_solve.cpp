@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/memory.h"
 
 namespace meniscus {
 
@@ -64,6 +65,17 @@ LowerView make_view(const SparseMatrix& lower) {
   s.sorted = 1;
   s.packed = 1;
   return view;
+}
+
+/// Of the numeric factor and the work space, known once it is analysed.
+double expected_bytes(const cholmod_factor& factor,
+                      const cholmod_common& common) {
+  constexpr double kNumber = sizeof(double);
+  if (factor.is_super != 0) {
+    return kNumber * (static_cast<double>(factor.xsize) +
+                      static_cast<double>(factor.maxcsize));
+  }
+  return (kNumber + sizeof(Long)) * common.lnz;
 }
 
 }  // namespace
@@ -173,6 +185,11 @@ bool SymmetricFactor::factorize(const SparseMatrix& lower) {
   LowerView view = make_view(lower);
   cholmod_common& common = impl_->session.common;
   cholmod_factor& factor = *impl_->factor;
+  if (factor.xtype == CHOLMOD_PATTERN) {  // not factorised before
+    require_memory(expected_bytes(factor, common),
+                   fmt::format("a sparse factor of {} unknowns", lower.cols()),
+                   "fewer unknowns (longer edges) need less");
+  }
   impl_->failed_column = -1;
   impl_->negative_pivots = 0;
   cholmod_l_factorize(&view.sparse, &factor, &common);

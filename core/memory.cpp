@@ -1,11 +1,78 @@
 #include "core/memory.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <limits>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include "core/error.h"
+
 namespace meniscus {
+
+namespace {
+
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+/// The first number in a file; unlimited when there is none ("max").
+double number_in(const std::string& path) {
+  double value = 0.0;
+  return std::ifstream(path) >> value ? value : kUnlimited;
+}
+
+double machine_has() {
+  std::ifstream file("/proc/meminfo");
+  std::string name;
+  double kib = 0.0;
+  std::string rest;
+  while (file >> name >> kib && std::getline(file, rest)) {
+    if (name == "MemAvailable:") {
+      return 1024.0 * kib;
+    }
+  }
+  return kUnlimited;
+}
+
+double group_has() {
+  const std::string folder = "/sys/fs/cgroup/";
+  const double now = number_in(folder + "memory.current");
+  const double before = number_in(folder + "memory/memory.usage_in_bytes");
+  return std::min(
+      now < kUnlimited ? number_in(folder + "memory.max") - now : kUnlimited,
+      before < kUnlimited
+          ? number_in(folder + "memory/memory.limit_in_bytes") - before
+          : kUnlimited);
+}
+
+double process_has() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+    return kUnlimited;
+  }
+  const double pages = number_in("/proc/self/statm");
+  return static_cast<double>(limit.rlim_cur) -
+         (pages < kUnlimited
+              ? pages * static_cast<double>(sysconf(_SC_PAGESIZE))
+              : 0.0);
+}
+
+/// What is free in the heap already.
+double heap_has() {
+#if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)
+  return static_cast<double>(mallinfo2().fordblks);
+#else
+  return 0.0;
+#endif
+}
+
+}  // namespace
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
@@ -15,6 +82,22 @@ void keep_freed_memory() {
   mallopt(M_TOP_PAD, kTopPad);
   mallopt(M_TRIM_THRESHOLD, kMostFree);
 #endif
+}
+
+double available_memory() {
+  return heap_has() +
+         std::max(0.0, std::min({machine_has(), group_has(), process_has()}));
+}
+
+void require_memory(double bytes, const std::string& what,
+                    const std::string& advice) {
+  constexpr double kGiga = 1e9;
+  const double free = available_memory();
+  if (bytes > free) {
+    throw SolverError(fmt::format(
+        "{} needs about {:.2g} GB of memory, {:.2g} GB are free; {}", what,
+        bytes / kGiga, free / kGiga, advice));
+  }
 }
 
 }  // namespace meniscus

@@ -1,5 +1,7 @@
-/// How this process gets its memory.
+/// How this process gets its memory, and how much it can get.
 #pragma once
+
+#include <string>
 
 namespace meniscus {
 
@@ -9,5 +11,16 @@ namespace meniscus {
 /// their start; a library leaves the choice to the program. No effect where
 /// the C library is not glibc.
 void keep_freed_memory();
+
+/// Bytes that this process can still get: what the machine and the process's
+/// control group have left, at most its own limit of address space. Infinite
+/// where the system does not tell.
+double available_memory();
+
+/// Throws SolverError when `bytes` are more than available_memory(): "`what`
+/// needs about 5.2 GB of memory, 3.1 GB are free; `advice`". Linux hands out
+/// more than it has and kills who then uses it: nothing else would be said.
+void require_memory(double bytes, const std::string& what,
+                    const std::string& advice);
 
 }  // namespace meniscus

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/memory.h"
 
 namespace meniscus {
 
@@ -34,6 +35,17 @@ void check_arrays(const TetMesh& mesh) {
     throw InvalidInput(fmt::format("elasticity: {} faces, but labels for {}",
                                    mesh.face_count(), mesh.face_label.size()));
   }
+}
+
+void check_memory(const TetMesh& mesh) {
+  constexpr double kTenNodes = 2700.0;  // [byte/node]
+  constexpr double kFourNodes = 1700.0;
+  const auto nodes = static_cast<double>(mesh.nodes.size());
+  require_memory((mesh.order == 2 ? kTenNodes : kFourNodes) * nodes,
+                 fmt::format("elasticity on {} elements with {} nodes",
+                             mesh.element_count(), mesh.nodes.size()),
+                 "longer edges (resolution.fea) need less: twice as long, an "
+                 "eighth");
 }
 
 VectorX checked_forces(const TetMesh& mesh, const LoadCase& load_case,

@@ -50,6 +50,7 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
       faces_(base.faces),
       shared_(std::make_unique<Shared>()) {
   check_arrays(base);
+  check_memory(base);
   check_materials(base, materials);
   if (load_cases.empty()) {
     throw InvalidInput("elasticity: no load case is given");

@@ -1,5 +1,11 @@
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "core/error.h"
 #include "tests/fea/parts.h"
@@ -193,6 +199,34 @@ TEST(Hostile, AStopIsObeyed) {
   EXPECT_THROW(build(block(), parts::steel(), parts::pulled(kForce),
                      {.monitor = &stopper}),
                Interrupted);
+}
+
+// In a child process that may have `more` bytes than it has: exits with 0 when
+// the model is refused for its memory, with `says` in the message.
+void exit_when_refused(double more, const ElasticOptions& options,
+                       const std::string& says) {
+  const TetMesh mesh =
+      shapes::straight_quadratic(shapes::brick({2.0, 1.0, 1.0}, 20, 14, 14));
+  double pages = 0.0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const double now = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const rlimit limit{static_cast<rlim_t>(now + more), RLIM_INFINITY};
+  setrlimit(RLIMIT_AS, &limit);
+  try {
+    build(mesh, parts::steel(), parts::pulled(kForce), options);
+  } catch (const SolverError& error) {
+    std::exit(std::string(error.what()).find(says) == std::string::npos ? 2
+                                                                        : 0);
+  }
+  std::exit(1);
+}
+
+TEST(Memory, TooLittleIsForeseen) {
+  EXPECT_EXIT(exit_when_refused(5e7, {}, "longer edges (resolution.fea)"),
+              testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(exit_when_refused(4e8, {.solver = SolverKind::Cholesky},
+                                "a sparse factor of"),
+              testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
