@@ -13,8 +13,8 @@ namespace meniscus {
 /// spacing, the order of tables and of keys, and 8 against 8.0 make no
 /// difference; the order of entries within a table does ([curves.a] before
 /// [curves.b]), because models follow it. Left out is what no evaluation
-/// depends on: title, analysis, resolution.export, study.tolerance, study.method and
-/// study.max_evaluations.
+/// depends on: title, analysis, resolution.export, study.tolerance,
+/// study.method and study.max_evaluations.
 std::string canonical_text(const toml::table& root);
 
 /// The first line with a dotted key of more than 30 parts, or 0. The TOML
