@@ -84,14 +84,14 @@ BucklingModes buckling_modes(const ElasticModel& model, const TetMesh& mesh,
   const ElasticOperator op = model.operator_at(mesh, load_cases, load_case);
   const LoadCase& loads = load_cases[load_case];
   const NodalMatrix A = weakening(mesh, op, loads, displacement, options.sense);
-  const EigenPairs pairs = largest_eigenpairs(
-      {op.table->pattern, op.K, A, *op.preconditioner, op.freedom}, Columns(),
-      {.count = options.count,
-       .tolerance = options.tolerance,
-       .floor = 1.0 / options.largest,
-       .guards = options.guards,
-       .max_iterations = options.max_iterations,
-       .monitor = options.monitor});
+  const EigenPairs pairs =
+      eigenpairs_of(op, A, Columns(),
+                    {.count = options.count,
+                     .tolerance = options.tolerance,
+                     .floor = 1.0 / options.largest,
+                     .guards = options.guards,
+                     .max_iterations = options.max_iterations,
+                     .monitor = options.monitor});
   BucklingModes modes = judged(pairs, options, loads.name);
   for (std::size_t k = 0; k < modes.factors.size(); ++k) {
     const VectorX x =

@@ -7,6 +7,28 @@
 
 namespace meniscus {
 
+namespace {
+
+/// Up to this many unknowns a factor in double precision (a minute, 2 GB) is
+/// tried where multigrid is not positive definite; as elastic_system.cpp does.
+constexpr int kSecondChance = 200000;
+
+}  // namespace
+
+EigenPairs eigenpairs_of(const ElasticOperator& op, const NodalMatrix& A,
+                         const Columns& start, const EigenOptions& options) {
+  const BlockPattern& pattern = op.table->pattern;
+  EigenPairs pairs = largest_eigenpairs(
+      {pattern, op.K, A, *op.preconditioner, op.freedom}, start, options);
+  if (pairs.end == EigenEnd::NotPositive &&
+      3 * pattern.nodes <= kSecondChance) {
+    const auto factor = make_direct(pattern, op.K, op.freedom);
+    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom}, start,
+                               options);
+  }
+  return pairs;
+}
+
 std::optional<Failure> why_not(const EigenPairs& pairs,
                                const std::string& what) {
   switch (pairs.end) {

@@ -6,8 +6,15 @@
 
 #include "core/error.h"
 #include "fea/eigenpairs.h"
+#include "fea/elastic_operator.h"
 
 namespace meniscus {
+
+/// largest_eigenpairs() of A against the operator's K; once more with a factor
+/// in double precision where its preconditioner is not positive definite
+/// (supports that hardly hold) and the part is not large.
+EigenPairs eigenpairs_of(const ElasticOperator& op, const NodalMatrix& A,
+                         const Columns& start, const EigenOptions& options);
 
 /// Why there is no answer; nothing when the pairs converged.
 std::optional<Failure> why_not(const EigenPairs& pairs,

@@ -220,6 +220,9 @@ void Solver::measure() {
   settled_theta_.conservativeResizeLike(VectorX::Zero(m_));
   for (Eigen::Index j = 0; j < w_; ++j) {
     const Eigen::Index k = moving[j];
+    if (square[j] < 0.0) {
+      end_ = EigenEnd::NotPositive;
+    }
     residuals_[k] = std::sqrt(std::max(square[j], 0.0)) / scale(k);
     settled_norms_[k] = settled(k) ? norms_[k] : 0.0;
     settled_theta_[k] = theta_[k];
@@ -276,7 +279,7 @@ EigenPairs Solver::run(const Columns& start) {
   while (going && m_ > 0) {
     throw_if_stopped(monitor, "fea");
     measure();
-    if (all_settled()) {
+    if (end_ == EigenEnd::NotPositive || all_settled()) {
       break;
     }
     if (iterations_ == options_.max_iterations) {

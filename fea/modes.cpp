@@ -8,6 +8,7 @@
 #include "fea/eigen_shapes.h"
 #include "fea/eigenpairs.h"
 #include "fea/elastic_operator.h"
+#include "fea/held_check.h"
 #include "fea/shifted_system.h"
 
 namespace meniscus {
@@ -46,26 +47,31 @@ void check(const ModeOptions& options) {
   }
 }
 
-/// K is the operator's, shifted by shift M; `start`: motions left free.
+/// The operator's K is shifted by shift M.
+struct Shifted {
+  double shift = 0.0;
+  Columns start;  // motions that supports leave
+  int rigid = 0;  // of these, how many springs leave too
+};
+
 NaturalModes solve(const TetMesh& mesh, const ElasticOperator& op,
-                   const Columns& start, double shift,
-                   const ModeOptions& options) {
+                   const Shifted& shifted, const ModeOptions& options) {
   const Timer timer;
   check(options);
   const NodalMatrix M = mass_matrix(
       *op.table, op.x, densities(mesh, *op.materials), options.mass);
-  const EigenPairs pairs = largest_eigenpairs(
-      {op.table->pattern, op.K, M, *op.preconditioner, op.freedom}, start,
-      {.count = options.count + static_cast<int>(start.cols()),
-       .tolerance = options.tolerance,
-       .max_iterations = options.max_iterations,
-       .monitor = options.monitor});
+  const EigenPairs pairs =
+      eigenpairs_of(op, M, shifted.start,
+                    {.count = options.count + shifted.rigid,
+                     .tolerance = options.tolerance,
+                     .max_iterations = options.max_iterations,
+                     .monitor = options.monitor});
   NaturalModes modes;
   modes.failure = why_not(pairs, "natural frequencies");
   modes.iterations = pairs.iterations;
   for (Eigen::Index k = 0; k < pairs.theta.size(); ++k) {
-    const double square = 1.0 / pairs.theta[k] - shift;
-    if (square < kRigid * shift) {
+    const double square = 1.0 / pairs.theta[k] - shifted.shift;
+    if (k < shifted.rigid && square < kRigid * shifted.shift) {
       ++modes.rigid_motions;
       continue;
     }
@@ -84,9 +90,13 @@ NaturalModes natural_modes(const ElasticModel& model, const TetMesh& mesh,
                            const std::vector<LoadCase>& load_cases,
                            int load_case, const ModeOptions& options) {
   const Timer timer;
-  NaturalModes modes =
-      solve(mesh, model.operator_at(mesh, load_cases, load_case), Columns(),
-            0.0, options);
+  const ElasticOperator op = model.operator_at(mesh, load_cases, load_case);
+  const LoadCase& held = load_cases[load_case];
+  if (!held.springs.empty() &&
+      free_motions(mesh, held_directions(mesh, held)).cols() > 0) {
+    return natural_modes(mesh, *op.materials, held, options);
+  }
+  NaturalModes modes = solve(mesh, op, {}, options);
   modes.seconds = timer.seconds();
   return modes;
 }
@@ -96,8 +106,11 @@ NaturalModes natural_modes(const TetMesh& mesh,
                            const LoadCase& held, const ModeOptions& options) {
   const Timer timer;
   const ShiftedSystem system(mesh, materials, held);
-  NaturalModes modes = solve(mesh, system.shifted(), system.free_motions(),
-                             system.shift(), options);
+  NaturalModes modes = solve(mesh, system.shifted(),
+                             {.shift = system.shift(),
+                              .start = system.free_motions(),
+                              .rigid = system.unsprung_motions()},
+                             options);
   modes.seconds = timer.seconds();
   return modes;
 }

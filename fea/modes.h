@@ -44,9 +44,9 @@ NaturalModes natural_modes(const ElasticModel& model, const TetMesh& mesh,
                            int load_case, const ModeOptions& options = {});
 
 /// Without a model; supports may leave rigid motions or be missing: the
-/// stiffness is then shifted by a multiple of the mass, and the motions are
-/// counted. `held`: its loads are not read. Throws InvalidInput and MeshError
-/// as ElasticModel does.
+/// stiffness is then shifted by a multiple of the mass, and motions that
+/// springs do not resist either are counted. `held`: its loads are not read.
+/// Throws InvalidInput and MeshError as ElasticModel does.
 NaturalModes natural_modes(const TetMesh& mesh,
                            const std::vector<Material>& materials,
                            const LoadCase& held,

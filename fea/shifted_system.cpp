@@ -62,9 +62,10 @@ ShiftedSystem::ShiftedSystem(const TetMesh& mesh,
                               std::move(region));
   holding_ = make_holding(mesh, held, order_);
   std::vector<HeldDirection> directions = held_directions(mesh, held);
+  motions_ = meniscus::free_motions(mesh, directions);
   const std::vector<HeldDirection> sprung = sprung_directions(mesh, held);
   directions.insert(directions.end(), sprung.begin(), sprung.end());
-  motions_ = meniscus::free_motions(mesh, directions);
+  unsprung_ = static_cast<int>(meniscus::free_motions(mesh, directions).cols());
   for (auto motion : motions_.colwise()) {
     motion = to_solver(order_, motion);
   }

@@ -1,5 +1,6 @@
-/// The stiffness of a part that need not be held, made positive definite by a
-/// multiple of its mass.
+/// The stiffness of a part that supports need not hold, made positive definite
+/// by a multiple of its mass. Springs count for nothing there: however soft
+/// they are, their matrix stays well conditioned.
 #pragma once
 
 #include <memory>
@@ -23,11 +24,14 @@ class ShiftedSystem {
   /// K + shift() M; must not outlive this.
   const ElasticOperator& shifted() const { return operator_; }
 
-  /// 0 where supports and springs hold all parts [1/time^2].
+  /// 0 where supports hold all parts [1/time^2].
   double shift() const { return shift_; }
 
-  /// The rigid motions left, one a column, solver's numbering.
+  /// The rigid motions that supports leave, one a column, solver's numbering.
   const Eigen::MatrixXd& free_motions() const { return motions_; }
+
+  /// Of these, how many the springs leave too.
+  int unsprung_motions() const { return unsprung_; }
 
  private:
   void assemble_shifted(const TetMesh& mesh, const LoadCase& held);
@@ -39,6 +43,7 @@ class ShiftedSystem {
   ElementTable table_;
   Holding holding_;
   Eigen::MatrixXd motions_;
+  int unsprung_ = 0;
   double shift_ = 0.0;
   ElasticOperator operator_;
   // Of multigrid:

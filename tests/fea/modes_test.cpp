@@ -216,6 +216,30 @@ TEST(ModesOf, TooFewIterationsAreTold) {
   EXPECT_EQ(modes.failure->kind, FailureKind::SolverFailed);
 }
 
+// Multigrid in single precision is lost on springs this soft.
+TEST(ModesOf, APartThatIsHardlyHeldAreFound) {
+  const TetMesh mesh =
+      shapes::straight_quadratic(shapes::brick({4.0, 2.0, 1.5}, 12, 6, 5));
+  const Material steel = parts::steel();
+  for (const double softness : {1e-3, 1e-6, 1e-9}) {
+    const double k = softness * steel.youngs_modulus;
+    LoadCase sprung;
+    sprung.springs = {{.surface = "x0",
+                       .components = {k, k, k},
+                       .measure = SpringMeasure::Total}};
+    const NaturalModes modes =
+        natural_modes(mesh, {steel}, sprung, {.count = 6});
+    ASSERT_FALSE(modes.failure) << modes.failure->message;
+    EXPECT_EQ(modes.rigid_motions, 0);
+    double nearest = 1.0;  // one goes along x, all others turn too
+    for (const double f : modes.frequencies) {
+      const double up = std::sqrt(k / (steel.density * 12.0)) / (2.0 * pi);
+      nearest = std::min(nearest, std::abs(f / up - 1.0));
+    }
+    EXPECT_LT(nearest, 1e-3) << softness;
+  }
+}
+
 // More rows than one thread's share: multigrid, products and sums in parallel.
 TEST(ModesOf, OneAndTwoThreadsGiveTheSameBits) {
   const TetMesh mesh =

@@ -115,6 +115,59 @@ TEST(EulerColumn, ClampedSteelIsEulersLoad) {
                  fmt::format("{:.5f}", modes.factors[0] / (euler * 0.1)));
 }
 
+/// A quarter of a square plate of side 20 and thickness 1, hinged all around,
+/// heated between pressed sides: nothing moves before it buckles, the stress is
+/// -1 in both directions of the plane.
+double hot_plate_factor(int along, int across) {
+  const TetMesh mesh = shapes::straight_quadratic(
+      shapes::brick({10.0, 10.0, 1.0}, along, along, across));
+  Material m = cork();
+  const double E = m.youngs_modulus;
+  m.orthotropic = Orthotropic{.youngs_moduli = Vec3::Constant(E),
+                              .poisson_ratios = Vec3::Zero(),
+                              .shear_moduli = Vec3::Constant(0.5 * E)};
+  m.thermal_expansion = {1.0 / E, 1.0 / E, 0.0};  // not in thickness
+  LoadCase hot;
+  hot.name = "hot";
+  hot.supports = {{"x0", true, false, false},
+                  {"y0", false, true, false},
+                  {"x1", false, true, true},
+                  {"y1", true, false, true}};
+  hot.pressures = {{"x1", 1.0}, {"y1", 1.0}};
+  hot.temperature = Temperature{.value = 1.0};
+  const std::vector<LoadCase> cases = {hot};
+  const ElasticModel model(mesh, {m}, cases);
+  const BucklingModes modes =
+      buckling_modes(model, mesh, cases, 0,
+                     model.base_solution().displacements[0], {.largest = 1e5});
+  EXPECT_FALSE(modes.failure);
+  return modes.factors.at(0);
+}
+
+/// N = D k^2 with k^2 = 2 (pi / a)^2, Mindlin's shear and D (1 - N / (E t)),
+/// as of the column.
+double hot_plate_load() {
+  const Material m = cork();
+  const double k2 = 2.0 * std::pow(pi / 20.0, 2);
+  const double shear = kShear * shear_modulus(m);
+  double N = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    const double thin =
+        m.youngs_modulus / 12.0 * k2 * (1.0 - N / m.youngs_modulus);
+    N = thin / (1.0 + thin / shear);
+  }
+  return N;
+}
+
+TEST(HotPlate, BucklesAtMindlinsLoadWithOrderFour) {
+  const double coarse = hot_plate_factor(10, 2) / hot_plate_load() - 1.0;
+  const double fine = hot_plate_factor(20, 4) / hot_plate_load() - 1.0;
+  EXPECT_GT(coarse / fine, 9.0);
+  EXPECT_LT(std::abs(fine), 3e-4);
+  RecordProperty("coarse", fmt::format("{:.2e}", coarse));
+  RecordProperty("fine", fmt::format("{:.2e}", fine));
+}
+
 /// omega of a pinned Timoshenko beam's first bending, half length given:
 /// r w^4 - (1 + I k^2 / A (1 + E / kG)) w^2 + E I k^4 / (rho A) = 0.
 double pinned_omega(double length) {
