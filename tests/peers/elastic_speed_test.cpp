@@ -46,6 +46,36 @@ TEST_P(ElasticSpeed, BeatsCalculix) {
       << next << " s";
 }
 
+/// Seconds of the fastest of a few runs, the next design included.
+double seconds_of(const ElasticWork& work, double scale, SolverKind solver) {
+  double least = HUGE_VAL;
+  for (int i = 0; i < kRuns; ++i) {
+    const ElasticRun run = run_elastic(work.make, scale, 1, solver);
+    EXPECT_TRUE(run.solved) << run.message;
+    least = std::min(least, run.user_seconds + run.next_seconds);
+  }
+  return least;
+}
+
+// From 1,000 unknowns to where a factor is far behind.
+TEST_P(ElasticSpeed, AutomaticIsNearTheBestSolver) {
+#ifndef NDEBUG
+  MENISCUS_NOT_HERE("times of a build without optimisation say nothing");
+#endif
+  constexpr double kNear = 1.3;
+  constexpr double kClock = 0.004;  // [s] what such short runs scatter by
+  for (const double scale : {0.002, 0.008, 0.03, 0.06}) {
+    const double direct = seconds_of(GetParam(), scale, SolverKind::Cholesky);
+    const double multigrid =
+        seconds_of(GetParam(), scale, SolverKind::Multigrid);
+    const double automatic =
+        seconds_of(GetParam(), scale, SolverKind::Automatic);
+    EXPECT_LE(automatic, kNear * std::min(direct, multigrid) + kClock)
+        << "scale " << scale << ": factor " << direct << " s, multigrid "
+        << multigrid << " s";
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Works, ElasticSpeed,
                          ::testing::ValuesIn(elastic_works()),
                          [](const auto& work) { return work.param.name; });

@@ -89,12 +89,14 @@ double wall_seconds() {
       .count();
 }
 
-std::string solve(ElasticPart (*make)(double), double scale, int threads) {
+std::string solve(ElasticPart (*make)(double), double scale, int threads,
+                  SolverKind solver) {
   keep_freed_memory();  // as the program does
   omp_set_num_threads(threads);
   const ElasticPart part = make(scale);
   const double start = cpu_seconds();
-  const ElasticModel model(part.mesh, part.materials, {part.load_case});
+  const ElasticModel model(part.mesh, part.materials, {part.load_case},
+                           {.solver = solver});
   const ElasticSolution& base = model.base_solution();
   if (base.failure) {
     throw std::runtime_error(base.failure->message);
@@ -135,9 +137,10 @@ ElasticPart large_block(double scale) {
   return loaded(shapes::straight_quadratic(tet_block(31.4, scale)), "x0", "x1");
 }
 
-ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads) {
+ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads,
+                       SolverKind solver) {
   const MeasuredChild child =
-      measure_forked([&] { return solve(make, scale, threads); });
+      measure_forked([&] { return solve(make, scale, threads, solver); });
   ElasticRun run;
   run.peak_bytes = child.peak_bytes;
   run.message = child.output;

@@ -57,7 +57,8 @@ struct ElasticRun {
   double peak_bytes = 0.0;  // of the whole process, both meshes included
   double largest = 0.0;     // displacement [length]
 };
-ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads);
+ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads,
+                       SolverKind solver = SolverKind::Automatic);
 
 struct CalculixTime {
   bool ended = false;
