@@ -24,7 +24,7 @@ namespace meniscus {
 
 struct FeScriptOptions {
   std::optional<std::string> macro;  // none: the `read` section only
-  long most_steps = 1'000'000;  // commands and loop rounds in all
+  long most_steps = 1'000'000;       // commands and loop rounds in all
   Monitor* monitor = nullptr;
 };
 

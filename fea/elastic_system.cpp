@@ -16,7 +16,7 @@ namespace meniscus {
 namespace {
 
 /// Below this many free unknowns a direct factor is as quick as multigrid.
-constexpr int kDirectUnknowns = 4000;
+constexpr int kDirectUnknowns = 1000;
 /// Up to this many a factor in double precision (a minute, 2 GB) is tried where
 /// multigrid is not positive definite.
 constexpr int kSecondChance = 200000;

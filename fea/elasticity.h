@@ -39,7 +39,7 @@ struct ElasticSolution {
 enum class SolverKind { Automatic, Cholesky, Multigrid };
 
 struct ElasticOptions {
-  /// Automatic: multigrid above 4,000 unknowns, else Cholesky.
+  /// Automatic: multigrid above 1,000 unknowns, else Cholesky.
   SolverKind solver = SolverKind::Automatic;
   /// Relative error of the displacement in the energy norm, per load case, as
   /// the preconditioner estimates it.

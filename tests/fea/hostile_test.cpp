@@ -222,6 +222,7 @@ void exit_when_refused(double more, const ElasticOptions& options,
 }
 
 TEST(Memory, TooLittleIsForeseen) {
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
   EXPECT_EXIT(exit_when_refused(5e7, {}, "longer edges (resolution.fea)"),
               testing::ExitedWithCode(0), "");
   EXPECT_EXIT(exit_when_refused(4e8, {.solver = SolverKind::Cholesky},
