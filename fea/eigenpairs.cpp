@@ -220,10 +220,10 @@ void Solver::measure() {
   settled_theta_.conservativeResizeLike(VectorX::Zero(m_));
   for (Eigen::Index j = 0; j < w_; ++j) {
     const Eigen::Index k = moving[j];
-    if (square[j] < 0.0) {
-      end_ = EigenEnd::NotPositive;
+    if (square[j] < -std::pow(options_.tolerance * scale(k), 2)) {
+      end_ = EigenEnd::NotPositive;  // and no rounding
     }
-    residuals_[k] = std::sqrt(std::max(square[j], 0.0)) / scale(k);
+    residuals_[k] = std::sqrt(std::abs(square[j])) / scale(k);
     settled_norms_[k] = settled(k) ? norms_[k] : 0.0;
     settled_theta_[k] = theta_[k];
   }
@@ -265,6 +265,9 @@ EigenPairs Solver::finish() {
   settled_norms_.resize(0);
   settled_theta_.resize(0);
   measure();
+  if (end_ == EigenEnd::TooManyIterations && all_settled()) {
+    pairs.end = EigenEnd::Converged;
+  }
   pairs.theta = theta_;
   pairs.x = S_.leftCols(m_) * energy.cwiseSqrt().cwiseInverse().asDiagonal();
   pairs.residuals = residuals_.array() / energy.array().sqrt();

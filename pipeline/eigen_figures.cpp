@@ -1,5 +1,7 @@
 #include "pipeline/eigen_figures.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -15,16 +17,21 @@ using Json = nlohmann::ordered_json;
 // Unasked, the factor serves a warning and a line of the summary.
 constexpr double kRoughly = 1e-3;
 constexpr double kLargestOfInterest = 1e3;
-constexpr int kRoughIterations = 40;
+// As many steps as the solve took, so that it costs about as much, within:
+constexpr int kLeastSteps = 40;
+constexpr int kMostSteps = 150;
+// One that came out above this may be far from converged and needs no warning.
+constexpr double kSafelyStable = 10.0;
 
 BucklingOptions buckling_options(const AnalysisEntry& analysis,
-                                 Monitor* monitor) {
+                                 const ElasticReport& solve, Monitor* monitor) {
   if (!analysis.buckling) {
-    return {.tolerance = kRoughly,
-            .largest = kLargestOfInterest,
-            .guards = 1,
-            .max_iterations = kRoughIterations,
-            .monitor = monitor};
+    return {
+        .tolerance = kRoughly,
+        .largest = kLargestOfInterest,
+        .guards = 1,
+        .max_iterations = std::clamp(solve.iterations, kLeastSteps, kMostSteps),
+        .monitor = monitor};
   }
   return {.count = *analysis.buckling, .monitor = monitor};
 }
@@ -51,7 +58,8 @@ std::string buckling_line(const BucklingFigures& b) {
     for (const double factor : modes.factors) {
       factors.push_back(fmt::format("{:.4g}", factor));
     }
-    text += fmt::format("{} x the loads", fmt::join(factors, ", "));
+    text += fmt::format("{}{} x the loads", b.roughly ? "about " : "",
+                        fmt::join(factors, ", "));
   } else if (!modes.failure) {
     text += fmt::format("none below {:.4g} x the loads", modes.none_below);
   }
@@ -66,7 +74,8 @@ EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
   const AnalysisEntry& analysis = input.analysis;
   const std::vector<LoadCase>& cases = fields.inputs.load_cases;
   EigenFigures figures;
-  const BucklingOptions options = buckling_options(analysis, monitor);
+  const BucklingOptions options =
+      buckling_options(analysis, model.base_solution().report, monitor);
   for (std::size_t c = 0; c < cases.size() && options.count > 0; ++c) {
     figures.buckling.push_back(
         {cases[c].name, or_failure<BucklingModes>([&] {
@@ -83,6 +92,14 @@ EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
               model, fields.mesh, cases, held,
               {.count = analysis.frequencies, .monitor = monitor});
         })};
+  }
+  for (BucklingFigures& b : figures.buckling) {
+    const bool stable =
+        !b.modes.factors.empty() && b.modes.factors.front() > kSafelyStable;
+    if (!analysis.buckling && b.modes.failure && stable) {
+      b.modes.failure.reset();
+      b.roughly = true;
+    }
   }
   figures.seconds = timer.seconds();
   return figures;

@@ -16,7 +16,8 @@ namespace meniscus {
 /// Of one load case.
 struct BucklingFigures {
   std::string load_case;
-  BucklingModes modes;  // as many as the case asks for, or the first
+  BucklingModes modes;   // as many as the case asks for, or the first
+  bool roughly = false;  // unasked, not converged, and far above 1
 };
 
 struct FrequencyFigures {

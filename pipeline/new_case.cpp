@@ -70,6 +70,10 @@ load_case = "service"
 [responses.mass]
 kind = "mass"
 
+# [analysis] # modes of these go into part.vtu
+# frequencies = 6 # lowest natural ones, in Hz
+# buckling = 2 # smallest factors per load case
+
 [study]
 kind = "match" # or "analyse": the initial design only
 targets = { sway = 0.0065 } # mm

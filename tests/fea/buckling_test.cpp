@@ -1,6 +1,7 @@
 /// Linear buckling: what the answer must satisfy.
 #include "fea/buckling.h"
 
+#include <cmath>
 #include <omp.h>
 
 #include <gtest/gtest.h>
@@ -120,6 +121,43 @@ TEST(BucklingOf, WrongInputIsRefused) {
                InvalidInput);
   EXPECT_THROW(buckling_modes(part.model, column(2), part.cases, 0, u),
                InvalidInput);
+}
+
+TEST(BucklingOf, StressesThatAreNotFiniteAreTold) {
+  const Loaded part(column(2), {-1.0, 0.0, 0.0});
+  VectorX u = part.model.base_solution().displacements[0];
+  u[7] = std::nan("");
+  const BucklingModes modes =
+      buckling_modes(part.model, part.mesh, part.cases, 0, u);
+  ASSERT_TRUE(modes.failure);
+  EXPECT_EQ(modes.failure->kind, FailureKind::NotANumber);
+  EXPECT_TRUE(modes.factors.empty());
+}
+
+class Impatient : public Monitor {
+ public:
+  bool stop_requested() const override { return true; }
+};
+
+TEST(BucklingOf, AMonitorStopsTheSearch) {
+  const Loaded part(column(2), {-1.0, 0.0, 0.0});
+  Impatient monitor;
+  EXPECT_THROW(part.buckle({.monitor = &monitor}), Interrupted);
+}
+
+// The model's preconditioner is the base's, K and K_g those of the design.
+TEST(BucklingOf, AMovedMeshIsThatOfAModelOfItsOwn) {
+  const Loaded base(column(2), {-1000.0, 0.0, 0.0});
+  TetMesh moved = base.mesh;
+  for (Vec3& x : moved.nodes) {
+    x.z() *= 1.0 + 0.02 * x.x();
+  }
+  const BucklingModes far =
+      buckling_modes(base.model, moved, base.cases, 0,
+                     base.model.solve(moved).displacements[0]);
+  const BucklingModes own = Loaded(moved, {-1000.0, 0.0, 0.0}).buckle();
+  ASSERT_FALSE(far.failure) << far.failure->message;
+  EXPECT_NEAR(far.factors.at(0), own.factors.at(0), 1e-8 * own.factors.at(0));
 }
 
 TEST(BucklingOf, OneAndTwoThreadsGiveTheSameBits) {
