@@ -46,6 +46,7 @@ struct Evaluation {
 struct EvaluationFields {
   std::vector<Finding> findings;  // why `surface.base` could not be filled
   SurfaceMesh film;               // at the film's own resolution
+  SurfaceMesh boundary;           // of that what bounds material
   QuadraticSurface surface;       // as meshed
   TetMesh mesh;                   // ten-node
   ElasticSolution solution;
