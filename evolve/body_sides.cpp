@@ -238,25 +238,6 @@ void orient_bodies(FilmComplex& complex) {
   }
 }
 
-std::vector<FacetBodies> facet_bodies(const FilmComplex& complex,
-                                      const std::vector<int>& facet_label) {
-  std::vector<FacetBodies> result;
-  if (complex.bodies.size() < 2) {
-    return result;
-  }
-  std::vector<FacetBodies> of_surface(complex.surfaces.size(), {-1, -1});
-  for (std::size_t b = 0; b < complex.bodies.size(); ++b) {
-    for (const BodySide& side : complex.bodies[b].sides) {
-      FacetBodies& bodies = of_surface[side.surface];
-      (side.sign > 0 ? bodies.behind : bodies.front) = static_cast<int>(b);
-    }
-  }
-  for (const int label : facet_label) {
-    result.push_back(of_surface[label]);
-  }
-  return result;
-}
-
 SurfaceMesh body_surface(const FilmComplex& complex, const ComplexBody& body) {
   std::vector<int> sign(complex.surfaces.size(), 0);
   for (const BodySide& side : body.sides) {

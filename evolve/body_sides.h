@@ -11,11 +11,6 @@ namespace meniscus {
 /// no outside, or that encloses no volume.
 void orient_bodies(FilmComplex& complex);
 
-/// The bodies on both sides of facets of an oriented complex with these labels,
-/// bodies by their index; empty when there is one body at most.
-std::vector<FacetBodies> facet_bodies(const FilmComplex& complex,
-                                      const std::vector<int>& facet_label);
-
 /// The closed, outward surface of one body, with the complex's labels.
 SurfaceMesh body_surface(const FilmComplex& complex, const ComplexBody& body);
 

@@ -8,12 +8,12 @@
 
 #include "core/surface_nodes.h"
 #include "core/timer.h"
-#include "evolve/body_sides.h"
 #include "evolve/carry.h"
 #include "evolve/equilibrium.h"
 #include "evolve/fields.h"
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
+#include "evolve/solid_facets.h"
 #include "evolve/tension_field.h"
 
 namespace meniscus {
@@ -93,8 +93,9 @@ struct FilmModel::Impl {
   std::optional<Carry> carry;
   FilmTargets targets;
   FilmState reference;
-  double usual_neck = 0.0;  // of the reference [length]
-  SurfaceNodes nodes;       // the meshed level's, facets split
+  double usual_neck = 0.0;   // of the reference [length]
+  std::vector<int> regions;  // per body, -1: void
+  SurfaceNodes nodes;        // the meshed level's, facets split
 
   FilmTargets targets_of_system(const FilmSystem& system) const;
   void check_fields(const FilmSystem& system) const;
@@ -297,7 +298,9 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   std::iota(corner.begin(), corner.end(), 0);
   SurfaceMesh topology = impl->meshed;
   topology.points.clear();
-  topology.facet_bodies = facet_bodies(impl->complex, topology.facet_label);
+  impl->regions = regions_of(initial.bodies);
+  keep_solids(impl->complex, impl->regions, topology);
+  drop_unused(topology, corner);
   impl->nodes = surface_nodes(std::move(topology), std::move(corner),
                               impl->middles(), impl->straight());
   if (impl->reference.failure || !impl->energy) {
@@ -371,6 +374,13 @@ void FilmModel::split_facets(const std::vector<char>& marked) {
 SurfaceMesh FilmModel::fine_mesh(const Points& points) const {
   SurfaceMesh mesh = impl_->complex.mesh;
   mesh.points = points;
+  return mesh;
+}
+
+SurfaceMesh FilmModel::boundary(const Points& points) const {
+  SurfaceMesh mesh = fine_mesh(points);
+  keep_solids(impl_->complex, impl_->regions, mesh);
+  drop_interfaces(mesh);
   return mesh;
 }
 

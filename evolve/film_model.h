@@ -96,9 +96,9 @@ class FilmModel {
 
   /// The closed surface for meshing, from any state's points: corners at the
   /// meshed resolution, mid-sides from the finer film (on straight edges when
-  /// refinements = 0). Labels are the names of films and caps; facet_bodies
-  /// tells several bodies apart, in the system's order. Linear in `points` with
-  /// constant weights.
+  /// refinements = 0). Labels are the names of films and caps; of several
+  /// bodies, facet_bodies has the regions of material (voids left out and not
+  /// counted). Linear in `points` with constant weights.
   QuadraticSurface surface(const Points& points) const;
 
   /// Halves the edges of the marked facets (one char per facet of surface()) in
@@ -111,6 +111,10 @@ class FilmModel {
   /// All facets at the film's own resolution (caps included), for files and
   /// pictures.
   SurfaceMesh fine_mesh(const Points& points) const;
+
+  /// Those of them that bound material, for the files that printers read:
+  /// closed surfaces without interfaces. Points as fine_mesh().
+  SurfaceMesh boundary(const Points& points) const;
 
   /// Vertices of the fine mesh on a curve; none for a curve that the model has
   /// not.

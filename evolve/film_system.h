@@ -41,6 +41,7 @@ struct BodySpec {
   // At most one of the two; none means pressure 0.
   std::optional<double> volume;    // [length^3]
   std::optional<double> pressure;  // inside minus outside [force/length^2]
+  bool is_void = false;            // of no material: not part of what is meshed
 };
 
 struct FilmSystem {

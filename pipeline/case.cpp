@@ -1,6 +1,7 @@
 #include "pipeline/case.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 
 #include <fmt/format.h>
@@ -169,7 +170,9 @@ FilmSystem films_of(const Case& input, const CaseValues& values) {
     system.caps.push_back(cap.spec);
   }
   for (const BodyEntry& body : input.bodies) {
-    BodySpec spec{.name = body.name, .enclosed_by = body.enclosed_by};
+    BodySpec spec{.name = body.name,
+                  .enclosed_by = body.enclosed_by,
+                  .is_void = body.material == kVoid};
     if (body.volume) {
       spec.volume = values.positive(*body.volume);
     }
@@ -238,6 +241,14 @@ void throw_first(const std::vector<std::string>& problems) {
 
 }  // namespace
 
+std::vector<BodyEntry> solid_bodies(const Case& input) {
+  std::vector<BodyEntry> solid;
+  std::copy_if(input.bodies.begin(), input.bodies.end(),
+               std::back_inserter(solid),
+               [](const BodyEntry& body) { return body.material != kVoid; });
+  return solid;
+}
+
 EvaluatedCase evaluate(const Case& input, const VectorX& design,
                        std::vector<std::string>& problems) {
   const std::size_t before = problems.size();
@@ -251,7 +262,7 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
     result.walls.push_back(
         {wall.name, wall.films, values.of_place(wall.thickness), wall.side});
   }
-  for (const BodyEntry& body : input.bodies) {
+  for (const BodyEntry& body : solid_bodies(input)) {
     result.materials.push_back(material_of(
         input, input.materials[static_cast<std::size_t>(body.material)],
         values));

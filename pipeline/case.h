@@ -44,11 +44,14 @@ struct WallSpec {
   WallSide side = WallSide::Both;
 };
 
+/// The bodies that are not void, in order: the regions of the mesh.
+std::vector<BodyEntry> solid_bodies(const Case& input);
+
 /// The numbers of one design.
 struct EvaluatedCase {
   FilmSystem film_system;
   std::vector<WallSpec> walls;
-  std::vector<Material> materials;  // one per body, in the bodies' order
+  std::vector<Material> materials;  // one per body that is solid, in order
   std::vector<LoadCase> load_cases;
   std::vector<Vec3> response_directions;  // one per response
   double fea_edge = 0.0;

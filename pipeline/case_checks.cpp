@@ -167,9 +167,10 @@ void check_loads(const Case& input, const EvaluatedCase& numbers,
                                numbers.load_cases[k].name));
     }
   }
+  const std::vector<BodyEntry> solid = solid_bodies(input);
   for (std::size_t k = 0; k < numbers.materials.size(); ++k) {
     const MaterialEntry& entry =
-        input.materials[static_cast<std::size_t>(input.bodies[k].material)];
+        input.materials[static_cast<std::size_t>(solid[k].material)];
     if (numbers.materials[k].density != 0.0) {
       continue;
     }
@@ -198,11 +199,12 @@ void check_loads(const Case& input, const EvaluatedCase& numbers,
 /// The stiffness of the frozen model belongs to its materials.
 void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
                            const EvaluatedCase& other, CaseProblems& problems) {
+  const std::vector<BodyEntry> solid = solid_bodies(input);
   for (std::size_t k = 0; k < initial.materials.size(); ++k) {
     const Material& a = initial.materials[k];
     const Material& b = other.materials[k];
     const MaterialEntry& entry =
-        input.materials[static_cast<std::size_t>(input.bodies[k].material)];
+        input.materials[static_cast<std::size_t>(solid[k].material)];
     const bool weighs =
         std::any_of(initial.load_cases.begin(), initial.load_cases.end(),
                     [](const LoadCase& c) { return has_weight(c); });

@@ -71,11 +71,13 @@ struct CapEntry {
   SourceLine line = 0;
 };
 
+inline constexpr int kVoid = -1;
+
 struct BodyEntry {
   std::string name;
   std::vector<std::string> enclosed_by;
   std::optional<Quantity> volume, pressure;
-  int material = 0;  // index into materials
+  int material = 0;  // index into materials; kVoid: none
   SourceLine line = 0;
   SourceLine enclosure_line = 0;  // of enclosed_by
 };

@@ -12,6 +12,8 @@ namespace meniscus {
 
 namespace {
 
+constexpr const char* kVoidName = "void";
+
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -194,6 +196,11 @@ void read_materials(CaseContext& context, const toml::table& root,
                     Case& result) {
   for (const CaseTable& table : named_tables(context, root, "materials")) {
     MaterialEntry material{.name = table.name(), .line = table.line()};
+    if (material.name == kVoidName) {
+      context.problems.add(material.line,
+                           "materials.void: bodies that are void have this "
+                           "name; choose another");
+    }
     const bool orthotropic = table.has("youngs_moduli") ||
                              table.has("poisson_ratios") ||
                              table.has("shear_moduli");
@@ -218,6 +225,10 @@ void find_material(CaseContext& context, const CaseTable& table,
                    const Case& result, BodyEntry& body) {
   const auto wanted = table.text("material");
   if (!wanted) {
+    return;
+  }
+  if (*wanted == kVoidName) {
+    body.material = kVoid;
     return;
   }
   std::vector<std::string> known;
@@ -258,6 +269,11 @@ void read_bodies(CaseContext& context, const toml::table& root, Case& result) {
     }
     find_material(context, table, result, body);
     result.bodies.push_back(std::move(body));
+  }
+  if (!result.bodies.empty() && solid_bodies(result).empty()) {
+    context.problems.add(result.bodies.front().line,
+                         "all bodies are void; one must have a material, or "
+                         "there is no part");
   }
 }
 

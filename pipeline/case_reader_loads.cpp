@@ -201,19 +201,22 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
     return surface;
   }
   const std::vector<std::string> known = surface_names(result);
-  const bool encloses = std::any_of(
-      result.bodies.begin(), result.bodies.end(), [&](const BodyEntry& body) {
-        return std::find(body.enclosed_by.begin(), body.enclosed_by.end(),
-                         surface) != body.enclosed_by.end();
-      });
+  int bodies = 0;
+  int solid = 0;
+  for (const BodyEntry& body : result.bodies) {
+    const int one = static_cast<int>(
+        std::count(body.enclosed_by.begin(), body.enclosed_by.end(), surface));
+    bodies += one;
+    solid += body.material == kVoid ? 0 : one;
+  }
   if (std::find(known.begin(), known.end(), surface) == known.end()) {
     context.problems.unknown(table.line(key), "surface", surface, known);
-  } else if (context.bodies_good && !encloses) {
-    context.problems.add(table.line(key),
-                         fmt::format("surface '{}' encloses no body, so "
-                                     "nothing can act on it; add it to a "
-                                     "body's enclosed_by",
-                                     surface));
+  } else if (context.bodies_good && solid == 0) {
+    context.problems.add(
+        table.line(key),
+        fmt::format("surface '{}' encloses no {}, so nothing can act on it; "
+                    "add it to a body's enclosed_by",
+                    surface, bodies == 0 ? "body" : "material, only voids"));
   }
   return surface;
 }

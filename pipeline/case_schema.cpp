@@ -85,7 +85,9 @@ std::vector<TableSpec> make_tables() {
         {"volume", K::Quantity, D::Volume, false, "enclosed volume"},
         {"pressure", K::Quantity, D::Pressure, false,
          "inside minus outside, instead of a volume"},
-        {"material", K::Name, D::None, true, "what fills it"}}},
+        {"material", K::Name, D::None, true,
+         "what fills it; \"void\": nothing, and only its surfaces shape the "
+         "part"}}},
       {"walls",
        true,
        N::Optional,

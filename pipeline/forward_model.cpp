@@ -309,6 +309,7 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
   }
   if (fields != nullptr) {
     fields->film = impl_->film->fine_mesh(film_state.points);
+    fields->boundary = impl_->film->boundary(film_state.points);
     fields->surface = surface;
     fields->mesh = std::move(mesh);
     fields->solution = std::move(solution);

@@ -53,6 +53,7 @@ struct ModeShape {
 struct EvaluationFields {
   std::vector<Finding> findings;  // why `surface.base` could not be filled
   SurfaceMesh film;               // at the film's own resolution
+  SurfaceMesh boundary;           // of that what bounds material
   QuadraticSurface surface;       // as meshed
   TetMesh mesh;                   // ten-node
   ElasticSolution solution;

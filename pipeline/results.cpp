@@ -274,7 +274,7 @@ std::vector<std::string> write_meshes(const Case& input,
               {.name = input.title, .unit = input.units.length});
   };
   if (input.resolution.export_edges.empty()) {
-    write_part_stl(fields.film, input.resolution.film);
+    write_part_stl(fields.boundary, input.resolution.film);
   }
   for (const double edge : input.resolution.export_edges) {
     write_part_stl(settle_again(fields.inputs.film_system, edge), edge);
@@ -308,7 +308,7 @@ SurfaceMesh settle_again(const FilmSystem& system, double edge) {
     throw MeshError(fmt::format("no film at edge {:g}: {}", edge,
                                 model.reference().failure->message));
   }
-  return model.fine_mesh(model.reference().points);
+  return model.boundary(model.reference().points);
 }
 
 std::string stl_name(double edge) { return fmt::format("part_{:g}.stl", edge); }

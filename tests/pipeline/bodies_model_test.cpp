@@ -1,4 +1,6 @@
 /// Two bodies of their own materials that share a plate.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "case_text.h"
@@ -97,6 +99,72 @@ TEST(Bodies, FollowTheDesignOnOneMesh) {
   EXPECT_EQ(moved.tet.elements, model.frozen().tet.elements);
   EXPECT_EQ(model.evaluate(VectorX::Constant(1, 23.0)).responses,
             moved.responses);
+}
+
+/// The neck is a chamber of gas; its plate carries the load.
+std::string half_void() {
+  std::string text =
+      changed(cut_strut(), "volume = 3.6e4\nmaterial = \"aluminium\"",
+              "volume = 3.6e4\nmaterial = \"void\"");
+  text = changed(text, "on = \"head_pad\", force", "on = \"plate\", force");
+  text = changed(text, "on = \"head_pad\"\ndirection",
+                 "on = \"plate\"\ndirection");
+  return text;
+}
+
+TEST(Voids, ShapeTheirFilmsAndAreNotMeshed) {
+  const Cut cut = evaluated(half_void());
+  const Cut both = evaluated(cut_strut());
+  const auto& film = cut.evaluation.film;
+  ASSERT_EQ(film.bodies.size(), 2U);
+  EXPECT_NEAR(film.bodies[1].volume, 3.6e4, 1e-3);
+  EXPECT_EQ(film.area, both.evaluation.film.area);
+  const auto& region = cut.fields.mesh.element_region;
+  EXPECT_EQ(*std::max_element(region.begin(), region.end()), 0);
+  EXPECT_LT(cut.evaluation.responses[1], 4.2e4 * 8e-9 * 1.02);
+  // The foot is what it was, and so is the load that it bears.
+  EXPECT_NEAR(cut.evaluation.responses[2] / both.evaluation.responses[2], 1.0,
+              0.05);
+  for (const Vec3& x : cut.fields.surface.base.points) {
+    EXPECT_LE(x.z(), 30.0 + 1e-9);
+  }
+  // What is written for printers is closed, and without the void.
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(cut.fields.boundary.facets, edges, facet_edges);
+  EXPECT_EQ(2 * edges.size(), 3 * cut.fields.boundary.facets.size());
+  EXPECT_NEAR(enclosed_volume(cut.fields.boundary), 4.2e4, 1.0);
+}
+
+TEST(Voids, WithBothSolidTheBoundaryHasNoPlate) {
+  const Cut cut = evaluated(cut_strut());
+  const SurfaceMesh& boundary = cut.fields.boundary;
+  EXPECT_EQ(std::count(boundary.facet_label.begin(), boundary.facet_label.end(),
+                       boundary.label_of("plate")),
+            0);
+  EXPECT_NEAR(enclosed_volume(boundary), 7.8e4, 1.0);
+}
+
+TEST(Voids, AreRefusedWhereNothingIsLeft) {
+  const auto problem = [](const std::string& text) {
+    std::string all;
+    for (const std::string& one : problems_of(text)) {
+      all += one + "\n";
+    }
+    return all;
+  };
+  EXPECT_NE(problem(changed(half_void(), "volume = 4.2e4\nmaterial = \"alloy\"",
+                            "volume = 4.2e4\nmaterial = \"void\""))
+                .find("all bodies are void"),
+            std::string::npos);
+  EXPECT_NE(problem(changed(half_void(), "on = \"plate\", force",
+                            "on = \"head_pad\", force"))
+                .find("'head_pad' encloses no material, only voids"),
+            std::string::npos);
+  EXPECT_NE(
+      problem(changed(strut(), "[materials.aluminium]", "[materials.void]"))
+          .find("bodies that are void have this name"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -136,6 +136,19 @@ class Results(ProgramTest):
         self.assertAlmostEqual(after["responses"]["sway"],
                                result["start"]["responses"]["sway"], 9)
 
+    def test_the_fields_of_the_part_are_documented(self):
+        out, _ = self.run_case(CASE + ANALYSIS.replace("true", "false"))
+        text = (program.ROOT / "docs" / "results.md").read_text()
+        row = re.search(r"^\| `part.vtu` \|(.*)$", text, re.MULTILINE).group(1)
+        data = (out / "part.vtu").read_bytes()
+        head = data.split(b"<AppendedData")[0]
+        names = []
+        for kind in (b"PointData", b"CellData"):
+            part = head.split(b"<" + kind)[1].split(b"</" + kind)[0]
+            names += re.findall(rb'<DataArray[^>]* Name="(\w+)"', part)
+        self.assertEqual({name.decode() for name in names},
+                         set(re.findall(r"`(\w+)`", row)))
+
     def test_an_exclusion_takes_the_clamp_out_of_the_peak(self):
         _, whole = self.run_case(CASE, "whole")
         _, counted = self.run_case(CASE + ANALYSIS.replace("true", "false"))
