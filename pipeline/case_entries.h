@@ -168,8 +168,9 @@ struct Resolution {
 
 /// Eigenvalues of the best design.
 struct AnalysisEntry {
-  int frequencies = 0;  // lowest natural ones
-  int supports_of = 0;  // held as in this load case: index
+  static constexpr int kFree = -1;  // not held at all
+  int frequencies = 0;              // lowest natural ones
+  int supports_of = 0;  // held as in this load case: index, or kFree
   /// Smallest factors per load case; without it one, roughly; 0: none.
   std::optional<int> buckling;
 };
