@@ -155,8 +155,9 @@ struct AnalysisEntry {
   bool adapt = false;  // one round of adaptive refinement
   std::vector<ExclusionEntry> exclude;
   // Eigenvalues of the best design:
-  int frequencies = 0;  // lowest natural ones
-  int supports_of = 0;  // held as in this load case: index
+  static constexpr int kFree = -1;  // not held at all
+  int frequencies = 0;              // lowest natural ones
+  int supports_of = 0;  // held as in this load case: index, or kFree
   /// Smallest factors per load case; without it one, roughly; 0: none.
   std::optional<int> buckling;
 };

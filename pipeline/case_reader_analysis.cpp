@@ -175,8 +175,17 @@ void read_analysis_table(CaseContext& context, const toml::table& root,
   analysis.frequencies =
       table->integer_within("frequencies", 0, kMostModes).value_or(0);
   analysis.buckling = table->integer_within("buckling", 0, kMostModes);
-  analysis.supports_of =
-      index_of_load_case(context, *table, result, "supports_of");
+  const auto is_free = [](const LoadCaseEntry& entry) {
+    return entry.name == "free";
+  };
+  if (table->text("supports_of") == "free" &&
+      std::none_of(result.load_cases.begin(), result.load_cases.end(),
+                   is_free)) {
+    analysis.supports_of = AnalysisEntry::kFree;
+  } else {
+    analysis.supports_of =
+        index_of_load_case(context, *table, result, "supports_of");
+  }
   if (result.load_cases.empty() && context.problems.empty()) {
     context.problems.add(table->line(),
                          "analysis needs a load case: its supports and loads");

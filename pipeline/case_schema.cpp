@@ -232,7 +232,7 @@ std::vector<TableSpec> make_tables() {
          "how many natural frequencies, lowest first; none when left out"},
         {"supports_of", K::Name, D::None, false,
          "of frequencies: the load case whose supports and springs hold the "
-         "part; the first when left out"},
+         "part, or free: not held; the first load case when left out"},
         {"buckling", K::Integer, D::None, false,
          "how many buckling factors per load case, smallest first; 0: none; "
          "the first to three digits when left out"}}},

@@ -50,6 +50,24 @@ Modes or_failure(const Solve& solve) {
   return modes;
 }
 
+FrequencyFigures frequencies_of(const AnalysisEntry& analysis,
+                                const EvaluationFields& fields,
+                                const ElasticModel& model, Monitor* monitor) {
+  const ModeOptions options{.count = analysis.frequencies, .monitor = monitor};
+  const int held = analysis.supports_of;
+  if (held == AnalysisEntry::kFree) {
+    return {"free", or_failure<NaturalModes>([&] {
+              return natural_modes(fields.mesh, fields.inputs.materials,
+                                   LoadCase{.name = "free"}, options);
+            })};
+  }
+  const std::vector<LoadCase>& cases = fields.inputs.load_cases;
+  return {cases[static_cast<std::size_t>(held)].name,
+          or_failure<NaturalModes>([&] {
+            return natural_modes(model, fields.mesh, cases, held, options);
+          })};
+}
+
 std::string buckling_line(const BucklingFigures& b) {
   const BucklingModes& modes = b.modes;
   std::string text = fmt::format("  buckling of '{}': ", b.load_case);
@@ -84,14 +102,7 @@ EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
          })});
   }
   if (analysis.frequencies > 0) {
-    const int held = analysis.supports_of;
-    figures.frequencies = FrequencyFigures{
-        cases[static_cast<std::size_t>(held)].name,
-        or_failure<NaturalModes>([&] {
-          return natural_modes(
-              model, fields.mesh, cases, held,
-              {.count = analysis.frequencies, .monitor = monitor});
-        })};
+    figures.frequencies = frequencies_of(analysis, fields, model, monitor);
   }
   for (BucklingFigures& b : figures.buckling) {
     const bool stable =
@@ -120,6 +131,7 @@ void add_eigen_json(const EigenFigures& figures, Json& json) {
     const NaturalModes& modes = figures.frequencies->modes;
     json["natural_frequencies"] = {
         {"supports_of", figures.frequencies->load_case},
+        {"rigid_motions", modes.rigid_motions},
         {"values", modes.frequencies},
         {"residuals", modes.residuals}};
   }
@@ -135,10 +147,14 @@ std::string eigen_text(const EigenFigures& figures) {
     for (const double f : figures.frequencies->modes.frequencies) {
       values.push_back(fmt::format("{:.5g}", f));
     }
-    text += fmt::format(
-        "  natural frequencies, held as in '{}': {} Hz{}\n",
-        figures.frequencies->load_case, fmt::join(values, ", "),
-        figures.frequencies->modes.failure ? " (not converged)" : "");
+    const NaturalModes& modes = figures.frequencies->modes;
+    const std::string held =
+        modes.rigid_motions == 0
+            ? fmt::format("held as in '{}'", figures.frequencies->load_case)
+            : fmt::format("{} rigid motions left out", modes.rigid_motions);
+    text += fmt::format("  natural frequencies, {}: {} Hz{}\n", held,
+                        fmt::join(values, ", "),
+                        modes.failure ? " (not converged)" : "");
   }
   return text;
 }

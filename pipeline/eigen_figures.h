@@ -21,7 +21,7 @@ struct BucklingFigures {
 };
 
 struct FrequencyFigures {
-  std::string load_case;  // whose supports hold the part
+  std::string load_case;  // whose supports hold the part; or "free"
   NaturalModes modes;
 };
 

@@ -246,17 +246,19 @@ TEST(ModesOf, OneAndTwoThreadsGiveTheSameBits) {
       shapes::straight_quadratic(shapes::brick({3.0, 2.0, 1.5}, 14, 10, 9));
   const auto run = [&](int threads, const LoadCase& held) {
     omp_set_num_threads(threads);
-    return natural_modes(mesh, {parts::steel()}, held, {.count = 2});
+    return natural_modes(mesh, {parts::steel()}, held,
+                         {.count = 1, .tolerance = 1e-3});
   };
+  const int before = omp_get_max_threads();
   for (const LoadCase& held : {held_at_x0(), LoadCase{.name = "free"}}) {
     const NaturalModes one = run(1, held);
     const NaturalModes two = run(2, held);
-    ASSERT_FALSE(one.failure) << one.failure->message;
+    EXPECT_FALSE(one.failure);
     EXPECT_EQ(one.frequencies, two.frequencies);
     EXPECT_EQ(one.residuals, two.residuals);
     EXPECT_TRUE(one.shapes == two.shapes);
   }
-  omp_set_num_threads(1);
+  omp_set_num_threads(before);
 }
 
 }  // namespace

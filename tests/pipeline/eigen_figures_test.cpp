@@ -87,6 +87,17 @@ TEST(EigenFigures, TellFrequenciesFactorsAndTheirModes) {
                                      "buckling_push_1", "buckling_push_2"}));
 }
 
+TEST(EigenFigures, OfAFreePartCountItsRigidMotions) {
+  const EigenFigures figures = Bar(100.0).figures(
+      {.frequencies = 2, .supports_of = AnalysisEntry::kFree, .buckling = 0});
+  nlohmann::ordered_json json;
+  add_eigen_json(figures, json);
+  EXPECT_EQ(json["natural_frequencies"]["supports_of"], "free");
+  EXPECT_EQ(json["natural_frequencies"]["rigid_motions"], 6);
+  EXPECT_EQ(json["natural_frequencies"]["values"].size(), 2U);
+  EXPECT_THAT(eigen_text(figures), HasSubstr("6 rigid motions left out"));
+}
+
 TEST(EigenFigures, WarnOfAFactorBelowOne) {
   EXPECT_THAT(
       buckling_warnings(Bar(1e5).figures({})),
@@ -121,6 +132,9 @@ TEST(AnalysisTable, IsRead) {
   EXPECT_EQ(full.analysis.frequencies, 6);
   EXPECT_EQ(full.analysis.supports_of, 0);
   EXPECT_EQ(full.analysis.buckling, 3);
+  const Case loose =
+      strut_with("[analysis]\nfrequencies = 6\nsupports_of = \"free\"\n");
+  EXPECT_EQ(loose.analysis.supports_of, AnalysisEntry::kFree);
   EXPECT_EQ(full.hash, plain.hash) << "no evaluation depends on it";
 }
 
