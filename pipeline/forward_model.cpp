@@ -69,6 +69,8 @@ struct ForwardModel::Impl {
                     const TetMesh& mesh, const ElasticSolution& solution) const;
   bool place_nodes(const QuadraticSurface& surface, TetMesh& mesh,
                    Evaluation& result) const;
+  bool solve(const TetMesh& mesh, const EvaluatedCase& inputs,
+             ElasticSolution& solution, Evaluation& result) const;
 };
 
 bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
@@ -220,6 +222,23 @@ bool ForwardModel::Impl::place_nodes(const QuadraticSurface& surface,
   return !result.failure;
 }
 
+bool ForwardModel::Impl::solve(const TetMesh& mesh, const EvaluatedCase& inputs,
+                               ElasticSolution& solution,
+                               Evaluation& result) const {
+  const Timer timer;
+  try {
+    solution = elasticity->solve(mesh, inputs.load_cases);
+  } catch (const InvalidInput& error) {
+    // A load or support that this design's surface cannot take.
+    result.failure = Failure{FailureKind::SolverFailed, error.what()};
+    return false;
+  }
+  result.fea = solution.report;
+  result.seconds.fea = timer.seconds();
+  result.failure = solution.failure;
+  return !result.failure;
+}
+
 ForwardModel::ForwardModel(const Case& input,
                            const ForwardModelOptions& options)
     : impl_(std::make_unique<Impl>()) {
@@ -285,19 +304,8 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
     return result;
   }
 
-  Timer fea_timer;
   ElasticSolution solution;
-  try {
-    solution = impl_->elasticity->solve(mesh, inputs.load_cases);
-  } catch (const InvalidInput& error) {
-    // A load or support that this design's surface cannot take.
-    result.failure = Failure{FailureKind::SolverFailed, error.what()};
-    return result;
-  }
-  result.fea = solution.report;
-  result.seconds.fea = fea_timer.seconds();
-  if (solution.failure) {
-    result.failure = solution.failure;
+  if (!impl_->solve(mesh, inputs, solution, result)) {
     return result;
   }
   result.responses =
@@ -308,13 +316,13 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
     return result;
   }
   if (fields != nullptr) {
-    fields->film = impl_->film->fine_mesh(film_state.points);
-    fields->boundary = impl_->film->boundary(film_state.points);
-    fields->surface = surface;
-    fields->mesh = std::move(mesh);
-    fields->solution = std::move(solution);
-    fields->inputs = inputs;
-    fields->exclusion = impl_->exclusion;
+    *fields = {.film = impl_->film->fine_mesh(film_state.points),
+               .boundary = impl_->film->boundary(film_state.points),
+               .surface = surface,
+               .mesh = std::move(mesh),
+               .solution = std::move(solution),
+               .inputs = inputs,
+               .exclusion = impl_->exclusion};
   }
   return result;
 }

@@ -117,6 +117,14 @@ Json value_map(const std::vector<std::string>& names, const VectorX& values) {
   return map;
 }
 
+Json parameters_json(const Case& input, const VectorX& design) {
+  Json json = value_map(design_names(input), design);
+  for (const auto& [name, value] : parameter_values(input, design)) {
+    json[name] = value;
+  }
+  return json;
+}
+
 }  // namespace
 
 nlohmann::ordered_json film_json(const FilmReport& film) {
@@ -175,14 +183,9 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
   json["units"] = units_json(input.units);
   json["status"] = name_of(result.status);
   json["message"] = result.message;
-  Json parameters = Json::object();
   const Evaluation* best = result.best ? &*result.best : nullptr;
-  const VectorX design = best != nullptr ? best->design : initial_design(input);
-  parameters.update(value_map(design_names(input), design));
-  for (const auto& [name, value] : parameter_values(input, design)) {
-    parameters[name] = value;
-  }
-  json["parameters"] = parameters;
+  json["parameters"] = parameters_json(
+      input, best != nullptr ? best->design : initial_design(input));
   json["objective"] = result.objective;
   json["constraints"] = Json::object();
   for (const Constraint& c : result.constraints) {

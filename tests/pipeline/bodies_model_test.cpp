@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "case_text.h"
+#include "pipeline/adaptation.h"
 #include "pipeline/forward_model.h"
 
 namespace meniscus {
@@ -134,6 +135,37 @@ TEST(Voids, ShapeTheirFilmsAndAreNotMeshed) {
   list_edges(cut.fields.boundary.facets, edges, facet_edges);
   EXPECT_EQ(2 * edges.size(), 3 * cut.fields.boundary.facets.size());
   EXPECT_NEAR(enclosed_volume(cut.fields.boundary), 4.2e4, 1.0);
+}
+
+TEST(Voids, NamedFirstLeaveTheSamePart) {
+  // The plate's facets now run out of the void and are turned.
+  const std::string text = half_void();
+  const std::size_t foot = text.find("[bodies.foot]");
+  const std::size_t neck = text.find("[bodies.neck]");
+  const std::size_t after = text.find("[resolution]");
+  const std::string turned =
+      text.substr(0, foot) + text.substr(neck, after - neck) +
+      text.substr(foot, neck - foot) + text.substr(after);
+  const Cut one = evaluated(text);
+  const Cut other = evaluated(turned);
+  EXPECT_EQ(other.evaluation.film.bodies[0].name, "neck");
+  EXPECT_NEAR(enclosed_volume(other.fields.boundary), 4.2e4, 1.0);
+  constexpr double kOtherElements = 0.01;  // the start differs
+  EXPECT_NEAR(enclosed_volume(other.fields.surface.base) /
+                  enclosed_volume(one.fields.surface.base),
+              1.0, kOtherElements);
+  EXPECT_NEAR(other.evaluation.responses[2] / one.evaluation.responses[2], 1.0,
+              kOtherElements);
+}
+
+TEST(Voids, AreLeftOutOfAnAdaptedModelToo) {
+  const CaseReading reading =
+      read_case_text(half_void() + "[analysis]\nadapt = true\n", "case.toml");
+  ASSERT_TRUE(reading.input);
+  const ForwardModel model(*reading.input);
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  const Adaptation& round = *model.adaptation();
+  EXPECT_LT(round.after.errors.energy, round.before.errors.energy);
 }
 
 TEST(Voids, WithBothSolidTheBoundaryHasNoPlate) {

@@ -23,6 +23,7 @@ void validate(const json& schema, const json& value, const std::string& path,
     return (type == "object" && value.is_object()) ||
            (type == "array" && value.is_array()) ||
            (type == "string" && value.is_string()) ||
+           (type == "boolean" && value.is_boolean()) ||
            (type == "integer" && value.is_number_integer()) ||
            (type == "number" && value.is_number());
   };
@@ -98,6 +99,13 @@ TEST(JsonSchema, AcceptsTheCasesThatTheReaderAccepts) {
   EXPECT_THAT(against_schema(file_text(two_arm_path())), testing::IsEmpty());
   EXPECT_THAT(against_schema(new_case_text("x")), testing::IsEmpty());
   EXPECT_THAT(against_schema(strut()), testing::IsEmpty());
+  const std::string analysis =
+      "[analysis]\nadapt = true\nexclude = [\n"
+      "  { near = \"foot_pad\", distance = \"5 mm\" },\n"
+      "  { center = [0, 0, \"length\"], radius = 7 },\n"
+      "  { low = [-1, -2, -3], high = [1, 2, 3] }]\n";
+  EXPECT_THAT(problems_of(strut() + analysis), testing::IsEmpty());
+  EXPECT_THAT(against_schema(strut() + analysis), testing::IsEmpty());
   EXPECT_THAT(
       against_schema(tube("films = [\"skin\"]\nthickness = \"z + 1\"\n")),
       testing::IsEmpty());
@@ -113,6 +121,8 @@ TEST(JsonSchema, RefusesWhatTheReaderRefuses) {
               ElementsAre(".curves.base.center: size"));
   EXPECT_THAT(against_schema(changed(strut(), "radius = 20", "radius = true")),
               ElementsAre(".curves.head.radius: type"));
+  EXPECT_THAT(against_schema(strut() + "[analysis]\nadapt = 1\n"),
+              ElementsAre(".analysis.adapt: type"));
   EXPECT_THAT(against_schema(changed(strut(), "title = \"A strut\"", "")),
               ElementsAre(": needs title"));
   EXPECT_THAT(against_schema(changed(strut(), "[materials", "[material")),
