@@ -46,8 +46,11 @@ function(meniscus_add_test name)
   if(ARG_ALONE)
     set(alone RUN_SERIAL TRUE)
   endif()
+  if(ARG_LABELS)
+    set(labels LABELS "${ARG_LABELS}")
+  endif()
+  # Threads wait as in the program (core/thread_waits.h).
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" ${alone}
-      # As the program has it (core/thread_waits.h).
-      ENVIRONMENT OMP_WAIT_POLICY=passive)
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT OMP_WAIT_POLICY=passive
+      ${labels} ${alone})
 endfunction()

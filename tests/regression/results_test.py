@@ -121,7 +121,8 @@ class Results(ProgramTest):
                                parse_constant=no_number)
 
     def test_every_key_is_documented_and_every_documented_key_occurs(self):
-        _, result = self.run_case(CASE + ANALYSIS + STUDY)
+        free = 'frequencies = 1\nsupports_of = "free"\n'
+        _, result = self.run_case(CASE + ANALYSIS + free + STUDY)
         rows = documented()
         self.assertEqual(set(result), set(rows))
         for key, value in result.items():
