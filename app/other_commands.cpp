@@ -129,6 +129,13 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
   }
   if (result.failure) {
     std::fprintf(stderr, "failed: %s\n", result.failure->message.c_str());
+    const FailureKind kind = result.failure->kind;
+    if (!options.pop && (kind == FailureKind::FilmUnstable ||
+                         kind == FailureKind::FilmPinched)) {
+      std::fprintf(stderr,
+                   "--pop splits junctions and pinched necks and settles "
+                   "what is left\n");
+    }
     return kExitNoSolution;
   }
   return kExitDone;

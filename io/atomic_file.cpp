@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const char* advice_for(int error) {
+const char* advice_for(const std::string& doing, int error) {
   switch (error) {
     case ENOSPC:
     case EDQUOT:
@@ -33,7 +33,8 @@ const char* advice_for(int error) {
     case EROFS:
       return "that disk is read-only; choose another folder";
     case ENOENT:
-      return "make the folder first or check the name";
+      return doing == "read" ? "check the name"
+                             : "make the folder first or check the name";
     case ENOTDIR:
       return "a part of the path is a file, not a folder; check the name";
     case EISDIR:
@@ -126,7 +127,7 @@ class PendingFile {
 std::string describe_io_error(const std::string& doing, const fs::path& path,
                               int error) {
   return fmt::format("cannot {} '{}': {}; {}", doing, path.string(),
-                     std::strerror(error), advice_for(error));
+                     std::strerror(error), advice_for(doing, error));
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
