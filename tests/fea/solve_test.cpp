@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "fea/row_chunks.h"
 #include "tests/fea/parts.h"
 
 namespace meniscus {
@@ -113,6 +114,35 @@ TEST_P(Solve, SameBitsForThereAndBackAndForAnyThreadCount) {
   EXPECT_EQ(one.displacements[0], two.displacements[0]);
   EXPECT_EQ(one.displacements[1], two.displacements[1]);
   EXPECT_EQ(one.reactions[1], two.reactions[1]);
+}
+
+// Large enough that products, sweeps and coarse levels are shared by threads.
+TEST_P(Solve, SameBitsWhereThreadsShareTheWork) {
+  const TetMesh linear = shapes::brick({1.5, 1.0, 1.0}, 28, 20, 20);
+  const TetMesh base = GetParam() == 1
+                           ? linear
+                           : shapes::straight_quadratic(
+                                 shapes::brick({1.5, 1.0, 1.0}, 18, 13, 13));
+  ASSERT_GT(static_cast<int>(base.nodes.size()), kParallelRows);
+  const TetMesh moved = shapes::sheared(base, 0.05);
+  const auto run = [&](int threads) {
+    omp_set_num_threads(threads);
+    const ElasticModel model(base, {parts::steel()}, two_cases());
+    ElasticSolution solution = model.solve(moved);
+    EXPECT_FALSE(solution.failure);
+    StressField stress =
+        recover_stress(moved, {parts::steel()}, solution.displacements[0]);
+    return std::pair(std::move(solution), std::move(stress));
+  };
+  const int before = omp_get_max_threads();
+  const auto one = run(1);
+  const auto two = run(2);
+  omp_set_num_threads(before);
+  for (int c = 0; c < 2; ++c) {
+    EXPECT_EQ(one.first.displacements[c], two.first.displacements[c]);
+    EXPECT_EQ(one.first.reactions[c], two.first.reactions[c]);
+  }
+  EXPECT_EQ(one.second.von_mises, two.second.von_mises);
 }
 
 TEST_P(Solve, NextDesignEqualsAFreshModelOfIt) {
