@@ -80,6 +80,13 @@ class Runner {
                       fmt::format("the macro does not end within {} commands",
                                   options_.most_steps));
     }
+    work_ += static_cast<double>(session_.complex().mesh.facets.size());
+    if (work_ > options_.most_work) {
+      evaluator_.fail(
+          statement.place,
+          fmt::format("the commands take more than {:.2g} facets times steps",
+                      options_.most_work));
+    }
     if (options_.monitor != nullptr) {
       throw_if_stopped(*options_.monitor, "film");
     }
@@ -419,6 +426,7 @@ class Runner {
   const FeScriptOptions& options_;
   std::map<std::string, const std::vector<FeStatement>*> macros_;
   long steps_ = 0;
+  double work_ = 0.0;  // facets x steps
   int depth_ = 0;
 };
 

@@ -25,6 +25,7 @@ namespace meniscus {
 struct FeScriptOptions {
   std::optional<std::string> macro;  // none: the `read` section only
   long most_steps = 1'000'000;       // commands and loop rounds in all
+  double most_work = 1e10;           // facets x steps in all: about an hour
   Monitor* monitor = nullptr;
 };
 

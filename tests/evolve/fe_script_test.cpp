@@ -166,6 +166,10 @@ TEST(FeScript, EndlessMacrosAreStopped) {
   few.most_steps = 1000;
   EXPECT_THAT(message_of("gogo := { while 1 do nn := 1 }", few),
               HasSubstr("does not end within 1000 commands"));
+  FeScriptOptions little{.macro = "gogo"};
+  little.most_work = 1e5;
+  EXPECT_THAT(message_of("gogo := { r 3; { nn := 1 } 100000 }", little),
+              HasSubstr("more than 1e+05 facets times steps"));
   EXPECT_THAT(message_of("gogo := { gogo }"), HasSubstr("without end"));
   EXPECT_THAT(message_of("gogo := { r 40 }"), HasSubstr("facets"));
 }
