@@ -6,6 +6,7 @@ namespace meniscus {
 
 std::vector<int> regions_of(const std::vector<BodySpec>& bodies) {
   std::vector<int> regions;
+  regions.reserve(bodies.size());
   int count = 0;
   for (const BodySpec& body : bodies) {
     regions.push_back(body.is_void ? -1 : count++);

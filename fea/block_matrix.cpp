@@ -116,17 +116,15 @@ void multiply(const BlockPattern& pattern, const Real* diagonal,
   });
 }
 
-#define MENISCUS_MULTIPLY(K, Real)                                            \
-  template void multiply<3, K>(const BlockPattern&, const Real*, const Real*, \
-                               const Real*, Real*);
-MENISCUS_MULTIPLY(1, double)
-MENISCUS_MULTIPLY(2, double)
-MENISCUS_MULTIPLY(3, double)
-MENISCUS_MULTIPLY(4, double)
-MENISCUS_MULTIPLY(1, float)
-MENISCUS_MULTIPLY(2, float)
-MENISCUS_MULTIPLY(3, float)
-MENISCUS_MULTIPLY(4, float)
+#define MENISCUS_MULTIPLY(K)                                           \
+  template void multiply<3, K>(const BlockPattern&, const double*,     \
+                               const double*, const double*, double*); \
+  template void multiply<3, K>(const BlockPattern&, const float*,      \
+                               const float*, const float*, float*);
+MENISCUS_MULTIPLY(1)
+MENISCUS_MULTIPLY(2)
+MENISCUS_MULTIPLY(3)
+MENISCUS_MULTIPLY(4)
 #undef MENISCUS_MULTIPLY
 
 }  // namespace meniscus
