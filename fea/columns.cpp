@@ -1,6 +1,7 @@
 #include "fea/columns.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "fea/block_kernels.h"
 #include "fea/conjugate_gradients.h"
@@ -129,21 +130,21 @@ void ColumnProducts::by_fours(const ColumnsIn& x, ColumnsOut y,
 
 void ColumnProducts::apply(const BlockMatrix<double>& A, const ColumnsIn& x,
                            ColumnsOut y) {
-  by_fours(x, y, [&](const auto& from, auto& to, int K) {
+  by_fours(x, std::move(y), [&](const auto& from, auto& to, int K) {
     multiply_any(pattern_, A, from.data(), to.data(), K);
   });
 }
 
 void ColumnProducts::apply(const NodalMatrix& A, const ColumnsIn& x,
                            ColumnsOut y) {
-  by_fours(x, y, [&](const auto& from, auto& to, int K) {
+  by_fours(x, std::move(y), [&](const auto& from, auto& to, int K) {
     multiply_any(pattern_, A, from.data(), to.data(), K);
   });
 }
 
 void ColumnProducts::apply(const Preconditioner& A, const ColumnsIn& x,
                            ColumnsOut y) {
-  by_fours(x, y,
+  by_fours(x, std::move(y),
            [&](const auto& from, auto& to, int K) { A.apply(from, to, K); });
 }
 
