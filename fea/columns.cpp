@@ -1,7 +1,6 @@
 #include "fea/columns.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "fea/block_kernels.h"
 #include "fea/conjugate_gradients.h"
@@ -115,7 +114,7 @@ void project(const NodeFreedom& freedom, ColumnsOut v) {
 
 /// product(padded x, padded y, K) for the columns, up to four at a time.
 template <class Product>
-void ColumnProducts::by_fours(const ColumnsIn& x, ColumnsOut y,
+void ColumnProducts::by_fours(const ColumnsIn& x, ColumnsOut& y,
                               const Product& product) {
   for (Eigen::Index first = 0; first < x.cols(); first += kMostColumns) {
     const Eigen::Index K =
@@ -130,21 +129,21 @@ void ColumnProducts::by_fours(const ColumnsIn& x, ColumnsOut y,
 
 void ColumnProducts::apply(const BlockMatrix<double>& A, const ColumnsIn& x,
                            ColumnsOut y) {
-  by_fours(x, std::move(y), [&](const auto& from, auto& to, int K) {
+  by_fours(x, y, [&](const auto& from, auto& to, int K) {
     multiply_any(pattern_, A, from.data(), to.data(), K);
   });
 }
 
 void ColumnProducts::apply(const NodalMatrix& A, const ColumnsIn& x,
                            ColumnsOut y) {
-  by_fours(x, std::move(y), [&](const auto& from, auto& to, int K) {
+  by_fours(x, y, [&](const auto& from, auto& to, int K) {
     multiply_any(pattern_, A, from.data(), to.data(), K);
   });
 }
 
 void ColumnProducts::apply(const Preconditioner& A, const ColumnsIn& x,
                            ColumnsOut y) {
-  by_fours(x, std::move(y),
+  by_fours(x, y,
            [&](const auto& from, auto& to, int K) { A.apply(from, to, K); });
 }
 

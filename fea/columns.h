@@ -39,7 +39,7 @@ class ColumnProducts {
 
  private:
   template <class Product>
-  void by_fours(const ColumnsIn& x, ColumnsOut y, const Product& product);
+  void by_fours(const ColumnsIn& x, ColumnsOut& y, const Product& product);
 
   const BlockPattern& pattern_;
   const NodeFreedom& freedom_;

@@ -23,6 +23,7 @@ constexpr double kRigid = 1e-7;
 std::vector<double> densities(const TetMesh& mesh,
                               const std::vector<Material>& materials) {
   std::vector<double> density;
+  density.reserve(materials.size());
   for (const Material& material : materials) {
     density.push_back(material.density);
   }
