@@ -188,7 +188,7 @@ bool SymmetricFactor::factorize(const SparseMatrix& lower) {
   if (factor.xtype == CHOLMOD_PATTERN) {  // not factorised before
     require_memory(expected_bytes(factor, common),
                    fmt::format("a sparse factor of {} unknowns", lower.cols()),
-                   "fewer unknowns (longer edges) need less");
+                   "fewer unknowns need less");
   }
   impl_->failed_column = -1;
   impl_->negative_pivots = 0;

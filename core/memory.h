@@ -18,7 +18,8 @@ void keep_freed_memory();
 double available_memory();
 
 /// Throws SolverError when `bytes` are more than available_memory(): "`what`
-/// needs about 5.2 GB of memory, 3.1 GB are free; `advice`". Linux hands out
+/// needs about 5.2 GB of memory, 3.1 GB are free; `advice`". Up to 30 MB are
+/// not looked at. Linux hands out
 /// more than it has and kills who then uses it: nothing else would be said.
 void require_memory(double bytes, const std::string& what,
                     const std::string& advice);

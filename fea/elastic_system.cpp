@@ -15,8 +15,6 @@ namespace meniscus {
 
 namespace {
 
-/// Below this many free unknowns a direct factor is as quick as multigrid.
-constexpr int kDirectUnknowns = 1000;
 /// Up to this many a factor in double precision (a minute, 2 GB) is tried where
 /// multigrid is not positive definite.
 constexpr int kSecondChance = 200000;
@@ -118,7 +116,7 @@ void ElasticSystem::build_preconditioners(
     const BlockMatrix<double>& matrix) {
   multigrid_ = options_.solver == SolverKind::Multigrid ||
                (options_.solver == SolverKind::Automatic &&
-                free_unknowns(groups_.front().holding) > kDirectUnknowns);
+                free_unknowns(groups_.front().holding) > kFactorUnknowns);
   if (multigrid_) {
     return build_multigrid(base, load_cases, matrix);
   }
@@ -174,7 +172,8 @@ void ElasticSystem::build_multigrid(const TetMesh& base,
     if (!springs.at.empty() && ten_nodes) {
       sprung_corner =
           sprung_matrix(shared_->corner_pattern, coarse,
-                        corner_springs(base, load_cases[group.cases.front()]));
+                        corner_springs(base, load_cases[group.cases.front()],
+                                       order_, shared_->map));
       corner = &sprung_corner;
       group.corner_smoother =
           std::make_unique<SmootherMatrix>(make_smoother_matrix(sprung_corner));
@@ -195,15 +194,6 @@ void ElasticSystem::build_multigrid(const TetMesh& base,
     }
     group.preconditioner = make_multigrid(input);
   }
-}
-
-SpringBlocks ElasticSystem::corner_springs(const TetMesh& base,
-                                           const LoadCase& load_case) const {
-  std::vector<int> corner_of(base.nodes.size(), -1);  // the mesh's node
-  for (std::size_t c = 0; c < shared_->map.corner.size(); ++c) {
-    corner_of[order_.to_mesh[shared_->map.corner[c]]] = static_cast<int>(c);
-  }
-  return renumbered(spring_blocks(base, load_case, 1), corner_of);
 }
 
 void ElasticSystem::check_same(const TetMesh& mesh,

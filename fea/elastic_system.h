@@ -70,8 +70,6 @@ class ElasticSystem {
   void build_multigrid(const TetMesh& base,
                        const std::vector<LoadCase>& load_cases,
                        const BlockMatrix<double>& matrix);
-  SpringBlocks corner_springs(const TetMesh& base,
-                              const LoadCase& load_case) const;
   CornerMesh build_corners(const TetMesh& base, BlockMatrix<double>& matrix);
   void build_preconditioners(const TetMesh& base,
                              const std::vector<LoadCase>& load_cases,

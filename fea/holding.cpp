@@ -79,6 +79,15 @@ int free_unknowns(const Holding& holding) {
   return static_cast<int>(std::lround(free));
 }
 
+SpringBlocks corner_springs(const TetMesh& mesh, const LoadCase& load_case,
+                            const NodeOrder& order, const CornerMap& map) {
+  std::vector<int> corner_of(mesh.nodes.size(), -1);  // the mesh's node
+  for (std::size_t c = 0; c < map.corner.size(); ++c) {
+    corner_of[order.to_mesh[map.corner[c]]] = static_cast<int>(c);
+  }
+  return renumbered(spring_blocks(mesh, load_case, 1), corner_of);
+}
+
 BlockMatrix<double> sprung_matrix(const BlockPattern& pattern,
                                   const BlockMatrix<double>& matrix,
                                   const SpringBlocks& springs) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/tet_mesh.h"
+#include "fea/corner_mesh.h"
 #include "fea/load_case.h"
 #include "fea/node_freedom.h"
 #include "fea/node_order.h"
@@ -32,6 +33,10 @@ Holding make_holding(const TetMesh& mesh, const LoadCase& load_case,
 bool alike(const Holding& a, const Holding& b);
 
 int free_unknowns(const Holding& holding);
+
+/// The springs of `load_case` on the corner mesh of `map`.
+SpringBlocks corner_springs(const TetMesh& mesh, const LoadCase& load_case,
+                            const NodeOrder& order, const CornerMap& map);
 
 /// The stiffness with springs.
 BlockMatrix<double> sprung_matrix(const BlockPattern& pattern,

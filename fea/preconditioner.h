@@ -21,6 +21,9 @@ class Preconditioner {
                      int K) const = 0;
 };
 
+/// Up to this many free unknowns a direct factor is as quick as multigrid.
+inline constexpr int kFactorUnknowns = 1000;
+
 /// The Cholesky factor of the matrix itself.
 std::unique_ptr<Preconditioner> make_direct(const BlockPattern& pattern,
                                             const BlockMatrix<double>& matrix,

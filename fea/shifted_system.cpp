@@ -15,8 +15,6 @@ namespace meniscus {
 
 namespace {
 
-/// Below this many free unknowns a direct factor is as quick as multigrid.
-constexpr int kDirectUnknowns = 4000;
 /// The shift in units of (speed of sound / size of the part)^2: of the order of
 /// the lowest frequencies of a part that is not slender.
 constexpr double kShift = 0.1;
@@ -107,7 +105,7 @@ void ShiftedSystem::assemble_shifted(const TetMesh& mesh,
 
 void ShiftedSystem::build_preconditioner(const TetMesh& mesh,
                                          const LoadCase& held) {
-  if (free_unknowns(holding_) <= kDirectUnknowns) {
+  if (free_unknowns(holding_) <= kFactorUnknowns) {
     preconditioner_ =
         make_direct(table_.pattern, operator_.K, holding_.freedom);
     operator_.preconditioner = preconditioner_.get();
@@ -128,12 +126,8 @@ void ShiftedSystem::build_preconditioner(const TetMesh& mesh,
     }
     add_scaled(shift_, mass_matrix(corners_.table, corners_.x, density_),
                coarse);
-    std::vector<int> corner_of(mesh.nodes.size(), -1);  // the mesh's node
-    for (std::size_t c = 0; c < corners_.map.corner.size(); ++c) {
-      corner_of[order_.to_mesh[corners_.map.corner[c]]] = static_cast<int>(c);
-    }
     add_springs(corners_.table.pattern,
-                renumbered(spring_blocks(mesh, held, 1), corner_of), coarse);
+                corner_springs(mesh, held, order_, corners_.map), coarse);
     corner_smoother_ = make_smoother_matrix(coarse);
     input.fine_pattern = &table_.pattern;
     input.fine_matrix = &operator_.K;

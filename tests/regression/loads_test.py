@@ -3,7 +3,7 @@
 result.json, against what statics says of any shape."""
 import unittest
 
-from program import ProgramTest
+from program import ProgramTest, strut
 
 CASE = """title = "A strut on springs"
 units = "mm-N-MPa"
@@ -11,36 +11,7 @@ units = "mm-N-MPa"
 [parameters]
 length = 60.0
 k = 2e4
-
-[curves.base]
-kind = "circle"
-center = [0, 0, 0]
-normal = [0, 0, -1]
-radius = 24
-
-[curves.head]
-kind = "circle"
-center = [0, 0, "length"]
-normal = [0, 0, 1]
-radius = 20
-
-[films.skin]
-kind = "branch"
-curves = ["base", "head"]
-
-[solids.foot]
-kind = "cap"
-curve = "base"
-
-[solids.top]
-kind = "cap"
-curve = "head"
-
-[bodies.part]
-enclosed_by = ["skin", "foot", "top"]
-volume = 9e4
-material = "aluminium"
-
+""" + strut(24, '"length"', "foot") + """
 [resolution]
 fea = 10.0
 film = 5.0

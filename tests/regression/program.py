@@ -17,6 +17,40 @@ CASE = ROOT / "cases" / "two_arm" / "case.toml"
 COARSE = ["--set", "resolution.fea=20", "--set", "resolution.film=10"]
 
 
+def strut(radius, length, foot):
+    """Curves, film, caps and body of a strut; `foot` names the cap below."""
+    return f"""
+[curves.base]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = {radius}
+
+[curves.head]
+kind = "circle"
+center = [0, 0, {length}]
+normal = [0, 0, 1]
+radius = 20
+
+[films.skin]
+kind = "branch"
+curves = ["base", "head"]
+
+[solids.{foot}]
+kind = "cap"
+curve = "base"
+
+[solids.top]
+kind = "cap"
+curve = "head"
+
+[bodies.part]
+enclosed_by = ["skin", "{foot}", "top"]
+volume = 9e4
+material = "aluminium"
+"""
+
+
 class ProgramTest(unittest.TestCase):
     """Each test gets an empty folder."""
 

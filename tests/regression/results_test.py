@@ -6,7 +6,7 @@ import re
 import unittest
 
 import program
-from program import ProgramTest
+from program import ProgramTest, strut
 
 CASE = """title = "A strut"
 units = "mm-N-MPa"
@@ -17,36 +17,7 @@ load = 1000.0
 [design.foot]
 initial = 25.0
 bounds = [20.0, 32.0]
-
-[curves.base]
-kind = "circle"
-center = [0, 0, 0]
-normal = [0, 0, -1]
-radius = "foot"
-
-[curves.head]
-kind = "circle"
-center = [0, 0, 60]
-normal = [0, 0, 1]
-radius = 20
-
-[films.skin]
-kind = "branch"
-curves = ["base", "head"]
-
-[solids.sole]
-kind = "cap"
-curve = "base"
-
-[solids.top]
-kind = "cap"
-curve = "head"
-
-[bodies.part]
-enclosed_by = ["skin", "sole", "top"]
-volume = 9e4
-material = "aluminium"
-
+""" + strut('"foot"', 60, "sole") + """
 [resolution]
 fea = 12.0
 
