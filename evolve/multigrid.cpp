@@ -69,7 +69,7 @@ struct FilmMultigrid::Level {
   VectorX metric;
   // Work vectors of the cycle.
   mutable std::vector<float> x;
-  mutable std::vector<float> b;
+  mutable std::vector<float> right;
 
   explicit Level(const FilmEnergy& energy);
   void take(const SparseMatrix& lower, double shift, std::vector<double>* full);
@@ -119,7 +119,7 @@ FilmMultigrid::Level::Level(const FilmEnergy& energy) {
     }
   }
   x.resize(n);
-  b.resize(n);
+  right.resize(n);
 }
 
 void FilmMultigrid::Level::take(const SparseMatrix& lower, double shift,
@@ -151,7 +151,7 @@ void FilmMultigrid::Level::take(const SparseMatrix& lower, double shift,
 void FilmMultigrid::Level::sweep_down(bool from_zero) const {
   const int n = static_cast<int>(x.size());
   for (int i = 0; i < n; ++i) {
-    float sum = b[i];
+    float sum = right[i];
     for (int k = start[i]; k < start[i + 1]; ++k) {
       if (from_zero && column[k] > i) {
         break;
@@ -164,7 +164,7 @@ void FilmMultigrid::Level::sweep_down(bool from_zero) const {
 
 void FilmMultigrid::Level::sweep_up() const {
   for (int i = static_cast<int>(x.size()) - 1; i >= 0; --i) {
-    float sum = b[i];
+    float sum = right[i];
     for (int k = start[i]; k < start[i + 1]; ++k) {
       sum -= value[k] * x[column[k]];
     }
@@ -373,7 +373,7 @@ void FilmMultigrid::cycle(std::size_t l) const {
   if (l == 0) {
     VectorX right(n);
     for (int i = 0; i < n; ++i) {
-      right[i] = level.b[i];
+      right[i] = level.right[i];
     }
     const VectorX found = coarsest_->solve(right);
     for (int i = 0; i < n; ++i) {
@@ -383,7 +383,7 @@ void FilmMultigrid::cycle(std::size_t l) const {
   }
   const Level& below = *levels_[l - 1];
   level.sweep_down(true);
-  std::fill(below.b.begin(), below.b.end(), 0.0F);
+  std::fill(below.right.begin(), below.right.end(), 0.0F);
   for (int i = 0; i < n; ++i) {
     // After a sweep down the residual is only what lies above the diagonal.
     float r = 0.0F;
@@ -392,7 +392,7 @@ void FilmMultigrid::cycle(std::size_t l) const {
       r -= level.value[k] * level.x[level.column[k]];
     }
     for (int k = level.p_start[i]; k < level.p_start[i + 1]; ++k) {
-      below.b[level.p_column[k]] += level.p_value[k] * r;
+      below.right[level.p_column[k]] += level.p_value[k] * r;
     }
   }
   cycle(l - 1);
@@ -415,7 +415,7 @@ VectorX FilmMultigrid::precondition(const VectorX& right) const {
     return VectorX::Zero(n);
   }
   for (int i = 0; i < n; ++i) {
-    level.b[i] = static_cast<float>(right[i] / size);
+    level.right[i] = static_cast<float>(right[i] / size);
   }
   cycle(levels_.size() - 1);
   VectorX result(n);
