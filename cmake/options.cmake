@@ -10,7 +10,7 @@ target_compile_options(meniscus_options INTERFACE
 # in std::string where there are none: screens of it in a first build.
 target_compile_options(meniscus_options INTERFACE
   $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds
-  -Wno-stringop-overflow>>)
+  -Wno-restrict -Wno-stringop-overflow>>)
 # -fPIC everywhere: one precompiled header serves libraries and programs.
 target_compile_options(meniscus_options INTERFACE
   -march=${MENISCUS_MARCH} -fPIC)
