@@ -50,16 +50,16 @@ std::vector<double> inverse_blocks(const BlockMatrix<double>& matrix,
 
 std::vector<double> inverse_blocks(const BlockMatrix<double>& matrix,
                                    int nodes) {
-  using Mat6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  using RowMat6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
   std::vector<double> inverse(36L * nodes);
 #pragma omp parallel for schedule(static) if (nodes >= kParallelRows)
   for (int i = 0; i < nodes; ++i) {
-    Mat6 D = Eigen::Map<const Mat6>(matrix.diagonal.data() + 36L * i);
-    Mat6 none = Mat6::Zero();
+    RowMat6 D = Eigen::Map<const RowMat6>(matrix.diagonal.data() + 36L * i);
+    RowMat6 none = RowMat6::Zero();
     for (int k = 0; k < 6; ++k) {
       none(k, k) = D(k, k) > 0.0 ? 0.0 : 1.0;
     }
-    Eigen::Map<Mat6>(inverse.data() + 36L * i) = (D + none).inverse() - none;
+    Eigen::Map<RowMat6>(inverse.data() + 36L * i) = (D + none).inverse() - none;
   }
   return inverse;
 }

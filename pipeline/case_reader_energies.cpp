@@ -90,7 +90,9 @@ void require_frozen_field(CaseContext& context, const FieldEntry& field) {
 
 void read_fields(CaseContext& context, const toml::table& root, Case& result) {
   for (const CaseTable& table : named_tables(context, root, "fields")) {
-    FieldEntry field{.name = table.name(), .line = table.line()};
+    FieldEntry field;
+    field.name = table.name();
+    field.line = table.line();
     const auto kind = table.choice("kind");
     if (!kind) {
       continue;

@@ -85,8 +85,8 @@ TEST(Chunks, NoNodeNeighboursTwoOfOneColour) {
 
 /// Padded single-precision vectors of one column.
 struct Sweeps {
-  explicit Sweeps(const Ordered& part)
-      : part(part), smoother(make_smoother_matrix(part.matrix)) {
+  explicit Sweeps(const Ordered& ordered)
+      : part(ordered), smoother(make_smoother_matrix(ordered.matrix)) {
     for (int i = 0; i < part.table.pattern.nodes; ++i) {
       const Eigen::Matrix3d D =
           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(

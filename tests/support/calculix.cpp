@@ -1,6 +1,7 @@
 #include "tests/support/calculix.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -16,14 +17,15 @@ bool have_calculix() { return find_program("ccx").has_value(); }
 namespace {
 
 /// What ccx wrote into its .dat file.
-std::string run_for_dat(const std::string& deck) {
+std::string run_for_dat(const std::string& deck,
+                        const CalculixOptions& calculix = {}) {
   const TempFolder folder;
   std::ofstream(folder / "job.inp") << deck;
   ChildOptions options;
   options.argv = {"ccx", "-i", "job"};
   options.folder = folder.path();
-  options.environment = {{"OMP_NUM_THREADS", "1"}};
-  options.time_limit = 300.0;
+  options.environment = {{"OMP_NUM_THREADS", std::to_string(calculix.threads)}};
+  options.time_limit = calculix.time_limit;
   const ChildResult result = run_child(options);
   std::ifstream file(folder / "job.dat");
   std::stringstream text;
@@ -40,9 +42,9 @@ std::string run_for_dat(const std::string& deck) {
 
 }  // namespace
 
-std::vector<CalculixStep> run_calculix(const std::string& deck,
-                                       int node_count) {
-  return read_calculix_dat(run_for_dat(deck), node_count);
+std::vector<CalculixStep> run_calculix(const std::string& deck, int node_count,
+                                       const CalculixOptions& options) {
+  return read_calculix_dat(run_for_dat(deck, options), node_count);
 }
 
 std::vector<double> run_calculix_eigenvalues(std::string deck,
@@ -124,6 +126,26 @@ std::vector<CalculixStep> read_calculix_dat(const std::string& text,
     }
   }
   return steps;
+}
+
+double relative_difference(const VectorX& ours, const VectorX& theirs) {
+  if (ours.size() != theirs.size()) {
+    return HUGE_VAL;
+  }
+  return (ours - theirs).lpNorm<Eigen::Infinity>() /
+         theirs.lpNorm<Eigen::Infinity>();
+}
+
+double relative_difference(const std::vector<std::array<double, 6>>& ours,
+                           const std::vector<std::array<double, 6>>& theirs) {
+  const auto flat = [](const std::vector<std::array<double, 6>>& rows) {
+    return Eigen::Map<const VectorX>(
+        rows.front().data(), static_cast<Eigen::Index>(6 * rows.size()));
+  };
+  if (ours.size() != theirs.size() || ours.empty()) {
+    return HUGE_VAL;
+  }
+  return relative_difference(VectorX(flat(ours)), VectorX(flat(theirs)));
 }
 
 }  // namespace meniscus

@@ -19,9 +19,15 @@ struct CalculixStep {
 
 bool have_calculix();
 
-/// Runs `ccx` (one thread) in a fresh folder. Throws std::runtime_error with
-/// the end of its output when it fails.
-std::vector<CalculixStep> run_calculix(const std::string& deck, int node_count);
+struct CalculixOptions {
+  double time_limit = 300.0;  // [s]
+  int threads = 1;
+};
+
+/// Runs `ccx` in a fresh folder. Throws std::runtime_error with the end of its
+/// output when it fails.
+std::vector<CalculixStep> run_calculix(const std::string& deck, int node_count,
+                                       const CalculixOptions& options = {});
 
 /// The same for a deck of one static step, with its procedure exchanged for
 /// "*FREQUENCY\n6" or "*BUCKLE\n2": omega^2 [1/time^2], or buckling factors.
@@ -32,5 +38,11 @@ std::vector<double> run_calculix_eigenvalues(std::string deck,
 /// forces per step.
 std::vector<CalculixStep> read_calculix_dat(const std::string& text,
                                             int node_count);
+
+/// Largest difference of a component over the largest component of `theirs`;
+/// infinite when the sizes differ.
+double relative_difference(const VectorX& ours, const VectorX& theirs);
+double relative_difference(const std::vector<std::array<double, 6>>& ours,
+                           const std::vector<std::array<double, 6>>& theirs);
 
 }  // namespace meniscus

@@ -1,6 +1,5 @@
 #include "tests/support/elastic_race.h"
 
-#include <chrono>
 #include <cmath>
 #include <omp.h>
 #include <sstream>
@@ -10,8 +9,11 @@
 #include <sys/resource.h>
 
 #include "core/memory.h"
+#include "core/timer.h"
+#include "fea/point_stress.h"
 #include "io/calculix_inp.h"
 #include "mesh_tet/tetrahedralize.h"
+#include "tests/support/calculix.h"
 #include "tests/support/mapped_shapes.h"
 #include "tests/support/measured_child.h"
 #include "tests/support/shapes.h"
@@ -83,10 +85,18 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-double wall_seconds() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+/// Of the design at `mesh`, whose displacement is `u`.
+double recovery_seconds(const TetMesh& mesh, const ElasticPart& part,
+                        const VectorX& u) {
+  const Timer timer;
+  recover_stress(mesh, part.materials, u);
+  return timer.seconds();
+}
+
+void require(const ElasticSolution& solution) {
+  if (solution.failure) {
+    throw std::runtime_error(solution.failure->message);
+  }
 }
 
 std::string solve(ElasticPart (*make)(double), double scale, int threads,
@@ -98,27 +108,35 @@ std::string solve(ElasticPart (*make)(double), double scale, int threads,
   const ElasticModel model(part.mesh, part.materials, {part.load_case},
                            {.solver = solver});
   const ElasticSolution& base = model.base_solution();
-  if (base.failure) {
-    throw std::runtime_error(base.failure->message);
-  }
-  const double before = wall_seconds();
-  const StressField stress =
-      recover_stress(part.mesh, part.materials, base.displacements[0]);
-  const double stress_seconds = wall_seconds() - before;
+  require(base);
+  const double stress =
+      recovery_seconds(part.mesh, part, base.displacements[0]);
   const double first = cpu_seconds();
-  const double wall = wall_seconds();
   const ElasticSolution next = model.solve(part.moved);
-  recover_stress(part.moved, part.materials, next.displacements[0]);
-  const double next_seconds = cpu_seconds() - first;
-  const double next_wall = wall_seconds() - wall;
-  if (next.failure) {
-    throw std::runtime_error(next.failure->message);
-  }
-  return fmt::format("{} {} {} {} {} {} {} {} {} {}", part.mesh.element_count(),
-                     base.report.dofs, base.report.iterations,
-                     base.report.setup_seconds, base.report.solve_seconds,
-                     stress_seconds, first - start, next_seconds, next_wall,
-                     base.displacements[0].lpNorm<Eigen::Infinity>());
+  require(next);
+  const double next_stress =
+      recovery_seconds(part.moved, part, next.displacements[0]);
+  const double end = cpu_seconds();
+  return fmt::format(
+      "{} {} {} {} {} {} {} {} {} {} {}", part.mesh.element_count(),
+      base.report.dofs, base.report.iterations, base.report.setup_seconds,
+      base.report.solve_seconds, stress, next.report.setup_seconds,
+      next.report.solve_seconds, next_stress, first - start, end - first);
+}
+
+CalculixDeck deck_of(const ElasticPart& part) {
+  CalculixDeck deck;
+  deck.materials = {{.name = "aluminium",
+                     .youngs_modulus = part.materials[0].youngs_modulus,
+                     .poisson_ratio = part.materials[0].poisson_ratio}};
+  DeckStep step{.name = "service"};
+  step.supports = {{.surface = part.load_case.supports[0].surface,
+                    .fix_x = true,
+                    .fix_y = true,
+                    .fix_z = true}};
+  step.nodal_forces = nodal_forces(part.mesh, part.load_case, part.materials);
+  deck.steps = {step};
+  return deck;
 }
 
 }  // namespace
@@ -146,11 +164,10 @@ ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads,
   run.message = child.output;
   if (child.succeeded) {
     std::istringstream text(child.output);
-    run.solved = static_cast<bool>(text >> run.elements >> run.dofs >>
-                                   run.iterations >> run.setup_seconds >>
-                                   run.solve_seconds >> run.stress_seconds >>
-                                   run.user_seconds >> run.next_seconds >>
-                                   run.next_wall_seconds >> run.largest);
+    run.solved = static_cast<bool>(
+        text >> run.elements >> run.dofs >> run.iterations >> run.first.setup >>
+        run.first.solve >> run.first.stress >> run.next.setup >>
+        run.next.solve >> run.next.stress >> run.first_cpu >> run.next_cpu);
   }
   return run;
 }
@@ -158,26 +175,16 @@ ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads,
 CalculixTime time_calculix(ElasticPart (*make)(double), double scale,
                            const std::string& solver, double time_limit) {
   const TempFolder folder;
-  const MeasuredChild deck = measure_forked([&] {
+  const MeasuredChild written = measure_forked([&] {
     const ElasticPart part = make(scale);
-    CalculixDeck deck;
-    deck.materials = {{.name = "aluminium",
-                       .youngs_modulus = part.materials[0].youngs_modulus,
-                       .poisson_ratio = part.materials[0].poisson_ratio}};
-    DeckStep step{.name = "service"};
-    step.supports = {{.surface = part.load_case.supports[0].surface,
-                      .fix_x = true,
-                      .fix_y = true,
-                      .fix_z = true}};
-    step.nodal_forces = nodal_forces(part.mesh, part.load_case, part.materials);
-    deck.steps = {step};
+    CalculixDeck deck = deck_of(part);
     deck.solver = solver;
     deck.output = DeckOutput::Nothing;
     write_calculix_inp(folder / "job.inp", part.mesh, deck);
     return std::string();
   });
   CalculixTime time;
-  if (!deck.succeeded) {
+  if (!written.succeeded) {
     return time;
   }
   const MeasuredChild child =
@@ -189,6 +196,23 @@ CalculixTime time_calculix(ElasticPart (*make)(double), double scale,
   time.wall_seconds = child.wall_seconds;
   time.peak_bytes = child.peak_bytes;
   return time;
+}
+
+CalculixAgreement compare_with_calculix(ElasticPart (*make)(double),
+                                        double scale, double time_limit) {
+  const ElasticPart part = make(scale);
+  CalculixDeck deck = deck_of(part);
+  deck.output = DeckOutput::Print;
+  const std::vector<CalculixStep> theirs = run_calculix(
+      calculix_deck(part.mesh, deck), static_cast<int>(part.mesh.nodes.size()),
+      {.time_limit = time_limit, .threads = omp_get_max_threads()});
+  const ElasticModel model(part.mesh, part.materials, {part.load_case});
+  require(model.base_solution());
+  const VectorX& u = model.base_solution().displacements[0];
+  return {.displacement = relative_difference(u, theirs.at(0).displacement),
+          .stress = relative_difference(
+              point_stress(part.mesh, part.materials, u).stress,
+              theirs.at(0).stress)};
 }
 
 }  // namespace meniscus

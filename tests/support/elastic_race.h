@@ -41,6 +41,16 @@ const std::vector<ElasticWork>& elastic_works();
 /// A block of about 480,000 ten-node elements.
 ElasticPart large_block(double scale);
 
+/// Wall-clock seconds.
+struct ElasticStages {
+  double setup = 0.0;  // order, pattern, assembly, levels; of a next design:
+                       // its assembly
+  double solve = 0.0;
+  double stress = 0.0;
+
+  double all() const { return setup + solve + stress; }
+};
+
 /// What our solver took, in a child process of its own.
 struct ElasticRun {
   bool solved = false;
@@ -48,14 +58,11 @@ struct ElasticRun {
   int elements = 0;
   int dofs = 0;
   int iterations = 0;
-  double setup_seconds = 0.0;   // wall clock: order, pattern, assembly, levels
-  double solve_seconds = 0.0;   // wall clock
-  double stress_seconds = 0.0;  // wall clock
-  double user_seconds = 0.0;    // CPU, user and system, of all of it
-  double next_seconds = 0.0;    // CPU of the next design, stresses included
-  double next_wall_seconds = 0.0;
+  ElasticStages first;
+  ElasticStages next;
+  double first_cpu = 0.0;   // user and system, of all of it [s]
+  double next_cpu = 0.0;    // the same of the next design
   double peak_bytes = 0.0;  // of the whole process, both meshes included
-  double largest = 0.0;     // displacement [length]
 };
 ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads,
                        SolverKind solver = SolverKind::Automatic);
@@ -70,5 +77,15 @@ struct CalculixTime {
 /// `solver` as CalculixDeck has it. Nothing is printed.
 CalculixTime time_calculix(ElasticPart (*make)(double), double scale,
                            const std::string& solver, double time_limit);
+
+/// Largest difference over the largest of CalculiX's (SPOOLES, all threads):
+/// nodal displacements, stresses at integration points. Throws
+/// std::runtime_error when either program fails.
+struct CalculixAgreement {
+  double displacement = 0.0;
+  double stress = 0.0;
+};
+CalculixAgreement compare_with_calculix(ElasticPart (*make)(double),
+                                        double scale, double time_limit);
 
 }  // namespace meniscus

@@ -231,7 +231,7 @@ TEST(Cantilever, BendingFrequenciesAreTimoshenkos) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({length, 1.0, 1.3}, 18, 3, 3));
   const NaturalModes modes =
-      natural_modes(mesh, {m}, parts::pulled({}), {.count = 4});
+      natural_modes(mesh, {m}, parts::pulled(Vec3::Zero()), {.count = 4});
   ASSERT_EQ(modes.frequencies.size(), 4U);
   // Bending across the thin and the thick side in turn, first and second.
   const std::array<double, 4> inertia = {1.0 / 12.0, 1.69 / 12.0, 1.0 / 12.0,
