@@ -42,7 +42,7 @@ Curve curve_of(const Case& input, const CurveEntry& entry,
                const CaseValues& values) {
   const std::size_t before = values.problems().size();
   Curve curve{entry.name, shape_of(entry, values)};
-  if (values.problems().size() == before) {
+  if (!values.are_rates() && values.problems().size() == before) {
     try {
       validate(curve);
     } catch (const InvalidInput& error) {
@@ -121,6 +121,7 @@ void add_field(const Case& input, const FieldEntry& field,
     return;
   }
   const std::size_t before = values.problems().size();
+  const bool checked = !values.are_rates();
   FieldSpec spec{.name = field.name, .shape = pole_of(field, values)};
   spec.strength = values.at(field.strength);
   spec.power = values.positive(field.power);
@@ -133,7 +134,8 @@ void add_field(const Case& input, const FieldEntry& field,
   for (const FilmSpec& film : system.films) {
     const bool acts = std::find(field.films.begin(), field.films.end(),
                                 film.name) != field.films.end();
-    if (acts && !film.tension_field && spec.strength >= film.tension) {
+    if (checked && acts && !film.tension_field &&
+        spec.strength >= film.tension) {
       values.problems().push_back(fmt::format(
           "{}: {} is {:g}, and film '{}' has a tension of {:g}; it would "
           "crumple on the pole: expected less, a larger core reaches as far",
@@ -141,7 +143,7 @@ void add_field(const Case& input, const FieldEntry& field,
           film.name, film.tension));
     }
   }
-  if (values.problems().size() == before) {
+  if (checked && values.problems().size() == before) {
     try {
       field_expression(spec);
     } catch (const InvalidInput& error) {
@@ -220,7 +222,7 @@ Vec3 direction_of(const Case& input, const ResponseEntry& response,
                   const CaseValues& values) {
   const std::size_t before = values.problems().size();
   Vec3 direction = values.at(response.direction);
-  if (response.kind == ResponseKind::MeanDisplacement &&
+  if (!values.are_rates() && response.kind == ResponseKind::MeanDisplacement &&
       values.problems().size() == before && !(direction.norm() > 0.0)) {
     values.problems().push_back(
         fmt::format("{}: responses.{}.direction has length 0{}; expected any "
@@ -229,6 +231,29 @@ Vec3 direction_of(const Case& input, const ResponseEntry& response,
                     values.where(response.direction)));
   }
   return direction;
+}
+
+/// Values, or rates.
+EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
+  EvaluatedCase result;
+  result.film_system = films_of(input, values);
+  for (const WallEntry& wall : input.walls) {
+    result.walls.push_back(
+        {wall.name, wall.films, values.of_place(wall.thickness), wall.side});
+  }
+  for (const BodyEntry& body : solid_bodies(input)) {
+    result.materials.push_back(material_of(
+        input, input.materials[static_cast<std::size_t>(body.material)],
+        values));
+  }
+  for (const LoadCaseEntry& entry : input.load_cases) {
+    result.load_cases.push_back(load_case_of(entry, values));
+  }
+  for (const ResponseEntry& response : input.responses) {
+    result.response_directions.push_back(direction_of(input, response, values));
+  }
+  result.fea_edge = input.resolution.fea;
+  return result;
 }
 
 void throw_first(const std::vector<std::string>& problems) {
@@ -253,27 +278,10 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
                        std::vector<std::string>& problems) {
   const std::size_t before = problems.size();
   const CaseValues values(input, design, problems);
-  EvaluatedCase result;
   if (problems.size() > before) {
-    return result;  // what follows from a bad parameter is no news
+    return {};  // what follows from a bad parameter is no news
   }
-  result.film_system = films_of(input, values);
-  for (const WallEntry& wall : input.walls) {
-    result.walls.push_back(
-        {wall.name, wall.films, values.of_place(wall.thickness), wall.side});
-  }
-  for (const BodyEntry& body : solid_bodies(input)) {
-    result.materials.push_back(material_of(
-        input, input.materials[static_cast<std::size_t>(body.material)],
-        values));
-  }
-  for (const LoadCaseEntry& entry : input.load_cases) {
-    result.load_cases.push_back(load_case_of(entry, values));
-  }
-  for (const ResponseEntry& response : input.responses) {
-    result.response_directions.push_back(direction_of(input, response, values));
-  }
-  result.fea_edge = input.resolution.fea;
+  EvaluatedCase result = numbers_of(input, values);
   if (problems.size() == before) {
     check_places(input, result, values);
   }
@@ -283,6 +291,14 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
 EvaluatedCase evaluate(const Case& input, const VectorX& design) {
   std::vector<std::string> problems;
   EvaluatedCase result = evaluate(input, design, problems);
+  throw_first(problems);
+  return result;
+}
+
+EvaluatedCase rates(const Case& input, const VectorX& design, int variable) {
+  std::vector<std::string> problems;
+  const CaseValues values(input, design, problems, variable);
+  EvaluatedCase result = numbers_of(input, values);
   throw_first(problems);
   return result;
 }

@@ -1,7 +1,6 @@
 #include "pipeline/case_loads.h"
 
 #include <algorithm>
-#include <span>
 
 #include <fmt/format.h>
 
@@ -11,16 +10,6 @@ namespace meniscus {
 
 namespace {
 
-double value_at(const Expression& expression, const Vec3& x) {
-  return expression.evaluate(std::span<const double>(x.data(), 3));
-}
-
-NumberOfPlace field_of(const PlaceQuantity& place, const CaseValues& values) {
-  return [expression = values.of_place(place)](const Vec3& x) {
-    return value_at(expression, x);
-  };
-}
-
 SurfaceTraction traction_of(const LoadEntry& load, const CaseValues& values) {
   SurfaceTraction result{.surface = load.surface};
   const auto& t = load.traction;
@@ -29,11 +18,10 @@ SurfaceTraction traction_of(const LoadEntry& load, const CaseValues& values) {
                        values.at(t[2].quantity)};
     return result;
   }
-  const std::array<Expression, 3> components = {
-      values.of_place(t[0]), values.of_place(t[1]), values.of_place(t[2])};
+  const std::array<NumberOfPlace, 3> components = {
+      values.field(t[0]), values.field(t[1]), values.field(t[2])};
   result.field = [components](const Vec3& x) {
-    return Vec3(value_at(components[0], x), value_at(components[1], x),
-                value_at(components[2], x));
+    return Vec3(components[0](x), components[1](x), components[2](x));
   };
   return result;
 }
@@ -52,7 +40,7 @@ void add_load(const LoadEntry& load, const CaseValues& values,
     case LoadKind::Pressure: {
       SurfacePressure pressure{.surface = load.surface};
       if (load.place.of_place) {
-        pressure.field = field_of(load.place, values);
+        pressure.field = values.field(load.place);
       } else {
         pressure.pressure = values.at(load.place.quantity);
       }
@@ -72,7 +60,7 @@ void add_load(const LoadEntry& load, const CaseValues& values,
     case LoadKind::Temperature: {
       Temperature temperature{.reference = values.at(load.number)};
       if (load.place.of_place) {
-        temperature.field = field_of(load.place, values);
+        temperature.field = values.field(load.place);
       } else {
         temperature.value = values.at(load.place.quantity);
       }
@@ -100,7 +88,7 @@ Material material_of(const Case& input, const MaterialEntry& entry,
   if (entry.yield_strength) {
     material.yield_strength = values.positive(*entry.yield_strength);
   }
-  if (entry.orthotropic) {
+  if (entry.orthotropic && !values.are_rates()) {
     try {
       check_material(material);
     } catch (const InvalidInput& error) {

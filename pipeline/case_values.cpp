@@ -65,6 +65,10 @@ std::string with_values(const std::string& text,
   return result;
 }
 
+double rate_of(const Dual& value) {
+  return value.is_constant() ? 0.0 : value.gradient[0];
+}
+
 }  // namespace
 
 CaseValues::CaseValues(const Case& input, const VectorX& design,
@@ -89,9 +93,30 @@ CaseValues::CaseValues(const Case& input, const VectorX& design,
   }
 }
 
+CaseValues::CaseValues(const Case& input, const VectorX& design,
+                       std::vector<std::string>& problems, int rate_by)
+    : CaseValues(input, design, problems) {
+  std::vector<Dual> duals(values_.begin(), values_.end());
+  duals[static_cast<std::size_t>(rate_by)] =
+      Dual::variable(design[rate_by], 0, 1);
+  for (const int k : input.parameter_order) {
+    const auto i = static_cast<std::size_t>(k);
+    duals[input.design.size() + i] =
+        input.parameters[i].value.expression.evaluate(duals);
+  }
+  duals_ = std::move(duals);
+}
+
+double CaseValues::evaluate(const Quantity& quantity) const {
+  if (!are_rates()) {
+    return quantity.expression.evaluate(values_);
+  }
+  return rate_of(quantity.expression.evaluate(duals_));
+}
+
 double CaseValues::at(const Quantity& quantity) const {
   try {
-    return quantity.expression.evaluate(values_);
+    return evaluate(quantity);
   } catch (const ExpressionError& error) {
     problems_.push_back(fmt::format("{}: {}: {}{}",
                                     place(input_, quantity.line), quantity.key,
@@ -114,6 +139,21 @@ Expression CaseValues::of_place(const PlaceQuantity& place_quantity) const {
                                     quantity.key, error.what()));
     return Expression();
   }
+}
+
+std::function<double(const Vec3&)> CaseValues::field(
+    const PlaceQuantity& place_quantity) const {
+  if (!are_rates()) {
+    return [expression = of_place(place_quantity)](const Vec3& x) {
+      return expression.evaluate(std::span<const double>(x.data(), 3));
+    };
+  }
+  return [expression = place_quantity.quantity.expression,
+          names = duals_](const Vec3& x) {
+    std::vector<Dual> values = names;
+    values.insert(values.end(), x.begin(), x.end());
+    return rate_of(expression.evaluate(values));
+  };
 }
 
 void CaseValues::tell_bad(const Quantity& quantity, double value,

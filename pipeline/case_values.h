@@ -1,20 +1,31 @@
 /// The numbers behind a case's names at one design.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "core/dual.h"
 #include "pipeline/case.h"
 
 namespace meniscus {
 
 /// All names' values at one design: design variables, then parameters. What
 /// has no good value is told in `problems` and counts as 0.
+///
+/// Made for a rate, at() gives a number's derivative by one design variable
+/// instead: whatever copies numbers into structs then fills them with rates,
+/// unchecked.
 class CaseValues {
  public:
   /// Throws InvalidInput for a design of the wrong size. Keeps references.
   CaseValues(const Case& input, const VectorX& design,
              std::vector<std::string>& problems);
+  /// Rates by design variable `rate_by`.
+  CaseValues(const Case& input, const VectorX& design,
+             std::vector<std::string>& problems, int rate_by);
+
+  bool are_rates() const { return !duals_.empty(); }
 
   double at(const Quantity& quantity) const;
   Vec3 at(const QuantityVector& vector) const {
@@ -27,7 +38,7 @@ class CaseValues {
             const char* must_be) const {
     const std::size_t before = problems_.size();
     const double value = at(quantity);
-    if (problems_.size() == before && !good(value)) {
+    if (!are_rates() && problems_.size() == before && !good(value)) {
       tell_bad(quantity, value, must_be);
     }
     return value;
@@ -37,8 +48,13 @@ class CaseValues {
         quantity, [](double x) { return x > 0.0; }, "above 0");
   }
 
-  /// Over x, y, z alone: the values stand in its text, to the last bit.
+  /// Over x, y, z alone: the values stand in its text, to the last bit. No
+  /// rates: those that films are frozen with do not change.
   Expression of_place(const PlaceQuantity& quantity) const;
+
+  /// The number at a place, or its rate there. Throws ExpressionError where it
+  /// has none.
+  std::function<double(const Vec3&)> field(const PlaceQuantity& quantity) const;
 
   /// " where support_x = 3, gap = 2"; nothing for plain numbers.
   template <class... Quantities>
@@ -51,6 +67,7 @@ class CaseValues {
   std::vector<std::string>& problems() const { return problems_; }
 
  private:
+  double evaluate(const Quantity& quantity) const;
   void tell_bad(const Quantity& quantity, double value,
                 const char* must_be) const;
   std::string where_text(const std::vector<char>& used) const;
@@ -66,6 +83,7 @@ class CaseValues {
   std::vector<std::string>& problems_;
   std::vector<std::string> names_;
   std::vector<double> values_;
+  std::vector<Dual> duals_;  // of one variable; for rates only
 };
 
 }  // namespace meniscus
