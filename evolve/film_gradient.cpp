@@ -2,11 +2,14 @@
 #include "evolve/film_gradient.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "evolve/film_adjoint.h"
+#include "evolve/film_margin.h"
 #include "evolve/film_model_impl.h"
+#include "evolve/film_radius.h"
 
 namespace meniscus {
 
@@ -47,8 +50,8 @@ void FilmModel::Impl::check_response(const FilmCovector& response) const {
              static_cast<std::size_t>(energy->unknowns()));
 }
 
-Points FilmModel::Impl::base_of(const FilmState& state,
-                                const FilmSystem& system) const {
+FilmModel::Impl::AtRest FilmModel::Impl::at_rest(
+    const FilmState& state, const FilmSystem& system) const {
   if (!carry || state.failure) {
     throw InvalidInput("a film that was not found has no gradient: " +
                        state.report.verdict);
@@ -58,9 +61,17 @@ Points FilmModel::Impl::base_of(const FilmState& state,
       state.report.bodies.size() != complex.bodies.size()) {
     throw InvalidInput("the film's state is not of this model");
   }
-  Points base = carry->at(carry->rim_moves(curves_of_system(system)), 1.0);
-  const Points there = energy->space().moved(
-      base, energy->space().directions(base), state.heights);
+  AtRest film;
+  film.targets = targets_of_system(system);
+  film.base = carry->at(carry->rim_moves(curves_of_system(system)), 1.0);
+  film.directions = energy->space().directions(film.base);
+  film.pressure.resize(energy->functionals());
+  for (int b = 0; b < energy->functionals(); ++b) {
+    film.pressure[b] =
+        state.report.bodies[static_cast<std::size_t>(b)].pressure;
+  }
+  const Points there =
+      energy->space().moved(film.base, film.directions, state.heights);
   const double off = (flat(there) - flat(state.points)).cwiseAbs().maxCoeff();
   if (!(off <= kSamePlace * bounding_diagonal(state.points))) {
     throw InvalidInput(fmt::format(
@@ -68,7 +79,7 @@ Points FilmModel::Impl::base_of(const FilmState& state,
         "from where its curves and heights put them",
         off));
   }
-  return base;
+  return film;
 }
 
 std::vector<RimGradient> FilmModel::Impl::rim_gradients(
@@ -91,19 +102,13 @@ std::vector<RimGradient> FilmModel::Impl::rim_gradients(
 std::vector<FilmGradient> FilmModel::transpose(
     const FilmState& state, const FilmSystem& system,
     const std::vector<FilmCovector>& responses) const {
-  const Points base = impl_->base_of(state, system);
+  const Impl::AtRest film = impl_->at_rest(state, system);
   for (const FilmCovector& response : responses) {
     impl_->check_response(response);
   }
-  const FilmTargets targets = impl_->targets_of_system(system);
-  const FilmEnergy& energy = *impl_->energy;
-  const Points directions = energy.space().directions(base);
-  VectorX pressure(energy.functionals());
-  for (int b = 0; b < energy.functionals(); ++b) {
-    pressure[b] = state.report.bodies[b].pressure;
-  }
-  const FilmAdjoint adjoint(energy, targets, base, directions, state.points,
-                            state.heights, pressure);
+  const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
+                            film.directions, state.points, state.heights,
+                            film.pressure);
   std::vector<FilmGradient> result;
   result.reserve(responses.size());
   for (const FilmCovector& response : responses) {
@@ -146,6 +151,20 @@ double FilmModel::rate(const FilmGradient& gradient, const FilmSystem& system,
     }
   }
   return sum;
+}
+
+FilmResponse FilmModel::margin(const FilmState& state, const FilmSystem& system,
+                               const MarginOptions& options) const {
+  const Impl::AtRest film = impl_->at_rest(state, system);
+  const SaddleSystem saddle(*impl_->energy, film.targets, state.points,
+                            film.directions, film.pressure);
+  return film_margin(*impl_->energy, film.targets, state.points,
+                     film.directions, film.pressure, saddle,
+                     std::abs(impl_->reference.report.min_eigenvalue), options);
+}
+
+FilmResponse FilmModel::smallest_radius(const Points& points, int power) const {
+  return film_radius(*impl_->energy, points, power);
 }
 
 VectorX FilmModel::areas(const Points& points) const {

@@ -38,4 +38,19 @@ struct FilmGradient {
   VectorX pressures;  // by the pressure asked for; 0 where a volume is
 };
 
+/// A response of the settled film with its derivatives, for transpose().
+struct FilmResponse {
+  double value = 0.0;
+  FilmCovector by;
+};
+
+/// Margin to collapse: a smooth bound from below of the film's lowest
+/// eigenvalue (Kreisselmeier, Steinhauser 1979),
+///   m = lambda_1 - log(sum_j exp(-s (lambda_j - lambda_1))) / s,
+/// over the lowest modes; s = sharpness / the reference's lowest eigenvalue.
+struct MarginOptions {
+  int modes = 4;            // > 0; more where many fall together
+  double sharpness = 20.0;  // > 0; more: nearer to lambda_1, less smooth
+};
+
 }  // namespace meniscus

@@ -98,6 +98,16 @@ class FilmModel {
   /// Area per label of fine_mesh(); 0 for caps [length^2].
   VectorX areas(const Points& points) const;
 
+  /// Margin to collapse of a state of settle(system) [force/length^3], with
+  /// its derivatives for transpose(). Throws as that does, and InvalidInput for
+  /// options out of range.
+  FilmResponse margin(const FilmState& state, const FilmSystem& system,
+                      const MarginOptions& options = {}) const;
+
+  /// Smallest radius of curvature of the films (evolve/film_radius.h) [length],
+  /// with its derivatives.
+  FilmResponse smallest_radius(const Points& points, int power = 16) const;
+
   /// All facets at the film's own resolution (caps included), for files and
   /// pictures.
   SurfaceMesh fine_mesh(const Points& points) const;

@@ -24,6 +24,14 @@ struct FilmModel::Impl {
   std::vector<int> regions;  // per body, -1: void
   SurfaceNodes nodes;        // the meshed level's, facets split
 
+  /// What a film rests on, beside its points and heights.
+  struct AtRest {
+    FilmTargets targets;
+    Points base;        // X
+    Points directions;  // n(X)
+    VectorX pressure;   // one per functional
+  };
+
   FilmTargets targets_of_system(const FilmSystem& system) const;
   void check_fields(const FilmSystem& system) const;
   std::vector<Curve> curves_of_system(const FilmSystem& system) const;
@@ -32,8 +40,8 @@ struct FilmModel::Impl {
                       const SettleOptions& settle);
   EdgeMiddles middles() const;
   std::vector<char> straight() const;
-  /// X of a state that settle() gave for `system`. Throws InvalidInput.
-  Points base_of(const FilmState& state, const FilmSystem& system) const;
+  /// A state that settle() gave for `system`. Throws InvalidInput for others.
+  AtRest at_rest(const FilmState& state, const FilmSystem& system) const;
   void check_response(const FilmCovector& response) const;
   std::vector<RimGradient> rim_gradients(const Points& by_base) const;
   FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,

@@ -135,6 +135,47 @@ TEST(FilmAdjoint, CarryIsTransposed) {
               kRounding * flat(by).norm() * flat(moves).norm());
 }
 
+/// With a field, whose third derivatives are differences themselves.
+TEST(FilmAdjoint, ThirdDerivativesAreDifferencesOfProducts) {
+  Film film;
+  FilmQuantity flux{"flux", FilmQuantity::Role::Energy,
+                    FilmQuantity::Kind::VectorIntegral};
+  for (int k = 0; k < 3; ++k) {
+    flux.field[k] = Expression::parse("sin(x*y)+z^3", {"x", "y", "z"});
+  }
+  for (const bool with_field : {false, true}) {
+    if (with_field) {
+      film.complex.quantities = {flux};
+    }
+    const FilmEnergy energy(film.complex);
+    const VectorX pressure = VectorX::Constant(energy.functionals(), 0.7);
+    const FilmProducts products(energy, film.targets, pressure);
+    const Points d = waves(film.x.size(), 2);
+    const Points to = waves(film.x.size(), 8);
+    const auto bend = [&](double step) {
+      const Points x = shifted(film.x, to, step);
+      return flat(products.hessian_times(x, d)).dot(flat(d));
+    };
+    const double difference = (bend(kStep) - bend(-kStep)) / (2.0 * kStep);
+    const Points third = products.third_times(film.x, d);
+    EXPECT_NEAR(flat(third).dot(flat(to)), difference,
+                kDifference * flat(third).norm() * flat(to).norm());
+    const auto rate = [&](double step) {
+      return products.area_rates(shifted(film.x, d, step), d);
+    };
+    const VectorX curve = (rate(kStep) - rate(-kStep)) / (2.0 * kStep);
+    EXPECT_LT((products.area_curvatures(film.x, d) - curve).norm(),
+              kDifference * curve.norm());
+    const VectorX weight = VectorX::LinSpaced(energy.unknowns(), 0.0, 1.0);
+    const double grown =
+        weight.dot(energy.lumped_area(shifted(film.x, d, kStep)) -
+                   energy.lumped_area(shifted(film.x, d, -kStep))) /
+        (2.0 * kStep);
+    EXPECT_NEAR(flat(products.metric_gradient(film.x, weight)).dot(flat(d)),
+                grown, kDifference * weight.norm());
+  }
+}
+
 /// At rest from `base`, along its own normals.
 FilmState rest(const Film& film, const Points& base) {
   FilmState state =

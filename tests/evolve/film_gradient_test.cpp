@@ -16,9 +16,9 @@ namespace {
 
 using Design = std::function<FilmSystem(double)>;
 
-/// A tenth of what check-gradient asks for, 1e-5: films are converged to
-/// rounding, so differences lose about half of their figures.
-constexpr double kAgree = 1e-7;
+/// Films are converged to rounding, so differences lose about half of their
+/// figures; 6e-9 is the worst found.
+constexpr double kAgree = 3e-8;
 constexpr double kRounding = 1e-13;
 
 /// Weights of any kind, fixed.
@@ -96,31 +96,44 @@ FilmSystem rates_of(const Design& design) {
   return rates;
 }
 
+/// A response, with its derivatives by the film.
+using Response =
+    std::function<FilmResponse(const FilmState&, const FilmSystem&)>;
+
 /// At variable `at`, away from the frozen design. Differences of step `step`
-/// agree, and halving it leaves a quarter of what is not linear.
+/// and below agree, and halving it leaves a quarter of what is not linear.
 void expect_exact(const FilmModel& model, const Design& design, double at,
-                  double step) {
+                  double step, const Response& response) {
   ASSERT_FALSE(model.reference().failure) << model.reference().report.verdict;
-  const FilmCovector by = covector(model);
   const auto film = [&](double p) {
     FilmState state = model.settle(design(p));
     EXPECT_FALSE(state.failure) << state.report.verdict;
     return state;
   };
   const FilmState here = film(at);
+  const FilmCovector by = response(here, design(at)).by;
   const FilmGradient gradient = model.transpose(here, design(at), {by}).front();
   const double slope = model.rate(gradient, design(at), rates_of(design));
-  const auto j = [&](double p) { return value(model, by, film(p)); };
+  const auto j = [&](double p) { return response(film(p), design(p)).value; };
   double closest = 1e300;
   for (const double s : {step, 0.1 * step, 0.01 * step}) {
     const double difference = (j(at + s) - j(at - s)) / (2.0 * s);
     closest = std::min(closest, std::abs(difference - slope));
   }
   EXPECT_LT(closest, kAgree * std::abs(slope)) << "slope " << slope;
-  const double now = value(model, by, here);
+  const double now = j(at);
   const double first = j(at + 4.0 * step) - now - 4.0 * step * slope;
   const double second = j(at + 2.0 * step) - now - 2.0 * step * slope;
   EXPECT_NEAR(std::log2(std::abs(first / second)), 2.0, 0.1);
+}
+
+void expect_exact(const FilmModel& model, const Design& design, double at,
+                  double step) {
+  const FilmCovector by = covector(model);
+  expect_exact(model, design, at, step,
+               [&](const FilmState& film, const FilmSystem& /*system*/) {
+                 return FilmResponse{value(model, by, film), by};
+               });
 }
 
 FilmSystem moved_rings(double p) {
@@ -245,6 +258,66 @@ TEST(FilmGradient, OfTheEnergyIsPressureAndArea) {
   }
   EXPECT_LT((gradient.tensions - areas).cwiseAbs().maxCoeff(),
             kAtRest * areas.maxCoeff());
+}
+
+TEST(FilmMargin, BoundsTheLowestEigenvalueFromBelow) {
+  const FilmModel model = FilmModel::freeze(bracket(0), {.edge = 16.0});
+  const FilmState film = model.settle(bracket(0.4));
+  const double least = film.report.min_eigenvalue;
+  double before = -1e300;
+  for (const double sharpness : {5.0, 20.0, 1000.0}) {
+    const double margin =
+        model.margin(film, bracket(0.4), {.sharpness = sharpness}).value;
+    EXPECT_GT(margin, before);
+    // The report's eigenvalue is good to 1e-6 (Lanczos).
+    EXPECT_LT(margin, (1.0 + 1e-5) * least);
+    before = margin;
+  }
+  EXPECT_GT(before, 0.99 * least);
+  EXPECT_THROW(
+      static_cast<void>(model.margin(film, bracket(0.4), {.sharpness = 0.0})),
+      InvalidInput);
+  EXPECT_THROW(
+      static_cast<void>(model.margin(film, bracket(0.4), {.modes = 0})),
+      InvalidInput);
+}
+
+TEST(FilmMargin, HasAnExactGradient) {
+  const auto margin = [](const FilmModel& model) -> Response {
+    return [&model](const FilmState& film, const FilmSystem& system) {
+      return model.margin(film, system);
+    };
+  };
+  const FilmModel arms = FilmModel::freeze(bracket(0), {.edge = 16.0});
+  expect_exact(arms, bracket, 0.4, 4e-3, margin(arms));
+  const FilmModel tube = FilmModel::freeze(blown(0), {.edge = 0.3});
+  expect_exact(tube, blown, 0.2, 4e-3, margin(tube));
+  const FilmModel twin = FilmModel::freeze(chambers(0), {.edge = 0.4});
+  expect_exact(twin, chambers, 0.3, 4e-3, margin(twin));
+}
+
+// The catenoid's waist c = 0.848338 has k = 1 / c both ways.
+TEST(FilmRadius, OfACatenoidIsThatOfItsWaist) {
+  constexpr double kWaist = 0.848338;
+  const FilmModel model =
+      FilmModel::freeze(systems::catenoid(1.0), {.edge = 0.1});
+  const Points& film = model.reference().points;
+  // Both curvatures count, over a waist that is a part of the film.
+  EXPECT_NEAR(model.smallest_radius(film, 64).value, kWaist, 0.02 * kWaist);
+  EXPECT_NEAR(model.smallest_radius(film).value, kWaist, 0.06 * kWaist);
+  EXPECT_THROW(static_cast<void>(model.smallest_radius(film, 7)), InvalidInput);
+}
+
+TEST(FilmRadius, HasAnExactGradient) {
+  const auto radius = [](const FilmModel& model) -> Response {
+    return [&model](const FilmState& film, const FilmSystem& /*system*/) {
+      return model.smallest_radius(film.points);
+    };
+  };
+  const FilmModel arms = FilmModel::freeze(bracket(0), {.edge = 16.0});
+  expect_exact(arms, bracket, 0.4, 1e-2, radius(arms));
+  const FilmModel rings = FilmModel::freeze(moved_rings(0), {.edge = 0.25});
+  expect_exact(rings, moved_rings, 0.3, 1e-2, radius(rings));
 }
 
 TEST(FilmGradient, HasTheSameBitsInAnyCompany) {
