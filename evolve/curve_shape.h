@@ -79,6 +79,9 @@ inline Frame<double> frame_of(const Rectangle& r) {
   return frame_of<double>(r.normal, r.axis);
 }
 
+/// A curve as parts of equal share in t.
+int part_count(const CurveShape& shape);
+
 /// Where a parameter lies: part of equal share in t, and s from 0 to 1 there.
 struct Place {
   int part = 0;

@@ -12,6 +12,9 @@ namespace meniscus {
 
 namespace {
 
+/// Modes that count less are below the others' rounding.
+constexpr double kNoWeight = 1e-14;
+
 /// Derivatives of one eigenvalue,
 ///   d lambda = v' (dH - lambda dM) v - 2 kappa' dB' v,
 /// with H v = lambda M v + B kappa, v' M v = 1.
@@ -112,7 +115,7 @@ FilmResponse film_margin(const FilmEnergy& energy, const FilmTargets& targets,
       VectorX::Zero(static_cast<Eigen::Index>(targets.tension.size()));
   const EigenvalueSlope slope(energy, targets, points, directions, pressure,
                               saddle);
-  for (Eigen::Index j = 0; j < lambda.size(); ++j) {
+  for (Eigen::Index j = 0; j < lambda.size() && weight[j] > kNoWeight; ++j) {
     slope.add(lambda[j], lowest.modes.col(j), weight[j], result.by);
   }
   return result;

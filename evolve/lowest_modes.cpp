@@ -73,6 +73,7 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
   }
   Eigen::MatrixXd basis(n, most);
   Eigen::MatrixXd image(n, most);
+  Eigen::MatrixXd small(most, most);  // upper triangle
   Eigen::MatrixXd block = apply(start_block(n, width));
   Eigen::Index built = 0;
   for (;;) {
@@ -81,10 +82,11 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
     const Eigen::Index added = built - before;
     image.middleCols(before, added) = apply(basis.middleCols(before, added));
     block = image.middleCols(before, added);
-    const Eigen::MatrixXd small =
-        basis.leftCols(built).transpose() * image.leftCols(built);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(
-        0.5 * (small + small.transpose()));
+    small.topRows(built).middleCols(before, added) =
+        basis.leftCols(built).transpose() * block;
+    const Eigen::MatrixXd upper = small.topLeftCorner(built, built);
+    const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(full);
     const Eigen::Index found = std::min(wanted, built);
     const Eigen::MatrixXd y =
         ritz.eigenvectors().rightCols(found).rowwise().reverse();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -222,6 +223,44 @@ TEST(FilmAdjoint, OfFilmsThatMeetAlongAFreeLine) {
     EXPECT_NEAR(gradient.tensions[s], (up - down) / (2.0 * kStep),
                 kSettled * gradient.tensions.norm());
   }
+}
+
+// A round tube's modes come in pairs; the volume takes one more away.
+TEST(LowestModes, AreThoseOfTheDenseProblem) {
+  constexpr int kModes = 6;
+  FilmComplex complex =
+      shapes::tube(1.0, 1.0, 8, 6, [](double) { return 1.0; });
+  shapes::close_tube(complex, 8);
+  complex.bodies[0].volume = 3.0;
+  const FilmEnergy energy(complex);
+  const FilmTargets targets = targets_of(complex);
+  const Points& x = complex.mesh.points;
+  const SaddleSystem saddle(energy, targets, x, energy.space().directions(x),
+                            VectorX::Constant(1, 0.5));
+  ASSERT_TRUE(saddle.factored());
+  ASSERT_EQ(saddle.system().index(), 0);
+  const LowestModes found =
+      saddle.system().lowest_modes(saddle.metric(), kModes);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(saddle.constraints());
+  const Eigen::Index n = energy.unknowns();
+  const Eigen::MatrixXd q = qr.householderQ();
+  const Eigen::MatrixXd kernel = q.rightCols(n - 1);
+  const Eigen::MatrixXd lower = saddle.hessian();
+  const Eigen::MatrixXd hessian = lower.selfadjointView<Eigen::Lower>();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> dense(
+      kernel.transpose() * hessian * kernel,
+      kernel.transpose() * saddle.metric().asDiagonal() * kernel);
+  const VectorX expected = dense.eigenvalues().head(kModes);
+  ASSERT_EQ(found.eigenvalues.size(), kModes);
+  EXPECT_LT((found.eigenvalues - expected).norm(), kRounding * expected.norm());
+  const Eigen::MatrixXd mass =
+      found.modes.transpose() * saddle.metric().asDiagonal() * found.modes;
+  EXPECT_LT((mass - Eigen::MatrixXd::Identity(kModes, kModes)).norm(),
+            kRounding);
+  EXPECT_LT((saddle.constraints().transpose() * found.modes).norm(), kRounding);
+  // All there are, when more are asked for.
+  EXPECT_EQ(saddle.system().lowest_modes(saddle.metric(), 1000).modes.cols(),
+            n - 1);
 }
 
 }  // namespace
