@@ -190,6 +190,31 @@ QuadraticSurface SurfaceNodes::at(const Points& points) const {
   return result;
 }
 
+Points SurfaceNodes::transpose(const Points& by_corners,
+                               const Points& by_mid_sides,
+                               std::size_t points) const {
+  if (by_corners.size() != corner.size() || by_mid_sides.size() != mid.size()) {
+    throw MeshError(fmt::format(
+        "a surface of {} corners and {} mid-sides has a gradient by {} and {}",
+        corner.size(), mid.size(), by_corners.size(), by_mid_sides.size()));
+  }
+  Points result(points, Vec3::Zero());
+  for (std::size_t c = 0; c < corner.size(); ++c) {
+    result[static_cast<std::size_t>(corner[c])] += by_corners[c];
+  }
+  for (std::size_t e = 0; e < mid.size(); ++e) {
+    if (mid[e] >= 0) {
+      result[static_cast<std::size_t>(mid[e])] += by_mid_sides[e];
+      continue;
+    }
+    for (const int end : edges[e]) {
+      const int p = corner[static_cast<std::size_t>(end)];
+      result[static_cast<std::size_t>(p)] += 0.5 * by_mid_sides[e];
+    }
+  }
+  return result;
+}
+
 SurfaceNodes surface_nodes(SurfaceMesh mesh, std::vector<int> corner,
                            const EdgeMiddles& middles,
                            const std::vector<char>& straight) {

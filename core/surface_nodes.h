@@ -17,6 +17,11 @@ struct SurfaceNodes {
   std::vector<int> mid;  // per edge: its point, or -1: half way between corners
 
   QuadraticSurface at(const Points& points) const;
+
+  /// at() transposed: from a gradient by the surface's corners and mid-sides,
+  /// one each, that by all `points` points. Throws MeshError for other counts.
+  Points transpose(const Points& by_corners, const Points& by_mid_sides,
+                   std::size_t points) const;
 };
 
 /// A triangulation refined 1:4, once or again: the point between two others

@@ -80,6 +80,36 @@ void Carry::apply(const Extension& extension, const Points& moves,
   }
 }
 
+void Carry::add_transposed(const Extension& extension, const Points& by_points,
+                           Points& result) {
+  if (extension.vertices.empty()) {
+    return;
+  }
+  Eigen::MatrixXd right(static_cast<Eigen::Index>(extension.vertices.size()),
+                        3);
+  for (std::size_t i = 0; i < extension.vertices.size(); ++i) {
+    right.row(static_cast<Eigen::Index>(i)) =
+        by_points[extension.vertices[i]].transpose();
+  }
+  const Eigen::MatrixXd sum =
+      extension.outer.transpose() * extension.factor->solve(right);
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    result[v] += sum.row(static_cast<Eigen::Index>(v)).transpose();
+  }
+}
+
+Points Carry::transpose(const Points& by_points) const {
+  Points result = by_points;
+  add_transposed(films_, by_points, result);
+  add_transposed(caps_, by_points, result);
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    if (kinds_[v].kind != VertexKind::OnCurve) {
+      result[v].setZero();
+    }
+  }
+  return result;
+}
+
 Points Carry::at(const Points& rim_moves, double fraction) const {
   Points moves = rim_moves;
   for (Vec3& move : moves) {

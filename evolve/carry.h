@@ -28,6 +28,10 @@ class Carry {
   /// when all moves are zero.
   Points at(const Points& rim_moves, double fraction) const;
 
+  /// at() transposed at fraction 1: a gradient by the moves of the rim
+  /// vertices, zero at others, from one by all vertices.
+  Points transpose(const Points& by_points) const;
+
  private:
   struct Extension {
     std::vector<int> vertices;
@@ -38,6 +42,8 @@ class Carry {
                           const std::vector<int>& order);
   static void apply(const Extension& extension, const Points& moves,
                     Points& result);
+  static void add_transposed(const Extension& extension,
+                             const Points& by_points, Points& result);
 
   Points reference_;
   std::vector<ComplexVertex> kinds_;

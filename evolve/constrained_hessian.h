@@ -20,6 +20,11 @@ struct LowestMode {
   VectorX mode;             // largest entry 1
 };
 
+struct LowestModes {
+  VectorX eigenvalues;    // ascending
+  Eigen::MatrixXd modes;  // columns v with v' diag(metric) v = 1
+};
+
 class ConstrainedHessian {
  public:
   ConstrainedHessian(const SparseMatrix& pattern,
@@ -47,6 +52,12 @@ class ConstrainedHessian {
   /// Lowest eigenvalue of H x = lambda diag(metric) x on the constraint space
   /// by Lanczos on the inverse, fixed start vector, full orthogonalisation.
   LowestMode lowest_mode(const VectorX& metric) const;
+
+  /// The `count` lowest of a positive definite Hessian (index 0, not shifted)
+  /// to rounding, copies of equal ones included: Rayleigh and Ritz on the
+  /// block Krylov space of the inverse. Fewer where there are fewer. Throws
+  /// SolverError where they are not found.
+  LowestModes lowest_modes(const VectorX& metric, int count) const;
 
  private:
   VectorX constrained_inverse(const VectorX& right) const;

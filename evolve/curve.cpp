@@ -10,94 +10,34 @@
 
 #include "core/error.h"
 #include "core/surface_mesh.h"
+#include "evolve/curve_shape.h"
 
 namespace meniscus {
 
 namespace {
 
+using curve_shape::Frame;
+using curve_shape::part_count;
+using curve_shape::Place;
+
 constexpr double kPi = std::numbers::pi;
 
-struct Frame {
-  Vec3 u;
-  Vec3 v;
-};
-
-// `p` turned by the smallest rotation that takes unit vector a to unit b.
-Vec3 turned(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 axis = a.cross(b);
-  const double c = a.dot(b);
-  return c * p + axis.cross(p) + axis * (axis.dot(p) / (1.0 + c));
+template <class Shape>
+Vec3 point_on(const Shape& shape, Place at) {
+  const Frame<double> f = curve_shape::frame_of(shape);
+  const curve_shape::InPlane place = curve_shape::in_plane(shape, shape, at);
+  return shape.center + place.a * f.u + place.b * f.v;
 }
 
-// No frame is continuous on the whole sphere. This one is smooth but for one
-// normal, -(2, 3, 6)/7, which is far from the axes and the diagonals; normal
-// +z has u = +x.
-Frame frame_of(const Vec3& normal) {
-  const Vec3 n = normal.normalized();
-  const Vec3 pole = Vec3(2.0, 3.0, 6.0) / 7.0;
-  const Vec3 start = turned(Vec3::UnitX(), Vec3::UnitZ(), pole);
-  Vec3 u = Vec3::UnitX();
-  if (1.0 + pole.dot(n) > 1e-14) {
-    u = turned(start, pole, n);
-  }
-  u = (u - u.dot(n) * n).normalized();
-  return {u, n.cross(u)};
-}
-
-Frame frame_of(const Vec3& normal, const Vec3& axis) {
-  const Vec3 n = normal.normalized();
-  const Vec3 u = (axis - axis.dot(n) * n).normalized();
-  return {u, n.cross(u)};
-}
-
-// A curve as parts of equal share in t; within a part s runs from 0 to 1.
-int part_count(const CurveShape& shape) {
-  if (const auto* r = std::get_if<Rectangle>(&shape)) {
-    return r->corner_radius > 0.0 ? 8 : 4;
-  }
-  if (const auto* p = std::get_if<Polygon>(&shape)) {
-    return static_cast<int>(p->points.size());
-  }
-  return 1;
-}
-
-Vec3 point_on(const Circle& c, int /*part*/, double s) {
-  const Frame f = frame_of(c.normal);
-  const double a = 2.0 * kPi * s;
+Vec3 point_on(const Circle& c, Place at) {  // rounded in this order
+  const Frame<double> f = curve_shape::frame_of(c);
+  const double a = 2.0 * kPi * at.s;
   return c.center + c.radius * (std::cos(a) * f.u + std::sin(a) * f.v);
 }
 
-Vec3 point_on(const Ellipse& e, int /*part*/, double s) {
-  const Frame f = frame_of(e.normal, e.axis);
-  const double a = 2.0 * kPi * s;
-  return e.center + e.radius_1 * std::cos(a) * f.u +
-         e.radius_2 * std::sin(a) * f.v;
-}
-
-// Parts: right side, arc, top, arc, left, arc, bottom, arc; without corner
-// radius only the sides.
-Vec3 point_on(const Rectangle& r, int part, double s) {
-  const Frame f = frame_of(r.normal, r.axis);
-  const double x = 0.5 * r.width - r.corner_radius;
-  const double y = 0.5 * r.height - r.corner_radius;
-  const bool round = r.corner_radius > 0.0;
-  const int side = round ? part / 2 : part;
-  constexpr std::array<std::array<double, 2>, 5> kCorner = {
-      {{1, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
-  const auto& from = kCorner[side];
-  const auto& to = kCorner[side + 1];
-  const bool arc = round && part % 2 == 1;
-  const double a = 0.5 * kPi * (side + (arc ? s : 0.0));
-  const double w = arc ? 1.0 : s;
-  const double px = x * ((1.0 - w) * from[0] + w * to[0]);
-  const double py = y * ((1.0 - w) * from[1] + w * to[1]);
-  return r.center + (px + r.corner_radius * std::cos(a)) * f.u +
-         (py + r.corner_radius * std::sin(a)) * f.v;
-}
-
-Vec3 point_on(const Polygon& p, int part, double s) {
-  const std::size_t next = (part + 1) % p.points.size();
-  return (1.0 - s) * p.points[part] + s * p.points[next];
+Vec3 point_on(const Polygon& p, Place at) {
+  const std::size_t next = (at.part + 1) % p.points.size();
+  return (1.0 - at.s) * p.points[at.part] + at.s * p.points[next];
 }
 
 Dual dual_of(const Expression& expression, double t) {
@@ -349,11 +289,11 @@ CurveJet jet_at(const CurveShape& shape, double t) {
     return jet_of(*p, t);
   }
   if (const auto* c = std::get_if<Circle>(&shape)) {
-    const Frame f = frame_of(c->normal);
+    const Frame<double> f = curve_shape::frame_of(*c);
     return jet_of(c->center, c->radius * f.u, c->radius * f.v, t);
   }
   if (const auto* e = std::get_if<Ellipse>(&shape)) {
-    const Frame f = frame_of(e->normal, e->axis);
+    const Frame<double> f = curve_shape::frame_of(*e);
     return jet_of(e->center, e->radius_1 * f.u, e->radius_2 * f.v, t);
   }
   throw InvalidInput(
@@ -378,16 +318,13 @@ void validate(const Curve& curve) {
 }
 
 Vec3 point_at(const CurveShape& shape, double t) {
-  const int parts = part_count(shape);
-  const double along = (t - std::floor(t)) * parts;
-  const int part = std::min(static_cast<int>(along), parts - 1);
   return std::visit(
       [&](const auto& s) {
         if constexpr (std::is_same_v<std::decay_t<decltype(s)>,
                                      ParametricCurve>) {
           return point_on(s, t);
         } else {
-          return point_on(s, part, along - part);
+          return point_on(s, curve_shape::place_of(shape, t));
         }
       },
       shape);

@@ -68,6 +68,15 @@ void validate(const Curve& curve);
 /// at fixed t.
 Vec3 point_at(const CurveShape& shape, double t);
 
+/// Derivative of point_at at fixed t when the shape's numbers change at the
+/// numbers of `rate`, a shape of the same kind (not a valid one: its numbers
+/// are derivatives; a parametric curve's are expressions of t).
+Vec3 point_rate(const CurveShape& shape, const CurveShape& rate, double t);
+/// The same at many parameters, what they share computed once. Throws
+/// InvalidInput for another kind, or polygons with unequal points.
+Points point_rates(const CurveShape& shape, const CurveShape& rate,
+                   const std::vector<double>& t);
+
 /// Position and its first and second derivative by t.
 struct CurveJet {
   Vec3 point;

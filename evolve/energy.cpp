@@ -179,9 +179,33 @@ VectorX FilmEnergy::quantities(const Points& points) const {
 
 Points FilmEnergy::gradient(const Points& points,
                             const FilmTargets& targets) const {
+  VectorX weight(static_cast<Eigen::Index>(plain_.size()));
+  for (std::size_t s = 0; s < plain_.size(); ++s) {
+    weight[static_cast<Eigen::Index>(s)] =
+        plain_[s] != 0 ? targets.tension[s] : 0.0;
+  }
+  Points sum = area_gradient(points, weight);
+  add_term_gradients(points, -1, sum);
+  return sum;
+}
+
+VectorX FilmEnergy::areas(const Points& points) const {
+  VectorX sum = VectorX::Zero(static_cast<Eigen::Index>(liquid_.size()));
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (liquid_[label_[f]] != 0) {
+      const std::array<Vec3, 3> c = corners_of(points, facets_[f]);
+      sum[label_[f]] += 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
+    }
+  }
+  return sum;
+}
+
+Points FilmEnergy::area_gradient(const Points& points,
+                                 const VectorX& weight) const {
   Points sum(points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (plain_[label_[f]] == 0) {
+    const int label = label_[f];
+    if (liquid_[label] == 0 || weight[label] == 0.0) {
       continue;
     }
     const Triangle& t = facets_[f];
@@ -190,7 +214,7 @@ Points FilmEnergy::gradient(const Points& points,
     Vec3 n = ab.cross(ac);
     const double size = n.norm();
     if (size > 0.0) {
-      n *= 0.5 * targets.tension[label_[f]] / size;
+      n *= 0.5 * weight[label] / size;
     }
     // dA/dx_i = n x e_i / 2, e_i opposite: e_b = -ac, e_c = ab.
     const Vec3 at_b = ac.cross(n);
@@ -199,7 +223,6 @@ Points FilmEnergy::gradient(const Points& points,
     sum[t[2]] += at_c;
     sum[t[0]] -= at_b + at_c;
   }
-  add_term_gradients(points, -1, sum);
   return sum;
 }
 

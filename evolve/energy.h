@@ -11,18 +11,10 @@
 #include "core/linear_solve.h"
 #include "evolve/film_complex.h"
 #include "evolve/film_space.h"
+#include "evolve/film_targets.h"
 #include "evolve/film_terms.h"
 
 namespace meniscus {
-
-/// What is asked of the liquid: the numbers that change with the design.
-struct FilmTargets {
-  std::vector<double> tension;      // one per surface [force/length]; caps 0
-  std::vector<ComplexBody> bodies;  // volume or pressure asked; after them one
-                                    // per held quantity, its target as volume
-};
-
-FilmTargets targets_of(const FilmComplex& complex);
 
 class FilmEnergy {
  public:
@@ -61,6 +53,12 @@ class FilmEnergy {
   Points gradient(const Points& points, const FilmTargets& targets) const;
   /// dF/dx of one functional, one per vertex.
   Points functional_gradient(const Points& points, int functional) const;
+
+  /// Per surface its area, 0 of caps [length^2]; gradient of sum weight x area.
+  VectorX areas(const Points& points) const;
+  Points area_gradient(const Points& points, const VectorX& weight) const;
+  /// False: caps, and films whose tension is a field.
+  bool has_tension(int surface) const { return plain_[surface] != 0; }
 
   /// What of a gradient (one per vertex) runs along each unknown's direction.
   VectorX along(const Points& slope, const Points& directions) const;
@@ -104,7 +102,9 @@ class FilmEnergy {
                                 const VectorX& metric) const;
 
  private:
+  friend class FilmProducts;  // motions x derivatives
   Vec3 cone_origin(const Points& points) const;
+  std::vector<double> pressure_jumps(const VectorX& pressure) const;
   void add_term_gradients(const Points& points, int functional,
                           Points& sum) const;
   void find_floating(const FilmComplex& complex);

@@ -87,18 +87,24 @@ const std::vector<int>& FilmEnergy::order() const {
   return order_;
 }
 
+/// Per surface the pressure behind its facets less that in front of them.
+std::vector<double> FilmEnergy::pressure_jumps(const VectorX& pressure) const {
+  std::vector<double> jump(side_.size(), 0.0);
+  for (std::size_t s = 0; s < side_.size(); ++s) {
+    for (int b = 0; b < body_count_; ++b) {
+      jump[s] += cone_[b] != 0 ? side_[s][b] * pressure[b] : 0.0;
+    }
+  }
+  return jump;
+}
+
 void FilmEnergy::elements(const Points& points, const Points& directions,
                           const FilmTargets& targets, const VectorX& pressure,
                           const Points& gradient,
                           std::vector<double>& out) const {
   out.assign(element_start_.back(), 0.0);
   const Vec3 origin = cone_origin(points);
-  std::vector<double> p_of(side_.size(), 0.0);  // per surface
-  for (std::size_t s = 0; s < side_.size(); ++s) {
-    for (int b = 0; b < body_count_; ++b) {
-      p_of[s] += cone_[b] != 0 ? side_[s][b] * pressure[b] : 0.0;
-    }
-  }
+  const std::vector<double> p_of = pressure_jumps(pressure);
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const double t = plain_[label_[f]] != 0 ? targets.tension[label_[f]] : 0.0;
     const double p = p_of[label_[f]];

@@ -7,6 +7,7 @@
 
 #include "core/timer.h"
 #include "evolve/newton.h"
+#include "evolve/saddle_system.h"
 
 namespace meniscus {
 
@@ -148,30 +149,11 @@ LowestMode lowest_mode_of(const FilmEnergy& energy, const FilmTargets& targets,
   const Points own(points.begin(),
                    points.begin() + energy.space().vertex_count());
   const Points directions = energy.space().directions(own);
-  const VectorX metric = energy.lumped_area(own);
-  const Eigen::MatrixXd rigid = energy.rigid_motions(own, directions, metric);
-  std::vector<int> held;
-  for (int b = 0; b < energy.functionals(); ++b) {
-    if (targets.bodies[b].volume) {
-      held.push_back(b);
-    }
-  }
-  const auto count = static_cast<Eigen::Index>(held.size());
-  Eigen::MatrixXd constraints(energy.unknowns(), count + rigid.cols());
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const Points slope = energy.functional_gradient(own, held[k]);
-    for (int i = 0; i < energy.unknowns(); ++i) {
-      constraints(i, k) = slope[energy.vertices()[i]].dot(directions[i]);
-    }
-  }
-  constraints.rightCols(rigid.cols()) = rigid;
-  SparseMatrix hessian = energy.pattern();
-  energy.hessian(own, directions, targets, pressure, hessian);
-  ConstrainedHessian system(energy.pattern(), energy.order());
+  const SaddleSystem saddle(energy, targets, own, directions, pressure);
   LowestMode result;
   result.mode = VectorX::Ones(energy.unknowns());
-  if (system.factorize(hessian, metric, 0.0, constraints)) {
-    result = system.lowest_mode(metric);
+  if (saddle.factored()) {
+    result = saddle.system().lowest_mode(saddle.metric());
   }
   return result;
 }

@@ -6,11 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "core/surface_nodes.h"
 #include "core/timer.h"
-#include "evolve/carry.h"
 #include "evolve/equilibrium.h"
 #include "evolve/fields.h"
+#include "evolve/film_model_impl.h"
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
 #include "evolve/solid_facets.h"
@@ -84,30 +83,6 @@ std::string no_value(const ExpressionError& error) {
 }
 
 }  // namespace
-
-struct FilmModel::Impl {
-  FilmComplex complex;        // finest level, at the reference film
-  std::vector<Edge> parents;  // of the first refinements' new vertices
-  SurfaceMesh meshed;         // the meshed level at the reference film
-  std::optional<FilmEnergy> energy;
-  std::optional<Carry> carry;
-  FilmTargets targets;
-  FilmState reference;
-  double usual_neck = 0.0;   // of the reference [length]
-  std::vector<int> regions;  // per body, -1: void
-  SurfaceNodes nodes;        // the meshed level's, facets split
-
-  FilmTargets targets_of_system(const FilmSystem& system) const;
-  void check_fields(const FilmSystem& system) const;
-  std::vector<Curve> curves_of_system(const FilmSystem& system) const;
-  void find_reference(const FilmSystem& initial,
-                      const FilmModelOptions& options,
-                      const SettleOptions& settle);
-  EdgeMiddles middles() const;
-  std::vector<char> straight() const;
-  FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,
-                            int parts, const SettleOptions& options) const;
-};
 
 FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
   FilmTargets result = targets;

@@ -14,51 +14,16 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/error.h"
 #include "core/monitor.h"
 #include "core/surface_mesh.h"
+#include "evolve/film_gradient.h"
+#include "evolve/film_state.h"
 #include "evolve/film_system.h"
 
 namespace meniscus {
-
-struct BodyState {
-  std::string name;
-  double volume = 0.0;         // [length^3]
-  double target_volume = 0.0;  // [length^3]; the volume where none is asked
-  double pressure = 0.0;       // inside minus outside [force/length^2]
-};
-
-struct FilmReport {
-  int vertices = 0;
-  int facets = 0;
-  double energy = 0.0;    // tension x area, and fields [force length]
-  double area = 0.0;      // of films, caps not counted [length^2]
-  double residual = 0.0;  // max |dE/dh_i - sum p dV/dh_i| over free vertices
-  double residual_bound = 0.0;  // 1e-9 x tension x mean edge [force]
-  double min_eigenvalue = 0.0;  // of the constrained Hessian in the metric of
-                                // lumped vertex area [force/length^3]
-  int index = 0;                // its number of negative eigenvalues
-  int iterations = 0;
-  // Shortest line along an inward normal from film to film [length]; 0: none.
-  double smallest_neck = 0.0;
-  Vec3 neck_position = Vec3::Zero();
-  std::string verdict;  // "stable", "unstable: ...", "pinching: ..."
-  std::vector<BodyState> bodies;
-  double seconds = 0.0;
-};
-
-/// The film at one design: points of every vertex of the model's fine mesh, or
-/// why there is none. `heights` are h, one per free vertex.
-struct FilmState {
-  Points points;
-  VectorX heights;
-  FilmReport report;
-  std::optional<Failure> failure;
-};
 
 struct FilmModelOptions {
   double edge = 0.0;    // target edge of the meshed film [length], > 0
@@ -107,6 +72,41 @@ class FilmModel {
   /// their mid-sides lie on the film where it has two. Throws MeshError where
   /// it has none.
   void split_facets(const std::vector<char>& marked);
+
+  /// surface() transposed: dJ/dx by every vertex of the film, from dJ by the
+  /// surface's corners (base.points) and mid-sides, one each.
+  Points transpose_surface(const Points& by_corners,
+                           const Points& by_mid_sides) const;
+
+  /// Total derivatives by the design, of responses that are given by their
+  /// derivatives by the settled film: settle() transposed (docs/theory.md, The
+  /// film's adjoint). `state`: of settle(system), not failed. Costs one
+  /// factorisation, and per response two solves. Pure, may run in several
+  /// threads. Throws InvalidInput for a state that failed or is not this
+  /// model's, and for lists that do not fit.
+  std::vector<FilmGradient> transpose(
+      const FilmState& state, const FilmSystem& system,
+      const std::vector<FilmCovector>& responses) const;
+
+  /// dJ along one design variable: `rates` is `system` with each number's
+  /// derivative in its place (curves of the same kinds, tensions, volumes,
+  /// pressures; fields and tension fields are the model's and not read). A
+  /// parametric curve's rates are expressions of t.
+  double rate(const FilmGradient& gradient, const FilmSystem& system,
+              const FilmSystem& rates) const;
+
+  /// Area per label of fine_mesh(); 0 for caps [length^2].
+  VectorX areas(const Points& points) const;
+
+  /// Margin to collapse of a state of settle(system) [force/length^3], with
+  /// its derivatives for transpose(). Throws as that does, and InvalidInput for
+  /// options out of range.
+  FilmResponse margin(const FilmState& state, const FilmSystem& system,
+                      const MarginOptions& options = {}) const;
+
+  /// Smallest radius of curvature of the films (evolve/film_radius.h) [length],
+  /// with its derivatives.
+  FilmResponse smallest_radius(const Points& points, int power = 16) const;
 
   /// All facets at the film's own resolution (caps included), for files and
   /// pictures.

@@ -16,11 +16,7 @@ constexpr int kWallSteps = 40;
 constexpr double kOnWall = 1e-14;  // of the coordinates' size
 constexpr double kAcross = 0.7;    // cosine: a rim's motion to its normal
 
-Vec3 any_normal(const Vec3& t) {
-  Eigen::Index least = 0;
-  t.cwiseAbs().minCoeff(&least);
-  return t.cross(Vec3::Unit(least)).normalized();
-}
+Vec3 any_normal(const Vec3& t) { return t.cross(line_axis(t)).normalized(); }
 
 Vec3 unit(const Vec3& v) {
   const double length = v.norm();

@@ -47,6 +47,12 @@ class FilmSpace {
   /// cancel.
   Points directions(const Points& points) const;
 
+  /// directions() transposed: adds to `sum`, one per vertex, the gradient by
+  /// the points of something whose gradient by each direction is given. Throws
+  /// InvalidInput for films that slide on walls.
+  void transpose_directions(const Points& points, const Points& by_directions,
+                            Points& sum) const;
+
   /// points + h d at every unknown's vertex, back on the walls.
   Points moved(const Points& points, const Points& directions,
                const VectorX& heights) const;
@@ -94,6 +100,10 @@ class FilmSpace {
   std::vector<LevelSet> level_sets_;
   std::vector<Curve> curves_;
 };
+
+/// The axis that is farthest from a line's unit tangent t: t x axis is the
+/// first of the line's two directions.
+Vec3 line_axis(const Vec3& t);
 
 /// f, its gradient and its Hessian at a place.
 struct PlaceJet {

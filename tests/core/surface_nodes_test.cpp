@@ -1,5 +1,7 @@
 #include "core/surface_nodes.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -84,6 +86,38 @@ TEST(SplitFacets, NeedMiddlesAndMarksThatFit) {
   const SurfaceMesh box = shapes::box({1.0, 1.0, 1.0}, 1);
   EXPECT_THROW(nested_surface(box, 0).split(marks(box, 1)), MeshError);
   EXPECT_THROW(nested_surface(box, 1).split({1, 0}), MeshError);
+}
+
+// <A x, y> = <x, A^T y>, split and whole, with curved and straight mid-sides.
+TEST(SurfaceNodes, AreTransposed) {
+  const SurfaceMesh ball = shapes::sphere(1.0, 2);
+  NestedSurface nested = nested_surface(ball, 2);
+  for (std::size_t p = 0; p < nested.straight.size(); p += 3) {
+    nested.straight[p] = 1;
+  }
+  const auto wave = [](std::size_t i) {
+    const auto x = static_cast<double>(i);
+    return Vec3(std::sin(x), std::cos(2.0 * x), std::sin(3.0 * x));
+  };
+  for (const int every : {7, 1000}) {
+    const SurfaceNodes nodes = split_facets(nested.nodes, marks(ball, every),
+                                            nested.middles, nested.straight);
+    const QuadraticSurface surface = nodes.at(nested.points);
+    Points corners;
+    Points mid;
+    for (std::size_t c = 0; c < surface.base.points.size(); ++c) {
+      corners.push_back(wave(c));
+    }
+    for (std::size_t e = 0; e < surface.mid.size(); ++e) {
+      mid.push_back(wave(5 * e));
+    }
+    const Points back = nodes.transpose(corners, mid, nested.points.size());
+    const double there = flat(corners).dot(flat(surface.base.points)) +
+                         flat(mid).dot(flat(surface.mid));
+    EXPECT_NEAR(flat(back).dot(flat(nested.points)), there,
+                kRounding * static_cast<double>(nested.points.size()));
+    EXPECT_THROW(nodes.transpose(mid, mid, nested.points.size()), MeshError);
+  }
 }
 
 }  // namespace

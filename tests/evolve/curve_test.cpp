@@ -206,5 +206,60 @@ TEST(Curve, RefusesWhatIsNoCurveAndSaysWhy) {
   EXPECT_THROW(sample_parameters(Circle{}, nan), InvalidInput);
 }
 
+/// One of each kind, its numbers at `p`.
+std::vector<CurveShape> shapes_at(double p) {
+  const Vec3 center(0.3 + p, 0.2 - 2.0 * p, 0.5 * p);
+  const Vec3 normal(0.2, 0.4 + p, 1.0 - 0.5 * p);
+  const Vec3 axis(1.0, 0.3 * p, 0.2 + p);
+  Rectangle sharp{center, normal, axis, 2.0 + p, 1.0 - p, 0.0};
+  Rectangle round = sharp;
+  round.corner_radius = 0.3 + 0.5 * p;
+  return {Circle{center, normal, 1.0 + 3.0 * p},
+          Ellipse{center, normal, axis, 1.0 + p, 0.5 - p},
+          sharp,
+          round,
+          Polygon{{center, axis, normal, Vec3(p, 2.0, -p)}},
+          ParametricCurve{{Expression(p), Expression(2.0 * p),
+                           Expression::parse("t", {"t"})}}};
+}
+
+/// Their derivatives by p.
+std::vector<CurveShape> shape_rates() {
+  const Vec3 center(1.0, -2.0, 0.5);
+  const Vec3 normal(0.0, 1.0, -0.5);
+  const Vec3 axis(0.0, 0.3, 1.0);
+  return {Circle{center, normal, 3.0},
+          Ellipse{center, normal, axis, 1.0, -1.0},
+          Rectangle{center, normal, axis, 1.0, -1.0, 0.0},
+          Rectangle{center, normal, axis, 1.0, -1.0, 0.5},
+          Polygon{{center, axis, normal, Vec3(1.0, 0.0, -1.0)}},
+          ParametricCurve{{Expression(1.0), Expression(2.0), Expression()}}};
+}
+
+TEST(CurveRate, IsTheDifferenceOfPoints) {
+  constexpr double kStep = 1e-5;
+  constexpr double kDifference = 1e-9;  // of central differences, relative
+  constexpr double kAt = 0.1;
+  const std::vector<CurveShape> rates = shape_rates();
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    for (const double t : {0.0, 0.07, 0.3, 0.56, 0.93}) {
+      const Vec3 difference = (point_at(shapes_at(kAt + kStep)[k], t) -
+                               point_at(shapes_at(kAt - kStep)[k], t)) /
+                              (2.0 * kStep);
+      const Vec3 rate = point_rate(shapes_at(kAt)[k], rates[k], t);
+      EXPECT_LT((rate - difference).norm(), kDifference * difference.norm())
+          << "shape " << k << " at " << t;
+    }
+  }
+}
+
+TEST(CurveRate, RefusesAnotherKind) {
+  EXPECT_THROW(static_cast<void>(point_rate(Circle{}, Ellipse{}, 0.0)),
+               InvalidInput);
+  const Polygon three{Points(3, Vec3::Zero())};
+  const Polygon four{Points(4, Vec3::Zero())};
+  EXPECT_THROW(static_cast<void>(point_rate(three, four, 0.0)), InvalidInput);
+}
+
 }  // namespace
 }  // namespace meniscus

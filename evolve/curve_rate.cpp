@@ -1,0 +1,115 @@
+// How the points of curves move when the numbers of their shapes do.
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/curve_shape.h"
+
+namespace meniscus {
+
+namespace {
+
+using curve_shape::Frame;
+using curve_shape::InPlane;
+using curve_shape::Place;
+using Dual1 = BasicDual<1>;
+using Vector1 = curve_shape::Vector<Dual1>;
+
+/// A direction that changes at `rate`.
+Vector1 moving(const Vec3& direction, const Vec3& rate) {
+  Vector1 result;
+  for (int k = 0; k < 3; ++k) {
+    result[k] = Dual1::variable(direction[k], 0);
+    result[k].gradient[0] = rate[k];
+  }
+  return result;
+}
+
+Frame<double> rate_of(const Frame<Dual1>& frame) {
+  Frame<double> rate;
+  for (int k = 0; k < 3; ++k) {
+    rate.u[k] = frame.u[k].gradient[0];
+    rate.v[k] = frame.v[k].gradient[0];
+  }
+  return rate;
+}
+
+Frame<double> frame_rate(const Circle& c, const Circle& rate) {
+  return rate_of(curve_shape::frame_of<Dual1>(
+      moving(c.normal, rate.normal), curve_shape::is_near_pole(c.normal)));
+}
+
+template <class Shape>
+Frame<double> frame_rate(const Shape& s, const Shape& rate) {
+  return rate_of(curve_shape::frame_of<Dual1>(moving(s.normal, rate.normal),
+                                              moving(s.axis, rate.axis)));
+}
+
+template <class Shape>
+Points rates_of(const Shape& shape, const Shape& rate,
+                const std::vector<double>& t) {
+  const Frame<double> frame = curve_shape::frame_of(shape);
+  const Frame<double> turn = frame_rate(shape, rate);
+  Points result;
+  result.reserve(t.size());
+  for (const double at : t) {
+    const Place place = curve_shape::place_of(shape, at);
+    const InPlane now = curve_shape::in_plane(shape, shape, place);
+    const InPlane more = curve_shape::in_plane(rate, shape, place);
+    result.emplace_back(rate.center + more.a * frame.u + more.b * frame.v +
+                        now.a * turn.u + now.b * turn.v);
+  }
+  return result;
+}
+
+Points rates_of(const Polygon& polygon, const Polygon& rate,
+                const std::vector<double>& t) {
+  const std::size_t count = polygon.points.size();
+  if (rate.points.size() != count) {
+    throw InvalidInput(
+        fmt::format("a polygon of {} points has rates for {} of them", count,
+                    rate.points.size()));
+  }
+  Points result;
+  result.reserve(t.size());
+  for (const double at : t) {
+    const Place place = curve_shape::place_of(polygon, at);
+    const auto part = static_cast<std::size_t>(place.part);
+    result.emplace_back((1.0 - place.s) * rate.points[part] +
+                        place.s * rate.points[(part + 1) % count]);
+  }
+  return result;
+}
+
+/// Its rates are a parametric curve themselves.
+Points rates_of(const ParametricCurve& /*curve*/, const ParametricCurve& rate,
+                const std::vector<double>& t) {
+  Points result;
+  result.reserve(t.size());
+  for (const double at : t) {
+    result.push_back(point_at(rate, at));
+  }
+  return result;
+}
+
+}  // namespace
+
+Points point_rates(const CurveShape& shape, const CurveShape& rate,
+                   const std::vector<double>& t) {
+  return std::visit(
+      [&](const auto& s) {
+        const auto* r = std::get_if<std::decay_t<decltype(s)>>(&rate);
+        if (r == nullptr) {
+          throw InvalidInput("the rates of a curve are of another kind");
+        }
+        return rates_of(s, *r, t);
+      },
+      shape);
+}
+
+Vec3 point_rate(const CurveShape& shape, const CurveShape& rate, double t) {
+  return point_rates(shape, rate, {t}).front();
+}
+
+}  // namespace meniscus

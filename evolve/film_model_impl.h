@@ -1,0 +1,51 @@
+/// What a FilmModel holds: shared by the sources that implement it, included
+/// nowhere else.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/surface_nodes.h"
+#include "evolve/carry.h"
+#include "evolve/energy.h"
+#include "evolve/film_model.h"
+
+namespace meniscus {
+
+struct FilmModel::Impl {
+  FilmComplex complex;        // finest level, at the reference film
+  std::vector<Edge> parents;  // of the first refinements' new vertices
+  SurfaceMesh meshed;         // the meshed level at the reference film
+  std::optional<FilmEnergy> energy;
+  std::optional<Carry> carry;
+  FilmTargets targets;
+  FilmState reference;
+  double usual_neck = 0.0;   // of the reference [length]
+  std::vector<int> regions;  // per body, -1: void
+  SurfaceNodes nodes;        // the meshed level's, facets split
+
+  /// What a film rests on, beside its points and heights.
+  struct AtRest {
+    FilmTargets targets;
+    Points base;        // X
+    Points directions;  // n(X)
+    VectorX pressure;   // one per functional
+  };
+
+  FilmTargets targets_of_system(const FilmSystem& system) const;
+  void check_fields(const FilmSystem& system) const;
+  std::vector<Curve> curves_of_system(const FilmSystem& system) const;
+  void find_reference(const FilmSystem& initial,
+                      const FilmModelOptions& options,
+                      const SettleOptions& settle);
+  EdgeMiddles middles() const;
+  std::vector<char> straight() const;
+  /// A state that settle() gave for `system`. Throws InvalidInput for others.
+  AtRest at_rest(const FilmState& state, const FilmSystem& system) const;
+  void check_response(const FilmCovector& response) const;
+  std::vector<RimGradient> rim_gradients(const Points& by_base) const;
+  FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,
+                            int parts, const SettleOptions& options) const;
+};
+
+}  // namespace meniscus
