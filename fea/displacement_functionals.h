@@ -18,15 +18,10 @@ DirectedFunctional mean_displacement_functional(
 
 /// (1/A) int w(x) u . d dA by seven points a face [length x weight]. Divided by
 /// the area, not by the weight's integral, so that a weight may change its
-/// sign and measure a tilt. `slope`: the weight's gradient, needed for
-/// derivatives only.
-struct WeightOfPlace {
-  NumberOfPlace value;
-  VectorOfPlace slope;  // [weight/length]
-};
+/// sign and measure a tilt.
 DirectedFunctional weighted_displacement_functional(
     const TetMesh& mesh, const std::string& surface, const Vec3& direction,
-    const WeightOfPlace& weight, const VectorX& displacement,
+    const SlopedField& weight, const VectorX& displacement,
     Derivatives derivatives = Derivatives::All);
 
 /// ((1/A) int |u . d|^p dA)^(1/p) by seven points a face [length]; p >= 2.

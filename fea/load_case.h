@@ -17,6 +17,12 @@ using NumberOfPlace = std::function<double(const Vec3&)>;
 using VectorOfPlace = std::function<Vec3(const Vec3&)>;
 using MatrixOfPlace = std::function<Mat3(const Vec3&)>;
 
+/// A field and, needed for derivatives only, its gradient [value/length].
+struct SlopedField {
+  NumberOfPlace value;
+  VectorOfPlace slope;
+};
+
 enum class SupportKind {
   Components,  // those that are fixed, along x, y, z or the support's axes
   Normal,      // the surface slides: no displacement along its normal

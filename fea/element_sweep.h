@@ -1,0 +1,183 @@
+/// One pass over the integration points of all elements that adds up
+/// derivatives by node positions and nodal values: every gradient of an
+/// integral over the solid (docs/theory.md, section on exact gradients).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "core/tet_mesh.h"
+#include "fea/tet_shape.h"
+
+namespace meniscus {
+
+/// Points in a tetrahedron and what they weigh of the reference determinant.
+template <int Nodes>
+struct TetRule {
+  struct Point {
+    Eigen::Matrix<double, Nodes, 3> slopes;  // by L1, L2, L3
+    std::array<double, Nodes> shape;
+    double weight;
+  };
+  std::vector<Point> points;
+};
+
+/// The stiffness rule.
+template <int Nodes>
+const TetRule<Nodes>& stiffness_rule();
+
+/// Exact for the volume of curved elements, and of degree five: exact for
+/// their moments.
+template <int Nodes>
+const TetRule<Nodes>& volume_rule();
+template <int Nodes>
+const TetRule<Nodes>& moment_rule();
+
+template <std::size_t Fields>
+struct SweepPoint {
+  int element;
+  int point;
+  double volume;                      // weight x det J [length^3]
+  std::array<Mat3, Fields> gradient;  // dv_i/dx_j of each field
+  std::span<const double> shape;      // of the element's nodes
+  std::span<const int> nodes;
+};
+
+/// What a point adds to node a of output k: by_gradient[k] g_a +
+/// by_shape[k] N_a, g_a and N_a being the node's shape function and its
+/// gradient there; and to the nodal scalar by_scalar N_a.
+template <std::size_t Outputs>
+struct SweepFlux {
+  std::array<Mat3, Outputs> by_gradient;
+  std::array<Vec3, Outputs> by_shape;
+  double by_scalar = 0.0;
+
+  SweepFlux() {
+    by_gradient.fill(Mat3::Zero());
+    by_shape.fill(Vec3::Zero());
+  }
+};
+
+/// 3 numbers per node each; `scalar`, one per node, may be null.
+template <std::size_t Fields, std::size_t Outputs>
+struct SweepTargets {
+  std::array<const VectorX*, Fields> fields;
+  std::array<VectorX*, Outputs> outputs;
+  VectorX* scalar = nullptr;
+};
+
+namespace element_sweep {
+
+template <int Nodes, std::size_t Outputs>
+struct Local {
+  std::array<Eigen::Matrix<double, 3, Nodes>, Outputs> output;
+  std::array<double, Nodes> scalar;
+};
+
+template <int Nodes, std::size_t Fields, std::size_t Outputs, class Work>
+void add_element(const TetMesh& mesh, const TetRule<Nodes>& rule,
+                 const SweepTargets<Fields, Outputs>& targets, int e,
+                 const Work& work, Local<Nodes, Outputs>& local) {
+  using Nodal = Eigen::Matrix<double, 3, Nodes>;
+  const auto ids = mesh.element(e);
+  Nodal x;
+  std::array<Nodal, Fields> v;  // relative to one node: no rigid shift
+  for (int a = 0; a < Nodes; ++a) {
+    x.col(a) = mesh.nodes[ids[a]];
+    for (std::size_t k = 0; k < Fields; ++k) {
+      const VectorX& field = *targets.fields[k];
+      v[k].col(a) =
+          field.segment<3>(3L * ids[a]) - field.segment<3>(3L * ids[0]);
+    }
+  }
+  for (Nodal& output : local.output) {
+    output.setZero();
+  }
+  local.scalar.fill(0.0);
+  SweepPoint<Fields> at{.element = e, .nodes = ids};
+  for (std::size_t q = 0; q < rule.points.size(); ++q) {
+    const auto& point = rule.points[q];
+    const Mat3 F = x * point.slopes;  // dx_i / dL_j
+    const Mat3 inverse = F.inverse();
+    at.point = static_cast<int>(q);
+    at.volume = point.weight * F.determinant();
+    at.shape = point.shape;
+    for (std::size_t k = 0; k < Fields; ++k) {
+      at.gradient[k].noalias() = (v[k] * point.slopes) * inverse;
+    }
+    SweepFlux<Outputs> flux;
+    work(at, flux);
+    for (std::size_t k = 0; k < Outputs; ++k) {
+      const Mat3 pulled = flux.by_gradient[k] * inverse.transpose();
+      for (int a = 0; a < Nodes; ++a) {
+        local.output[k].col(a) += pulled * point.slopes.row(a).transpose() +
+                                  point.shape[a] * flux.by_shape[k];
+      }
+    }
+    for (int a = 0; a < Nodes; ++a) {
+      local.scalar[a] += flux.by_scalar * point.shape[a];
+    }
+  }
+}
+
+}  // namespace element_sweep
+
+/// work(point, flux) for every point of every element, side by side; it must
+/// not throw. Nodes add their elements in the elements' order, whatever the
+/// number of threads.
+template <int Nodes, std::size_t Fields, std::size_t Outputs, class Work>
+void sweep_elements(const TetMesh& mesh, const TetRule<Nodes>& rule,
+                    const SweepTargets<Fields, Outputs>& targets,
+                    const Work& work) {
+  constexpr int kBlock = 4096;  // bounds the memory
+  const int count = mesh.element_count();
+  std::vector<element_sweep::Local<Nodes, Outputs>> local(
+      std::min(kBlock, count));
+  for (int first = 0; first < count; first += kBlock) {
+    const int last = std::min(first + kBlock, count);
+#pragma omp parallel for schedule(static)
+    for (int e = first; e < last; ++e) {
+      element_sweep::add_element(mesh, rule, targets, e, work,
+                                 local[e - first]);
+    }
+    for (int e = first; e < last; ++e) {
+      const auto ids = mesh.element(e);
+      const auto& from = local[e - first];
+      for (int a = 0; a < Nodes; ++a) {
+        for (std::size_t k = 0; k < Outputs; ++k) {
+          targets.outputs[k]->template segment<3>(3L * ids[a]) +=
+              from.output[k].col(a);
+        }
+        if (targets.scalar != nullptr) {
+          (*targets.scalar)[ids[a]] += from.scalar[a];
+        }
+      }
+    }
+  }
+}
+
+/// By the stiffness rule.
+template <std::size_t Fields, std::size_t Outputs, class Work>
+void sweep_stiffness_points(const TetMesh& mesh,
+                            const SweepTargets<Fields, Outputs>& targets,
+                            const Work& work) {
+  if (mesh.order == 1) {
+    sweep_elements(mesh, stiffness_rule<4>(), targets, work);
+  } else {
+    sweep_elements(mesh, stiffness_rule<10>(), targets, work);
+  }
+}
+
+/// 3 zeros for each node of the mesh.
+inline VectorX nodal_zeros(const TetMesh& mesh) {
+  return VectorX::Zero(static_cast<Eigen::Index>(3 * mesh.nodes.size()));
+}
+
+/// One vector per node of 3 numbers per node.
+Points as_points(const VectorX& v);
+
+}  // namespace meniscus
