@@ -39,7 +39,7 @@ void add_weight(const TetMesh& mesh, const std::vector<Material>& materials,
   sweep_stiffness_points(
       mesh, targets, [&](const SweepPoint<0>& point, SweepFlux<1>& flux) {
         Vec3 r = -centre;
-        for (std::size_t a = 0; a < point.shape.size(); ++a) {
+        for (std::size_t a = 0; spins && a < point.shape.size(); ++a) {
           r += point.shape[a] * mesh.nodes[point.nodes[a]];
         }
         const Vec3 here = value_of(point, v);
