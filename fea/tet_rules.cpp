@@ -1,4 +1,6 @@
-#include "fea/element_sweep.h"
+#include "fea/tet_rules.h"
+
+#include "fea/tet_shape.h"
 
 namespace meniscus {
 
@@ -87,11 +89,5 @@ template const TetRule<4>& volume_rule<4>();
 template const TetRule<10>& volume_rule<10>();
 template const TetRule<4>& moment_rule<4>();
 template const TetRule<10>& moment_rule<10>();
-
-Points as_points(const VectorX& v) {
-  Points points(static_cast<std::size_t>(v.size() / 3));
-  flat(points) = v;
-  return points;
-}
 
 }  // namespace meniscus
