@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "fea/elastic_gradient.h"
-#include "fea/load_rates.h"
+#include "fea/rates.h"
 #include "fea/loads.h"
 #include "fea/material_rates.h"
 #include "fea/place_functionals.h"

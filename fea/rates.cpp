@@ -1,4 +1,4 @@
-#include "fea/load_rates.h"
+#include "fea/rates.h"
 
 #include <fmt/format.h>
 
