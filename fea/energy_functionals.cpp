@@ -40,7 +40,9 @@ void add_energy_gradient(const TetMesh& mesh,
   const std::vector<ElasticLaw> laws = elastic_laws(materials);
   const std::vector<Expansion> expansion = expansions(laws);
   const SweepTargets<1, 2> targets{
-      .fields = {&u}, .outputs = {&by_x, &by_u}, .scalar = &by_temperature};
+      .fields = {&u},
+      .outputs = {&by_x, &by_u},
+      .scalar = change.size() != 0 ? &by_temperature : nullptr};
   sweep_stiffness_points(
       mesh, targets, [&](const SweepPoint<1>& point, SweepFlux<2>& flux) {
         const int region = mesh.element_region[point.element];
@@ -97,12 +99,15 @@ Functional strain_energy_functional(const TetMesh& mesh,
     require_temperature_slope(load_case);
     VectorX by_x = nodal_zeros(mesh);
     result.by_displacement = nodal_zeros(mesh);
-    VectorX by_temperature =
-        VectorX::Zero(static_cast<Eigen::Index>(mesh.nodes.size()));
+    if (load_case.temperature) {
+      result.by_temperature.setZero(
+          static_cast<Eigen::Index>(mesh.nodes.size()));
+    }
     add_energy_gradient(mesh, materials, displacement, change, by_x,
-                        result.by_displacement, by_temperature);
+                        result.by_displacement, result.by_temperature);
     result.by_nodes = as_points(by_x);
-    add_temperature_slope(mesh, load_case, by_temperature, result.by_nodes);
+    add_temperature_slope(mesh, load_case, result.by_temperature,
+                          result.by_nodes);
   }
   return result;
 }

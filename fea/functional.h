@@ -15,6 +15,10 @@ struct Functional {
   /// By the displacement, the nodes held: 3 per node [value/length]. Empty
   /// where the displacement has no part in the number.
   VectorX by_displacement;
+  /// By the load case's temperature at each node, nodes and displacement held
+  /// [value/temperature]. Empty without a temperature; what its field changes
+  /// where nodes move is in by_nodes already.
+  VectorX by_temperature;
 };
 
 /// Of a number that depends on a direction, too. The direction may have any

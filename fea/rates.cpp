@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "fea/body_loads.h"
 #include "fea/elastic_law.h"
 #include "fea/element_sweep.h"
 #include "fea/face_points.h"
@@ -148,12 +147,7 @@ void add_temperature(const TetMesh& mesh,
                                .cwiseProduct(point.gradient[0])
                                .sum();
       });
-  const double sum = by_node.sum();
-  out.by_number.temperature = Temperature{.value = sum, .reference = -sum};
-  if (load_case.temperature->field) {
-    out.temperature.places = mesh.nodes;
-    out.temperature.weights.assign(by_node.begin(), by_node.end());
-  }
+  add_temperature_gradient(mesh, load_case, by_node, out);
 }
 
 double value_of(const NumberOfPlace& field, double number, const Vec3& x,
@@ -261,6 +255,29 @@ LoadGradient load_gradient(const TetMesh& mesh,
     add_temperature(mesh, materials, load_case, v, result);
   }
   return result;
+}
+
+void add_temperature_gradient(const TetMesh& mesh, const LoadCase& load_case,
+                              const VectorX& by_temperature,
+                              LoadGradient& gradient) {
+  if (by_temperature.size() == 0 || !load_case.temperature) {
+    return;
+  }
+  auto& by = gradient.by_number.temperature;
+  if (!by) {
+    by = Temperature{};
+  }
+  const double sum = by_temperature.sum();
+  by->value += sum;
+  by->reference -= sum;
+  if (load_case.temperature->field) {
+    LoadGradient::NumberField& field = gradient.temperature;
+    field.places = mesh.nodes;
+    field.weights.resize(mesh.nodes.size(), 0.0);
+    for (std::size_t i = 0; i < field.weights.size(); ++i) {
+      field.weights[i] += by_temperature[static_cast<Eigen::Index>(i)];
+    }
+  }
 }
 
 double load_rate(const LoadGradient& gradient, const LoadCase& rates) {

@@ -32,6 +32,12 @@ LoadGradient load_gradient(const TetMesh& mesh,
                            const std::vector<Material>& materials,
                            const LoadCase& load_case, const VectorX& v);
 
+/// Adds a functional's derivative by the nodes' temperatures (functional.h's
+/// by_temperature; empty: nothing), so that load_rate() tells it, too.
+void add_temperature_gradient(const TetMesh& mesh, const LoadCase& load_case,
+                              const VectorX& by_temperature,
+                              LoadGradient& gradient);
+
 /// v . df for `rates`: a load case with the same loads in the same order, every
 /// number (and value of a field) its derivative by one design variable. A
 /// rate of a field may be a number: it is the same everywhere. Supports and

@@ -117,12 +117,15 @@ void differentiate(const StressFunctionalInput& in, Measure measure,
   const std::vector<ElasticLaw> laws = elastic_laws(in.materials);
   VectorX by_x = nodal_zeros(in.mesh);
   result.by_displacement = nodal_zeros(in.mesh);
-  VectorX by_temperature =
-      VectorX::Zero(static_cast<Eigen::Index>(in.mesh.nodes.size()));
+  const bool warm = in.load_case.temperature.has_value();
+  if (warm) {
+    result.by_temperature.setZero(
+        static_cast<Eigen::Index>(in.mesh.nodes.size()));
+  }
   const SweepTargets<1, 2> targets{
       .fields = {&in.displacement},
       .outputs = {&by_x, &result.by_displacement},
-      .scalar = in.load_case.temperature ? &by_temperature : nullptr};
+      .scalar = warm ? &result.by_temperature : nullptr};
   sweep_stiffness_points(
       in.mesh, targets, [&](const SweepPoint<1>& point, SweepFlux<2>& flux) {
         if (s.counts[point.element] == 0) {
@@ -141,7 +144,8 @@ void differentiate(const StressFunctionalInput& in, Measure measure,
                          stress_tensor(law.heat_stress).cwiseProduct(A).sum();
       });
   result.by_nodes = as_points(by_x);
-  add_temperature_slope(in.mesh, in.load_case, by_temperature, result.by_nodes);
+  add_temperature_slope(in.mesh, in.load_case, result.by_temperature,
+                        result.by_nodes);
 }
 
 Functional variation(const StressFunctionalInput& in, Measure measure) {

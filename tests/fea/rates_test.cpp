@@ -1,13 +1,16 @@
+#include "fea/rates.h"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "fea/elastic_gradient.h"
-#include "fea/rates.h"
+#include "fea/energy_functionals.h"
 #include "fea/loads.h"
 #include "fea/material_rates.h"
 #include "fea/place_functionals.h"
+#include "fea/stress_functionals.h"
 #include "tests/fea/derivatives.h"
 #include "tests/fea/gradient_parts.h"
 
@@ -97,6 +100,38 @@ TEST_P(Rates, OfFields) {
     return result;
   };
   expect_load_rate(at, rates);
+}
+
+/// What stresses and energy know of a temperature at fixed displacement.
+TEST_P(Rates, OfTemperaturesInFunctionals) {
+  const VectorX u = 0.1 * wave(mesh_, 1.7);
+  const std::vector<char> all;
+  const auto at = [](double t) {
+    LoadCase load_case = gradient_parts::warm();
+    load_case.temperature->field = [t](const Vec3& x) {
+      return 20.0 + 5.0 * x.x() * x.y() + t * x.z();
+    };
+    load_case.temperature->reference += 0.3 * t;
+    return load_case;
+  };
+  LoadCase rates;
+  rates.temperature = Temperature{.field = [](const Vec3& x) { return x.z(); },
+                                  .reference = 0.3};
+  const auto expect = [&](const auto& functional) {
+    LoadGradient gradient;
+    add_temperature_gradient(mesh_, at(0.0), functional(at(0.0)).by_temperature,
+                             gradient);
+    const double exact = load_rate(gradient, rates);
+    expect_derivative({.exact = exact, .scale = std::abs(exact), .step = 1e-2},
+                      [&](double t) { return functional(at(t)).value; });
+  };
+  expect([&](const LoadCase& load_case) {
+    return strain_energy_functional(mesh_, materials_, load_case, u);
+  });
+  expect([&](const LoadCase& load_case) {
+    return von_mises_norm_functional({mesh_, materials_, load_case, u, all},
+                                     6.0);
+  });
 }
 
 TEST_P(Rates, OfMaterials) {
