@@ -43,21 +43,23 @@ std::vector<FaceCentre> outer_centres(const TetMesh& mesh) {
   return centres;
 }
 
-/// The face across from centre k, or -1.
+/// The face across from centre k, or -1 where its ball touches none.
 int across(const std::vector<FaceCentre>& centres, std::size_t k) {
   const FaceCentre& a = centres[k];
   double best = std::numeric_limits<double>::infinity();  // diameter
   int face = -1;
+  bool opposite = false;
   const auto look_at = [&](const FaceCentre& b) {
     const Vec3 e = b.place - a.place;
     const double depth = -a.normal.dot(e);
-    if (!(depth > 0.0) || !(a.normal.dot(b.normal) <= kAcross)) {
+    if (!(depth > 0.0)) {
       return;
     }
     const double diameter = e.squaredNorm() / depth;
     if (diameter < best || (diameter == best && b.face < face)) {
       best = diameter;
       face = b.face;
+      opposite = a.normal.dot(b.normal) <= kAcross;
     }
   };
   // A ball's diameter is no less than the distance of two of its points.
@@ -73,7 +75,7 @@ int across(const std::vector<FaceCentre>& centres, std::size_t k) {
     }
     look_at(centres[i]);
   }
-  return face;
+  return opposite ? face : -1;
 }
 
 struct Distance {

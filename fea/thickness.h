@@ -9,10 +9,10 @@
 
 namespace meniscus {
 
-/// Faces of the outer surface, each with the one across the solid from it: of
-/// those that face the other way (normals more than 120 degrees apart) the one
-/// whose centre lies on the smallest ball that touches the face at its own
-/// centre from within. So edges, where every solid is thin, do not count.
+/// Faces of the outer surface, each with the one across the solid from it: the
+/// one whose centre lies on the smallest ball that touches the face at its own
+/// centre from within. Only where it faces the other way (normals more than 120
+/// degrees apart): next to edges every solid is thin.
 struct ThicknessPairs {
   std::vector<std::array<int, 2>> faces;
 };
