@@ -7,14 +7,6 @@
 
 namespace meniscus {
 
-namespace {
-
-/// Up to this many unknowns a factor in double precision (a minute, 2 GB) is
-/// tried where multigrid is not positive definite; as elastic_system.cpp does.
-constexpr int kSecondChance = 200000;
-
-}  // namespace
-
 EigenPairs eigenpairs_of(const ElasticOperator& op, const NodalMatrix& A,
                          const Columns& start, const EigenOptions& options) {
   const BlockPattern& pattern = op.table->pattern;

@@ -15,10 +15,6 @@ namespace meniscus {
 
 namespace {
 
-/// Up to this many a factor in double precision (a minute, 2 GB) is tried where
-/// multigrid is not positive definite.
-constexpr int kSecondChance = 200000;
-
 std::string cause(CgEnd end, const CgColumn& column, int most) {
   switch (end) {
     case CgEnd::TooManyIterations:

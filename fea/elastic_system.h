@@ -9,6 +9,7 @@
 #include "fea/elastic_operator.h"
 #include "fea/elasticity.h"
 #include "fea/holding.h"
+#include "fea/kept_state.h"
 #include "fea/multigrid.h"
 #include "fea/node_order.h"
 #include "fea/preconditioner.h"
@@ -37,6 +38,10 @@ class ElasticSystem {
                         const std::vector<LoadCase>& load_cases,
                         const BlockMatrix<double>& matrix,
                         const ElasticSolution* start) const;
+
+  /// What adjoints need of a design that was solved.
+  KeptState keep(const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
+                 BlockMatrix<double> matrix) const;
 
   /// See ElasticModel::operator_at().
   ElasticOperator operator_at(const TetMesh& mesh,

@@ -42,7 +42,16 @@ ElasticSolution ElasticModel::solve(const TetMesh& mesh) const {
 
 ElasticSolution ElasticModel::solve(
     const TetMesh& mesh, const std::vector<LoadCase>& load_cases) const {
+  return solve(mesh, load_cases, nullptr);
+}
+
+ElasticSolution ElasticModel::solve(const TetMesh& mesh,
+                                    const std::vector<LoadCase>& load_cases,
+                                    ElasticState* keep) const {
   const Timer timer;
+  if (keep != nullptr) {
+    keep->kept_.reset();
+  }
   impl_->system.check_same(mesh, load_cases);
   BlockMatrix<double> matrix;
   ElasticSolution result;
@@ -54,7 +63,22 @@ ElasticSolution ElasticModel::solve(
   const double seconds = timer.seconds();
   result = impl_->system.solve(mesh, load_cases, matrix, &impl_->base);
   result.report.setup_seconds += seconds;
+  if (keep != nullptr && !result.failure) {
+    keep->kept_ = std::make_unique<KeptState>(
+        impl_->system.keep(mesh, load_cases, std::move(matrix)));
+  }
   return result;
+}
+
+AdjointSolution ElasticModel::solve_adjoint(
+    const ElasticState& state, int load_case,
+    const std::vector<VectorX>& right_hand_sides) const {
+  if (state.empty()) {
+    throw InvalidInput(
+        "adjoint of elasticity: the state is empty; keep that of a solve that "
+        "did not fail");
+  }
+  return meniscus::solve_adjoint(*state.kept_, load_case, right_hand_sides);
 }
 
 ElasticOperator ElasticModel::operator_at(

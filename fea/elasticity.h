@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/monitor.h"
 #include "core/tet_mesh.h"
+#include "fea/elastic_adjoint.h"
 #include "fea/loads.h"
 #include "fea/material.h"
 #include "fea/stress.h"
@@ -78,6 +79,20 @@ class ElasticModel {
   /// The same under other loads; names and supports must be the base's.
   ElasticSolution solve(const TetMesh& mesh,
                         const std::vector<LoadCase>& load_cases) const;
+
+  /// The same, and `keep` (not null) is given what solve_adjoint() needs of
+  /// this design; it is left empty when the solve fails.
+  ElasticSolution solve(const TetMesh& mesh,
+                        const std::vector<LoadCase>& load_cases,
+                        ElasticState* keep) const;
+
+  /// Adjoints of load case `load_case` (index), several at once: K lambda = g
+  /// for each right-hand side g, 3 per node of the mesh, by the solver and to
+  /// the tolerance of solve(). Not to converge is a failure. Throws
+  /// InvalidInput for an empty state and sizes that do not fit.
+  AdjointSolution solve_adjoint(
+      const ElasticState& state, int load_case,
+      const std::vector<VectorX>& right_hand_sides) const;
 
   /// The stiffness of `mesh`, held as in load case `load_case` (index), for
   /// eigenvalue problems; it must not outlive the model. Throws InvalidInput as

@@ -88,4 +88,24 @@ FacePoint FaceQuadrature::at(const TetMesh& mesh, int face, int point) const {
   return result;
 }
 
+void FaceQuadrature::pull_back(const TetMesh& mesh, int face, int point,
+                               const Vec3& by_position, const Vec3& by_normal,
+                               Points& gradient) const {
+  const Reference& from = points_[point];
+  Vec3 u = Vec3::Zero();
+  Vec3 v = Vec3::Zero();
+  const auto ids = mesh.face(face);
+  for (std::size_t a = 0; a < ids.size(); ++a) {
+    const Vec3& x = mesh.nodes[ids[a]];
+    u += from.slope[a][0] * x;
+    v += from.slope[a][1] * x;
+  }
+  const Vec3 by_u = from.weight * v.cross(by_normal);
+  const Vec3 by_v = from.weight * by_normal.cross(u);
+  for (std::size_t a = 0; a < ids.size(); ++a) {
+    gradient[ids[a]] += from.shape[a] * by_position + from.slope[a][0] * by_u +
+                        from.slope[a][1] * by_v;
+  }
+}
+
 }  // namespace meniscus

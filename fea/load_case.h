@@ -15,6 +15,13 @@ namespace meniscus {
 /// finite is refused with the place.
 using NumberOfPlace = std::function<double(const Vec3&)>;
 using VectorOfPlace = std::function<Vec3(const Vec3&)>;
+using MatrixOfPlace = std::function<Mat3(const Vec3&)>;
+
+/// A field and, needed for derivatives only, its gradient [value/length].
+struct SlopedField {
+  NumberOfPlace value;
+  VectorOfPlace slope;
+};
 
 enum class SupportKind {
   Components,  // those that are fixed, along x, y, z or the support's axes
@@ -61,6 +68,7 @@ struct SurfacePressure {
   std::string surface;
   double pressure = 0.0;
   NumberOfPlace field;  // instead of `pressure`, where it is set
+  VectorOfPlace slope;  // the field's gradient, for derivatives only
 };
 
 /// Force per area of a surface [pressure].
@@ -68,6 +76,7 @@ struct SurfaceTraction {
   std::string surface;
   Vec3 traction = Vec3::Zero();
   VectorOfPlace field;  // instead of `traction`, where it is set
+  MatrixOfPlace slope;  // dt_i/dx_j of the field, for derivatives only
 };
 
 /// A force at a point and a moment, carried by a surface without stiffening it:
@@ -93,6 +102,7 @@ struct Temperature {
   double value = 0.0;
   NumberOfPlace field;  // instead of `value`, where it is set
   double reference = 0.0;
+  VectorOfPlace slope;  // the field's gradient, for derivatives only
 };
 
 struct LoadCase {

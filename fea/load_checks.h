@@ -14,6 +14,7 @@ namespace meniscus {
 
 inline bool is_finite(double value) { return std::isfinite(value); }
 inline bool is_finite(const Vec3& value) { return value.allFinite(); }
+inline bool is_finite(const Mat3& value) { return value.allFinite(); }
 
 /// Throws InvalidInput for a number or vector that is not finite. `what`:
 /// "the pressure on surface 'lid'".
@@ -44,6 +45,19 @@ auto field_value(const Field& field, const Vec3& x, const LoadCase& load_case,
   } catch (const ExpressionError& error) {
     refuse(fmt::format("has no value: {}", error.what()));
     throw;
+  }
+}
+
+/// Throws InvalidInput where derivatives need a field's gradient that was not
+/// given.
+template <class Field>
+void require_slope(const Field& slope, const LoadCase& load_case,
+                   const std::string& what) {
+  if (!slope) {
+    throw InvalidInput(fmt::format(
+        "load case '{}': {} is a field without a slope; derivatives by the "
+        "shape need its gradient",
+        load_case.name, what));
   }
 }
 

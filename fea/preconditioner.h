@@ -24,6 +24,10 @@ class Preconditioner {
 /// Up to this many free unknowns a direct factor is as quick as multigrid.
 inline constexpr int kFactorUnknowns = 1000;
 
+/// Up to this many a factor in double precision (a minute, 2 GB) is tried where
+/// multigrid, in single precision, finds a matrix not positive definite.
+inline constexpr int kSecondChance = 200000;
+
 /// The Cholesky factor of the matrix itself.
 std::unique_ptr<Preconditioner> make_direct(const BlockPattern& pattern,
                                             const BlockMatrix<double>& matrix,

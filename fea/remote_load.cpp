@@ -15,17 +15,17 @@ constexpr double kLine = 1e-9;
 
 }  // namespace
 
-Points remote_forces(const TetMesh& mesh, const SurfaceWeights& weights,
-                     const RemoteLoad& load) {
-  const double area = weights.weights.sum();
-  Vec3 centre = Vec3::Zero();
+RemoteMoments remote_moments(const TetMesh& mesh, const SurfaceWeights& weights,
+                             const std::string& surface) {
+  RemoteMoments result;
+  result.area = weights.weights.sum();
   for (std::size_t k = 0; k < weights.nodes.size(); ++k) {
-    centre += weights.weights[static_cast<Eigen::Index>(k)] / area *
-              mesh.nodes[weights.nodes[k]];
+    result.centre += weights.weights[static_cast<Eigen::Index>(k)] /
+                     result.area * mesh.nodes[weights.nodes[k]];
   }
   Mat3 inertia = Mat3::Zero();
   for (std::size_t k = 0; k < weights.nodes.size(); ++k) {
-    const Vec3 d = mesh.nodes[weights.nodes[k]] - centre;
+    const Vec3 d = mesh.nodes[weights.nodes[k]] - result.centre;
     inertia += weights.weights[static_cast<Eigen::Index>(k)] *
                (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
   }
@@ -34,18 +34,26 @@ Points remote_forces(const TetMesh& mesh, const SurfaceWeights& weights,
     throw InvalidInput(fmt::format(
         "surface '{}': its nodes lie on a line and cannot carry the moment of "
         "a remote load",
-        load.surface));
+        surface));
   }
-  const Vec3 moment = load.moment + (load.point - centre).cross(load.force);
+  result.inverse = eigen.eigenvectors() *
+                   eigen.eigenvalues().cwiseInverse().asDiagonal() *
+                   eigen.eigenvectors().transpose();
+  return result;
+}
+
+Points remote_forces(const TetMesh& mesh, const SurfaceWeights& weights,
+                     const RemoteLoad& load) {
+  const RemoteMoments moments = remote_moments(mesh, weights, load.surface);
   const Vec3 turn =
-      eigen.eigenvectors() * (eigen.eigenvectors().transpose() * moment)
-                                 .cwiseQuotient(eigen.eigenvalues());
+      moments.inverse *
+      (load.moment + (load.point - moments.centre).cross(load.force));
   Points forces;
   forces.reserve(weights.nodes.size());
   for (std::size_t k = 0; k < weights.nodes.size(); ++k) {
-    const Vec3 d = mesh.nodes[weights.nodes[k]] - centre;
+    const Vec3 d = mesh.nodes[weights.nodes[k]] - moments.centre;
     forces.emplace_back(weights.weights[static_cast<Eigen::Index>(k)] *
-                        (load.force / area + turn.cross(d)));
+                        (load.force / moments.area + turn.cross(d)));
   }
   return forces;
 }

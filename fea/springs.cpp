@@ -20,12 +20,6 @@ namespace {
 
 using RowMat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// A bed's stiffness per area: `tensor` + normal n n^T.
-struct BedStiffness {
-  Mat3 tensor = Mat3::Zero();
-  double normal = 0.0;
-};
-
 void check(const SpringBed& bed, const LoadCase& load_case) {
   const auto refuse = [&](const std::string& what) {
     throw InvalidInput(fmt::format("load case '{}': springs on '{}' {}",
@@ -49,14 +43,6 @@ void check(const SpringBed& bed, const LoadCase& load_case) {
   }
 }
 
-BedStiffness stiffness_of(const TetMesh& mesh, const SpringBed& bed) {
-  const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
-  const double area = surface_weights(mesh, bed.surface).weights.sum();
-  const double scale = bed.measure == SpringMeasure::Total ? 1.0 / area : 1.0;
-  return {scale * axes * bed.components.asDiagonal() * axes.transpose(),
-          scale * bed.normal};
-}
-
 struct Entry {
   std::array<int, 2> at;
   Mat3 block;
@@ -64,7 +50,7 @@ struct Entry {
 
 void add_bed(const TetMesh& mesh, const SpringBed& bed, int order,
              std::vector<Entry>& entries) {
-  const BedStiffness stiffness = stiffness_of(mesh, bed);
+  const BedStiffness stiffness = bed_stiffness_of(mesh, bed);
   const int label = surface_label(mesh, bed.surface);
   const FaceQuadrature quadrature(order, FaceRule::Seven);
   const int count = order == 1 ? 3 : 6;
@@ -138,6 +124,14 @@ SpringSet spring_set(const TetMesh& mesh, const SpringBed& bed,
 }
 
 }  // namespace
+
+BedStiffness bed_stiffness_of(const TetMesh& mesh, const SpringBed& bed) {
+  const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
+  const double area = surface_weights(mesh, bed.surface).weights.sum();
+  const double scale = bed.measure == SpringMeasure::Total ? 1.0 / area : 1.0;
+  return {scale * axes * bed.components.asDiagonal() * axes.transpose(),
+          scale * bed.normal};
+}
 
 std::vector<SpringSet> spring_sets(const TetMesh& mesh,
                                    const LoadCase& load_case) {

@@ -28,7 +28,14 @@ struct SpringBlocks {
 SpringBlocks spring_blocks(const TetMesh& mesh, const LoadCase& load_case,
                            int order);
 
-/// The same with nodes renumbered.
+/// A bed's stiffness per area: `tensor` + normal n n^T [pressure/length].
+struct BedStiffness {
+  Mat3 tensor = Mat3::Zero();
+  double normal = 0.0;
+};
+BedStiffness bed_stiffness_of(const TetMesh& mesh, const SpringBed& bed);
+
+/// The blocks with nodes renumbered.
 SpringBlocks renumbered(const SpringBlocks& springs,
                         const std::vector<int>& number);
 

@@ -60,46 +60,59 @@ void add_normals(const TetMesh& mesh, const Support& support,
   }
 }
 
-/// Onto what is across the directions [first, last), taken in their order.
-Mat3 projector_across(const HeldDirection* first, const HeldDirection* last) {
-  std::array<Vec3, 3> span;
-  int rank = 0;
-  double least = 0.0;
-  for (; first != last && rank < 3; ++first) {
-    least = std::max(least, first->uncertainty);
-    Vec3 rest = first->direction;
-    for (int k = 0; k < rank; ++k) {
-      rest -= span[k].dot(rest) * span[k];
-    }
-    if (rest.norm() > least) {
-      span[rank++] = rest.normalized();
-    }
-  }
-  if (rank == 3) {
+/// Onto what is across the directions.
+Mat3 projector_across(const HeldSpan& span) {
+  if (span.rank == 3) {
     return Mat3::Zero();
   }
   Mat3 projector = Mat3::Identity();
-  for (int k = 0; k < rank; ++k) {
-    projector -= span[k] * span[k].transpose();
+  for (int k = 0; k < span.rank; ++k) {
+    projector -= span.unit[k] * span.unit[k].transpose();
   }
   return projector;
 }
 
 }  // namespace
 
+HeldSpan held_span(const HeldDirection* first, const HeldDirection* last) {
+  HeldSpan span;
+  double least = 0.0;
+  for (const HeldDirection* at = first; at != last && span.rank < 3; ++at) {
+    least = std::max(least, at->uncertainty);
+    Vec3 rest = at->direction;
+    for (int k = 0; k < span.rank; ++k) {
+      rest -= span.unit[k].dot(rest) * span.unit[k];
+    }
+    if (rest.norm() > least) {
+      span.index[span.rank] = static_cast<int>(at - first);
+      span.unit[span.rank++] = rest.normalized();
+    }
+  }
+  return span;
+}
+
 std::vector<HeldDirection> held_directions(const TetMesh& mesh,
                                            const LoadCase& load_case) {
   std::vector<HeldDirection> held;
-  for (const Support& support : load_case.supports) {
-    if (support.kind == SupportKind::Components) {
-      add_components(mesh, support, load_case, held);
+  const auto add = [&](bool components) {
+    for (std::size_t s = 0; s < load_case.supports.size(); ++s) {
+      const Support& support = load_case.supports[s];
+      const std::size_t first = held.size();
+      if ((support.kind == SupportKind::Components) != components) {
+        continue;
+      }
+      if (components) {
+        add_components(mesh, support, load_case, held);
+      } else {
+        add_normals(mesh, support, held);
+      }
+      for (std::size_t k = first; k < held.size(); ++k) {
+        held[k].support = static_cast<int>(s);
+      }
     }
-  }
-  for (const Support& support : load_case.supports) {
-    if (support.kind != SupportKind::Components) {
-      add_normals(mesh, support, held);
-    }
-  }
+  };
+  add(true);
+  add(false);
   return held;
 }
 
@@ -116,7 +129,7 @@ NodeFreedom node_freedom(const TetMesh& mesh, std::vector<HeldDirection> held) {
     }
     freedom.held.push_back(held[k].node);
     freedom.projector.push_back(
-        projector_across(held.data() + k, held.data() + end));
+        projector_across(held_span(held.data() + k, held.data() + end)));
     k = end;
   }
   return freedom;

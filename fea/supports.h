@@ -1,6 +1,7 @@
 /// What supports leave free.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/tet_mesh.h"
@@ -15,6 +16,7 @@ struct HeldDirection {
   Vec3 direction;      // unit
   double uncertainty;  // kExactDirection; of normals twice what the facets'
                        // normals around the node differ by, if more
+  int support = -1;    // index in the load case; -1: a spring's
 };
 inline constexpr double kExactDirection = 1e-6;
 
@@ -23,6 +25,15 @@ inline constexpr double kExactDirection = 1e-6;
 /// axes that span none.
 std::vector<HeldDirection> held_directions(const TetMesh& mesh,
                                            const LoadCase& load_case);
+
+/// Which of the directions of one node, taken in their order, it is held along,
+/// and what they span.
+struct HeldSpan {
+  int rank = 0;
+  std::array<int, 3> index{};  // among the directions
+  std::array<Vec3, 3> unit;    // orthonormal
+};
+HeldSpan held_span(const HeldDirection* first, const HeldDirection* last);
 
 /// Projectors onto the free directions of the nodes that are held, in the
 /// mesh's numbering. A node is held along the span of its directions, taken in

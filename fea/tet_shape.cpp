@@ -15,21 +15,6 @@ const Vec3& slope(int corner) {
   return kSlopes[corner];
 }
 
-template <int Nodes>
-std::array<Vec3, Nodes> slopes(const Barycentric& L) {
-  std::array<Vec3, Nodes> d;
-  for (int c = 0; c < 4; ++c) {
-    d[c] = slope(c) * (Nodes == 4 ? 1.0 : 4.0 * L[c] - 1.0);
-  }
-  if constexpr (Nodes == 10) {
-    for (int m = 0; m < 6; ++m) {
-      const auto [a, b] = kTetEdges[m];
-      d[4 + m] = 4.0 * (L[a] * slope(b) + L[b] * slope(a));
-    }
-  }
-  return d;
-}
-
 std::array<TetRulePoint, 14> make_fine_rule() {
   constexpr double kInner = 0.31088591926330060980;
   constexpr double kOuter = 0.092735250310891226402;
@@ -73,10 +58,25 @@ const std::array<TetRulePoint, 14>& fine_tet_rule() {
 }
 
 template <int Nodes>
+std::array<Vec3, Nodes> tet_slopes_at(const Barycentric& L) {
+  std::array<Vec3, Nodes> d;
+  for (int c = 0; c < 4; ++c) {
+    d[c] = slope(c) * (Nodes == 4 ? 1.0 : 4.0 * L[c] - 1.0);
+  }
+  if constexpr (Nodes == 10) {
+    for (int m = 0; m < 6; ++m) {
+      const auto [a, b] = kTetEdges[m];
+      d[4 + m] = 4.0 * (L[a] * slope(b) + L[b] * slope(a));
+    }
+  }
+  return d;
+}
+
+template <int Nodes>
 GradientAt<Nodes> gradient_at(const std::array<Vec3, Nodes>& x,
                               const std::array<Vec3, Nodes>& u,
                               const Barycentric& L) {
-  const std::array<Vec3, Nodes> d = slopes<Nodes>(L);
+  const std::array<Vec3, Nodes> d = tet_slopes_at<Nodes>(L);
   Mat3 J = Mat3::Zero();  // dx_i / dxi_j
   Mat3 U = Mat3::Zero();
   for (int a = 0; a < Nodes; ++a) {
@@ -88,6 +88,8 @@ GradientAt<Nodes> gradient_at(const std::array<Vec3, Nodes>& x,
 
 template std::array<double, 4> tet_shapes<4>(const Barycentric&);
 template std::array<double, 10> tet_shapes<10>(const Barycentric&);
+template std::array<Vec3, 4> tet_slopes_at<4>(const Barycentric&);
+template std::array<Vec3, 10> tet_slopes_at<10>(const Barycentric&);
 template GradientAt<4> gradient_at<4>(const std::array<Vec3, 4>&,
                                       const std::array<Vec3, 4>&,
                                       const Barycentric&);

@@ -15,6 +15,10 @@ using Barycentric = std::array<double, 4>;
 template <int Nodes>
 std::array<double, Nodes> tet_shapes(const Barycentric& L);
 
+/// Their derivatives by the reference coordinates (L1, L2, L3).
+template <int Nodes>
+std::array<Vec3, Nodes> tet_slopes_at(const Barycentric& L);
+
 /// Point q of the stiffness rule.
 template <int Nodes>
 Barycentric rule_point(int q) {

@@ -1,0 +1,22 @@
+/// Where the part's surface lies, as functionals (functional.h).
+#pragma once
+
+#include "core/tet_mesh.h"
+#include "fea/functional.h"
+#include "fea/load_case.h"
+
+namespace meniscus {
+
+/// Smooth largest value over the nodes of the outer surface of a level set
+/// that is positive in a region to keep out of, and measures the distance from
+/// its border there (to keep within a region: negative inside):
+///   (1/k) ln sum exp(k level(x_i)) [length],
+/// Kreisselmeier and Steinhauser's; above the largest by no more than
+/// ln(nodes) / k. `sharpness` k > 0 [1/length]. Throws InvalidInput for a
+/// sharpness that is not positive, a mesh without faces, a level set without a
+/// finite value or, for derivatives, without a slope.
+Functional intrusion_functional(const TetMesh& mesh, const SlopedField& level,
+                                double sharpness,
+                                Derivatives derivatives = Derivatives::All);
+
+}  // namespace meniscus

@@ -1,0 +1,33 @@
+/// Quadrature rules of a tetrahedron with its shape functions tabulated.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace meniscus {
+
+/// Points in a tetrahedron and what they weigh of the reference determinant.
+template <int Nodes>
+struct TetRule {
+  struct Point {
+    Eigen::Matrix<double, Nodes, 3> slopes;  // by L1, L2, L3
+    std::array<double, Nodes> shape;
+    double weight;
+  };
+  std::vector<Point> points;
+};
+
+/// The stiffness rule.
+template <int Nodes>
+const TetRule<Nodes>& stiffness_rule();
+
+/// Exact for the volume of curved elements, and of degree five: exact for
+/// their moments.
+template <int Nodes>
+const TetRule<Nodes>& volume_rule();
+template <int Nodes>
+const TetRule<Nodes>& moment_rule();
+
+}  // namespace meniscus

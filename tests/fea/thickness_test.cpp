@@ -1,0 +1,74 @@
+#include "fea/thickness.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/fea/derivatives.h"
+#include "tests/fea/gradient_parts.h"
+
+namespace meniscus {
+namespace {
+
+constexpr double kRounding = 1e-12;
+
+/// The bounds of a smooth minimum.
+void expect_least(const TetMesh& mesh, double exact, double error) {
+  const ThicknessPairs pairs = thickness_pairs(mesh);
+  constexpr double kSharpness = 400.0;
+  const double value = thickness_functional(mesh, pairs, kSharpness).value;
+  EXPECT_LE(value, exact + error);
+  EXPECT_GE(value,
+            exact - error - std::log(1.0 * pairs.faces.size()) / kSharpness);
+}
+
+class Thickness : public testing::TestWithParam<int> {
+ protected:
+  static TetMesh of_order(const TetMesh& mesh) {
+    return GetParam() == 1 ? mesh : shapes::straight_quadratic(mesh);
+  }
+};
+
+TEST_P(Thickness, OfAPlateIsExact) {
+  expect_least(of_order(shapes::brick({2.0, 1.0, 0.2}, 7, 3, 2)), 0.2,
+               kRounding);
+}
+
+/// A wall of thickness 1 between radii 1 and 2, as thick as its height is.
+TEST_P(Thickness, OfACurvedWallConvergesAtSecondOrder) {
+  double before = 0.0;
+  for (const int n : {2, 4}) {
+    TetMesh mesh = shapes::brick({1.0, 1.5, 4.0}, n, 3 * n, 4);
+    for (Vec3& x : mesh.nodes) {
+      const double r = 1.0 + x.x();
+      x = Vec3(r * std::cos(x.y()), r * std::sin(x.y()), x.z());
+    }
+    mesh = of_order(mesh);
+    const ThicknessPairs pairs = thickness_pairs(mesh);
+    // So sharp that the logarithm counts little.
+    const double error =
+        std::abs(thickness_functional(mesh, pairs, 1e5).value - 1.0);
+    EXPECT_LE(error, 0.1 / (n * n));
+    if (before > 0.0) {
+      EXPECT_GE(before / error, 2.5);
+    }
+    before = error;
+  }
+}
+
+TEST_P(Thickness, HasDerivatives) {
+  const TetMesh mesh = gradient_parts::block(GetParam());
+  const ThicknessPairs pairs = thickness_pairs(mesh);
+  derivatives::expect_partials(
+      mesh, VectorX::Zero(static_cast<Eigen::Index>(3 * mesh.nodes.size())),
+      [&](const TetMesh& at, const VectorX&) {
+        return thickness_functional(at, pairs, 30.0);
+      });
+  EXPECT_THROW(thickness_functional(mesh, pairs, -1.0), InvalidInput);
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, Thickness, testing::Values(1, 2));
+
+}  // namespace
+}  // namespace meniscus
