@@ -183,6 +183,8 @@ const char* name_of(EvaluationPhase phase) {
       return "difference";
     case EvaluationPhase::Step:
       return "step";
+    case EvaluationPhase::Gradient:
+      return "gradient";
   }
   return "unknown";
 }
@@ -197,6 +199,12 @@ const char* name_of(Termination termination) {
       return "at_bound";
     case Termination::NoFeasible:
       return "no_feasible";
+    case Termination::Infeasible:
+      return "infeasible";
+    case Termination::Constant:
+      return "constant";
+    case Termination::NoFreedom:
+      return "no_freedom";
     case Termination::LimitReached:
       return "limit_reached";
   }
