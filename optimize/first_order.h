@@ -33,9 +33,9 @@ struct FirstOrderReport {
   double stationarity = 0.0;     // its first part
   double complementarity = 0.0;  // its second part
   double violation = 0.0;        // largest, in constraint scales
-  /// Of each constraint, d objective / d bound x (-1) at an upper bound:
-  /// positive when the upper bound holds the objective up, negative when the
-  /// lower one does [objective's unit / constraint's unit].
+  /// m of grad f + sum m_i grad c_i = 0 for the constraints: positive where an
+  /// upper bound holds the objective up, negative where a lower one does;
+  /// d minimum / d bound = -m [objective's unit / constraint's unit].
   VectorX multipliers;
   /// The same for the variables' bounds.
   VectorX bound_multipliers;

@@ -63,8 +63,7 @@ struct ConstraintState {
   double upper = 0.0;
   double violation = 0.0;  // [scales], 0 when kept
   bool satisfied = false;  // violation <= feasibility_tolerance
-  /// d objective / d bound, sign as in FirstOrderReport; NaN when no
-  /// derivatives are known.
+  /// As in FirstOrderReport; NaN when no derivatives are known.
   double multiplier = std::numeric_limits<double>::quiet_NaN();
 };
 
