@@ -166,7 +166,7 @@ FirstOrderReport first_order(const FirstOrderInput& input) {
   const VectorX gradient =
       input.jacobian.row(0).transpose().cwiseProduct(ranges);
   const double steepest = n == 0 ? 0.0 : gradient.cwiseAbs().maxCoeff();
-  double unit = std::max(input.objective_scale, steepest);
+  double unit = input.objective_scale > 0.0 ? input.objective_scale : steepest;
   unit = unit > 0.0 ? unit : 1.0;
 
   const std::vector<Side> sides = sides_of(input, ranges);

@@ -16,8 +16,8 @@ struct FirstOrderInput {
   VectorX constraint_lower;  // may be -infinity
   VectorX constraint_upper;  // may be +infinity
   VectorX constraint_scale;  // what counts as one unit of violation, > 0
-  /// What counts as one unit of objective: the larger of this and of the
-  /// objective's largest change |d f / d x_j| (upper_j - lower_j).
+  /// What counts as one unit of objective, > 0; 0: its largest change
+  /// |d f / d x_j| (upper_j - lower_j).
   double objective_scale = 0.0;
 };
 

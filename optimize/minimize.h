@@ -71,7 +71,8 @@ struct MinimizeReport {
   Termination termination = Termination::Stalled;
   std::string message;  // why it stopped, in words, with figures
   /// The incumbent, kept by us: the least objective among the points that keep
-  /// every constraint, else the one that violates them least.
+  /// every constraint (a converged point goes before one that is better by no
+  /// more than 10 tolerances), else the one that violates them least.
   VectorX best;
   VectorX values;  // at `best`: objective, constraints
   double objective = 0.0;

@@ -13,6 +13,8 @@ namespace {
 
 // So many missed constraints are named.
 constexpr std::size_t kNamed = 3;
+// A kept constraint this close to its bound, in scales, stands in the way.
+constexpr double kInTheWay = 1e-3;
 
 bool uses_gradients(const std::string& method) {
   const auto& all = minimize_methods();
@@ -78,6 +80,22 @@ std::string missed(const MinimizeReport& report) {
   return text;
 }
 
+// The kept constraints that stand at a bound, in words.
+std::string in_the_way(const MinimizeEvaluator& evaluator,
+                       const MinimizeReport& report) {
+  std::string text;
+  for (const ConstraintSide& side : evaluator.sides()) {
+    const ConstraintState& state =
+        report.constraints[static_cast<std::size_t>(side.row) - 1];
+    if (state.satisfied && side.value(report.values) > -kInTheWay) {
+      text += fmt::format("{}'{}' at its {} bound {:.6g}",
+                          text.empty() ? "" : ", ", state.name,
+                          side.sign > 0.0 ? "upper" : "lower", side.bound);
+    }
+  }
+  return text;
+}
+
 std::string figures(const MinimizeEvaluator& evaluator,
                     const MinimizeReport& report) {
   std::string text = fmt::format(
@@ -98,14 +116,15 @@ std::string figures(const MinimizeEvaluator& evaluator,
 void conclude_infeasible(const MinimizeEvaluator& evaluator,
                          MinimizeReport& report) {
   const std::string bounds = evaluator.bounds_reached(report.best);
+  std::string stands = in_the_way(evaluator, report);
+  stands += (stands.empty() || bounds.empty() ? "" : ", ") + bounds;
   report.termination = Termination::Infeasible;
   report.message = fmt::format(
       "no design was found that keeps every constraint: at the nearest one, "
-      "{}, {}{}{}. Loosen what is missed, widen the bounds{}, or free another "
-      "variable ({} evaluations{})",
+      "{}, {}{}{}. Loosen one of these, widen the variables' bounds, or free "
+      "another variable ({} evaluations{})",
       evaluator.describe(report.best), missed(report),
-      bounds.empty() ? "" : "; it stands with ", bounds,
-      bounds.empty() ? "" : " it stands at", report.evaluations,
+      stands.empty() ? "" : "; it stands with ", stands, report.evaluations,
       evaluator.failures());
 }
 

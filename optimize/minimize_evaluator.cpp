@@ -13,6 +13,10 @@ namespace {
 // An objective that had the same bits at this many feasible points, and two
 // more per variable, is taken as constant.
 constexpr int kConstantAnswers = 10;
+// A point that meets the conditions is the answer unless a feasible one is
+// better by more than this x the optimality tolerance x scale: then the
+// function jumps, or it is another minimum's neighbour.
+constexpr double kBetter = 10.0;
 
 void check_positive(const char* name, double value) {
   if (!(value > 0.0)) {
@@ -111,7 +115,11 @@ const MinimizePoint* MinimizeEvaluator::ask_jacobian(const VectorX& x) {
   // Where nothing moves the objective the search has not begun: the caller
   // looks elsewhere before it believes a gradient of exactly zero.
   const bool flat = point->jacobian->row(0).isZero(0.0) && !varies_;
-  if (scaled_ && !flat && keeps_all(point->values) &&
+  const double better =
+      kBetter * options_.optimality_tolerance * objective_scale();
+  const bool least =
+      !best_is_feasible() || point->values[0] <= best_objective_ + better;
+  if (scaled_ && !flat && least && keeps_all(point->values) &&
       conditions(inner, *point).residual <= options_.optimality_tolerance) {
     make_incumbent(inner, point->values);
     set_halt(Halt::Converged);

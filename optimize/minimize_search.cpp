@@ -25,9 +25,11 @@ constexpr int kMostRuns = 40;
 constexpr double kFirstRho = 10.0;
 constexpr double kHalved = 0.5;
 constexpr double kGrowth = 10.0;
-constexpr double kLargestRho = 1e10;
+constexpr double kLargestRho = 1e7;
 constexpr int kMostOuter = 40;
 constexpr double kFirstTolerance = 1e-2;
+// Steep constraints may need finer steps than those asked for.
+constexpr double kFinerSteps = 1e-3;
 
 const NloptTraits& traits_of(const std::string& name) {
   for (const NloptTraits& traits : nlopt_traits()) {
@@ -98,7 +100,7 @@ NloptResult run_lagrangian(MinimizeEvaluator& evaluator,
       break;  // it cannot be kept here
     }
     before = worst;
-    tolerance = std::max(finest, 0.1 * tolerance);
+    tolerance = std::max(kFinerSteps * finest, 0.1 * tolerance);
   }
   result.finished = false;
   return result;

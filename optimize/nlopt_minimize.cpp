@@ -21,6 +21,9 @@ constexpr int kCallsPerEvaluation = 50;
 constexpr int kMoreCalls = 1000;
 // A constraint counts as kept for the library at this part of our tolerance.
 constexpr double kTolerancePart = 0.5;
+// After so many failed points in a row a method that steps back is stopped:
+// a smaller box finds the way sooner than a line search.
+constexpr int kMostFailures = 5;
 // While a global method looks around, an equation is kept within this.
 constexpr double kLooseEquation = 1e-3;
 
@@ -114,6 +117,7 @@ class Run {
   Sides equations_;
   Group inequality_group_;
   Group equation_group_;
+  int failures_ = 0;  // in a row
   double worst_ = -std::numeric_limits<double>::infinity();
 };
 
@@ -124,11 +128,14 @@ const MinimizePoint* Run::at(const double* s, bool derivatives) {
   if (point != nullptr && !point->failure && derivatives) {
     point = evaluator_.linearise(x);
   }
-  if (evaluator_.halted()) {
+  const bool failed = point == nullptr || point->failure;
+  failures_ = failed ? failures_ + 1 : 0;
+  if (evaluator_.halted() ||
+      (traits_.infinite_wall && failures_ > kMostFailures)) {
     optimizer_.force_stop();
     return nullptr;
   }
-  return point == nullptr || point->failure ? nullptr : point;
+  return failed ? nullptr : point;
 }
 
 double Run::wall() const {
@@ -247,7 +254,8 @@ void Run::set_up() {
   optimizer_.set_initial_step(
       to_vector(kFirstStep * (high - low).cwiseQuotient(units_)));
   const bool gradients = traits_.method.gradients;
-  const double step = gradients ? kGradientStep : task_.step_tolerance;
+  const double step =
+      gradients && lagrangian_.empty() ? kGradientStep : task_.step_tolerance;
   optimizer_.set_xtol_abs(
       to_vector(step * evaluator_.ranges().cwiseQuotient(units_)));
   if (gradients) {
@@ -273,7 +281,7 @@ NloptResult Run::go() {
         : code == nlopt::XTOL_REACHED ? "the steps are too small to matter"
                                       : "the method ended by itself";
   } catch (const nlopt::forced_stop&) {
-    result.message = "stopped";
+    result.message = "only designs that cannot be evaluated lie ahead";
   } catch (const nlopt::roundoff_limited&) {
     result.message = "rounding limits further progress";
   } catch (const std::exception& error) {
