@@ -12,22 +12,30 @@ namespace {
 // is polished by a local one.
 constexpr double kGlobalPart = 0.75;
 // What counts as a gain between two runs, x the objective's scale, or as part
-// of the violation.
-constexpr double kGain = 1e-8;
+// of the violation. Near a minimum the objective errs by the square of the
+// first-order residual.
+constexpr double kGain = 1e-12;
 constexpr double kViolationGain = 0.01;
 // A run that did not help, or met points that fail, is followed by one in a
 // box this much smaller, down to the smallest.
 constexpr double kShrink = 0.25;
 constexpr double kSmallestRadius = 1e-4;
 constexpr int kMostRuns = 40;
+// The first step of a method that has to choose one, x its box; in later
+// minimisations of an augmented Lagrangian, x the tolerance.
+constexpr double kFirstStep = 0.1;
+constexpr double kWarmStep = 30.0;
 // Augmented Lagrangian (E. G. Birgin, J. M. Martinez, Practical Augmented
-// Lagrangian Methods, 2014): the violation has to halve, or rho grows.
+// Lagrangian Methods, 2014): the violation has to fall to a part, or rho grows.
 constexpr double kFirstRho = 10.0;
-constexpr double kHalved = 0.5;
+constexpr double kFallen = 0.5;
 constexpr double kGrowth = 10.0;
 constexpr double kLargestRho = 1e7;
 constexpr int kMostOuter = 40;
 constexpr double kFirstTolerance = 1e-2;
+constexpr double kRestartRho = 1e4;
+// Steps as fine as the constraints are kept are fine enough.
+constexpr double kStepsPerViolation = 0.1;
 // Steep constraints may need finer steps than those asked for.
 constexpr double kFinerSteps = 1e-3;
 
@@ -67,16 +75,22 @@ double update(const MinimizeEvaluator& evaluator, const NloptTraits& traits,
   return worst;
 }
 
+// Leaves its multipliers and rho in the task.
 NloptResult run_lagrangian(MinimizeEvaluator& evaluator,
-                           const NloptTraits& traits, NloptTask task) {
-  const double finest = task.step_tolerance;
+                           const NloptTraits& traits, NloptTask& task) {
+  const double finest = evaluator.options().step_tolerance;
   const double target = 0.5 * evaluator.options().feasibility_tolerance;
   double before = std::numeric_limits<double>::infinity();
-  double tolerance = std::max(finest, kFirstTolerance);
+  // Multipliers of an earlier run are near: what is left is precision.
+  double tolerance = task.multipliers.isZero(0.0)
+                         ? std::max(finest, kFirstTolerance)
+                         : kFinerSteps * finest;
+  task.rho = std::min(task.rho, kRestartRho);
   NloptResult result;
-  task.rho = kFirstRho;
   for (int outer = 0; outer < kMostOuter; ++outer) {
     task.step_tolerance = tolerance;
+    task.first_step =
+        outer == 0 ? kFirstStep : std::min(kFirstStep, kWarmStep * tolerance);
     const int iterations = result.iterations;
     result = run_nlopt(evaluator, traits, task);
     result.iterations += iterations;
@@ -93,29 +107,35 @@ NloptResult run_lagrangian(MinimizeEvaluator& evaluator,
     if (worst <= target && tolerance <= finest) {
       return result;
     }
-    if (worst > std::max(target, kHalved * before)) {
+    if (worst > std::max(target, kFallen * before)) {
       task.rho *= kGrowth;
     }
     if (task.rho > kLargestRho) {
       break;  // it cannot be kept here
     }
     before = worst;
-    tolerance = std::max(kFinerSteps * finest, 0.1 * tolerance);
+    tolerance =
+        std::clamp(kStepsPerViolation * worst, kFinerSteps * finest, tolerance);
   }
   result.finished = false;
   return result;
 }
 
 NloptResult run(MinimizeEvaluator& evaluator, const NloptTraits& traits,
-                const VectorX& start, double radius) {
-  NloptTask task{.start = start,
-                 .radius = radius,
-                 .step_tolerance = evaluator.options().step_tolerance,
-                 .multipliers = VectorX::Zero(
-                     static_cast<Eigen::Index>(evaluator.sides().size()))};
+                NloptTask& task) {
+  task.step_tolerance = evaluator.options().step_tolerance;
+  task.first_step = kFirstStep;
   return uses_lagrangian(evaluator, traits)
-             ? run_lagrangian(evaluator, traits, std::move(task))
+             ? run_lagrangian(evaluator, traits, task)
              : run_nlopt(evaluator, traits, task);
+}
+
+NloptTask first_task(const MinimizeEvaluator& evaluator, const VectorX& start) {
+  return {.start = start,
+          .radius = 1.0,
+          .rho = kFirstRho,
+          .multipliers = VectorX::Zero(
+              static_cast<Eigen::Index>(evaluator.sides().size()))};
 }
 
 struct Standing {
@@ -142,12 +162,11 @@ bool gained(const Standing& before, const Standing& after, double scale) {
 SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
                           const NloptTraits& traits) {
   SearchResult result;
-  VectorX from = start;
-  double radius = 1.0;
+  NloptTask task = first_task(evaluator, start);
   int idle = 0;
   for (int round = 0; round < kMostRuns; ++round) {
     const Standing before = standing_of(evaluator);
-    const NloptResult last = run(evaluator, traits, from, radius);
+    const NloptResult last = run(evaluator, traits, task);
     result.iterations += last.iterations;
     result.finished = last.finished;
     result.message = last.message;
@@ -161,18 +180,20 @@ SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
     result.walled = after.failed > before.failed;
     // Without derivatives a run that ended by itself is the answer, unless its
     // model was spoilt by points that fail.
-    const bool again = traits.method.gradients || traits.restarts ||
-                       result.walled || !last.finished;
+    const bool restarts =
+        traits.restarts && !uses_lagrangian(evaluator, traits);
+    const bool again =
+        traits.method.gradients || restarts || result.walled || !last.finished;
     idle = gain ? 0 : idle + 1;
     if (!again || idle > 2 || (idle > 1 && !result.walled)) {
       break;
     }
-    radius = result.walled || !gain ? kShrink * radius
-                                    : std::min(1.0, radius / kShrink);
-    if (radius < kSmallestRadius) {
+    task.radius = result.walled || !gain ? kShrink * task.radius
+                                         : std::min(1.0, task.radius / kShrink);
+    if (task.radius < kSmallestRadius) {
       break;
     }
-    from = evaluator.best();
+    task.start = evaluator.best();
   }
   return result;
 }
@@ -188,7 +209,8 @@ SearchResult search(MinimizeEvaluator& evaluator, const VectorX& start,
   const int used = evaluator.evaluations();
   evaluator.begin_stage(
       used + static_cast<int>(kGlobalPart * evaluator.evaluations_left()));
-  const NloptResult wide = run(evaluator, traits, start, 1.0);
+  NloptTask task = first_task(evaluator, start);
+  const NloptResult wide = run(evaluator, traits, task);
   evaluator.end_stage();
   if (evaluator.halted()) {
     return {.iterations = wide.iterations, .message = wide.message};

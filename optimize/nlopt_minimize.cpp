@@ -10,8 +10,6 @@
 namespace meniscus {
 namespace {
 
-// The first step of a method that has to choose one, x its box.
-constexpr double kFirstStep = 0.1;
 // With derivatives the first-order residual ends a search; below these, x
 // range and x objective, there is nothing but rounding.
 constexpr double kGradientStep = 1e-10;
@@ -252,7 +250,7 @@ void Run::set_up() {
   optimizer_.set_lower_bounds(to_vector(low.cwiseQuotient(units_)));
   optimizer_.set_upper_bounds(to_vector(high.cwiseQuotient(units_)));
   optimizer_.set_initial_step(
-      to_vector(kFirstStep * (high - low).cwiseQuotient(units_)));
+      to_vector(task_.first_step * (high - low).cwiseQuotient(units_)));
   const bool gradients = traits_.method.gradients;
   const double step =
       gradients && lagrangian_.empty() ? kGradientStep : task_.step_tolerance;
@@ -275,7 +273,7 @@ NloptResult Run::go() {
     set_up();
     const nlopt::result code = optimizer_.optimize(s, least);
     result.finished =
-        code == nlopt::FTOL_REACHED || code == nlopt::XTOL_REACHED;
+        code != nlopt::MAXEVAL_REACHED && code != nlopt::MAXTIME_REACHED;
     result.message =
         code == nlopt::FTOL_REACHED   ? "the objective no longer changes"
         : code == nlopt::XTOL_REACHED ? "the steps are too small to matter"

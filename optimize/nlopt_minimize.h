@@ -28,9 +28,10 @@ const std::vector<NloptTraits>& nlopt_traits();
 /// rho/2 max(0, g + m/rho)^2, without the max for equations
 /// (R. T. Rockafellar, Math. Program. 5, 1973).
 struct NloptTask {
-  VectorX start;        // has answered
-  double radius = 1.0;  // box about the start, x range
-  double step_tolerance = 1e-6;
+  VectorX start;            // has answered
+  double radius = 1.0;      // box about the start, x range
+  double first_step = 0.1;  // x the box, where the method has to choose one
+  double step_tolerance = 1e-6;  // x range
   double rho = 1.0;
   VectorX multipliers;  // per side
 };

@@ -40,8 +40,8 @@ class WithoutGradients : public EveryProblem {};
 TEST_P(ByGradients, IsSolvedToTheFirstOrderConditions) {
   const StandardProblem known = problem();
   // Separable models creep along a curved valley: thousands of steps.
-  const bool creeps =
-      known.name == "rosenbrock" && method() != std::string("slsqp");
+  const bool creeps = (known.name == "rosenbrock" || known.name == "hs6") &&
+                      method() != std::string("slsqp");
   const double tolerance = creeps ? 1e-3 : 1e-5;
   const MinimizeReport report =
       minimize(known.problem, {.method = method(),
