@@ -16,6 +16,10 @@ constexpr std::size_t kNamed = 3;
 // A kept constraint this close to its bound, in scales, stands in the way.
 constexpr double kInTheWay = 1e-3;
 
+constexpr const char* kWalled =
+    "It stands beside designs that cannot be evaluated: add a constraint (a "
+    "margin to collapse) or a bound that keeps away from them";
+
 bool uses_gradients(const std::string& method) {
   const auto& all = minimize_methods();
   return std::any_of(all.begin(), all.end(), [&](const MinimizeMethod& known) {
@@ -114,7 +118,7 @@ std::string figures(const MinimizeEvaluator& evaluator,
 }
 
 void conclude_infeasible(const MinimizeEvaluator& evaluator,
-                         MinimizeReport& report) {
+                         const SearchResult& search, MinimizeReport& report) {
   const std::string bounds = evaluator.bounds_reached(report.best);
   std::string stands = in_the_way(evaluator, report);
   stands += (stands.empty() || bounds.empty() ? "" : ", ") + bounds;
@@ -126,6 +130,7 @@ void conclude_infeasible(const MinimizeEvaluator& evaluator,
       evaluator.describe(report.best), missed(report),
       stands.empty() ? "" : "; it stands with ", stands, report.evaluations,
       evaluator.failures());
+  report.message += search.walled ? std::string(". ") + kWalled : "";
 }
 
 void conclude_constant(const MinimizeEvaluator& evaluator,
@@ -157,8 +162,7 @@ void conclude_ended(const MinimizeEvaluator& evaluator,
       "no better design found ({}): {}. {}", search.message,
       figures(evaluator, report),
       search.walled
-          ? "It stands beside designs that cannot be evaluated: add a "
-            "constraint or a bound that keeps away from them"
+          ? kWalled
           : "Loosen optimality_tolerance, start elsewhere, or choose another "
             "method");
 }
@@ -187,7 +191,7 @@ void decide(const MinimizeEvaluator& evaluator, const SearchResult& search,
              evaluator.halt() == Halt::Time) {
     conclude_limit(evaluator, report);
   } else if (!report.feasible) {
-    conclude_infeasible(evaluator, report);
+    conclude_infeasible(evaluator, search, report);
   } else {
     conclude_ended(evaluator, search, report);
   }

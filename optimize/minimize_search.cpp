@@ -15,6 +15,7 @@ constexpr double kGlobalPart = 0.75;
 // of the violation. Near a minimum the objective errs by the square of the
 // first-order residual.
 constexpr double kGain = 1e-12;
+constexpr double kWalledGain = 1e-3;  // creeping along a wall is not worth it
 constexpr double kViolationGain = 0.01;
 // A run that did not help, or met points that fail, is followed by one in a
 // box this much smaller, down to the smallest.
@@ -38,6 +39,8 @@ constexpr double kRestartRho = 1e4;
 constexpr double kStepsPerViolation = 0.1;
 // Steep constraints may need finer steps than those asked for.
 constexpr double kFinerSteps = 1e-3;
+
+constexpr const char* kFeeler = "cobyla";
 
 const NloptTraits& traits_of(const std::string& name) {
   for (const NloptTraits& traits : nlopt_traits()) {
@@ -150,12 +153,12 @@ Standing standing_of(const MinimizeEvaluator& evaluator) {
           evaluator.best_objective(), evaluator.failed_evaluations()};
 }
 
-bool gained(const Standing& before, const Standing& after, double scale) {
+bool gained(const Standing& before, const Standing& after, double least) {
   if (after.feasible != before.feasible) {
     return true;
   }
   return after.feasible
-             ? after.objective < before.objective - kGain * scale
+             ? after.objective < before.objective - least
              : after.violation < (1.0 - kViolationGain) * before.violation;
 }
 
@@ -176,8 +179,9 @@ SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
     const Standing after = standing_of(evaluator);
     const double scale =
         std::max(evaluator.objective_scale(), evaluator.objective_unit());
-    const bool gain = gained(before, after, scale);
     result.walled = after.failed > before.failed;
+    const bool gain =
+        gained(before, after, (result.walled ? kWalledGain : kGain) * scale);
     // Without derivatives a run that ended by itself is the answer, unless its
     // model was spoilt by points that fail.
     const bool restarts =
@@ -204,7 +208,15 @@ SearchResult search(MinimizeEvaluator& evaluator, const VectorX& start,
                     const std::string& method) {
   const NloptTraits& traits = traits_of(method);
   if (!traits.method.global) {
-    return local_search(evaluator, start, traits);
+    SearchResult result = local_search(evaluator, start, traits);
+    if (traits.method.gradients && result.walled && !evaluator.halted()) {
+      // A simplex feels its way along a wall that a gradient does not know.
+      const SearchResult more =
+          local_search(evaluator, evaluator.best(), traits_of(kFeeler));
+      result.iterations += more.iterations;
+      result.message = more.message;
+    }
+    return result;
   }
   const int used = evaluator.evaluations();
   evaluator.begin_stage(

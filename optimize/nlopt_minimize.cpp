@@ -19,8 +19,8 @@ constexpr int kCallsPerEvaluation = 50;
 constexpr int kMoreCalls = 1000;
 // A constraint counts as kept for the library at this part of our tolerance.
 constexpr double kTolerancePart = 0.5;
-// After so many failed points in a row a method that steps back is stopped:
-// a smaller box finds the way sooner than a line search.
+// After so many more failed points than others a method that steps back is
+// stopped: a smaller box finds the way sooner than a line search.
 constexpr int kMostFailures = 5;
 // While a global method looks around, an equation is kept within this.
 constexpr double kLooseEquation = 1e-3;
@@ -115,19 +115,22 @@ class Run {
   Sides equations_;
   Group inequality_group_;
   Group equation_group_;
-  int failures_ = 0;  // in a row
+  int failures_ = 0;  // more than answers
   double worst_ = -std::numeric_limits<double>::infinity();
 };
 
 const MinimizePoint* Run::at(const double* s, bool derivatives) {
   const VectorX x =
       Eigen::Map<const VectorX>(s, units_.size()).cwiseProduct(units_);
+  const int evaluations = evaluator_.evaluations();
   const MinimizePoint* point = evaluator_.evaluate(x, EvaluationPhase::Step);
   if (point != nullptr && !point->failure && derivatives) {
     point = evaluator_.linearise(x);
   }
   const bool failed = point == nullptr || point->failure;
-  failures_ = failed ? failures_ + 1 : 0;
+  if (evaluator_.evaluations() > evaluations) {
+    failures_ = std::max(0, failures_ + (failed ? 1 : -1));
+  }
   if (evaluator_.halted() ||
       (traits_.infinite_wall && failures_ > kMostFailures)) {
     optimizer_.force_stop();

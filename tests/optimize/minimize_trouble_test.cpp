@@ -61,7 +61,6 @@ class Trouble : public testing::TestWithParam<const char*> {
     });
   }
   bool global() const { return method().global; }
-  bool gradients() const { return method().gradients; }
 };
 
 TEST_P(Trouble, ARegionThatFailsIsSteppedBackFrom) {
@@ -84,10 +83,9 @@ TEST_P(Trouble, AMinimumBesideAWallIsFoundAndTheWallNamed) {
   const double least = bowl(vector_of({5.0, 3.0 + 0.5 / 6.0}));
   const MinimizeReport report = minimize(problem, options());
   EXPECT_LT(report.best[0], 5.0 + 1e-12);
-  // A gradient cannot slide along a wall that only failures show: it ends
-  // early, far better than the start (39), and says why.
-  EXPECT_LT(report.objective, gradients() ? 8.0 : 1.02 * least)
-      << report.message;
+  // A gradient cannot slide along a wall that only failures show, the simplex
+  // that takes over can.
+  EXPECT_LT(report.objective, 1.02 * least) << report.message;
   EXPECT_GT(report.failed_evaluations, 0);
   EXPECT_THAT(report.message, HasSubstr("could not be evaluated"));
   EXPECT_THAT(report.message, HasSubstr("the neck closes"));
