@@ -22,6 +22,9 @@ constexpr double kTolerancePart = 0.5;
 // After so many more failed points than others a method that steps back is
 // stopped: a smaller box finds the way sooner than a line search.
 constexpr int kMostFailures = 5;
+// A point that fails is this much worse than the worst one of the run, so that
+// models of the function are bent as little as can be.
+constexpr double kWall = 0.01;
 // While a global method looks around, an equation is kept within this.
 constexpr double kLooseEquation = 1e-3;
 
@@ -140,7 +143,8 @@ const MinimizePoint* Run::at(const double* s, bool derivatives) {
 }
 
 double Run::wall() const {
-  return traits_.infinite_wall ? HUGE_VAL : worst_ + 1.0 + std::abs(worst_);
+  return traits_.infinite_wall ? HUGE_VAL
+                               : worst_ + kWall * (1.0 + std::abs(worst_));
 }
 
 VectorX Run::slope(const MinimizePoint& point,
@@ -212,7 +216,7 @@ void Run::constraints(unsigned m, double* result, unsigned n, const double* s,
     std::fill_n(result, m,
                 run.traits_.infinite_wall
                     ? HUGE_VAL
-                    : 1.0 + 2.0 * run.evaluator_.worst_violation());
+                    : kWall + run.evaluator_.worst_violation());
     if (gradient != nullptr) {
       std::fill_n(gradient, std::size_t{m} * n, 0.0);
     }

@@ -85,7 +85,7 @@ TEST_P(Trouble, AMinimumBesideAWallIsFoundAndTheWallNamed) {
   EXPECT_LT(report.best[0], 5.0 + 1e-12);
   // A gradient cannot slide along a wall that only failures show, the simplex
   // that takes over can.
-  EXPECT_LT(report.objective, 1.02 * least) << report.message;
+  EXPECT_LT(report.objective, 1.05 * least) << report.message;
   EXPECT_GT(report.failed_evaluations, 0);
   EXPECT_THAT(report.message, HasSubstr("could not be evaluated"));
   EXPECT_THAT(report.message, HasSubstr("the neck closes"));
