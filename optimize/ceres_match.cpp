@@ -1,9 +1,10 @@
 #include "optimize/ceres_match.h"
 
-#include <array>
 #include <limits>
 
 #include <ceres/ceres.h>
+
+#include "optimize/differences.h"
 
 namespace meniscus {
 namespace {
@@ -69,9 +70,7 @@ class MatchCost : public ceres::CostFunction {
   }
 
   const Linearisation& last() const { return last_; }
-  bool finished() const {
-    return secant_failed_ || evaluator_.halt() != MatchEvaluator::Halt::None;
-  }
+  bool finished() const { return secant_failed_ || evaluator_.halted(); }
 
  private:
   // False for a point that is worse although the updated Jacobian promised
@@ -90,19 +89,20 @@ class MatchCost : public ceres::CostFunction {
       return true;
     }
     Linearisation next{x, answer.residuals, {}, false};
-    if (answer.jacobian) {
-      next.jacobian = *answer.jacobian;
+    if (const Eigen::MatrixXd* own = evaluator_.jacobian(x)) {
+      next.jacobian = *own;
     } else if (last_.x.size() > 0 &&
                answer.residuals.norm() <= kGoodStep * last_.residuals.norm()) {
       next.jacobian = updated(x, answer.residuals);
       next.secant = true;
     } else {
-      next.jacobian.setZero(answer.residuals.size(), x.size());
-      for (Eigen::Index j = 0; j < x.size(); ++j) {
-        if (!difference(x, answer.residuals, j, next.jacobian)) {
-          return false;
-        }
+      std::optional<Eigen::MatrixXd> differences = one_sided_differences(
+          evaluator_, x, answer.residuals,
+          [this](const VectorX& at) { return neighbour(at); });
+      if (!differences) {
+        return false;
       }
+      next.jacobian = std::move(*differences);
     }
     last_ = std::move(next);
     return true;
@@ -117,35 +117,13 @@ class MatchCost : public ceres::CostFunction {
     return last_.jacobian + error * dual.transpose() / dual.dot(step);
   }
 
-  // Column j by a one-sided difference, forward unless that leaves the bounds;
-  // when the neighbour fails, the other side, then nearer ones; zero (the
-  // variable rests during this step) when all fail. False once halted.
-  bool difference(const VectorX& x, const VectorX& residuals, Eigen::Index j,
-                  Eigen::MatrixXd& jacobian) const {
-    const double step =
-        evaluator_.options().difference_step * evaluator_.ranges()[j];
-    const Variable& variable =
-        evaluator_.variables()[static_cast<std::size_t>(j)];
-    const double side = x[j] + step <= variable.upper ? step : -step;
-    const std::array<double, 4> tries = {side, -side, 0.1 * side, -0.1 * side};
-    for (const double h : tries) {
-      VectorX neighbour = x;
-      neighbour[j] += h;
-      if (neighbour[j] < variable.lower || neighbour[j] > variable.upper) {
-        continue;
-      }
-      const ResidualAnswer* answer =
-          evaluator_.evaluate(neighbour, EvaluationPhase::Difference);
-      if (answer == nullptr) {
-        return false;
-      }
-      if (!answer->failure) {
-        jacobian.col(j) =
-            (answer->residuals - residuals) / (neighbour[j] - x[j]);
-        return true;
-      }
+  Neighbour neighbour(const VectorX& x) const {
+    const ResidualAnswer* answer =
+        evaluator_.evaluate(x, EvaluationPhase::Difference);
+    if (answer == nullptr) {
+      return {.halted = true};
     }
-    return true;
+    return {.values = answer->failure ? nullptr : &answer->residuals};
   }
 
   MatchEvaluator& evaluator_;
@@ -238,8 +216,7 @@ BackendResult ceres_match(MatchEvaluator& evaluator, const VectorX& start) {
     result.iterations += summary.num_successful_steps;
     result.jacobian = cost.last().jacobian;
     result.message = words(summary.termination_type);
-    again =
-        evaluator.halt() == MatchEvaluator::Halt::None && cost.last().secant;
+    again = !evaluator.halted() && cost.last().secant;
     x = evaluator.best();
   }
   return result;

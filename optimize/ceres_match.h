@@ -12,10 +12,10 @@ struct BackendResult {
 };
 
 /// Runs until the evaluator halts or Ceres finds nothing better. `start` must
-/// have been evaluated with success. Derivatives: the function's own, else
-/// forward differences, kept up between them by Broyden's rank-one update
-/// (C. G. Broyden, Math. Comp. 19, 1965) as long as a step reduces the
-/// residual well.
+/// have been evaluated with success. Derivatives: the caller's own, asked at
+/// accepted points only, else forward differences, kept up between them by
+/// Broyden's rank-one update (C. G. Broyden, Math. Comp. 19, 1965) as long as a
+/// step reduces the residual well.
 BackendResult ceres_match(MatchEvaluator& evaluator, const VectorX& start);
 
 }  // namespace meniscus

@@ -11,12 +11,6 @@
 
 namespace meniscus {
 
-struct VectorAnswer {
-  VectorX values;  // one per response
-  std::optional<Failure> failure;
-};
-using VectorFunction = std::function<VectorAnswer(const VectorX& x)>;
-
 struct GradientCheckOptions {
   /// Steps of the sweep x (upper - lower), from large to small; at least two.
   std::vector<double> steps = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5};

@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include "optimize/ceres_match.h"
+#include "optimize/first_start.h"
+#include "optimize/free_variables.h"
 #include "optimize/nlopt_match.h"
 #include "optimize/problem.h"
 
@@ -12,11 +14,6 @@ namespace meniscus {
 namespace {
 
 constexpr const char* kCeres = "ceres";
-// Points tried when the initial one fails: enough to find a region that is a
-// fifth of the box or more with 90 % chance.
-constexpr int kProbes = 10;
-// A variable this close to a bound, x range, counts as being there.
-constexpr double kAtBound = 1e-9;
 
 void check_method(const std::string& method) {
   const std::vector<std::string> names = match_methods();
@@ -28,95 +25,30 @@ void check_method(const std::string& method) {
   }
 }
 
-// The radical inverse of `index` in `base`: Halton's sequence, spread evenly.
-double radical_inverse(int index, int base) {
-  double value = 0.0;
-  double digit = 1.0;
-  for (int rest = index; rest > 0; rest /= base) {
-    digit /= base;
-    value += digit * (rest % base);
-  }
-  return value;
-}
-
-VectorX probe_point(const MatchEvaluator& evaluator, int index) {
-  constexpr int kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19};
-  VectorX t(evaluator.size());
-  for (Eigen::Index i = 0; i < t.size(); ++i) {
-    t[i] = radical_inverse(index, kPrimes[i % 8]);
-  }
-  return evaluator.lower() + t.cwiseProduct(evaluator.ranges());
-}
-
-// The initial point, or when it fails the middle of the box, then points
-// spread over it; empty when none answers or the evaluator halts.
-std::optional<VectorX> find_start(MatchEvaluator& evaluator) {
-  VectorX x = evaluator.start();
-  for (int index = 0; index <= kProbes; ++index) {
-    if (index > 0) {
-      x = probe_point(evaluator, index);
-    }
-    const ResidualAnswer* answer = evaluator.evaluate(
-        x, index == 0 ? EvaluationPhase::Start : EvaluationPhase::Probe);
-    if (answer == nullptr) {
-      return std::nullopt;
-    }
-    if (!answer->failure) {
-      return x;
-    }
-  }
-  return std::nullopt;
-}
-
-std::string bounds_reached(const MatchEvaluator& evaluator) {
-  std::string text;
-  for (Eigen::Index i = 0; i < evaluator.size(); ++i) {
-    const Variable& variable =
-        evaluator.variables()[static_cast<std::size_t>(i)];
-    const double x = evaluator.best()[i];
-    const double near = kAtBound * evaluator.ranges()[i];
-    const bool low = x <= variable.lower + near;
-    if (low || x >= variable.upper - near) {
-      text += fmt::format("{}{} at its {} bound {}", text.empty() ? "" : ", ",
-                          variable.name, low ? "lower" : "upper",
-                          low ? variable.lower : variable.upper);
-    }
-  }
-  return text;
-}
-
-std::string failures(const MatchEvaluator& evaluator) {
-  if (evaluator.failed_evaluations() == 0) {
-    return "";
-  }
-  return fmt::format(", {} of which could not be evaluated (last: {}: {})",
-                     evaluator.failed_evaluations(),
-                     name_of(evaluator.last_failure().kind),
-                     evaluator.last_failure().message);
-}
-
-void conclude_without_point(const MatchEvaluator& evaluator,
-                            MatchReport& report) {
-  report.termination = Termination::NoFeasible;
-  report.message = fmt::format(
-      "no design could be evaluated: the initial point {} and {} others "
-      "failed, the last with {}: {}. Change what this message names, start "
-      "from an initial point known to work, or move the bounds",
-      evaluator.describe(evaluator.start()), evaluator.evaluations() - 1,
-      name_of(evaluator.last_failure().kind), evaluator.last_failure().message);
+std::optional<VectorX> start_of(MatchEvaluator& evaluator) {
+  return find_start(
+      evaluator,
+      [&](const VectorX& x, EvaluationPhase phase) -> std::optional<bool> {
+        const ResidualAnswer* answer = evaluator.evaluate(x, phase);
+        if (answer == nullptr) {
+          return std::nullopt;
+        }
+        return !answer->failure;
+      });
 }
 
 void conclude_stalled(const MatchEvaluator& evaluator,
                       const std::string& figures, const BackendResult& backend,
                       MatchReport& report) {
   report.termination = Termination::Stalled;
-  const std::string bounds = bounds_reached(evaluator);
+  const std::string bounds = evaluator.bounds_reached(report.best);
   const bool flat =
       (backend.jacobian.size() > 0 && backend.jacobian.isZero(0.0) &&
        evaluator.failed_evaluations() == 0) ||
       (evaluator.evaluations() - evaluator.failed_evaluations() > 1 &&
        evaluator.all_answers_equal());
   if (flat) {
+    report.termination = Termination::Constant;
     report.message = fmt::format(
         "the mismatch does not change with any design variable: {}. Choose "
         "variables that move the targets, or loads and targets that feel them",
@@ -138,7 +70,8 @@ void conclude_stalled(const MatchEvaluator& evaluator,
 void conclude(const MatchEvaluator& evaluator, const BackendResult& backend,
               MatchReport& report) {
   if (!evaluator.has_best()) {
-    conclude_without_point(evaluator, report);
+    report.termination = Termination::NoFeasible;
+    report.message = no_start_message(evaluator);
     return;
   }
   report.best = evaluator.best();
@@ -149,7 +82,7 @@ void conclude(const MatchEvaluator& evaluator, const BackendResult& backend,
       "evaluations{}",
       worst_mismatch(report.answer), evaluator.options().tolerance,
       evaluator.describe(report.best), evaluator.evaluations(),
-      failures(evaluator));
+      evaluator.failures());
   switch (evaluator.halt()) {
     case MatchEvaluator::Halt::Converged:
       report.termination = Termination::Converged;
@@ -171,6 +104,94 @@ void conclude(const MatchEvaluator& evaluator, const BackendResult& backend,
   }
 }
 
+void finish(const MatchEvaluator& evaluator, const BackendResult& backend,
+            MatchReport& report) {
+  report.evaluations = evaluator.evaluations();
+  report.failed_evaluations = evaluator.failed_evaluations();
+  report.gradient_evaluations = evaluator.gradient_evaluations();
+  report.iterations = backend.iterations;
+  report.jacobian = backend.jacobian;
+  conclude(evaluator, backend, report);
+  const VectorX& error = evaluator.options().mismatch_error;
+  if (error.size() > 0 && error.maxCoeff() > evaluator.options().tolerance) {
+    report.message += fmt::format(
+        ". The tolerance {:.1e} is below the mesh's own error of the mismatch, "
+        "about {:.1e}: shorten the edges to trust more digits",
+        evaluator.options().tolerance, error.maxCoeff());
+  }
+}
+
+MatchReport match_all(const std::vector<Variable>& variables,
+                      const ResidualFunction& function,
+                      const MatchOptions& options) {
+  MatchEvaluator evaluator(variables, function, options);
+  BackendResult backend;
+  const std::optional<VectorX> start = start_of(evaluator);
+  if (start) {
+    backend = options.method == kCeres
+                  ? ceres_match(evaluator, *start)
+                  : nlopt_match(evaluator, *start, options.method);
+  }
+  evaluator.rethrow();
+  MatchReport report;
+  finish(evaluator, backend, report);
+  return report;
+}
+
+// No variable moves: one evaluation says what there is.
+MatchReport match_held(const std::vector<Variable>& variables,
+                       const ResidualFunction& function,
+                       const MatchOptions& options, const FreeVariables& free) {
+  MatchEvaluator evaluator(variables, function, options);
+  evaluator.evaluate(evaluator.start(), EvaluationPhase::Start);
+  evaluator.rethrow();
+  MatchReport report;
+  finish(evaluator, {}, report);
+  if (report.termination != Termination::Converged &&
+      report.termination != Termination::NoFeasible) {
+    report.termination = Termination::NoFreedom;
+    report.message = free.held_message();
+  }
+  return report;
+}
+
+// Some variables are held: the search sees the others.
+MatchReport match_free(const FreeVariables& free,
+                       const ResidualFunction& function,
+                       const MatchOptions& options) {
+  MatchOptions inner = options;
+  if (options.jacobian) {
+    inner.jacobian = [&](const VectorX& x) {
+      JacobianAnswer answer = options.jacobian(free.expanded(x));
+      answer.jacobian = free.reduced(answer.jacobian);
+      return answer;
+    };
+  }
+  if (options.prefetch) {
+    inner.prefetch = [&](const std::vector<VectorX>& points) {
+      options.prefetch(free.expanded(points));
+    };
+  }
+  MatchReport report = match_all(
+      free.free(),
+      [&](const VectorX& x) {
+        ResidualAnswer answer = function(free.expanded(x));
+        if (answer.jacobian) {
+          answer.jacobian = free.reduced(*answer.jacobian);
+        }
+        return answer;
+      },
+      inner);
+  if (report.best.size() > 0) {
+    report.best = free.expanded(report.best);
+  }
+  report.jacobian = free.widened(report.jacobian);
+  if (report.answer.jacobian) {
+    report.answer.jacobian = free.widened(*report.answer.jacobian);
+  }
+  return report;
+}
+
 }  // namespace
 
 const char* name_of(EvaluationPhase phase) {
@@ -183,6 +204,8 @@ const char* name_of(EvaluationPhase phase) {
       return "difference";
     case EvaluationPhase::Step:
       return "step";
+    case EvaluationPhase::Gradient:
+      return "gradient";
   }
   return "unknown";
 }
@@ -197,6 +220,12 @@ const char* name_of(Termination termination) {
       return "at_bound";
     case Termination::NoFeasible:
       return "no_feasible";
+    case Termination::Infeasible:
+      return "infeasible";
+    case Termination::Constant:
+      return "constant";
+    case Termination::NoFreedom:
+      return "no_freedom";
     case Termination::LimitReached:
       return "limit_reached";
   }
@@ -207,22 +236,13 @@ MatchReport match(const std::vector<Variable>& variables,
                   const ResidualFunction& function,
                   const MatchOptions& options) {
   check_method(options.method);
-  MatchEvaluator evaluator(variables, function, options);
-  BackendResult backend;
-  const std::optional<VectorX> start = find_start(evaluator);
-  if (start) {
-    backend = options.method == kCeres
-                  ? ceres_match(evaluator, *start)
-                  : nlopt_match(evaluator, *start, options.method);
+  check_variables(variables, "match");
+  const FreeVariables free(variables);
+  if (free.all_held()) {
+    return match_held(variables, function, options, free);
   }
-  evaluator.rethrow();
-  MatchReport report;
-  report.evaluations = evaluator.evaluations();
-  report.failed_evaluations = evaluator.failed_evaluations();
-  report.iterations = backend.iterations;
-  report.jacobian = std::move(backend.jacobian);
-  conclude(evaluator, backend, report);
-  return report;
+  return free.any_held() ? match_free(free, function, options)
+                         : match_all(variables, function, options);
 }
 
 std::vector<std::string> match_methods() {

@@ -1,7 +1,6 @@
 #include "optimize/match_evaluator.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -9,74 +8,18 @@
 namespace meniscus {
 namespace {
 
-void check_variable(const Variable& variable) {
-  const double numbers[] = {variable.lower, variable.initial, variable.upper};
-  for (const double number : numbers) {
-    if (!std::isfinite(number)) {
-      throw InvalidInput(fmt::format(
-          "design variable '{}': bounds [{}, {}] and initial value {} must be "
-          "finite numbers",
-          variable.name, variable.lower, variable.upper, variable.initial));
-    }
-  }
-  if (variable.lower == variable.upper) {
-    throw InvalidInput(fmt::format(
-        "design variable '{}': both bounds are {}, so it cannot move; widen "
-        "them, or make it a parameter",
-        variable.name, variable.lower));
-  }
-  if (variable.lower > variable.upper) {
-    throw InvalidInput(
-        fmt::format("design variable '{}': lower bound {} is above the upper "
-                    "bound {}; swap them",
-                    variable.name, variable.lower, variable.upper));
-  }
-  if (variable.initial < variable.lower || variable.initial > variable.upper) {
-    throw InvalidInput(fmt::format(
-        "design variable '{}': initial value {} is outside the "
-        "bounds [{}, {}]",
-        variable.name, variable.initial, variable.lower, variable.upper));
-  }
-}
-
-void check_options(const MatchOptions& options) {
+EvaluationLimits limits_of(const MatchOptions& options) {
   if (!(options.tolerance > 0.0)) {
     throw InvalidInput(fmt::format("match: tolerance is {}, must be positive",
                                    options.tolerance));
   }
-  if (options.max_evaluations < 1) {
-    throw InvalidInput(
-        fmt::format("match: max_evaluations is {}, must be at least 1",
-                    options.max_evaluations));
-  }
-  if (!(options.time_limit >= 0.0)) {
-    throw InvalidInput(
-        fmt::format("match: time_limit is {} s, must be 0 (none) or positive",
-                    options.time_limit));
-  }
-  if (!(options.difference_step > 0.0 && options.difference_step <= 0.5)) {
-    throw InvalidInput(fmt::format(
-        "match: difference_step is {}, must be in (0, 0.5] of each variable's "
-        "range",
-        options.difference_step));
-  }
-}
-
-VectorX collect(const std::vector<Variable>& variables,
-                double Variable::*member) {
-  VectorX values(static_cast<Eigen::Index>(variables.size()));
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    values[i] = variables[static_cast<std::size_t>(i)].*member;
-  }
-  return values;
-}
-
-std::vector<std::uint64_t> bits_of(const VectorX& x) {
-  std::vector<std::uint64_t> bits(static_cast<std::size_t>(x.size()));
-  for (std::size_t i = 0; i < bits.size(); ++i) {
-    bits[i] = std::bit_cast<std::uint64_t>(x[static_cast<Eigen::Index>(i)]);
-  }
-  return bits;
+  return {.study = "match",
+          .max_evaluations = options.max_evaluations,
+          .time_limit = options.time_limit,
+          .difference_step = options.difference_step,
+          .monitor = options.monitor,
+          .announce = options.announce,
+          .prefetch = options.prefetch};
 }
 
 }  // namespace
@@ -90,90 +33,53 @@ double worst_mismatch(const ResidualAnswer& answer) {
                                      : answer.mismatch.cwiseAbs().maxCoeff();
 }
 
-MatchEvaluator::MatchEvaluator(const std::vector<Variable>& variables,
+MatchEvaluator::MatchEvaluator(std::vector<Variable> variables,
                                const ResidualFunction& function,
                                const MatchOptions& options)
-    : variables_(variables),
+    : EvaluatorCore(std::move(variables), limits_of(options)),
       function_(function),
-      options_(options),
-      monitor_(options.monitor != nullptr ? *options.monitor
-                                          : silent_monitor()) {
-  if (variables.empty()) {
-    throw InvalidInput(
-        "match: there is no design variable; declare at least one under "
-        "[design.NAME] with initial and bounds");
-  }
-  for (const Variable& variable : variables) {
-    check_variable(variable);
-  }
-  check_options(options);
-  ranges_ = upper() - lower();
-}
-
-VectorX MatchEvaluator::start() const {
-  return collect(variables_, &Variable::initial);
-}
-VectorX MatchEvaluator::lower() const {
-  return collect(variables_, &Variable::lower);
-}
-VectorX MatchEvaluator::upper() const {
-  return collect(variables_, &Variable::upper);
-}
+      options_(options) {}
 
 const ResidualAnswer* MatchEvaluator::evaluate(const VectorX& x,
                                                EvaluationPhase phase) noexcept {
-  if (halt_ != Halt::None) {
-    return nullptr;
-  }
-  try {
-    return ask(x, phase);
-  } catch (...) {
-    exception_ = std::current_exception();
-    halt_ = Halt::Exception;
-    return nullptr;
-  }
+  return guarded([&] { return ask(x, phase); });
 }
 
-void MatchEvaluator::rethrow() const {
-  if (exception_ != nullptr) {
-    std::rethrow_exception(exception_);
-  }
+const Eigen::MatrixXd* MatchEvaluator::jacobian(const VectorX& x) noexcept {
+  return guarded([&] { return ask_jacobian(x); });
 }
 
 const ResidualAnswer* MatchEvaluator::ask(const VectorX& x,
                                           EvaluationPhase phase) {
-  // + 0 turns -0 into 0: one point, one key.
-  const VectorX point =
-      (x.cwiseMax(lower()).cwiseMin(upper()).array() + 0.0).matrix();
-  const Key key = bits_of(point);
-  const auto known = memory_.find(key);
-  if (known != memory_.end()) {
-    return &known->second;
+  const VectorX point = inside(x);
+  if (const ResidualAnswer* known = memory_.find(point)) {
+    return known;
   }
-  throw_if_stopped(monitor_, "match");
-  if (limit_reached()) {
+  if (!begin(phase)) {
     return nullptr;
   }
-  if (options_.announce) {
-    options_.announce(phase);
-  }
-  ++evaluations_;
   ResidualAnswer answer = function_(point);
   check(answer);
-  const ResidualAnswer& kept =
-      memory_.emplace(key, std::move(answer)).first->second;
+  const ResidualAnswer& kept = memory_.keep(point, std::move(answer));
   account(point, kept);
-  return halt_ == Halt::None ? &kept : nullptr;
+  return halted() ? nullptr : &kept;
 }
 
-bool MatchEvaluator::limit_reached() {
-  if (evaluations_ >= options_.max_evaluations) {
-    halt_ = Halt::Evaluations;
-  } else if (options_.time_limit > 0.0 && evaluations_ > 0 &&
-             timer_.seconds() >= options_.time_limit) {
-    halt_ = Halt::Time;
+const Eigen::MatrixXd* MatchEvaluator::ask_jacobian(const VectorX& x) {
+  const VectorX point = inside(x);
+  ResidualAnswer* known = memory_.find(point);
+  if (known == nullptr || known->failure) {
+    return nullptr;
   }
-  return halt_ != Halt::None;
+  if (!known->jacobian && options_.jacobian &&
+      begin(EvaluationPhase::Gradient)) {
+    JacobianAnswer answer = options_.jacobian(point);
+    if (!answer.failure && answer.jacobian.allFinite()) {
+      known->jacobian = std::move(answer.jacobian);
+      check(*known);
+    }
+  }
+  return known->jacobian ? &*known->jacobian : nullptr;
 }
 
 void MatchEvaluator::check(ResidualAnswer& answer) {
@@ -212,13 +118,7 @@ void MatchEvaluator::check(ResidualAnswer& answer) {
 
 void MatchEvaluator::account(const VectorX& x, const ResidualAnswer& answer) {
   if (answer.failure) {
-    ++failed_;
-    last_failure_ = *answer.failure;
-    monitor_.log(
-        Severity::Debug,
-        fmt::format("evaluation {} at {} failed ({}): {}", evaluations_,
-                    describe(x), name_of(answer.failure->kind),
-                    answer.failure->message));
+    count_failure(x, *answer.failure);
     return;
   }
   if (first_residuals_.size() == 0) {
@@ -232,24 +132,12 @@ void MatchEvaluator::account(const VectorX& x, const ResidualAnswer& answer) {
     best_x_ = x;
     best_answer_ = answer;
   }
-  monitor_.progress(
-      {"match",
-       fmt::format("evaluation {}: {}, mismatch {:.3g}, best {:.3g}",
-                   evaluations_, describe(x), worst_mismatch(answer),
-                   worst_mismatch(best_answer_)),
-       -1.0});
+  report_progress(fmt::format("{}, mismatch {:.3g}, best {:.3g}", describe(x),
+                              worst_mismatch(answer),
+                              worst_mismatch(best_answer_)));
   if (within) {
-    halt_ = Halt::Converged;
+    set_halt(Halt::Converged);
   }
-}
-
-std::string MatchEvaluator::describe(const VectorX& x) const {
-  std::string text;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    text += fmt::format("{}{} = {:.6g}", i == 0 ? "" : ", ",
-                        variables_[static_cast<std::size_t>(i)].name, x[i]);
-  }
-  return text;
 }
 
 }  // namespace meniscus

@@ -125,7 +125,7 @@ BackendResult nlopt_match(MatchEvaluator& evaluator, const VectorX& start,
                           const std::string& method_name) {
   const Method& method = method_of(method_name);
   BackendResult result = run_once(evaluator, start, method);
-  while (method.restarts && evaluator.halt() == MatchEvaluator::Halt::None) {
+  while (method.restarts && !evaluator.halted()) {
     const double before = cost_of(evaluator.best_answer());
     const BackendResult again = run_once(evaluator, evaluator.best(), method);
     result.iterations += again.iterations;

@@ -40,6 +40,9 @@ RunStatus status_of(Termination termination) {
     case Termination::Stalled:
     case Termination::AtBound:
     case Termination::NoFeasible:
+    case Termination::Infeasible:
+    case Termination::Constant:
+    case Termination::NoFreedom:
       return RunStatus::Infeasible;
   }
   return RunStatus::Error;

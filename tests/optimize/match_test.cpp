@@ -243,5 +243,87 @@ TEST(Match, AValleyThatMissesTheTargetEndsSoon) {
   EXPECT_NEAR(report.best[0], 0.31, 0.01);
 }
 
+// The residuals of three targets in two variables, and their Jacobian.
+VectorX three_targets(const VectorX& x) {
+  VectorX r(3);
+  r << std::exp(x[0]) - 2.0, x[0] * x[1] - std::log(2.0) * 0.5,
+      x[1] * x[1] - 0.25;
+  return r;
+}
+
+JacobianAnswer three_targets_jacobian(const VectorX& x) {
+  Eigen::MatrixXd jacobian(3, 2);
+  jacobian << std::exp(x[0]), 0.0, x[1], x[0], 0.0, 2.0 * x[1];
+  return {.jacobian = jacobian, .failure = {}};
+}
+
+TEST(MatchJacobian, IsAskedOnlyWhereAStepWasAccepted) {
+  Recorder recorder{three_targets, {}};
+  std::vector<VectorX> asked;
+  MatchOptions options{.tolerance = 1e-10};
+  options.jacobian = [&asked](const VectorX& x) {
+    asked.push_back(x);
+    return three_targets_jacobian(x);
+  };
+  const std::vector<Variable> variables = {{"a", 0.2, -1, 1}, {"b", 1, 0, 2}};
+  const MatchReport report = match(variables, recorder.function(), options);
+  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  EXPECT_NEAR(report.best[0], std::log(2.0), 1e-9);
+  EXPECT_NEAR(report.best[1], 0.5, 1e-9);
+  EXPECT_EQ(report.gradient_evaluations, static_cast<int>(asked.size()));
+  // Gauss-Newton converges quadratically: no neighbours, no long tail.
+  EXPECT_LE(report.evaluations, 8);
+  EXPECT_LT(asked.size(), recorder.points.size());
+  EXPECT_NE(asked.back(), recorder.points.back());  // the answer needs none
+}
+
+TEST(MatchJacobian, OneThatFailsIsReplacedByDifferences) {
+  Recorder recorder{three_targets, {}};
+  MatchOptions options{.tolerance = 1e-6};
+  options.jacobian = [](const VectorX&) {
+    return JacobianAnswer{
+        .jacobian = {}, .failure = Failure{FailureKind::SolverFailed, "dual"}};
+  };
+  const std::vector<Variable> variables = {{"a", 0.2, -1, 1}, {"b", 1, 0, 2}};
+  const MatchReport report = match(variables, recorder.function(), options);
+  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+}
+
+TEST(MatchJacobian, OfAWrongSizeIsRefused) {
+  Recorder recorder{three_targets, {}};
+  MatchOptions options;
+  options.jacobian = [](const VectorX&) {
+    return JacobianAnswer{.jacobian = Eigen::MatrixXd::Zero(1, 2),
+                          .failure = {}};
+  };
+  const std::vector<Variable> variables = {{"a", 0.2, -1, 1}, {"b", 1, 0, 2}};
+  EXPECT_THROW(match(variables, recorder.function(), options), InvalidInput);
+}
+
+TEST(MatchDifferences, AreToldInAdvance) {
+  Recorder recorder{three_targets, {}};
+  std::vector<VectorX> told;
+  MatchOptions options{.tolerance = 1e-4};
+  options.prefetch = [&told](const std::vector<VectorX>& points) {
+    told.insert(told.end(), points.begin(), points.end());
+  };
+  const std::vector<Variable> variables = {{"a", 0.2, -1, 1}, {"b", 1, 0, 2}};
+  match(variables, recorder.function(), options);
+  ASSERT_GE(told.size(), 2U);
+  EXPECT_EQ(told[0], recorder.points[1]);
+  EXPECT_EQ(told[1], recorder.points[2]);
+}
+
+TEST(MatchMessage, SaysWhenTheToleranceIsBelowTheMeshesError) {
+  const auto run = [](double error) {
+    Recorder recorder{[](const VectorX& x) { return one(x[0] - 0.25); }, {}};
+    MatchOptions options{.tolerance = 1e-3};
+    options.mismatch_error = one(error);
+    return match({{"x", 0.5, 0.0, 1.0}}, recorder.function(), options).message;
+  };
+  EXPECT_THAT(run(0.02), HasSubstr("below the mesh's own error"));
+  EXPECT_THAT(run(1e-4), testing::Not(HasSubstr("mesh")));
+}
+
 }  // namespace
 }  // namespace meniscus

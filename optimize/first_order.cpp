@@ -1,0 +1,205 @@
+#include "optimize/first_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/QR>
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace meniscus {
+namespace {
+
+// A gradient entry below this x the largest one is rounding.
+constexpr double kRounding = 1e-14;
+
+// One inequality side(x) <= 0, multiplier >= 0.
+struct Side {
+  VectorX gradient;      // in s = x / range, of what is divided by its scale
+  double slack = 0.0;    // >= 0, divided by its scale
+  Eigen::Index row = 0;  // constraint, or variable when `bound`
+  bool bound = false;
+  double sign = 0.0;  // +1 at an upper bound, -1 at a lower one
+};
+
+void check(const FirstOrderInput& input) {
+  const Eigen::Index n = input.x.size();
+  const Eigen::Index m = input.values.size() - 1;
+  const bool fits =
+      m >= 0 && input.lower.size() == n && input.upper.size() == n &&
+      input.jacobian.rows() == m + 1 && input.jacobian.cols() == n &&
+      input.constraint_lower.size() == m &&
+      input.constraint_upper.size() == m && input.constraint_scale.size() == m;
+  if (!fits) {
+    throw InvalidInput(fmt::format(
+        "first-order residual: {} variables, {} values and a {} x {} Jacobian "
+        "do not fit together, or the bounds do not fit them",
+        n, input.values.size(), input.jacobian.rows(), input.jacobian.cols()));
+  }
+}
+
+std::vector<Side> sides_of(const FirstOrderInput& input,
+                           const VectorX& ranges) {
+  std::vector<Side> sides;
+  const Eigen::Index n = input.x.size();
+  sides.reserve(
+      static_cast<std::size_t>(2 * (n + input.constraint_scale.size())));
+  for (Eigen::Index i = 0; i < input.constraint_scale.size(); ++i) {
+    const double scale = input.constraint_scale[i];
+    const VectorX gradient =
+        input.jacobian.row(i + 1).transpose().cwiseProduct(ranges) / scale;
+    const double value = input.values[i + 1];
+    if (std::isfinite(input.constraint_upper[i])) {
+      const double slack = (input.constraint_upper[i] - value) / scale;
+      sides.push_back({gradient, std::max(slack, 0.0), i, false, 1.0});
+    }
+    if (std::isfinite(input.constraint_lower[i])) {
+      const double slack = (value - input.constraint_lower[i]) / scale;
+      sides.push_back({-gradient, std::max(slack, 0.0), i, false, -1.0});
+    }
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double above = (input.x[j] - input.lower[j]) / ranges[j];
+    const double below = (input.upper[j] - input.x[j]) / ranges[j];
+    sides.push_back({VectorX::Unit(n, j), std::max(below, 0.0), j, true, 1.0});
+    sides.push_back(
+        {-VectorX::Unit(n, j), std::max(above, 0.0), j, true, -1.0});
+  }
+  return sides;
+}
+
+double violation_of(const FirstOrderInput& input) {
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < input.constraint_scale.size(); ++i) {
+    const double value = input.values[i + 1];
+    const double outside = std::max(value - input.constraint_upper[i],
+                                    input.constraint_lower[i] - value);
+    worst = std::max(worst, outside / input.constraint_scale[i]);
+  }
+  return worst;
+}
+
+// The least-squares solution over the columns in `used`, 0 elsewhere.
+VectorX solve_on(const Eigen::MatrixXd& A, const VectorX& b,
+                 const std::vector<Eigen::Index>& used) {
+  Eigen::MatrixXd part(A.rows(), static_cast<Eigen::Index>(used.size()));
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    part.col(static_cast<Eigen::Index>(k)) = A.col(used[k]);
+  }
+  const VectorX found = part.colPivHouseholderQr().solve(b);
+  VectorX x = VectorX::Zero(A.cols());
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    x[used[k]] = found[static_cast<Eigen::Index>(k)];
+  }
+  return x;
+}
+
+// Moves x towards z until the first entry becomes 0; frees those at 0.
+void step_back(const VectorX& z, VectorX& x, std::vector<Eigen::Index>& used) {
+  double part = 1.0;
+  for (const Eigen::Index j : used) {
+    if (z[j] <= 0.0) {
+      part = std::min(part, x[j] / (x[j] - z[j]));
+    }
+  }
+  const VectorX before = x;
+  x += part * (z - x);
+  std::vector<Eigen::Index> kept;
+  kept.reserve(used.size());
+  for (const Eigen::Index j : used) {
+    const bool reached =
+        z[j] <= 0.0 && before[j] <= part * (before[j] - z[j]) * (1.0 + 1e-12);
+    if (reached) {
+      x[j] = 0.0;
+    } else {
+      kept.push_back(j);
+    }
+  }
+  used = std::move(kept);
+}
+
+}  // namespace
+
+VectorX nonnegative_least_squares(const Eigen::MatrixXd& A, const VectorX& b) {
+  VectorX x = VectorX::Zero(A.cols());
+  if (A.cols() == 0) {
+    return x;
+  }
+  const double small =
+      kRounding * std::max(1.0, (A.transpose() * b).cwiseAbs().maxCoeff());
+  std::vector<Eigen::Index> used;
+  std::vector<bool> barred(static_cast<std::size_t>(A.cols()), false);
+  for (Eigen::Index round = 0; round < 3 * A.cols() + 10; ++round) {
+    const VectorX gain = A.transpose() * (b - A * x);
+    Eigen::Index next = -1;
+    for (Eigen::Index j = 0; j < A.cols(); ++j) {
+      const bool in = std::find(used.begin(), used.end(), j) != used.end();
+      if (!in && !barred[static_cast<std::size_t>(j)] && gain[j] > small &&
+          (next < 0 || gain[j] > gain[next])) {
+        next = j;
+      }
+    }
+    if (next < 0) {
+      break;
+    }
+    used.push_back(next);
+    VectorX z = solve_on(A, b, used);
+    // A column that depends on those used gains by rounding only.
+    barred[static_cast<std::size_t>(next)] = z[next] <= 0.0;
+    while (!used.empty() &&
+           std::any_of(used.begin(), used.end(),
+                       [&](Eigen::Index j) { return z[j] <= 0.0; })) {
+      step_back(z, x, used);
+      z = solve_on(A, b, used);
+    }
+    x = z;
+  }
+  return x;
+}
+
+FirstOrderReport first_order(const FirstOrderInput& input) {
+  check(input);
+  const VectorX ranges = input.upper - input.lower;
+  const Eigen::Index n = ranges.size();
+  const VectorX gradient =
+      input.jacobian.row(0).transpose().cwiseProduct(ranges);
+  const double steepest = n == 0 ? 0.0 : gradient.cwiseAbs().maxCoeff();
+  double unit = input.objective_scale > 0.0 ? input.objective_scale : steepest;
+  unit = unit > 0.0 ? unit : 1.0;
+
+  const std::vector<Side> sides = sides_of(input, ranges);
+  const auto count = static_cast<Eigen::Index>(sides.size());
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n + count, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Side& side = sides[static_cast<std::size_t>(k)];
+    A.col(k).head(n) = side.gradient;
+    A(n + k, k) = side.slack;
+  }
+  VectorX b = VectorX::Zero(n + count);
+  b.head(n) = -gradient / unit;
+  const VectorX multipliers = nonnegative_least_squares(A, b);
+  const VectorX rest = A * multipliers - b;
+
+  FirstOrderReport report;
+  report.stationarity = n == 0 ? 0.0 : rest.head(n).cwiseAbs().maxCoeff();
+  report.complementarity =
+      count == 0 ? 0.0 : rest.tail(count).cwiseAbs().maxCoeff();
+  report.residual = std::max(report.stationarity, report.complementarity);
+  report.violation = violation_of(input);
+  report.multipliers = VectorX::Zero(input.constraint_scale.size());
+  report.bound_multipliers = VectorX::Zero(n);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Side& side = sides[static_cast<std::size_t>(k)];
+    const double m = side.sign * unit * multipliers[k];
+    if (side.bound) {
+      report.bound_multipliers[side.row] += m / ranges[side.row];
+    } else {
+      report.multipliers[side.row] += m / input.constraint_scale[side.row];
+    }
+  }
+  return report;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,53 @@
+/// One run of one of NLopt's algorithms on a minimisation.
+#pragma once
+
+#include "optimize/minimize_evaluator.h"
+
+namespace meniscus {
+
+/// Who keeps the constraints.
+enum class ConstraintStyle {
+  Native,              // the algorithm
+  NativeInequalities,  // the algorithm, equations by augmented Lagrangian
+  Lagrangian,          // augmented Lagrangian, all of them
+  FeasibleFirst        // any kept point beats any other (K. Deb, Comput.
+                       // Methods Appl. Mech. Engrg. 186, 2000)
+};
+
+struct NloptTraits {
+  MinimizeMethod method;
+  ConstraintStyle style = ConstraintStyle::Native;
+  /// What a point that cannot be evaluated looks like: +infinity where the
+  /// algorithm steps back from it, else worse than anything seen.
+  bool infinite_wall = false;
+  bool restarts = false;  // its simplex can collapse: begin it again
+};
+const std::vector<NloptTraits>& nlopt_traits();
+
+/// f / unit + sum over the sides in the Lagrangian of
+/// rho/2 max(0, g + m/rho)^2, without the max for equations
+/// (R. T. Rockafellar, Math. Program. 5, 1973).
+struct NloptTask {
+  VectorX start;            // has answered
+  double radius = 1.0;      // box about the start, x range
+  double first_step = 0.1;  // x the box, where the method has to choose one
+  double step_tolerance = 1e-6;  // x range
+  double rho = 1.0;
+  VectorX multipliers;  // per side
+};
+
+struct NloptResult {
+  VectorX x;  // the library's own answer
+  int iterations = 0;
+  bool finished = false;  // by its own tolerance, not halted, not an error
+  std::string message;    // its last word
+};
+
+/// Never throws: ask the evaluator.
+NloptResult run_nlopt(MinimizeEvaluator& evaluator, const NloptTraits& traits,
+                      const NloptTask& task);
+
+/// True for a side that the augmented Lagrangian keeps.
+bool in_lagrangian(const NloptTraits& traits, const ConstraintSide& side);
+
+}  // namespace meniscus

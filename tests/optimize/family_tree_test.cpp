@@ -1,0 +1,117 @@
+#include "optimize/family_tree.h"
+
+#include <limits>
+#include <numeric>
+
+#include <gmock/gmock.h>
+
+#include "core/error.h"
+#include "optimize/sampling.h"
+#include "tests/optimize/standard_problems.h"
+
+namespace meniscus {
+namespace {
+
+using tests::vector_of;
+
+TEST(FamilyTree, JoinsEachMemberToItsNearest) {
+  // Lengths 100, 400, 110, 390 at one load: two pairs, joined by 110 - 390.
+  const auto steps =
+      family_tree({vector_of({100.0, 5.0}), vector_of({400.0, 5.0}),
+                   vector_of({110.0, 5.0}), vector_of({390.0, 5.0})});
+  ASSERT_EQ(steps.size(), 4U);
+  EXPECT_EQ(steps[0].member, 0);
+  EXPECT_FALSE(steps[0].parent);
+  EXPECT_EQ(steps[1].member, 2);
+  EXPECT_EQ(steps[1].parent, 0);
+  EXPECT_EQ(steps[2].member, 3);
+  EXPECT_EQ(steps[2].parent, 2);
+  EXPECT_EQ(steps[3].member, 1);
+  EXPECT_EQ(steps[3].parent, 3);
+  EXPECT_EQ(steps[3].depth, 3);
+  EXPECT_NEAR(steps[3].distance, 10.0 / 300.0, 1e-15);
+}
+
+TEST(FamilyTree, DoesNotDependOnUnits) {
+  std::vector<VectorX> metres = latin_hypercube_samples(3, 20, 5);
+  std::vector<VectorX> other = metres;
+  for (VectorX& member : other) {
+    member = member.cwiseProduct(vector_of({1024.0, 0.5, 4096.0}));
+  }
+  const auto a = family_tree(metres);
+  const auto b = family_tree(other);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].member, b[i].member);
+    EXPECT_EQ(a[i].parent, b[i].parent);
+  }
+}
+
+TEST(FamilyTree, IsNoLongerThanAnyOther) {
+  // Every spanning tree of four members is a Pruefer pair: all 16.
+  const std::vector<VectorX> members = {
+      vector_of({0.0, 0.0}), vector_of({1.0, 0.2}), vector_of({0.4, 1.0}),
+      vector_of({0.7, 0.6})};
+  double length = 0.0;
+  for (const FamilyStep& step : family_tree(members)) {
+    length += step.distance;
+  }
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < 4; ++b) {
+      std::vector<int> degree(4, 1);
+      ++degree[static_cast<std::size_t>(a)];
+      ++degree[static_cast<std::size_t>(b)];
+      double other = 0.0;
+      const auto join = [&](int from, int to) {
+        other += (members[static_cast<std::size_t>(from)] -
+                  members[static_cast<std::size_t>(to)])
+                     .norm();
+        --degree[static_cast<std::size_t>(from)];
+        --degree[static_cast<std::size_t>(to)];
+      };
+      const auto leaf = [&](int after) {
+        int k = after;
+        while (degree[static_cast<std::size_t>(k)] != 1) {
+          ++k;
+        }
+        return k;
+      };
+      for (const int node : {a, b}) {
+        join(leaf(0), node);
+      }
+      const int last = leaf(0);
+      join(last, leaf(last + 1));
+      EXPECT_LE(length, other + 1e-12);
+    }
+  }
+}
+
+TEST(FamilyTree, ParentsComeFirstAndWavesHoldEveryone) {
+  const auto steps = family_tree(latin_hypercube_samples(4, 30, 3));
+  std::vector<bool> seen(30, false);
+  for (const FamilyStep& step : steps) {
+    EXPECT_TRUE(!step.parent || seen[static_cast<std::size_t>(*step.parent)]);
+    seen[static_cast<std::size_t>(step.member)] = true;
+  }
+  std::size_t count = 0;
+  for (const auto& wave : family_waves(steps)) {
+    EXPECT_FALSE(wave.empty());
+    count += wave.size();
+  }
+  EXPECT_EQ(count, 30U);
+}
+
+TEST(FamilyTree, EqualMembersAndEmptyFamilies) {
+  EXPECT_TRUE(family_tree({}).empty());
+  EXPECT_TRUE(family_waves({}).empty());
+  const auto steps = family_tree(std::vector<VectorX>(3, vector_of({2.0})));
+  EXPECT_EQ(steps[2].parent, 0);
+  EXPECT_EQ(steps[2].distance, 0.0);
+  EXPECT_THROW(family_tree({vector_of({1.0}), vector_of({1.0, 2.0})}),
+               InvalidInput);
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(family_tree({vector_of({1.0}), vector_of({kNaN})}),
+               InvalidInput);
+}
+
+}  // namespace
+}  // namespace meniscus
