@@ -118,6 +118,14 @@ ChildOptions command(const std::string& helper, const PetscRun& run,
                   folder.string()};
   options.environment = {
       {"OMP_NUM_THREADS", "1"}, {"OPENBLAS_NUM_THREADS", "1"}, {"LC_ALL", "C"}};
+  if (std::getenv("OMPI_MCA_orte_default_hostfile") == nullptr) {
+    // On one machine: what Open MPI leaves behind when it is stopped goes with
+    // the folder.
+    options.environment.emplace_back("OMPI_MCA_orte_tmpdir_base",
+                                     folder.string());
+    options.environment.emplace_back("OMPI_MCA_btl_vader_backing_directory",
+                                     folder.string());
+  }
   options.time_limit = run.time_limit;
   options.monitor = run.monitor;
   return options;
@@ -147,9 +155,13 @@ PetscSolution run_petsc(const PetscSystem& system, const PetscRun& run) {
   }
   if (!child.succeeded()) {
     const std::string said = condensed(child.error_tail);
-    throw SolverError(fmt::format("PETSc's {} processes (mpirun) {}{}{}",
-                                  run.processes, describe_end(child),
-                                  said.empty() ? "" : ", saying:\n", said));
+    throw SolverError(fmt::format(
+        "PETSc's {} processes (mpirun) {}{}{}{}", run.processes,
+        describe_end(child),
+        child.exit_code == kKilled
+            ? " (one was killed by signal 9; was there enough memory?)"
+            : "",
+        said.empty() ? "" : ", saying:\n", said));
   }
   return read_results(system, run.processes, folder.path());
 }
