@@ -13,6 +13,7 @@
 #include "app/versions.h"
 #include "core/timer.h"
 #include "io/atomic_file.h"
+#include "pipeline/forward_model.h"
 #include "pipeline/results.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/walls.h"
@@ -160,6 +161,7 @@ int run_command(const RunArguments& arguments) {
   std::optional<StudyStore> store;
   try {
     refuse_walls(input);
+    require_solver(input);
     make_folder(folder);
     store.emplace(open_store(input, folder.string(), arguments.resume));
     // An older result must not stand beside a study that is not its own.

@@ -35,6 +35,14 @@ meniscus_find_library(deps::qhull libqhull_r/libqhull_r.h qhull_r)
 meniscus_find_library(deps::toml toml++/toml.h)
 meniscus_find_library(deps::cli11 CLI/CLI.hpp)
 
+# Only for the helper meniscus-petsc; without it the solver petsc is refused.
+pkg_check_modules(PETSC IMPORTED_TARGET GLOBAL PETSc>=3.18 mpi-c)
+if(PETSC_FOUND)
+  add_library(deps::petsc ALIAS PkgConfig::PETSC)
+else()
+  message(STATUS "PETSc not found: no solver 'petsc' (libpetsc-real-dev)")
+endif()
+
 if(MENISCUS_BUILD_TESTS)
   include(GoogleTest)
   find_package(GTest REQUIRED)

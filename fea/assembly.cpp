@@ -7,15 +7,12 @@
 #include <Eigen/Geometry>
 
 #include "fea/block_kernels.h"
+#include "fea/element_stiffness.h"
 #include "fea/tet_element.h"
 
 namespace meniscus {
 
 namespace {
-
-/// Width of a padded row of the element's outer products: whole AVX vectors.
-template <int Nodes>
-constexpr int kPadded = (3 * Nodes + 3) / 4 * 4;
 
 template <int Nodes>
 void load_nodes(const ElementTable& table, const Points& x, int e,
@@ -23,88 +20,6 @@ void load_nodes(const ElementTable& table, const Points& x, int e,
   const std::size_t first = static_cast<std::size_t>(e) * Nodes;
   for (int a = 0; a < Nodes; ++a) {
     corner[a] = x[table.pattern.element_nodes[first + table.slot[first + a]]];
-  }
-}
-
-/// G = sum over points of V h h^T, h the gradients of all nodes in ascending
-/// order, one after another.
-template <int Nodes>
-void outer_products(const TetGradients<Nodes>& g, const unsigned char* slot,
-                    double (*G)[kPadded<Nodes>]) {
-  constexpr int kPoints = kTetPoints<Nodes>;
-  alignas(32) double h[kPoints][kPadded<Nodes>] = {};
-  for (int q = 0; q < kPoints; ++q) {
-    for (int a = 0; a < Nodes; ++a) {
-      for (int k = 0; k < 3; ++k) {
-        h[q][3L * slot[a] + k] = g.gradient[q][a][k];
-      }
-    }
-  }
-  for (int r = 0; r < 3 * Nodes; ++r) {
-    double s[kPoints];
-    for (int q = 0; q < kPoints; ++q) {
-      s[q] = g.volume[q] * h[q][r];
-    }
-    for (int c = 0; c < kPadded<Nodes>; ++c) {
-      double sum = s[0] * h[0][c];
-      for (int q = 1; q < kPoints; ++q) {
-        sum += s[q] * h[q][c];
-      }
-      G[r][c] = sum;
-    }
-  }
-}
-
-/// block += lambda G_ab + mu G_ab^T + mu tr(G_ab) I.
-template <int Width>
-void add_stiffness(const double (*G)[Width], int a, int b, const Lame& m,
-                   double* block) {
-  const double* g0 = G[3L * a] + 3L * b;
-  const double* g1 = g0 + Width;
-  const double* g2 = g1 + Width;
-  const double d = m.mu * (g0[0] + g1[1] + g2[2]);
-  const double both = m.lambda + m.mu;
-  block[0] += both * g0[0] + d;
-  block[1] += m.lambda * g0[1] + m.mu * g1[0];
-  block[2] += m.lambda * g0[2] + m.mu * g2[0];
-  block[3] += m.lambda * g1[0] + m.mu * g0[1];
-  block[4] += both * g1[1] + d;
-  block[5] += m.lambda * g1[2] + m.mu * g2[1];
-  block[6] += m.lambda * g2[0] + m.mu * g0[2];
-  block[7] += m.lambda * g2[1] + m.mu * g1[2];
-  block[8] += both * g2[2] + d;
-}
-
-/// block += C : G_ab, see ElasticLaw::tensor.
-template <int Width>
-void add_stiffness(const double (*G)[Width], int a, int b, const ElasticLaw& m,
-                   double* block) {
-  double g[9];
-  for (int j = 0; j < 3; ++j) {
-    for (int l = 0; l < 3; ++l) {
-      g[3 * j + l] = G[3L * a + j][3L * b + l];
-    }
-  }
-  const double* row = m.tensor.data();
-  for (int k = 0; k < 9; ++k, row += 9) {
-    double sum = 0.0;
-    for (int c = 0; c < 9; ++c) {
-      sum += row[c] * g[c];
-    }
-    block[k] += sum;
-  }
-}
-
-/// Adds the blocks of one element. Law: Lame or ElasticLaw.
-template <int Nodes, class Law>
-void add_blocks(const double (*G)[kPadded<Nodes>], const int* ids,
-                const int* block, const Law& law, BlockMatrix<double>& matrix) {
-  for (int a = 0; a < Nodes; ++a) {
-    add_stiffness(G, a, a, law, matrix.diagonal.data() + 9L * ids[a]);
-    for (int b = 0; b < a; ++b) {
-      add_stiffness(G, a, b, law,
-                    matrix.lower.data() + 9L * block[a * (a - 1) / 2 + b]);
-    }
   }
 }
 
@@ -117,22 +32,28 @@ bool add_element(const ElementTable& table, const Points& x,
   constexpr int kPairs = Nodes * (Nodes - 1) / 2;
   std::array<Vec3, Nodes> corner;
   load_nodes<Nodes>(table, x, e, corner);
-  TetGradients<Nodes> g;
-  if (!tet_gradients<Nodes>(corner, g)) {
-    return false;
-  }
   const std::size_t first = static_cast<std::size_t>(e) * Nodes;
-  alignas(32) double G[3 * Nodes][kPadded<Nodes>];
-  outer_products<Nodes>(g, table.slot.data() + first, G);
-  const ElasticLaw& law = laws[table.region[e]];
   const int* ids = p.element_nodes.data() + first;
   const int* block = p.pair_block.data() + static_cast<std::size_t>(e) * kPairs;
-  if (law.isotropic) {
-    add_blocks<Nodes>(G, ids, block, law.lame, matrix);
-  } else {
-    add_blocks<Nodes>(G, ids, block, law, matrix);
+  return add_element_stiffness<Nodes>(
+      corner, table.slot.data() + first, laws[table.region[e]],
+      [&](int a, int b) {
+        return a == b ? matrix.diagonal.data() + 9L * ids[a]
+                      : matrix.lower.data() + 9L * block[a * (a - 1) / 2 + b];
+      });
+}
+
+template <int Nodes>
+std::optional<int> first_bad(const ElementTable& table, const Points& x) {
+  std::array<Vec3, Nodes> corner;
+  TetGradients<Nodes> g;
+  for (int e = 0; e < table.pattern.element_count(); ++e) {
+    load_nodes<Nodes>(table, x, e, corner);
+    if (!tet_gradients<Nodes>(corner, g)) {
+      return e;
+    }
   }
-  return true;
+  return std::nullopt;
 }
 
 template <int Nodes>
@@ -191,12 +112,13 @@ void add_internal_forces(const ElementTable& table, const Points& x,
 
 }  // namespace
 
-ElementTable make_element_table(RowChunks chunks, int nodes_per_element,
-                                const std::vector<int>& elements,
-                                std::vector<int> region) {
+ElementTable make_element_list(RowChunks chunks, int nodes_per_element,
+                               const std::vector<int>& elements,
+                               std::vector<int> region) {
   ElementTable table;
   table.slot.resize(elements.size());
-  std::vector<int> ascending(elements.size());
+  std::vector<int>& ascending = table.pattern.element_nodes;
+  ascending.resize(elements.size());
   std::array<int, 10> order;
   for (std::size_t first = 0; first < elements.size();
        first += nodes_per_element) {
@@ -220,9 +142,27 @@ ElementTable make_element_table(RowChunks chunks, int nodes_per_element,
     }
     table.chunk_first.push_back(e);
   }
-  table.pattern =
-      make_pattern(std::move(chunks), nodes_per_element, std::move(ascending));
+  table.pattern.nodes = chunks.first.back();
+  table.pattern.chunks = std::move(chunks);
+  table.pattern.nodes_per_element = nodes_per_element;
   return table;
+}
+
+ElementTable make_element_table(RowChunks chunks, int nodes_per_element,
+                                const std::vector<int>& elements,
+                                std::vector<int> region) {
+  ElementTable table = make_element_list(std::move(chunks), nodes_per_element,
+                                         elements, std::move(region));
+  table.pattern =
+      make_pattern(std::move(table.pattern.chunks), nodes_per_element,
+                   std::move(table.pattern.element_nodes));
+  return table;
+}
+
+std::optional<int> first_bad_element(const ElementTable& table,
+                                     const Points& x) {
+  return table.pattern.nodes_per_element == 4 ? first_bad<4>(table, x)
+                                              : first_bad<10>(table, x);
 }
 
 std::optional<int> assemble(const ElementTable& table, const Points& x,

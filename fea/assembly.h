@@ -37,6 +37,17 @@ ElementTable make_element_table(RowChunks chunks, int nodes_per_element,
                                 const std::vector<int>& elements,
                                 std::vector<int> region);
 
+/// The same without the places of blocks (start, column and pair_block of the
+/// pattern): a tenth of the memory, enough for internal_forces().
+ElementTable make_element_list(RowChunks chunks, int nodes_per_element,
+                               const std::vector<int>& elements,
+                               std::vector<int> region);
+
+/// The first element (solver's) whose Jacobian determinant is not positive at
+/// a point of the stiffness rule.
+std::optional<int> first_bad_element(const ElementTable& table,
+                                     const Points& x);
+
 /// Fills `matrix` with K_ab = sum over points of V (lambda g_a g_b^T +
 /// mu g_b g_a^T + mu g_a . g_b I), or C g_a g_b^T where a material is not
 /// isotropic. Each block adds its elements in one order, whatever the number of

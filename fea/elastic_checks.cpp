@@ -37,11 +37,15 @@ void check_arrays(const TetMesh& mesh) {
   }
 }
 
-void check_memory(const TetMesh& mesh) {
+void check_memory(const TetMesh& mesh, SolverKind solver) {
   constexpr double kTenNodes = 2700.0;  // [byte/node]
   constexpr double kFourNodes = 1700.0;
+  constexpr double kOwnShare = 400.0;
   const auto nodes = static_cast<double>(mesh.nodes.size());
-  require_memory((mesh.order == 2 ? kTenNodes : kFourNodes) * nodes,
+  const double each = solver == SolverKind::Distributed ? kOwnShare
+                      : mesh.order == 2                 ? kTenNodes
+                                                        : kFourNodes;
+  require_memory(each * nodes,
                  fmt::format("elasticity on {} elements with {} nodes",
                              mesh.element_count(), mesh.nodes.size()),
                  "longer edges (resolution.fea) need less: twice as long, an "

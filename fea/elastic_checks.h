@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/tet_mesh.h"
+#include "fea/elasticity.h"
 #include "fea/loads.h"
 
 namespace meniscus {
@@ -13,8 +14,10 @@ void check_arrays(const TetMesh& mesh);
 
 /// Throws SolverError when the free memory is less than the stiffness, its
 /// preconditioner and the solve will need: 2.7 kB a node of ten-node elements,
-/// 1.7 kB of four-node ones (measured from 20,000 to 640,000 nodes).
-void check_memory(const TetMesh& mesh);
+/// 1.7 kB of four-node ones (measured from 20,000 to 640,000 nodes). Of a
+/// distributed solve only what this process needs: its processes may have
+/// other machines' memory.
+void check_memory(const TetMesh& mesh, SolverKind solver);
 
 /// The load case's nodal forces; throws InvalidInput when there are none.
 VectorX checked_forces(const TetMesh& mesh, const LoadCase& load_case,

@@ -40,7 +40,7 @@ ElasticOperator ElasticSystem::operator_at(
                                    load_cases.size()));
   }
   const LoadCase& loads = load_cases[load_case];
-  Holding holding = make_holding(mesh, loads, order_);
+  Holding holding = make_holding(mesh, loads, base_.order);
   if (!alike(holding, group->holding)) {
     throw SolverError(fmt::format(
         "load case '{}': the directions in which its supports hold the nodes "
@@ -48,12 +48,12 @@ ElasticOperator ElasticSystem::operator_at(
         loads.name));
   }
   ElasticOperator result{.table = &shared_->table,
-                         .order = &order_,
-                         .materials = &materials_,
+                         .order = &base_.order,
+                         .materials = &base_.materials,
                          .preconditioner = group->preconditioner.get(),
                          .K = {},
                          .freedom = std::move(holding.freedom),
-                         .x = solver_points(mesh)};
+                         .x = base_.solver_points(mesh)};
   if (const auto failure = assemble(mesh, result.K)) {
     throw MeshError(failure->message);
   }

@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "fea/assembly.h"
+#include "fea/elastic_base.h"
 #include "fea/elastic_operator.h"
 #include "fea/elasticity.h"
-#include "fea/holding.h"
 #include "fea/kept_state.h"
 #include "fea/multigrid.h"
-#include "fea/node_order.h"
 #include "fea/preconditioner.h"
 
 namespace meniscus {
@@ -24,10 +23,7 @@ class ElasticSystem {
                 const std::vector<LoadCase>& load_cases,
                 const ElasticOptions& options, BlockMatrix<double>& matrix);
 
-  /// Throws InvalidInput unless elements, faces, names and supports are the
-  /// base's.
-  void check_same(const TetMesh& mesh,
-                  const std::vector<LoadCase>& load_cases) const;
+  const ElasticBase& base() const { return base_; }
 
   /// The stiffness of `mesh`, or why there is none.
   std::optional<Failure> assemble(const TetMesh& mesh,
@@ -86,18 +82,8 @@ class ElasticSystem {
                      const BlockMatrix<double>& matrix,
                      const ElasticSolution* start,
                      ElasticSolution& result) const;
-  Points solver_points(const TetMesh& mesh) const;
-  VectorX to_solver(const VectorX& v) const;
-  VectorX to_mesh(const VectorX& v) const;
 
-  ElasticOptions options_;
-  std::vector<Material> materials_;
-  std::vector<ElasticLaw> laws_;
-  std::vector<int> elements_;  // the base's, to compare
-  std::vector<int> faces_;
-  std::vector<std::vector<Support>> supports_;
-  std::vector<std::vector<SpringBed>> springs_;
-  NodeOrder order_;
+  ElasticBase base_;
   std::unique_ptr<Shared> shared_;
   std::vector<Group> groups_;
   bool multigrid_ = false;

@@ -5,26 +5,41 @@
 #include <fmt/format.h>
 
 #include "core/timer.h"
+#include "fea/distributed_system.h"
 #include "fea/elastic_system.h"
 
 namespace meniscus {
 
 struct ElasticModel::Impl {
-  ElasticSystem system;
+  std::optional<ElasticSystem> system;  // one of the two
+  std::optional<DistributedSystem> distributed;
   std::vector<LoadCase> load_cases;
   ElasticSolution base;
+
+  const ElasticBase& input() const {
+    return system ? system->base() : distributed->base();
+  }
 };
 
 ElasticModel::ElasticModel(const TetMesh& base,
                            const std::vector<Material>& materials,
                            std::vector<LoadCase> load_cases,
-                           const ElasticOptions& options) {
+                           const ElasticOptions& options)
+    : impl_(std::make_unique<Impl>()) {
   const Timer timer;
-  BlockMatrix<double> matrix;
-  ElasticSystem system(base, materials, load_cases, options, matrix);
-  impl_.reset(new Impl{std::move(system), std::move(load_cases), {}});
-  const double seconds = timer.seconds();
-  impl_->base = impl_->system.solve(base, impl_->load_cases, matrix, nullptr);
+  impl_->load_cases = std::move(load_cases);
+  const std::vector<LoadCase>& cases = impl_->load_cases;
+  double seconds = 0.0;
+  if (options.solver == SolverKind::Distributed) {
+    impl_->distributed.emplace(base, materials, cases, options);
+    seconds = timer.seconds();
+    impl_->base = impl_->distributed->solve(base, cases, nullptr);
+  } else {
+    BlockMatrix<double> matrix;
+    impl_->system.emplace(base, materials, cases, options, matrix);
+    seconds = timer.seconds();
+    impl_->base = impl_->system->solve(base, cases, matrix, nullptr);
+  }
   impl_->base.report.setup_seconds += seconds;
 }
 
@@ -52,20 +67,29 @@ ElasticSolution ElasticModel::solve(const TetMesh& mesh,
   if (keep != nullptr) {
     keep->kept_.reset();
   }
-  impl_->system.check_same(mesh, load_cases);
+  impl_->input().check_same(mesh, load_cases);
+  if (impl_->distributed) {
+    if (keep != nullptr) {
+      throw InvalidInput(
+          "elasticity: the solver petsc keeps its matrix in other processes; "
+          "exact gradients need another solver");
+    }
+    return impl_->distributed->solve(mesh, load_cases, &impl_->base);
+  }
+  const ElasticSystem& system = *impl_->system;
   BlockMatrix<double> matrix;
   ElasticSolution result;
-  if (auto failure = impl_->system.assemble(mesh, matrix)) {
+  if (auto failure = system.assemble(mesh, matrix)) {
     result.report = impl_->base.report;
     result.failure = std::move(failure);
     return result;
   }
   const double seconds = timer.seconds();
-  result = impl_->system.solve(mesh, load_cases, matrix, &impl_->base);
+  result = system.solve(mesh, load_cases, matrix, &impl_->base);
   result.report.setup_seconds += seconds;
   if (keep != nullptr && !result.failure) {
     keep->kept_ = std::make_unique<KeptState>(
-        impl_->system.keep(mesh, load_cases, std::move(matrix)));
+        system.keep(mesh, load_cases, std::move(matrix)));
   }
   return result;
 }
@@ -84,8 +108,13 @@ AdjointSolution ElasticModel::solve_adjoint(
 ElasticOperator ElasticModel::operator_at(
     const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
     int load_case) const {
-  impl_->system.check_same(mesh, load_cases);
-  return impl_->system.operator_at(mesh, load_cases, load_case);
+  impl_->input().check_same(mesh, load_cases);
+  if (impl_->distributed) {
+    throw InvalidInput(
+        "elasticity: the solver petsc keeps its matrix in other processes; "
+        "natural frequencies and buckling factors need another solver");
+  }
+  return impl_->system->operator_at(mesh, load_cases, load_case);
 }
 
 }  // namespace meniscus

@@ -18,7 +18,7 @@ namespace meniscus {
 
 struct ElasticReport {
   int dofs = 0;                     // free unknowns of the first load case
-  std::string solver;               // "p-multigrid", "cholmod"
+  std::string solver;               // "p-multigrid", "cholmod", "petsc"
   int iterations = 0;               // of the last load case
   double residual = 0.0;            // relative, largest over load cases
   double strain_energy = 0.0;       // of the first load case [force length]
@@ -26,6 +26,8 @@ struct ElasticReport {
   double setup_seconds = 0.0;       // checks, assembly, preconditioner
   double solve_seconds = 0.0;
   double stress_seconds = 0.0;  // of the caller's recover_stress, if it tells
+  /// Peak memory of each process of a distributed solve [byte].
+  std::vector<double> process_memory;
 };
 
 /// Nodal displacement [length], 3 per node, per load case; reactions [force],
@@ -37,11 +39,23 @@ struct ElasticSolution {
   std::optional<Failure> failure;
 };
 
-enum class SolverKind { Automatic, Cholesky, Multigrid };
+enum class SolverKind {
+  Automatic,
+  Cholesky,
+  Multigrid,
+  Distributed  // PETSc in processes of its own, each with a part of the matrix
+};
+inline constexpr int kMostProcesses = 4096;
 
 struct ElasticOptions {
   /// Automatic: multigrid above 1,000 unknowns, else Cholesky.
   SolverKind solver = SolverKind::Automatic;
+  /// Of Distributed, 1 to kMostProcesses; fewer are started where one would
+  /// have less than 100 nodes.
+  int processes = 2;
+  /// Of Distributed: wall clock of one solve of all load cases [s]; without it
+  /// 600 s and 1 ms an unknown and load case.
+  std::optional<double> time_limit;
   /// Relative error of the displacement in the energy norm, per load case, as
   /// the preconditioner estimates it.
   double tolerance = 1e-10;
@@ -56,6 +70,12 @@ struct ElasticOperator;
 /// stiffness of any mesh of the same topology and solves it by conjugate
 /// gradients preconditioned with the base's factors, from the base's solution:
 /// a pure function of (base, mesh, loads), safe to call from several threads.
+///
+/// With SolverKind::Distributed this process assembles no matrix: each design
+/// is handed to the helper `meniscus-petsc` in several processes, started by
+/// mpirun, that assemble and solve it (fea/petsc_child.h). Constructor and
+/// solve() then throw IoError too (helper or mpirun missing, temporary folder)
+/// and SolverError when a process dies.
 class ElasticModel {
  public:
   /// `materials`: one per region of the mesh. Throws InvalidInput (material,
@@ -96,8 +116,8 @@ class ElasticModel {
 
   /// The stiffness of `mesh`, held as in load case `load_case` (index), for
   /// eigenvalue problems; it must not outlive the model. Throws InvalidInput as
-  /// solve() does, MeshError (inverted element) and SolverError (supports that
-  /// turned against each other).
+  /// solve() does or for a distributed model, MeshError (inverted element) and
+  /// SolverError (supports that turned against each other).
   ElasticOperator operator_at(const TetMesh& mesh,
                               const std::vector<LoadCase>& load_cases,
                               int load_case) const;

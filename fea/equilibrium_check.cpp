@@ -33,14 +33,12 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
     const Vec3 pull = input.springs.segment<3>(3 * i);
     const Vec3 gap =
         input.f.segment<3>(3 * i) - input.internal.segment<3>(3 * i);
-    const Vec3 diagonal(input.matrix.diagonal[9 * i],
-                        input.matrix.diagonal[9 * i + 4],
-                        input.matrix.diagonal[9 * i + 8]);
     result.reactions.segment<3>(3 * i) = P * gap - gap - P * pull;
     load += f.squaredNorm();
     error += (P * (gap - pull)).squaredNorm();
-    rounding +=
-        diagonal.cwiseProduct(P * input.u.segment<3>(3 * i)).squaredNorm();
+    rounding += input.diagonal.segment<3>(3 * i)
+                    .cwiseProduct(P * input.u.segment<3>(3 * i))
+                    .squaredNorm();
   }
   if (load > 0.0) {
     result.residual = std::sqrt(error / load);

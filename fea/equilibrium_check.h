@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "core/types.h"
-#include "fea/block_matrix.h"
 #include "fea/node_freedom.h"
 
 namespace meniscus {
@@ -20,7 +19,7 @@ struct EquilibriumInput {
   const VectorX& springs;   // S u [force]
   const VectorX& u;         // [length]
   const NodeFreedom& freedom;
-  const BlockMatrix<double>& matrix;
+  const VectorX& diagonal;  // of the stiffness [force/length]
 };
 
 struct Equilibrium {

@@ -50,7 +50,7 @@ std::vector<std::uint64_t> morton_codes(const Points& nodes) {
 }
 
 /// Mesh nodes along the curve.
-std::vector<int> curve_order(const TetMesh& mesh) {
+std::vector<int> along_curve(const TetMesh& mesh) {
   const std::vector<std::uint64_t> codes = morton_codes(mesh.nodes);
   std::vector<std::pair<std::uint64_t, int>> keys;
   keys.reserve(codes.size());
@@ -132,7 +132,7 @@ std::vector<int> colour_chunks(const std::vector<std::vector<int>>& conflict) {
 }
 
 void order_nodes(const TetMesh& mesh, NodeOrder& order) {
-  const std::vector<int> curve = curve_order(mesh);
+  const std::vector<int> curve = along_curve(mesh);
   const int nodes = static_cast<int>(curve.size());
   const int size =
       std::clamp(nodes / kWantedChunks, kLeastChunk, kLargestChunk);
@@ -158,11 +158,8 @@ void order_nodes(const TetMesh& mesh, NodeOrder& order) {
   }
 }
 
-}  // namespace
-
-NodeOrder chunked_order(const TetMesh& mesh) {
-  NodeOrder order;
-  order_nodes(mesh, order);
+/// The rest, once order.to_mesh is known.
+void order_elements(const TetMesh& mesh, NodeOrder& order) {
   order.to_solver.resize(order.to_mesh.size());
   for (std::size_t k = 0; k < order.to_mesh.size(); ++k) {
     order.to_solver[order.to_mesh[k]] = static_cast<int>(k);
@@ -183,6 +180,22 @@ NodeOrder chunked_order(const TetMesh& mesh) {
   for (int e = 0; e < mesh.element_count(); ++e) {
     order.element[start[lowest[e]]++] = e;
   }
+}
+
+}  // namespace
+
+NodeOrder chunked_order(const TetMesh& mesh) {
+  NodeOrder order;
+  order_nodes(mesh, order);
+  order_elements(mesh, order);
+  return order;
+}
+
+NodeOrder curve_order(const TetMesh& mesh) {
+  NodeOrder order;
+  order.to_mesh = along_curve(mesh);
+  order.chunks = one_chunk(static_cast<int>(order.to_mesh.size()));
+  order_elements(mesh, order);
   return order;
 }
 

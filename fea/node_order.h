@@ -21,4 +21,8 @@ struct NodeOrder {
 /// and place on the curve, elements by their lowest node.
 NodeOrder chunked_order(const TetMesh& mesh);
 
+/// Nodes along the Morton curve, all in one chunk, elements by their lowest
+/// node: equal ranges of nodes are compact pieces of the part.
+NodeOrder curve_order(const TetMesh& mesh);
+
 }  // namespace meniscus

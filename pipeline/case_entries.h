@@ -154,6 +154,8 @@ struct ExclusionEntry {
 struct AnalysisEntry {
   bool adapt = false;  // one round of adaptive refinement
   std::vector<ExclusionEntry> exclude;
+  SolverKind solver = SolverKind::Automatic;
+  int processes = 2;  // of Distributed
   // Eigenvalues of the best design:
   static constexpr int kFree = -1;  // not held at all
   int frequencies = 0;              // lowest natural ones

@@ -163,6 +163,41 @@ void check_match(CaseContext& context, const CaseTable& table,
 /// More modes at once would take more memory than the part's own solve.
 constexpr int kMostModes = 50;
 
+/// After the eigenvalues that are asked for.
+void read_solver(CaseContext& context, const CaseTable& table,
+                 AnalysisEntry& analysis) {
+  static const std::map<std::string, SolverKind> kinds = {
+      {"auto", SolverKind::Automatic},
+      {"cholmod", SolverKind::Cholesky},
+      {"p-multigrid", SolverKind::Multigrid},
+      {"petsc", SolverKind::Distributed}};
+  if (const auto kind = table.choice("solver")) {
+    analysis.solver = kinds.at(*kind);
+  }
+  if (analysis.solver != SolverKind::Distributed) {
+    if (table.has("processes")) {
+      context.problems.add(table.line("processes"),
+                           "analysis.processes belongs to solver = \"petsc\"; "
+                           "take it out, or choose that solver");
+    }
+    return;
+  }
+  analysis.processes = table.integer_within("processes", 1, kMostProcesses)
+                           .value_or(analysis.processes);
+  for (const auto& [key, asked] :
+       {std::pair("frequencies", analysis.frequencies > 0),
+        std::pair("buckling", analysis.buckling.value_or(0) > 0)}) {
+    if (asked) {
+      context.problems.add(
+          table.line(key),
+          fmt::format("analysis.{} needs the matrix in one process, and solver "
+                      "= \"petsc\" spreads it; choose another solver or take "
+                      "it out",
+                      key));
+    }
+  }
+}
+
 void read_analysis_table(CaseContext& context, const toml::table& root,
                          Case& result) {
   const auto table = single_table(context, root, "analysis");
@@ -175,6 +210,7 @@ void read_analysis_table(CaseContext& context, const toml::table& root,
   analysis.frequencies =
       table->integer_within("frequencies", 0, kMostModes).value_or(0);
   analysis.buckling = table->integer_within("buckling", 0, kMostModes);
+  read_solver(context, *table, analysis);
   const auto is_free = [](const LoadCaseEntry& entry) {
     return entry.name == "free";
   };

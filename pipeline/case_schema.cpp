@@ -228,6 +228,13 @@ std::vector<TableSpec> make_tables() {
          "zones that stress figures leave out: peaks, safety factors, "
          "distributions and max_von_mises responses. Elements whose centre is "
          "in one at the initial design, for every design"},
+        {"solver", K::Choice, D::None, false,
+         "of the linear systems: auto chooses by size between cholmod (a "
+         "factor) and p-multigrid (conjugate gradients); petsc: in processes "
+         "of its own, for parts that outgrow one machine; auto when left out",
+         "auto|cholmod|p-multigrid|petsc"},
+        {"processes", K::Integer, D::None, false,
+         "of solver = \"petsc\": how many share the part; 2 when left out"},
         {"frequencies", K::Integer, D::None, false,
          "how many natural frequencies, lowest first; none when left out"},
         {"supports_of", K::Name, D::None, false,

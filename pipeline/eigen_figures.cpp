@@ -23,8 +23,16 @@ constexpr int kMostSteps = 150;
 // One that came out above this may be far from converged and needs no warning.
 constexpr double kSafelyStable = 10.0;
 
+/// Where the matrix is not in one process.
+bool left_out(const AnalysisEntry& analysis) {
+  return analysis.solver == SolverKind::Distributed;
+}
+
 BucklingOptions buckling_options(const AnalysisEntry& analysis,
                                  const ElasticReport& solve, Monitor* monitor) {
+  if (left_out(analysis)) {
+    return {.count = 0};
+  }
   if (!analysis.buckling) {
     return {
         .tolerance = kRoughly,
@@ -100,6 +108,11 @@ EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
            return buckling_modes(model, fields.mesh, cases, static_cast<int>(c),
                                  fields.solution.displacements[c], options);
          })});
+  }
+  if (left_out(analysis) && !analysis.buckling) {
+    figures.remark =
+        "no buckling factors: the solver petsc keeps its matrix in other "
+        "processes; another solver, or a coarser mesh with one, gives them";
   }
   if (analysis.frequencies > 0) {
     figures.frequencies = frequencies_of(analysis, fields, model, monitor);

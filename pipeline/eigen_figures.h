@@ -28,11 +28,13 @@ struct FrequencyFigures {
 struct EigenFigures {
   std::vector<BucklingFigures> buckling;  // per load case; may be empty
   std::optional<FrequencyFigures> frequencies;
+  std::string remark;  // why nothing was computed, unasked; or empty
   double seconds = 0.0;
 };
 
 /// What the case's [analysis] asks for; without it the first buckling factor of
-/// every load case up to 1000, to three digits. `model` must know the fields'
+/// every load case up to 1000, to three digits, or a remark where the solver
+/// keeps its matrix in other processes. `model` must know the fields'
 /// mesh. An answer that did not come is a failure within. Throws Interrupted.
 EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
                            const ElasticModel& model,

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/timer.h"
+#include "fea/petsc_child.h"
 #include "mesh_tet/mesh_motion.h"
 #include "mesh_tet/motion_check.h"
 #include "mesh_tet/quadratic.h"
@@ -120,7 +121,9 @@ bool ForwardModel::Impl::freeze_elasticity(const EvaluatedCase& inputs,
                                           base_mesh.element_count())});
   try {
     elasticity.emplace(base_mesh, inputs.materials, inputs.load_cases,
-                       ElasticOptions{.monitor = &monitor});
+                       ElasticOptions{.solver = input.analysis.solver,
+                                      .processes = input.analysis.processes,
+                                      .monitor = &monitor});
     frozen.fea = elasticity->base_solution().report;
     frozen.failure = elasticity->base_solution().failure;
   } catch (const SolverError& error) {
@@ -239,10 +242,17 @@ bool ForwardModel::Impl::solve(const TetMesh& mesh, const EvaluatedCase& inputs,
   return !result.failure;
 }
 
+void require_solver(const Case& input) {
+  if (input.analysis.solver == SolverKind::Distributed) {
+    require_petsc();
+  }
+}
+
 ForwardModel::ForwardModel(const Case& input,
                            const ForwardModelOptions& options)
     : impl_(std::make_unique<Impl>()) {
   refuse_walls(input);
+  require_solver(input);
   impl_->input = input;
   impl_->freeze(options);
 }

@@ -71,13 +71,18 @@ struct ForwardModelOptions {
   Monitor* monitor = nullptr;
 };
 
+/// Throws IoError, with what to install, when the case's solver is a program
+/// that is not here.
+void require_solver(const Case& input);
+
 class ForwardModel {
  public:
   /// Freezes films, tetrahedra and elasticity at the case's initial design,
   /// with analysis.adapt after one round of adaptive refinement there.
   /// When that design cannot be evaluated, failure() says why and the model
   /// must not be used. Throws what its stages throw for wrong input
-  /// (choose_exclusion too), and for a case with walls.
+  /// (choose_exclusion too), for a case with walls, and what require_solver
+  /// throws.
   explicit ForwardModel(const Case& input,
                         const ForwardModelOptions& options = {});
   ~ForwardModel();

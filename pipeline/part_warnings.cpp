@@ -75,6 +75,9 @@ std::vector<std::string> buckling_warnings(const EigenFigures& figures) {
                          b.modes.failure->message);
     }
   }
+  if (!figures.remark.empty()) {
+    warnings.push_back(figures.remark);
+  }
   if (figures.frequencies && figures.frequencies->modes.failure) {
     warnings.push_back("not all natural frequencies: " +
                        figures.frequencies->modes.failure->message);

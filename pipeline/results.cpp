@@ -25,13 +25,17 @@ Json tet_json(const TetFigures& tet) {
 }
 
 Json fea_json(const ElasticReport& fea) {
-  return {{"element_order", 2},
-          {"dofs", fea.dofs},
-          {"solver", fea.solver},
-          {"iterations", fea.iterations},
-          {"residual", fea.residual},
-          {"strain_energy", fea.strain_energy},
-          {"reaction_imbalance", fea.reaction_imbalance}};
+  Json json = {{"element_order", 2},
+               {"dofs", fea.dofs},
+               {"solver", fea.solver},
+               {"iterations", fea.iterations},
+               {"residual", fea.residual},
+               {"strain_energy", fea.strain_energy},
+               {"reaction_imbalance", fea.reaction_imbalance}};
+  if (!fea.process_memory.empty()) {
+    json["process_memory"] = fea.process_memory;
+  }
+  return json;
 }
 
 Json seconds_json(const StageSeconds& seconds) {

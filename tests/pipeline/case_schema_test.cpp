@@ -103,7 +103,8 @@ TEST(JsonSchema, AcceptsTheCasesThatTheReaderAccepts) {
       "[analysis]\nadapt = true\nexclude = [\n"
       "  { near = \"foot_pad\", distance = \"5 mm\" },\n"
       "  { center = [0, 0, \"length\"], radius = 7 },\n"
-      "  { low = [-1, -2, -3], high = [1, 2, 3] }]\n";
+      "  { low = [-1, -2, -3], high = [1, 2, 3] }]\n"
+      "solver = \"petsc\"\nprocesses = 4\n";
   EXPECT_THAT(problems_of(strut() + analysis), testing::IsEmpty());
   EXPECT_THAT(against_schema(strut() + analysis), testing::IsEmpty());
   EXPECT_THAT(

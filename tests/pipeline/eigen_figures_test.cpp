@@ -1,5 +1,6 @@
 #include "pipeline/eigen_figures.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 /// A slender bar under its own solution: pushed, and pulled.
 struct Bar {
@@ -117,10 +119,56 @@ TEST(EigenFigures, WithoutAnAnswerSayWhy) {
               ElementsAre(HasSubstr("'steel' of region 0 has density 0")));
 }
 
+TEST(EigenFigures, AreLeftOutWithARemarkWhereTheMatrixIsSpread) {
+  const Bar bar(100.0);
+  Case input;
+  input.analysis.solver = SolverKind::Distributed;
+  const EigenFigures figures = eigen_figures(input, bar.fields, *bar.model);
+  EXPECT_THAT(figures.buckling, IsEmpty());
+  EXPECT_THAT(buckling_warnings(figures),
+              ElementsAre(HasSubstr("no buckling factors: the solver petsc")));
+  input.analysis.buckling = 0;
+  EXPECT_THAT(buckling_warnings(eigen_figures(input, bar.fields, *bar.model)),
+              IsEmpty());
+}
+
 Case strut_with(const std::string& analysis) {
   const CaseReading reading = read_case_text(strut() + analysis, "case.toml");
   EXPECT_THAT(reading.problems, IsEmpty());
   return *reading.input;
+}
+
+TEST(AnalysisTable, KnowsTheSolver) {
+  EXPECT_EQ(strut_with("").analysis.solver, SolverKind::Automatic);
+  for (const auto& [name, kind] :
+       {std::pair("auto", SolverKind::Automatic),
+        std::pair("cholmod", SolverKind::Cholesky),
+        std::pair("p-multigrid", SolverKind::Multigrid),
+        std::pair("petsc", SolverKind::Distributed)}) {
+    const Case input =
+        strut_with(fmt::format("[analysis]\nsolver = \"{}\"\n", name));
+    EXPECT_EQ(input.analysis.solver, kind);
+    EXPECT_EQ(input.analysis.processes, 2);
+    EXPECT_NE(input.hash, strut_with("").hash) << "last digits depend on it";
+  }
+  EXPECT_EQ(strut_with("[analysis]\nsolver = \"petsc\"\nprocesses = 7\n")
+                .analysis.processes,
+            7);
+}
+
+TEST(AnalysisTable, RefusesWhatTheSolverCannotDo) {
+  const auto problems = [](const std::string& keys) {
+    return problems_of(strut() + "[analysis]\n" + keys);
+  };
+  EXPECT_THAT(problems("solver = \"pets\"\n"), SizeIs(1));
+  EXPECT_THAT(problems("solver = \"petsc\"\nprocesses = 0\n"), SizeIs(1));
+  EXPECT_THAT(problems("processes = 2\n"),
+              ElementsAre(HasSubstr("belongs to solver = \"petsc\"")));
+  EXPECT_THAT(problems("solver = \"petsc\"\nbuckling = 1\n"),
+              ElementsAre(HasSubstr("analysis.buckling needs the matrix")));
+  EXPECT_THAT(problems("solver = \"petsc\"\nfrequencies = 2\n"),
+              ElementsAre(HasSubstr("analysis.frequencies needs the matrix")));
+  EXPECT_THAT(problems("solver = \"petsc\"\nbuckling = 0\n"), IsEmpty());
 }
 
 TEST(AnalysisTable, IsRead) {

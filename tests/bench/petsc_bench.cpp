@@ -1,0 +1,81 @@
+/// The solver petsc in 1, 2, ... processes beside the program's own, on the
+/// parts of the elasticity table. petsc_bench [--scale S] [--processes N]
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/timer.h"
+#include "tests/support/elastic_race.h"
+#include "tests/support/measured_child.h"
+
+namespace meniscus {
+namespace {
+
+std::string row(const std::string& name, double seconds,
+                const ElasticReport& report, double difference) {
+  double largest = 0.0;
+  for (const double bytes : report.process_memory) {
+    largest = std::max(largest, bytes);
+  }
+  return fmt::format(
+      "  {:12} {:7.1f} s (set-up {:.1f}, solve {:.1f}), {} iterations, most of "
+      "a process {:.0f} MB, differs by {:.1e}\n",
+      name, seconds, report.setup_seconds, report.solve_seconds,
+      report.iterations, largest / 1e6, difference);
+}
+
+std::string measure(const ElasticWork& work, double scale, int most) {
+  const ElasticPart part = work.make(scale);
+  std::string text;
+  VectorX ours;
+  for (int processes = 0; processes <= most;
+       processes = processes == 0 ? 1 : 2 * processes) {
+    const Timer timer;
+    const ElasticModel model(
+        part.mesh, part.materials, {part.load_case},
+        processes == 0 ? ElasticOptions{}
+                       : ElasticOptions{.solver = SolverKind::Distributed,
+                                        .processes = processes});
+    const double seconds = timer.seconds();
+    const ElasticSolution& solution = model.base_solution();
+    if (solution.failure) {
+      return text + solution.failure->message + "\n";
+    }
+    const VectorX& u = solution.displacements[0];
+    if (processes == 0) {
+      ours = u;
+      text = fmt::format("{}: {} elements, {} unknowns\n", work.name,
+                         part.mesh.element_count(), solution.report.dofs);
+    }
+    text += row(
+        processes == 0 ? "p-multigrid" : fmt::format("petsc {}", processes),
+        seconds, solution.report,
+        (u - ours).lpNorm<Eigen::Infinity>() / ours.lpNorm<Eigen::Infinity>());
+  }
+  return text;
+}
+
+}  // namespace
+}  // namespace meniscus
+
+int main(int argc, char** argv) {
+  double scale = 1.0;
+  int processes = 2;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (std::string(argv[i]) == "--scale") {
+      scale = std::atof(argv[i + 1]);
+    } else {
+      processes = std::atoi(argv[i + 1]);
+    }
+  }
+  for (const meniscus::ElasticWork& work : meniscus::elastic_works()) {
+    const meniscus::MeasuredChild child = meniscus::measure_forked(
+        [&] { return meniscus::measure(work, scale, processes); });
+    fmt::print("{}", child.output);
+    std::fflush(stdout);
+  }
+  return 0;
+}
