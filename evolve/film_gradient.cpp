@@ -171,6 +171,10 @@ VectorX FilmModel::areas(const Points& points) const {
   return impl_->energy->areas(points);
 }
 
+const std::vector<std::string>& FilmModel::labels() const {
+  return impl_->complex.mesh.labels;
+}
+
 Points FilmModel::transpose_surface(const Points& by_corners,
                                     const Points& by_mid_sides) const {
   return impl_->nodes.transpose(by_corners, by_mid_sides,

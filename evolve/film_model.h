@@ -97,6 +97,7 @@ class FilmModel {
 
   /// Area per label of fine_mesh(); 0 for caps [length^2].
   VectorX areas(const Points& points) const;
+  const std::vector<std::string>& labels() const;
 
   /// Margin to collapse of a state of settle(system) [force/length^3], with
   /// its derivatives for transpose(). Throws as that does, and InvalidInput for

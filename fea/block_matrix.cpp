@@ -127,4 +127,13 @@ MENISCUS_MULTIPLY(3)
 MENISCUS_MULTIPLY(4)
 #undef MENISCUS_MULTIPLY
 
+VectorX diagonal_of(const BlockMatrix<double>& matrix) {
+  VectorX diagonal(static_cast<Eigen::Index>(
+      3 * ((matrix.diagonal.size() - kBlockPadding) / 9)));
+  for (Eigen::Index k = 0; k < diagonal.size(); ++k) {
+    diagonal[k] = matrix.diagonal[9 * (k / 3) + 4 * (k % 3)];
+  }
+  return diagonal;
+}
+
 }  // namespace meniscus

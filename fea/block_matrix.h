@@ -59,4 +59,7 @@ void multiply(const BlockPattern& pattern, const BlockMatrix<double>& matrix,
   multiply<B, K>(pattern, matrix.diagonal.data(), matrix.lower.data(), x, y);
 }
 
+/// The diagonal's entries, 3 per node.
+VectorX diagonal_of(const BlockMatrix<double>& matrix);
+
 }  // namespace meniscus

@@ -69,13 +69,13 @@ std::vector<CgColumn> solve_columns(const KeptState& state,
 }
 
 void conclude(const KeptState& state, const KeptState::Group& group,
-              const std::string& name, const BlockMatrix<double>& matrix,
+              const std::string& name, const VectorX& diagonal,
               const VectorX& g, const VectorX& lambda, const CgColumn& column,
               AdjointSolution& result) {
   const Equilibrium equilibrium = check_equilibrium(
       {state.x, g, internal_forces(*state.table, state.x, *state.laws, lambda),
        spring_forces(group.holding.springs, lambda), lambda,
-       group.holding.freedom, matrix});
+       group.holding.freedom, diagonal});
   result.lambda.push_back(to_mesh(*state.order, lambda));
   result.reactions.push_back(to_mesh(*state.order, equilibrium.reactions));
   result.iterations = std::max(result.iterations, column.iterations);
@@ -105,21 +105,23 @@ KeptState ElasticSystem::keep(const TetMesh& mesh,
                               const std::vector<LoadCase>& load_cases,
                               BlockMatrix<double> matrix) const {
   KeptState state{.table = &shared_->table,
-                  .order = &order_,
-                  .laws = &laws_,
-                  .monitor = options_.monitor != nullptr ? options_.monitor
-                                                         : &silent_monitor(),
-                  .tolerance = options_.tolerance,
-                  .max_iterations = options_.max_iterations,
+                  .order = &base_.order,
+                  .laws = &base_.laws,
+                  .monitor = base_.options.monitor != nullptr
+                                 ? base_.options.monitor
+                                 : &silent_monitor(),
+                  .tolerance = base_.options.tolerance,
+                  .max_iterations = base_.options.max_iterations,
                   .groups = {},
                   .names = {},
                   .matrix = std::move(matrix),
-                  .x = solver_points(mesh)};
+                  .x = base_.solver_points(mesh)};
   state.groups.reserve(groups_.size());
   for (const Group& group : groups_) {
     state.groups.push_back(
         {.cases = group.cases,
-         .holding = make_holding(mesh, load_cases[group.cases.front()], order_),
+         .holding =
+             make_holding(mesh, load_cases[group.cases.front()], base_.order),
          .preconditioner = group.preconditioner.get()});
   }
   state.names.reserve(load_cases.size());
@@ -141,6 +143,7 @@ AdjointSolution solve_adjoint(const KeptState& state, int load_case,
       plain ? BlockMatrix<double>{}
             : sprung_matrix(state.table->pattern, state.matrix, springs);
   const BlockMatrix<double>& matrix = plain ? state.matrix : sprung;
+  const VectorX diagonal = diagonal_of(matrix);
   AdjointSolution result;
   const std::size_t count = right_hand_sides.size();
   for (std::size_t first = 0; first < count; first += kMostColumns) {
@@ -154,7 +157,7 @@ AdjointSolution solve_adjoint(const KeptState& state, int load_case,
     const std::vector<CgColumn> columns =
         solve_columns(state, group, matrix, right, lambda);
     for (std::size_t k = 0; k < right.size(); ++k) {
-      conclude(state, group, name, matrix, right[k], lambda[k], columns[k],
+      conclude(state, group, name, diagonal, right[k], lambda[k], columns[k],
                result);
     }
   }

@@ -1,7 +1,10 @@
 /// Rows of a matrix in pieces that threads may work on side by side.
 #pragma once
 
+#include <omp.h>
 #include <vector>
+
+#include "fea/team_barrier.h"
 
 namespace meniscus {
 
@@ -29,15 +32,17 @@ enum class RowOrder { Forward, Backward };
 /// work(chunk) for each chunk, colours in the order of rows or against it.
 template <class Work>
 void over_chunks(const RowChunks& chunks, RowOrder order, const Work& work) {
+  TeamBarrier barrier;
 #pragma omp parallel if (chunks.count() > chunks.colours() && \
                          chunks.first.back() >= kParallelRows)
   for (int k = 0; k < chunks.colours(); ++k) {
     const int colour =
         order == RowOrder::Forward ? k : chunks.colours() - 1 - k;
-#pragma omp for schedule(dynamic, 1)
+#pragma omp for schedule(dynamic, 1) nowait
     for (int c = chunks.colour[colour]; c < chunks.colour[colour + 1]; ++c) {
       work(c);
     }
+    barrier.wait(omp_get_num_threads());
   }
 }
 
