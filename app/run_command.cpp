@@ -164,6 +164,7 @@ int run_command(const RunArguments& arguments) {
     require_solver(input);
     make_folder(folder);
     store.emplace(open_store(input, folder.string(), arguments.resume));
+    remove_leftovers(folder);
     // An older result must not stand beside a study that is not its own.
     fs::remove(folder / "result.json");
   } catch (const IoError& error) {

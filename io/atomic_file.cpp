@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fcntl.h>
+#include <regex>
 #include <unistd.h>
 #include <utility>
 
@@ -138,6 +140,20 @@ void write_file(const fs::path& path, std::string_view bytes) {
   PendingFile file(path);
   file.write(bytes);
   file.publish();
+}
+
+void remove_leftovers(const fs::path& folder) {
+  static const std::regex hidden(R"(\..+\.([0-9]{1,9})-[0-9]+\.tmp)");
+  std::error_code code;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(folder, code)) {
+    const std::string name = entry.path().filename().string();
+    std::smatch found;
+    if (std::regex_match(name, found, hidden) &&
+        ::kill(std::stoi(found[1]), 0) != 0 && errno == ESRCH) {
+      fs::remove(entry.path(), code);
+    }
+  }
 }
 
 std::string read_file(const fs::path& path) {

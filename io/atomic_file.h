@@ -14,6 +14,10 @@ namespace meniscus {
 /// exists and is no regular file (folder, device) is refused.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// Removes the hidden files in `folder` that write_file() left when it was
+/// killed: those of processes that are no more. What cannot be removed stays.
+void remove_leftovers(const std::filesystem::path& folder);
+
 /// The bytes of a file. Throws IoError.
 std::string read_file(const std::filesystem::path& path);
 

@@ -3,8 +3,10 @@
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <string>
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -118,6 +120,26 @@ TEST(AtomicFile, KeepsTheOldFileWhenTheDiskIsFull) {
       [&] { write_file(path, std::string(100'000, 'x')); }));
   EXPECT_EQ(read_file(path), "old");
   EXPECT_EQ(files_in(folder.path()), 1);
+}
+
+TEST(AtomicFile, LeftoversOfTheDeadAreRemovedAndNoOthers) {
+  const TempFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::_exit(0);
+  }
+  ::waitpid(child, nullptr, 0);
+  const std::string dead = fmt::format(".film.vtp.{}-1.tmp", child);
+  const std::string alive = fmt::format(".film.vtp.{}-1.tmp", ::getpid());
+  for (const std::string& name :
+       {dead, alive, std::string("film.vtp"), std::string(".lock")}) {
+    std::ofstream(folder / name) << "x";
+  }
+  remove_leftovers(folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder / dead));
+  EXPECT_TRUE(std::filesystem::exists(folder / alive));
+  EXPECT_TRUE(std::filesystem::exists(folder / "film.vtp"));
+  EXPECT_TRUE(std::filesystem::exists(folder / ".lock"));
 }
 
 TEST(AtomicFile, NoWriterLeavesHalfAFile) {
