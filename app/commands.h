@@ -42,8 +42,15 @@ struct EvolveArguments {
   bool pictures = true;
 };
 
+struct CheckGradientArguments {
+  std::string case_path;
+  CommonArguments common;
+  std::vector<std::string> at;  // "name=value" of design variables
+};
+
 int new_command(const std::string& name);
 int check_command(const std::string& case_path, const CommonArguments& common);
+int check_gradient_command(const CheckGradientArguments& arguments);
 int run_command(const RunArguments& arguments);
 int evolve_command(const EvolveArguments& arguments);
 int export_command(const ExportArguments& arguments);

@@ -76,6 +76,25 @@ int run_program(int argc, char** argv) {
   run->callback(
       [&] { command = [&] { return meniscus::run_command(run_arguments); }; });
 
+  meniscus::CheckGradientArguments gradient_arguments;
+  CLI::App* gradient =
+      app.add_subcommand("check-gradient",
+                         "compare the exact gradient of all responses with "
+                         "central differences");
+  add_case(*gradient, gradient_arguments.case_path);
+  add_overrides(*gradient, gradient_arguments.common);
+  gradient
+      ->add_option("--at", gradient_arguments.at,
+                   "another design than the initial one")
+      ->type_name("NAME=VALUE");
+  gradient->add_flag("--quiet", gradient_arguments.common.quiet,
+                     "tell only what differs");
+  gradient->callback([&] {
+    command = [&] {
+      return meniscus::check_gradient_command(gradient_arguments);
+    };
+  });
+
   meniscus::EvolveArguments evolve_arguments;
   CLI::App* evolve = app.add_subcommand(
       "evolve", "film equilibrium only, of a case or a Surface Evolver file");

@@ -218,19 +218,23 @@ void check_places(const Case& input, const EvaluatedCase& numbers,
   }
 }
 
-Vec3 direction_of(const Case& input, const ResponseEntry& response,
-                  const CaseValues& values) {
+ResponseNumbers response_of(const Case& input, const ResponseEntry& response,
+                            const CaseValues& values) {
   const std::size_t before = values.problems().size();
-  Vec3 direction = values.at(response.direction);
-  if (!values.are_rates() && response.kind == ResponseKind::MeanDisplacement &&
-      values.problems().size() == before && !(direction.norm() > 0.0)) {
-    values.problems().push_back(
-        fmt::format("{}: responses.{}.direction has length 0{}; expected any "
-                    "other",
-                    place(input, response.direction[0].line), response.name,
-                    values.where(response.direction)));
+  ResponseNumbers result{.direction = values.at(response.direction)};
+  if (!values.are_rates() && has_direction(response.kind) &&
+      values.problems().size() == before && !(result.direction.norm() > 0.0)) {
+    const Quantity& first = response.direction[0];
+    values.problems().push_back(fmt::format(
+        "{}: {} has length 0{}; expected any other", place(input, first.line),
+        first.key.substr(0, first.key.rfind('[')),
+        values.where(response.direction)));
   }
-  return direction;
+  if (response.weight) {
+    result.weight = values.field(*response.weight);
+    result.weight_slope = values.slope(*response.weight);
+  }
+  return result;
 }
 
 /// Values, or rates.
@@ -250,7 +254,7 @@ EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
     result.load_cases.push_back(load_case_of(entry, values));
   }
   for (const ResponseEntry& response : input.responses) {
-    result.response_directions.push_back(direction_of(input, response, values));
+    result.responses.push_back(response_of(input, response, values));
   }
   result.fea_edge = input.resolution.fea;
   return result;
@@ -282,6 +286,7 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
     return {};  // what follows from a bad parameter is no news
   }
   EvaluatedCase result = numbers_of(input, values);
+  result.design = design;
   if (problems.size() == before) {
     check_places(input, result, values);
   }
@@ -349,20 +354,40 @@ std::vector<std::string> response_names(const Case& input) {
   return names;
 }
 
+bool has_direction(ResponseKind kind) {
+  return kind == ResponseKind::MeanDisplacement ||
+         kind == ResponseKind::DisplacementNorm ||
+         kind == ResponseKind::Rotation || kind == ResponseKind::CentreOfMass;
+}
+
 Dimension dimension_of(ResponseKind kind) {
   switch (kind) {
     case ResponseKind::MeanDisplacement:
+    case ResponseKind::DisplacementNorm:
+    case ResponseKind::CentreOfMass:
+    case ResponseKind::Radius:
       return Dimension::Length;
     case ResponseKind::Mass:
       return Dimension::Mass;
     case ResponseKind::Volume:
       return Dimension::Volume;
     case ResponseKind::MaxVonMises:
+    case ResponseKind::VonMisesNorm:
+    case ResponseKind::VonMisesKs:
+    case ResponseKind::Pressure:
       return Dimension::Pressure;
+    case ResponseKind::Compliance:
     case ResponseKind::StrainEnergy:
+    case ResponseKind::FilmEnergy:
       return Dimension::Energy;
     case ResponseKind::FilmArea:
       return Dimension::Area;
+    case ResponseKind::Rotation:  // in radians
+    case ResponseKind::Uniformity:
+    case ResponseKind::EnergyUniformity:
+    case ResponseKind::CollapseMargin:  // force/length^3
+    case ResponseKind::Expression:      // not known
+      break;
   }
   return Dimension::None;
 }

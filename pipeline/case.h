@@ -47,13 +47,21 @@ struct WallSpec {
 /// The bodies that are not void, in order: the regions of the mesh.
 std::vector<BodyEntry> solid_bodies(const Case& input);
 
+/// What a response depends on beside fields.
+struct ResponseNumbers {
+  Vec3 direction = Vec3::Zero();
+  NumberOfPlace weight;  // empty: 1
+  VectorOfPlace weight_slope;
+};
+
 /// The numbers of one design.
 struct EvaluatedCase {
+  VectorX design;  // where
   FilmSystem film_system;
   std::vector<WallSpec> walls;
   std::vector<Material> materials;  // one per body that is solid, in order
   std::vector<LoadCase> load_cases;
-  std::vector<Vec3> response_directions;  // one per response
+  std::vector<ResponseNumbers> responses;
   double fea_edge = 0.0;
 };
 
@@ -85,6 +93,7 @@ VectorX initial_design(const Case& input);
 std::vector<std::string> design_names(const Case& input);
 std::vector<std::string> response_names(const Case& input);
 Dimension dimension_of(ResponseKind kind);
+bool has_direction(ResponseKind kind);
 std::string response_unit(const Case& input, int response);
 
 }  // namespace meniscus

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -166,19 +167,41 @@ struct AnalysisEntry {
 
 enum class ResponseKind {
   MeanDisplacement,
+  DisplacementNorm,
+  Rotation,
+  Compliance,
+  StrainEnergy,
   Mass,
   Volume,
+  CentreOfMass,
   MaxVonMises,
-  StrainEnergy,
-  FilmArea
+  VonMisesNorm,
+  VonMisesKs,
+  Uniformity,
+  EnergyUniformity,
+  FilmArea,
+  FilmEnergy,
+  Pressure,
+  CollapseMargin,
+  Radius,
+  Expression
 };
 
+/// What the kind does not need is empty.
 struct ResponseEntry {
   std::string name;
   ResponseKind kind = ResponseKind::MeanDisplacement;
   std::string surface;
-  QuantityVector direction;
-  int load_case = 0;  // index
+  QuantityVector direction;             // an axis for Rotation
+  int load_case = 0;                    // index
+  std::optional<PlaceQuantity> weight;  // of place alone, no design variable
+  double power = 8.0;
+  double sharpness = 50.0;
+  std::optional<double> scale;  // [pressure]
+  std::string film;             // empty: all
+  int body = 0;                 // index
+  /// Of Expression: over the case's names, then the responses above it.
+  Quantity value;
   SourceLine line = 0;
 };
 
@@ -189,12 +212,22 @@ struct Resolution {
   std::vector<double> export_edges;
 };
 
-enum class StudyKind { Analyse, Match };
+enum class StudyKind { Analyse, Match, Minimize };
+
+/// lower <= response <= upper.
+struct ConstraintEntry {
+  int response = 0;  // index
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  SourceLine line = 0;
+};
 
 struct StudyEntry {
   StudyKind kind = StudyKind::Analyse;
   std::vector<std::string> equal;
   std::vector<std::pair<std::string, double>> targets;
+  int objective = 0;  // of a minimum: index of a response
+  std::vector<ConstraintEntry> constraints;
   double tolerance = 1e-3;
   std::string method = "ceres";
   int max_evaluations = 100;

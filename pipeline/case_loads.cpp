@@ -23,6 +23,16 @@ SurfaceTraction traction_of(const LoadEntry& load, const CaseValues& values) {
   result.field = [components](const Vec3& x) {
     return Vec3(components[0](x), components[1](x), components[2](x));
   };
+  if (!values.are_rates()) {
+    const std::array<VectorOfPlace, 3> rows = {
+        values.slope(t[0]), values.slope(t[1]), values.slope(t[2])};
+    result.slope = [rows](const Vec3& x) {
+      Mat3 slope;
+      slope << rows[0](x).transpose(), rows[1](x).transpose(),
+          rows[2](x).transpose();
+      return slope;
+    };
+  }
   return result;
 }
 
@@ -41,6 +51,7 @@ void add_load(const LoadEntry& load, const CaseValues& values,
       SurfacePressure pressure{.surface = load.surface};
       if (load.place.of_place) {
         pressure.field = values.field(load.place);
+        pressure.slope = values.slope(load.place);
       } else {
         pressure.pressure = values.at(load.place.quantity);
       }
@@ -61,6 +72,7 @@ void add_load(const LoadEntry& load, const CaseValues& values,
       Temperature temperature{.reference = values.at(load.number)};
       if (load.place.of_place) {
         temperature.field = values.field(load.place);
+        temperature.slope = values.slope(load.place);
       } else {
         temperature.value = values.at(load.place.quantity);
       }

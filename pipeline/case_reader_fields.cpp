@@ -68,6 +68,17 @@ SourceLine CaseTable::line(const char* key) const {
   return node == nullptr ? line() : context_->line_of(*node);
 }
 
+namespace {
+
+std::string all_of(const KindKeys& keys) {
+  std::vector<std::string> all = keys.needed;
+  all.insert(all.end(), keys.optional.begin(), keys.optional.end());
+  return all.empty() ? "no keys of its own"
+                     : fmt::format("{}", fmt::join(all, ", "));
+}
+
+}  // namespace
+
 void CaseTable::check_kind(const std::string& kind,
                            const KindKeys& keys) const {
   for (const std::string& key : keys.needed) {
@@ -88,7 +99,7 @@ void CaseTable::check_kind(const std::string& kind,
       context_->problems.add(
           context_->line_of(node),
           fmt::format("{}.{} does not belong to a {}; it has {}", path_, key,
-                      kind, fmt::join(keys.needed, ", ")));
+                      kind, all_of(keys)));
     }
   }
 }

@@ -94,7 +94,7 @@ void require_frozen(CaseContext& context, const Quantity& quantity,
     context.problems.add(
         quantity.line,
         fmt::format("{} depends on '{}', which a design variable moves or "
-                    "which has no value; {} is part of the frozen film and "
+                    "which has no value; {} is part of the frozen model and "
                     "must be the same for every design: take '{}' out of it",
                     quantity.key, name, what, name));
   }

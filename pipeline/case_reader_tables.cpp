@@ -185,11 +185,11 @@ void read_design(const std::vector<CaseTable>& tables, CaseContext& context,
     if (bounds.size() == 2) {
       variable.lower = bounds[0];
       variable.upper = bounds[1];
-      if (!(variable.lower < variable.upper)) {
+      if (!(variable.lower <= variable.upper)) {
         context.problems.add(
             table.line("bounds"),
-            fmt::format("{}.bounds are [{:g}, {:g}]; the first must be below "
-                        "the second",
+            fmt::format("{}.bounds are [{:g}, {:g}]; the first must not be "
+                        "above the second",
                         table.path(), variable.lower, variable.upper));
       } else if (initial && (variable.initial < variable.lower ||
                              variable.initial > variable.upper)) {

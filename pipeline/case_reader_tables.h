@@ -42,6 +42,17 @@ void read_load_cases(CaseContext& context, const toml::table& root,
 /// What stress figures leave out, from [analysis]; after the geometry.
 void read_zones(CaseContext& context, const CaseTable& table, Case& result);
 
+/// The load case that `key` names; the first when left out or wrong.
+int index_of_load_case(CaseContext& context, const CaseTable& table,
+                       const Case& result, const char* key = "load_case");
+
+/// After load cases and bodies.
+void read_responses(CaseContext& context, const toml::table& root,
+                    Case& result);
+
+/// After the responses.
+void read_study(CaseContext& context, const toml::table& root, Case& result);
+
 /// Load cases, analysis, responses, study; after the geometry.
 void read_analysis(CaseContext& context, const toml::table& root, Case& result);
 

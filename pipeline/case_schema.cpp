@@ -263,37 +263,81 @@ std::vector<TableSpec> make_tables() {
        "A number that the solver reports",
        {{"kind", K::Choice, D::None, true,
          "mean_displacement: area-weighted over a surface along a direction; "
-         "strain_energy: of a load case, half the compliance; film_area: of "
-         "all "
-         "films",
-         "mean_displacement|mass|volume|max_von_mises|strain_energy|"
-         "film_area",
-         "rotation|compliance|centre_of_mass|von_mises_norm|uniformity|"
-         "pressure|collapse_margin|thickness|radius|distance|expression"},
-        {"on", K::Name, D::None, false, "of mean_displacement: the surface"},
+         "displacement_norm: its p-norm, nearly the largest for a large power; "
+         "rotation: of a surface about an axis, in radians; compliance: work "
+         "of the loads, twice strain_energy where only forces act; "
+         "centre_of_mass: its place along a direction; max_von_mises: of "
+         "nodal stresses, without derivatives; von_mises_norm, von_mises_ks: "
+         "smooth ones by volume (p-norm, Kreisselmeier-Steinhauser); "
+         "uniformity, energy_uniformity: coefficients of variation of von "
+         "Mises stress and of strain energy density by volume; film_area, "
+         "film_energy: of the films; pressure: of a body; collapse_margin: a "
+         "smooth lower bound of the film's smallest eigenvalue, force per "
+         "length cubed; radius: the films' smallest one, smooth; expression: "
+         "of the responses above it",
+         "mean_displacement|displacement_norm|rotation|compliance|"
+         "strain_energy|mass|volume|centre_of_mass|max_von_mises|"
+         "von_mises_norm|von_mises_ks|uniformity|energy_uniformity|film_area|"
+         "film_energy|pressure|collapse_margin|radius|expression",
+         "thickness|distance"},
+        {"on", K::Name, D::None, false,
+         "of displacements and rotations: the surface"},
         {"direction", K::Vector, D::None, false,
-         "of mean_displacement; any length but 0"},
+         "of displacements and centre_of_mass; any length but 0"},
+        {"axis", K::Vector, D::None, false,
+         "of rotation, right-handed; any length but 0"},
         {"load_case", K::Name, D::None, false,
-         "of mean_displacement, max_von_mises, strain_energy; the first when "
-         "left out"}}},
+         "of what depends on loads; the first when left out"},
+        {"weight", K::Place, D::None, false,
+         "of mean_displacement: what each place counts, an expression of x, y, "
+         "z; the mean is still by area, so that a weight may change its sign"},
+        {"power", K::Constant, D::None, false,
+         "of norms, above 1, 8 when left out; of radius, even, 16 when left "
+         "out"},
+        {"sharpness", K::Constant, D::None, false,
+         "of von_mises_ks; above 0; 50 when left out"},
+        {"scale", K::Constant, D::Pressure, false,
+         "of von_mises_ks: the stress that its sharpness is measured by; the "
+         "least yield strength when left out"},
+        {"film", K::Name, D::None, false,
+         "of film_area: one film; all when left out"},
+        {"body", K::Name, D::None, false, "of pressure"},
+        {"value", K::Quantity, std::nullopt, false,
+         "of expression: over the case's names and the responses above"}}},
       {"study",
        false,
        N::Optional,
        "What to do; analyse the initial design when left out",
-       {{"kind", K::Choice, D::None, true, "analyse or match", "analyse|match",
-         "minimize|sweep|family|pareto|tolerance"},
+       {{"kind", K::Choice, D::None, true, "analyse, match or minimize",
+         "analyse|match|minimize", "sweep|family|pareto|tolerance"},
         {"equal", K::Names, D::None, false,
          "of match: responses to make equal; mismatch |a-b| / ((|a|+|b|)/2)"},
         {"targets", K::ConstantMap, std::nullopt, false,
          "of match: response = value; mismatch |a-v| / |v|, for v = 0 relative "
          "to the initial response"},
+        {"objective", K::Name, D::None, false,
+         "of minimize: the response to make small"},
+        {"constraints", K::Constraints, D::None, false,
+         "of minimize: responses to keep within bounds"},
         {"tolerance", K::Constant, D::None, false,
-         "largest mismatch accepted; 1e-3 when left out"},
+         "of match: largest mismatch accepted, 1e-3 when left out; of "
+         "minimize: first-order residual accepted, about the relative gain "
+         "that is left, 1e-4 when left out"},
         {"method", K::Text, D::None, false,
-         "\"ceres\" (when left out) or one of NLopt's: bobyqa, cobyla, sbplx, "
-         "neldermead, direct_l"},
+         "of match: ceres (when left out), bobyqa, cobyla, sbplx, neldermead, "
+         "direct_l; of minimize: slsqp (when left out), mma, ccsa with exact "
+         "gradients, bobyqa, cobyla, sbplx, neldermead without, isres, crs2, "
+         "direct_l globally"},
         {"max_evaluations", K::Integer, D::None, false,
          "limit, finite-difference ones included; 100 when left out"}}},
+      {"constraint",
+       false,
+       N::Optional,
+       "A bound on a response",
+       {{"response", K::Name, D::None, true, "its name"},
+        {"min", K::Constant, std::nullopt, false, "least value"},
+        {"max", K::Constant, std::nullopt, false,
+         "largest value; as min for an equation"}}},
   };
 }
 
@@ -328,7 +372,8 @@ std::vector<std::string> split_choices(const char* choices) {
 }
 
 bool is_entry_table(const std::string& name) {
-  return name == "support" || name == "load" || name == "exclude";
+  return name == "support" || name == "load" || name == "exclude" ||
+         name == "constraint";
 }
 
 bool is_later_table(const std::string& name) {

@@ -31,7 +31,8 @@ enum class KeyType {
   ConstantMap,     // inline table: response = constant, of its dimension
   Supports,        // array of inline tables: table "support"
   Loads,           // array of inline tables: table "load"
-  Zones            // array of inline tables: table "exclude"
+  Zones,           // array of inline tables: table "exclude"
+  Constraints      // array of inline tables: table "constraint"
 };
 
 struct KeySpec {

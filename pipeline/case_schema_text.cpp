@@ -53,15 +53,18 @@ const char* type_text(const KeySpec& key) {
       return "loads";
     case K::Zones:
       return "zones";
+    case K::Constraints:
+      return "constraints";
   }
   return "";
 }
 
 const char* dimension_text(const KeySpec& key) {
-  const bool quantity =
-      key.type != K::Text && key.type != K::Choice && key.type != K::Name &&
-      key.type != K::Names && key.type != K::Integer && key.type != K::Flag &&
-      key.type != K::Supports && key.type != K::Loads && key.type != K::Zones;
+  const bool quantity = key.type != K::Text && key.type != K::Choice &&
+                        key.type != K::Name && key.type != K::Names &&
+                        key.type != K::Integer && key.type != K::Flag &&
+                        key.type != K::Supports && key.type != K::Loads &&
+                        key.type != K::Zones && key.type != K::Constraints;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -163,6 +166,8 @@ Json type_schema(const KeySpec& key) {
       return array(object_schema(case_table("load")), 1, 0);
     case K::Zones:
       return array(object_schema(case_table("exclude")), 1, 0);
+    case K::Constraints:
+      return array(object_schema(case_table("constraint")), 1, 0);
   }
   return {};
 }

@@ -1,8 +1,9 @@
 #include "pipeline/case_values.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
-#include <span>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -118,9 +119,7 @@ double CaseValues::at(const Quantity& quantity) const {
   try {
     return evaluate(quantity);
   } catch (const ExpressionError& error) {
-    problems_.push_back(fmt::format("{}: {}: {}{}",
-                                    place(input_, quantity.line), quantity.key,
-                                    error.what(), where(quantity)));
+    nothing(quantity, error);
     return 0.0;
   }
 }
@@ -141,8 +140,7 @@ Expression CaseValues::of_place(const PlaceQuantity& place_quantity) const {
   }
 }
 
-std::function<double(const Vec3&)> CaseValues::field(
-    const PlaceQuantity& place_quantity) const {
+NumberOfPlace CaseValues::field(const PlaceQuantity& place_quantity) const {
   if (!are_rates()) {
     return [expression = of_place(place_quantity)](const Vec3& x) {
       return expression.evaluate(std::span<const double>(x.data(), 3));
@@ -154,6 +152,48 @@ std::function<double(const Vec3&)> CaseValues::field(
     values.insert(values.end(), x.begin(), x.end());
     return rate_of(expression.evaluate(values));
   };
+}
+
+VectorOfPlace CaseValues::slope(const PlaceQuantity& place_quantity) const {
+  return [expression = of_place(place_quantity)](const Vec3& x) -> Vec3 {
+    const std::array<Dual3, 3> at = {Dual3::variable(x.x(), 0),
+                                     Dual3::variable(x.y(), 1),
+                                     Dual3::variable(x.z(), 2)};
+    return expression.evaluate(std::span<const Dual3>(at)).gradient;
+  };
+}
+
+double CaseValues::nothing(const Quantity& quantity,
+                           const ExpressionError& error) const {
+  problems_.push_back(fmt::format("{}: {}: {}{}", place(input_, quantity.line),
+                                  quantity.key, error.what(), where(quantity)));
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double CaseValues::at(const Quantity& quantity,
+                      std::span<const double> more) const {
+  std::vector<double> values = values_;
+  values.insert(values.end(), more.begin(), more.end());
+  try {
+    return quantity.expression.evaluate(values);
+  } catch (const ExpressionError& error) {
+    return nothing(quantity, error);
+  }
+}
+
+double CaseValues::rate(const Quantity& quantity, std::span<const double> more,
+                        std::span<const double> more_rates) const {
+  std::vector<Dual> values = duals_;
+  for (std::size_t k = 0; k < more.size(); ++k) {
+    Dual value = Dual::variable(more[k], 0, 1);
+    value.gradient[0] = more_rates[k];
+    values.push_back(value);
+  }
+  try {
+    return rate_of(quantity.expression.evaluate(values));
+  } catch (const ExpressionError& error) {
+    return nothing(quantity, error);
+  }
 }
 
 void CaseValues::tell_bad(const Quantity& quantity, double value,

@@ -1,7 +1,7 @@
 /// The numbers behind a case's names at one design.
 #pragma once
 
-#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,9 +52,18 @@ class CaseValues {
   /// rates: those that films are frozen with do not change.
   Expression of_place(const PlaceQuantity& quantity) const;
 
+  /// An expression over the case's names and `more` values after them; its
+  /// derivative, when these change at `more_rates`. Quiet NaN, and a problem
+  /// told, where it has none.
+  double at(const Quantity& quantity, std::span<const double> more) const;
+  double rate(const Quantity& quantity, std::span<const double> more,
+              std::span<const double> more_rates) const;
+
   /// The number at a place, or its rate there. Throws ExpressionError where it
   /// has none.
-  std::function<double(const Vec3&)> field(const PlaceQuantity& quantity) const;
+  NumberOfPlace field(const PlaceQuantity& quantity) const;
+  /// Its gradient there (of values only).
+  VectorOfPlace slope(const PlaceQuantity& quantity) const;
 
   /// " where support_x = 3, gap = 2"; nothing for plain numbers.
   template <class... Quantities>
@@ -68,6 +77,7 @@ class CaseValues {
 
  private:
   double evaluate(const Quantity& quantity) const;
+  double nothing(const Quantity& quantity, const ExpressionError& error) const;
   void tell_bad(const Quantity& quantity, double value,
                 const char* must_be) const;
   std::string where_text(const std::vector<char>& used) const;

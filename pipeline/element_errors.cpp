@@ -83,12 +83,36 @@ class Shares {
   int count_ = 0;
 };
 
+bool has_dual_load(const ResponseEntry& response) {
+  return response.kind == ResponseKind::MeanDisplacement && !response.weight;
+}
+
+/// The elements' part of the error is known: by a dual solution, or 0.
+bool is_known(const ResponseEntry& response) {
+  switch (response.kind) {
+    case ResponseKind::MeanDisplacement:
+      return has_dual_load(response);
+    case ResponseKind::StrainEnergy:
+    case ResponseKind::Mass:
+    case ResponseKind::Volume:
+    case ResponseKind::CentreOfMass:
+    case ResponseKind::FilmArea:
+    case ResponseKind::FilmEnergy:
+    case ResponseKind::Pressure:
+    case ResponseKind::CollapseMargin:
+    case ResponseKind::Radius:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// Responses that need a dual solution, by load case.
 std::vector<std::vector<std::size_t>> duals_needed(const Case& input,
                                                    std::size_t load_cases) {
   std::vector<std::vector<std::size_t>> needed(load_cases);
   for (std::size_t r = 0; r < input.responses.size(); ++r) {
-    if (input.responses[r].kind == ResponseKind::MeanDisplacement) {
+    if (has_dual_load(input.responses[r])) {
       needed[static_cast<std::size_t>(input.responses[r].load_case)].push_back(
           r);
     }
@@ -118,7 +142,7 @@ ElementErrors estimate_element_errors(const Case& input,
     double& error = errors.responses[static_cast<Eigen::Index>(r)];
     if (response.kind == ResponseKind::StrainEnergy) {
       error = 0.5 * primals[k].error.error * primals[k].error.error;
-    } else if (response.kind == ResponseKind::MaxVonMises) {
+    } else if (!is_known(response)) {
       error = std::numeric_limits<double>::quiet_NaN();
     }
   }
@@ -132,7 +156,7 @@ ElementErrors estimate_element_errors(const Case& input,
       if (round < needed[k].size()) {
         const std::size_t r = needed[k][round];
         DualLoad dual = dual_load(fields, load_cases[k], input.responses[r],
-                                  fields.inputs.response_directions[r]);
+                                  fields.inputs.responses[r].direction);
         loads[k] = std::move(dual.load);
         force[k] = dual.force;
         any = true;

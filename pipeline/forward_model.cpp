@@ -66,12 +66,14 @@ struct ForwardModel::Impl {
   bool freeze_elasticity(const EvaluatedCase& inputs, Monitor& monitor);
   bool adapt(const EvaluatedCase& inputs, Monitor& monitor);
   AdaptedState state(const EvaluatedCase& inputs) const;
-  VectorX responses(const EvaluatedCase& inputs, const FilmReport& film_report,
+  VectorX responses(const EvaluatedCase& inputs, const FilmState& film_state,
                     const TetMesh& mesh, const ElasticSolution& solution) const;
+  Points to_film(const TetMesh& mesh, const Points& by_nodes) const;
   bool place_nodes(const QuadraticSurface& surface, TetMesh& mesh,
                    Evaluation& result) const;
   bool solve(const TetMesh& mesh, const EvaluatedCase& inputs,
-             ElasticSolution& solution, Evaluation& result) const;
+             ElasticSolution& solution, ElasticState* keep,
+             Evaluation& result) const;
 };
 
 bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
@@ -136,11 +138,18 @@ bool ForwardModel::Impl::freeze_elasticity(const EvaluatedCase& inputs,
 }
 
 VectorX ForwardModel::Impl::responses(const EvaluatedCase& inputs,
-                                      const FilmReport& film_report,
+                                      const FilmState& film_state,
                                       const TetMesh& mesh,
                                       const ElasticSolution& solution) const {
-  return respond(input,
-                 {inputs, film_report, mesh, solution, exclusion.element});
+  return respond(
+      input, {inputs, *film, film_state, mesh, solution, exclusion.element});
+}
+
+/// From a gradient by all nodes of the mesh to that by the film's vertices.
+Points ForwardModel::Impl::to_film(const TetMesh& mesh,
+                                   const Points& by_nodes) const {
+  const QuadraticGradient by = transpose_quadratic(mesh, by_nodes, curve_edge);
+  return film->transpose_surface(motion->transpose(by.corners), by.mid);
 }
 
 AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
@@ -149,11 +158,11 @@ AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
   fields.inputs = inputs;
   fields.solution = elasticity->base_solution();
   fields.stresses = part_stresses(fields.mesh, inputs, fields.solution);
-  return {
-      .tet = frozen.tet,
-      .dofs = frozen.fea.dofs,
-      .responses = responses(inputs, frozen.film, fields.mesh, fields.solution),
-      .errors = estimate_element_errors(input, fields, *elasticity)};
+  return {.tet = frozen.tet,
+          .dofs = frozen.fea.dofs,
+          .responses = responses(inputs, film->reference(), fields.mesh,
+                                 fields.solution),
+          .errors = estimate_element_errors(input, fields, *elasticity)};
 }
 
 /// A finer mesh where the first one errs, and the elasticity on it.
@@ -226,11 +235,11 @@ bool ForwardModel::Impl::place_nodes(const QuadraticSurface& surface,
 }
 
 bool ForwardModel::Impl::solve(const TetMesh& mesh, const EvaluatedCase& inputs,
-                               ElasticSolution& solution,
+                               ElasticSolution& solution, ElasticState* keep,
                                Evaluation& result) const {
   const Timer timer;
   try {
-    solution = elasticity->solve(mesh, inputs.load_cases);
+    solution = elasticity->solve(mesh, inputs.load_cases, keep);
   } catch (const InvalidInput& error) {
     // A load or support that this design's surface cannot take.
     result.failure = Failure{FailureKind::SolverFailed, error.what()};
@@ -284,7 +293,8 @@ const Adaptation* ForwardModel::adaptation() const {
 }
 
 Evaluation ForwardModel::evaluate(const VectorX& design,
-                                  EvaluationFields* fields) const {
+                                  EvaluationFields* fields,
+                                  AdjointState* adjoint) const {
   Evaluation result;
   result.design = design;
   EvaluatedCase inputs;
@@ -297,7 +307,7 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
   }
 
   Timer film_timer;
-  const FilmState film_state = impl_->film->settle(inputs.film_system);
+  FilmState film_state = impl_->film->settle(inputs.film_system);
   result.film = film_state.report;
   result.seconds.film = film_timer.seconds();
   if (film_state.failure) {
@@ -315,11 +325,11 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
   }
 
   ElasticSolution solution;
-  if (!impl_->solve(mesh, inputs, solution, result)) {
+  ElasticState* keep = adjoint != nullptr ? &adjoint->elastic : nullptr;
+  if (!impl_->solve(mesh, inputs, solution, keep, result)) {
     return result;
   }
-  result.responses =
-      impl_->responses(inputs, film_state.report, mesh, solution);
+  result.responses = impl_->responses(inputs, film_state, mesh, solution);
   if (!result.responses.allFinite()) {
     result.failure = not_a_number(impl_->input, result.responses);
     result.responses.resize(0);
@@ -334,7 +344,25 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
                .inputs = inputs,
                .exclusion = impl_->exclusion};
   }
+  if (adjoint != nullptr) {
+    adjoint->film = std::move(film_state);
+  }
   return result;
+}
+
+DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
+                                      const EvaluationFields& fields,
+                                      const AdjointState& adjoint,
+                                      const std::vector<int>& wanted) const {
+  const ResponseInput responses{fields.inputs,   *impl_->film,
+                                adjoint.film,    fields.mesh,
+                                fields.solution, fields.exclusion.element};
+  return design_gradient({impl_->input, responses, evaluation.responses,
+                          *impl_->elasticity, adjoint.elastic,
+                          [&](const Points& by_nodes) {
+                            return impl_->to_film(fields.mesh, by_nodes);
+                          }},
+                         wanted);
 }
 
 }  // namespace meniscus

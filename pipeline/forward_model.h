@@ -12,6 +12,7 @@
 #include "evolve/film_model.h"
 #include "fea/elasticity.h"
 #include "pipeline/case.h"
+#include "pipeline/design_gradient.h"
 #include "pipeline/exclusion.h"
 #include "pipeline/part_stress.h"
 
@@ -28,6 +29,7 @@ struct StageSeconds {
   double film = 0.0;
   double mesh = 0.0;
   double fea = 0.0;
+  double gradient = 0.0;
 };
 
 /// What one design came to. `responses` stand in the case's order and are
@@ -61,6 +63,12 @@ struct EvaluationFields {
   std::vector<ModeShape> modes;      // that the case asks for; the same
   EvaluatedCase inputs;
   Exclusion exclusion;  // the model's
+};
+
+/// What gradient() needs beside the fields; as large as a stiffness matrix.
+struct AdjointState {
+  FilmState film;
+  ElasticState elastic;
 };
 
 struct Adaptation;  // pipeline/adaptation.h
@@ -106,9 +114,16 @@ class ForwardModel {
   const Adaptation* adaptation() const;
 
   /// A pure function of (model, design). `fields`, when given, receives the
-  /// meshes and the solution.
-  Evaluation evaluate(const VectorX& design,
-                      EvaluationFields* fields = nullptr) const;
+  /// meshes and the solution, `adjoint` what gradient() needs beside them.
+  Evaluation evaluate(const VectorX& design, EvaluationFields* fields = nullptr,
+                      AdjointState* adjoint = nullptr) const;
+
+  /// The exact derivatives of the `wanted` responses (indices, a row each) at
+  /// an evaluated design. A pure function; see design_gradient().
+  DesignGradient gradient(const Evaluation& evaluation,
+                          const EvaluationFields& fields,
+                          const AdjointState& adjoint,
+                          const std::vector<int>& wanted) const;
 
  private:
   struct Impl;

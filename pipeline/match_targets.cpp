@@ -1,6 +1,7 @@
 #include "pipeline/match_targets.h"
 
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -59,6 +60,20 @@ VectorX MatchTargets::residuals(const VectorX& responses) const {
   return values;
 }
 
+Eigen::MatrixXd MatchTargets::jacobian(const Eigen::MatrixXd& gradient) const {
+  Eigen::MatrixXd result(static_cast<Eigen::Index>(targets_.size()),
+                         gradient.cols());
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    const Target& t = targets_[k];
+    const auto row = static_cast<Eigen::Index>(k);
+    result.row(row) = gradient.row(t.response) / t.scale;
+    if (t.other >= 0) {
+      result.row(row) -= gradient.row(t.other) / t.scale;
+    }
+  }
+  return result;
+}
+
 VectorX MatchTargets::mismatch(const VectorX& responses) const {
   VectorX values(static_cast<Eigen::Index>(targets_.size()));
   for (std::size_t k = 0; k < targets_.size(); ++k) {
@@ -97,6 +112,17 @@ VectorX MatchTargets::mismatch_errors(const VectorX& responses,
 
 std::string MatchTargets::name(Eigen::Index target) const {
   return targets_[static_cast<std::size_t>(target)].name;
+}
+
+std::vector<int> target_responses(const Case& input) {
+  std::set<int> result;
+  for (const std::string& name : input.study.equal) {
+    result.insert(response_index(input, name));
+  }
+  for (const auto& target : input.study.targets) {
+    result.insert(response_index(input, target.first));
+  }
+  return {result.begin(), result.end()};
 }
 
 }  // namespace meniscus

@@ -1,44 +1,211 @@
 #include "pipeline/responses.h"
 
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include <fmt/format.h>
+
 #include "fea/body_loads.h"
+#include "fea/displacement_functionals.h"
+#include "fea/energy_functionals.h"
+#include "fea/stress_functionals.h"
+#include "fea/volume_functionals.h"
+#include "pipeline/case_values.h"
 
 namespace meniscus {
 
 namespace {
 
-/// Half the work of the loads, where they all go into the solid.
-double energy_of(const ResponseInput& fields, const LoadCase& load_case,
-                 const VectorX& u) {
-  const auto& materials = fields.numbers.materials;
-  if (load_case.springs.empty() && !load_case.temperature) {
-    return 0.5 * nodal_forces(fields.mesh, load_case, materials).dot(u);
-  }
-  return strain_energy(fields.mesh, materials, u,
-                       temperature_change(fields.mesh, load_case));
+ResponsePartials taken(Functional functional) {
+  ResponsePartials result;
+  result.value = functional.value;
+  result.by_nodes = std::move(functional.by_nodes);
+  result.by_displacement = std::move(functional.by_displacement);
+  result.by_temperature = std::move(functional.by_temperature);
+  return result;
 }
 
-double value_of(const ResponseEntry& response, const Vec3& direction,
-                const ResponseInput& fields) {
-  const auto load_case = static_cast<std::size_t>(response.load_case);
-  const VectorX& u = fields.solution.displacements[load_case];
-  const auto& materials = fields.numbers.materials;
-  switch (response.kind) {
-    case ResponseKind::MeanDisplacement:
-      return mean_displacement(fields.mesh, response.surface, direction, u);
-    case ResponseKind::Mass:
-      return mesh_mass(fields.mesh, materials);
-    case ResponseKind::Volume:
-      return mesh_volume(fields.mesh);
-    case ResponseKind::MaxVonMises:
-      return load_case_stress(fields.mesh, fields.numbers, load_case, u,
-                              fields.excluded)
-          .max_von_mises;
-    case ResponseKind::StrainEnergy:
-      return energy_of(fields, fields.numbers.load_cases[load_case], u);
-    case ResponseKind::FilmArea:
-      return fields.film.area;
+ResponsePartials taken(DirectedFunctional functional) {
+  const Vec3 by_direction = functional.by_direction;
+  ResponsePartials result = taken(static_cast<Functional&&>(functional));
+  result.by_direction = by_direction;
+  return result;
+}
+
+ResponsePartials taken(MassFunctional functional) {
+  std::vector<double> by_density = std::move(functional.by_density);
+  ResponsePartials result = taken(static_cast<Functional&&>(functional));
+  result.by_density = std::move(by_density);
+  return result;
+}
+
+/// Along a direction the centre of mass is a coordinate: of a unit vector.
+ResponsePartials centre_of_mass(const ResponseNumbers& numbers,
+                                const ResponseInput& fields,
+                                Derivatives derivatives) {
+  const double length = numbers.direction.norm();
+  const Vec3 unit = numbers.direction / length;
+  ResponsePartials result = taken(centre_of_mass_functional(
+      fields.mesh, fields.numbers.materials, unit, derivatives));
+  if (derivatives == Derivatives::All) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 across = (Vec3::Unit(k) - unit[k] * unit) / length;
+      if (!across.isZero(0.0)) {
+        result.by_direction[k] =
+            centre_of_mass_functional(fields.mesh, fields.numbers.materials,
+                                      across, Derivatives::None)
+                .value;
+      }
+    }
   }
-  return 0.0;
+  return result;
+}
+
+ResponsePartials mean_displacement(const ResponseEntry& response,
+                                   const ResponseNumbers& numbers,
+                                   const ResponseInput& fields,
+                                   Derivatives derivatives) {
+  const VectorX& u = fields.solution.displacements[response.load_case];
+  if (!response.weight) {
+    return taken(mean_displacement_functional(
+        fields.mesh, response.surface, numbers.direction, u, derivatives));
+  }
+  return taken(weighted_displacement_functional(
+      fields.mesh, response.surface, numbers.direction,
+      {numbers.weight, numbers.weight_slope}, u, derivatives));
+}
+
+double least_yield(const std::vector<Material>& materials) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Material& material : materials) {
+    least = std::min(least, material.yield_strength.value_or(least));
+  }
+  return least;
+}
+
+ResponsePartials stress_partials(const ResponseEntry& response,
+                                 const ResponseInput& fields,
+                                 Derivatives derivatives) {
+  const auto& materials = fields.numbers.materials;
+  const StressFunctionalInput input{
+      fields.mesh,
+      materials,
+      fields.numbers.load_cases[response.load_case],
+      fields.solution.displacements[response.load_case],
+      fields.excluded,
+      derivatives};
+  switch (response.kind) {
+    case ResponseKind::VonMisesNorm:
+      return taken(von_mises_norm_functional(input, response.power));
+    case ResponseKind::VonMisesKs:
+      return taken(von_mises_ks_functional(
+          input, {.sharpness = response.sharpness,
+                  .scale = response.scale.value_or(least_yield(materials))}));
+    case ResponseKind::Uniformity:
+      return taken(von_mises_variation_functional(input));
+    default:
+      return taken(energy_density_variation_functional(input));
+  }
+}
+
+/// Half the work of the loads is the strain energy where it all goes into the
+/// solid.
+ResponsePartials energy_partials(const ResponseEntry& response,
+                                 const ResponseInput& fields,
+                                 Derivatives derivatives) {
+  const LoadCase& load_case = fields.numbers.load_cases[response.load_case];
+  const VectorX& u = fields.solution.displacements[response.load_case];
+  const auto& materials = fields.numbers.materials;
+  const bool strain = response.kind == ResponseKind::StrainEnergy;
+  if (strain && (!load_case.springs.empty() || load_case.temperature)) {
+    return taken(strain_energy_functional(fields.mesh, materials, load_case, u,
+                                          derivatives));
+  }
+  const double share = strain ? 0.5 : 1.0;
+  ResponsePartials result = taken(
+      compliance_functional(fields.mesh, materials, load_case, u, derivatives));
+  result.value *= share;
+  for (Vec3& by_node : result.by_nodes) {
+    by_node *= share;
+  }
+  if (derivatives == Derivatives::All) {
+    result.self_adjoint = share;
+    result.by_forces = share * u;
+  }
+  return result;
+}
+
+ResponsePartials film_area(const ResponseEntry& response,
+                           const ResponseInput& fields) {
+  const VectorX areas = fields.film.areas(fields.film_state.points);
+  const std::vector<std::string>& labels = fields.film.labels();
+  ResponsePartials result;
+  result.film.areas = VectorX::Ones(areas.size());
+  if (!response.film.empty()) {
+    result.film.areas = VectorX::Unit(
+        areas.size(), std::find(labels.begin(), labels.end(), response.film) -
+                          labels.begin());
+  }
+  result.value = areas.dot(result.film.areas);
+  return result;
+}
+
+ResponsePartials taken(FilmResponse film) {
+  ResponsePartials result;
+  result.value = film.value;
+  result.film = std::move(film.by);
+  return result;
+}
+
+ResponsePartials film_partials(const ResponseEntry& response,
+                               const ResponseInput& fields) {
+  const FilmState& state = fields.film_state;
+  switch (response.kind) {
+    case ResponseKind::FilmArea:
+      return film_area(response, fields);
+    case ResponseKind::CollapseMargin:
+      return taken(fields.film.margin(state, fields.numbers.film_system));
+    case ResponseKind::Radius:
+      return taken(fields.film.smallest_radius(
+          state.points, static_cast<int>(response.power)));
+    default:
+      break;
+  }
+  ResponsePartials result;
+  if (response.kind == ResponseKind::FilmEnergy) {
+    result.value = state.report.energy;
+    result.film.energy = 1.0;
+    return result;
+  }
+  const auto bodies = static_cast<Eigen::Index>(state.report.bodies.size());
+  result.value = state.report.bodies[response.body].pressure;
+  result.film.pressures = VectorX::Unit(bodies, response.body);
+  return result;
+}
+
+ResponsePartials peak(const ResponseEntry& response,
+                      const ResponseInput& fields, Derivatives derivatives) {
+  if (derivatives == Derivatives::All) {
+    throw InvalidInput(fmt::format(
+        "response '{}' is a max_von_mises, which has no derivative: use "
+        "von_mises_norm or von_mises_ks",
+        response.name));
+  }
+  ResponsePartials result;
+  result.value =
+      load_case_stress(fields.mesh, fields.numbers, response.load_case,
+                       fields.solution.displacements[response.load_case],
+                       fields.excluded)
+          .max_von_mises;
+  return result;
+}
+
+/// Over the case's names and the values above.
+double expression_value(const Case& input, const ResponseEntry& response,
+                        const VectorX& design, std::span<const double> above) {
+  std::vector<std::string> problems;
+  return CaseValues(input, design, problems).at(response.value, above);
 }
 
 }  // namespace
@@ -55,11 +222,76 @@ StressField load_case_stress(const TetMesh& mesh, const EvaluatedCase& numbers,
   return field;
 }
 
+ResponsePartials partials_of(const ResponseEntry& response,
+                             const ResponseNumbers& numbers,
+                             const ResponseInput& fields,
+                             Derivatives derivatives) {
+  const TetMesh& mesh = fields.mesh;
+  switch (response.kind) {
+    case ResponseKind::MeanDisplacement:
+      return mean_displacement(response, numbers, fields, derivatives);
+    case ResponseKind::DisplacementNorm:
+      return taken(displacement_norm_functional(
+          mesh, response.surface, numbers.direction, response.power,
+          fields.solution.displacements[response.load_case], derivatives));
+    case ResponseKind::Rotation:
+      return taken(rotation_functional(
+          mesh, response.surface, numbers.direction,
+          fields.solution.displacements[response.load_case], derivatives));
+    case ResponseKind::Compliance:
+    case ResponseKind::StrainEnergy:
+      return energy_partials(response, fields, derivatives);
+    case ResponseKind::Mass:
+      return taken(
+          mass_functional(mesh, fields.numbers.materials, derivatives));
+    case ResponseKind::Volume:
+      return taken(volume_functional(mesh, derivatives));
+    case ResponseKind::CentreOfMass:
+      return centre_of_mass(numbers, fields, derivatives);
+    case ResponseKind::MaxVonMises:
+      return peak(response, fields, derivatives);
+    case ResponseKind::VonMisesNorm:
+    case ResponseKind::VonMisesKs:
+    case ResponseKind::Uniformity:
+    case ResponseKind::EnergyUniformity:
+      return stress_partials(response, fields, derivatives);
+    case ResponseKind::FilmArea:
+    case ResponseKind::FilmEnergy:
+    case ResponseKind::Pressure:
+    case ResponseKind::CollapseMargin:
+    case ResponseKind::Radius:
+      return film_partials(response, fields);
+    case ResponseKind::Expression:
+      break;
+  }
+  throw InvalidInput(
+      fmt::format("response '{}' has no partial derivatives", response.name));
+}
+
+bool has_derivatives(const Case& input, int response) {
+  const ResponseEntry& entry = input.responses[response];
+  if (entry.kind != ResponseKind::Expression) {
+    return entry.kind != ResponseKind::MaxVonMises;
+  }
+  const std::vector<int> used = entry.value.expression.names_used();
+  const auto names =
+      static_cast<int>(input.design.size() + input.parameters.size());
+  return std::all_of(used.begin(), used.end(), [&](int name) {
+    return name < names || has_derivatives(input, name - names);
+  });
+}
+
 VectorX respond(const Case& input, const ResponseInput& fields) {
   VectorX values(static_cast<Eigen::Index>(input.responses.size()));
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
-    values[static_cast<Eigen::Index>(k)] = value_of(
-        input.responses[k], fields.numbers.response_directions[k], fields);
+    const ResponseEntry& response = input.responses[k];
+    values[static_cast<Eigen::Index>(k)] =
+        response.kind == ResponseKind::Expression
+            ? expression_value(input, response, fields.numbers.design,
+                               {values.data(), k})
+            : partials_of(response, fields.numbers.responses[k], fields,
+                          Derivatives::None)
+                  .value;
   }
   return values;
 }

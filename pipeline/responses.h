@@ -1,7 +1,11 @@
 /// Responses: numbers that a case asks of an evaluated design.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "evolve/film_model.h"
+#include "fea/functional.h"
 #include "pipeline/case.h"
 
 namespace meniscus {
@@ -9,15 +13,42 @@ namespace meniscus {
 /// What a design came to, on loan to the responses.
 struct ResponseInput {
   const EvaluatedCase& numbers;
-  const FilmReport& film;
+  const FilmModel& film;
+  const FilmState& film_state;
   const TetMesh& mesh;
   const ElasticSolution& solution;
   const std::vector<char>& excluded;  // that peaks leave out; may be empty
 };
 
+/// One response's value and its partial derivatives, all else held. What is
+/// empty is zero.
+struct ResponsePartials {
+  double value = 0.0;
+  Points by_nodes;          // of the mesh [value/length]
+  VectorX by_displacement;  // of its load case, 3 per node [value/length]
+  /// Where by_displacement is K u times a number, that number: the adjoint is
+  /// then so many displacements.
+  double self_adjoint = 0.0;
+  VectorX by_forces;       // of its load case, 3 per node [value/force]
+  VectorX by_temperature;  // of its load case, per node [value/temperature]
+  Vec3 by_direction = Vec3::Zero();
+  std::vector<double> by_density;  // per region
+  FilmCovector film;
+};
+
 /// One value per response of the case, in its order and units. Not finite
-/// where the fields are not.
+/// where the fields are not, or an expression has no value.
 VectorX respond(const Case& input, const ResponseInput& fields);
+
+/// Of a response that is no expression of others. Throws InvalidInput for one
+/// without derivatives (has_derivatives()) when they are asked for.
+ResponsePartials partials_of(const ResponseEntry& response,
+                             const ResponseNumbers& numbers,
+                             const ResponseInput& fields,
+                             Derivatives derivatives);
+
+/// False for peaks of nodal stress, and for what is made of them.
+bool has_derivatives(const Case& input, int response);
 
 /// Nodal stresses of one load case, its expansion taken out. `u`: 3 per node;
 /// `excluded`: one char per element that the peak leaves out, or empty.

@@ -39,8 +39,10 @@ Json fea_json(const ElasticReport& fea) {
 }
 
 Json seconds_json(const StageSeconds& seconds) {
-  return {
-      {"evolve", seconds.film}, {"mesh", seconds.mesh}, {"fea", seconds.fea}};
+  return {{"evolve", seconds.film},
+          {"mesh", seconds.mesh},
+          {"fea", seconds.fea},
+          {"gradient", seconds.gradient}};
 }
 
 /// A field of `components` values per node from what numbers them by node.
@@ -214,7 +216,7 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
   }
   json["evaluations"] = result.evaluations;
   json["failed_evaluations"] = result.failed_evaluations;
-  json["gradient_evaluations"] = 0;
+  json["gradient_evaluations"] = result.gradient_evaluations;
   if (best != nullptr) {
     json["film"] = film_json(best->film);
     json["tet"] = tet_json(best->tet);

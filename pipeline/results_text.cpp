@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "pipeline/eigen_figures.h"
@@ -20,6 +22,27 @@ std::string with_error(double value, const VectorX& errors, Eigen::Index k,
     text += "  +- " + quantity(errors[k], unit, 2);
   }
   return text;
+}
+
+/// "  sway   0.09 mm, at most 0.1 mm: kept".
+std::string bounds_text(const Case& input, const ConstraintEntry& entry,
+                        const Constraint& constraint) {
+  const std::string unit = response_unit(input, entry.response);
+  std::string bounds;
+  if (entry.lower == entry.upper) {
+    bounds = "wanted " + quantity(entry.lower, unit);
+  } else {
+    if (std::isfinite(entry.lower)) {
+      bounds = "at least " + quantity(entry.lower, unit);
+    }
+    if (std::isfinite(entry.upper)) {
+      bounds += (bounds.empty() ? "at most " : ", at most ") +
+                quantity(entry.upper, unit);
+    }
+  }
+  return fmt::format("  {:<20} {}, {}: {}\n", constraint.name,
+                     quantity(constraint.value, unit), bounds,
+                     constraint.satisfied ? "kept" : "VIOLATED");
 }
 
 }  // namespace
@@ -70,9 +93,13 @@ std::string result_text(const Case& input, const RunResult& result) {
     }
     text += "\n";
   }
-  for (const Constraint& c : result.constraints) {
-    text += fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n", c.name,
-                        c.value, c.bound);
+  const bool matches = input.study.kind == StudyKind::Match;
+  for (std::size_t k = 0; k < result.constraints.size(); ++k) {
+    const Constraint& c = result.constraints[k];
+    text += matches
+                ? fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n",
+                              c.name, c.value, c.bound)
+                : bounds_text(input, input.study.constraints[k], c);
   }
   for (const ExclusionShare& zone : result.exclusion.zones) {
     text += fmt::format(
@@ -97,13 +124,14 @@ std::string result_text(const Case& input, const RunResult& result) {
       "eigenvalue {:.3g}\n"
       "  elements: {} ten-node tetrahedra, {} unknowns, dihedral angles {:.1f} "
       "to {:.1f} degrees\n"
-      "  {} evaluations in {:.1f} s (film {:.1f}, mesh {:.1f}, elasticity "
-      "{:.1f})\n",
+      "  {} evaluations and {} gradients in {:.1f} s (film {:.1f}, mesh "
+      "{:.1f}, elasticity {:.1f}, gradients {:.1f})\n",
       best.film.verdict, best.film.facets, best.film.residual,
       best.film.residual_bound, best.film.min_eigenvalue, best.tet.elements,
       best.fea.dofs, best.tet.min_dihedral_deg, best.tet.max_dihedral_deg,
-      result.evaluations, result.total_seconds, result.seconds.film,
-      result.seconds.mesh, result.seconds.fea);
+      result.evaluations, result.gradient_evaluations, result.total_seconds,
+      result.seconds.film, result.seconds.mesh, result.seconds.fea,
+      result.seconds.gradient);
   return text;
 }
 

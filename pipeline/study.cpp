@@ -1,18 +1,16 @@
-#include "pipeline/study.h"
-
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/QR>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/timer.h"
 #include "fea/body_loads.h"
-#include "optimize/problem.h"
-#include "pipeline/match_targets.h"
 #include "pipeline/part_warnings.h"
 #include "pipeline/responses.h"
 #include "pipeline/results.h"
+#include "pipeline/study_runner.h"
 
 namespace meniscus {
 
@@ -29,64 +27,18 @@ void add(StageSeconds& sum, const StageSeconds& part) {
   sum.film += part.film;
   sum.mesh += part.mesh;
   sum.fea += part.fea;
+  sum.gradient += part.gradient;
 }
 
-RunStatus status_of(Termination termination) {
-  switch (termination) {
-    case Termination::Converged:
-      return RunStatus::Converged;
-    case Termination::LimitReached:
-      return RunStatus::Stopped;
-    case Termination::Stalled:
-    case Termination::AtBound:
-    case Termination::NoFeasible:
-    case Termination::Infeasible:
-    case Termination::Constant:
-    case Termination::NoFreedom:
-      return RunStatus::Infeasible;
-  }
-  return RunStatus::Error;
+/// The rows of `responses` are all there.
+bool has_rows(const Eigen::MatrixXd& gradient,
+              const std::vector<int>& responses) {
+  return gradient.size() > 0 &&
+         std::all_of(responses.begin(), responses.end(),
+                     [&](int r) { return gradient.row(r).allFinite(); });
 }
 
-/// One study on one frozen model.
-class StudyRunner {
- public:
-  StudyRunner(const Case& input, StudyStore& store, const StudyOptions& options)
-      : input_(input),
-        store_(store),
-        options_(options),
-        monitor_(options.monitor != nullptr ? *options.monitor
-                                            : silent_monitor()) {}
-
-  RunResult run(EvaluationFields* fields);
-
- private:
-  EvaluationRecord evaluate(const VectorX& design, const std::string& phase);
-  void analyse();
-  void match();
-  ResidualAnswer answer(const MatchTargets& targets,
-                        const EvaluationRecord& record);
-  void finish_best(EvaluationFields* fields);
-  void solve_eigenproblems();
-  void estimate_errors();
-  void warn();
-
-  const Case& input_;
-  StudyStore& store_;
-  const StudyOptions& options_;
-  Monitor& monitor_;
-  Timer timer_;
-  std::optional<ForwardModel> model_;
-  std::optional<MatchTargets> targets_;
-  Eigen::MatrixXd jacobian_;
-  std::string phase_ = "start";
-  VectorX best_design_;
-  RunResult result_;
-  // What the last computed evaluation left, so that the best design's meshes
-  // need no second evaluation when it came last.
-  Evaluation last_;
-  EvaluationFields last_fields_;
-};
+}  // namespace
 
 EvaluationRecord StudyRunner::evaluate(const VectorX& design,
                                        const std::string& phase) {
@@ -96,7 +48,7 @@ EvaluationRecord StudyRunner::evaluate(const VectorX& design,
     result_.failed_evaluations += known->failure ? 1 : 0;
     return *known;
   }
-  last_ = model_->evaluate(design, &last_fields_);
+  last_ = model_->evaluate(design, &last_fields_, adjoint_wanted());
   add(result_.seconds, last_.seconds);
   EvaluationRecord record = make_record(input_, last_);
   record.model = kModelName;
@@ -110,59 +62,40 @@ EvaluationRecord StudyRunner::evaluate(const VectorX& design,
   return record;
 }
 
-ResidualAnswer StudyRunner::answer(const MatchTargets& targets,
-                                   const EvaluationRecord& record) {
-  ResidualAnswer found;
-  found.failure = record.failure;
-  if (!record.failure) {
-    found.residuals = targets.residuals(record.responses);
-    found.mismatch = targets.mismatch(record.responses);
+/// Rows by response, NaN in those that are not among `responses`. The design
+/// has been evaluated.
+JacobianAnswer StudyRunner::gradient(const VectorX& design,
+                                     const std::vector<int>& responses) {
+  throw_if_stopped(monitor_, "the study");
+  ++result_.gradient_evaluations;
+  const EvaluationRecord record = *store_.find(kModelName, design);
+  if (has_rows(record.gradient, responses)) {
+    return {record.gradient, std::nullopt};
   }
-  return found;
-}
-
-void StudyRunner::analyse() {
-  result_.status = RunStatus::Converged;
-  result_.message = "analysed the initial design";
-  best_design_ = initial_design(input_);
-}
-
-void StudyRunner::match() {
-  std::vector<Variable> variables;
-  for (const DesignVariable& v : input_.design) {
-    variables.push_back({.name = v.name,
-                         .initial = v.initial,
-                         .lower = v.lower,
-                         .upper = v.upper});
+  if (!is_last(design) || last_adjoint_.elastic.empty()) {
+    last_ = model_->evaluate(design, &last_fields_, &last_adjoint_);
+    add(result_.seconds, last_.seconds);
   }
-  const MatchReport report = meniscus::match(
-      variables,
-      [&](const VectorX& x) { return answer(*targets_, evaluate(x, phase_)); },
-      {.method = input_.study.method,
-       .tolerance = input_.study.tolerance,
-       .max_evaluations = input_.study.max_evaluations,
-       .time_limit = options_.time_limit,
-       .monitor = options_.monitor,
-       .announce = [&](EvaluationPhase phase) { phase_ = name_of(phase); }});
-  result_.status = status_of(report.termination);
-  result_.message = report.message;
-  result_.objective = report.cost;
-  best_design_ = report.best;
-  jacobian_ = report.jacobian;
-  for (Eigen::Index k = 0; k < report.answer.mismatch.size(); ++k) {
-    const double value = report.answer.mismatch[k];
-    result_.constraints.push_back(
-        {.name = targets_->name(k),
-         .value = value,
-         .bound = input_.study.tolerance,
-         .satisfied = value <= input_.study.tolerance});
+  const DesignGradient found =
+      model_->gradient(last_, last_fields_, last_adjoint_, responses);
+  result_.seconds.gradient += found.seconds;
+  if (found.failure) {
+    monitor_.log(Severity::Warning, "no gradient: " + found.failure->message);
+    return {{}, found.failure};
   }
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Constant(
+      static_cast<Eigen::Index>(input_.responses.size()), design.size(),
+      std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < responses.size(); ++k) {
+    gradient.row(responses[k]) =
+        found.jacobian.row(static_cast<Eigen::Index>(k));
+  }
+  store_.set_gradient(record.number, gradient);
+  return {std::move(gradient), std::nullopt};
 }
 
 void StudyRunner::finish_best(EvaluationFields* fields) {
-  const bool is_last = last_.design.size() == best_design_.size() &&
-                       last_.design == best_design_;
-  if (!is_last) {
+  if (!is_last(best_design_)) {
     monitor_.progress({.stage = "study", .detail = "the best design's fields"});
     last_ = model_->evaluate(best_design_, &last_fields_);
     add(result_.seconds, last_.seconds);
@@ -267,6 +200,19 @@ void StudyRunner::warn() {
   }
 }
 
+void StudyRunner::conduct() {
+  result_.evaluations = 0;  // the optimizers ask for the start again
+  switch (input_.study.kind) {
+    case StudyKind::Match:
+      return match();
+    case StudyKind::Minimize:
+      return minimize();
+    case StudyKind::Analyse:
+      result_.evaluations = 1;
+      return analyse();
+  }
+}
+
 RunResult StudyRunner::run(EvaluationFields* fields) {
   model_.emplace(input_, ForwardModelOptions{.monitor = options_.monitor});
   result_.seconds = model_->frozen().seconds;
@@ -287,6 +233,7 @@ RunResult StudyRunner::run(EvaluationFields* fields) {
     result_.adaptation = *adaptation;
   }
   const bool matches = input_.study.kind == StudyKind::Match;
+  with_gradients_ = uses_gradients(input_);
   const EvaluationRecord start = [&] {
     const VectorX design = initial_design(input_);
     EvaluationRecord record = evaluate(design, "start");
@@ -302,12 +249,7 @@ RunResult StudyRunner::run(EvaluationFields* fields) {
                                   start.failure->message);
     result_.best = result_.start;
   } else {
-    if (matches) {
-      result_.evaluations = 0;  // the match asks for the start again
-      match();
-    } else {
-      analyse();
-    }
+    conduct();
     finish_best(fields);
     if (options_.estimate_errors && !result_.best->failure) {
       estimate_errors();
@@ -317,8 +259,6 @@ RunResult StudyRunner::run(EvaluationFields* fields) {
   result_.total_seconds = timer_.seconds();
   return result_;
 }
-
-}  // namespace
 
 const char* name_of(RunStatus status) {
   switch (status) {

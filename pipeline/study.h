@@ -50,6 +50,7 @@ struct RunResult {
   std::optional<EigenFigures> eigen;            // of the best design
   int evaluations = 0;  // finite-difference ones included
   int failed_evaluations = 0;
+  int gradient_evaluations = 0;
   StageSeconds seconds;  // summed over freeze, evaluations, error estimate
   double output_seconds = 0.0;
   double total_seconds = 0.0;

@@ -356,6 +356,27 @@ int StudyStore::append(const EvaluationRecord& record) {
   return impl_->database.last_row();
 }
 
+void StudyStore::set_gradient(int number, const Eigen::MatrixXd& gradient) {
+  if (!impl_->lock) {
+    throw InvalidInput("study: opened to be read, nothing can be changed");
+  }
+  SqliteStatement found(
+      impl_->database,
+      fmt::format("SELECT {} FROM evaluation WHERE number = ?", kColumns));
+  found.bind(number);
+  if (!found.step()) {
+    throw InvalidInput(fmt::format("study: there is no record {}", number));
+  }
+  EvaluationRecord record = read_record(impl_->database, found);
+  record.gradient = gradient;
+  check_record(record);
+  SqliteStatement row(impl_->database,
+                      "UPDATE evaluation SET gradient = ? WHERE number = ?");
+  row.bind_bytes(to_bytes(gradient.data(), gradient.size()));
+  row.bind(number);
+  row.step();
+}
+
 std::optional<EvaluationRecord> StudyStore::find(const std::string& model,
                                                  const VectorX& inputs) const {
   SqliteStatement row(impl_->database,

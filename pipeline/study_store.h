@@ -37,7 +37,8 @@ struct EvaluationRecord {
   VectorX inputs;  // design variables
   std::vector<std::string> response_names;
   VectorX responses;               // empty when there is a failure
-  Eigen::MatrixXd gradient;        // d response_i / d input_j, may be empty
+  Eigen::MatrixXd gradient;        // d response_i / d input_j, may be empty;
+                                   // NaN in rows that nobody asked for
   std::optional<double> mismatch;  // the largest, for people and history.csv
   std::optional<Failure> failure;
   std::string figures = "{}";  // of film, mesh and elasticity, JSON text
@@ -79,6 +80,11 @@ class StudyStore {
 
   /// Commits the record and returns its number.
   int append(const EvaluationRecord& record);
+
+  /// Adds (or replaces) the gradient of record `number`, committed likewise:
+  /// rows by response, NaN in those that are not known. Throws InvalidInput
+  /// for a gradient of another shape or a number that is not there.
+  void set_gradient(int number, const Eigen::MatrixXd& gradient);
 
   /// The first record of this case hash, model and exact bits of inputs.
   std::optional<EvaluationRecord> find(const std::string& model,

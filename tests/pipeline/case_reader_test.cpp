@@ -59,7 +59,7 @@ TEST(CaseReader, EvaluatesTheTwoArmBracket) {
   EXPECT_EQ(numbers.load_cases[0].forces[0].total, Vec3(0, 0, -40000));
   EXPECT_EQ(numbers.load_cases[0].forces[1].total, Vec3(0, 0, -60000));
   EXPECT_TRUE(numbers.load_cases[0].supports[0].fix_y);
-  EXPECT_EQ(numbers.response_directions[1], Vec3(0, 0, -1));
+  EXPECT_EQ(numbers.responses[1].direction, Vec3(0, 0, -1));
   EXPECT_THROW(evaluate(input, VectorX()), InvalidInput);
 }
 

@@ -44,9 +44,10 @@ Part part(int n) {
                        response(ResponseKind::StrainEnergy, "", 0),
                        response(ResponseKind::MaxVonMises, "", 0),
                        response(ResponseKind::Volume, "", 0)};
-  p.fields.inputs.response_directions = {{2.0, 0.0, 0.0}, Vec3::UnitX(),
-                                         Vec3::UnitY(),   Vec3::Zero(),
-                                         Vec3::Zero(),    Vec3::Zero()};
+  p.fields.inputs.responses.resize(6);
+  p.fields.inputs.responses[0].direction = {2.0, 0.0, 0.0};
+  p.fields.inputs.responses[1].direction = Vec3::UnitX();
+  p.fields.inputs.responses[2].direction = Vec3::UnitY();
   p.model.emplace(p.fields.mesh, p.fields.inputs.materials,
                   p.fields.inputs.load_cases);
   p.fields.solution = p.model->base_solution();
@@ -63,7 +64,7 @@ double value(const Part& p, std::size_t r) {
              ? 0.5 * nodal_forces(p.fields.mesh, p.fields.inputs.load_cases[k])
                          .dot(u)
              : mean_displacement(p.fields.mesh, entry.surface,
-                                 p.fields.inputs.response_directions[r], u);
+                                 p.fields.inputs.responses[r].direction, u);
 }
 
 TEST(ElementErrors, DoNotDependOnTheSizeOfTheLoad) {

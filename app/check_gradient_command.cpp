@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <cstdio>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "app/case_input.h"
+#include "app/commands.h"
+#include "app/exit_code.h"
+#include "app/signals.h"
+#include "core/error.h"
+#include "core/expression.h"
+#include "core/nearest_name.h"
+#include "pipeline/gradient_check.h"
+
+namespace meniscus {
+
+namespace {
+
+/// The initial design with "name=value" put in.
+VectorX design_at(const Case& input, const std::vector<std::string>& places) {
+  VectorX design = initial_design(input);
+  for (const std::string& text : places) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    const std::vector<std::string> known = design_names(input);
+    const auto at = std::find(known.begin(), known.end(), name);
+    if (equals == std::string::npos || at == known.end()) {
+      const std::string near = nearest_name(name, known);
+      throw InvalidInput(fmt::format(
+          "--at {}: expected NAME=VALUE of a design variable{}", text,
+          near.empty() ? "" : "; did you mean '" + near + "'?"));
+    }
+    const DesignVariable& variable = input.design[at - known.begin()];
+    double value = 0.0;
+    try {
+      value = Expression::parse(text.substr(equals + 1), {})
+                  .evaluate(std::span<const double>());
+    } catch (const ExpressionError& error) {
+      throw InvalidInput(fmt::format("--at {}: {}", text, error.what()));
+    }
+    if (!(value >= variable.lower && value <= variable.upper)) {
+      throw InvalidInput(fmt::format("--at {}: outside the bounds {:g} to {:g}",
+                                     text, variable.lower, variable.upper));
+    }
+    design[at - known.begin()] = value;
+  }
+  return design;
+}
+
+}  // namespace
+
+int check_gradient_command(const CheckGradientArguments& arguments) {
+  const CaseReading reading =
+      read_case_aloud(arguments.case_path, arguments.common);
+  if (!reading.input) {
+    return kExitWrongInput;
+  }
+  const Case& input = *reading.input;
+  TerminalMonitor monitor(monitor_options(arguments.common));
+  catch_stop_signals();
+  try {
+    const CaseGradientCheck check = check_case_gradient(
+        input, design_at(input, arguments.at), {.monitor = &monitor});
+    if (!arguments.common.quiet || !check.report.passed) {
+      std::fputs(gradient_check_text(input, check).c_str(), stdout);
+    }
+    return check.report.passed ? kExitDone : kExitError;
+  } catch (const SolverError& error) {
+    std::fprintf(stderr, "failed: %s\n", error.what());
+    return kExitNoSolution;
+  }
+}
+
+}  // namespace meniscus

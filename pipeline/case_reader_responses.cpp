@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "pipeline/case_checks.h"
+#include "pipeline/case_reader_tables.h"
+
+namespace meniscus {
+
+namespace {
+
+struct ResponseKeys {
+  ResponseKind kind;
+  KindKeys keys;
+};
+
+const std::map<std::string, ResponseKeys>& response_kinds() {
+  using Kind = ResponseKind;
+  static const std::map<std::string, ResponseKeys> kinds = {
+      {"mean_displacement",
+       {Kind::MeanDisplacement,
+        {{"on", "direction"}, {"load_case", "weight"}}}},
+      {"displacement_norm",
+       {Kind::DisplacementNorm, {{"on", "direction"}, {"load_case", "power"}}}},
+      {"rotation", {Kind::Rotation, {{"on", "axis"}, {"load_case"}}}},
+      {"compliance", {Kind::Compliance, {{}, {"load_case"}}}},
+      {"strain_energy", {Kind::StrainEnergy, {{}, {"load_case"}}}},
+      {"mass", {Kind::Mass, {}}},
+      {"volume", {Kind::Volume, {}}},
+      {"centre_of_mass", {Kind::CentreOfMass, {{"direction"}, {}}}},
+      {"max_von_mises", {Kind::MaxVonMises, {{}, {"load_case"}}}},
+      {"von_mises_norm", {Kind::VonMisesNorm, {{}, {"load_case", "power"}}}},
+      {"von_mises_ks",
+       {Kind::VonMisesKs, {{}, {"load_case", "sharpness", "scale"}}}},
+      {"uniformity", {Kind::Uniformity, {{}, {"load_case"}}}},
+      {"energy_uniformity", {Kind::EnergyUniformity, {{}, {"load_case"}}}},
+      {"film_area", {Kind::FilmArea, {{}, {"film"}}}},
+      {"film_energy", {Kind::FilmEnergy, {}}},
+      {"pressure", {Kind::Pressure, {{"body"}, {}}}},
+      {"collapse_margin", {Kind::CollapseMargin, {}}},
+      {"radius", {Kind::Radius, {{}, {"power"}}}},
+      {"expression", {Kind::Expression, {{"value"}, {}}}}};
+  return kinds;
+}
+
+/// A constant above `above`; `standard` without the key or when it is wrong.
+double constant_above(CaseContext& context, const CaseTable& table,
+                      const char* key, double above, double standard) {
+  const double value = table.constant(key).value_or(standard);
+  if (value > above) {
+    return value;
+  }
+  context.problems.add(table.line(key),
+                       fmt::format("{}.{} is {:g}; it must be above {:g}",
+                                   table.path(), key, value, above));
+  return standard;
+}
+
+/// The index of the name that `key` gives among `known`; 0, and a note, for a
+/// name that is not there.
+int index_among(CaseContext& context, const CaseTable& table, const char* key,
+                const std::vector<std::string>& known) {
+  const auto name = table.text(key);
+  const auto at = std::find(known.begin(), known.end(), name.value_or(""));
+  if (name && at == known.end()) {
+    context.problems.unknown(table.line(key), key, *name, known);
+  }
+  return at == known.end() ? 0 : static_cast<int>(at - known.begin());
+}
+
+/// A radius is a mean of even powers.
+double read_power(CaseContext& context, const CaseTable& table,
+                  const ResponseEntry& response) {
+  if (response.kind != ResponseKind::Radius) {
+    return constant_above(context, table, "power", 1.0, response.power);
+  }
+  constexpr double kUsual = 16.0;
+  constexpr double kMost = 64.0;
+  const double power = table.constant("power").value_or(kUsual);
+  if (power >= 2.0 && power <= kMost && std::fmod(power, 2.0) == 0.0) {
+    return power;
+  }
+  context.problems.add(
+      table.line("power"),
+      fmt::format("{}.power is {:g}; it must be even, from 2 to {:g}",
+                  table.path(), power, kMost));
+  return kUsual;
+}
+
+/// What stress norms are measured in: a yield strength, else 1.
+std::optional<double> stress_scale(CaseContext& context,
+                                   const CaseTable& table) {
+  if (!table.has("scale")) {
+    return std::nullopt;
+  }
+  return constant_above(context, table, "scale", 0.0, 1.0);
+}
+
+/// Over the case's names and the responses above this one.
+Quantity read_value(CaseContext& context, const CaseTable& table,
+                    const Case& result) {
+  const std::size_t own = context.names.size();
+  for (const ResponseEntry& response : result.responses) {
+    const bool taken = std::find(context.names.begin(), context.names.end(),
+                                 response.name) != context.names.end();
+    // A name of the case hides a response of that name.
+    context.names.push_back(taken ? "" : response.name);
+  }
+  Quantity value = table.quantity_or_zero("value");
+  context.names.resize(own);
+  return value;
+}
+
+ResponseEntry read_response(CaseContext& context, const CaseTable& table,
+                            const std::string& kind, const Case& result) {
+  ResponseEntry response;
+  response.name = table.name();
+  response.line = table.line();
+  response.kind = response_kinds().at(kind).kind;
+  table.check_kind(kind, response_kinds().at(kind).keys);
+  response.surface = surface_on(context, table, result);
+  response.direction = table.vector_or_zero(
+      response.kind == ResponseKind::Rotation ? "axis" : "direction");
+  const std::vector<std::string>& optional =
+      response_kinds().at(kind).keys.optional;
+  if (std::find(optional.begin(), optional.end(), "load_case") !=
+      optional.end()) {
+    response.load_case = index_of_load_case(context, table, result);
+  }
+  response.weight = table.place_quantity("weight");
+  if (response.weight) {
+    require_frozen(context, response.weight->quantity, "a response's weight");
+  }
+  response.power = read_power(context, table, response);
+  response.sharpness =
+      constant_above(context, table, "sharpness", 0.0, response.sharpness);
+  response.scale = stress_scale(context, table);
+  if (const auto film = table.text("film")) {
+    response.film = *film;
+    index_among(context, table, "film", film_names(result));
+  }
+  response.body = index_among(context, table, "body", body_names(result));
+  if (response.kind == ResponseKind::Expression) {
+    response.value = read_value(context, table, result);
+  }
+  return response;
+}
+
+}  // namespace
+
+/// The load case that `key` names; the first when left out or wrong.
+int index_of_load_case(CaseContext& context, const CaseTable& table,
+                       const Case& result, const char* key) {
+  const auto wanted = table.text(key);
+  if (!wanted) {
+    return 0;
+  }
+  std::vector<std::string> known;
+  for (const LoadCaseEntry& entry : result.load_cases) {
+    if (entry.name == *wanted) {
+      return static_cast<int>(known.size());
+    }
+    known.push_back(entry.name);
+  }
+  context.problems.unknown(table.line(key), "load case", *wanted, known);
+  return 0;
+}
+
+void read_responses(CaseContext& context, const toml::table& root,
+                    Case& result) {
+  for (const CaseTable& table : named_tables(context, root, "responses")) {
+    if (const auto kind = table.choice("kind")) {
+      result.responses.push_back(read_response(context, table, *kind, result));
+    }
+  }
+}
+
+}  // namespace meniscus

@@ -1,0 +1,42 @@
+/// The exact gradient of responses by the design variables: the adjoint of
+/// ForwardModel::evaluate(), stage by stage backwards (docs/theory.md).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "mesh_tet/quadratic.h"
+#include "pipeline/case.h"
+#include "pipeline/responses.h"
+
+namespace meniscus {
+
+/// Rows are responses, columns design variables.
+struct DesignGradient {
+  Eigen::MatrixXd jacobian;
+  int solves = 0;  // adjoint ones
+  double seconds = 0.0;
+  std::optional<Failure> failure;  // an adjoint solve did not converge
+};
+
+/// The evaluated design, on loan.
+struct GradientInput {
+  const Case& input;
+  const ResponseInput& fields;
+  const VectorX& responses;  // their values
+  const ElasticModel& elasticity;
+  const ElasticState& elastic_state;
+  /// From a gradient by all nodes of the mesh to that by the film's vertices.
+  std::function<Points(const Points&)> to_film;
+};
+
+/// `wanted`: indices of responses, a row each. Costs one linear solve per
+/// wanted response that depends on displacements (none for compliance), and
+/// next to nothing per design variable. The same bits for any number of
+/// threads. Throws InvalidInput for responses without derivatives, and where
+/// an expression of the case has none.
+DesignGradient design_gradient(const GradientInput& input,
+                               const std::vector<int>& wanted);
+
+}  // namespace meniscus

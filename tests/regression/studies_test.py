@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""Exact gradients and the studies that use them, from a case file to the
+answer."""
+import itertools
+import json
+import re
+import unittest
+
+import program
+from program import COARSE, ProgramTest
+
+SIZED = """
+[responses.mass]
+kind = "mass"
+
+[responses.difference]
+kind = "expression"
+value = "left_deflection - right_deflection"
+
+[study]
+kind = "minimize"
+objective = "mass"
+constraints = [
+  { response = "difference", min = 0, max = 0 },
+  { response = "left_deflection", max = 0.09 },
+]
+"""
+
+
+class Gradients(ProgramTest):
+    def test_every_shipped_case_passes_check_gradient(self):
+        cases = sorted((program.ROOT / "cases").glob("*/case.toml"))
+        self.assertTrue(cases)
+        for case in cases:
+            if "[design." in case.read_text():
+                with self.subTest(case=case.parent.name):
+                    self.expect(self.call("check-gradient", case, timeout=600),
+                                0, "agree with central differences")
+
+    def test_another_design_than_the_initial_one(self):
+        done = self.expect(
+            self.call("check-gradient", program.CASE, *COARSE, "--at",
+                      "support_x=-20"), 0, r"at support_x = -20")
+        self.assertNotIn("DIFFERS", done.stdout)
+
+    def test_wrong_places_are_told(self):
+        for place, told in (("support_y=1", "did you mean 'support_x'"),
+                            ("support_x=900", "outside the bounds -40 to 40"),
+                            ("support_x", "expected NAME=VALUE")):
+            self.expect(self.call("check-gradient", program.CASE, "--at",
+                                  place), 2, told)
+
+    def test_a_match_to_a_millionth_takes_few_evaluations(self):
+        out = self.folder / "out"
+        self.expect(self.call("run", program.CASE, *COARSE, "--set",
+                              "study.tolerance=1e-6", "--no-pictures", "--out",
+                              out), 0)
+        result = self.result(out)
+        self.assertLessEqual(result["evaluations"], 6)
+        self.assertGreater(result["gradient_evaluations"], 0)
+        for constraint in result["constraints"].values():
+            self.assertLess(constraint["value"], 1e-6)
+
+
+class Minimize(ProgramTest):
+    def sized(self, *replacements):
+        case = self.write_case(
+            (r"^\[curves.support\]",
+             "[design.fill]\ninitial = 1.7e6\nbounds = [1.4e6, 2.2e6]\n\n"
+             "[design.radius]\ninitial = 35\nbounds = [30, 40]\n\n"
+             "[curves.support]"),
+            (r"^radius = 35", 'radius = "radius"'),
+            (r"^volume = 1.7e6", 'volume = "fill"'),
+            (r"(?s)^\[study\].*", SIZED), *replacements)
+        return case
+
+    def minimum(self, case, name, *more):
+        out = self.folder / name
+        done = self.call("run", case, *COARSE, "--no-pictures", "--out", out,
+                         *more)
+        return done, self.result(out)
+
+    def test_least_mass_at_equal_deflections(self):
+        case = self.sized()
+        done, result = self.minimum(case, "a")
+        self.expect(done, 0, "minimum found", "difference .*: kept")
+        mass = result["objective"]
+        best = result["parameters"]
+        self.assertAlmostEqual(result["responses"]["difference"], 0, 6)
+        self.assertLess(result["responses"]["left_deflection"], 0.09 + 1e-6)
+        # Two other starts come to the same mass.
+        for k, start in enumerate((("20", "2e6", "31"), ("-15", "1.5e6",
+                                                         "39"))):
+            moved = [f"design.{name}.initial={value}" for name, value in zip(
+                ("support_x", "fill", "radius"), start)]
+            done, other = self.minimum(
+                case, f"start{k}",
+                *itertools.chain(*(("--set", m) for m in moved)))
+            self.expect(done, 0)
+            # Frozen elsewhere, it is another mesh.
+            self.assertAlmostEqual(other["objective"] / mass, 1.0, 2)
+        self.assertGreater(best["fill"], 1.4e6)
+
+    def test_a_method_without_gradients_finds_it_too(self):
+        case = self.sized()
+        _, exact = self.minimum(case, "exact")
+        case.write_text(case.read_text() + 'method = "cobyla"\n'
+                        "max_evaluations = 300\n")
+        _, other = self.minimum(case, "cobyla")
+        self.assertEqual(other["gradient_evaluations"], 0)
+        self.assertAlmostEqual(other["objective"] / exact["objective"], 1, 3)
+
+    def test_bounds_that_cannot_be_kept_end_with_what_to_change(self):
+        case = self.sized((r"max = 0.09", "max = 0.001"))
+        done, result = self.minimum(case, "out")
+        self.expect(done, 3, "left_deflection")
+        self.assertEqual(result["status"], "infeasible")
+        self.assertFalse(result["constraints"]["left_deflection"]["satisfied"])
+
+    def test_equal_bounds_leave_nothing_to_move(self):
+        case = self.write_case((r"^bounds = .*", "bounds = [0.0, 0.0]"))
+        out = self.folder / "out"
+        self.expect(self.call("run", case, *COARSE, "--no-pictures", "--out",
+                              out), 3, "bounds")
+
+    def test_what_is_wrong_in_the_study_is_told_by_line(self):
+        for old, new, told in (
+                ('objective = "mass"', 'objective = "mas"',
+                 "did you mean 'mass'"),
+                (", min = 0, max = 0", "", "bounds nothing; add min or max"),
+                ("min = 0, max = 0", "min = 2, max = 1",
+                 "nothing lies between"),
+                ('value = "left', 'value = "lfet', "left_deflection"),
+                ('kind = "minimize"', 'kind = "minimize"\nequal = ["mass"]',
+                 "belongs to kind = \"match\""),
+                ('kind = "mass"', 'kind = "max_von_mises"',
+                 "has no derivatives")):
+            with self.subTest(new=new):
+                case = self.sized()
+                text = case.read_text()
+                self.assertIn(old, text)
+                case.write_text(text.replace(old, new, 1))
+                self.expect(self.call("check", case), 2, re.escape(told),
+                            r"case.toml:\d+")
+
+
+class Resume(ProgramTest):
+    def test_a_minimum_resumes_with_the_same_bits(self):
+        case = Minimize.sized(self)
+        whole, part = self.folder / "whole", self.folder / "part"
+        self.call("run", case, *COARSE, "--no-pictures", "--out", whole)
+        cut = self.call("run", case, *COARSE, "--no-pictures", "--out", part,
+                        "--set", "study.max_evaluations=3")
+        self.expect(cut, 3)
+        self.expect(self.call("run", case, *COARSE, "--no-pictures", "--out",
+                              part, "--resume"), 0)
+        keep = ("objective", "parameters", "responses", "evaluations",
+                "gradient_evaluations")
+        a, b = self.result(whole), self.result(part)
+        self.assertEqual(json.dumps({k: a[k] for k in keep}),
+                         json.dumps({k: b[k] for k in keep}))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
