@@ -79,14 +79,15 @@ void print_ratio(const char* what, double theirs, double ours, double least,
                               : "BELOW");
 }
 
-/// Wall clock, stage by stage.
+/// Wall clock, stage by stage; of the next design where there is one, for a
+/// first one also touches its memory for the first time.
 void print_threads(const ElasticRun& one, const ElasticRun& two) {
   fmt::print(
       "  two threads, times one: assembly {:.2f}, iterations {:.2f}, stresses "
       "{:.2f} (at least 1.5); first design {:.2f} of {:.2f} s ({:.2f}), next "
       "{:.2f} of {:.2f} s ({:.2f})\n",
-      one.next.setup / two.next.setup, one.first.solve / two.first.solve,
-      one.first.stress / two.first.stress, two.first.all(), one.first.all(),
+      one.next.setup / two.next.setup, one.next.solve / two.next.solve,
+      one.next.stress / two.next.stress, two.first.all(), one.first.all(),
       one.first.all() / two.first.all(), two.next.all(), one.next.all(),
       one.next.all() / two.next.all());
   std::fflush(stdout);
