@@ -62,8 +62,9 @@ FilmProducts::FilmProducts(const FilmEnergy& energy, VectorX pressure)
       energies_(0.0),
       pressure_(std::move(pressure)) {}
 
-VectorX FilmProducts::area_rates(const Points& points,
-                                 const Points& motion) const {
+template <class OfFacet>
+VectorX FilmProducts::over_films(const Points& points, const Points& motion,
+                                 const OfFacet& of_facet) const {
   const FilmEnergy& e = energy_;
   VectorX sum = VectorX::Zero(static_cast<Eigen::Index>(e.liquid_.size()));
   for (std::size_t f = 0; f < e.facets_.size(); ++f) {
@@ -71,10 +72,19 @@ VectorX FilmProducts::area_rates(const Points& points,
       const Corners c = corners_of(points, e.facets_[f]);
       const Corners d = corners_of(motion, e.facets_[f]);
       const FacetFrame frame(c[0], c[1], c[2]);
-      sum[e.label_[f]] += 0.5 * frame.normal.dot(FacetMotion(frame, d).normal2);
+      sum[e.label_[f]] += of_facet(frame, FacetMotion(frame, d), d);
     }
   }
   return sum;
+}
+
+VectorX FilmProducts::area_rates(const Points& points,
+                                 const Points& motion) const {
+  return over_films(points, motion,
+                    [](const FacetFrame& frame, const FacetMotion& moved,
+                       const Corners& /*d*/) {
+                      return 0.5 * frame.normal.dot(moved.normal2);
+                    });
 }
 
 void FilmProducts::add_facets(const Points& points, const Points& motion,
@@ -149,20 +159,12 @@ Points FilmProducts::hessian_times(const Points& points,
 
 VectorX FilmProducts::area_curvatures(const Points& points,
                                       const Points& motion) const {
-  const FilmEnergy& e = energy_;
-  VectorX sum = VectorX::Zero(static_cast<Eigen::Index>(e.liquid_.size()));
-  for (std::size_t f = 0; f < e.facets_.size(); ++f) {
-    if (e.liquid_[e.label_[f]] != 0) {
-      const Corners c = corners_of(points, e.facets_[f]);
-      const Corners d = corners_of(motion, e.facets_[f]);
-      const FacetFrame frame(c[0], c[1], c[2]);
-      const FacetMotion moved(frame, d);
-      const Vec3 bend = (d[1] - d[0]).cross(d[2] - d[0]);
-      sum[e.label_[f]] +=
-          0.5 * moved.normal.dot(moved.normal2) + frame.normal.dot(bend);
-    }
-  }
-  return sum;
+  return over_films(
+      points, motion,
+      [](const FacetFrame& frame, const FacetMotion& moved, const Corners& d) {
+        const Vec3 bend = (d[1] - d[0]).cross(d[2] - d[0]);
+        return 0.5 * moved.normal.dot(moved.normal2) + frame.normal.dot(bend);
+      });
 }
 
 /// With N(x + s d) = N + s N1 + s^2 N2, m = N1 - (n.N1) n and a the area,

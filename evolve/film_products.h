@@ -32,6 +32,10 @@ class FilmProducts {
   Points metric_gradient(const Points& points, const VectorX& weight) const;
 
  private:
+  /// Per surface: the sum of `of_facet`(frame, its motion, corners' motion).
+  template <class OfFacet>
+  VectorX over_films(const Points& points, const Points& motion,
+                     const OfFacet& of_facet) const;
   void add_facets(const Points& points, const Points& motion,
                   Points& sum) const;
   void add_terms(const Points& points, const Points& motion, double factor,

@@ -21,12 +21,12 @@ constexpr const char* kStudy = "minimize";
 constexpr int kFirstProbe = 2;
 constexpr int kLastProbe = 4;
 
-const MinimizeMethod& method_of(const std::string& name) {
+void check_method(const std::string& name) {
+  if (find_minimize_method(name) != nullptr) {
+    return;
+  }
   std::vector<std::string> names;
   for (const MinimizeMethod& method : minimize_methods()) {
-    if (method.name == name) {
-      return method;
-    }
     names.push_back(method.name);
   }
   throw InvalidInput(
@@ -72,7 +72,7 @@ SearchResult search_from(MinimizeEvaluator& evaluator, const VectorX& start,
 
 MinimizeReport minimize_all(const MinimizeProblem& problem,
                             const MinimizeOptions& options) {
-  const MinimizeMethod& method = method_of(options.method);
+  const MinimizeMethod& method = *find_minimize_method(options.method);
   MinimizeEvaluator evaluator(problem, options);
   SearchResult found;
   bool constant = false;
@@ -155,9 +155,17 @@ const std::vector<MinimizeMethod>& minimize_methods() {
   return methods;
 }
 
+const MinimizeMethod* find_minimize_method(const std::string& name) {
+  const std::vector<MinimizeMethod>& all = minimize_methods();
+  const auto at = std::find_if(
+      all.begin(), all.end(),
+      [&](const MinimizeMethod& method) { return method.name == name; });
+  return at == all.end() ? nullptr : &*at;
+}
+
 MinimizeReport minimize(const MinimizeProblem& problem,
                         const MinimizeOptions& options) {
-  method_of(options.method);
+  check_method(options.method);
   check_variables(problem.variables, kStudy);
   const FreeVariables free(problem.variables);
   if (free.all_held()) {

@@ -98,6 +98,9 @@ struct MinimizeMethod {
 /// crs2 (Kaelo & Ali 2006), direct_l (Gablonsky & Kelley 2001).
 const std::vector<MinimizeMethod>& minimize_methods();
 
+/// The method of that name, or null.
+const MinimizeMethod* find_minimize_method(const std::string& name);
+
 /// Throws InvalidInput for an unknown method, bad bounds, sizes or options.
 ///
 /// The function is never asked twice for the same x, never outside the bounds,

@@ -20,11 +20,9 @@ constexpr const char* kWalled =
     "It stands beside designs that cannot be evaluated: add a constraint (a "
     "margin to collapse) or a bound that keeps away from them";
 
-bool uses_gradients(const std::string& method) {
-  const auto& all = minimize_methods();
-  return std::any_of(all.begin(), all.end(), [&](const MinimizeMethod& known) {
-    return known.name == method && known.gradients;
-  });
+bool uses_gradients(const std::string& name) {
+  const MinimizeMethod* method = find_minimize_method(name);
+  return method != nullptr && method->gradients;
 }
 
 void fill_constraints(const MinimizeEvaluator& evaluator,

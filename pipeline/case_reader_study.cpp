@@ -7,6 +7,7 @@
 #include "optimize/minimize.h"
 #include "pipeline/case_reader_tables.h"
 #include "pipeline/responses.h"
+#include "pipeline/studied_responses.h"
 
 namespace meniscus {
 
@@ -200,26 +201,17 @@ void read_constraints(CaseContext& context, const CaseTable& table,
 /// What a gradient method asks of responses that have no derivatives.
 void check_derivatives(CaseContext& context, const CaseTable& table,
                        const Case& result) {
-  const std::string& method = result.study.method;
-  const auto& methods = minimize_methods();
-  const auto found =
-      std::find_if(methods.begin(), methods.end(),
-                   [&](const MinimizeMethod& m) { return m.name == method; });
-  if (found == methods.end() || !found->gradients) {
+  if (!asks_for_gradients(result.study)) {
     return;
   }
-  std::vector<int> asked = {result.study.objective};
-  for (const ConstraintEntry& constraint : result.study.constraints) {
-    asked.push_back(constraint.response);
-  }
-  for (const int response : asked) {
+  for (const int response : studied_responses(result)) {
     if (!has_derivatives(result, response)) {
       context.problems.add(
           table.line(),
           fmt::format("response '{}' has no derivatives, and method {} needs "
                       "them: use von_mises_norm or von_mises_ks for a peak, "
                       "or method = \"cobyla\"",
-                      result.responses[response].name, method));
+                      result.responses[response].name, result.study.method));
     }
   }
 }

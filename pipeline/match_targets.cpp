@@ -1,7 +1,6 @@
 #include "pipeline/match_targets.h"
 
 #include <cmath>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -112,17 +111,6 @@ VectorX MatchTargets::mismatch_errors(const VectorX& responses,
 
 std::string MatchTargets::name(Eigen::Index target) const {
   return targets_[static_cast<std::size_t>(target)].name;
-}
-
-std::vector<int> target_responses(const Case& input) {
-  std::set<int> result;
-  for (const std::string& name : input.study.equal) {
-    result.insert(response_index(input, name));
-  }
-  for (const auto& target : input.study.targets) {
-    result.insert(response_index(input, target.first));
-  }
-  return {result.begin(), result.end()};
 }
 
 }  // namespace meniscus

@@ -23,7 +23,7 @@ class MatchTargets {
 
   VectorX residuals(const VectorX& responses) const;
   /// d residual / d x from d response / d x, of which only the rows of
-  /// target_responses() are read.
+  /// studied_responses() are read.
   Eigen::MatrixXd jacobian(const Eigen::MatrixXd& gradient) const;
   VectorX mismatch(const VectorX& responses) const;
   /// Largest error of each residual, and of each mismatch, that errors of the
@@ -43,8 +43,5 @@ class MatchTargets {
   };
   std::vector<Target> targets_;
 };
-
-/// The responses that a match's targets are made of, ascending.
-std::vector<int> target_responses(const Case& input);
 
 }  // namespace meniscus

@@ -5,6 +5,7 @@
 
 #include "optimize/minimize.h"
 #include "pipeline/responses.h"
+#include "pipeline/studied_responses.h"
 #include "pipeline/study_runner.h"
 
 namespace meniscus {
@@ -28,15 +29,6 @@ RunStatus status_of(Termination termination) {
   return RunStatus::Error;
 }
 
-/// Of a minimum: the objective, then the constraints.
-std::vector<int> minimized_responses(const Case& input) {
-  std::vector<int> result = {input.study.objective};
-  for (const ConstraintEntry& constraint : input.study.constraints) {
-    result.push_back(constraint.response);
-  }
-  return result;
-}
-
 /// Rows or entries of `all` at `indices`.
 VectorX picked(const VectorX& all, const std::vector<int>& indices) {
   VectorX result(static_cast<Eigen::Index>(indices.size()));
@@ -46,34 +38,11 @@ VectorX picked(const VectorX& all, const std::vector<int>& indices) {
   return result;
 }
 
-bool minimizes_by_gradients(const std::string& method) {
-  const std::vector<MinimizeMethod>& methods = minimize_methods();
-  const auto at =
-      std::find_if(methods.begin(), methods.end(),
-                   [&](const MinimizeMethod& m) { return m.name == method; });
-  return at != methods.end() && at->gradients;
-}
-
 }  // namespace
-
-std::vector<int> studied_responses(const Case& input) {
-  switch (input.study.kind) {
-    case StudyKind::Match:
-      return target_responses(input);
-    case StudyKind::Minimize:
-      return minimized_responses(input);
-    case StudyKind::Analyse:
-      break;
-  }
-  return {};
-}
 
 bool uses_gradients(const Case& input) {
   const std::vector<int> responses = studied_responses(input);
-  const bool asks = input.study.kind == StudyKind::Match
-                        ? input.study.method == "ceres"
-                        : minimizes_by_gradients(input.study.method);
-  return asks && !responses.empty() &&
+  return asks_for_gradients(input.study) && !responses.empty() &&
          input.analysis.solver != SolverKind::Distributed &&
          std::all_of(responses.begin(), responses.end(),
                      [&](int r) { return has_derivatives(input, r); });
@@ -112,7 +81,7 @@ JacobianFunction StudyRunner::match_jacobian() {
   if (!with_gradients_) {
     return {};
   }
-  const std::vector<int> responses = target_responses(input_);
+  const std::vector<int> responses = studied_responses(input_);
   return [this, responses](const VectorX& x) {
     JacobianAnswer answer = gradient(x, responses);
     if (!answer.failure) {
@@ -159,7 +128,7 @@ MinimizeProblem StudyRunner::minimize_problem() {
          .lower = constraint.lower,
          .upper = constraint.upper});
   }
-  const std::vector<int> responses = minimized_responses(input_);
+  const std::vector<int> responses = studied_responses(input_);
   problem.function = [this, responses](const VectorX& x) {
     const EvaluationRecord record = evaluate(x, phase_);
     VectorAnswer answer{.values = {}, .failure = record.failure};

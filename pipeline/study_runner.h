@@ -66,10 +66,6 @@ class StudyRunner {
   AdjointState last_adjoint_;
 };
 
-/// What the study moves its variables for: indices of responses, of a minimum
-/// the objective first.
-std::vector<int> studied_responses(const Case& input);
-
 /// The study's method asks for derivatives, and all that it looks at have them.
 bool uses_gradients(const Case& input);
 

@@ -12,6 +12,7 @@
 #include "core/find_program.h"
 #include "fea/buckling.h"
 #include "tests/fea/parts.h"
+#include "tests/support/environment_variable.h"
 #include "tests/support/not_here.h"
 #include "tests/support/temp_folder.h"
 
@@ -21,31 +22,6 @@ namespace {
 constexpr double kSolvers = 1e-8;  // what two solvers may differ by
 // Half, and what PETSc itself takes in every process (40 to 60 MB).
 constexpr double kMemoryShare = 0.75;
-
-/// Sets a variable of the environment while it lives.
-class Variable {
- public:
-  Variable(const char* name, const std::string& value) : name_(name) {
-    const char* before = ::getenv(name);
-    if (before != nullptr) {
-      before_ = before;
-    }
-    ::setenv(name, value.c_str(), 1);
-  }
-  ~Variable() {
-    if (before_) {
-      ::setenv(name_, before_->c_str(), 1);
-    } else {
-      ::unsetenv(name_);
-    }
-  }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 ElasticOptions over(int processes) {
   return {.solver = SolverKind::Distributed, .processes = processes};
@@ -288,33 +264,34 @@ class BadHelper : public testing::Test {
 
 TEST_F(BadHelper, MissingOnesAreNamedWithTheirPackages) {
   {
-    const Variable variable("MENISCUS_PETSC", "/nowhere/petsc");
+    const EnvironmentVariable variable("MENISCUS_PETSC", "/nowhere/petsc");
     EXPECT_THAT(message<IoError>(over(2)),
                 testing::HasSubstr("MENISCUS_PETSC says '/nowhere/petsc'"));
   }
-  const Variable variable("MENISCUS_PETSC", write("true"));
-  const Variable path("PATH", "/nowhere");
+  const EnvironmentVariable variable("MENISCUS_PETSC", write("true"));
+  const EnvironmentVariable path("PATH", "/nowhere");
   EXPECT_THAT(message<IoError>(over(2)), testing::HasSubstr("openmpi-bin"));
 }
 
 TEST_F(BadHelper, OneThatDiesIsAnErrorWithWhatItSaid) {
   {
-    const Variable variable("MENISCUS_PETSC", write("kill -KILL $$"));
+    const EnvironmentVariable variable("MENISCUS_PETSC",
+                                       write("kill -KILL $$"));
     EXPECT_THAT(message<SolverError>(over(2)), testing::HasSubstr("signal 9"));
   }
   {
-    const Variable variable("MENISCUS_PETSC",
-                            write("echo no luck today >&2; exit 3"));
+    const EnvironmentVariable variable("MENISCUS_PETSC",
+                                       write("echo no luck today >&2; exit 3"));
     EXPECT_THAT(message<SolverError>(over(2)),
                 testing::HasSubstr("no luck today"));
   }
-  const Variable variable("MENISCUS_PETSC", write("true"));
+  const EnvironmentVariable variable("MENISCUS_PETSC", write("true"));
   EXPECT_THAT(message<SolverError>(over(2)),
               testing::HasSubstr("result_0 is missing"));
 }
 
 TEST_F(BadHelper, OneThatHangsEndsAtItsLimitOrOnRequest) {
-  const Variable variable("MENISCUS_PETSC", write("exec sleep 60"));
+  const EnvironmentVariable variable("MENISCUS_PETSC", write("exec sleep 60"));
   ElasticOptions options = over(2);
   options.time_limit = 1.5;
   EXPECT_THAT(message<SolverError>(options), testing::HasSubstr("time limit"));

@@ -6,6 +6,7 @@
 
 #include "core/timer.h"
 #include "mesh_tet/tetrahedralize.h"
+#include "tests/support/environment_variable.h"
 #include "tests/support/shapes.h"
 
 namespace meniscus {
@@ -14,20 +15,6 @@ namespace {
 
 // Ends come within a tick of 50 ms; the rest is for a loaded machine.
 constexpr double kPrompt = 2.0;
-
-/// Sets an environment variable for one test.
-class Variable {
- public:
-  Variable(const char* name, const std::string& value) : name_(name) {
-    ::setenv(name, value.c_str(), 1);
-  }
-  ~Variable() { ::unsetenv(name_); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* name_;
-};
 
 /// A mesh that takes many seconds.
 Tetrahedralization fill_finely(TetrahedralizeOptions options) {
@@ -82,7 +69,7 @@ TEST(TetgenLimits, MonitorStopsTheChild) {
 }
 
 TEST(TetgenLimits, MissingHelperIsAnIoError) {
-  const Variable variable("MENISCUS_TETGEN", "/nowhere/tetgen");
+  const EnvironmentVariable variable("MENISCUS_TETGEN", "/nowhere/tetgen");
   try {
     tetrahedralize(shapes::sphere(1.0, 1));
     FAIL() << "no exception";
@@ -94,7 +81,7 @@ TEST(TetgenLimits, MissingHelperIsAnIoError) {
 
 TEST(TetgenLimits, WrongHelperIsAFailure) {
   for (const char* program : {"/bin/true", "/bin/false", "/bin/cat"}) {
-    const Variable variable("MENISCUS_TETGEN", program);
+    const EnvironmentVariable variable("MENISCUS_TETGEN", program);
     const auto result = tetrahedralize(shapes::sphere(1.0, 1));
     ASSERT_TRUE(result.failure) << program;
     EXPECT_EQ(result.failure->kind, FailureKind::MeshingFailed);

@@ -54,12 +54,7 @@ class Trouble : public testing::TestWithParam<const char*> {
   MinimizeOptions options() const {
     return {.method = GetParam(), .max_evaluations = 2000};
   }
-  MinimizeMethod method() const {
-    const auto& all = minimize_methods();
-    return *std::find_if(all.begin(), all.end(), [](const auto& known) {
-      return known.name == GetParam();
-    });
-  }
+  MinimizeMethod method() const { return *find_minimize_method(GetParam()); }
   bool global() const { return method().global; }
 };
 

@@ -15,6 +15,7 @@
 #include "core/find_program.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
+#include "tests/support/environment_variable.h"
 #include "tests/support/not_here.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
@@ -65,34 +66,6 @@ class PictureTest : public ::testing::Test {
     return job;
   }
 
-  /// Pretends that `value` is all that a variable holds, until it goes.
-  class Variable {
-   public:
-    Variable(const char* name, const char* value) : name_(name) {
-      if (const char* old = std::getenv(name); old != nullptr) {
-        old_ = old;
-      }
-      if (value != nullptr) {
-        ::setenv(name, value, 1);
-      } else {
-        ::unsetenv(name);
-      }
-    }
-    ~Variable() {
-      if (old_) {
-        ::setenv(name_, old_->c_str(), 1);
-      } else {
-        ::unsetenv(name_);
-      }
-    }
-    Variable(const Variable&) = delete;
-    Variable& operator=(const Variable&) = delete;
-
-   private:
-    const char* name_;
-    std::optional<std::string> old_;
-  };
-
   TempFolder folder_;
 };
 
@@ -121,8 +94,8 @@ TEST_F(PictureTest, DrawsAllKinds) {
     MENISCUS_NOT_HERE("Xvfb is not installed");
   }
   // Neither a display nor a home folder is needed.
-  const Variable display("DISPLAY", nullptr);
-  const Variable home("HOME", nullptr);
+  const EnvironmentVariable display("DISPLAY", std::nullopt);
+  const EnvironmentVariable home("HOME", std::nullopt);
   std::vector<PictureJob> jobs = {job(PictureKind::Part, "part größe.png"),
                                   job(PictureKind::Film, "film.png"),
                                   job(PictureKind::Overview, "overview.png")};
@@ -149,8 +122,8 @@ TEST_F(PictureTest, OneBadJobDoesNotStopTheNext) {
 }
 
 TEST_F(PictureTest, WarnsWithoutAnyDisplay) {
-  const Variable display("DISPLAY", nullptr);
-  const Variable path("PATH", "/nonexistent");
+  const EnvironmentVariable display("DISPLAY", std::nullopt);
+  const EnvironmentVariable path("PATH", "/nonexistent");
   EXPECT_THAT(render_pictures({job(PictureKind::Part, "a.png")}),
               ElementsAre(HasSubstr("xvfb")));
   EXPECT_FALSE(fs::exists(folder_ / "a.png"));
@@ -158,8 +131,8 @@ TEST_F(PictureTest, WarnsWithoutAnyDisplay) {
 
 // VTK aborts its process here; ours goes on.
 TEST_F(PictureTest, WarnsWhenTheDisplayIsUnusable) {
-  const Variable display("DISPLAY", ":47111");
-  const Variable path("PATH", "/nonexistent");
+  const EnvironmentVariable display("DISPLAY", ":47111");
+  const EnvironmentVariable path("PATH", "/nonexistent");
   EXPECT_THAT(render_pictures({job(PictureKind::Part, "a.png")}),
               ElementsAre(HasSubstr("pictures are missing")));
   EXPECT_FALSE(fs::exists(folder_ / "a.png"));

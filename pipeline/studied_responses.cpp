@@ -1,0 +1,53 @@
+#include "pipeline/studied_responses.h"
+
+#include <set>
+
+#include "optimize/minimize.h"
+#include "pipeline/responses.h"
+
+namespace meniscus {
+
+namespace {
+
+std::vector<int> matched_responses(const Case& input) {
+  std::set<int> result;
+  for (const std::string& name : input.study.equal) {
+    result.insert(response_index(input, name));
+  }
+  for (const auto& target : input.study.targets) {
+    result.insert(response_index(input, target.first));
+  }
+  return {result.begin(), result.end()};
+}
+
+std::vector<int> minimized_responses(const Case& input) {
+  std::vector<int> result = {input.study.objective};
+  for (const ConstraintEntry& constraint : input.study.constraints) {
+    result.push_back(constraint.response);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<int> studied_responses(const Case& input) {
+  switch (input.study.kind) {
+    case StudyKind::Match:
+      return matched_responses(input);
+    case StudyKind::Minimize:
+      return minimized_responses(input);
+    case StudyKind::Analyse:
+      break;
+  }
+  return {};
+}
+
+bool asks_for_gradients(const StudyEntry& study) {
+  if (study.kind != StudyKind::Minimize) {
+    return study.method == "ceres";
+  }
+  const MinimizeMethod* method = find_minimize_method(study.method);
+  return method != nullptr && method->gradients;
+}
+
+}  // namespace meniscus
