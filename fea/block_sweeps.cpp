@@ -1,12 +1,14 @@
 #include "fea/block_sweeps.h"
 
+#include <algorithm>
+
 #include "fea/block_kernels.h"
 
 namespace meniscus {
 
 namespace {
 
-/// One row: new x_i from r_i, the row's gathered part and `upper`_i.
+/// One row: new x_i from r_i, the row's gathered part and, backward, `upper`_i.
 template <int B, int K, bool Backward>
 inline void relax_row(const SweepMatrix& matrix, int i, const float* r,
                       float* x, const float* upper) {
@@ -38,8 +40,11 @@ inline void relax_row(const SweepMatrix& matrix, int i, const float* r,
     const std::ptrdiff_t at = i * kWidth + k * kLane;
     Lanes<float, B> xi = Lanes<float, B>::Zero();
     for (int c = 0; c < B; ++c) {
-      xi += lanes<B>(inverse + c * kLane) *
-            (r[at + c] - sum.component(k, c) - upper[at + c]);
+      float left = r[at + c] - sum.component(k, c);
+      if constexpr (Backward) {
+        left -= upper[at + c];
+      }
+      xi += lanes<B>(inverse + c * kLane) * left;
     }
     lanes<B>(x + at) = xi;
   }
@@ -70,10 +75,8 @@ void sweep_forward(const SweepMatrix& matrix, const float* r, float* x,
   over_chunks(chunks, RowOrder::Forward, [&](int chunk) {
     for (int i = chunks.first[chunk]; i < chunks.first[chunk + 1]; ++i) {
       relax_row<B, K, false>(matrix, i, r, x, upper);
-      // This row has used the old sum; rows below now add the new one.
       constexpr std::ptrdiff_t kWidth = K * kLanes<B>;
-      Eigen::Map<Eigen::Array<float, kWidth, 1>> sum(upper + i * kWidth);
-      sum = -sum;
+      std::fill_n(upper + i * kWidth, kWidth, 0.0F);  // rows below add to it
       scatter_row<B, K>(matrix, i, x, upper);
     }
   });

@@ -16,15 +16,15 @@ struct SweepMatrix {
   const float* inverse;
 };
 
-/// x_i = D_i^-1 (r_i - (L x)_i - (U x)_i), rows in order, for K vectors of
-/// padded layout (see multiply). `upper`: U x on entry; U times the change of
-/// x on return, which is minus the residual.
+/// x_i = D_i^-1 (r_i - (L x)_i), rows in order, from x = 0, for K vectors of
+/// padded layout (see multiply). On return `upper` is U x, which is minus the
+/// residual. Neither `x` nor `upper` is read.
 template <int B, int K>
 void sweep_forward(const SweepMatrix& matrix, const float* r, float* x,
                    float* upper);
 
-/// The same against the order, which is the adjoint. `upper`: zero on entry,
-/// U x on return.
+/// x_i = D_i^-1 (r_i - (L x)_i - (U x)_i) against the order, from any x, which
+/// is the adjoint. `upper`: zero on entry, U x on return.
 template <int B, int K>
 void sweep_backward(const SweepMatrix& matrix, const float* r, float* x,
                     float* upper);

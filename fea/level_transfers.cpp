@@ -10,7 +10,8 @@ void restrict_motions(const Prolongation& P, const float* upper,
   constexpr std::ptrdiff_t kFine = K * kLanes<B>;
   constexpr std::ptrdiff_t kCoarse = K * kLanes<6>;
   const int count = static_cast<int>(P.row_start.size()) - 1;
-#pragma omp parallel for schedule(static) if (count >= kParallelRows)
+  const auto blocks = static_cast<int>(P.row.size());  // many an aggregate
+#pragma omp parallel for schedule(static) if (blocks >= kParallelRows)
   for (int a = 0; a < count; ++a) {
     Lanes<float, 6> sum[K];
     for (Lanes<float, 6>& column : sum) {

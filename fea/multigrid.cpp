@@ -28,17 +28,29 @@ constexpr int kMostNodalCycles = 6;
 constexpr int kLanczosSteps = 12;
 constexpr double kHighest = 1.02;
 
-/// A level's smoother. Vectors as block_sweeps.h has them.
+/// A vector of a level, as block_sweeps.h has them; not set when made.
+using LevelVector = Eigen::ArrayXf;
+
+/// work(d) for all of a level vector's numbers.
+template <class Work>
+void over_numbers(Eigen::Index count, const Work& work) {
+#pragma omp parallel for schedule(static) if (count >= kParallelRows)
+  for (Eigen::Index d = 0; d < count; ++d) {
+    work(d);
+  }
+}
+
+/// A level's smoother.
 struct Level {
   int block = 3;
   const BlockPattern* pattern = nullptr;
   const float* lower = nullptr;
   std::vector<float> inverse;
 
-  std::size_t width(int K) const {
-    return static_cast<std::size_t>(K) * (block == 3 ? kLanes<3> : kLanes<6>);
+  Eigen::Index size(int K) const {
+    return static_cast<Eigen::Index>(K) *
+           (block == 3 ? kLanes<3> : kLanes<6>)*pattern->nodes;
   }
-  std::size_t size(int K) const { return width(K) * pattern->nodes; }
 };
 
 template <int K>
@@ -199,39 +211,34 @@ class Multigrid final : public Preconditioner {
       return;
     }
     // Scaled so that single precision neither overflows nor underflows.
-    std::vector<float> right(r.size());
-    std::vector<float> x(r.size());
-#pragma omp parallel for schedule(static) if (r.size() >= kParallelRows)
-    for (std::size_t d = 0; d < r.size(); ++d) {
+    const auto count = static_cast<Eigen::Index>(r.size());
+    LevelVector right(count);
+    over_numbers(count, [&](Eigen::Index d) {
       right[d] = static_cast<float>(r[d] / largest);
-    }
+    });
+    LevelVector x;
     cycle<K>(0, right, x);
     const double scale = largest / scale_;
-#pragma omp parallel for schedule(static) if (r.size() >= kParallelRows)
-    for (std::size_t d = 0; d < r.size(); ++d) {
-      z[d] = scale * x[d];
-    }
+    over_numbers(count, [&](Eigen::Index d) { z[d] = scale * x[d]; });
   }
 
   /// x = M right on level l, right's padding is not read.
   template <int K>
-  void cycle(std::size_t l, const std::vector<float>& right,
-             std::vector<float>& x) const {
+  void cycle(std::size_t l, const LevelVector& right, LevelVector& x) const {
     if (l == levels_.size()) {
       return solve<K>(right, x);
     }
     const Level& level = levels_[l];
-    x.assign(level.size(K), 0.0F);
-    std::vector<float> upper(level.size(K), 0.0F);
+    x.resize(level.size(K));
+    LevelVector upper(level.size(K));
     forward<K>(level, right.data(), x.data(), upper.data());
     correct<K>(l, upper, x);
-    std::fill(upper.begin(), upper.end(), 0.0F);
+    over_numbers(upper.size(), [&](Eigen::Index d) { upper[d] = 0.0F; });
     backward<K>(level, right.data(), x.data(), upper.data());
   }
 
   template <int K>
-  void multiply_nodal(const std::vector<float>& x,
-                      std::vector<float>& y) const {
+  void multiply_nodal(const LevelVector& x, LevelVector& y) const {
     const Level& level = levels_[nodal_at()];
     multiply<3, K>(*level.pattern, nodal_diagonal_.data(), level.lower,
                    x.data(), y.data());
@@ -239,30 +246,29 @@ class Multigrid final : public Preconditioner {
 
   /// Several cycles on the nodal level below ten-node elements.
   template <int K>
-  void nodal_cycles(std::vector<float>& right, std::vector<float>& x) const {
+  void nodal_cycles(LevelVector& right, LevelVector& x) const {
     cycle<K>(1, right, x);
     if (nodal_steps_.size() == 1) {
       return;
     }
     const auto first = static_cast<float>(nodal_steps_[0].take);
-    for (float& value : x) {
-      value *= first;
-    }
-    std::vector<float> d = x;
-    std::vector<float> q(x.size());
-    std::vector<float> z;
+    LevelVector d(x.size());
+    over_numbers(x.size(), [&](Eigen::Index i) {
+      x[i] *= first;
+      d[i] = x[i];
+    });
+    LevelVector q(x.size());
+    LevelVector z;
     for (std::size_t s = 1; s < nodal_steps_.size(); ++s) {
       const auto keep = static_cast<float>(nodal_steps_[s].keep);
       const auto take = static_cast<float>(nodal_steps_[s].take);
       multiply_nodal<K>(d, q);
-      for (std::size_t i = 0; i < q.size(); ++i) {
-        right[i] -= q[i];
-      }
+      over_numbers(q.size(), [&](Eigen::Index i) { right[i] -= q[i]; });
       cycle<K>(1, right, z);
-      for (std::size_t i = 0; i < q.size(); ++i) {
+      over_numbers(q.size(), [&](Eigen::Index i) {
         d[i] = keep * d[i] + take * z[i];
         x[i] += d[i];
-      }
+      });
     }
   }
 
@@ -281,7 +287,7 @@ class Multigrid final : public Preconditioner {
   /// Of one cycle times the matrix on the nodal level: Lanczos' process by
   /// conjugate gradients from a fixed random start.
   double lowest_eigenvalue() const {
-    std::vector<float> r(levels_[1].size(1));
+    LevelVector r(levels_[1].size(1));
     std::minstd_rand random;
     for (float& value : r) {
       value = static_cast<float>(random()) /
@@ -289,28 +295,25 @@ class Multigrid final : public Preconditioner {
               0.5F;
     }
     nodal_held_.apply<1>(r.data());
-    const auto dot = [](const std::vector<float>& a,
-                        const std::vector<float>& b) {
+    const auto dot = [](const LevelVector& a, const LevelVector& b) {
       double sum = 0.0;
-      for (std::size_t i = 0; i < a.size(); ++i) {
+      for (Eigen::Index i = 0; i < a.size(); ++i) {
         sum += i % 4 < 3 ? static_cast<double>(a[i]) * b[i] : 0.0;
       }
       return sum;
     };
     std::vector<double> alpha;
     std::vector<double> beta;
-    std::vector<float> z;
-    std::vector<float> p(r.size(), 0.0F);
-    std::vector<float> q(r.size());
+    LevelVector z;
+    LevelVector p = LevelVector::Zero(r.size());
+    LevelVector q(r.size());
     double last = 0.0;
     for (int k = 0; k < kLanczosSteps; ++k) {
       cycle<1>(1, r, z);
       const double rz = dot(r, z);
       const double b = k > 0 ? rz / last : 0.0;
       last = rz;
-      for (std::size_t i = 0; i < p.size(); ++i) {
-        p[i] = z[i] + static_cast<float>(b) * p[i];
-      }
+      p = z + static_cast<float>(b) * p;
       multiply_nodal<1>(p, q);
       const double pq = dot(p, q);
       if (!(rz > 0.0 && pq > 0.0)) {
@@ -318,21 +321,18 @@ class Multigrid final : public Preconditioner {
       }
       alpha.push_back(rz / pq);
       beta.push_back(b);
-      for (std::size_t i = 0; i < r.size(); ++i) {
-        r[i] -= static_cast<float>(alpha.back()) * q[i];
-      }
+      r -= static_cast<float>(alpha.back()) * q;
     }
     return alpha.empty() ? 1.0 : lowest_ritz_value(alpha, beta);
   }
 
   /// Adds the coarse correction of the residual, which is -upper.
   template <int K>
-  void correct(std::size_t l, std::vector<float>& upper,
-               std::vector<float>& x) const {
-    std::vector<float> e;
+  void correct(std::size_t l, LevelVector& upper, LevelVector& x) const {
+    LevelVector e;
     if (map_ != nullptr && l == 0) {
       fine_held_.apply<K>(upper.data());
-      std::vector<float> right(levels_[1].size(K));
+      LevelVector right(levels_[1].size(K));
       restrict_corners<K>(*map_, nodal_factor_, upper.data(), right.data());
       nodal_held_.apply<K>(right.data());
       nodal_cycles<K>(right, e);
@@ -342,8 +342,8 @@ class Multigrid final : public Preconditioner {
     }
     const OwnLevel& next = *own_[l - nodal_at()];
     const Prolongation& P = next.prolongation;
-    std::vector<float> right(static_cast<std::size_t>(K) * kLanes<6> *
-                             next.pattern.nodes);
+    LevelVector right(static_cast<Eigen::Index>(K) * kLanes<6> *
+                      next.pattern.nodes);
     if (P.fine_block == 3) {
       restrict_motions<3, K>(P, upper.data(), right.data());
       cycle<K>(l + 1, right, e);
@@ -357,7 +357,7 @@ class Multigrid final : public Preconditioner {
 
   /// The smallest level.
   template <int K>
-  void solve(const std::vector<float>& right, std::vector<float>& x) const {
+  void solve(const LevelVector& right, LevelVector& x) const {
     const int nodes = own_.back()->pattern.nodes;
     Eigen::MatrixXd b(6L * nodes, K);
     for (int i = 0; i < nodes; ++i) {
@@ -369,7 +369,7 @@ class Multigrid final : public Preconditioner {
       }
     }
     const Eigen::MatrixXd e = factor_->solve(b);
-    x.assign(right.size(), 0.0F);
+    x = LevelVector::Zero(right.size());
     for (int i = 0; i < nodes; ++i) {
       for (int k = 0; k < K; ++k) {
         for (int d = 0; d < 6; ++d) {
