@@ -13,7 +13,7 @@ constexpr int kBits = 21;  // three coordinates fill 63 bits
 
 /// Chunks of nodes: small enough that several threads share a colour evenly,
 /// large enough that few of their neighbours lie outside.
-constexpr int kWantedChunks = 256;
+constexpr int kWantedChunks = 512;
 constexpr int kLeastChunk = 128;
 constexpr int kLargestChunk = 1024;
 
