@@ -30,6 +30,14 @@ struct StageSeconds {
   double mesh = 0.0;
   double fea = 0.0;
   double gradient = 0.0;
+
+  StageSeconds& operator+=(const StageSeconds& other) {
+    film += other.film;
+    mesh += other.mesh;
+    fea += other.fea;
+    gradient += other.gradient;
+    return *this;
+  }
 };
 
 /// What one design came to. `responses` stand in the case's order and are

@@ -1,3 +1,5 @@
+#include "pipeline/study_kinds.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,7 +8,6 @@
 #include "optimize/minimize.h"
 #include "pipeline/responses.h"
 #include "pipeline/studied_responses.h"
-#include "pipeline/study_runner.h"
 
 namespace meniscus {
 
@@ -38,29 +39,8 @@ VectorX picked(const VectorX& all, const std::vector<int>& indices) {
   return result;
 }
 
-}  // namespace
-
-bool uses_gradients(const Case& input) {
-  const std::vector<int> responses = studied_responses(input);
-  return asks_for_gradients(input.study) && !responses.empty() &&
-         input.analysis.solver != SolverKind::Distributed &&
-         std::all_of(responses.begin(), responses.end(),
-                     [&](int r) { return has_derivatives(input, r); });
-}
-
-std::vector<Variable> variables_of(const Case& input) {
-  std::vector<Variable> variables;
-  for (const DesignVariable& v : input.design) {
-    variables.push_back({.name = v.name,
-                         .initial = v.initial,
-                         .lower = v.lower,
-                         .upper = v.upper});
-  }
-  return variables;
-}
-
-ResidualAnswer StudyRunner::answer(const MatchTargets& targets,
-                                   const EvaluationRecord& record) {
+ResidualAnswer answer(const MatchTargets& targets,
+                      const EvaluationRecord& record) {
   ResidualAnswer found;
   found.failure = record.failure;
   if (!record.failure) {
@@ -70,76 +50,83 @@ ResidualAnswer StudyRunner::answer(const MatchTargets& targets,
   return found;
 }
 
-void StudyRunner::analyse() {
-  result_.status = RunStatus::Converged;
-  result_.message = "analysed the initial design";
-  best_design_ = initial_design(input_);
+StudyOutcome analyse(const StudyTask& task) {
+  task.evaluator.evaluate(task.start, "start");
+  return {.status = RunStatus::Converged,
+          .message = "analysed the initial design",
+          .best = task.start};
 }
 
 /// Empty where a response of the targets has no derivatives.
-JacobianFunction StudyRunner::match_jacobian() {
-  if (!with_gradients_) {
+JacobianFunction match_jacobian(const StudyTask& task) {
+  if (!uses_gradients(task.input)) {
     return {};
   }
-  const std::vector<int> responses = studied_responses(input_);
-  return [this, responses](const VectorX& x) {
-    JacobianAnswer answer = gradient(x, responses);
+  return [&task, responses = studied_responses(task.input)](const VectorX& x) {
+    JacobianAnswer answer = task.evaluator.gradient(x, responses);
     if (!answer.failure) {
-      answer.jacobian = targets_->jacobian(answer.jacobian);
+      answer.jacobian = task.targets->jacobian(answer.jacobian);
     }
     return answer;
   };
 }
 
-void StudyRunner::match() {
+StudyOutcome match(const StudyTask& task) {
+  const StudyEntry& study = task.input.study;
+  std::string phase = "start";
   const MatchReport report = meniscus::match(
-      variables_of(input_),
-      [&](const VectorX& x) { return answer(*targets_, evaluate(x, phase_)); },
-      {.method = input_.study.method,
-       .tolerance = input_.study.tolerance,
-       .max_evaluations = input_.study.max_evaluations,
-       .time_limit = options_.time_limit,
-       .monitor = options_.monitor,
-       .announce = [&](EvaluationPhase phase) { phase_ = name_of(phase); },
-       .jacobian = match_jacobian()});
-  result_.status = status_of(report.termination);
-  result_.message = report.message;
-  result_.objective = report.cost;
-  best_design_ = report.best;
-  jacobian_ = report.jacobian;
+      variables_of(task.input, task.start),
+      [&](const VectorX& x) {
+        return answer(*task.targets, task.evaluator.evaluate(x, phase));
+      },
+      {.method = study.method,
+       .tolerance = study.tolerance,
+       .max_evaluations = study.max_evaluations,
+       .time_limit = task.options.time_limit,
+       .monitor = task.options.monitor,
+       .announce = [&](EvaluationPhase next) { phase = name_of(next); },
+       .jacobian = match_jacobian(task)});
+  StudyOutcome outcome{.status = status_of(report.termination),
+                       .message = report.message,
+                       .best = report.best,
+                       .objective = report.cost,
+                       .jacobian = report.jacobian};
   for (Eigen::Index k = 0; k < report.answer.mismatch.size(); ++k) {
     const double value = report.answer.mismatch[k];
-    result_.constraints.push_back(
-        {.name = targets_->name(k),
-         .value = value,
-         .bound = input_.study.tolerance,
-         .satisfied = value <= input_.study.tolerance});
+    outcome.constraints.push_back({.name = task.targets->name(k),
+                                   .value = value,
+                                   .bound = study.tolerance,
+                                   .satisfied = value <= study.tolerance});
   }
+  return outcome;
 }
 
-/// The objective and the constraints as the optimizer sees them.
-MinimizeProblem StudyRunner::minimize_problem() {
+/// The objective and the constraints as the optimizer sees them. `phase` must
+/// outlive the problem.
+MinimizeProblem minimize_problem(const StudyTask& task,
+                                 const std::string& phase) {
+  const Case& input = task.input;
   MinimizeProblem problem;
-  problem.variables = variables_of(input_);
-  problem.objective = input_.responses[input_.study.objective].name;
-  for (const ConstraintEntry& constraint : input_.study.constraints) {
+  problem.variables = variables_of(input, task.start);
+  problem.objective = input.responses[input.study.objective].name;
+  for (const ConstraintEntry& constraint : input.study.constraints) {
     problem.constraints.push_back(
-        {.name = input_.responses[constraint.response].name,
+        {.name = input.responses[constraint.response].name,
          .lower = constraint.lower,
          .upper = constraint.upper});
   }
-  const std::vector<int> responses = studied_responses(input_);
-  problem.function = [this, responses](const VectorX& x) {
-    const EvaluationRecord record = evaluate(x, phase_);
+  const std::vector<int> responses = studied_responses(input);
+  problem.function = [&task, &phase, responses](const VectorX& x) {
+    const EvaluationRecord record = task.evaluator.evaluate(x, phase);
     VectorAnswer answer{.values = {}, .failure = record.failure};
     if (!record.failure) {
       answer.values = picked(record.responses, responses);
     }
     return answer;
   };
-  if (with_gradients_) {
-    problem.jacobian = [this, responses](const VectorX& x) {
-      JacobianAnswer answer = gradient(x, responses);
+  if (uses_gradients(input)) {
+    problem.jacobian = [&task, responses](const VectorX& x) {
+      JacobianAnswer answer = task.evaluator.gradient(x, responses);
       if (!answer.failure) {
         answer.jacobian =
             Eigen::MatrixXd(answer.jacobian(responses, Eigen::all));
@@ -150,28 +137,71 @@ MinimizeProblem StudyRunner::minimize_problem() {
   return problem;
 }
 
-void StudyRunner::minimize() {
+/// The bound that the value is nearest to, as result.json tells it.
+Constraint told(const ConstraintState& state) {
+  const bool above = state.value > 0.5 * (state.lower + state.upper);
+  const bool upper =
+      !std::isfinite(state.lower) || (std::isfinite(state.upper) && above);
+  return {.name = state.name,
+          .value = state.value,
+          .bound = upper ? state.upper : state.lower,
+          .satisfied = state.satisfied};
+}
+
+StudyOutcome minimize(const StudyTask& task) {
+  const StudyEntry& study = task.input.study;
+  std::string phase = "start";
   const MinimizeReport report = meniscus::minimize(
-      minimize_problem(),
-      {.method = input_.study.method,
-       .optimality_tolerance = input_.study.tolerance,
-       .max_evaluations = input_.study.max_evaluations,
-       .time_limit = options_.time_limit,
-       .monitor = options_.monitor,
-       .announce = [&](EvaluationPhase phase) { phase_ = name_of(phase); }});
-  result_.status = status_of(report.termination);
-  result_.message = report.message;
-  result_.objective = report.objective;
-  best_design_ = report.best;
+      minimize_problem(task, phase),
+      {.method = study.method,
+       .optimality_tolerance = study.tolerance,
+       .max_evaluations = study.max_evaluations,
+       .time_limit = task.options.time_limit,
+       .monitor = task.options.monitor,
+       .announce = [&](EvaluationPhase next) { phase = name_of(next); }});
+  StudyOutcome outcome{.status = status_of(report.termination),
+                       .message = report.message,
+                       .best = report.best,
+                       .objective = report.objective};
   for (const ConstraintState& state : report.constraints) {
-    const bool above = state.value > 0.5 * (state.lower + state.upper);
-    const bool upper =
-        !std::isfinite(state.lower) || (std::isfinite(state.upper) && above);
-    result_.constraints.push_back({.name = state.name,
-                                   .value = state.value,
-                                   .bound = upper ? state.upper : state.lower,
-                                   .satisfied = state.satisfied});
+    outcome.constraints.push_back(told(state));
   }
+  return outcome;
+}
+
+}  // namespace
+
+StudyOutcome conduct(const StudyTask& task) {
+  switch (task.input.study.kind) {
+    case StudyKind::Match:
+      return match(task);
+    case StudyKind::Minimize:
+      return minimize(task);
+    case StudyKind::Analyse:
+      break;
+  }
+  return analyse(task);
+}
+
+bool uses_gradients(const Case& input) {
+  const std::vector<int> responses = studied_responses(input);
+  return asks_for_gradients(input.study) && !responses.empty() &&
+         input.analysis.solver != SolverKind::Distributed &&
+         std::all_of(responses.begin(), responses.end(),
+                     [&](int r) { return has_derivatives(input, r); });
+}
+
+std::vector<Variable> variables_of(const Case& input, const VectorX& start) {
+  std::vector<Variable> variables;
+  variables.reserve(input.design.size());
+  for (const DesignVariable& v : input.design) {
+    const auto k = static_cast<Eigen::Index>(variables.size());
+    variables.push_back({.name = v.name,
+                         .initial = start[k],
+                         .lower = v.lower,
+                         .upper = v.upper});
+  }
+  return variables;
 }
 
 }  // namespace meniscus

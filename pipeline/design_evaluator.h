@@ -1,0 +1,90 @@
+/// One frozen model with the study database in front of it: the place that the
+/// kinds of study ask for designs.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "optimize/problem.h"
+#include "pipeline/forward_model.h"
+#include "pipeline/study_store.h"
+
+namespace meniscus {
+
+struct DesignEvaluatorOptions {
+  std::string model = "base";   // the frozen model's name in the database
+  double edge_factor = 1.0;     // as in ForwardModelOptions
+  bool with_gradients = false;  // keep what gradient() needs of each design:
+                                // memory for a second solve saved
+  Monitor* monitor = nullptr;   // not owned; must outlive the evaluator
+};
+
+/// What the study has asked for, found in the database or computed.
+struct EvaluationCounts {
+  int evaluations = 0;
+  int failed = 0;
+  int gradients = 0;
+};
+
+/// A design that the database holds is read and not computed; one that it does
+/// not hold is computed and written before the next is begun. All of it throws
+/// Interrupted once the monitor asks to stop, IoError what the database
+/// refuses.
+class DesignEvaluator {
+ public:
+  /// Freezes the model; throws what ForwardModel's constructor throws. Both
+  /// references must outlive the evaluator. When model().failure() is set
+  /// nothing may be asked.
+  DesignEvaluator(const Case& input, StudyStore& store,
+                  DesignEvaluatorOptions options = {});
+
+  const ForwardModel& model() const { return model_; }
+
+  /// Larger is worse, of the responses; new records then hold it as `mismatch`.
+  void judge_by(std::function<double(const VectorX& responses)> mismatch) {
+    mismatch_ = std::move(mismatch);
+  }
+
+  /// `phase`: what the design is for, as the record tells it when it is new.
+  EvaluationRecord evaluate(const VectorX& design, const std::string& phase);
+
+  /// d response / d design at a design that has been evaluated: rows by
+  /// response, NaN in those not among `responses` (indices).
+  JacobianAnswer gradient(const VectorX& design,
+                          const std::vector<int>& responses);
+
+  /// The evaluation with the meshes behind it (all that evaluate() left when
+  /// it was the last one, else computed once more) and no record.
+  Evaluation with_fields(const VectorX& design, EvaluationFields& fields);
+
+  const EvaluationCounts& counts() const { return counts_; }
+  void reset_counts() { counts_ = {}; }
+  /// Summed over freeze, evaluations and gradients that were computed.
+  const StageSeconds& seconds() const { return seconds_; }
+
+ private:
+  bool is_last(const VectorX& design) const {
+    return last_.design.size() == design.size() && last_.design == design;
+  }
+  AdjointState* adjoint_wanted() {
+    return options_.with_gradients ? &last_adjoint_ : nullptr;
+  }
+  EvaluationRecord keep(const Evaluation& evaluation, const std::string& phase);
+
+  const Case& input_;
+  StudyStore& store_;
+  DesignEvaluatorOptions options_;
+  Monitor& monitor_;
+  ForwardModel model_;
+  std::function<double(const VectorX&)> mismatch_;
+  EvaluationCounts counts_;
+  StageSeconds seconds_;
+  // What the last computed evaluation left, so that a gradient or the best
+  // design's meshes need no second one when it came last.
+  Evaluation last_;
+  EvaluationFields last_fields_;
+  AdjointState last_adjoint_;
+};
+
+}  // namespace meniscus
