@@ -1,8 +1,13 @@
 #include "app/case_input.h"
 
 #include <cstdio>
+#include <span>
+
+#include <fmt/format.h>
 
 #include "app/signals.h"
+#include "core/error.h"
+#include "core/expression.h"
 
 namespace meniscus {
 
@@ -24,6 +29,20 @@ std::filesystem::path results_folder(const Case& input,
                                      const std::string& out) {
   return out.empty() ? std::filesystem::path("results") / input.name
                      : std::filesystem::path(out);
+}
+
+std::pair<std::string, double> named_number(const std::string& option,
+                                            const std::string& text) {
+  const std::size_t at = text.find('=');
+  if (at == std::string::npos || at == 0) {
+    throw InvalidInput(fmt::format("{} {}: expected NAME=VALUE", option, text));
+  }
+  try {
+    return {text.substr(0, at), Expression::parse(text.substr(at + 1), {})
+                                    .evaluate(std::span<const double>())};
+  } catch (const ExpressionError& error) {
+    throw InvalidInput(fmt::format("{} {}: {}", option, text, error.what()));
+  }
 }
 
 TerminalMonitorOptions monitor_options(const CommonArguments& common) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <utility>
 
 #include "app/commands.h"
 #include "app/terminal_monitor.h"
@@ -15,6 +17,11 @@ CaseReading read_case_aloud(const std::string& path,
 
 /// `out`, or results/<case name> below the working folder.
 std::filesystem::path results_folder(const Case& input, const std::string& out);
+
+/// "NAME=VALUE" that `option` ("--at") was given; VALUE is an expression
+/// without names. Throws InvalidInput, naming both, for anything else.
+std::pair<std::string, double> named_number(const std::string& option,
+                                            const std::string& text);
 
 /// Options of a monitor that the stop signals stop.
 TerminalMonitorOptions monitor_options(const CommonArguments& common);

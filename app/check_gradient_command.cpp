@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdio>
-#include <span>
 
 #include <fmt/format.h>
 
@@ -9,7 +8,6 @@
 #include "app/exit_code.h"
 #include "app/signals.h"
 #include "core/error.h"
-#include "core/expression.h"
 #include "core/nearest_name.h"
 #include "pipeline/gradient_check.h"
 
@@ -20,25 +18,17 @@ namespace {
 /// The initial design with "name=value" put in.
 VectorX design_at(const Case& input, const std::vector<std::string>& places) {
   VectorX design = initial_design(input);
+  const std::vector<std::string> known = design_names(input);
   for (const std::string& text : places) {
-    const std::size_t equals = text.find('=');
-    const std::string name = text.substr(0, equals);
-    const std::vector<std::string> known = design_names(input);
+    const auto [name, value] = named_number("--at", text);
     const auto at = std::find(known.begin(), known.end(), name);
-    if (equals == std::string::npos || at == known.end()) {
+    if (at == known.end()) {
       const std::string near = nearest_name(name, known);
       throw InvalidInput(fmt::format(
           "--at {}: expected NAME=VALUE of a design variable{}", text,
           near.empty() ? "" : "; did you mean '" + near + "'?"));
     }
     const DesignVariable& variable = input.design[at - known.begin()];
-    double value = 0.0;
-    try {
-      value = Expression::parse(text.substr(equals + 1), {})
-                  .evaluate(std::span<const double>());
-    } catch (const ExpressionError& error) {
-      throw InvalidInput(fmt::format("--at {}: {}", text, error.what()));
-    }
     if (!(value >= variable.lower && value <= variable.upper)) {
       throw InvalidInput(fmt::format("--at {}: outside the bounds {:g} to {:g}",
                                      text, variable.lower, variable.upper));

@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <filesystem>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -58,25 +57,6 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
 
 namespace {
 
-/// "name=value" as numbers; parameters of a datafile.
-std::map<std::string, double> numbers_of(
-    const std::vector<std::string>& overrides) {
-  std::map<std::string, double> result;
-  for (const std::string& text : overrides) {
-    const std::size_t at = text.find('=');
-    if (at == std::string::npos || at == 0) {
-      throw InvalidInput(fmt::format("--set {}: expected NAME=VALUE", text));
-    }
-    try {
-      result[text.substr(0, at)] = Expression::parse(text.substr(at + 1), {})
-                                       .evaluate(std::span<const double>());
-    } catch (const ExpressionError& error) {
-      throw InvalidInput(fmt::format("--set {}: {}", text, error.what()));
-    }
-  }
-  return result;
-}
-
 void warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
@@ -93,7 +73,10 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
   TerminalMonitor monitor(monitor_options(common));
   try {
     options.refinements = arguments.refinements;
-    options.parameters = numbers_of(common.overrides);
+    for (const std::string& text : common.overrides) {
+      const auto [name, value] = named_number("--set", text);
+      options.parameters[name] = value;
+    }
     options.method = arguments.method == "gradient" ? DatafileMethod::Gradient
                      : arguments.method == "conjugate_gradients"
                          ? DatafileMethod::ConjugateGradients

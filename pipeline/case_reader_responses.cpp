@@ -70,32 +70,61 @@ int index_among(CaseContext& context, const CaseTable& table, const char* key,
   return at == known.end() ? 0 : static_cast<int>(at - known.begin());
 }
 
-/// A radius is a mean of even powers.
+/// A radius is a mean of even powers; a norm of displacements has second
+/// derivatives from 2 on.
 double read_power(CaseContext& context, const CaseTable& table,
                   const ResponseEntry& response) {
-  if (response.kind != ResponseKind::Radius) {
-    return constant_above(context, table, "power", 1.0, response.power);
+  constexpr double kUsualOfRadius = 16.0;
+  constexpr double kMostOfRadius = 64.0;
+  const bool of_radius = response.kind == ResponseKind::Radius;
+  const double usual = of_radius ? kUsualOfRadius : response.power;
+  const double power = table.constant("power").value_or(usual);
+  bool good = power > 1.0;
+  std::string must_be = "above 1";
+  if (of_radius) {
+    good =
+        power >= 2.0 && power <= kMostOfRadius && std::fmod(power, 2.0) == 0.0;
+    must_be = fmt::format("even, from 2 to {:g}", kMostOfRadius);
+  } else if (response.kind == ResponseKind::DisplacementNorm) {
+    good = power >= 2.0;
+    must_be = "2 or above";
   }
-  constexpr double kUsual = 16.0;
-  constexpr double kMost = 64.0;
-  const double power = table.constant("power").value_or(kUsual);
-  if (power >= 2.0 && power <= kMost && std::fmod(power, 2.0) == 0.0) {
-    return power;
+  if (!good) {
+    context.problems.add(
+        table.line("power"),
+        fmt::format("{}.power is {:g}; it must be {}; {:g} when left out",
+                    table.path(), power, must_be, usual));
+    return usual;
   }
-  context.problems.add(
-      table.line("power"),
-      fmt::format("{}.power is {:g}; it must be even, from 2 to {:g}",
-                  table.path(), power, kMost));
-  return kUsual;
+  return power;
 }
 
-/// What stress norms are measured in: a yield strength, else 1.
-std::optional<double> stress_scale(CaseContext& context,
-                                   const CaseTable& table) {
-  if (!table.has("scale")) {
-    return std::nullopt;
+bool any_yields(const Case& result) {
+  const std::vector<BodyEntry> bodies = solid_bodies(result);
+  return std::any_of(bodies.begin(), bodies.end(), [&](const BodyEntry& body) {
+    const auto material = static_cast<std::size_t>(body.material);
+    return material < result.materials.size() &&
+           result.materials[material].yield_strength;
+  });
+}
+
+/// What stress norms are measured in; the least yield strength when left out.
+std::optional<double> stress_scale(CaseContext& context, const CaseTable& table,
+                                   const ResponseEntry& response,
+                                   const Case& result) {
+  if (table.has("scale")) {
+    return constant_above(context, table, "scale", 0.0, 1.0);
   }
-  return constant_above(context, table, "scale", 0.0, 1.0);
+  if (response.kind == ResponseKind::VonMisesKs && context.bodies_good &&
+      !any_yields(result)) {
+    context.problems.add(
+        table.line(),
+        fmt::format("{} has no 'scale', and no body's material a "
+                    "yield_strength to take in its place; add scale = STRESS "
+                    "here, or yield_strength to the material",
+                    table.path()));
+  }
+  return std::nullopt;
 }
 
 /// Over the case's names and the responses above this one.
@@ -136,7 +165,7 @@ ResponseEntry read_response(CaseContext& context, const CaseTable& table,
   response.power = read_power(context, table, response);
   response.sharpness =
       constant_above(context, table, "sharpness", 0.0, response.sharpness);
-  response.scale = stress_scale(context, table);
+  response.scale = stress_scale(context, table, response, result);
   if (const auto film = table.text("film")) {
     response.film = *film;
     index_among(context, table, "film", film_names(result));

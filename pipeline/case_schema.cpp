@@ -292,8 +292,8 @@ std::vector<TableSpec> make_tables() {
          "of mean_displacement: what each place counts, an expression of x, y, "
          "z; the mean is still by area, so that a weight may change its sign"},
         {"power", K::Constant, D::None, false,
-         "of norms, above 1, 8 when left out; of radius, even, 16 when left "
-         "out"},
+         "of norms, above 1, of displacements 2 or above, 8 when left out; of "
+         "radius, even, 16 when left out"},
         {"sharpness", K::Constant, D::None, false,
          "of von_mises_ks; above 0; 50 when left out"},
         {"scale", K::Constant, D::Pressure, false,

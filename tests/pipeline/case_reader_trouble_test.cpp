@@ -254,6 +254,15 @@ const Mistake kMistakes[] = {
     {"UnknownLoadCase", "kind = \"mass\"",
      "kind = \"compliance\"\nload_case = \"servce\"",
      "61: there is no load case 'servce'; did you mean 'service'?"},
+    {"PowerOfADisplacementNorm", "kind = \"mean_displacement\"",
+     "kind = \"displacement_norm\"\npower = 1.5",
+     "56: responses.sway.power is 1.5; it must be 2 or above; 8 when left out"},
+    {"PowerOfAStressNorm", "kind = \"mass\"",
+     "kind = \"von_mises_norm\"\npower = 1",
+     "61: responses.mass.power is 1; it must be above 1; 8 when left out"},
+    {"SmoothPeakWithoutScale", "kind = \"mass\"", "kind = \"von_mises_ks\"",
+     "59: responses.mass has no 'scale', and no body's material a "
+     "yield_strength to take in its place; add scale = STRESS here"},
     {"LaterStudy", "kind = \"match\"", "kind = \"sweep\"",
      "63: study.kind 'sweep' is not available in this version; expected "
      "one of analyse, match, minimize"},
