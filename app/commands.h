@@ -22,6 +22,7 @@ struct RunArguments {
   bool resume = false;
   bool pictures = true;
   int threads = 0;          // 0: OpenMP's own number
+  int jobs = 1;             // independent designs side by side
   double time_limit = 0.0;  // [s], 0: none
 };
 

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/thread_waits.h"
+#include "pipeline/ordered_jobs.h"
 
 namespace {
 
@@ -68,8 +69,13 @@ int run_program(int argc, char** argv) {
   run->add_flag("!--no-pictures", run_arguments.pictures,
                 "leave the pictures out");
   run->add_option("--threads", run_arguments.threads,
-                  "threads of one evaluation; results do not depend on it")
+                  "threads that a run may use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
+  run->add_option("--jobs", run_arguments.jobs,
+                  "designs evaluated side by side where a study knows several "
+                  "ahead, each with its share of the threads; results do not "
+                  "depend on it")
+      ->check(CLI::Range(1, meniscus::kMostJobs));
   run->add_option("--time-limit", run_arguments.time_limit,
                   "stop after so many seconds and keep the best point")
       ->check(CLI::PositiveNumber);

@@ -127,9 +127,11 @@ void Run::explain(const RunResult& result) const {
 int Run::execute(const std::vector<std::string>& warnings) {
   try {
     EvaluationFields fields;
-    RunResult result = run_study(
-        input_, store_,
-        {.time_limit = arguments_.time_limit, .monitor = &monitor_}, &fields);
+    RunResult result = run_study(input_, store_,
+                                 {.time_limit = arguments_.time_limit,
+                                  .jobs = arguments_.jobs,
+                                  .monitor = &monitor_},
+                                 &fields);
     result.warnings.insert(result.warnings.begin(), warnings.begin(),
                            warnings.end());
     write_all(result, fields);

@@ -212,7 +212,7 @@ struct Resolution {
   std::vector<double> export_edges;
 };
 
-enum class StudyKind { Analyse, Match, Minimize };
+enum class StudyKind { Analyse, Match, Minimize, Sweep, Tolerance, Pareto };
 
 /// lower <= response <= upper.
 struct ConstraintEntry {
@@ -226,11 +226,16 @@ struct StudyEntry {
   StudyKind kind = StudyKind::Analyse;
   std::vector<std::string> equal;
   std::vector<std::pair<std::string, double>> targets;
-  int objective = 0;  // of a minimum: index of a response
+  std::optional<int> objective;  // index of a response
+  std::optional<int> second;     // of a front: the other objective
   std::vector<ConstraintEntry> constraints;
   double tolerance = 1e-3;
   std::string method = "ceres";
   int max_evaluations = 100;
+  std::vector<int> levels;         // of a grid, per design variable; 0: none
+  std::vector<double> deviations;  // of tolerances, likewise
+  int count = 0;                   // of samples, or points of a front
+  int seed = 1;
   SourceLine line = 0;
 };
 

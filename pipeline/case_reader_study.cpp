@@ -1,3 +1,5 @@
+#include "pipeline/case_reader_study.h"
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -5,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "optimize/minimize.h"
-#include "pipeline/case_reader_tables.h"
 #include "pipeline/responses.h"
 #include "pipeline/studied_responses.h"
 
@@ -80,7 +81,19 @@ void read_targets(CaseContext& context, const CaseTable& table, Case& result) {
   }
 }
 
+StudyKind kind_of(const std::string& name) {
+  static const std::map<std::string, StudyKind> kinds = {
+      {"match", StudyKind::Match},
+      {"minimize", StudyKind::Minimize},
+      {"sweep", StudyKind::Sweep}};
+  const auto at = kinds.find(name);
+  return at == kinds.end() ? StudyKind::Analyse : at->second;
+}
+
 std::vector<std::string> methods_of(StudyKind kind) {
+  if (kind == StudyKind::Sweep) {
+    return sweep_methods();
+  }
   if (kind != StudyKind::Minimize) {
     return match_methods();
   }
@@ -93,6 +106,9 @@ std::vector<std::string> methods_of(StudyKind kind) {
 
 void check_method(CaseContext& context, const CaseTable& table,
                   const StudyEntry& study) {
+  if (study.kind == StudyKind::Analyse) {
+    return;  // another kind's, which waits
+  }
   const std::vector<std::string> methods = methods_of(study.kind);
   if (std::find(methods.begin(), methods.end(), study.method) ==
       methods.end()) {
@@ -117,18 +133,24 @@ void check_variables(CaseContext& context, const CaseTable& table,
 /// work for later, and its keys wait.
 void check_keys(CaseContext& context, const CaseTable& table,
                 const std::string& kind) {
-  static const std::map<std::string, std::string> owner = {
-      {"equal", "match"},
-      {"targets", "match"},
-      {"objective", "minimize"},
-      {"constraints", "minimize"}};
-  for (const auto& [key, owning] : owner) {
-    if (table.has(key.c_str()) && kind != owning && kind != "analyse") {
+  static const std::map<std::string, std::vector<std::string>> owners = {
+      {"equal", {"match"}},
+      {"targets", {"match"}},
+      {"tolerance", {"match", "minimize"}},
+      {"max_evaluations", {"match", "minimize"}},
+      {"objective", {"minimize", "sweep"}},
+      {"constraints", {"minimize", "sweep"}},
+      {"levels", {"sweep"}},
+      {"count", {"sweep"}},
+      {"seed", {"sweep"}}};
+  for (const auto& [key, owning] : owners) {
+    if (table.has(key.c_str()) && kind != "analyse" &&
+        std::find(owning.begin(), owning.end(), kind) == owning.end()) {
       context.problems.add(
           table.line(key.c_str()),
           fmt::format("study.{} belongs to kind = \"{}\", and this study's "
                       "kind is \"{}\"; take it out or change the kind",
-                      key, owning, kind));
+                      key, fmt::join(owning, "\" or \""), kind));
     }
   }
   if (kind == "match" && !table.has("equal") && !table.has("targets")) {
@@ -216,12 +238,19 @@ void check_derivatives(CaseContext& context, const CaseTable& table,
   }
 }
 
-void read_minimize(CaseContext& context, const CaseTable& table, Case& result) {
+void read_objective(CaseContext& context, const CaseTable& table,
+                    Case& result) {
   if (result.responses.empty() || !context.problems.empty()) {
     return;
   }
-  result.study.objective =
-      index_of_response(context, table, "objective", result);
+  if (table.has("objective")) {
+    result.study.objective =
+        index_of_response(context, table, "objective", result);
+  } else if (table.has("constraints")) {
+    context.problems.add(table.line("constraints"),
+                         "study.constraints say which designs count, and "
+                         "study.objective which is the best of them; add it");
+  }
   read_constraints(context, table, result);
   check_derivatives(context, table, result);
 }
@@ -236,10 +265,9 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   StudyEntry& study = result.study;
   study.line = table->line();
   const std::string kind = table->choice("kind").value_or("analyse");
-  study.kind = kind == "match"      ? StudyKind::Match
-               : kind == "minimize" ? StudyKind::Minimize
-                                    : StudyKind::Analyse;
+  study.kind = kind_of(kind);
   const bool minimizes = study.kind == StudyKind::Minimize;
+  const bool sweeps = study.kind == StudyKind::Sweep;
   study.tolerance =
       table->constant("tolerance").value_or(minimizes ? 1e-4 : 1e-3);
   if (!(study.tolerance > 0.0)) {
@@ -248,7 +276,9 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
                                      "above 0",
                                      study.tolerance));
   }
-  study.method = table->text("method").value_or(minimizes ? "slsqp" : "ceres");
+  study.method = table->text("method").value_or(minimizes ? "slsqp"
+                                                : sweeps  ? "sobol"
+                                                          : "ceres");
   check_method(context, *table, study);
   study.max_evaluations = table->positive_integer("max_evaluations")
                               .value_or(study.max_evaluations);
@@ -258,8 +288,11 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   }
   read_equal(context, *table, result);
   read_targets(context, *table, result);
-  if (minimizes) {
-    read_minimize(context, *table, result);
+  if (sweeps) {
+    read_sweep(context, *table, result);
+  }
+  if (minimizes || sweeps) {
+    read_objective(context, *table, result);
   }
 }
 

@@ -308,17 +308,27 @@ std::vector<TableSpec> make_tables() {
        false,
        N::Optional,
        "What to do; analyse the initial design when left out",
-       {{"kind", K::Choice, D::None, true, "analyse, match or minimize",
-         "analyse|match|minimize", "sweep|family|pareto|tolerance"},
+       {{"kind", K::Choice, D::None, true, "analyse, match, minimize or sweep",
+         "analyse|match|minimize|sweep", "family|pareto|tolerance"},
         {"equal", K::Names, D::None, false,
          "of match: responses to make equal; mismatch |a-b| / ((|a|+|b|)/2)"},
         {"targets", K::ConstantMap, std::nullopt, false,
          "of match: response = value; mismatch |a-v| / |v|, for v = 0 relative "
          "to the initial response"},
         {"objective", K::Name, D::None, false,
-         "of minimize: the response to make small"},
+         "of minimize: the response to make small; of sweep: the one that "
+         "makes "
+         "a design the best, the initial one when left out"},
         {"constraints", K::Constraints, D::None, false,
-         "of minimize: responses to keep within bounds"},
+         "of minimize and sweep: responses to keep within bounds"},
+        {"levels", K::IntegerMap, D::None, false,
+         "of sweep by grid: design variable = number of values, ends of its "
+         "bounds included; one that is left out stays at its initial value"},
+        {"count", K::Integer, D::None, false,
+         "of sweep by latin_hypercube or sobol: number of designs"},
+        {"seed", K::Integer, D::None, false,
+         "of sweep by latin_hypercube: another seed is another sample; 1 when "
+         "left out"},
         {"tolerance", K::Constant, D::None, false,
          "of match: largest mismatch accepted, 1e-3 when left out; of "
          "minimize: first-order residual accepted, about the relative gain "
@@ -327,9 +337,11 @@ std::vector<TableSpec> make_tables() {
          "of match: ceres (when left out), bobyqa, cobyla, sbplx, neldermead, "
          "direct_l; of minimize: slsqp (when left out), mma, ccsa with exact "
          "gradients, bobyqa, cobyla, sbplx, neldermead without, isres, crs2, "
-         "direct_l globally"},
+         "direct_l globally; of sweep: grid, latin_hypercube, sobol (when left "
+         "out)"},
         {"max_evaluations", K::Integer, D::None, false,
-         "limit, finite-difference ones included; 100 when left out"}}},
+         "of match and minimize: limit, finite-difference ones included; 100 "
+         "when left out"}}},
       {"constraint",
        false,
        N::Optional,

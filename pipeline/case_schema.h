@@ -29,6 +29,7 @@ enum class KeyType {
   Bounds,          // array of two constants
   Constants,       // array of constants
   ConstantMap,     // inline table: response = constant, of its dimension
+  IntegerMap,      // inline table: design variable = integer
   Supports,        // array of inline tables: table "support"
   Loads,           // array of inline tables: table "load"
   Zones,           // array of inline tables: table "exclude"

@@ -46,6 +46,7 @@ const char* type_text(const KeySpec& key) {
     case K::Constants:
       return "constants";
     case K::ConstantMap:
+    case K::IntegerMap:
       return "table";
     case K::Supports:
       return "supports";
@@ -63,8 +64,9 @@ const char* dimension_text(const KeySpec& key) {
   const bool quantity = key.type != K::Text && key.type != K::Choice &&
                         key.type != K::Name && key.type != K::Names &&
                         key.type != K::Integer && key.type != K::Flag &&
-                        key.type != K::Supports && key.type != K::Loads &&
-                        key.type != K::Zones && key.type != K::Constraints;
+                        key.type != K::IntegerMap && key.type != K::Supports &&
+                        key.type != K::Loads && key.type != K::Zones &&
+                        key.type != K::Constraints;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -160,6 +162,9 @@ Json type_schema(const KeySpec& key) {
       return array(quantity, 1, 0);
     case K::ConstantMap:
       return {{"type", "object"}, {"additionalProperties", quantity}};
+    case K::IntegerMap:
+      return {{"type", "object"},
+              {"additionalProperties", {{"type", "integer"}}}};
     case K::Supports:
       return array(object_schema(case_table("support")), 1, 0);
     case K::Loads:

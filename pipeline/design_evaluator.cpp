@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
+#include <fmt/format.h>
+
+#include "pipeline/ordered_jobs.h"
 #include "pipeline/results.h"
 
 namespace meniscus {
@@ -24,10 +28,9 @@ DesignEvaluator::DesignEvaluator(const Case& input, StudyStore& store,
     : input_(input),
       store_(store),
       options_(std::move(options)),
-      monitor_(options_.monitor != nullptr ? *options_.monitor
-                                           : silent_monitor()),
-      model_(input, {.edge_factor = options_.edge_factor,
-                     .monitor = options_.monitor}),
+      monitor_(options_.monitor),
+      model_(input,
+             {.edge_factor = options_.edge_factor, .monitor = &monitor_}),
       seconds_(model_.frozen().seconds) {}
 
 EvaluationRecord DesignEvaluator::keep(const Evaluation& evaluation,
@@ -55,6 +58,88 @@ EvaluationRecord DesignEvaluator::evaluate(const VectorX& design,
   }
   counts_.failed += record->failure ? 1 : 0;
   return *std::move(record);
+}
+
+std::vector<VectorX> DesignEvaluator::missing(
+    const std::vector<VectorX>& designs) const {
+  std::vector<VectorX> result;
+  std::set<std::vector<double>> seen;
+  for (const VectorX& design : designs) {
+    if (!store_.find(options_.model, design) &&
+        seen.emplace(design.begin(), design.end()).second) {
+      result.push_back(design);
+    }
+  }
+  return result;
+}
+
+void DesignEvaluator::compute(const std::vector<VectorX>& designs,
+                              const std::string& phase) {
+  throw_if_stopped(monitor_, "the study");
+  const std::vector<VectorX> wanted = missing(designs);
+  const int count = static_cast<int>(wanted.size());
+  std::vector<Evaluation> found(wanted.size());
+  StudyMonitor::Group group(monitor_, deadline_ ? &*deadline_ : nullptr);
+  const auto tell = [&](int done) {
+    monitor_.user().progress(
+        {.stage = "study",
+         .detail = fmt::format("{}: {} of {} designs", phase, done, count),
+         .fraction = static_cast<double>(done) / count});
+  };
+  if (count > 0) {
+    tell(0);
+  }
+  try {
+    run_in_order({.count = count,
+                  .jobs = options_.jobs,
+                  .work =
+                      [&](int k) {
+                        throw_if_stopped(monitor_, "the study");
+                        found[k] = model_.evaluate(wanted[k]);
+                      },
+                  .take =
+                      [&](int k) {
+                        keep(std::exchange(found[k], {}), phase);
+                        tell(k + 1);
+                      },
+                  .cancel = [&] { group.cancel(); }});
+  } catch (const Interrupted&) {
+    if (monitor_.user_stops()) {
+      throw;
+    }  // else the time is up: what is done is kept
+  }
+}
+
+std::vector<EvaluationRecord> DesignEvaluator::evaluate_all(
+    const std::vector<VectorX>& designs, const std::string& phase) {
+  compute(designs, phase);
+  std::vector<EvaluationRecord> records;
+  records.reserve(designs.size());
+  for (const VectorX& design : designs) {
+    std::optional<EvaluationRecord> record =
+        store_.find(options_.model, design);
+    if (!record) {
+      break;
+    }
+    ++counts_.evaluations;
+    counts_.failed += record->failure ? 1 : 0;
+    records.push_back(*std::move(record));
+  }
+  return records;
+}
+
+void DesignEvaluator::prefetch(const std::vector<VectorX>& designs,
+                               const std::string& phase) {
+  compute(designs, phase);
+}
+
+void DesignEvaluator::limit_time(double seconds) {
+  deadline_.reset();
+  if (seconds > 0.0) {
+    deadline_ = StudyMonitor::Clock::now() +
+                std::chrono::duration_cast<StudyMonitor::Clock::duration>(
+                    std::chrono::duration<double>(seconds));
+  }
 }
 
 JacobianAnswer DesignEvaluator::gradient(const VectorX& design,

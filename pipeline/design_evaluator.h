@@ -3,11 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "optimize/problem.h"
 #include "pipeline/forward_model.h"
+#include "pipeline/study_monitor.h"
 #include "pipeline/study_store.h"
 
 namespace meniscus {
@@ -17,7 +19,12 @@ struct DesignEvaluatorOptions {
   double edge_factor = 1.0;     // as in ForwardModelOptions
   bool with_gradients = false;  // keep what gradient() needs of each design:
                                 // memory for a second solve saved
-  Monitor* monitor = nullptr;   // not owned; must outlive the evaluator
+  int jobs = 1;                 // designs side by side where several are asked
+                                // at once, 1 to kMostJobs; no effect on what
+                                // is found. Each needs the memory of one
+  // evaluation beside the model (docs/performance)
+  Monitor* monitor = nullptr;  // not owned, outlives this; for several jobs
+                               // it must bear calls from several threads
 };
 
 /// What the study has asked for, found in the database or computed.
@@ -38,6 +45,8 @@ class DesignEvaluator {
   /// nothing may be asked.
   DesignEvaluator(const Case& input, StudyStore& store,
                   DesignEvaluatorOptions options = {});
+  DesignEvaluator(const DesignEvaluator&) = delete;
+  DesignEvaluator& operator=(const DesignEvaluator&) = delete;
 
   const ForwardModel& model() const { return model_; }
 
@@ -48,6 +57,19 @@ class DesignEvaluator {
 
   /// `phase`: what the design is for, as the record tells it when it is new.
   EvaluationRecord evaluate(const VectorX& design, const std::string& phase);
+
+  /// The same for each of `designs`, side by side; what the database lacks is
+  /// written in their order. Fewer, the first ones, when the time is up.
+  std::vector<EvaluationRecord> evaluate_all(
+      const std::vector<VectorX>& designs, const std::string& phase);
+
+  /// Computes those that the database lacks, as evaluate_all() does, and counts
+  /// nothing: they will be asked for one by one.
+  void prefetch(const std::vector<VectorX>& designs, const std::string& phase);
+
+  /// From now on evaluate_all() and prefetch() have so many seconds; 0: all
+  /// the time there is.
+  void limit_time(double seconds);
 
   /// d response / d design at a design that has been evaluated: rows by
   /// response, NaN in those not among `responses` (indices).
@@ -70,12 +92,16 @@ class DesignEvaluator {
   AdjointState* adjoint_wanted() {
     return options_.with_gradients ? &last_adjoint_ : nullptr;
   }
+  /// Those that the database lacks, each once, in order.
+  std::vector<VectorX> missing(const std::vector<VectorX>& designs) const;
+  void compute(const std::vector<VectorX>& designs, const std::string& phase);
   EvaluationRecord keep(const Evaluation& evaluation, const std::string& phase);
 
   const Case& input_;
   StudyStore& store_;
   DesignEvaluatorOptions options_;
-  Monitor& monitor_;
+  StudyMonitor monitor_;  // the model's too
+  std::optional<StudyMonitor::Clock::time_point> deadline_;
   ForwardModel model_;
   std::function<double(const VectorX&)> mismatch_;
   EvaluationCounts counts_;

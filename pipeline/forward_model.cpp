@@ -58,6 +58,7 @@ struct ForwardModel::Impl {
   std::optional<ElasticModel> elasticity;
   Exclusion exclusion;
   std::optional<Adaptation> adaptation;
+  Monitor* watcher = nullptr;  // of evaluations
 
   void freeze(const ForwardModelOptions& options);
   bool freeze_film(const EvaluatedCase& inputs,
@@ -263,6 +264,7 @@ ForwardModel::ForwardModel(const Case& input,
   refuse_walls(input);
   require_solver(input);
   impl_->input = input;
+  impl_->watcher = options.monitor;
   impl_->freeze(options);
 }
 
@@ -307,7 +309,8 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
   }
 
   Timer film_timer;
-  FilmState film_state = impl_->film->settle(inputs.film_system);
+  FilmState film_state =
+      impl_->film->settle(inputs.film_system, {.monitor = impl_->watcher});
   result.film = film_state.report;
   result.seconds.film = film_timer.seconds();
   if (film_state.failure) {

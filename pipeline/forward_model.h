@@ -82,9 +82,9 @@ struct AdjointState {
 struct Adaptation;  // pipeline/adaptation.h
 
 struct ForwardModelOptions {
-  double edge_factor = 1.0;  // x all edge lengths of the case's resolution;
-                             // above 1, exclusion zones may be empty
-  Monitor* monitor = nullptr;
+  double edge_factor = 1.0;    // x all edge lengths of the case's resolution;
+                               // above 1, exclusion zones may be empty
+  Monitor* monitor = nullptr;  // not owned; must outlive the model
 };
 
 /// Throws IoError, with what to install, when the case's solver is a program
@@ -121,7 +121,8 @@ class ForwardModel {
   /// What a case with analysis.adapt was adapted from and to; else null.
   const Adaptation* adaptation() const;
 
-  /// A pure function of (model, design). `fields`, when given, receives the
+  /// A pure function of (model, design), safe to call from several threads if
+  /// the monitor is. `fields`, when given, receives the
   /// meshes and the solution, `adjoint` what gradient() needs beside them.
   Evaluation evaluate(const VectorX& design, EvaluationFields* fields = nullptr,
                       AdjointState* adjoint = nullptr) const;

@@ -198,6 +198,9 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
     json["constraints"][c.name] = {
         {"value", c.value}, {"bound", c.bound}, {"satisfied", c.satisfied}};
   }
+  if (result.sweep) {
+    json["sweep"] = sweep_json(input, *result.sweep);
+  }
   const std::vector<std::string> names = response_names(input);
   json["responses"] =
       value_map(names, best != nullptr ? best->responses : VectorX());

@@ -101,6 +101,9 @@ std::string result_text(const Case& input, const RunResult& result) {
                               c.name, c.value, c.bound)
                 : bounds_text(input, input.study.constraints[k], c);
   }
+  if (result.sweep) {
+    text += sweep_text(input, *result.sweep);
+  }
   for (const ExclusionShare& zone : result.exclusion.zones) {
     text += fmt::format(
         "  left out of stress figures: {}: {} elements, {:.2g} % of the "

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/case_reader.h"
+#include "pipeline/incumbent.h"
 
 namespace meniscus {
 
@@ -30,7 +31,11 @@ Case restore_case(const StudyMeta& meta) {
 
 const EvaluationRecord& best_record(
     const Case& input, const std::vector<EvaluationRecord>& records) {
-  const EvaluationRecord* best = nullptr;
+  const EvaluationRecord* best =
+      input.study.objective ? best_by_objective(input.study, records) : nullptr;
+  if (best != nullptr) {
+    return *best;
+  }
   for (const EvaluationRecord& record : records) {
     if (record.failure) {
       continue;

@@ -21,7 +21,10 @@ std::vector<int> matched_responses(const Case& input) {
 }
 
 std::vector<int> minimized_responses(const Case& input) {
-  std::vector<int> result = {input.study.objective};
+  std::vector<int> result;
+  if (input.study.objective) {
+    result.push_back(*input.study.objective);
+  }
   for (const ConstraintEntry& constraint : input.study.constraints) {
     result.push_back(constraint.response);
   }
@@ -37,12 +40,18 @@ std::vector<int> studied_responses(const Case& input) {
     case StudyKind::Minimize:
       return minimized_responses(input);
     case StudyKind::Analyse:
+    case StudyKind::Sweep:
+    case StudyKind::Tolerance:
+    case StudyKind::Pareto:
       break;
   }
   return {};
 }
 
 bool asks_for_gradients(const StudyEntry& study) {
+  if (study.kind == StudyKind::Sweep) {
+    return false;
+  }
   if (study.kind != StudyKind::Minimize) {
     return study.method == "ceres";
   }

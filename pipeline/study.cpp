@@ -73,6 +73,7 @@ bool StudyRun::freeze() {
   evaluator_.emplace(
       input_, store_,
       DesignEvaluatorOptions{.with_gradients = uses_gradients(input_),
+                             .jobs = options_.jobs,
                              .monitor = options_.monitor});
   const ForwardModel& model = evaluator_->model();
   if (model.failure()) {
@@ -115,6 +116,7 @@ void StudyRun::conduct_study() {
   result_.message = outcome_.message;
   result_.objective = outcome_.objective;
   result_.constraints = outcome_.constraints;
+  result_.sweep = outcome_.sweep;
 }
 
 bool StudyRun::finish_best() {

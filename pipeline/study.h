@@ -13,6 +13,7 @@
 #include "pipeline/forward_model.h"
 #include "pipeline/stress_figures.h"
 #include "pipeline/study_store.h"
+#include "pipeline/sweep_figures.h"
 
 namespace meniscus {
 
@@ -41,6 +42,7 @@ struct RunResult {
   std::optional<Evaluation> best;
   double objective = 0.0;  // of a match: sum of squared residuals / 2
   std::vector<Constraint> constraints;
+  std::optional<SweepFigures> sweep;
   VectorX response_errors;  // estimated discretisation errors; may be empty
   VectorX design_errors;    // of the matched variables; may be empty
   std::vector<StressFigures> stress;     // of the best design, per load case
@@ -60,6 +62,7 @@ struct RunResult {
 struct StudyOptions {
   double time_limit = 0.0;      // [s], 0: none
   bool estimate_errors = true;  // one more, coarser model
+  int jobs = 1;  // independent designs side by side; no effect on what is found
   Monitor* monitor = nullptr;
 };
 

@@ -57,6 +57,14 @@ StudyOutcome analyse(const StudyTask& task) {
           .best = task.start};
 }
 
+/// The neighbours of a difference side by side.
+std::function<void(const std::vector<VectorX>&)> prefetch_of(
+    const StudyTask& task) {
+  return [&task](const std::vector<VectorX>& designs) {
+    task.evaluator.prefetch(designs, name_of(EvaluationPhase::Difference));
+  };
+}
+
 /// Empty where a response of the targets has no derivatives.
 JacobianFunction match_jacobian(const StudyTask& task) {
   if (!uses_gradients(task.input)) {
@@ -85,7 +93,8 @@ StudyOutcome match(const StudyTask& task) {
        .time_limit = task.options.time_limit,
        .monitor = task.options.monitor,
        .announce = [&](EvaluationPhase next) { phase = name_of(next); },
-       .jacobian = match_jacobian(task)});
+       .jacobian = match_jacobian(task),
+       .prefetch = prefetch_of(task)});
   StudyOutcome outcome{.status = status_of(report.termination),
                        .message = report.message,
                        .best = report.best,
@@ -108,7 +117,7 @@ MinimizeProblem minimize_problem(const StudyTask& task,
   const Case& input = task.input;
   MinimizeProblem problem;
   problem.variables = variables_of(input, task.start);
-  problem.objective = input.responses[input.study.objective].name;
+  problem.objective = input.responses[*input.study.objective].name;
   for (const ConstraintEntry& constraint : input.study.constraints) {
     problem.constraints.push_back(
         {.name = input.responses[constraint.response].name,
@@ -158,7 +167,8 @@ StudyOutcome minimize(const StudyTask& task) {
        .max_evaluations = study.max_evaluations,
        .time_limit = task.options.time_limit,
        .monitor = task.options.monitor,
-       .announce = [&](EvaluationPhase next) { phase = name_of(next); }});
+       .announce = [&](EvaluationPhase next) { phase = name_of(next); },
+       .prefetch = prefetch_of(task)});
   StudyOutcome outcome{.status = status_of(report.termination),
                        .message = report.message,
                        .best = report.best,
@@ -172,12 +182,17 @@ StudyOutcome minimize(const StudyTask& task) {
 }  // namespace
 
 StudyOutcome conduct(const StudyTask& task) {
+  task.evaluator.limit_time(task.options.time_limit);
   switch (task.input.study.kind) {
     case StudyKind::Match:
       return match(task);
     case StudyKind::Minimize:
       return minimize(task);
+    case StudyKind::Sweep:
+      return sweep(task);
     case StudyKind::Analyse:
+    case StudyKind::Tolerance:
+    case StudyKind::Pareto:
       break;
   }
   return analyse(task);

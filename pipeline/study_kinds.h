@@ -2,6 +2,7 @@
 /// run_study()).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,14 @@ struct StudyOutcome {
   double objective = 0.0;
   std::vector<Constraint> constraints;
   Eigen::MatrixXd jacobian;  // of a match: d residual / d x near `best`
+  std::optional<SweepFigures> sweep;
 };
 
 /// What the case's study.kind says.
 StudyOutcome conduct(const StudyTask& task);
+
+/// Looks at every design of a grid or a sample.
+StudyOutcome sweep(const StudyTask& task);
 
 /// The study's method asks for derivatives, and all that it looks at have them.
 bool uses_gradients(const Case& input);

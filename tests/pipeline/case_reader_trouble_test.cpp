@@ -263,9 +263,6 @@ const Mistake kMistakes[] = {
     {"SmoothPeakWithoutScale", "kind = \"mass\"", "kind = \"von_mises_ks\"",
      "59: responses.mass has no 'scale', and no body's material a "
      "yield_strength to take in its place; add scale = STRESS here"},
-    {"LaterStudy", "kind = \"match\"", "kind = \"sweep\"",
-     "63: study.kind 'sweep' is not available in this version; expected "
-     "one of analyse, match, minimize"},
     {"KeyOfAnotherKind", "kind = \"mass\"",
      "kind = \"mass\"\nload_case = \"service\"",
      "61: responses.mass.load_case does not belong to a mass; it has no keys "

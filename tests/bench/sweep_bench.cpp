@@ -1,0 +1,121 @@
+/// Designs per minute of a sweep over the two-arm bracket at about 5k ten-node
+/// tetrahedra: two jobs in one program beside two programs at once, with the
+/// database of every run. Prints the table of docs/performance.md; an argument
+/// is the number of designs, else 200.
+#include <cstdio>
+#include <cstdlib>
+#include <omp.h>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/memory.h"
+#include "core/thread_waits.h"
+#include "core/timer.h"
+#include "optimize/sampling.h"
+#include "pipeline/case_reader.h"
+#include "pipeline/design_evaluator.h"
+#include "pipeline/study_kinds.h"
+#include "tests/support/measured_child.h"
+#include "tests/support/temp_folder.h"
+
+namespace meniscus {
+namespace {
+
+constexpr const char* kEdge = "14.5";
+constexpr const char* kFilmEdge = "7.25";
+
+struct Setting {
+  const char* name;
+  int programs;
+  int jobs;
+  int threads;  // of each program
+};
+constexpr Setting kSettings[] = {
+    {"one program, one thread", 1, 1, 1},
+    {"one program, two threads", 1, 1, 2},
+    {"two programs at once, one thread each", 2, 1, 1},
+    {"one program, `--jobs 2`", 1, 2, 2},
+};
+
+/// Seconds of the sweep alone, and the elements.
+std::string sweep_seconds(const Setting& setting, int designs) {
+  omp_set_num_threads(setting.threads);
+  const Case input = read_case(MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml",
+                               {std::string("resolution.fea=") + kEdge,
+                                std::string("resolution.film=") + kFilmEdge});
+  const TempFolder folder;
+  StudyStore store =
+      StudyStore::start(folder.path().string(), {.case_hash = input.hash});
+  DesignEvaluator evaluator(input, store, {.jobs = setting.jobs});
+  const std::vector<VectorX> points = designs_of(
+      variables_of(input, initial_design(input)), sobol_samples(1, designs));
+  const Timer timer;
+  const auto records = evaluator.evaluate_all(points, "sweep");
+  const double seconds = timer.seconds();
+  if (evaluator.counts().failed > 0) {
+    throw std::runtime_error("designs that cannot be evaluated");
+  }
+  return fmt::format("{} {}", seconds, evaluator.model().frozen().tet.elements);
+}
+
+struct Speed {
+  double designs_per_minute = 0.0;
+  double peak_megabytes = 0.0;  // of the largest program
+  int elements = 0;
+};
+
+Speed measure(const Setting& setting, int designs) {
+  std::vector<MeasuredChild> children(
+      static_cast<std::size_t>(setting.programs));
+  std::vector<std::thread> threads;
+  threads.reserve(children.size());
+  for (MeasuredChild& child : children) {
+    threads.emplace_back([&child, &setting, designs] {
+      child = measure_forked([&] { return sweep_seconds(setting, designs); });
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  Speed speed;
+  double longest = 0.0;
+  for (const MeasuredChild& child : children) {
+    double seconds = 0.0;
+    if (!child.succeeded || std::sscanf(child.output.c_str(), "%lf %d",
+                                        &seconds, &speed.elements) != 2) {
+      throw std::runtime_error(child.output);
+    }
+    longest = std::max(longest, seconds);
+    speed.peak_megabytes =
+        std::max(speed.peak_megabytes, child.peak_bytes / 1e6);
+  }
+  speed.designs_per_minute = 60.0 * setting.programs * designs / longest;
+  return speed;
+}
+
+}  // namespace
+}  // namespace meniscus
+
+int main(int argc, char** argv) {
+  meniscus::wait_asleep(argv);
+  meniscus::keep_freed_memory();
+  const int designs = argc > 1 ? std::atoi(argv[1]) : 200;
+  std::printf(
+      "| %d designs | designs per minute | peak memory [MB] |\n"
+      "|---|---|---|\n",
+      designs);
+  int elements = 0;
+  for (const meniscus::Setting& setting : meniscus::kSettings) {
+    const meniscus::Speed speed = meniscus::measure(setting, designs);
+    elements = speed.elements;
+    std::printf("| %s | %.0f | %.0f |\n", setting.name,
+                speed.designs_per_minute, speed.peak_megabytes);
+    std::fflush(stdout);
+  }
+  std::printf("%d ten-node tetrahedra\n", elements);
+  return 0;
+}

@@ -1,0 +1,229 @@
+#!/usr/bin/env python3
+"""Sweeps from a case file to the table, and several designs side by side."""
+import csv
+import json
+import re
+import signal
+import sqlite3
+import time
+import unittest
+
+from program import COARSE, ProgramTest
+
+SWEEP = """
+[responses.mass]
+kind = "mass"
+
+[study]
+kind = "sweep"
+"""
+# Of an evaluation, all that does not tell the time.
+COLUMNS = ("number, key, model, phase, input_names, inputs, response_names, "
+           "responses, gradient, mismatch, failure, failure_message, figures")
+
+
+class SweepTest(ProgramTest):
+    def sweep(self, text, *replacements):
+        """A case whose sweep is `text`; wide bounds, so that designs fail."""
+        return self.write_case(
+            (r"^\[curves.support\]",
+             "[design.radius]\ninitial = 34\nbounds = [28, 42]\n\n"
+             "[curves.support]"),
+            (r"^radius = 35", 'radius = "radius"'),
+            (r"(?s)^\[study\].*", SWEEP + text), *replacements)
+
+    def run_case(self, case, name, *more, **options):
+        out = self.folder / name
+        done = self.call("run", case, *COARSE, "--no-pictures", "--out", out,
+                         *more, **options)
+        return done, out
+
+    def records(self, out):
+        with sqlite3.connect(out / "study.sqlite") as database:
+            return database.execute(
+                f"SELECT {COLUMNS} FROM evaluation ORDER BY number").fetchall()
+
+    def kept(self, out):
+        """What of result.json must not depend on when or how fast."""
+        return json.dumps({k: v for k, v in self.result(out).items()
+                           if k != "seconds"})
+
+    def rows(self, out):
+        with open(out / "history.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def assert_same(self, a, b):
+        self.assertEqual(self.records(a), self.records(b))
+        self.assertEqual(self.kept(a), self.kept(b))
+
+
+class Sweeps(SweepTest):
+    def test_a_grid_is_the_same_for_any_number_of_jobs(self):
+        case = self.sweep('method = "grid"\n'
+                          'levels = { support_x = 3, radius = 2 }\n'
+                          'objective = "mass"\n')
+        done, one = self.run_case(case, "one")
+        self.expect(done, 0, "looked at all 6 designs")
+        done, three = self.run_case(case, "three", "--jobs", "3",
+                                    env={"OMP_NUM_THREADS": "2"})
+        self.expect(done, 0)
+        self.assert_same(one, three)
+        result = self.result(three)
+        self.assertEqual(result["evaluations"], 6)
+        sweep = result["sweep"]
+        self.assertEqual((sweep["designs"], sweep["looked_at"],
+                          sweep["failed"]), (6, 6, 0))
+        mass = sweep["responses"]["mass"]
+        rows = self.rows(three)
+        swept = [row for row in rows if row["phase"] == "sweep"]
+        # The last variable runs fastest.
+        self.assertEqual([(row["support_x"], row["radius"]) for row in swept],
+                         [(x, r) for x in ("-40", "0", "40")
+                          for r in ("28", "42")])
+        masses = [float(row["mass"]) for row in swept]
+        self.assertEqual((mass["least"], mass["largest"]),
+                         (min(masses), max(masses)))
+        self.assertAlmostEqual(mass["mean"] / (sum(masses) / 6), 1.0, 12)
+        # The best is the least mass, with its meshes.
+        self.assertEqual(result["objective"], min(masses))
+        self.assertEqual(
+            result["parameters"]["radius"],
+            float(swept[masses.index(min(masses))]["radius"]))
+        self.assertEqual(mass["least_at"]["radius"],
+                         result["parameters"]["radius"])
+        self.assertTrue((three / "part.vtu").exists())
+
+    def test_samples_fill_the_bounds_and_a_longer_sweep_goes_on(self):
+        case = self.sweep('method = "sobol"\ncount = 3\n')
+        done, out = self.run_case(case, "out", "--jobs", "2")
+        self.expect(done, 0)
+        first = self.records(out)
+        case.write_text(case.read_text().replace("count = 3", "count = 5"))
+        done, _ = self.run_case(case, "out", "--jobs", "2", "--resume")
+        self.expect(done, 0, "looked at all 5 designs")
+        self.assertEqual(self.records(out)[:len(first)], first)
+        for row in self.rows(out):
+            self.assertTrue(28 <= float(row["radius"]) <= 42)
+        shown = self.expect(self.call("study", "show", out), 0, "sweep")
+        self.assertEqual(len(re.findall(r"\bsweep\b", shown.stdout)), 5)
+
+    def test_designs_that_fail_are_rows_with_their_cause(self):
+        # Past some volume the film of this case has no equilibrium.
+        case = self.sweep(
+            'method = "grid"\nlevels = { fill = 2 }\n',
+            (r"^\[curves.support\]", "[design.fill]\ninitial = 1.7e6\n"
+             "bounds = [1e5, 1.8e6]\n\n[curves.support]"),
+            (r"^volume = 1.7e6", 'volume = "fill"'))
+        done, out = self.run_case(case, "out", "--jobs", "2")
+        self.expect(done, 0, "1 of them cannot be evaluated")
+        sweep = self.result(out)["sweep"]
+        self.assertEqual(sweep["failed"], 1)
+        self.assertEqual(sum(sweep["failures"].values()), 1)
+        failed = [row for row in self.rows(out) if row["status"] != "ok"]
+        self.assertEqual(len(failed), 1)
+        self.assertIn(failed[0]["status"], sweep["failures"])
+        self.assertTrue(failed[0]["message"])
+
+    def test_constraints_that_no_design_keeps_are_told(self):
+        case = self.sweep('method = "sobol"\ncount = 2\nobjective = "mass"\n'
+                          'constraints = [{ response = "left_deflection", '
+                          'max = 0.001 }]\n')
+        done, out = self.run_case(case, "out")
+        self.expect(done, 3, "none keeps every constraint")
+        self.assertEqual(self.result(out)["status"], "infeasible")
+
+    def test_what_is_wrong_is_told_by_line(self):
+        for text, told in (
+                ('method = "grid"', "study.levels is missing"),
+                ('method = "grid"\nlevels = { suport_x = 2 }',
+                 "did you mean 'support_x'"),
+                ('method = "grid"\nlevels = { radius = 0 }',
+                 "expected a whole number from 1"),
+                ('method = "grid"\nlevels = { radius = 2 }\ncount = 3',
+                 "a grid's levels say how many"),
+                ('method = "grid"\nlevels = { radius = 9999, support_x = 9999}',
+                 "take fewer levels"),
+                ('method = "sobol"', "needs study.count"),
+                ('method = "sobol"\ncount = 0', "a whole number from 1"),
+                ('method = "sobol"\ncount = 3\nseed = 2', "nothing random"),
+                ('method = "sobel"\ncount = 3', "did you mean 'sobol'"),
+                ('count = 3\ntolerance = 1e-3',
+                 'belongs to kind = "match" or "minimize"'),
+                ('count = 3\nobjective = "mas"', "did you mean 'mass'"),
+                ('count = 3\nconstraints = [{ response = "mass", max = 1 }]',
+                 "study.objective which is the best")):
+            with self.subTest(text=text):
+                self.expect(self.call("check", self.sweep(text)), 2,
+                            re.escape(told), r"case.toml:\d+")
+        self.expect(self.call("run", self.sweep("count = 2"), "--jobs", "0"),
+                    2, "--jobs")
+
+
+class Jobs(SweepTest):
+    def test_neighbours_of_a_difference_side_by_side(self):
+        case = self.sweep("", (r'(?s)kind = "sweep".*',
+                               'kind = "match"\nequal = ["left_peak", '
+                               '"right_peak"]\nmax_evaluations = 7\n'),
+                          (r"^\[responses.mass\]",
+                           "".join(f'[responses.{side}_peak]\n'
+                                   'kind = "max_von_mises"\n'
+                                   f'load_case = "{side}"\n\n'
+                                   for side in ("left", "right")) +
+                           "[responses.mass]"),
+                          (r"^\[load_cases.service\]",
+                           "".join(f'[load_cases.{side}]\nsupports = '
+                                   '[{ on = "support_pad", fix = "xyz" }]\n'
+                                   f'loads = [{{ on = "{side}_pad", force = '
+                                   '[0, 0, -4e4] }]\n\n'
+                                   for side in ("left", "right")) +
+                           "[load_cases.service]"))
+        _, one = self.run_case(case, "one")
+        _, two = self.run_case(case, "two", "--jobs", "2")
+        self.assertIn("difference", {row["phase"] for row in self.rows(two)})
+        self.assert_same(one, two)
+
+    def test_killed_in_the_middle_it_goes_on_with_the_same_bits(self):
+        case = self.sweep("count = 12\n")
+        _, whole = self.run_case(case, "whole", "--jobs", "2")
+        for stop in (signal.SIGKILL, signal.SIGINT):
+            with self.subTest(stop=stop):
+                out = self.folder / stop.name
+                with self.start("run", case, *COARSE, "--no-pictures", "--out",
+                                out, "--jobs", "2") as run:
+                    self.wait_for(run, "evaluation 4 ")
+                    run.send_signal(stop)
+                    asked = time.monotonic()
+                    run.communicate(timeout=60)
+                    self.assertLess(time.monotonic() - asked, 10)
+                self.assertEqual(run.returncode, 130 if stop == signal.SIGINT
+                                 else -stop)
+                done = self.records(out)
+                self.assertGreaterEqual(len(done), 4)
+                # What is there is the beginning of the whole.
+                self.assertEqual(done, self.records(whole)[:len(done)])
+                again, _ = self.run_case(case, stop.name, "--jobs", "2",
+                                         "--resume")
+                self.expect(again, 0)
+                self.assert_same(whole, out)
+
+    def wait_for(self, run, text):
+        for line in run.stderr:
+            if text in line:
+                return
+        self.fail(f"no {text!r} was said")
+
+    def test_the_time_limit_ends_all_workers(self):
+        case = self.sweep("count = 500\n")
+        began = time.monotonic()
+        done, out = self.run_case(case, "out", "--jobs", "2", "--time-limit",
+                                  "1")
+        self.assertLess(time.monotonic() - began, 30)
+        self.expect(done, 3, "time limit of 1 s", "--resume")
+        sweep = self.result(out)["sweep"]
+        self.assertLess(sweep["looked_at"], 500)
+        # The start is no part of it.
+        self.assertEqual(len(self.records(out)), sweep["looked_at"] + 1)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
