@@ -93,7 +93,12 @@ std::vector<std::string> methods_of(StudyKind kind) {
 
 void check_method(CaseContext& context, const CaseTable& table,
                   const StudyEntry& study) {
-  const std::vector<std::string> methods = methods_of(study.kind);
+  std::vector<std::string> methods = methods_of(study.kind);
+  if (study.kind == StudyKind::Analyse) {  // the method waits, of either kind
+    for (const std::string& name : methods_of(StudyKind::Minimize)) {
+      methods.push_back(name);
+    }
+  }
   if (std::find(methods.begin(), methods.end(), study.method) ==
       methods.end()) {
     context.problems.unknown(table.line("method"), "method", study.method,
@@ -235,7 +240,9 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   }
   StudyEntry& study = result.study;
   study.line = table->line();
-  const std::string kind = table->choice("kind").value_or("analyse");
+  const std::string asked = table->choice("kind").value_or("analyse");
+  const std::string kind =
+      asked == "family" ? read_members(context, *table, result) : asked;
   study.kind = kind == "match"      ? StudyKind::Match
                : kind == "minimize" ? StudyKind::Minimize
                                     : StudyKind::Analyse;

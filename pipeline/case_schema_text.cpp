@@ -55,16 +55,18 @@ const char* type_text(const KeySpec& key) {
       return "zones";
     case K::Constraints:
       return "constraints";
+    case K::Members:
+      return "tables or text";
   }
   return "";
 }
 
 const char* dimension_text(const KeySpec& key) {
-  const bool quantity = key.type != K::Text && key.type != K::Choice &&
-                        key.type != K::Name && key.type != K::Names &&
-                        key.type != K::Integer && key.type != K::Flag &&
-                        key.type != K::Supports && key.type != K::Loads &&
-                        key.type != K::Zones && key.type != K::Constraints;
+  const bool quantity =
+      key.type != K::Text && key.type != K::Choice && key.type != K::Name &&
+      key.type != K::Names && key.type != K::Integer && key.type != K::Flag &&
+      key.type != K::Supports && key.type != K::Loads && key.type != K::Zones &&
+      key.type != K::Constraints && key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -168,6 +170,9 @@ Json type_schema(const KeySpec& key) {
       return array(object_schema(case_table("exclude")), 1, 0);
     case K::Constraints:
       return array(object_schema(case_table("constraint")), 1, 0);
+    case K::Members:
+      return {{"type", {"string", "object"}},
+              {"additionalProperties", {{"type", "object"}}}};
   }
   return {};
 }

@@ -1,7 +1,10 @@
 #include "pipeline/stored_case.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
+#include "io/atomic_file.h"
 #include "pipeline/case_reader.h"
 
 namespace meniscus {
@@ -28,6 +31,35 @@ Case restore_case(const StudyMeta& meta) {
   return *std::move(reading.input);
 }
 
+namespace {
+
+// Violations below it, as a part of the bound, do not count: the optimizer's
+// own tolerance.
+constexpr double kKept = 1e-6;
+
+/// The largest violation of the study's bounds, as a part of the bound.
+double violation(const Case& input, const VectorX& responses) {
+  double worst = 0.0;
+  for (const ConstraintEntry& c : input.study.constraints) {
+    const double value = responses[c.response];
+    const double beyond = std::max(c.lower - value, value - c.upper);
+    const double bound = value > c.upper ? c.upper : c.lower;
+    worst = std::max(worst, beyond / (bound != 0.0 ? std::abs(bound) : 1.0));
+  }
+  return worst < kKept ? 0.0 : worst;
+}
+
+bool is_better_minimum(const Case& input, const EvaluationRecord& one,
+                       const EvaluationRecord& other) {
+  const double left = violation(input, one.responses);
+  const double right = violation(input, other.responses);
+  const int objective = input.study.objective;
+  return left < right || (left == right && one.responses[objective] <
+                                               other.responses[objective]);
+}
+
+}  // namespace
+
 const EvaluationRecord& best_record(
     const Case& input, const std::vector<EvaluationRecord>& records) {
   const EvaluationRecord* best = nullptr;
@@ -38,7 +70,9 @@ const EvaluationRecord& best_record(
     const bool better =
         best == nullptr ||
         (input.study.kind == StudyKind::Match && record.mismatch &&
-         (!best->mismatch || *record.mismatch < *best->mismatch));
+         (!best->mismatch || *record.mismatch < *best->mismatch)) ||
+        (input.study.kind == StudyKind::Minimize &&
+         is_better_minimum(input, record, *best));
     best = better ? &record : best;
   }
   if (best == nullptr) {
@@ -46,6 +80,30 @@ const EvaluationRecord& best_record(
         "the study has no design that could be evaluated; nothing to export");
   }
   return *best;
+}
+
+VectorX answer_of_run(const Case& input,
+                      const std::vector<EvaluationRecord>& records,
+                      const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "result.json")) {
+    const auto result = nlohmann::json::parse(read_file(folder / "result.json"),
+                                              nullptr, false);
+    VectorX design = initial_design(input);
+    for (std::size_t k = 0; k < input.design.size(); ++k) {
+      const nlohmann::json::json_pointer at("/parameters/" +
+                                            input.design[k].name);
+      if (result.is_object() && result.contains(at)) {
+        design[static_cast<Eigen::Index>(k)] = result[at].get<double>();
+      }
+    }
+    for (const EvaluationRecord& record : records) {
+      if (!record.failure && record.inputs.size() == design.size() &&
+          record.inputs == design) {
+        return design;
+      }
+    }
+  }
+  return best_record(input, records).inputs;
 }
 
 }  // namespace meniscus

@@ -200,8 +200,23 @@ void StudyRunner::warn() {
   }
 }
 
+/// The optimizers start at the caller's design where it can be evaluated.
+void StudyRunner::choose_begin() {
+  begin_ = initial_design(input_);
+  if (!options_.start || *options_.start == begin_) {
+    return;
+  }
+  if (const auto failure = evaluate(*options_.start, "start").failure) {
+    monitor_.log(Severity::Info,
+                 "starts from the initial design instead: " + failure->message);
+  } else {
+    begin_ = *options_.start;
+  }
+}
+
 void StudyRunner::conduct() {
-  result_.evaluations = 0;  // the optimizers ask for the start again
+  choose_begin();
+  --result_.evaluations;  // the optimizers ask for the start again
   switch (input_.study.kind) {
     case StudyKind::Match:
       return match();

@@ -48,11 +48,11 @@ bool uses_gradients(const Case& input) {
                      [&](int r) { return has_derivatives(input, r); });
 }
 
-std::vector<Variable> variables_of(const Case& input) {
+std::vector<Variable> variables_of(const Case& input, const VectorX& begin) {
   std::vector<Variable> variables;
   for (const DesignVariable& v : input.design) {
     variables.push_back({.name = v.name,
-                         .initial = v.initial,
+                         .initial = begin[std::ssize(variables)],
                          .lower = v.lower,
                          .upper = v.upper});
   }
@@ -93,7 +93,7 @@ JacobianFunction StudyRunner::match_jacobian() {
 
 void StudyRunner::match() {
   const MatchReport report = meniscus::match(
-      variables_of(input_),
+      variables_of(input_, begin_),
       [&](const VectorX& x) { return answer(*targets_, evaluate(x, phase_)); },
       {.method = input_.study.method,
        .tolerance = input_.study.tolerance,
@@ -120,7 +120,7 @@ void StudyRunner::match() {
 /// The objective and the constraints as the optimizer sees them.
 MinimizeProblem StudyRunner::minimize_problem() {
   MinimizeProblem problem;
-  problem.variables = variables_of(input_);
+  problem.variables = variables_of(input_, begin_);
   problem.objective = input_.responses[input_.study.objective].name;
   for (const ConstraintEntry& constraint : input_.study.constraints) {
     problem.constraints.push_back(

@@ -27,6 +27,7 @@ class StudyRunner {
   EvaluationRecord evaluate(const VectorX& design, const std::string& phase);
   JacobianAnswer gradient(const VectorX& design,
                           const std::vector<int>& responses);
+  void choose_begin();
   void conduct();
   void analyse();
   void match();
@@ -57,6 +58,7 @@ class StudyRunner {
   Eigen::MatrixXd jacobian_;
   std::string phase_ = "start";
   bool with_gradients_ = false;  // the method asks for them, all have them
+  VectorX begin_;                // where the optimizers start
   VectorX best_design_;
   RunResult result_;
   // What the last computed evaluation left, so that the best design's meshes
@@ -69,7 +71,7 @@ class StudyRunner {
 /// The study's method asks for derivatives, and all that it looks at have them.
 bool uses_gradients(const Case& input);
 
-/// The design variables as the optimizers want them.
-std::vector<Variable> variables_of(const Case& input);
+/// The design variables as the optimizers want them, from `begin`.
+std::vector<Variable> variables_of(const Case& input, const VectorX& begin);
 
 }  // namespace meniscus
