@@ -9,6 +9,8 @@
 
 namespace meniscus {
 
+struct Case;
+
 struct CommonArguments {
   std::vector<std::string> overrides;  // "name=value"
   std::string out;                     // results folder; empty: results/<name>
@@ -21,8 +23,8 @@ struct RunArguments {
   CommonArguments common;
   bool resume = false;
   bool pictures = true;
-  int threads = 0;          // 0: OpenMP's own number
-  int jobs = 1;             // independent designs side by side
+  int threads = 0;  // 0: OpenMP's own number
+  int jobs = 1;     // independent designs, or members of a family, side by side
   double time_limit = 0.0;  // [s], 0: none
 };
 
@@ -31,6 +33,12 @@ struct ExportArguments {
   std::string format;          // "stl", "inp", "vtu"
   std::optional<double> edge;  // [length]; the run's own when absent
   std::string out;             // file; empty: into the run's folder
+};
+
+struct CompareArguments {
+  std::vector<std::string> parts;  // results folders, and STL files after one
+  std::string out = "results/compare";  // folder of compare.json, compare.csv
+  bool quiet = false;
 };
 
 struct EvolveArguments {
@@ -53,7 +61,12 @@ int new_command(const std::string& name);
 int check_command(const std::string& case_path, const CommonArguments& common);
 int check_gradient_command(const CheckGradientArguments& arguments);
 int run_command(const RunArguments& arguments);
+/// The same of a family; `warnings` of its reading.
+int run_family_command(const Case& input,
+                       const std::vector<std::string>& warnings,
+                       const RunArguments& arguments);
 int evolve_command(const EvolveArguments& arguments);
+int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int study_show_command(const std::string& folder, const std::string& csv);
 

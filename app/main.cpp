@@ -72,9 +72,9 @@ int run_program(int argc, char** argv) {
                   "threads that a run may use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   run->add_option("--jobs", run_arguments.jobs,
-                  "designs evaluated side by side where a study knows several "
-                  "ahead, each with its share of the threads; results do not "
-                  "depend on it")
+                  "designs, or members of a family, worked on side by side "
+                  "where a study knows several ahead, each with its share of "
+                  "the threads; results do not depend on it")
       ->check(CLI::Range(1, meniscus::kMostJobs));
   run->add_option("--time-limit", run_arguments.time_limit,
                   "stop after so many seconds and keep the best point")
@@ -155,6 +155,22 @@ int run_program(int argc, char** argv) {
                     "file (default: into the run's folder)");
   write->callback([&] {
     command = [&] { return meniscus::export_command(export_arguments); };
+  });
+
+  meniscus::CompareArguments compare_arguments;
+  CLI::App* compare = app.add_subcommand(
+      "compare", "parts side by side: mass, stiffness, stress, uniformity");
+  compare
+      ->add_option("PART", compare_arguments.parts,
+                   "results folders; after the first also ASCII STL files with "
+                   "a solid for each named face")
+      ->required()
+      ->expected(2, 100);
+  compare->add_option("--out", compare_arguments.out,
+                      "folder of compare.json and compare.csv");
+  compare->add_flag("--quiet", compare_arguments.quiet, "errors only");
+  compare->callback([&] {
+    command = [&] { return meniscus::compare_command(compare_arguments); };
   });
 
   std::string folder;

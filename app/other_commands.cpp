@@ -12,6 +12,7 @@
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
 #include "pipeline/datafile.h"
+#include "pipeline/family_table.h"
 #include "pipeline/new_case.h"
 #include "pipeline/results.h"
 #include "pipeline/study_table.h"
@@ -49,9 +50,12 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
   const Case& input = *reading.input;
   std::printf(
       "%s: nothing wrong found: %zu curves, %zu films, %zu bodies, %zu design "
-      "variables, %zu responses\n",
+      "variables, %zu responses%s\n",
       case_path.c_str(), input.curves.size(), input.films.size(),
-      input.bodies.size(), input.design.size(), input.responses.size());
+      input.bodies.size(), input.design.size(), input.responses.size(),
+      input.study.members.empty()
+          ? ""
+          : fmt::format(", {} members", input.study.members.size()).c_str());
   return kExitDone;
 }
 
@@ -190,6 +194,16 @@ int evolve_command(const EvolveArguments& arguments) {
 
 int study_show_command(const std::string& folder, const std::string& csv) {
   try {
+    const fs::path family = fs::path(folder) / "family.csv";
+    if (fs::exists(family)) {
+      const std::string table = read_file(family);
+      if (csv.empty()) {
+        std::fputs(family_table_text(table).c_str(), stdout);
+      } else {
+        write_file(csv, table);
+      }
+      return kExitDone;
+    }
     const StudyStore store = StudyStore::read(folder);
     const std::vector<EvaluationRecord> records = store.all();
     if (csv.empty()) {

@@ -7,8 +7,8 @@
 
 #include "app/case_input.h"
 #include "app/commands.h"
-#include "app/draw.h"
 #include "app/exit_code.h"
+#include "app/run_files.h"
 #include "app/signals.h"
 #include "app/versions.h"
 #include "core/timer.h"
@@ -31,22 +31,6 @@ StudyStore open_store(const Case& input, const std::string& folder,
                        .case_text = stored_case(input)};
   return resume ? StudyStore::resume(folder, meta)
                 : StudyStore::start(folder, meta);
-}
-
-int exit_code_of(RunStatus status) {
-  switch (status) {
-    case RunStatus::Converged:
-      return kExitDone;
-    case RunStatus::Infeasible:
-    case RunStatus::Stopped:
-    case RunStatus::Failed:
-      return kExitNoSolution;
-    case RunStatus::Error:
-      return kExitError;
-    case RunStatus::Interrupted:
-      return kExitInterrupted;
-  }
-  return kExitError;
 }
 
 /// One run from the open study to the files.
@@ -77,19 +61,7 @@ class Run {
 /// Meshes and pictures first, result.json last: it tells that all is there.
 void Run::write_all(RunResult& result, const EvaluationFields& fields) {
   const Timer timer;
-  if (!fields.mesh.nodes.empty()) {
-    monitor_.progress({.stage = "output", .detail = "writing meshes"});
-    write_meshes(input_, fields, folder_);
-    if (arguments_.pictures) {
-      monitor_.progress({.stage = "output", .detail = "drawing pictures"});
-      for (std::string& warning : draw(input_, fields, folder_, monitor_)) {
-        result.warnings.push_back(std::move(warning));
-      }
-    }
-  }
-  for (const std::string& name : write_unfilled(fields, folder_)) {
-    result.warnings.push_back("look at the surface in " + name);
-  }
+  write_run_files(input_, fields, folder_, arguments_, monitor_, result);
   result.output_seconds = timer.seconds();
   result.total_seconds += result.output_seconds;
   write_summary(input_, result, store_.all(), kProgramVersion, folder_);
@@ -158,6 +130,9 @@ int run_command(const RunArguments& arguments) {
     return kExitWrongInput;
   }
   const Case& input = *reading.input;
+  if (!input.study.members.empty()) {
+    return run_family_command(input, reading.warnings, arguments);
+  }
   const fs::path folder = results_folder(input, arguments.common.out);
   catch_stop_signals();
   std::optional<StudyStore> store;

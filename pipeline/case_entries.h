@@ -222,8 +222,16 @@ struct ConstraintEntry {
   SourceLine line = 0;
 };
 
+/// One member of a family: the case with these overrides on top of its own.
+struct MemberEntry {
+  std::string name;                    // of its folder too
+  std::vector<std::string> overrides;  // "name=value", as for --set
+  std::string place;                   // "case.toml:12" or "members.csv:3"
+};
+
 struct StudyEntry {
-  StudyKind kind = StudyKind::Analyse;
+  StudyKind kind = StudyKind::Analyse;  // of a family: of each member's study
+  std::vector<MemberEntry> members;     // of a family, in order; else empty
   std::vector<std::string> equal;
   std::vector<std::pair<std::string, double>> targets;
   std::optional<int> objective;  // index of a response

@@ -12,6 +12,7 @@
 #include "pipeline/case_reader_overrides.h"
 #include "pipeline/case_reader_tables.h"
 #include "pipeline/content_hash.h"
+#include "pipeline/family_members.h"
 
 namespace meniscus {
 
@@ -64,6 +65,9 @@ CaseReading read_case_text(const std::string& text, const std::string& path,
   CaseReading reading;
   reading.problems = problems.take();
   reading.warnings = problems.take_warnings();
+  if (reading.problems.empty()) {
+    reading.problems = member_problems(result);
+  }
   if (reading.problems.empty()) {
     reading.input = std::move(result);
   }

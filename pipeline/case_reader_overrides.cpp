@@ -28,6 +28,9 @@ void list_keys(const toml::table& table, const std::string& prefix,
                std::vector<std::string>& keys) {
   for (const auto& [key, node] : table) {
     const std::string path = prefix + std::string(key.str());
+    if (path == "study.members") {  // values of their own, not the case's
+      continue;
+    }
     if (const toml::table* inner = node.as_table()) {
       list_keys(*inner, path + ".", keys);
     } else {

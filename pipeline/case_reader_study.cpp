@@ -106,10 +106,14 @@ std::vector<std::string> methods_of(StudyKind kind) {
 
 void check_method(CaseContext& context, const CaseTable& table,
                   const StudyEntry& study) {
-  if (study.kind == StudyKind::Analyse) {
-    return;  // another kind's, which waits
+  std::vector<std::string> methods = methods_of(study.kind);
+  if (study.kind == StudyKind::Analyse) {  // the method waits, of any kind
+    for (const StudyKind kind : {StudyKind::Minimize, StudyKind::Sweep}) {
+      for (const std::string& name : methods_of(kind)) {
+        methods.push_back(name);
+      }
+    }
   }
-  const std::vector<std::string> methods = methods_of(study.kind);
   if (std::find(methods.begin(), methods.end(), study.method) ==
       methods.end()) {
     context.problems.unknown(table.line("method"), "method", study.method,
@@ -264,7 +268,9 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   }
   StudyEntry& study = result.study;
   study.line = table->line();
-  const std::string kind = table->choice("kind").value_or("analyse");
+  const std::string asked = table->choice("kind").value_or("analyse");
+  const std::string kind =
+      asked == "family" ? read_members(context, *table, result) : asked;
   study.kind = kind_of(kind);
   const bool minimizes = study.kind == StudyKind::Minimize;
   const bool sweeps = study.kind == StudyKind::Sweep;

@@ -50,6 +50,11 @@ int index_of_load_case(CaseContext& context, const CaseTable& table,
 void read_responses(CaseContext& context, const toml::table& root,
                     Case& result);
 
+/// The members of a family, from tables or a csv file; the kind of each one's
+/// own study.
+std::string read_members(CaseContext& context, const CaseTable& study,
+                         Case& result);
+
 /// After the responses.
 void read_study(CaseContext& context, const toml::table& root, Case& result);
 

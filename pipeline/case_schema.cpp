@@ -308,8 +308,17 @@ std::vector<TableSpec> make_tables() {
        false,
        N::Optional,
        "What to do; analyse the initial design when left out",
-       {{"kind", K::Choice, D::None, true, "analyse, match, minimize or sweep",
-         "analyse|match|minimize|sweep", "family|pareto|tolerance"},
+       {{"kind", K::Choice, D::None, true,
+         "analyse, match, minimize or sweep; family: one of these for each "
+         "member",
+         "analyse|match|minimize|sweep|family", "pareto|tolerance"},
+        {"each", K::Choice, D::None, false,
+         "of family: what each member's own study is, with the keys of that "
+         "kind; minimize when left out",
+         "minimize|match|analyse"},
+        {"members", K::Members, D::None, false,
+         "of family: a table [study.members.NAME] of values by the names of "
+         "--set for each, or the path of a csv file, relative to the case"},
         {"equal", K::Names, D::None, false,
          "of match: responses to make equal; mismatch |a-b| / ((|a|+|b|)/2)"},
         {"targets", K::ConstantMap, std::nullopt, false,

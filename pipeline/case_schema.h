@@ -33,7 +33,8 @@ enum class KeyType {
   Supports,        // array of inline tables: table "support"
   Loads,           // array of inline tables: table "load"
   Zones,           // array of inline tables: table "exclude"
-  Constraints      // array of inline tables: table "constraint"
+  Constraints,     // array of inline tables: table "constraint"
+  Members          // tables by name, or the name of a csv file
 };
 
 struct KeySpec {

@@ -56,6 +56,8 @@ const char* type_text(const KeySpec& key) {
       return "zones";
     case K::Constraints:
       return "constraints";
+    case K::Members:
+      return "tables or text";
   }
   return "";
 }
@@ -66,7 +68,7 @@ const char* dimension_text(const KeySpec& key) {
                         key.type != K::Integer && key.type != K::Flag &&
                         key.type != K::IntegerMap && key.type != K::Supports &&
                         key.type != K::Loads && key.type != K::Zones &&
-                        key.type != K::Constraints;
+                        key.type != K::Constraints && key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -173,6 +175,9 @@ Json type_schema(const KeySpec& key) {
       return array(object_schema(case_table("exclude")), 1, 0);
     case K::Constraints:
       return array(object_schema(case_table("constraint")), 1, 0);
+    case K::Members:
+      return {{"type", {"string", "object"}},
+              {"additionalProperties", {{"type", "object"}}}};
   }
   return {};
 }

@@ -30,7 +30,7 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   const StudyStore store = StudyStore::read(folder.string());
   const Case input = at_edge(restore_case(store.meta()), options.edge);
   const std::vector<EvaluationRecord> records = store.all();
-  const VectorX design = best_record(input, records).inputs;
+  const VectorX design = answer_of_run(input, records, folder);
   const double edge = options.edge.value_or(input.resolution.fea);
   fs::path file =
       options.out.empty()

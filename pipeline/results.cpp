@@ -107,14 +107,6 @@ MeshFields part_fields(const Case& input, const EvaluationFields& fields) {
   return out;
 }
 
-Json units_json(const UnitSystem& units) {
-  return {{"system", units.name},
-          {"length", units.length},
-          {"force", units.force},
-          {"pressure", units.pressure},
-          {"mass", units.mass}};
-}
-
 Json value_map(const std::vector<std::string>& names, const VectorX& values) {
   Json map = Json::object();
   for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -132,6 +124,14 @@ Json parameters_json(const Case& input, const VectorX& design) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json units_json(const UnitSystem& units) {
+  return {{"system", units.name},
+          {"length", units.length},
+          {"force", units.force},
+          {"pressure", units.pressure},
+          {"mass", units.mass}};
+}
 
 nlohmann::ordered_json film_json(const FilmReport& film) {
   Json bodies = Json::object();

@@ -15,6 +15,9 @@ namespace meniscus {
 /// Version of result.json's schema (docs/results.md).
 inline constexpr int kResultSchemaVersion = 1;
 
+/// Each unit by what it is of, of result.json.
+nlohmann::ordered_json units_json(const UnitSystem& units);
+
 /// The film's part of result.json.
 nlohmann::ordered_json film_json(const FilmReport& film);
 

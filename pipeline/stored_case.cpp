@@ -1,7 +1,10 @@
 #include "pipeline/stored_case.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
+#include "io/atomic_file.h"
 #include "pipeline/case_reader.h"
 #include "pipeline/incumbent.h"
 
@@ -51,6 +54,30 @@ const EvaluationRecord& best_record(
         "the study has no design that could be evaluated; nothing to export");
   }
   return *best;
+}
+
+VectorX answer_of_run(const Case& input,
+                      const std::vector<EvaluationRecord>& records,
+                      const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "result.json")) {
+    const auto result = nlohmann::json::parse(read_file(folder / "result.json"),
+                                              nullptr, false);
+    VectorX design = initial_design(input);
+    for (std::size_t k = 0; k < input.design.size(); ++k) {
+      const nlohmann::json::json_pointer at("/parameters/" +
+                                            input.design[k].name);
+      if (result.is_object() && result.contains(at)) {
+        design[static_cast<Eigen::Index>(k)] = result[at].get<double>();
+      }
+    }
+    for (const EvaluationRecord& record : records) {
+      if (!record.failure && record.inputs.size() == design.size() &&
+          record.inputs == design) {
+        return design;
+      }
+    }
+  }
+  return best_record(input, records).inputs;
 }
 
 }  // namespace meniscus

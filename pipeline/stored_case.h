@@ -2,6 +2,7 @@
 /// the part can be made again from the results folder alone.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,16 @@ std::string stored_case(const Case& input);
 /// The case back. Throws IoError when the study holds none that can be read.
 Case restore_case(const StudyMeta& meta);
 
-/// The incumbent of a study: the evaluated design with the least mismatch, of
-/// an analysis the first. Throws InvalidInput when there is none.
+/// The incumbent of a study: the evaluated design with the least mismatch; of a
+/// minimum the one that violates its bounds least, then with the least
+/// objective; of an analysis the first. Throws InvalidInput when there is none.
 const EvaluationRecord& best_record(
     const Case& input, const std::vector<EvaluationRecord>& records);
+
+/// The design of the run's answer: that of FOLDER/result.json where the study
+/// has it, else of best_record(). Throws as that does.
+VectorX answer_of_run(const Case& input,
+                      const std::vector<EvaluationRecord>& records,
+                      const std::filesystem::path& folder);
 
 }  // namespace meniscus

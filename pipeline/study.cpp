@@ -39,6 +39,7 @@ class StudyRun {
  private:
   bool freeze();
   bool start();
+  VectorX begin();
   void conduct_study();
   bool finish_best();
   void solve_eigenproblems();
@@ -105,13 +106,29 @@ bool StudyRun::start() {
   return true;
 }
 
+/// The caller's design where it can be evaluated, else the initial one.
+VectorX StudyRun::begin() {
+  const VectorX& initial = result_.start->design;
+  if (!options_.start || *options_.start == initial) {
+    return initial;
+  }
+  if (const auto failure =
+          evaluator_->evaluate(*options_.start, "start").failure) {
+    monitor_.log(Severity::Info,
+                 "starts from the initial design instead: " + failure->message);
+    return initial;
+  }
+  return *options_.start;
+}
+
 void StudyRun::conduct_study() {
+  const VectorX start = begin();
   evaluator_->reset_counts();  // the kinds of study ask for the start again
   outcome_ = conduct({.input = input_,
                       .evaluator = *evaluator_,
                       .options = options_,
                       .targets = targets_ ? &*targets_ : nullptr,
-                      .start = result_.start->design});
+                      .start = start});
   result_.status = outcome_.status;
   result_.message = outcome_.message;
   result_.objective = outcome_.objective;

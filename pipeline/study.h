@@ -63,6 +63,10 @@ struct StudyOptions {
   double time_limit = 0.0;      // [s], 0: none
   bool estimate_errors = true;  // one more, coarser model
   int jobs = 1;  // independent designs side by side; no effect on what is found
+  /// Where the optimizer starts, within the bounds; the model freezes at the
+  /// case's initial design all the same, and that is the start where this one
+  /// cannot be evaluated. None: the initial design.
+  std::optional<VectorX> start = {};
   Monitor* monitor = nullptr;
 };
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/text_table.h"
+
 namespace meniscus {
 namespace {
 
@@ -66,63 +68,23 @@ std::vector<Row> table(const std::vector<EvaluationRecord>& records,
   return rows;
 }
 
-std::string quoted(const std::string& cell) {
-  if (cell.find_first_of(",\"\r\n") == std::string::npos) {
-    return cell;
-  }
-  std::string text = "\"";
-  for (const char c : cell) {
-    text += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return text + "\"";
-}
-
-// Characters of UTF-8 text as a terminal counts them, near enough.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
-}
-
 }  // namespace
 
 std::string history_csv(const std::vector<EvaluationRecord>& records) {
   std::vector<Row> rows =
       table(records, [](double value) { return fmt::format("{}", value); });
   rows[0].emplace_back("message");
-  std::string text;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i > 0) {
-      const std::optional<Failure>& failure = records[i - 1].failure;
-      rows[i].push_back(failure ? failure->message : "");
-    }
-    for (std::size_t j = 0; j < rows[i].size(); ++j) {
-      if (j > 0) {
-        text += ',';
-      }
-      text += quoted(rows[i][j]);
-    }
-    text += '\n';
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const std::optional<Failure>& failure = records[i - 1].failure;
+    rows[i].push_back(failure ? failure->message : "");
   }
-  return text;
+  return csv_text(rows);
 }
 
 std::string study_table_text(const std::vector<EvaluationRecord>& records) {
   const std::vector<Row> rows =
       table(records, [](double value) { return fmt::format("{:.6g}", value); });
-  std::vector<std::size_t> widths(rows[0].size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t j = 0; j < row.size(); ++j) {
-      widths[j] = std::max(widths[j], width_of(row[j]));
-    }
-  }
-  std::string text;
-  for (const Row& row : rows) {
-    for (std::size_t j = 0; j < row.size(); ++j) {
-      text += (j == 0 ? "" : "  ") +
-              std::string(widths[j] - width_of(row[j]), ' ') + row[j];
-    }
-    text += '\n';
-  }
+  std::string text = aligned_text(rows);
   for (const EvaluationRecord& record : records) {
     if (record.failure) {
       text += fmt::format("{}: {}\n", record.number, record.failure->message);

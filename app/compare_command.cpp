@@ -1,0 +1,108 @@
+#include <cstdio>
+#include <filesystem>
+#include <omp.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/exit_code.h"
+#include "app/signals.h"
+#include "app/terminal_monitor.h"
+#include "app/versions.h"
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "pipeline/part_comparison.h"
+#include "pipeline/stl_part.h"
+#include "pipeline/text_table.h"
+
+namespace meniscus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_stl(const fs::path& path) {
+  return path.extension() == ".stl" || path.extension() == ".STL";
+}
+
+/// Labels flush left in a table whose columns are flush right.
+std::string for_people(std::vector<TextRow> table) {
+  std::size_t width = 0;
+  for (const TextRow& row : table) {
+    width = std::max(width, row[0].size());
+  }
+  for (TextRow& row : table) {
+    row[0].resize(width, ' ');
+  }
+  return aligned_text(table);
+}
+
+/// All runs, then the files, which take the first run's loads.
+std::vector<PartFigures> load_parts(const CompareArguments& arguments,
+                                    Monitor& monitor, UnitSystem& units) {
+  std::vector<PartFigures> parts;
+  if (is_stl(arguments.parts.front())) {
+    throw InvalidInput(
+        "the first part must be a run: a file takes material, supports and "
+        "loads from it");
+  }
+  RunPart first = load_run_part(arguments.parts.front(), &monitor);
+  units = first.input.units;
+  parts.push_back(first.figures);
+  for (std::size_t k = 1; k < arguments.parts.size(); ++k) {
+    const fs::path path = arguments.parts[k];
+    if (is_stl(path)) {
+      parts.push_back(stl_part_figures(path, first, &monitor));
+      continue;
+    }
+    const RunPart run = load_run_part(path, &monitor);
+    if (run.input.units.name != units.name) {
+      throw InvalidInput(fmt::format(
+          "{} is in {} and {} in {}; only parts in the same units can be "
+          "compared",
+          path.string(), run.input.units.name, arguments.parts.front(),
+          units.name));
+    }
+    parts.push_back(run.figures);
+  }
+  return parts;
+}
+
+}  // namespace
+
+int compare_command(const CompareArguments& arguments) {
+  catch_stop_signals();
+  TerminalMonitor monitor(
+      {.style = arguments.quiet ? MonitorStyle::Quiet : MonitorStyle::Automatic,
+       .stop = [] { return stop_signal() != 0; }});
+  const fs::path folder = arguments.out;
+  try {
+    UnitSystem units;
+    const std::vector<PartFigures> parts =
+        load_parts(arguments, monitor, units);
+    const std::vector<TextRow> table = comparison_table(parts, units);
+    if (!arguments.quiet) {
+      std::fputs(for_people(table).c_str(), stdout);
+    }
+    make_folder(folder);
+    write_file(folder / "compare.csv", csv_text(table));
+    write_file(folder / "compare.json",
+               comparison_json(parts, units, kProgramVersion).dump(2) + "\n");
+    if (!arguments.quiet) {
+      std::printf("written to %s\n", (folder / "compare.json").c_str());
+    }
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  } catch (const MeshError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitNoSolution;
+  } catch (const SolverError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitNoSolution;
+  }
+  return kExitDone;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,90 @@
+#include <cstdio>
+#include <filesystem>
+#include <mutex>
+#include <omp.h>
+
+#include "app/case_input.h"
+#include "app/commands.h"
+#include "app/exit_code.h"
+#include "app/run_files.h"
+#include "app/signals.h"
+#include "app/versions.h"
+#include "io/atomic_file.h"
+#include "pipeline/family.h"
+#include "pipeline/forward_model.h"
+#include "pipeline/walls.h"
+
+namespace meniscus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void explain(const FamilyResult& result, const fs::path& folder, bool quiet) {
+  const bool good = result.status == RunStatus::Converged;
+  if (!good || !quiet) {
+    std::fprintf(good ? stdout : stderr, "%s: %s\n", name_of(result.status),
+                 result.message.c_str());
+  }
+  if (quiet) {
+    return;
+  }
+  std::fputs(family_table_text(family_csv(result.rows)).c_str(), stdout);
+  std::printf("  %zu members in %.1f s\n  results in %s\n", result.rows.size(),
+              result.total_seconds, folder.string().c_str());
+  std::fflush(stdout);
+  for (const std::string& warning : result.warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+}
+
+}  // namespace
+
+int run_family_command(const Case& input,
+                       const std::vector<std::string>& warnings,
+                       const RunArguments& arguments) {
+  const fs::path folder = results_folder(input, arguments.common.out);
+  catch_stop_signals();
+  TerminalMonitorOptions options = monitor_options(arguments.common);
+  options.outer_stage = "family";
+  TerminalMonitor monitor(std::move(options));
+  try {
+    refuse_walls(input);
+    require_solver(input);
+    make_folder(folder);
+    remove_leftovers(folder);
+    fs::remove(folder / "result.json");
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  } catch (const fs::filesystem_error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+  std::mutex drawing;  // one private display at a time
+  try {
+    FamilyResult result = run_family(
+        input,
+        {.folder = folder,
+         .program_version = kProgramVersion,
+         .resume = arguments.resume,
+         .jobs = arguments.jobs,
+         .threads = omp_get_max_threads(),
+         .time_limit = arguments.time_limit,
+         .monitor = &monitor,
+         .write_files = [&](const Case& member, const EvaluationFields& fields,
+                            const fs::path& place, RunResult& outcome) {
+           const std::lock_guard<std::mutex> guard(drawing);
+           write_run_files(member, fields, place, arguments, monitor, outcome);
+         }});
+    result.warnings.insert(result.warnings.begin(), warnings.begin(),
+                           warnings.end());
+    explain(result, folder, arguments.common.quiet);
+    return exit_code_of(result.status);
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return kExitError;
+  }
+}
+
+}  // namespace meniscus

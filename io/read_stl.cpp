@@ -1,0 +1,182 @@
+#include "io/read_stl.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+
+namespace meniscus {
+
+namespace {
+
+class Reader {
+ public:
+  Reader(const std::string& text, const std::string& path)
+      : text_(text), path_(path) {}
+
+  SurfaceMesh read();
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw InvalidInput(fmt::format("{}:{}: {}", path_, line_, what));
+  }
+  void skip_space(bool over_lines);
+  std::string word();
+  std::string rest_of_line();
+  void expect(const char* wanted);
+  double number();
+  void solid();
+  void facet();
+  int point();
+
+  const std::string& text_;
+  const std::string& path_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+  SurfaceMesh mesh_;
+  std::map<std::array<double, 3>, int> known_;
+};
+
+void Reader::skip_space(bool over_lines) {
+  while (at_ < text_.size()) {
+    const char c = text_[at_];
+    const bool space = c == ' ' || c == '\t' || c == '\r';
+    if (!space && !(c == '\n' && over_lines)) {
+      return;
+    }
+    line_ += c == '\n' ? 1 : 0;
+    ++at_;
+  }
+}
+
+std::string Reader::word() {
+  skip_space(true);
+  const std::size_t end =
+      std::min(text_.find_first_of(" \t\r\n", at_), text_.size());
+  std::string found = text_.substr(at_, end - at_);
+  at_ = end;
+  return found;
+}
+
+std::string Reader::rest_of_line() {
+  skip_space(false);
+  const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+  std::string found = text_.substr(at_, end - at_);
+  at_ = end;
+  const std::size_t last = found.find_last_not_of(" \t\r");
+  return last == std::string::npos ? "" : found.substr(0, last + 1);
+}
+
+void Reader::expect(const char* wanted) {
+  const std::string found = word();
+  if (found != wanted) {
+    refuse(fmt::format("found '{}'; expected '{}' of an ASCII STL file",
+                       found.substr(0, 40), wanted));
+  }
+}
+
+double Reader::number() {
+  const std::string found = word();
+  const char* begin = found.data() + (found.starts_with('+') ? 1 : 0);
+  const char* end = found.data() + found.size();
+  double value = 0.0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value)) {
+    refuse(
+        fmt::format("found '{}'; expected a coordinate", found.substr(0, 40)));
+  }
+  return value + 0.0;  // -0 is 0
+}
+
+int Reader::point() {
+  expect("vertex");
+  std::array<double, 3> x{};
+  for (double& coordinate : x) {
+    coordinate = number();
+  }
+  const auto [entry, is_new] =
+      known_.emplace(x, static_cast<int>(mesh_.points.size()));
+  if (is_new) {
+    mesh_.points.emplace_back(x[0], x[1], x[2]);
+  }
+  return entry->second;
+}
+
+/// After "facet".
+void Reader::facet() {
+  expect("normal");
+  for (int k = 0; k < 3; ++k) {
+    word();  // some programs write nan
+  }
+  expect("outer");
+  expect("loop");
+  const int a = point();
+  const int b = point();
+  const int c = point();
+  expect("endloop");
+  expect("endfacet");
+  if (a != b && b != c && c != a) {
+    mesh_.facets.push_back({a, b, c});
+    mesh_.facet_label.push_back(static_cast<int>(mesh_.labels.size()) - 1);
+  }
+}
+
+/// After "solid".
+void Reader::solid() {
+  const std::string name = rest_of_line();
+  if (name.empty()) {
+    refuse("a solid without a name; write `solid NAME`, one for each face");
+  }
+  if (mesh_.label_of(name) >= 0) {
+    refuse(fmt::format("a second solid '{}'; name each face once", name));
+  }
+  mesh_.labels.push_back(name);
+  for (std::string next = word(); next != "endsolid"; next = word()) {
+    if (next != "facet") {
+      refuse(
+          fmt::format("found '{}' in solid '{}'; expected 'facet' or "
+                      "'endsolid'",
+                      next.substr(0, 40), name));
+    }
+    facet();
+  }
+  rest_of_line();
+}
+
+SurfaceMesh Reader::read() {
+  if (text_.find('\0') != std::string::npos) {
+    refuse(
+        "a binary STL file; it has no names: write ASCII with a `solid "
+        "NAME` for each face");
+  }
+  for (std::string next = word(); !next.empty(); next = word()) {
+    if (next != "solid") {
+      refuse(
+          fmt::format("found '{}'; expected 'solid NAME' of an ASCII STL "
+                      "file",
+                      next.substr(0, 40)));
+    }
+    solid();
+  }
+  if (mesh_.facets.empty()) {
+    refuse("the file has no facets");
+  }
+  return std::move(mesh_);
+}
+
+}  // namespace
+
+SurfaceMesh read_stl_text(const std::string& text, const std::string& path) {
+  return Reader(text, path).read();
+}
+
+SurfaceMesh read_stl(const std::filesystem::path& path) {
+  return read_stl_text(read_file(path), path.string());
+}
+
+}  // namespace meniscus

@@ -1,0 +1,297 @@
+#!/usr/bin/env python3
+"""Families: each member sized as when run alone, whatever the order, the jobs
+and the interruptions; one table; wrong members told by line. And parts side by
+side."""
+import csv
+import json
+import os
+import re
+import signal
+import sqlite3
+import time
+import unittest
+
+import program
+from program import ProgramTest
+
+STRUT = program.ROOT / "cases" / "strut_family" / "case.toml"
+SMALL = ["--set", "resolution.fea=12", "--set", "resolution.film=6"]
+MEMBERS = """name,length,offset,load,fill.lower,fill.upper
+short,60,8,3500,,
+middle,70,8,3000,,
+far,70,16,3000,,
+long,80,8,2500,0.9,1.4
+"""
+# Both searches end where the first-order residual is below 1e-4: about that
+# part of the mass may be left in each.
+COLD = 3e-4
+
+
+class Family(ProgramTest):
+    def family(self, members=MEMBERS, *replacements):
+        text = re.sub(r"(?s)\n\[study\.members.*", "\n", STRUT.read_text())
+        text = text.replace('[study]\n', '[study]\nmembers = "members.csv"\n')
+        for old, new in replacements:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        case = self.folder / "case.toml"
+        case.write_text(text)
+        (self.folder / "members.csv").write_text(members)
+        return case
+
+    def sized(self, case, name, code, *more):
+        out = self.folder / name
+        done = self.expect(
+            self.call("run", case, *SMALL, "--no-pictures", "--out", out,
+                      *more), code)
+        return out, done
+
+    def rows(self, out):
+        with open(out / "family.csv", newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def numbers(self, out):
+        """All that must have the same bits."""
+        keep = ("name", "parent", "status", "message", "parameters", "design",
+                "objective", "constraints", "responses", "evaluations")
+        return json.dumps([{k: m[k] for k in keep}
+                           for m in self.result(out)["members"]])
+
+    def test_each_member_is_sized_as_alone_from_cold(self):
+        case = self.family()
+        out, done = self.sized(case, "out", 0)
+        self.assertIn("4 of 4 members are sized", done.stdout)
+        result = self.result(out)
+        self.assertEqual(result["status"], "converged")
+        members = {m["name"]: m for m in result["members"]}
+        self.assertEqual(list(members), ["short", "middle", "far", "long"])
+        # The tree: each but the first starts from the nearest answer.
+        self.assertEqual([m["parent"] for m in members.values()],
+                         ["", "short", "middle", "middle"])
+        for row in csv.DictReader(MEMBERS.splitlines()):
+            alone = [f"{k}={row[k]}" for k in ("length", "offset", "load")]
+            if row["fill.lower"]:
+                alone.append("design.fill.bounds=[0.9, 1.4]")
+            cold, _ = self.sized(case, "cold " + row["name"], 0, *(
+                word for text in ["study.kind=minimize", *alone]
+                for word in ("--set", text)))
+            member, single = members[row["name"]], self.result(cold)
+            self.assertAlmostEqual(
+                member["objective"] / single["objective"], 1, delta=COLD)
+            self.assertLess(member["responses"]["deflection"], 0.1 + 1e-6)
+            self.assertEqual(member["parameters"]["load"], float(row["load"]))
+        for member in members.values():
+            folder = out / member["folder"]
+            for name in ("result.json", "study.sqlite", "history.csv",
+                         "part.vtu", "film.vtp", "part_6.stl"):
+                self.assertGreater((folder / name).stat().st_size, 300, name)
+            own = self.result(folder)
+            self.assertEqual(own["objective"], member["objective"])
+            self.assertEqual(own["member"]["parent"], member["parent"])
+        table = self.rows(out)
+        self.assertEqual([float(row["mass"]) for row in table],
+                         [m["objective"] for m in members.values()])
+        self.expect(self.call("study", "show", out), 0, "middle  *converged")
+        self.assert_no_half_files(out)
+        # Side by side, and read again: the same bits.
+        two, _ = self.sized(case, "two", 0, "--jobs", "2")
+        self.assertEqual(self.numbers(out), self.numbers(two))
+        for member in members.values():
+            part = pathlib_part(member)
+            self.assertEqual((out / part).read_bytes(),
+                             (two / part).read_bytes())
+        stamp = os.stat(out / "members/far/result.json").st_mtime_ns
+        self.sized(case, "out", 0, "--resume")
+        self.assertEqual(self.numbers(out), self.numbers(two))
+        self.assertEqual(os.stat(out / "members/far/result.json").st_mtime_ns,
+                         stamp)
+        self.compare(out)
+
+    def compare(self, out):
+        """Two members side by side; and a block of known stiffness."""
+        there = self.folder / "sides"
+        done = self.expect(
+            self.call("compare", out / "members/short", out / "members/long",
+                      "--out", there), 0, r"mass \[t\]",
+            r"push: stiffness \[N/mm\]")
+        parts = json.loads((there / "compare.json").read_text())["parts"]
+        for part, name in zip(parts, ("short", "long")):
+            own = self.result(out / "members" / name)
+            self.assertAlmostEqual(part["mass"] / own["responses"]["mass"], 1,
+                                   10)
+            peak = own["stress"]["push"]["max_von_mises"]
+            self.assertAlmostEqual(
+                part["load_cases"]["push"]["max_von_mises"] / peak, 1, 9)
+            self.assertEqual(part["parts"], 1)
+        self.assertGreater((there / "compare.csv").stat().st_size, 100)
+        self.assertIn("written to", done.stdout)
+
+    def test_a_member_that_cannot_be_sized_is_a_row(self):
+        case = self.family("name,length,load,resolution.fea\n"
+                           "good,60,3500,\n"
+                           "weak,60,60000,\n"
+                           "slender,190,3000,\n"
+                           "other,64,3400,\n")
+        out, done = self.sized(case, "out", 3)
+        self.assertIn("2 of 4 members are sized; not weak (infeasible), "
+                      "slender (failed)", done.stderr)
+        rows = {row["member"]: row for row in self.rows(out)}
+        self.assertIn("deflection", rows["weak"]["message"])
+        self.assertRegex(rows["slender"]["message"], "pinch|unstable|neck")
+        self.assertEqual(rows["good"]["status"], "converged")
+        self.assertEqual(rows["other"]["status"], "converged")
+        self.assertEqual(self.result(out)["status"], "infeasible")
+
+    def test_ctrl_c_then_resume_ends_with_the_same_bits(self):
+        case = self.family()
+        whole, _ = self.sized(case, "whole", 0)
+        out = self.folder / "out"
+        running = self.start("run", case, *SMALL, "--no-pictures", "--out",
+                             out)
+        last = out / "members" / "middle" / "study.sqlite"
+        while running.poll() is None and self.evaluations(last) < 2:
+            time.sleep(0.005)
+        running.send_signal(signal.SIGINT)
+        running.communicate(timeout=60)
+        if running.returncode == 130:
+            self.assertEqual(self.result(out)["status"], "interrupted")
+            self.expect(self.call("study", "show", out), 0, "waiting")
+        self.sized(case, "out", 0, "--resume", "--jobs", "2")
+        self.assertEqual(self.numbers(whole), self.numbers(out))
+
+    def evaluations(self, database):
+        try:
+            with sqlite3.connect(f"file:{database}?mode=ro",
+                                 uri=True) as store:
+                return store.execute(
+                    "select count(*) from evaluation").fetchone()[0]
+        except sqlite3.Error:
+            return 0
+
+    def test_no_time_is_told_by_member(self):
+        out, done = self.sized(self.family(), "out", 3, "--time-limit",
+                               "0.001")
+        self.assertEqual(self.result(out)["status"], "stopped")
+        self.assertIn("0 of 4 members", done.stderr)
+
+    def test_wrong_members_are_told_by_line(self):
+        head = "name,length,load\n"
+        for members, told in (
+                (head + "a,60,1\nb,60,x y\n", r"members.csv:3: member 'b'.*x y"),
+                (head + "a,60,1\n\na,60,1\n",
+                 r"members.csv:4: a second member 'a'"),
+                (head + "a,60\n", r"members.csv:2: 2 cells"),
+                (head + "a b,60,1\n", r"members.csv:2: 'a b' is no name"),
+                ("length,load\n1,2\n", r"members.csv:1: no column 'name'"),
+                ("name,lenght\na,2\n",
+                 r"members.csv:2: member 'a'.*did you mean 'length'"),
+                ("name,fill.lower\na,2\n",
+                 r"members.csv:1: .*needs a column 'fill.upper'"),
+                ("name,fill.lower,fill.upper\na,1.1,1.4\n",
+                 r"members.csv:2: member 'a'.*outside its bounds"),
+                (head, r"members.csv:1: no members"),
+                ('name,load\na,"1\n', r"members.csv:2: a quote")):
+            with self.subTest(members=members):
+                self.expect(self.call("check", self.family(members)), 2, told)
+        case = self.family()
+        case.write_text(case.read_text().replace("members.csv", "none.csv"))
+        self.expect(self.call("check", case), 2, "none.csv")
+
+    def test_wrong_tables_are_told_by_line(self):
+        for old, new, told in (
+                ("length = 60\nload = 3500\n", "length = 60\nlaod = 3500\n",
+                 r"case.toml:{}: member 's60'.*'laod'"),
+                ("[study.members.s80]\n", "[study.members.s80]\n"
+                 "design.base.bounds = [50, 60]\n",
+                 r"member 's80'.*outside its bounds"),
+                ('each = "minimize"', 'each = "sweep"', "each")):
+            with self.subTest(new=new):
+                case = self.folder / "case.toml"
+                text = STRUT.read_text()
+                self.assertIn(old, text)
+                case.write_text(text.replace(old, new, 1))
+                line = self.line_of(case, r"^\[study.members.s60\]")
+                self.expect(self.call("check", case), 2, told.format(line))
+        self.expect(self.call("check", STRUT), 0, "12 members")
+
+
+def pathlib_part(member):
+    return f"{member['folder']}/part_6.stl"
+
+
+# A block 20 x 10 x 100 along z: its ends are those of the run's strut.
+def block(width, depth, height):
+    corners = [(x, y, z) for z in (0, height) for y in (0, depth)
+               for x in (0, width)]
+    faces = {"foot_pad": [(0, 2, 3), (0, 3, 1)],
+             "eye_pad": [(4, 5, 7), (4, 7, 6)],
+             "sides": [(0, 1, 5), (0, 5, 4), (1, 3, 7), (1, 7, 5),
+                       (3, 2, 6), (3, 6, 7), (2, 0, 4), (2, 4, 6)]}
+    text = ""
+    for name, facets in faces.items():
+        text += f"solid {name}\n"
+        for facet in facets:
+            text += "facet normal 0 0 0\nouter loop\n"
+            for corner in facet:
+                text += "vertex {} {} {}\n".format(*corners[corner])
+            text += "endloop\nendfacet\n"
+        text += f"endsolid {name}\n"
+    return text
+
+
+class ImportedPart(ProgramTest):
+    def run_strut(self):
+        out = self.folder / "run"
+        self.expect(self.call(
+            "run", STRUT, *SMALL, "--set", "study.kind=analyse", "--set",
+            'load_cases.push.loads=[{ on = "eye_pad", force = [0, 0, 900] }]',
+            "--set", 'load_cases.push.supports='
+            '[{ on = "foot_pad", fix = "z" }, '
+            '{ on = "foot_pad", stiffness = [1, 1, 0] }]',
+            "--no-pictures", "--out", out), 0)
+        return out
+
+    def test_a_block_has_the_stiffness_of_a_bar(self):
+        run = self.run_strut()
+        stl = self.folder / "block.stl"
+        stl.write_text(block(20, 10, 100))
+        there = self.folder / "sides"
+        self.expect(self.call("compare", run, stl, "--out", there), 0)
+        part = json.loads(
+            (there / "compare.json").read_text())["parts"][1]
+        # Pulled evenly: E A / L, the same stress everywhere.
+        push = part["load_cases"]["push"]
+        self.assertAlmostEqual(push["stiffness"] / (71700 * 200 / 100), 1, 6)
+        self.assertAlmostEqual(part["mass"] / (2e4 * 2.8e-9), 1, 9)
+        self.assertAlmostEqual(push["max_von_mises"] / (900 / 200), 1, 5)
+        self.assertLess(push["coefficient_of_variation"], 1e-5)
+        self.assertEqual(part["parts"], 1)
+
+    def test_wrong_files_are_told(self):
+        run = self.run_strut()
+        stl = self.folder / "part.stl"
+        whole = block(20, 10, 100)
+        for text, told in (
+                (whole.replace("eye_pad", "eye"),
+                 "no face 'eye_pad'.*foot_pad, eye, sides"),
+                (whole.replace("solid sides", "solid"),
+                 r"part.stl:\d+: a solid without a name"),
+                (whole.replace("solid sides", "solid eye_pad"),
+                 "a second solid 'eye_pad'"),
+                (whole.replace("vertex 0 0 0", "vertex 0 0"),
+                 r"part.stl:\d+: found"),
+                (whole[:-300], r"part.stl:\d+: found"),
+                ("", "no facets"), ("a\0b", "binary")):
+            with self.subTest(told=told):
+                stl.write_text(text)
+                self.expect(self.call("compare", run, stl), 2, told)
+        stl.write_text(re.sub(r"(?s)solid eye_pad.*?endsolid eye_pad\n",
+                              "solid eye_pad\nendsolid eye_pad\n", whole))
+        self.expect(self.call("compare", run, stl), 3, "(?i)open|closed")
+        self.expect(self.call("compare", stl, run), 2, "first part")
+        self.expect(self.call("compare", run, self.folder / "nowhere"), 2,
+                    "nowhere")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
