@@ -286,12 +286,14 @@ double MinimizeEvaluator::violation(const VectorX& values) const {
   return worst;
 }
 
-FirstOrderReport MinimizeEvaluator::conditions(
-    const VectorX& x, const MinimizePoint& point) const {
+FirstOrderReport MinimizeEvaluator::conditions(const VectorX& x,
+                                               const MinimizePoint& point,
+                                               const VectorX& low,
+                                               const VectorX& high) const {
   const auto count = static_cast<Eigen::Index>(problem_.constraints.size());
   FirstOrderInput input{.x = x,
-                        .lower = lower(),
-                        .upper = upper(),
+                        .lower = low,
+                        .upper = high,
                         .values = point.values,
                         .jacobian = *point.jacobian,
                         .constraint_lower = VectorX(count),

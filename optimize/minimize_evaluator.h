@@ -55,7 +55,12 @@ class MinimizeEvaluator : public EvaluatorCore {
     return violation(values) <= options_.feasibility_tolerance;
   }
   FirstOrderReport conditions(const VectorX& x,
-                              const MinimizePoint& point) const;
+                              const MinimizePoint& point) const {
+    return conditions(x, point, lower(), upper());
+  }
+  /// The same with other bounds on the variables, their ranges as the units.
+  FirstOrderReport conditions(const VectorX& x, const MinimizePoint& point,
+                              const VectorX& low, const VectorX& high) const;
 
   bool has_best() const { return best_x_.size() > 0; }
   const VectorX& best() const { return best_x_; }

@@ -21,6 +21,8 @@ constexpr double kViolationGain = 0.01;
 // box this much smaller, down to the smallest.
 constexpr double kShrink = 0.25;
 constexpr double kSmallestRadius = 1e-4;
+// One that was used up is followed by one about its end, this much wider.
+constexpr double kWiden = 2.0;
 constexpr int kMostRuns = 40;
 // The first step of a method that has to choose one, x its box; in later
 // minimisations of an augmented Lagrangian, x the tolerance.
@@ -162,10 +164,47 @@ bool gained(const Standing& before, const Standing& after, double least) {
              : after.violation < (1.0 - kViolationGain) * before.violation;
 }
 
+// Where the last box was used up: a start for the next, though it may miss
+// constraints by a little.
+struct BoxEnd {
+  VectorX x;
+  double objective = std::numeric_limits<double>::infinity();
+  double violation = 0.0;
+
+  // True when `last` ended at a box better than the one before.
+  bool reach(MinimizeEvaluator& evaluator, const NloptResult& last,
+             double least) {
+    if (!last.box_used_up) {
+      return false;
+    }
+    const double before = objective;
+    const MinimizePoint* point =
+        evaluator.evaluate(last.x, EvaluationPhase::Step);
+    x = last.x;
+    objective = point->values[0];
+    violation = evaluator.violation(point->values);
+    return objective < before - least;
+  }
+
+  bool leads(const MinimizeEvaluator& evaluator) const {
+    return x.size() > 0 && (objective < evaluator.best_objective() ||
+                            violation <= evaluator.best_violation());
+  }
+};
+
+double next_radius(double radius, const NloptResult& last, bool walled,
+                   bool gain) {
+  if (last.box_used_up && gain) {
+    return walled ? radius : std::min(1.0, kWiden * radius);
+  }
+  return walled || !gain ? kShrink * radius : std::min(1.0, radius / kShrink);
+}
+
 SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
                           const NloptTraits& traits) {
   SearchResult result;
   NloptTask task = first_task(evaluator, start);
+  BoxEnd box;
   int idle = 0;
   for (int round = 0; round < kMostRuns; ++round) {
     const Standing before = standing_of(evaluator);
@@ -180,8 +219,9 @@ SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
     const double scale =
         std::max(evaluator.objective_scale(), evaluator.objective_unit());
     result.walled = after.failed > before.failed;
+    const double least = (result.walled ? kWalledGain : kGain) * scale;
     const bool gain =
-        gained(before, after, (result.walled ? kWalledGain : kGain) * scale);
+        box.reach(evaluator, last, least) || gained(before, after, least);
     // Without derivatives a run that ended by itself is the answer, unless its
     // model was spoilt by points that fail.
     const bool restarts =
@@ -192,12 +232,11 @@ SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
     if (!again || idle > 2 || (idle > 1 && !result.walled)) {
       break;
     }
-    task.radius = result.walled || !gain ? kShrink * task.radius
-                                         : std::min(1.0, task.radius / kShrink);
+    task.radius = next_radius(task.radius, last, result.walled, gain);
     if (task.radius < kSmallestRadius) {
       break;
     }
-    task.start = evaluator.best();
+    task.start = box.leads(evaluator) ? box.x : evaluator.best();
   }
   return result;
 }

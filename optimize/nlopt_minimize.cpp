@@ -22,6 +22,10 @@ constexpr double kTolerancePart = 0.5;
 // After so many more failed points than others a method that steps back is
 // stopped: a smaller box finds the way sooner than a line search.
 constexpr int kMostFailures = 5;
+// A box is left when this part of what the next one promises is left in it.
+constexpr double kLeftInBox = 0.1;
+// A box is left though constraints are missed by this part of their scales.
+constexpr double kMissedInBox = 1e-3;
 // A point that fails is this much worse than the worst one of the run, so that
 // models of the function are bent as little as can be.
 constexpr double kWall = 0.01;
@@ -71,6 +75,10 @@ class Run {
         traits_(traits),
         task_(task),
         units_(units_of(evaluator.ranges())),
+        low_(evaluator.lower().cwiseMax(task.start -
+                                        task.radius * evaluator.ranges())),
+        high_(evaluator.upper().cwiseMin(task.start +
+                                         task.radius * evaluator.ranges())),
         optimizer_(algorithm_of(traits.method.name),
                    static_cast<unsigned>(evaluator.size())) {
     const std::vector<ConstraintSide>& sides = evaluator.sides();
@@ -97,6 +105,7 @@ class Run {
   // The point at s, with derivatives if asked; null: failed, or halted, and
   // then the library is told to stop.
   const MinimizePoint* at(const double* s, bool derivatives);
+  bool uses_up_box(const VectorX& x, const MinimizePoint& point) const;
   double composite(const MinimizePoint& point, double* gradient);
   double feasible_first(const MinimizePoint& point) const;
   double wall() const;
@@ -112,6 +121,8 @@ class Run {
   const NloptTraits& traits_;
   const NloptTask& task_;
   VectorX units_;
+  VectorX low_;  // the box within the bounds
+  VectorX high_;
   nlopt::opt optimizer_;
   Sides lagrangian_;
   Sides inequalities_;
@@ -119,6 +130,8 @@ class Run {
   Group inequality_group_;
   Group equation_group_;
   int failures_ = 0;  // more than answers
+  bool box_used_up_ = false;
+  VectorX last_;  // linearised point
   double worst_ = -std::numeric_limits<double>::infinity();
 };
 
@@ -134,12 +147,24 @@ const MinimizePoint* Run::at(const double* s, bool derivatives) {
   if (evaluator_.evaluations() > evaluations) {
     failures_ = std::max(0, failures_ + (failed ? 1 : -1));
   }
-  if (evaluator_.halted() ||
+  last_ = !failed && derivatives ? x : last_;
+  box_used_up_ = !failed && derivatives && uses_up_box(x, *point);
+  if (evaluator_.halted() || box_used_up_ ||
       (traits_.infinite_wall && failures_ > kMostFailures)) {
     optimizer_.force_stop();
     return nullptr;
   }
   return failed ? nullptr : point;
+}
+
+bool Run::uses_up_box(const VectorX& x, const MinimizePoint& point) const {
+  if (task_.radius >= 1.0 || !lagrangian_.empty() ||
+      evaluator_.violation(point.values) > kMissedInBox) {
+    return false;
+  }
+  const double ahead = task_.radius * evaluator_.conditions(x, point).residual;
+  return evaluator_.conditions(x, point, low_, high_).residual <=
+         kLeftInBox * ahead;
 }
 
 double Run::wall() const {
@@ -250,14 +275,11 @@ void Run::add_constraints() {
 }
 
 void Run::set_up() {
-  const VectorX reach = task_.radius * evaluator_.ranges();
-  const VectorX low = evaluator_.lower().cwiseMax(task_.start - reach);
-  const VectorX high = evaluator_.upper().cwiseMin(task_.start + reach);
   optimizer_.set_min_objective(objective, this);
-  optimizer_.set_lower_bounds(to_vector(low.cwiseQuotient(units_)));
-  optimizer_.set_upper_bounds(to_vector(high.cwiseQuotient(units_)));
+  optimizer_.set_lower_bounds(to_vector(low_.cwiseQuotient(units_)));
+  optimizer_.set_upper_bounds(to_vector(high_.cwiseQuotient(units_)));
   optimizer_.set_initial_step(
-      to_vector(task_.first_step * (high - low).cwiseQuotient(units_)));
+      to_vector(task_.first_step * (high_ - low_).cwiseQuotient(units_)));
   const bool gradients = traits_.method.gradients;
   const double step =
       gradients && lagrangian_.empty() ? kGradientStep : task_.step_tolerance;
@@ -286,6 +308,10 @@ NloptResult Run::go() {
         : code == nlopt::XTOL_REACHED ? "the steps are too small to matter"
                                       : "the method ended by itself";
   } catch (const nlopt::forced_stop&) {
+    if (box_used_up_) {
+      result.box_used_up = true;
+      s = to_vector(last_.cwiseQuotient(units_));
+    }
     result.message = "only designs that cannot be evaluated lie ahead";
   } catch (const nlopt::roundoff_limited&) {
     result.message = "rounding limits further progress";

@@ -40,7 +40,10 @@ struct NloptResult {
   VectorX x;  // the library's own answer
   int iterations = 0;
   bool finished = false;  // by its own tolerance, not halted, not an error
-  std::string message;    // its last word
+  /// Only the box about the start holds the objective up: what is left to gain
+  /// within it is little beside what the next box would give.
+  bool box_used_up = false;
+  std::string message;  // its last word
 };
 
 /// Never throws: ask the evaluator.
