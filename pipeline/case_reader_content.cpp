@@ -119,10 +119,10 @@ std::string canonical_text(const toml::table& root) {
     if (table != nullptr && ordered.count(name) > 0) {
       write_entries(*table, text);
     } else if (table != nullptr && name == "study") {
-      write_table(
-          *table,
-          {"tolerance", "method", "max_evaluations", "levels", "count", "seed"},
-          text);
+      write_table(*table,
+                  {"tolerance", "method", "max_evaluations", "levels", "count",
+                   "seed", "deviations"},
+                  text);
     } else if (table != nullptr && name == "analysis") {
       write_table(*table, eigenvalues, text);
     } else if (table != nullptr && name == "resolution") {
