@@ -121,7 +121,7 @@ std::string canonical_text(const toml::table& root) {
     } else if (table != nullptr && name == "study") {
       write_table(*table,
                   {"tolerance", "method", "max_evaluations", "levels", "count",
-                   "seed", "each", "members"},
+                   "seed", "deviations", "each", "members"},
                   text);
     } else if (table != nullptr && name == "analysis") {
       write_table(*table, eigenvalues, text);

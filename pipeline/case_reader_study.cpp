@@ -85,7 +85,9 @@ StudyKind kind_of(const std::string& name) {
   static const std::map<std::string, StudyKind> kinds = {
       {"match", StudyKind::Match},
       {"minimize", StudyKind::Minimize},
-      {"sweep", StudyKind::Sweep}};
+      {"sweep", StudyKind::Sweep},
+      {"tolerance", StudyKind::Tolerance},
+      {"pareto", StudyKind::Pareto}};
   const auto at = kinds.find(name);
   return at == kinds.end() ? StudyKind::Analyse : at->second;
 }
@@ -94,7 +96,10 @@ std::vector<std::string> methods_of(StudyKind kind) {
   if (kind == StudyKind::Sweep) {
     return sweep_methods();
   }
-  if (kind != StudyKind::Minimize) {
+  if (kind == StudyKind::Tolerance) {
+    return {"latin_hypercube", "sobol"};
+  }
+  if (kind == StudyKind::Match) {
     return match_methods();
   }
   std::vector<std::string> names;
@@ -102,6 +107,22 @@ std::vector<std::string> methods_of(StudyKind kind) {
     names.push_back(method.name);
   }
   return names;
+}
+
+const char* usual_method(StudyKind kind) {
+  switch (kind) {
+    case StudyKind::Minimize:
+    case StudyKind::Pareto:
+      return "slsqp";
+    case StudyKind::Sweep:
+      return "sobol";
+    case StudyKind::Tolerance:
+      return "latin_hypercube";
+    case StudyKind::Analyse:
+    case StudyKind::Match:
+      break;
+  }
+  return "ceres";
 }
 
 void check_method(CaseContext& context, const CaseTable& table,
@@ -140,13 +161,15 @@ void check_keys(CaseContext& context, const CaseTable& table,
   static const std::map<std::string, std::vector<std::string>> owners = {
       {"equal", {"match"}},
       {"targets", {"match"}},
-      {"tolerance", {"match", "minimize"}},
-      {"max_evaluations", {"match", "minimize"}},
+      {"tolerance", {"match", "minimize", "pareto"}},
+      {"max_evaluations", {"match", "minimize", "pareto"}},
       {"objective", {"minimize", "sweep"}},
-      {"constraints", {"minimize", "sweep"}},
+      {"objectives", {"pareto"}},
+      {"constraints", {"minimize", "sweep", "pareto"}},
       {"levels", {"sweep"}},
-      {"count", {"sweep"}},
-      {"seed", {"sweep"}}};
+      {"deviations", {"tolerance"}},
+      {"count", {"sweep", "tolerance", "pareto"}},
+      {"seed", {"sweep", "tolerance"}}};
   for (const auto& [key, owning] : owners) {
     if (table.has(key.c_str()) && kind != "analyse" &&
         std::find(owning.begin(), owning.end(), kind) == owning.end()) {
@@ -168,6 +191,18 @@ void check_keys(CaseContext& context, const CaseTable& table,
                          "\"response\"");
   }
 }
+
+}  // namespace
+
+std::optional<int> find_response(CaseContext& context, const Case& result,
+                                 const std::string& name, SourceLine line) {
+  if (!response_dimension(context, result, name, line)) {
+    return std::nullopt;
+  }
+  return response_index(result, name);
+}
+
+namespace {
 
 /// Index of the response that `key` names; 0 for none, which is noted.
 int index_of_response(CaseContext& context, const CaseTable& table,
@@ -250,7 +285,7 @@ void read_objective(CaseContext& context, const CaseTable& table,
   if (table.has("objective")) {
     result.study.objective =
         index_of_response(context, table, "objective", result);
-  } else if (table.has("constraints")) {
+  } else if (table.has("constraints") && !result.study.objective) {
     context.problems.add(table.line("constraints"),
                          "study.constraints say which designs count, and "
                          "study.objective which is the best of them; add it");
@@ -272,7 +307,8 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   const std::string kind =
       asked == "family" ? read_members(context, *table, result) : asked;
   study.kind = kind_of(kind);
-  const bool minimizes = study.kind == StudyKind::Minimize;
+  const bool minimizes =
+      study.kind == StudyKind::Minimize || study.kind == StudyKind::Pareto;
   const bool sweeps = study.kind == StudyKind::Sweep;
   study.tolerance =
       table->constant("tolerance").value_or(minimizes ? 1e-4 : 1e-3);
@@ -282,9 +318,7 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
                                      "above 0",
                                      study.tolerance));
   }
-  study.method = table->text("method").value_or(minimizes ? "slsqp"
-                                                : sweeps  ? "sobol"
-                                                          : "ceres");
+  study.method = table->text("method").value_or(usual_method(study.kind));
   check_method(context, *table, study);
   study.max_evaluations = table->positive_integer("max_evaluations")
                               .value_or(study.max_evaluations);
@@ -296,6 +330,12 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   read_targets(context, *table, result);
   if (sweeps) {
     read_sweep(context, *table, result);
+  }
+  if (study.kind == StudyKind::Tolerance) {
+    read_tolerance(context, *table, result);
+  }
+  if (study.kind == StudyKind::Pareto) {
+    read_front(context, *table, result);
   }
   if (minimizes || sweeps) {
     read_objective(context, *table, result);

@@ -201,6 +201,12 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
   if (result.sweep) {
     json["sweep"] = sweep_json(input, *result.sweep);
   }
+  if (result.tolerance) {
+    json["tolerance"] = tolerance_json(input, *result.tolerance);
+  }
+  if (result.front) {
+    json["front"] = front_json(input, *result.front);
+  }
   const std::vector<std::string> names = response_names(input);
   json["responses"] =
       value_map(names, best != nullptr ? best->responses : VectorX());

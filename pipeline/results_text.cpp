@@ -104,6 +104,12 @@ std::string result_text(const Case& input, const RunResult& result) {
   if (result.sweep) {
     text += sweep_text(input, *result.sweep);
   }
+  if (result.tolerance) {
+    text += tolerance_text(input, *result.tolerance);
+  }
+  if (result.front) {
+    text += front_text(input, *result.front);
+  }
   for (const ExclusionShare& zone : result.exclusion.zones) {
     text += fmt::format(
         "  left out of stress figures: {}: {} elements, {:.2g} % of the "

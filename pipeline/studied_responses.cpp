@@ -28,6 +28,19 @@ std::vector<int> minimized_responses(const Case& input) {
   for (const ConstraintEntry& constraint : input.study.constraints) {
     result.push_back(constraint.response);
   }
+  if (input.study.second) {
+    result.push_back(*input.study.second);
+  }
+  return result;
+}
+
+std::vector<int> differentiable_responses(const Case& input) {
+  std::vector<int> result;
+  for (int r = 0; r < static_cast<int>(input.responses.size()); ++r) {
+    if (has_derivatives(input, r)) {
+      result.push_back(r);
+    }
+  }
   return result;
 }
 
@@ -38,11 +51,12 @@ std::vector<int> studied_responses(const Case& input) {
     case StudyKind::Match:
       return matched_responses(input);
     case StudyKind::Minimize:
+    case StudyKind::Pareto:
       return minimized_responses(input);
+    case StudyKind::Tolerance:
+      return differentiable_responses(input);
     case StudyKind::Analyse:
     case StudyKind::Sweep:
-    case StudyKind::Tolerance:
-    case StudyKind::Pareto:
       break;
   }
   return {};
@@ -52,7 +66,10 @@ bool asks_for_gradients(const StudyEntry& study) {
   if (study.kind == StudyKind::Sweep) {
     return false;
   }
-  if (study.kind != StudyKind::Minimize) {
+  if (study.kind == StudyKind::Tolerance) {
+    return true;
+  }
+  if (study.kind != StudyKind::Minimize && study.kind != StudyKind::Pareto) {
     return study.method == "ceres";
   }
   const MinimizeMethod* method = find_minimize_method(study.method);

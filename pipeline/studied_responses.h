@@ -8,7 +8,8 @@
 namespace meniscus {
 
 /// Indices of responses: of a match those that its targets are made of,
-/// ascending; of a minimum the objective, then the constraints.
+/// ascending; of a minimum the objective, then the constraints, and the second
+/// objective of a front last; of tolerances all with derivatives.
 std::vector<int> studied_responses(const Case& input);
 
 /// The study's method is one that takes derivatives where there are any.

@@ -134,6 +134,10 @@ void StudyRun::conduct_study() {
   result_.objective = outcome_.objective;
   result_.constraints = outcome_.constraints;
   result_.sweep = outcome_.sweep;
+  result_.tolerance = outcome_.tolerance;
+  result_.front = outcome_.front;
+  result_.warnings.insert(result_.warnings.end(), outcome_.warnings.begin(),
+                          outcome_.warnings.end());
 }
 
 bool StudyRun::finish_best() {

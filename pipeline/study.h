@@ -11,9 +11,11 @@
 #include "pipeline/eigen_figures.h"
 #include "pipeline/element_errors.h"
 #include "pipeline/forward_model.h"
+#include "pipeline/front_figures.h"
 #include "pipeline/stress_figures.h"
 #include "pipeline/study_store.h"
 #include "pipeline/sweep_figures.h"
+#include "pipeline/tolerance_figures.h"
 
 namespace meniscus {
 
@@ -43,6 +45,8 @@ struct RunResult {
   double objective = 0.0;  // of a match: sum of squared residuals / 2
   std::vector<Constraint> constraints;
   std::optional<SweepFigures> sweep;
+  std::optional<ToleranceFigures> tolerance;
+  std::optional<FrontFigures> front;
   VectorX response_errors;  // estimated discretisation errors; may be empty
   VectorX design_errors;    // of the matched variables; may be empty
   std::vector<StressFigures> stress;     // of the best design, per load case

@@ -5,39 +5,12 @@
 
 #include <fmt/format.h>
 
-#include "optimize/minimize.h"
 #include "pipeline/responses.h"
 #include "pipeline/studied_responses.h"
 
 namespace meniscus {
 
 namespace {
-
-RunStatus status_of(Termination termination) {
-  switch (termination) {
-    case Termination::Converged:
-      return RunStatus::Converged;
-    case Termination::LimitReached:
-      return RunStatus::Stopped;
-    case Termination::Stalled:
-    case Termination::AtBound:
-    case Termination::NoFeasible:
-    case Termination::Infeasible:
-    case Termination::Constant:
-    case Termination::NoFreedom:
-      return RunStatus::Infeasible;
-  }
-  return RunStatus::Error;
-}
-
-/// Rows or entries of `all` at `indices`.
-VectorX picked(const VectorX& all, const std::vector<int>& indices) {
-  VectorX result(static_cast<Eigen::Index>(indices.size()));
-  for (std::size_t k = 0; k < indices.size(); ++k) {
-    result[static_cast<Eigen::Index>(k)] = all[indices[k]];
-  }
-  return result;
-}
 
 ResidualAnswer answer(const MatchTargets& targets,
                       const EvaluationRecord& record) {
@@ -55,14 +28,6 @@ StudyOutcome analyse(const StudyTask& task) {
   return {.status = RunStatus::Converged,
           .message = "analysed the initial design",
           .best = task.start};
-}
-
-/// The neighbours of a difference side by side.
-std::function<void(const std::vector<VectorX>&)> prefetch_of(
-    const StudyTask& task) {
-  return [&task](const std::vector<VectorX>& designs) {
-    task.evaluator.prefetch(designs, name_of(EvaluationPhase::Difference));
-  };
 }
 
 /// Empty where a response of the targets has no derivatives.
@@ -110,76 +75,31 @@ StudyOutcome match(const StudyTask& task) {
   return outcome;
 }
 
-/// The objective and the constraints as the optimizer sees them. `phase` must
-/// outlive the problem.
-MinimizeProblem minimize_problem(const StudyTask& task,
-                                 const std::string& phase) {
-  const Case& input = task.input;
-  MinimizeProblem problem;
-  problem.variables = variables_of(input, task.start);
-  problem.objective = input.responses[*input.study.objective].name;
-  for (const ConstraintEntry& constraint : input.study.constraints) {
-    problem.constraints.push_back(
-        {.name = input.responses[constraint.response].name,
-         .lower = constraint.lower,
-         .upper = constraint.upper});
-  }
-  const std::vector<int> responses = studied_responses(input);
-  problem.function = [&task, &phase, responses](const VectorX& x) {
-    const EvaluationRecord record = task.evaluator.evaluate(x, phase);
-    VectorAnswer answer{.values = {}, .failure = record.failure};
-    if (!record.failure) {
-      answer.values = picked(record.responses, responses);
-    }
-    return answer;
-  };
-  if (uses_gradients(input)) {
-    problem.jacobian = [&task, responses](const VectorX& x) {
-      JacobianAnswer answer = task.evaluator.gradient(x, responses);
-      if (!answer.failure) {
-        answer.jacobian =
-            Eigen::MatrixXd(answer.jacobian(responses, Eigen::all));
-      }
-      return answer;
-    };
-  }
-  return problem;
-}
-
-/// The bound that the value is nearest to, as result.json tells it.
-Constraint told(const ConstraintState& state) {
-  const bool above = state.value > 0.5 * (state.lower + state.upper);
-  const bool upper =
-      !std::isfinite(state.lower) || (std::isfinite(state.upper) && above);
-  return {.name = state.name,
-          .value = state.value,
-          .bound = upper ? state.upper : state.lower,
-          .satisfied = state.satisfied};
-}
-
-StudyOutcome minimize(const StudyTask& task) {
-  const StudyEntry& study = task.input.study;
-  std::string phase = "start";
-  const MinimizeReport report = meniscus::minimize(
-      minimize_problem(task, phase),
-      {.method = study.method,
-       .optimality_tolerance = study.tolerance,
-       .max_evaluations = study.max_evaluations,
-       .time_limit = task.options.time_limit,
-       .monitor = task.options.monitor,
-       .announce = [&](EvaluationPhase next) { phase = name_of(next); },
-       .prefetch = prefetch_of(task)});
-  StudyOutcome outcome{.status = status_of(report.termination),
-                       .message = report.message,
-                       .best = report.best,
-                       .objective = report.objective};
-  for (const ConstraintState& state : report.constraints) {
-    outcome.constraints.push_back(told(state));
-  }
-  return outcome;
-}
-
 }  // namespace
+
+RunStatus status_of(Termination termination) {
+  switch (termination) {
+    case Termination::Converged:
+      return RunStatus::Converged;
+    case Termination::LimitReached:
+      return RunStatus::Stopped;
+    case Termination::Stalled:
+    case Termination::AtBound:
+    case Termination::NoFeasible:
+    case Termination::Infeasible:
+    case Termination::Constant:
+    case Termination::NoFreedom:
+      return RunStatus::Infeasible;
+  }
+  return RunStatus::Error;
+}
+
+std::function<void(const std::vector<VectorX>&)> prefetch_of(
+    const StudyTask& task) {
+  return [&task](const std::vector<VectorX>& designs) {
+    task.evaluator.prefetch(designs, name_of(EvaluationPhase::Difference));
+  };
+}
 
 StudyOutcome conduct(const StudyTask& task) {
   task.evaluator.limit_time(task.options.time_limit);
@@ -190,9 +110,11 @@ StudyOutcome conduct(const StudyTask& task) {
       return minimize(task);
     case StudyKind::Sweep:
       return sweep(task);
-    case StudyKind::Analyse:
     case StudyKind::Tolerance:
+      return tolerance(task);
     case StudyKind::Pareto:
+      return pareto(task);
+    case StudyKind::Analyse:
       break;
   }
   return analyse(task);

@@ -2,11 +2,12 @@
 /// run_study()).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "optimize/problem.h"
+#include "optimize/minimize.h"
 #include "pipeline/design_evaluator.h"
 #include "pipeline/match_targets.h"
 #include "pipeline/study.h"
@@ -30,13 +31,39 @@ struct StudyOutcome {
   std::vector<Constraint> constraints;
   Eigen::MatrixXd jacobian;  // of a match: d residual / d x near `best`
   std::optional<SweepFigures> sweep;
+  std::optional<ToleranceFigures> tolerance;
+  std::optional<FrontFigures> front;
+  std::vector<std::string> warnings;
 };
 
 /// What the case's study.kind says.
 StudyOutcome conduct(const StudyTask& task);
 
+StudyOutcome minimize(const StudyTask& task);
 /// Looks at every design of a grid or a sample.
 StudyOutcome sweep(const StudyTask& task);
+/// How far the responses of the start spread when the design scatters.
+StudyOutcome tolerance(const StudyTask& task);
+/// Compromises of two objectives by bounds on the second.
+StudyOutcome pareto(const StudyTask& task);
+
+/// The objective and the constraints as the optimizer sees them; a second
+/// objective is the last constraint, without bounds. `phase`, which records
+/// are given, and the task must outlive the problem.
+MinimizeProblem minimize_problem(const StudyTask& task,
+                                 const std::string& phase);
+
+/// The case's; `phase` is told what is asked for next.
+MinimizeOptions minimize_options(const StudyTask& task, std::string& phase);
+
+RunStatus status_of(Termination termination);
+
+/// As result.json tells it, with the bound that the value is nearest to.
+Constraint told(const ConstraintState& state);
+
+/// Computes the neighbours of a difference side by side.
+std::function<void(const std::vector<VectorX>&)> prefetch_of(
+    const StudyTask& task);
 
 /// The study's method asks for derivatives, and all that it looks at have them.
 bool uses_gradients(const Case& input);

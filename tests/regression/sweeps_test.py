@@ -159,6 +159,95 @@ class Sweeps(SweepTest):
                     2, "--jobs")
 
 
+class Tolerances(SweepTest):
+    def study(self, text):
+        return self.sweep("", (r'(?s)^kind = "sweep".*',
+                               'kind = "tolerance"\n' + text))
+
+    def test_gradient_and_samples_agree(self):
+        case = self.study("deviations = { support_x = 0.5, radius = 0.2 }\n"
+                          "count = 30\n")
+        done, one = self.run_case(case, "one")
+        self.expect(done, 0, "spread of 3 responses by gradient, confirmed by "
+                    "30 samples")
+        _, two = self.run_case(case, "two", "--jobs", "2")
+        self.assert_same(one, two)
+        self.assertEqual(self.result(one)["gradient_evaluations"], 1)
+        tolerance = self.result(one)["tolerance"]
+        self.assertEqual(tolerance["deviations"],
+                         {"support_x": 0.5, "radius": 0.2})
+        for name, response in tolerance["responses"].items():
+            with self.subTest(response=name):
+                self.assertAlmostEqual(sum(response["shares"].values()), 1, 12)
+                sampled = response["sampled"]
+                self.assertLess(
+                    abs(sampled["deviation"] - response["deviation"]),
+                    3 * sampled["deviation_error"])
+        # An arm's deflection moves with the foot, the mass with its size.
+        shares = tolerance["responses"]
+        self.assertGreater(shares["left_deflection"]["shares"]["support_x"],
+                           0.5)
+        self.assertGreater(shares["mass"]["shares"]["radius"], 0.9)
+
+    def test_what_is_wrong_is_told_by_line(self):
+        for text, told in (
+                ("", "study.deviations is missing"),
+                ("deviations = { radius = 0 }", "must be above 0"),
+                ("deviations = { radios = 1 }", "did you mean 'radius'"),
+                ("deviations = { radius = 1 }\ncount = 1",
+                 "a whole number from 2"),
+                ("deviations = { radius = 1 }\nlevels = { radius = 2 }",
+                 'study.levels belongs to kind = "sweep"')):
+            with self.subTest(text=text):
+                self.expect(self.call("check", self.study(text)), 2,
+                            re.escape(told), r"case.toml:\d+")
+
+
+class Pareto(SweepTest):
+    SOFTNESS = '[responses.softness]\nkind = "compliance"\n\n[study]'
+
+    def study(self, text):
+        return self.sweep(
+            "", (r"^\[curves.support\]", "[design.fill]\ninitial = 1.7e6\n"
+                 "bounds = [1.4e6, 2.2e6]\n\n[curves.support]"),
+            (r"^volume = 1.7e6", 'volume = "fill"'),
+            (r'(?s)^kind = "sweep".*', text), (r"^\[study\]", self.SOFTNESS))
+
+    def test_the_front_runs_from_one_minimum_to_the_other(self):
+        front = 'kind = "pareto"\nobjectives = ["mass", "softness"]\n'
+        done, out = self.run_case(self.study(front + "count = 4\n"), "out")
+        self.expect(done, 0, "a front of 4 designs")
+        result = self.result(out)
+        points = result["front"]["points"]
+        self.assertEqual(len(points), 4)
+        for a, b in zip(points, points[1:]):
+            self.assertLess(a["mass"], b["mass"])
+            self.assertGreater(a["softness"], b["softness"])
+        self.assertIn(result["parameters"]["fill"],
+                      [p["parameters"]["fill"] for p in points[1:3]])
+        for point, name in ((points[0], "mass"), (points[-1], "softness")):
+            done, alone = self.run_case(
+                self.study(f'kind = "minimize"\nobjective = "{name}"\n'),
+                name)
+            self.expect(done, 0)
+            # Both are converged to 1e-4 of it.
+            self.assertAlmostEqual(
+                self.result(alone)["objective"] / point[name], 1, 3)
+
+    def test_what_is_wrong_is_told_by_line(self):
+        for text, told in (
+                ("", "two different responses"),
+                ('objectives = ["mass", "mass"]', "two different responses"),
+                ('objectives = ["mass", "softnes"]',
+                 "did you mean 'softness'"),
+                ('objectives = ["mass", "softness"]\ncount = 2',
+                 "a whole number from 3")):
+            with self.subTest(text=text):
+                self.expect(
+                    self.call("check", self.study('kind = "pareto"\n' + text)),
+                    2, re.escape(told), r"case.toml:\d+")
+
+
 class Jobs(SweepTest):
     def test_neighbours_of_a_difference_side_by_side(self):
         case = self.sweep("", (r'(?s)kind = "sweep".*',
