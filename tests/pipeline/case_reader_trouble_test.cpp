@@ -256,7 +256,7 @@ const Mistake kMistakes[] = {
      "61: there is no load case 'servce'; did you mean 'service'?"},
     {"LaterStudy", "kind = \"match\"", "kind = \"sweep\"",
      "63: study.kind 'sweep' is not available in this version; expected "
-     "one of analyse, match, minimize"},
+     "one of analyse, match, minimize, family"},
     {"KeyOfAnotherKind", "kind = \"mass\"",
      "kind = \"mass\"\nload_case = \"service\"",
      "61: responses.mass.load_case does not belong to a mass; it has no keys "
