@@ -127,13 +127,16 @@ const char* usual_method(StudyKind kind) {
 
 void check_method(CaseContext& context, const CaseTable& table,
                   const StudyEntry& study) {
-  std::vector<std::string> methods = methods_of(study.kind);
+  std::vector<std::string> methods;
   if (study.kind == StudyKind::Analyse) {  // the method waits, of any kind
-    for (const StudyKind kind : {StudyKind::Minimize, StudyKind::Sweep}) {
+    for (const StudyKind kind :
+         {StudyKind::Match, StudyKind::Minimize, StudyKind::Sweep}) {
       for (const std::string& name : methods_of(kind)) {
         methods.push_back(name);
       }
     }
+  } else {
+    methods = methods_of(study.kind);
   }
   if (std::find(methods.begin(), methods.end(), study.method) ==
       methods.end()) {

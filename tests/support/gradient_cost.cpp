@@ -1,0 +1,54 @@
+#include "tests/support/gradient_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/timer.h"
+#include "pipeline/case_reader.h"
+#include "pipeline/forward_model.h"
+
+namespace meniscus {
+
+namespace {
+
+void require(const std::optional<Failure>& failure) {
+  if (failure) {
+    throw std::runtime_error(failure->message);
+  }
+}
+
+}  // namespace
+
+GradientCost gradient_cost(const std::string& case_text, int runs) {
+  const CaseReading reading = read_case_text(case_text, "case.toml");
+  if (!reading.input) {
+    throw std::runtime_error(reading.problems.front());
+  }
+  const Case& input = *reading.input;
+  const VectorX initial = initial_design(input);
+  GradientCost cost{.cold = HUGE_VAL, .next = HUGE_VAL, .gradient = HUGE_VAL};
+  for (int i = 0; i < runs; ++i) {
+    const Timer cold;
+    const ForwardModel model(input);
+    require(model.failure());
+    require(model.evaluate(initial).failure);
+    cost.cold = std::min(cost.cold, cold.seconds());
+
+    EvaluationFields fields;
+    AdjointState adjoint;
+    const Timer next;
+    const Evaluation there = model.evaluate(1.01 * initial, &fields, &adjoint);
+    cost.next = std::min(cost.next, next.seconds());
+    require(there.failure);
+    cost.unknowns = there.fea.dofs;
+
+    const Timer timer;
+    const DesignGradient found = model.gradient(there, fields, adjoint, {0});
+    cost.gradient = std::min(cost.gradient, timer.seconds());
+    require(found.failure);
+  }
+  return cost;
+}
+
+}  // namespace meniscus
