@@ -210,6 +210,8 @@ class Tolerances(SweepTest):
                 ("deviations = { radios = 1 }", "did you mean 'radius'"),
                 ("deviations = { radius = 1 }\ncount = 1",
                  "a whole number from 2"),
+                ("deviations = { radius = 1 }\nmethod = \"sobol\"\nseed = 2",
+                 "nothing random"),
                 ("deviations = { radius = 1 }\nlevels = { radius = 2 }",
                  'study.levels belongs to kind = "sweep"')):
             with self.subTest(text=text):
