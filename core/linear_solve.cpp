@@ -17,12 +17,18 @@ namespace {
 
 using Long = SuiteSparse_long;
 
-/// A CHOLMOD session. BLAS sums change with its number of threads, so it runs
-/// on one.
+/// BLAS sums change with its number of threads, so it runs on one. Told once:
+/// telling it writes to variables that other threads' BLAS reads.
+void use_one_blas_thread() {
+  static std::once_flag told;
+  std::call_once(told, [] { openblas_set_num_threads(1); });
+}
+
+/// A CHOLMOD session.
 class Session {
  public:
   Session() {
-    openblas_set_num_threads(1);
+    use_one_blas_thread();
     cholmod_l_start(&common);
     common.print = 0;
     common.error_handler = nullptr;

@@ -68,6 +68,11 @@ void read_tolerance(CaseContext& context, const CaseTable& table,
                     "found {}; try latin_hypercube",
                     kMostSobolDimensions, deviations->size()));
   }
+  if (result.study.method == "sobol" && table.has("seed")) {
+    context.problems.add(table.line("seed"),
+                         "study.seed: a Sobol sequence has nothing random; "
+                         "take it out");
+  }
   if (table.has("count")) {
     result.study.count =
         table.integer_within("count", 2, kMostDesigns).value_or(2);

@@ -63,6 +63,7 @@ void FrontSearch::keep(const MinimizeReport& report, bool swapped) {
     std::swap(point.first, point.second);
   }
   std::vector<Constraint> constraints;
+  constraints.reserve(static_cast<std::size_t>(second_));
   for (int k = 0; k < second_; ++k) {  // the user's own
     constraints.push_back(
         told(report.constraints[static_cast<std::size_t>(k)]));
@@ -106,6 +107,7 @@ void FrontSearch::conclude(StudyOutcome& outcome) {
             [&](int a, int b) { return found_[a].first < found_[b].first; });
   FrontFigures figures;
   figures.left_out = static_cast<int>(found_.size() - front.size());
+  figures.points.reserve(front.size());
   for (const int k : front) {
     figures.points.push_back(found_[k]);
   }

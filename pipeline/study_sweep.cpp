@@ -65,6 +65,7 @@ void choose_best(const StudyTask& task,
   const Standing standing = standing_of(study, best->responses);
   outcome.best = best->inputs;
   outcome.objective = standing.objective;
+  outcome.constraints.reserve(study.constraints.size());
   for (const ConstraintEntry& entry : study.constraints) {
     outcome.constraints.push_back(
         told(task.input, entry, best->responses[entry.response]));

@@ -12,6 +12,7 @@ namespace {
 std::vector<VectorX> scattered_designs(const StudyTask& task) {
   const StudyEntry& study = task.input.study;
   std::vector<Eigen::Index> moving;
+  moving.reserve(study.deviations.size());
   for (std::size_t j = 0; j < study.deviations.size(); ++j) {
     if (study.deviations[j] > 0.0) {
       moving.push_back(static_cast<Eigen::Index>(j));
@@ -61,6 +62,7 @@ void confirm(const StudyTask& task, ToleranceFigures& figures,
   const std::vector<EvaluationRecord> records =
       task.evaluator.evaluate_all(scattered_designs(task), "sample");
   std::vector<VectorX> values;
+  values.reserve(records.size());
   for (const EvaluationRecord& record : records) {
     if (!record.failure) {
       values.push_back(record.responses);

@@ -124,6 +124,19 @@ class Sweeps(SweepTest):
         self.assertIn(failed[0]["status"], sweep["failures"])
         self.assertTrue(failed[0]["message"])
 
+    def test_a_sweep_without_any_answer_says_what_to_change(self):
+        # The volume is a number at the bounds alone.
+        case = self.sweep(
+            'method = "grid"\nlevels = { fill = 1 }\n',
+            (r"^\[curves.support\]", "[design.fill]\ninitial = 1.7e6\n"
+             "bounds = [1e6, 1.7e6]\n\n[curves.support]"),
+            (r"^volume = 1.7e6",
+             'volume = "1.7e6 + sqrt((fill - 1e6)*(fill - 1.7e6))"'))
+        done, out = self.run_case(case, "out")
+        self.expect(done, 3, "none of the 1 designs can be evaluated",
+                    "bring the bounds of the design variables nearer")
+        self.assertEqual(self.result(out)["status"], "failed")
+
     def test_constraints_that_no_design_keeps_are_told(self):
         case = self.sweep('method = "sobol"\ncount = 2\nobjective = "mass"\n'
                           'constraints = [{ response = "left_deflection", '
@@ -141,7 +154,8 @@ class Sweeps(SweepTest):
                  "expected a whole number from 1"),
                 ('method = "grid"\nlevels = { radius = 2 }\ncount = 3',
                  "a grid's levels say how many"),
-                ('method = "grid"\nlevels = { radius = 9999, support_x = 9999}',
+                ('method = "grid"\n'
+                 'levels = { radius = 9999, support_x = 9999 }',
                  "take fewer levels"),
                 ('method = "sobol"', "needs study.count"),
                 ('method = "sobol"\ncount = 0', "a whole number from 1"),
@@ -196,6 +210,8 @@ class Tolerances(SweepTest):
                 ("deviations = { radios = 1 }", "did you mean 'radius'"),
                 ("deviations = { radius = 1 }\ncount = 1",
                  "a whole number from 2"),
+                ("deviations = { radius = 1 }\nmethod = \"sobol\"\nseed = 2",
+                 "nothing random"),
                 ("deviations = { radius = 1 }\nlevels = { radius = 2 }",
                  'study.levels belongs to kind = "sweep"')):
             with self.subTest(text=text):
