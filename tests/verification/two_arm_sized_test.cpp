@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <iostream>
 #include <optional>
 
 #include <Eigen/QR>
@@ -190,7 +189,7 @@ class Restorer {
 
 TEST(TwoArmSized, TwoStartsComeToOneMassAndNoSampleIsLighter) {
   const Case input =
-      read_case(kCase, {"resolution.fea=20", "resolution.film=10"});
+      read_case(kCase, {"resolution.fea=24", "resolution.film=12"});
   Loop loop(input);
   ASSERT_TRUE(loop.usable());
   const MinimizeReport optimum = minimum_from(
@@ -205,23 +204,17 @@ TEST(TwoArmSized, TwoStartsComeToOneMassAndNoSampleIsLighter) {
 
   const Restorer restorer(loop, optimum);
   int feasible = 0;
-  int tried = 0;
-  double least = 1e9;
   for (const VectorX& t : latin_hypercube_samples(
            static_cast<int>(input.design.size()), 4 * kSamples, 1)) {
     if (feasible == kSamples) {
       break;
     }
-    ++tried;
     if (const std::optional<double> mass =
             restorer.restored(restorer.about(optimum.best, t))) {
       ++feasible;
-      least = std::min(least, *mass);
       EXPECT_GE(*mass, optimum.objective * (1.0 - kGain));
     }
   }
-  std::cout << feasible << " of " << tried << ", least "
-            << least / optimum.objective << "\n";
   EXPECT_EQ(feasible, kSamples);
 }
 
