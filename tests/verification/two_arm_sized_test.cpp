@@ -1,0 +1,222 @@
+/// cases/two_arm_sized on one frozen model: the optimum is the same from two
+/// starts, and nothing feasible about it is lighter.
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+
+#include <Eigen/QR>
+#include <gtest/gtest.h>
+
+#include "optimize/minimize.h"
+#include "optimize/sampling.h"
+#include "pipeline/case_reader.h"
+#include "pipeline/forward_model.h"
+#include "pipeline/studied_responses.h"
+#include "pipeline/study.h"
+
+namespace meniscus {
+namespace {
+
+constexpr const char* kCase =
+    MENISCUS_SOURCE_DIR "/cases/two_arm_sized/case.toml";
+constexpr double kOneMass = 0.01;  // what the issue of the case allows
+constexpr double kOptimality = 1e-4;
+// Samples lie about the optimum within this part of the ranges.
+constexpr double kReach = 0.05;
+constexpr int kVolumes = 3;  // the last variables
+constexpr int kSamples = 20;
+constexpr int kCorrections = 8;
+// What a feasible sample may miss a constraint by [its scale]; the multipliers
+// make of it less than the gain below.
+constexpr double kMissed = 1e-5;
+constexpr double kGain = 1e-4;  // x the mass
+
+// The study's objective and constraints on one model, the last design kept.
+class Loop {
+ public:
+  explicit Loop(const Case& input)
+      : input_(input), model_(input), rows_(studied_responses(input)) {}
+
+  bool usable() const { return !model_.failure(); }
+
+  VectorAnswer values(const VectorX& x) {
+    fields_ = {};
+    last_ = model_.evaluate(x, &fields_, &adjoint_);
+    if (last_.failure) {
+      return {.values = {}, .failure = last_.failure};
+    }
+    return {.values = last_.responses(rows_), .failure = {}};
+  }
+
+  JacobianAnswer jacobian(const VectorX& x) {
+    if (last_.design != x) {
+      values(x);
+    }
+    DesignGradient found = model_.gradient(last_, fields_, adjoint_, rows_);
+    return {.jacobian = std::move(found.jacobian), .failure = found.failure};
+  }
+
+  MinimizeProblem problem() {
+    MinimizeProblem problem;
+    for (const DesignVariable& v : input_.design) {
+      problem.variables.push_back({v.name, v.initial, v.lower, v.upper});
+    }
+    problem.objective = "mass";
+    for (const ConstraintEntry& entry : input_.study.constraints) {
+      problem.constraints.push_back(
+          {.name = input_.responses[entry.response].name,
+           .lower = entry.lower,
+           .upper = entry.upper});
+    }
+    problem.function = [this](const VectorX& x) { return values(x); };
+    problem.jacobian = [this](const VectorX& x) { return jacobian(x); };
+    return problem;
+  }
+
+ private:
+  const Case& input_;
+  ForwardModel model_;
+  std::vector<int> rows_;
+  Evaluation last_;
+  EvaluationFields fields_;
+  AdjointState adjoint_;
+};
+
+VectorX start(std::initializer_list<double> numbers) {
+  return Eigen::Map<const VectorX>(numbers.begin(),
+                                   static_cast<Eigen::Index>(numbers.size()));
+}
+
+MinimizeReport minimum_from(Loop& loop, const VectorX& x) {
+  MinimizeProblem problem = loop.problem();
+  for (std::size_t j = 0; j < problem.variables.size(); ++j) {
+    problem.variables[j].initial = x[static_cast<Eigen::Index>(j)];
+  }
+  return minimize(problem, {.optimality_tolerance = kOptimality});
+}
+
+// How far each constraint is missed, in scales, signed; 0 where it is kept.
+VectorX missed(const MinimizeProblem& problem, const VectorX& values,
+               const VectorX& scales) {
+  VectorX miss(scales.size());
+  for (Eigen::Index i = 0; i < miss.size(); ++i) {
+    const auto& c = problem.constraints[static_cast<std::size_t>(i)];
+    const double value = values[i + 1];
+    miss[i] = (value - std::clamp(value, c.lower, c.upper)) / scales[i];
+  }
+  return miss;
+}
+
+// A sample brought onto what it misses by the least steps, with the Jacobian of
+// the optimum and Broyden's corrections of it (C. G. Broyden, Math. Comput. 19,
+// 1965); nothing where that leads out of the bounds or to no film.
+class Restorer {
+ public:
+  Restorer(Loop& loop, const MinimizeReport& optimum)
+      : loop_(loop), problem_(loop.problem()) {
+    const auto count = static_cast<Eigen::Index>(problem_.constraints.size());
+    const auto n = static_cast<Eigen::Index>(problem_.variables.size());
+    scales_ = VectorX(count);
+    low_ = high_ = VectorX(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      low_[j] = problem_.variables[static_cast<std::size_t>(j)].lower;
+      high_[j] = problem_.variables[static_cast<std::size_t>(j)].upper;
+    }
+    const VectorX ranges = high_ - low_;
+    jacobian_ = optimum.jacobian.bottomRows(count) * ranges.asDiagonal();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto& c = problem_.constraints[static_cast<std::size_t>(i)];
+      const double bound = std::isfinite(c.upper) ? c.upper : c.lower;
+      scales_[i] = bound != 0.0 ? std::abs(bound)
+                                : jacobian_.row(i).cwiseAbs().maxCoeff();
+      jacobian_.row(i) /= scales_[i];
+    }
+  }
+
+  // The objective of the feasible design.
+  std::optional<double> restored(VectorX x) const {
+    const VectorX ranges = high_ - low_;
+    Eigen::MatrixXd J = jacobian_;
+    for (int k = 0; k < kCorrections; ++k) {
+      const VectorAnswer answer = loop_.values(x);
+      if (answer.failure) {
+        return std::nullopt;
+      }
+      const VectorX miss = missed(problem_, answer.values, scales_);
+      if (miss.cwiseAbs().maxCoeff() <= kMissed) {
+        return answer.values[0];
+      }
+      // Broyden's update, by the last step of the rows that are missed.
+      for (Eigen::Index i = 0; k > 0 && i < miss.size(); ++i) {
+        if (miss[i] != 0.0 && aimed_[i] != 0.0) {
+          J.row(i) += (miss[i] / step_.squaredNorm()) * step_.transpose();
+        }
+      }
+      Eigen::MatrixXd active = J;
+      for (Eigen::Index i = 0; i < miss.size(); ++i) {
+        active.row(i) *= miss[i] != 0.0 ? 1.0 : 0.0;
+      }
+      step_ = -active.completeOrthogonalDecomposition().solve(miss);
+      aimed_ = miss;
+      x += ranges.cwiseProduct(step_);
+      if ((x - low_).minCoeff() < 0.0 || (high_ - x).minCoeff() < 0.0) {
+        return std::nullopt;
+      }
+    }
+    return std::nullopt;
+  }
+
+  // About the centre, with volumes above it: films of less volume collapse.
+  VectorX about(const VectorX& centre, const VectorX& t) const {
+    VectorX shift = 2.0 * kReach * (t.array() - 0.5);
+    shift.tail(kVolumes) = 2.0 * kReach * t.tail(kVolumes);
+    return (centre + shift.cwiseProduct(high_ - low_))
+        .cwiseMax(low_)
+        .cwiseMin(high_);
+  }
+
+ private:
+  Loop& loop_;
+  MinimizeProblem problem_;
+  VectorX scales_;
+  VectorX low_;
+  VectorX high_;
+  Eigen::MatrixXd jacobian_;  // by x / range, of constraints / scale
+  mutable VectorX step_;
+  mutable VectorX aimed_;
+};
+
+TEST(TwoArmSized, TwoStartsComeToOneMassAndNoSampleIsLighter) {
+  const Case input =
+      read_case(kCase, {"resolution.fea=24", "resolution.film=12"});
+  Loop loop(input);
+  ASSERT_TRUE(loop.usable());
+  const MinimizeReport optimum = minimum_from(
+      loop, start({0, 28, 27, 27, 65, 65, 25, 25, 58, 3.6e5, 2.3e5, 2.3e5}));
+  ASSERT_EQ(optimum.termination, Termination::Converged) << optimum.message;
+  EXPECT_LE(optimum.first_order->residual, kOptimality);
+  const MinimizeReport other = minimum_from(
+      loop, start({15, 26, 26, 28, 75, 60, 25, 26, 66, 4.2e5, 2.1e5, 2.0e5}));
+  EXPECT_EQ(other.termination, Termination::Converged) << other.message;
+  EXPECT_LE(other.first_order->residual, kOptimality);
+  EXPECT_NEAR(other.objective / optimum.objective, 1.0, kOneMass);
+
+  const Restorer restorer(loop, optimum);
+  int feasible = 0;
+  for (const VectorX& t : latin_hypercube_samples(
+           static_cast<int>(input.design.size()), 4 * kSamples, 1)) {
+    if (feasible == kSamples) {
+      break;
+    }
+    if (const std::optional<double> mass =
+            restorer.restored(restorer.about(optimum.best, t))) {
+      ++feasible;
+      EXPECT_GE(*mass, optimum.objective * (1.0 - kGain));
+    }
+  }
+  EXPECT_EQ(feasible, kSamples);
+}
+
+}  // namespace
+}  // namespace meniscus
