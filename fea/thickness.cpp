@@ -43,23 +43,21 @@ std::vector<FaceCentre> outer_centres(const TetMesh& mesh) {
   return centres;
 }
 
-/// The face across from centre k, or -1 where its ball touches none.
+/// The face across from centre k, or -1 where none faces the other way.
 int across(const std::vector<FaceCentre>& centres, std::size_t k) {
   const FaceCentre& a = centres[k];
   double best = std::numeric_limits<double>::infinity();  // diameter
   int face = -1;
-  bool opposite = false;
   const auto look_at = [&](const FaceCentre& b) {
     const Vec3 e = b.place - a.place;
     const double depth = -a.normal.dot(e);
-    if (!(depth > 0.0)) {
+    if (!(depth > 0.0) || !(a.normal.dot(b.normal) <= kAcross)) {
       return;
     }
     const double diameter = e.squaredNorm() / depth;
     if (diameter < best || (diameter == best && b.face < face)) {
       best = diameter;
       face = b.face;
-      opposite = a.normal.dot(b.normal) <= kAcross;
     }
   };
   // A ball's diameter is no less than the distance of two of its points.
@@ -75,7 +73,7 @@ int across(const std::vector<FaceCentre>& centres, std::size_t k) {
     }
     look_at(centres[i]);
   }
-  return opposite ? face : -1;
+  return face;
 }
 
 struct Distance {

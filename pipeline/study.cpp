@@ -8,6 +8,7 @@
 
 #include "fea/body_loads.h"
 #include "pipeline/part_warnings.h"
+#include "pipeline/precision.h"
 #include "pipeline/responses.h"
 #include "pipeline/results.h"
 #include "pipeline/study_runner.h"
@@ -118,8 +119,8 @@ void StudyRunner::finish_best(EvaluationFields* fields) {
   if (options_.estimate_errors) {
     monitor_.progress({.stage = "error", .detail = "dual solutions"});
     const Timer timer;
-    ElementErrors errors =
-        estimate_element_errors(input_, last_fields_, model_->elasticity());
+    ElementErrors errors = estimate_element_errors(
+        input_, last_fields_, result_.best->responses, model_->elasticity());
     result_.seconds.fea += timer.seconds();
     if (errors.failure) {
       result_.warnings.push_back("no estimate of the elements' errors: " +
@@ -185,18 +186,12 @@ void StudyRunner::estimate_errors() {
 }
 
 void StudyRunner::warn() {
-  if (!targets_ || result_.response_errors.size() == 0) {
-    return;
-  }
-  const double error =
-      targets_
-          ->mismatch_errors(result_.best->responses, result_.response_errors)
-          .maxCoeff();
-  if (error > input_.study.tolerance) {
-    result_.warnings.push_back(fmt::format(
-        "the tolerance {:.1e} is below the mesh's own error of the mismatch, "
-        "about {:.1e}: shorten resolution.fea to trust more digits",
-        input_.study.tolerance, error));
+  const std::string note =
+      precision_statement(input_, targets_ ? &*targets_ : nullptr,
+                          result_.best->responses, result_.response_errors);
+  if (!note.empty()) {
+    result_.message += ". " + note;
+    result_.warnings.push_back(note);
   }
 }
 
