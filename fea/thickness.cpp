@@ -15,6 +15,9 @@ namespace {
 
 /// Cosine between normals of faces across from each other, at most.
 constexpr double kAcross = -0.5;
+/// A wall beside (cosine above kAcross, below -kAcross) with a smaller ball
+/// than this part of the one across makes an edge; around a rod all are alike.
+constexpr double kBeside = 0.9;
 
 /// The point of the seven at the centre is the first.
 constexpr int kCentre = 0;
@@ -47,14 +50,20 @@ std::vector<FaceCentre> outer_centres(const TetMesh& mesh) {
 int across(const std::vector<FaceCentre>& centres, std::size_t k) {
   const FaceCentre& a = centres[k];
   double best = std::numeric_limits<double>::infinity();  // diameter
+  double beside = best;
   int face = -1;
   const auto look_at = [&](const FaceCentre& b) {
     const Vec3 e = b.place - a.place;
     const double depth = -a.normal.dot(e);
-    if (!(depth > 0.0) || !(a.normal.dot(b.normal) <= kAcross)) {
+    const double cosine = a.normal.dot(b.normal);
+    if (!(depth > 0.0) || cosine > -kAcross) {
       return;
     }
     const double diameter = e.squaredNorm() / depth;
+    if (cosine > kAcross) {
+      beside = std::min(beside, diameter);
+      return;
+    }
     if (diameter < best || (diameter == best && b.face < face)) {
       best = diameter;
       face = b.face;
@@ -73,7 +82,7 @@ int across(const std::vector<FaceCentre>& centres, std::size_t k) {
     }
     look_at(centres[i]);
   }
-  return face;
+  return beside < kBeside * best ? -1 : face;
 }
 
 struct Distance {
