@@ -15,6 +15,9 @@ namespace {
 
 /// Cosine between normals of faces across from each other, at most.
 constexpr double kAcross = -0.5;
+/// A wall beside (cosine above kAcross, below -kAcross) with a smaller ball
+/// than this part of the one across makes an edge; around a rod all are alike.
+constexpr double kBeside = 0.9;
 
 /// The point of the seven at the centre is the first.
 constexpr int kCentre = 0;
@@ -43,23 +46,27 @@ std::vector<FaceCentre> outer_centres(const TetMesh& mesh) {
   return centres;
 }
 
-/// The face across from centre k, or -1 where its ball touches none.
+/// The face across from centre k, or -1 where none faces the other way.
 int across(const std::vector<FaceCentre>& centres, std::size_t k) {
   const FaceCentre& a = centres[k];
   double best = std::numeric_limits<double>::infinity();  // diameter
+  double beside = best;
   int face = -1;
-  bool opposite = false;
   const auto look_at = [&](const FaceCentre& b) {
     const Vec3 e = b.place - a.place;
     const double depth = -a.normal.dot(e);
-    if (!(depth > 0.0)) {
+    const double cosine = a.normal.dot(b.normal);
+    if (!(depth > 0.0) || cosine > -kAcross) {
       return;
     }
     const double diameter = e.squaredNorm() / depth;
+    if (cosine > kAcross) {
+      beside = std::min(beside, diameter);
+      return;
+    }
     if (diameter < best || (diameter == best && b.face < face)) {
       best = diameter;
       face = b.face;
-      opposite = a.normal.dot(b.normal) <= kAcross;
     }
   };
   // A ball's diameter is no less than the distance of two of its points.
@@ -75,7 +82,7 @@ int across(const std::vector<FaceCentre>& centres, std::size_t k) {
     }
     look_at(centres[i]);
   }
-  return opposite ? face : -1;
+  return beside < kBeside * best ? -1 : face;
 }
 
 struct Distance {

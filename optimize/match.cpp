@@ -37,17 +37,31 @@ std::optional<VectorX> start_of(MatchEvaluator& evaluator) {
       });
 }
 
+bool is_flat(const MatchEvaluator& evaluator, const BackendResult& backend) {
+  return (backend.jacobian.size() > 0 && backend.jacobian.isZero(0.0) &&
+          evaluator.failed_evaluations() == 0) ||
+         (evaluator.evaluations() - evaluator.failed_evaluations() > 1 &&
+          evaluator.all_answers_equal());
+}
+
+// What to change, before "allow more".
+std::string advice(const MatchEvaluator& evaluator, const VectorX& best) {
+  const std::string bounds = evaluator.bounds_reached(best);
+  if (!bounds.empty()) {
+    return fmt::format("Widen the bounds ({}), or ", bounds);
+  }
+  return 2 * evaluator.failed_evaluations() > evaluator.evaluations()
+             ? "Most designs within the bounds cannot be evaluated: see why, "
+               "tighten the bounds around those that can, or "
+             : "Add a design variable, start elsewhere, or ";
+}
+
 void conclude_stalled(const MatchEvaluator& evaluator,
                       const std::string& figures, const BackendResult& backend,
                       MatchReport& report) {
   report.termination = Termination::Stalled;
   const std::string bounds = evaluator.bounds_reached(report.best);
-  const bool flat =
-      (backend.jacobian.size() > 0 && backend.jacobian.isZero(0.0) &&
-       evaluator.failed_evaluations() == 0) ||
-      (evaluator.evaluations() - evaluator.failed_evaluations() > 1 &&
-       evaluator.all_answers_equal());
-  if (flat) {
+  if (is_flat(evaluator, backend)) {
     report.termination = Termination::Constant;
     report.message = fmt::format(
         "the mismatch does not change with any design variable: {}. Choose "
@@ -89,15 +103,23 @@ void conclude(const MatchEvaluator& evaluator, const BackendResult& backend,
       report.message = "matched: " + figures;
       break;
     case MatchEvaluator::Halt::Evaluations:
+      if (is_flat(evaluator, backend)) {
+        conclude_stalled(evaluator, figures, backend, report);
+        break;
+      }
       report.termination = Termination::LimitReached;
-      report.message =
-          fmt::format("stopped at the limit of {} evaluations: {}",
-                      evaluator.options().max_evaluations, figures);
+      report.message = fmt::format(
+          "stopped at the limit of {} evaluations: {}. {}allow more "
+          "evaluations",
+          evaluator.options().max_evaluations, figures,
+          advice(evaluator, report.best));
       break;
     case MatchEvaluator::Halt::Time:
       report.termination = Termination::LimitReached;
-      report.message = fmt::format("stopped at the time limit of {} s: {}",
-                                   evaluator.options().time_limit, figures);
+      report.message = fmt::format(
+          "stopped at the time limit of {} s: {}. {}allow more time",
+          evaluator.options().time_limit, figures,
+          advice(evaluator, report.best));
       break;
     default:
       conclude_stalled(evaluator, figures, backend, report);

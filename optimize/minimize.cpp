@@ -46,8 +46,8 @@ std::optional<VectorX> start_of(MinimizeEvaluator& evaluator) {
       });
 }
 
-// True when no probe changes the objective; a better one becomes the
-// incumbent by itself.
+// True when no probe changes the objective, one at least having been evaluated;
+// a better one becomes the incumbent by itself.
 bool is_constant(MinimizeEvaluator& evaluator) {
   for (int index = kFirstProbe; index <= kLastProbe; ++index) {
     if (evaluator.objective_varies() || evaluator.halted()) {
@@ -55,7 +55,8 @@ bool is_constant(MinimizeEvaluator& evaluator) {
     }
     evaluator.evaluate(probe_point(evaluator, index), EvaluationPhase::Probe);
   }
-  return !evaluator.objective_varies() && evaluator.best_is_feasible();
+  return !evaluator.objective_varies() && evaluator.best_is_feasible() &&
+         evaluator.evaluations() - evaluator.failed_evaluations() > 1;
 }
 
 SearchResult search_from(MinimizeEvaluator& evaluator, const VectorX& start,

@@ -165,22 +165,50 @@ void conclude_ended(const MinimizeEvaluator& evaluator,
             "method");
 }
 
+// What to change, before "allow more".
+std::string advice(const MinimizeEvaluator& evaluator,
+                   const MinimizeReport& report) {
+  if (!report.feasible) {
+    return "No design found so far keeps every constraint: loosen one of "
+           "these, widen the variables' bounds, or ";
+  }
+  return 2 * report.failed_evaluations > evaluator.evaluations()
+             ? "Most designs within the bounds cannot be evaluated: see why, "
+               "tighten the bounds around those that can, or "
+             : "Start elsewhere, or ";
+}
+
 void conclude_limit(const MinimizeEvaluator& evaluator,
                     MinimizeReport& report) {
   const bool time = evaluator.halt() == EvaluatorCore::Halt::Time;
   report.termination = Termination::LimitReached;
   report.message = fmt::format(
-      "stopped at the {}: {}",
+      "stopped at the {}: {}. {}allow more {}",
       time ? fmt::format("time limit of {} s", evaluator.options().time_limit)
            : fmt::format("limit of {} evaluations",
                          evaluator.options().max_evaluations),
+      figures(evaluator, report), advice(evaluator, report),
+      time ? "time" : "evaluations");
+}
+
+// Slopes from differences that all failed are 0 and prove nothing.
+void conclude_alone(const MinimizeEvaluator& evaluator,
+                    MinimizeReport& report) {
+  report.termination = Termination::Stalled;
+  report.message = fmt::format(
+      "of all designs that were tried within the bounds only one can be "
+      "evaluated: {}. See why the others cannot, set bounds around designs "
+      "that can, or start elsewhere",
       figures(evaluator, report));
 }
 
 void decide(const MinimizeEvaluator& evaluator, const SearchResult& search,
             bool constant, MinimizeReport& report) {
   using Halt = EvaluatorCore::Halt;
-  if (constant || evaluator.halt() == Halt::Constant) {
+  if (report.failed_evaluations > 0 &&
+      report.evaluations - report.failed_evaluations == 1) {
+    conclude_alone(evaluator, report);
+  } else if (constant || evaluator.halt() == Halt::Constant) {
     conclude_constant(evaluator, report);
   } else if (evaluator.halt() == Halt::Converged) {
     report.termination = Termination::Converged;

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "evolve/fields.h"
 #include "pipeline/case_loads.h"
+#include "pipeline/case_responses.h"
 #include "pipeline/case_values.h"
 
 namespace meniscus {
@@ -218,25 +219,6 @@ void check_places(const Case& input, const EvaluatedCase& numbers,
   }
 }
 
-ResponseNumbers response_of(const Case& input, const ResponseEntry& response,
-                            const CaseValues& values) {
-  const std::size_t before = values.problems().size();
-  ResponseNumbers result{.direction = values.at(response.direction)};
-  if (!values.are_rates() && has_direction(response.kind) &&
-      values.problems().size() == before && !(result.direction.norm() > 0.0)) {
-    const Quantity& first = response.direction[0];
-    values.problems().push_back(fmt::format(
-        "{}: {} has length 0{}; expected any other", place(input, first.line),
-        first.key.substr(0, first.key.rfind('[')),
-        values.where(response.direction)));
-  }
-  if (response.weight) {
-    result.weight = values.field(*response.weight);
-    result.weight_slope = values.slope(*response.weight);
-  }
-  return result;
-}
-
 /// Values, or rates.
 EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
   EvaluatedCase result;
@@ -354,18 +336,14 @@ std::vector<std::string> response_names(const Case& input) {
   return names;
 }
 
-bool has_direction(ResponseKind kind) {
-  return kind == ResponseKind::MeanDisplacement ||
-         kind == ResponseKind::DisplacementNorm ||
-         kind == ResponseKind::Rotation || kind == ResponseKind::CentreOfMass;
-}
-
 Dimension dimension_of(ResponseKind kind) {
   switch (kind) {
     case ResponseKind::MeanDisplacement:
     case ResponseKind::DisplacementNorm:
     case ResponseKind::CentreOfMass:
     case ResponseKind::Radius:
+    case ResponseKind::Thickness:
+    case ResponseKind::Distance:
       return Dimension::Length;
     case ResponseKind::Mass:
       return Dimension::Mass;

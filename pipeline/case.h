@@ -52,6 +52,8 @@ struct ResponseNumbers {
   Vec3 direction = Vec3::Zero();
   NumberOfPlace weight;  // empty: 1
   VectorOfPlace weight_slope;
+  NumberOfPlace level;  // above 0 where the part must not be [length]
+  VectorOfPlace level_slope;
 };
 
 /// The numbers of one design.
@@ -93,7 +95,6 @@ VectorX initial_design(const Case& input);
 std::vector<std::string> design_names(const Case& input);
 std::vector<std::string> response_names(const Case& input);
 Dimension dimension_of(ResponseKind kind);
-bool has_direction(ResponseKind kind);
 std::string response_unit(const Case& input, int response);
 
 }  // namespace meniscus

@@ -184,8 +184,12 @@ enum class ResponseKind {
   Pressure,
   CollapseMargin,
   Radius,
+  Thickness,
+  Distance,
   Expression
 };
+
+enum class RegionSide { KeepOut, KeepIn };
 
 /// What the kind does not need is empty.
 struct ResponseEntry {
@@ -198,8 +202,12 @@ struct ResponseEntry {
   double power = 8.0;
   double sharpness = 50.0;
   std::optional<double> scale;  // [pressure]
-  std::string film;             // empty: all
-  int body = 0;                 // index
+  /// Of thickness and distance [length].
+  std::optional<double> smoothing;
+  std::optional<PlaceQuantity> region;  // above 0 in it; of place alone
+  RegionSide side = RegionSide::KeepOut;
+  std::string film;  // empty: all
+  int body = 0;      // index
   /// Of Expression: over the case's names, then the responses above it.
   Quantity value;
   SourceLine line = 0;

@@ -41,6 +41,9 @@ const std::map<std::string, ResponseKeys>& response_kinds() {
       {"pressure", {Kind::Pressure, {{"body"}, {}}}},
       {"collapse_margin", {Kind::CollapseMargin, {}}},
       {"radius", {Kind::Radius, {{}, {"power"}}}},
+      {"thickness", {Kind::Thickness, {{}, {"smoothing"}}}},
+      {"distance",
+       {Kind::Distance, {{}, {"keep_out", "keep_in", "smoothing"}}}},
       {"expression", {Kind::Expression, {{"value"}, {}}}}};
   return kinds;
 }
@@ -142,6 +145,32 @@ Quantity read_value(CaseContext& context, const CaseTable& table,
   return value;
 }
 
+/// The region of a distance, and how smooth extremes over places are.
+void read_place(CaseContext& context, const CaseTable& table,
+                ResponseEntry& response) {
+  if (table.has("smoothing")) {
+    response.smoothing = constant_above(context, table, "smoothing", 0.0, 1.0);
+  }
+  if (response.kind != ResponseKind::Distance) {
+    return;
+  }
+  if (table.has("keep_out") == table.has("keep_in")) {
+    context.problems.add(
+        table.line(),
+        fmt::format("{} has {} of keep_out and keep_in; expected one, an "
+                    "expression of x, y, z that is above 0 in the region",
+                    table.path(), table.has("keep_in") ? "both" : "none"));
+    return;
+  }
+  response.side =
+      table.has("keep_in") ? RegionSide::KeepIn : RegionSide::KeepOut;
+  response.region =
+      table.place_quantity(table.has("keep_in") ? "keep_in" : "keep_out");
+  if (response.region) {
+    require_frozen(context, response.region->quantity, "a region");
+  }
+}
+
 ResponseEntry read_response(CaseContext& context, const CaseTable& table,
                             const std::string& kind, const Case& result) {
   ResponseEntry response;
@@ -166,6 +195,7 @@ ResponseEntry read_response(CaseContext& context, const CaseTable& table,
   response.sharpness =
       constant_above(context, table, "sharpness", 0.0, response.sharpness);
   response.scale = stress_scale(context, table, response, result);
+  read_place(context, table, response);
   if (const auto film = table.text("film")) {
     response.film = *film;
     index_among(context, table, "film", film_names(result));

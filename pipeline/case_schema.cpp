@@ -273,13 +273,16 @@ std::vector<TableSpec> make_tables() {
          "Mises stress and of strain energy density by volume; film_area, "
          "film_energy: of the films; pressure: of a body; collapse_margin: a "
          "smooth lower bound of the film's smallest eigenvalue, force per "
-         "length cubed; radius: the films' smallest one, smooth; expression: "
-         "of the responses above it",
+         "length cubed; radius: the films' smallest one, smooth; thickness: "
+         "the solid's smallest one, smooth; distance: how far the solid "
+         "reaches into a region to keep out of, or out of one to keep in, "
+         "below 0 where it keeps clear, smooth; expression: of the responses "
+         "above it",
          "mean_displacement|displacement_norm|rotation|compliance|"
          "strain_energy|mass|volume|centre_of_mass|max_von_mises|"
          "von_mises_norm|von_mises_ks|uniformity|energy_uniformity|film_area|"
-         "film_energy|pressure|collapse_margin|radius|expression",
-         "thickness|distance"},
+         "film_energy|pressure|collapse_margin|radius|thickness|distance|"
+         "expression"},
         {"on", K::Name, D::None, false,
          "of displacements and rotations: the surface"},
         {"direction", K::Vector, D::None, false,
@@ -299,6 +302,16 @@ std::vector<TableSpec> make_tables() {
         {"scale", K::Constant, D::Pressure, false,
          "of von_mises_ks: the stress that its sharpness is measured by; the "
          "least yield strength when left out"},
+        {"keep_out", K::Place, D::Length, false,
+         "of distance: an expression of x, y, z, no design variable in it: how "
+         "deep a place lies in the region, below 0 outside; or"},
+        {"keep_in", K::Place, D::Length, false,
+         "of distance: the same of a region that the solid must stay within"},
+        {"smoothing", K::Constant, D::Length, false,
+         "of thickness, distance: all places within about as much of the "
+         "worst one count, and the value is on the safe side of it by no more "
+         "than this times the logarithm of their number; a tenth of "
+         "resolution.fea when left out"},
         {"film", K::Name, D::None, false,
          "of film_area: one film; all when left out"},
         {"body", K::Name, D::None, false, "of pressure"},

@@ -144,8 +144,8 @@ void Adjoint::through_film() {
   for (const Backward& backward : backwards_) {
     covectors.push_back(backward.partials.film);
   }
-  std::vector<FilmGradient> gradients = in_.fields.film.transpose(
-      in_.fields.film_state, in_.fields.numbers.film_system, covectors);
+  std::vector<FilmGradient> gradients = in_.fields.film->transpose(
+      *in_.fields.film_state, in_.fields.numbers.film_system, covectors);
   for (std::size_t k = 0; k < gradients.size(); ++k) {
     backwards_[k].film = std::move(gradients[k]);
   }
@@ -155,7 +155,7 @@ void Adjoint::through_film() {
 double Adjoint::rate(const Backward& backward,
                      const EvaluatedCase& rates) const {
   const ResponsePartials& partials = backward.partials;
-  double sum = in_.fields.film.rate(
+  double sum = in_.fields.film->rate(
       backward.film, in_.fields.numbers.film_system, rates.film_system);
   sum +=
       partials.by_direction.dot(rates.responses[backward.response].direction);

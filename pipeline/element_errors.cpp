@@ -6,34 +6,35 @@
 
 #include "fea/body_loads.h"
 #include "fea/error_estimate.h"
+#include "pipeline/case_values.h"
+#include "pipeline/responses.h"
 
 namespace meniscus {
 
 namespace {
 
-/// The load case's supports under a force spread over the response's surface:
-/// the load whose work is the mean displacement times `force`. It is as large
-/// as the load case's own, for the solver starts from that one's solution.
+/// The load case's supports under the forces `by_displacement`, dJ/du, times
+/// `scale`: as large as the load case's own, for the solver starts from that
+/// one's solution.
 struct DualLoad {
   LoadCase load;
-  double force = 1.0;
+  double scale = 1.0;
 };
 DualLoad dual_load(const EvaluationFields& fields, const LoadCase& load_case,
-                   const ResponseEntry& response, const Vec3& direction) {
+                   const VectorX& by_displacement) {
   LoadCase dual = load_case;
-  dual.forces = {{response.surface, direction.normalized()}};
+  dual.forces.clear();
   dual.pressures.clear();
   dual.tractions.clear();
   dual.remote_loads.clear();
   dual.gravity.setZero();
   dual.spin.reset();
   dual.temperature.reset();
-  dual.nodal.resize(0);
-  const auto& materials = fields.inputs.materials;
-  const double force = nodal_forces(fields.mesh, load_case, materials).norm() /
-                       nodal_forces(fields.mesh, dual, materials).norm();
-  dual.forces.front().total *= force;
-  return {std::move(dual), force};
+  const double scale =
+      nodal_forces(fields.mesh, load_case, fields.inputs.materials).norm() /
+      by_displacement.norm();
+  dual.nodal = scale * by_displacement;
+  return {std::move(dual), scale};
 }
 
 ResponseError dual_weighted(const EvaluationFields& fields,
@@ -83,104 +84,160 @@ class Shares {
   int count_ = 0;
 };
 
-bool has_dual_load(const ResponseEntry& response) {
-  return response.kind == ResponseKind::MeanDisplacement && !response.weight;
-}
-
-/// The elements' part of the error is known: by a dual solution, or 0.
-bool is_known(const ResponseEntry& response) {
+/// Its partial derivative by the displacement makes a dual load.
+bool has_dual(const ResponseEntry& response) {
   switch (response.kind) {
     case ResponseKind::MeanDisplacement:
-      return has_dual_load(response);
+    case ResponseKind::DisplacementNorm:
+    case ResponseKind::Rotation:
+    case ResponseKind::Compliance:
     case ResponseKind::StrainEnergy:
-    case ResponseKind::Mass:
-    case ResponseKind::Volume:
-    case ResponseKind::CentreOfMass:
-    case ResponseKind::FilmArea:
-    case ResponseKind::FilmEnergy:
-    case ResponseKind::Pressure:
-    case ResponseKind::CollapseMargin:
-    case ResponseKind::Radius:
+    case ResponseKind::VonMisesNorm:
+    case ResponseKind::Uniformity:
+    case ResponseKind::EnergyUniformity:
       return true;
     default:
       return false;
   }
 }
 
-/// Responses that need a dual solution, by load case.
-std::vector<std::vector<std::size_t>> duals_needed(const Case& input,
-                                                   std::size_t load_cases) {
-  std::vector<std::vector<std::size_t>> needed(load_cases);
-  for (std::size_t r = 0; r < input.responses.size(); ++r) {
-    if (has_dual_load(input.responses[r])) {
-      needed[static_cast<std::size_t>(input.responses[r].load_case)].push_back(
-          r);
+struct Dual {
+  std::size_t response = 0;
+  VectorX by_displacement;
+};
+
+/// What the elements' errors mean for responses.
+class ResponseErrors {
+ public:
+  ResponseErrors(const Case& input, const EvaluationFields& fields,
+                 const VectorX& values, Shares& shares, ElementErrors& errors)
+      : input_(input),
+        fields_(fields),
+        values_(values),
+        shares_(shares),
+        errors_(errors) {
+    errors_.responses =
+        VectorX::Zero(static_cast<Eigen::Index>(input.responses.size()));
+  }
+
+  void run(const ElasticModel& model);
+
+ private:
+  /// Duals that are to be solved, by load case; what needs none is written.
+  std::vector<std::vector<Dual>> duals();
+  bool solve(const std::vector<std::vector<Dual>>& duals, std::size_t round,
+             const ElasticModel& model);
+  void add_expressions();
+  double& error(std::size_t response) {
+    return errors_.responses[static_cast<Eigen::Index>(response)];
+  }
+
+  const Case& input_;
+  const EvaluationFields& fields_;
+  const VectorX& values_;
+  Shares& shares_;
+  ElementErrors& errors_;
+};
+
+std::vector<std::vector<Dual>> ResponseErrors::duals() {
+  std::vector<std::vector<Dual>> result(fields_.inputs.load_cases.size());
+  for (std::size_t r = 0; r < input_.responses.size(); ++r) {
+    const ResponseEntry& response = input_.responses[r];
+    // Of peaks, recovery and the dual solution miss the most.
+    if (response.kind == ResponseKind::MaxVonMises ||
+        response.kind == ResponseKind::VonMisesKs) {
+      error(r) = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (!has_dual(response)) {
+      continue;
+    }
+    const auto k = static_cast<std::size_t>(response.load_case);
+    ResponsePartials partials =
+        partials_of(response, fields_.inputs.responses[r],
+                    {fields_.inputs, fields_.mesh, fields_.solution,
+                     fields_.exclusion.element},
+                    Derivatives::All);
+    if (partials.self_adjoint != 0.0) {  // the dual is the solution itself
+      const double norm = fields_.stresses[k].error.error;
+      error(r) = partials.self_adjoint * norm * norm;
+    } else if (partials.by_displacement.norm() > 0.0) {
+      result[k].push_back({r, std::move(partials.by_displacement)});
     }
   }
-  return needed;
+  return result;
+}
+
+/// One dual a load case, all load cases together; false when none is left.
+bool ResponseErrors::solve(const std::vector<std::vector<Dual>>& duals,
+                           std::size_t round, const ElasticModel& model) {
+  std::vector<LoadCase> loads = fields_.inputs.load_cases;
+  std::vector<double> scale(loads.size(), 0.0);  // 0: no dual left
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    if (round < duals[k].size()) {
+      DualLoad dual =
+          dual_load(fields_, loads[k], duals[k][round].by_displacement);
+      loads[k] = std::move(dual.load);
+      scale[k] = dual.scale;
+    }
+  }
+  if (std::all_of(scale.begin(), scale.end(),
+                  [](double s) { return s == 0.0; })) {
+    return false;
+  }
+  const ElasticSolution solution = model.solve(fields_.mesh, loads);
+  errors_.failure = solution.failure;
+  for (std::size_t k = 0; k < loads.size() && !errors_.failure; ++k) {
+    if (scale[k] != 0.0) {
+      const ResponseError found =
+          dual_weighted(fields_, k, solution.displacements[k]);
+      error(duals[k][round].response) = found.value / scale[k];
+      shares_.add([&](std::size_t i) { return std::abs(found.element[i]); });
+    }
+  }
+  return !errors_.failure;
+}
+
+/// What an expression would change by if all that it is made of did.
+void ResponseErrors::add_expressions() {
+  std::vector<std::string> problems;
+  const CaseValues values(input_, fields_.inputs.design, problems);
+  const VectorX& here = values_;
+  const VectorX there = here + errors_.responses;
+  for (std::size_t r = 0; r < input_.responses.size(); ++r) {
+    const ResponseEntry& response = input_.responses[r];
+    if (response.kind == ResponseKind::Expression) {
+      error(r) = values.at(response.value, {there.data(), r}) -
+                 values.at(response.value, {here.data(), r});
+    }
+  }
+}
+
+void ResponseErrors::run(const ElasticModel& model) {
+  const std::vector<std::vector<Dual>> waiting = duals();
+  for (std::size_t round = 0; solve(waiting, round, model);) {
+    ++round;
+  }
+  if (!errors_.failure) {
+    add_expressions();
+  }
 }
 
 }  // namespace
 
 ElementErrors estimate_element_errors(const Case& input,
                                       const EvaluationFields& fields,
+                                      const VectorX& responses,
                                       const ElasticModel& model) {
-  const auto& load_cases = fields.inputs.load_cases;
   ElementErrors errors;
-  errors.responses =
-      VectorX::Zero(static_cast<Eigen::Index>(input.responses.size()));
-  const std::vector<PartStress>& primals = fields.stresses;
   Shares shares(fields.mesh.element_count());
-  for (std::size_t k = 0; k < load_cases.size(); ++k) {
-    errors.energy = std::max(errors.energy, primals[k].error.relative());
-    const std::vector<double>& e = primals[k].error.element;
+  for (const PartStress& stress : fields.stresses) {
+    errors.energy = std::max(errors.energy, stress.error.relative());
+    const std::vector<double>& e = stress.error.element;
     shares.add([&](std::size_t i) { return e[i] * e[i]; });
   }
-  for (std::size_t r = 0; r < input.responses.size(); ++r) {
-    const ResponseEntry& response = input.responses[r];
-    const auto k = static_cast<std::size_t>(response.load_case);
-    double& error = errors.responses[static_cast<Eigen::Index>(r)];
-    if (response.kind == ResponseKind::StrainEnergy) {
-      error = 0.5 * primals[k].error.error * primals[k].error.error;
-    } else if (!is_known(response)) {
-      error = std::numeric_limits<double>::quiet_NaN();
-    }
-  }
-  // One dual a load case at a time, all load cases together.
-  const auto needed = duals_needed(input, load_cases.size());
-  for (std::size_t round = 0;; ++round) {
-    std::vector<LoadCase> loads = load_cases;
-    std::vector<double> force(load_cases.size(), 1.0);
-    bool any = false;
-    for (std::size_t k = 0; k < load_cases.size(); ++k) {
-      if (round < needed[k].size()) {
-        const std::size_t r = needed[k][round];
-        DualLoad dual = dual_load(fields, load_cases[k], input.responses[r],
-                                  fields.inputs.responses[r].direction);
-        loads[k] = std::move(dual.load);
-        force[k] = dual.force;
-        any = true;
-      }
-    }
-    if (!any) {
-      errors.share = shares.mean();
-      return errors;
-    }
-    const ElasticSolution duals = model.solve(fields.mesh, loads);
-    if (duals.failure) {
-      errors.failure = duals.failure;
-      return errors;
-    }
-    for (std::size_t k = 0; k < load_cases.size(); ++k) {
-      if (round < needed[k].size()) {
-        const ResponseError error =
-            dual_weighted(fields, k, duals.displacements[k]);
-        errors.responses[static_cast<Eigen::Index>(needed[k][round])] =
-            error.value / force[k];
-        shares.add([&](std::size_t i) { return std::abs(error.element[i]); });
-      }
-    }
-  }
+  ResponseErrors(input, fields, responses, shares, errors).run(model);
+  errors.share = shares.mean();
+  return errors;
 }
 
 }  // namespace meniscus

@@ -57,6 +57,7 @@ struct ForwardModel::Impl {
   std::optional<MeshMotion> motion;
   std::optional<ElasticModel> elasticity;
   Exclusion exclusion;
+  ThicknessPairs pairs;
   std::optional<Adaptation> adaptation;
   Monitor* watcher = nullptr;  // of evaluations
 
@@ -65,6 +66,7 @@ struct ForwardModel::Impl {
                    const ForwardModelOptions& options, Monitor& monitor);
   bool freeze_mesh(const TetrahedralizeOptions& options, Monitor& monitor);
   bool freeze_elasticity(const EvaluatedCase& inputs, Monitor& monitor);
+  bool freeze_pairs();
   bool adapt(const EvaluatedCase& inputs, Monitor& monitor);
   AdaptedState state(const EvaluatedCase& inputs) const;
   VectorX responses(const EvaluatedCase& inputs, const FilmState& film_state,
@@ -138,12 +140,21 @@ bool ForwardModel::Impl::freeze_elasticity(const EvaluatedCase& inputs,
   return !frozen.failure;
 }
 
+bool ForwardModel::Impl::freeze_pairs() {
+  try {
+    pairs = thickness_pairs_of(input, base_mesh);
+  } catch (const InvalidInput& error) {  // a solid that is thin nowhere
+    frozen.failure = Failure{FailureKind::NotANumber, error.what()};
+  }
+  return !frozen.failure;
+}
+
 VectorX ForwardModel::Impl::responses(const EvaluatedCase& inputs,
                                       const FilmState& film_state,
                                       const TetMesh& mesh,
                                       const ElasticSolution& solution) const {
-  return respond(
-      input, {inputs, *film, film_state, mesh, solution, exclusion.element});
+  return respond(input, {inputs, mesh, solution, exclusion.element, &*film,
+                         &film_state, &pairs});
 }
 
 /// From a gradient by all nodes of the mesh to that by the film's vertices.
@@ -159,11 +170,14 @@ AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
   fields.inputs = inputs;
   fields.solution = elasticity->base_solution();
   fields.stresses = part_stresses(fields.mesh, inputs, fields.solution);
-  return {.tet = frozen.tet,
-          .dofs = frozen.fea.dofs,
-          .responses = responses(inputs, film->reference(), fields.mesh,
-                                 fields.solution),
-          .errors = estimate_element_errors(input, fields, *elasticity)};
+  fields.exclusion = exclusion;
+  const VectorX values =
+      responses(inputs, film->reference(), fields.mesh, fields.solution);
+  return {
+      .tet = frozen.tet,
+      .dofs = frozen.fea.dofs,
+      .responses = values,
+      .errors = estimate_element_errors(input, fields, values, *elasticity)};
 }
 
 /// A finer mesh where the first one errs, and the elasticity on it.
@@ -198,7 +212,7 @@ bool ForwardModel::Impl::adapt(const EvaluatedCase& inputs, Monitor& monitor) {
     return false;
   }
   exclusion = choose_exclusion(input, base_mesh, EmptyZones::Allowed);
-  if (!freeze_elasticity(inputs, monitor)) {
+  if (!freeze_pairs() || !freeze_elasticity(inputs, monitor)) {
     return false;
   }
   const Timer after_timer;
@@ -221,7 +235,8 @@ void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
   exclusion = choose_exclusion(
       input, base_mesh,
       options.edge_factor > 1.0 ? EmptyZones::Allowed : EmptyZones::Refused);
-  if (freeze_elasticity(inputs, monitor) && input.analysis.adapt) {
+  if (freeze_pairs() && freeze_elasticity(inputs, monitor) &&
+      input.analysis.adapt) {
     adapt(inputs, monitor);
   }
 }
@@ -332,7 +347,12 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
   if (!impl_->solve(mesh, inputs, solution, keep, result)) {
     return result;
   }
-  result.responses = impl_->responses(inputs, film_state, mesh, solution);
+  try {
+    result.responses = impl_->responses(inputs, film_state, mesh, solution);
+  } catch (const InvalidInput& error) {  // an expression of place
+    result.failure = Failure{FailureKind::NotANumber, error.what()};
+    return result;
+  }
   if (!result.responses.allFinite()) {
     result.failure = not_a_number(impl_->input, result.responses);
     result.responses.resize(0);
@@ -357,15 +377,21 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
                                       const EvaluationFields& fields,
                                       const AdjointState& adjoint,
                                       const std::vector<int>& wanted) const {
-  const ResponseInput responses{fields.inputs,   *impl_->film,
-                                adjoint.film,    fields.mesh,
-                                fields.solution, fields.exclusion.element};
-  return design_gradient({impl_->input, responses, evaluation.responses,
-                          *impl_->elasticity, adjoint.elastic,
-                          [&](const Points& by_nodes) {
-                            return impl_->to_film(fields.mesh, by_nodes);
-                          }},
-                         wanted);
+  const ResponseInput responses{
+      fields.inputs, fields.mesh,   fields.solution, fields.exclusion.element,
+      &*impl_->film, &adjoint.film, &impl_->pairs};
+  try {
+    return design_gradient({impl_->input, responses, evaluation.responses,
+                            *impl_->elasticity, adjoint.elastic,
+                            [&](const Points& by_nodes) {
+                              return impl_->to_film(fields.mesh, by_nodes);
+                            }},
+                           wanted);
+  } catch (const InvalidInput& error) {
+    DesignGradient none;
+    none.failure = Failure{FailureKind::NotANumber, error.what()};
+    return none;
+  }
 }
 
 }  // namespace meniscus

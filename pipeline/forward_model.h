@@ -128,7 +128,8 @@ class ForwardModel {
                       AdjointState* adjoint = nullptr) const;
 
   /// The exact derivatives of the `wanted` responses (indices, a row each) at
-  /// an evaluated design. A pure function; see design_gradient().
+  /// an evaluated design. A pure function; see design_gradient(), of which what
+  /// has no derivative there is a failure here.
   DesignGradient gradient(const Evaluation& evaluation,
                           const EvaluationFields& fields,
                           const AdjointState& adjoint,

@@ -9,6 +9,7 @@
 #include "fea/body_loads.h"
 #include "fea/displacement_functionals.h"
 #include "fea/energy_functionals.h"
+#include "fea/place_functionals.h"
 #include "fea/stress_functionals.h"
 #include "fea/volume_functionals.h"
 #include "pipeline/case_values.h"
@@ -138,8 +139,8 @@ ResponsePartials energy_partials(const ResponseEntry& response,
 
 ResponsePartials film_area(const ResponseEntry& response,
                            const ResponseInput& fields) {
-  const VectorX areas = fields.film.areas(fields.film_state.points);
-  const std::vector<std::string>& labels = fields.film.labels();
+  const VectorX areas = fields.film->areas(fields.film_state->points);
+  const std::vector<std::string>& labels = fields.film->labels();
   ResponsePartials result;
   result.film.areas = VectorX::Ones(areas.size());
   if (!response.film.empty()) {
@@ -160,14 +161,14 @@ ResponsePartials taken(FilmResponse film) {
 
 ResponsePartials film_partials(const ResponseEntry& response,
                                const ResponseInput& fields) {
-  const FilmState& state = fields.film_state;
+  const FilmState& state = *fields.film_state;
   switch (response.kind) {
     case ResponseKind::FilmArea:
       return film_area(response, fields);
     case ResponseKind::CollapseMargin:
-      return taken(fields.film.margin(state, fields.numbers.film_system));
+      return taken(fields.film->margin(state, fields.numbers.film_system));
     case ResponseKind::Radius:
-      return taken(fields.film.smallest_radius(
+      return taken(fields.film->smallest_radius(
           state.points, static_cast<int>(response.power)));
     default:
       break;
@@ -182,6 +183,24 @@ ResponsePartials film_partials(const ResponseEntry& response,
   result.value = state.report.bodies[response.body].pressure;
   result.film.pressures = VectorX::Unit(bodies, response.body);
   return result;
+}
+
+/// Extremes over the part's surface, about so sharp where the case says nothing
+/// else: to a tenth of an edge.
+ResponsePartials place_partials(const ResponseEntry& response,
+                                const ResponseNumbers& numbers,
+                                const ResponseInput& fields,
+                                Derivatives derivatives) {
+  constexpr double kPartOfEdge = 0.1;
+  const double sharpness =
+      1.0 / response.smoothing.value_or(kPartOfEdge * fields.numbers.fea_edge);
+  if (response.kind == ResponseKind::Thickness) {
+    return taken(thickness_functional(fields.mesh, *fields.pairs, sharpness,
+                                      derivatives));
+  }
+  return taken(intrusion_functional(fields.mesh,
+                                    {numbers.level, numbers.level_slope},
+                                    sharpness, derivatives));
 }
 
 ResponsePartials peak(const ResponseEntry& response,
@@ -205,7 +224,12 @@ ResponsePartials peak(const ResponseEntry& response,
 double expression_value(const Case& input, const ResponseEntry& response,
                         const VectorX& design, std::span<const double> above) {
   std::vector<std::string> problems;
-  return CaseValues(input, design, problems).at(response.value, above);
+  const double value =
+      CaseValues(input, design, problems).at(response.value, above);
+  if (!problems.empty()) {
+    throw InvalidInput(problems.front());
+  }
+  return value;
 }
 
 }  // namespace
@@ -220,6 +244,13 @@ StressField load_case_stress(const TetMesh& mesh, const EvaluatedCase& numbers,
     find_peak(mesh, excluded, field);
   }
   return field;
+}
+
+ThicknessPairs thickness_pairs_of(const Case& input, const TetMesh& base) {
+  const bool asked = std::any_of(
+      input.responses.begin(), input.responses.end(),
+      [](const ResponseEntry& r) { return r.kind == ResponseKind::Thickness; });
+  return asked ? thickness_pairs(base) : ThicknessPairs();
 }
 
 ResponsePartials partials_of(const ResponseEntry& response,
@@ -261,6 +292,9 @@ ResponsePartials partials_of(const ResponseEntry& response,
     case ResponseKind::CollapseMargin:
     case ResponseKind::Radius:
       return film_partials(response, fields);
+    case ResponseKind::Thickness:
+    case ResponseKind::Distance:
+      return place_partials(response, numbers, fields, derivatives);
     case ResponseKind::Expression:
       break;
   }

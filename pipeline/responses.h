@@ -6,6 +6,7 @@
 
 #include "evolve/film_model.h"
 #include "fea/functional.h"
+#include "fea/thickness.h"
 #include "pipeline/case.h"
 
 namespace meniscus {
@@ -13,11 +14,13 @@ namespace meniscus {
 /// What a design came to, on loan to the responses.
 struct ResponseInput {
   const EvaluatedCase& numbers;
-  const FilmModel& film;
-  const FilmState& film_state;
   const TetMesh& mesh;
   const ElasticSolution& solution;
   const std::vector<char>& excluded;  // that peaks leave out; may be empty
+  // May be null for responses of displacements and of the mesh:
+  const FilmModel* film = nullptr;
+  const FilmState* film_state = nullptr;
+  const ThicknessPairs* pairs = nullptr;  // thickness_pairs_of() the model
 };
 
 /// One response's value and its partial derivatives, all else held. What is
@@ -36,8 +39,14 @@ struct ResponsePartials {
   FilmCovector film;
 };
 
+/// What a response of kind thickness compares in every design; empty without
+/// one. `base`: the mesh at the design that the model is frozen at. Throws as
+/// thickness_pairs().
+ThicknessPairs thickness_pairs_of(const Case& input, const TetMesh& base);
+
 /// One value per response of the case, in its order and units. Not finite
-/// where the fields are not, or an expression has no value.
+/// where the fields are not. Throws InvalidInput, naming file, line and key,
+/// where an expression, a weight or a region has no value.
 VectorX respond(const Case& input, const ResponseInput& fields);
 
 /// Of a response that is no expression of others. Throws InvalidInput for one

@@ -9,6 +9,7 @@
 
 #include "core/timer.h"
 #include "pipeline/part_warnings.h"
+#include "pipeline/precision.h"
 #include "pipeline/results.h"
 #include "pipeline/study_kinds.h"
 
@@ -172,8 +173,9 @@ void StudyRun::solve_eigenproblems() {
 void StudyRun::estimate_element_errors_of_best() {
   monitor_.progress({.stage = "error", .detail = "dual solutions"});
   const Timer timer;
-  ElementErrors errors = estimate_element_errors(
-      input_, fields_, evaluator_->model().elasticity());
+  ElementErrors errors =
+      estimate_element_errors(input_, fields_, result_.best->responses,
+                              evaluator_->model().elasticity());
   own_seconds_.fea += timer.seconds();
   if (errors.failure) {
     result_.warnings.push_back("no estimate of the elements' errors: " +
@@ -229,18 +231,12 @@ void StudyRun::combine_errors(const VectorX& coarse) {
 }
 
 void StudyRun::warn() {
-  if (!targets_ || result_.response_errors.size() == 0) {
-    return;
-  }
-  const double error =
-      targets_
-          ->mismatch_errors(result_.best->responses, result_.response_errors)
-          .maxCoeff();
-  if (error > input_.study.tolerance) {
-    result_.warnings.push_back(fmt::format(
-        "the tolerance {:.1e} is below the mesh's own error of the mismatch, "
-        "about {:.1e}: shorten resolution.fea to trust more digits",
-        input_.study.tolerance, error));
+  const std::string note =
+      precision_statement(input_, targets_ ? &*targets_ : nullptr,
+                          result_.best->responses, result_.response_errors);
+  if (!note.empty()) {
+    result_.message += ". " + note;
+    result_.warnings.push_back(note);
   }
 }
 

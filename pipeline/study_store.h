@@ -7,7 +7,9 @@
 /// not the power cut). After a clean end it is one plain file again.
 ///
 /// Numbers that must come back with the same bits (inputs, responses,
-/// gradient) are stored as little-endian IEEE doubles, not as text.
+/// gradient) are stored as little-endian IEEE doubles, not as text. Each record
+/// has a seal, a hash of all its columns: bytes that changed on the disk are
+/// found even where SQLite sees nothing wrong.
 #pragma once
 
 #include <memory>

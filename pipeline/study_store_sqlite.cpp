@@ -41,6 +41,7 @@ SqliteDatabase::SqliteDatabase(std::string path, Access access,
   }
   sqlite3_extended_result_codes(handle_, 1);
   sqlite3_busy_timeout(handle_, static_cast<int>(1000.0 * busy_timeout_));
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
 }
 
 SqliteDatabase::~SqliteDatabase() { sqlite3_close(handle_); }
@@ -56,6 +57,10 @@ void SqliteDatabase::try_execute(const std::string& sql) const noexcept {
   sqlite3_busy_timeout(handle_, 0);
   sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
   sqlite3_busy_timeout(handle_, static_cast<int>(1000.0 * busy_timeout_));
+}
+
+void SqliteDatabase::fold_log_on_close() const noexcept {
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 0, nullptr);
 }
 
 int SqliteDatabase::pragma(const std::string& name) const {
@@ -95,6 +100,7 @@ std::string SqliteDatabase::explain(const char* what) const {
           "{} is locked by another program (waited {} s); close what has it "
           "open and run again with --resume",
           path_, busy_timeout_);
+    case SQLITE_ERROR:  // our own statements are right: its tables are not
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:
       return damaged(path_, text);

@@ -25,7 +25,10 @@ class SqliteDatabase {
   const std::string& path() const { return path_; }
   sqlite3* handle() const { return handle_; }
   void execute(const std::string& sql) const;  // one or more statements
-  /// The same without waiting; a refusal changes nothing and is no error.
+  /// A log beside the file stays as it is when this closes, for a file that
+  /// turns out to be damaged must not change; called, it is folded in.
+  void fold_log_on_close() const noexcept;
+  /// As execute() without waiting; a refusal changes nothing and is no error.
   void try_execute(const std::string& sql) const noexcept;
   int pragma(const std::string& name) const;  // 0 when it has no value
   int last_row() const;                       // number of the last insertion

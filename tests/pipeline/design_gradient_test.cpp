@@ -30,7 +30,8 @@ std::string every_response() {
   text = changed(text, "volume = 9e4", "volume = \"9e4 * fill\"");
   text = changed(text, "density = 2.8e-9",
                  "density = 2.8e-9\nyield_strength = 200");
-  text = changed(text, "[responses.sway]", R"([responses.tilt]
+  text = changed(text, "length = 60.0", "length = 60.0\nfoot_at = 30.0");
+  text = changed(text, "[responses.sway]", R"toml([responses.tilt]
 kind = "mean_displacement"
 on = "head_pad"
 direction = [0, "lean / 10", 1]
@@ -91,7 +92,19 @@ kind = "collapse_margin"
 [responses.tightest]
 kind = "radius"
 
-[responses.sway])");
+[responses.thinnest]
+kind = "thickness"
+
+[responses.clearance]
+kind = "distance"
+keep_out = "12 - sqrt((x - foot_at)^2 + y^2 + (z - 30)^2)"
+smoothing = 2
+
+[responses.overhang]
+kind = "distance"
+keep_in = "28 - sqrt(x^2 + y^2 + z / 8)"
+
+[responses.sway])toml");
   return changed(text, "[study]",
                  R"([responses.price]
 kind = "expression"

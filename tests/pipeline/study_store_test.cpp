@@ -95,7 +95,7 @@ TEST(StudyStore, BringsBackTheSameBits) {
   }
   const StudyStore store = StudyStore::read(folder.path().string());
   EXPECT_EQ(store.meta().case_text, kMeta.case_text);
-  EXPECT_EQ(store.meta().schema_version, 1);
+  EXPECT_EQ(store.meta().schema_version, 2);
   EXPECT_EQ(store.meta().created.size(), 20U) << store.meta().created;
   const std::vector<EvaluationRecord> all = store.all();
   ASSERT_EQ(all.size(), 2U);
@@ -286,7 +286,7 @@ TEST(StudyStore, AnotherVersionOrProgramIsRefusedByName) {
   run_sql(file_of(folder), "PRAGMA user_version = 7");
   EXPECT_THAT(message_of<InvalidInput>(
                   [&] { StudyStore::resume(folder.path().string(), kMeta); }),
-              AllOf(HasSubstr("schema version 7"), HasSubstr("version 1")));
+              AllOf(HasSubstr("schema version 7"), HasSubstr("version 2")));
   EXPECT_THROW(StudyStore::read(folder.path().string()), InvalidInput);
 
   const TempFolder foreign;

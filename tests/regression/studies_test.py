@@ -7,7 +7,7 @@ import re
 import unittest
 
 import program
-from program import COARSE, ProgramTest
+from program import COARSE, SIZED_STRUT, ProgramTest
 
 SIZED = """
 [responses.mass]
@@ -56,6 +56,8 @@ class Gradients(ProgramTest):
                               "study.tolerance=1e-6", "--no-pictures", "--out",
                               out), 0)
         result = self.result(out)
+        self.assertRegex(result["message"], "matched.*The tolerance 1.0e-06 "
+                         "is below the mesh's own error of the mismatch")
         self.assertLessEqual(result["evaluations"], 6)
         self.assertGreater(result["gradient_evaluations"], 0)
         for constraint in result["constraints"].values():
@@ -84,6 +86,8 @@ class Minimize(ProgramTest):
         case = self.sized()
         done, result = self.minimum(case, "a")
         self.expect(done, 0, "minimum found", "difference .*: kept")
+        self.assertRegex(result["message"], "minimum found.*is below the "
+                         "mesh's own error.*'left_deflection' stands")
         mass = result["objective"]
         best = result["parameters"]
         self.assertAlmostEqual(result["responses"]["difference"], 0, 6)
@@ -142,6 +146,100 @@ class Minimize(ProgramTest):
                 case.write_text(text.replace(old, new, 1))
                 self.expect(self.call("check", case), 2, re.escape(told),
                             r"case.toml:\d+")
+
+
+class Unusable(ProgramTest):
+    """Design spaces with nothing to find: exit 3, and what to change. One
+    method of each family; all of them were tried by hand."""
+    MINIMIZE = ("slsqp", "bobyqa", "isres")
+    MATCH = ("ceres", "direct_l")
+
+    def ends(self, study, replacements, *told):
+        text = re.sub(r"(?s)\[study\].*", "", SIZED_STRUT) + study
+        for old, new in replacements:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        case = self.folder / "case.toml"
+        case.write_text(text)
+        out = self.folder / "out"
+        self.expect(self.call("run", case, "--no-pictures", "--out", out,
+                              "--set", "resolution.fea=16"), 3)
+        message = self.result(out)["message"]
+        for pattern in told:
+            self.assertRegex(message, pattern)
+
+    def each(self, replacements, told, matched="sway = 0.0065",
+             objective="mass", constraint='"sway", max = 0.0075',
+             expression=None):
+        response = "" if expression is None else (
+            f'[responses.made]\nkind = "expression"\nvalue = "{expression}"\n')
+        for method in self.MINIMIZE:
+            with self.subTest(minimize=method):
+                self.ends(f"""{response}
+[study]
+kind = "minimize"
+objective = "{objective}"
+constraints = [{{ response = {constraint} }}]
+method = "{method}"
+max_evaluations = 15
+""", replacements, *told)
+        for method in self.MATCH:
+            with self.subTest(match=method):
+                self.ends(f"""{response}
+[study]
+kind = "match"
+targets = {{ {matched} }}
+method = "{method}"
+max_evaluations = 15
+""", replacements, *told)
+
+    def test_bounds_that_are_equal(self):
+        self.each([("bounds = [20.0, 32.0]", "bounds = [25, 25]"),
+                   ("bounds = [7e4, 1.2e5]", "bounds = [9e4, 9e4]")],
+                  ["no design variable can move", "Widen them"])
+
+    def test_what_nothing_changes(self):
+        self.each([], ["(?i)no design variable changes it|does not change",
+                       "Choose (another|variables)"],
+                  matched="made = 3", objective="made",
+                  constraint='"sway", max = 1', expression="5 + 0 * mass")
+
+    def test_what_no_design_reaches(self):
+        self.each([], [r"sway.*at most 1e-09|mismatch", "(?i)loosen|widen|add"],
+                  matched="sway = 5", constraint='"sway", max = 1e-9')
+
+    def test_expressions_without_a_value(self):
+        self.each([], ["initial design cannot be evaluated",
+                       r"case.toml:\d+: responses.made.value: log\(-",
+                       r"in 'log\(sway - 1\)'"],
+                  matched="made = 3", objective="made",
+                  expression="log(sway - 1)")
+
+    def test_expressions_with_a_value_at_the_start_alone(self):
+        self.each([], ["(?i)responses.made.value: sqrt",
+                       "(?i)bound|start elsewhere"],
+                  matched="made = 0.0065", objective="made",
+                  expression="sway + sqrt(-abs(foot - 25) - "
+                             "abs(fill / 9e4 - 1))")
+
+    def test_a_region_without_a_value(self):
+        region = """[responses.made]
+kind = "distance"
+keep_out = "sqrt(x - 99)"
+"""
+        self.ends(region, [], "initial design cannot be evaluated",
+                  r"responses.made.keep_out has no value at \(",
+                  r"sqrt\(-")
+
+    def test_a_curve_without_a_value_between_the_bounds(self):
+        # Good at both ends and at the start, nowhere about 30.
+        self.ends("""[study]
+kind = "match"
+targets = { sway = 0.5 }
+method = "cobyla"
+max_evaluations = 15
+""", [('radius = "foot"', 'radius = "foot + sqrt(abs(foot - 30) - 1)"')],
+                  "mismatch", "(?i)bound|start elsewhere")
 
 
 class Resume(ProgramTest):
