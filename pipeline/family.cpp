@@ -96,7 +96,7 @@ class FamilyRun {
   void size(std::size_t k);
   Json study(std::size_t k, const std::optional<VectorX>& start);
   Json compute(const Case& member, const fs::path& folder, StudyStore& store,
-               StudyOptions options);
+               const StudyOptions& options);
   std::optional<VectorX> start_of(std::size_t k) const;
   Json passport(std::size_t k, const std::optional<VectorX>& start) const;
   void finish(std::size_t k, const Json& result);
@@ -176,7 +176,7 @@ Json FamilyRun::passport(std::size_t k,
 }
 
 Json FamilyRun::compute(const Case& member, const fs::path& folder,
-                        StudyStore& store, StudyOptions options) {
+                        StudyStore& store, const StudyOptions& options) {
   RunResult result;
   try {
     EvaluationFields fields;
