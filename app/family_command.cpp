@@ -52,12 +52,7 @@ int run_family_command(const Case& input,
     refuse_walls(input);
     require_solver(input);
     make_folder(folder);
-    remove_leftovers(folder);
-    fs::remove(folder / "result.json");
   } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
-  } catch (const fs::filesystem_error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
   }

@@ -144,6 +144,7 @@ int run_command(const RunArguments& arguments) {
     remove_leftovers(folder);
     // An older result must not stand beside a study that is not its own.
     fs::remove(folder / "result.json");
+    fs::remove(folder / "family.csv");
   } catch (const IoError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;

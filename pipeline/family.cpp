@@ -1,5 +1,6 @@
 #include "pipeline/family.h"
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -26,6 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+// [s]; none at all would mean no limit.
+constexpr double kLeastTime = 1e-3;
 
 /// Says whose message it is; called from several threads.
 class MemberMonitor : public Monitor {
@@ -92,7 +96,7 @@ class FamilyRun {
   void size(std::size_t k);
   Json study(std::size_t k, const std::optional<VectorX>& start);
   Json compute(const Case& member, const fs::path& folder, StudyStore& store,
-               StudyOptions options);
+               const StudyOptions& options);
   std::optional<VectorX> start_of(std::size_t k) const;
   Json passport(std::size_t k, const std::optional<VectorX>& start) const;
   void finish(std::size_t k, const Json& result);
@@ -121,6 +125,9 @@ double FamilyRun::time_left() const {
 }
 
 void FamilyRun::prepare() {
+  remove_leftovers(options_.folder);
+  // An older result must not stand beside a study that is not its own.
+  fs::remove(options_.folder / "result.json");
   parents_.assign(members_.size(), -1);
   for (std::size_t k = 0; k < members_.size(); ++k) {
     const std::string& name = family_.study.members[k].name;
@@ -169,7 +176,7 @@ Json FamilyRun::passport(std::size_t k,
 }
 
 Json FamilyRun::compute(const Case& member, const fs::path& folder,
-                        StudyStore& store, StudyOptions options) {
+                        StudyStore& store, const StudyOptions& options) {
   RunResult result;
   try {
     EvaluationFields fields;
@@ -216,11 +223,12 @@ Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
   fs::remove(folder / "result.json");
   MemberMonitor monitor(monitor_, result_.rows[k].name);
   const Timer timer;
-  Json json =
-      compute(member, folder, store,
-              {.time_limit = options_.time_limit > 0.0 ? time_left() : 0.0,
-               .start = start,
-               .monitor = &monitor});
+  Json json = compute(
+      member, folder, store,
+      {.time_limit =
+           options_.time_limit > 0.0 ? std::max(time_left(), kLeastTime) : 0.0,
+       .start = start,
+       .monitor = &monitor});
   json["member"] = own;
   write_file(folder / "result.json", json.dump(2) + "\n");
   const std::lock_guard<std::mutex> guard(mutex_);
@@ -317,6 +325,7 @@ FamilyResult FamilyRun::run() {
           step.parent.value_or(-1);
     }
   }
+  write_table();
   tell();
   for (const std::vector<int>& wave : family_waves(steps)) {
     if (!stopping_) {
