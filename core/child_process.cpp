@@ -310,12 +310,14 @@ ChildResult run_child(const ChildOptions& options) {
     child.input.reset();
   }
   while (true) {
+    // Asked before the streams are read: what it wrote before its end is then
+    // in them, and nothing more will come.
+    const bool ended = has_ended(child.process);
     const bool open = child.output.open() || child.error.open();
-    const bool moved = exchange_bytes(child, rest, result, options.error_tail,
-                                      open ? kTickMs : kExitTickMs);
-    if (moved) {
-      // limits still count while it writes
-    } else if (has_ended(child.process)) {
+    const int wait = ended ? 0 : open ? kTickMs : kExitTickMs;
+    const bool moved =
+        exchange_bytes(child, rest, result, options.error_tail, wait);
+    if (ended && !moved) {
       break;
     }
     if (options.monitor != nullptr && options.monitor->stop_requested()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace meniscus {
 
@@ -317,76 +318,19 @@ std::vector<TableSpec> make_tables() {
         {"body", K::Name, D::None, false, "of pressure"},
         {"value", K::Quantity, std::nullopt, false,
          "of expression: over the case's names and the responses above"}}},
-      {"study",
-       false,
-       N::Optional,
-       "What to do; analyse the initial design when left out",
-       {{"kind", K::Choice, D::None, true,
-         "analyse, match, minimize, sweep, tolerance or pareto; family: one of "
-         "these for each member",
-         "analyse|match|minimize|sweep|tolerance|pareto|family"},
-        {"each", K::Choice, D::None, false,
-         "of family: what each member's own study is, with the keys of that "
-         "kind; minimize when left out",
-         "minimize|match|analyse"},
-        {"members", K::Members, D::None, false,
-         "of family: a table [study.members.NAME] of values by the names of "
-         "--set for each, or the path of a csv file, relative to the case"},
-        {"equal", K::Names, D::None, false,
-         "of match: responses to make equal; mismatch |a-b| / ((|a|+|b|)/2)"},
-        {"targets", K::ConstantMap, std::nullopt, false,
-         "of match: response = value; mismatch |a-v| / |v|, for v = 0 relative "
-         "to the initial response"},
-        {"objective", K::Name, D::None, false,
-         "of minimize: the response to make small; of sweep: the one that "
-         "makes "
-         "a design the best, the initial one when left out"},
-        {"objectives", K::Names, D::None, false,
-         "of pareto: the two responses to make small"},
-        {"constraints", K::Constraints, D::None, false,
-         "of minimize, sweep and pareto: responses to keep within bounds"},
-        {"levels", K::IntegerMap, D::None, false,
-         "of sweep by grid: design variable = number of values, ends of its "
-         "bounds included; one that is left out stays at its initial value"},
-        {"deviations", K::ConstantMap, std::nullopt, false,
-         "of tolerance: design variable = standard deviation"},
-        {"count", K::Integer, D::None, false,
-         "of sweep by latin_hypercube or sobol: number of designs; of "
-         "tolerance: samples that confirm it, none when left out; of pareto: "
-         "points of the front, 7 when left out"},
-        {"seed", K::Integer, D::None, false,
-         "of latin_hypercube: another seed is another sample; 1 when left "
-         "out"},
-        {"tolerance", K::Constant, D::None, false,
-         "of match: largest mismatch accepted, 1e-3 when left out; of "
-         "minimize and pareto: first-order residual accepted, about the "
-         "relative gain "
-         "that is left, 1e-4 when left out"},
-        {"method", K::Text, D::None, false,
-         "of match: ceres (when left out), bobyqa, cobyla, sbplx, neldermead, "
-         "direct_l; of minimize and pareto: slsqp (when left out), mma, ccsa "
-         "with exact "
-         "gradients, bobyqa, cobyla, sbplx, neldermead without, isres, crs2, "
-         "direct_l globally; of sweep: grid, latin_hypercube, sobol (when left "
-         "out); of tolerance: latin_hypercube (when left out), sobol"},
-        {"max_evaluations", K::Integer, D::None, false,
-         "of match, minimize and each minimum of pareto: limit, "
-         "finite-difference ones included; 100 when left out"}}},
-      {"constraint",
-       false,
-       N::Optional,
-       "A bound on a response",
-       {{"response", K::Name, D::None, true, "its name"},
-        {"min", K::Constant, std::nullopt, false, "least value"},
-        {"max", K::Constant, std::nullopt, false,
-         "largest value; as min for an equation"}}},
   };
 }
 
 }  // namespace
 
 const std::vector<TableSpec>& case_tables() {
-  static const std::vector<TableSpec> tables = make_tables();
+  static const std::vector<TableSpec> tables = [] {
+    std::vector<TableSpec> all = make_tables();
+    for (TableSpec& table : study_tables()) {
+      all.push_back(std::move(table));
+    }
+    return all;
+  }();
   return tables;
 }
 

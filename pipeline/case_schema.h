@@ -64,6 +64,9 @@ struct TableSpec {
 /// All tables, in the order of the reference.
 const std::vector<TableSpec>& case_tables();
 
+/// Those of them that say what to do with the part (case_schema_study.cpp).
+std::vector<TableSpec> study_tables();
+
 /// The table of that name; must exist.
 const TableSpec& case_table(const std::string& name);
 

@@ -43,7 +43,7 @@ std::string of_minimum(const Case& input, const VectorX& responses,
          .lower = constraint.lower,
          .upper = constraint.upper});
   }
-  const auto objective = static_cast<std::size_t>(input.study.objective);
+  const auto objective = *input.study.objective;
   return precision_note({.objective = input.responses[objective].name}, report,
                         input.study.tolerance, value_errors);
 }

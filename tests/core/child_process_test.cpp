@@ -1,5 +1,6 @@
 #include "core/child_process.h"
 
+#include <atomic>
 #include <cstdlib>
 #include <fstream>
 #include <signal.h>
@@ -135,6 +136,28 @@ TEST(ChildProcess, RunsFromSeveralThreadsAtOnce) {
     threads[i].join();
     EXPECT_EQ(outputs[i], std::to_string(i) + "\n");
   }
+}
+
+// A reply that arrives while the caller's wait for it runs out, from many
+// callers on few cores: none is lost.
+TEST(ChildProcess, KeepsWhatWasWrittenJustBeforeTheEnd) {
+  constexpr int kCallers = 16;
+  constexpr int kRuns = 12;
+  std::atomic<int> lost = 0;
+  std::vector<std::thread> callers;
+  callers.reserve(kCallers);
+  for (int c = 0; c < kCallers; ++c) {
+    callers.emplace_back([&lost] {
+      for (int i = 0; i < kRuns; ++i) {
+        const ChildResult result = run_child(shell("sleep 0.05; echo here"));
+        lost += result.output == "here\n" ? 0 : 1;
+      }
+    });
+  }
+  for (std::thread& caller : callers) {
+    caller.join();
+  }
+  EXPECT_EQ(lost, 0);
 }
 
 TEST(BackgroundChild, TalksAndEndsWithItsOwner) {

@@ -1,5 +1,5 @@
-/// A part whose boundary is many points, moved by one design variable to as many
-/// as points: what the cost of a gradient is measured on.
+/// A part whose boundary is many points, moved by one design variable to as
+/// many as points: what the cost of a gradient is measured on.
 #pragma once
 
 #include <string>
