@@ -248,6 +248,7 @@ struct StudyEntry {
   double tolerance = 1e-3;
   std::string method = "ceres";
   int max_evaluations = 100;
+  double coarse_first = 1.0;       // edges of a first, coarser model; 1: none
   std::vector<int> levels;         // of a grid, per design variable; 0: none
   std::vector<double> deviations;  // of tolerances, likewise
   int count = 0;                   // of samples, or points of a front

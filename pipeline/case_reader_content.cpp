@@ -120,8 +120,8 @@ std::string canonical_text(const toml::table& root) {
       write_entries(*table, text);
     } else if (table != nullptr && name == "study") {
       write_table(*table,
-                  {"tolerance", "method", "max_evaluations", "levels", "count",
-                   "seed", "deviations", "each", "members"},
+                  {"tolerance", "method", "max_evaluations", "coarse_first",
+                   "levels", "count", "seed", "deviations", "each", "members"},
                   text);
     } else if (table != nullptr && name == "analysis") {
       write_table(*table, eigenvalues, text);

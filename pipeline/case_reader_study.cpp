@@ -14,6 +14,8 @@ namespace meniscus {
 
 namespace {
 
+constexpr double kCoarsest = 8.0;  // edges of a coarser model over the case's
+
 /// The dimension of a response; notes an unknown name.
 std::optional<Dimension> response_dimension(CaseContext& context,
                                             const Case& result,
@@ -166,6 +168,7 @@ void check_keys(CaseContext& context, const CaseTable& table,
       {"targets", {"match"}},
       {"tolerance", {"match", "minimize", "pareto"}},
       {"max_evaluations", {"match", "minimize", "pareto"}},
+      {"coarse_first", {"match", "minimize"}},
       {"objective", {"minimize", "sweep"}},
       {"objectives", {"pareto"}},
       {"constraints", {"minimize", "sweep", "pareto"}},
@@ -297,6 +300,23 @@ void read_objective(CaseContext& context, const CaseTable& table,
   check_derivatives(context, table, result);
 }
 
+void read_coarse_first(CaseContext& context, const CaseTable& table,
+                       StudyEntry& study) {
+  const std::optional<double> factor = table.constant("coarse_first");
+  if (!factor) {
+    return;
+  }
+  if (!(*factor > 1.0 && *factor <= kCoarsest)) {
+    context.problems.add(
+        table.line("coarse_first"),
+        fmt::format("study.coarse_first is {:g}; it must be above 1 and at "
+                    "most {:g}, 2 is usual",
+                    *factor, kCoarsest));
+    return;
+  }
+  study.coarse_first = *factor;
+}
+
 }  // namespace
 
 void read_study(CaseContext& context, const toml::table& root, Case& result) {
@@ -325,6 +345,7 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   check_method(context, *table, study);
   study.max_evaluations = table->positive_integer("max_evaluations")
                               .value_or(study.max_evaluations);
+  read_coarse_first(context, *table, study);
   check_keys(context, *table, kind);
   if (study.kind != StudyKind::Analyse) {
     check_variables(context, *table, kind, result);

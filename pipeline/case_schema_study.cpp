@@ -63,6 +63,10 @@ std::vector<TableSpec> study_tables() {
          "gradients, bobyqa, cobyla, sbplx, neldermead without, isres, crs2, "
          "direct_l globally; of sweep: grid, latin_hypercube, sobol (when left "
          "out); of tolerance: latin_hypercube (when left out), sobol"},
+        {"coarse_first", K::Constant, D::None, false,
+         "of match and minimize: the study is done first on a model with edges "
+         "so many times as long (above 1, 2 is usual), and its answer is where "
+         "the case's own model starts; no such stage when left out"},
         {"max_evaluations", K::Integer, D::None, false,
          "of match, minimize and each minimum of pareto: limit, "
          "finite-difference ones included; 100 when left out"}}},

@@ -15,8 +15,8 @@
 namespace meniscus {
 
 struct DesignEvaluatorOptions {
-  std::string model = "base";   // the frozen model's name in the database
-  double edge_factor = 1.0;     // as in ForwardModelOptions
+  std::string model = kStudyModel;  // the frozen model's name in the database
+  double edge_factor = 1.0;         // as in ForwardModelOptions
   bool with_gradients = false;  // keep what gradient() needs of each design:
                                 // memory for a second solve saved
   int jobs = 1;                 // designs side by side where several are asked

@@ -39,7 +39,7 @@ const EvaluationRecord* best_by_objective(
   const EvaluationRecord* best = nullptr;
   Standing standing;
   for (const EvaluationRecord& record : records) {
-    if (record.failure) {
+    if (record.failure || record.model != kStudyModel) {
       continue;
     }
     const Standing other = standing_of(study, record.responses);

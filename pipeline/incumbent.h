@@ -30,8 +30,9 @@ Standing standing_of(const StudyEntry& study, const VectorX& responses);
 /// smaller violation; a design that keeps all goes before one that does not.
 bool is_better(const Standing& a, const Standing& b);
 
-/// The first of the best records by objective and constraints, or null when
-/// all failed. `records` must be of a study with an objective.
+/// The first of the best records of the case's own model by objective and
+/// constraints, or null when all failed. `records` must be of a study with an
+/// objective.
 const EvaluationRecord* best_by_objective(
     const StudyEntry& study, const std::vector<EvaluationRecord>& records);
 

@@ -123,6 +123,16 @@ Json parameters_json(const Case& input, const VectorX& design) {
   return json;
 }
 
+Json coarse_json(const Case& input, const CoarseFigures& coarse) {
+  const bool answered = coarse.design.size() > 0;
+  return {{"edge_factor", coarse.edge_factor},
+          {"message", coarse.message},
+          {"parameters",
+           answered ? value_map(design_names(input), coarse.design) : Json()},
+          {"evaluations", coarse.evaluations},
+          {"gradient_evaluations", coarse.gradients}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json units_json(const UnitSystem& units) {
@@ -226,6 +236,9 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
   json["evaluations"] = result.evaluations;
   json["failed_evaluations"] = result.failed_evaluations;
   json["gradient_evaluations"] = result.gradient_evaluations;
+  if (result.coarse) {
+    json["coarse"] = coarse_json(input, *result.coarse);
+  }
   if (best != nullptr) {
     json["film"] = film_json(best->film);
     json["tet"] = tet_json(best->tet);
@@ -251,12 +264,18 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
 RunResult result_so_far(const Case& input,
                         const std::vector<EvaluationRecord>& records) {
   RunResult result;
-  result.evaluations = static_cast<int>(records.size());
   for (const EvaluationRecord& record : records) {
+    if (record.model != kStudyModel) {
+      continue;
+    }
+    if (++result.evaluations == 1) {
+      result.start = to_evaluation(record);
+    }
     result.failed_evaluations += record.failure ? 1 : 0;
   }
-  if (result.failed_evaluations < result.evaluations) {
-    result.start = to_evaluation(records.front());
+  if (result.failed_evaluations == result.evaluations) {
+    result.start.reset();
+  } else {
     result.best = to_evaluation(best_record(input, records));
   }
   return result;

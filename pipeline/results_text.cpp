@@ -49,7 +49,7 @@ std::string bounds_text(const Case& input, const ConstraintEntry& entry,
 
 std::string describe(const Case& input, const EvaluationRecord& record) {
   std::string text =
-      fmt::format("evaluation {} ({}):", record.number, record.phase);
+      fmt::format("evaluation {} ({}):", record.number, purpose_of(record));
   for (Eigen::Index k = 0; k < record.inputs.size(); ++k) {
     text += fmt::format(" {} = {}", record.input_names[k],
                         quantity(record.inputs[k], ""));

@@ -40,7 +40,7 @@ const EvaluationRecord& best_record(
     return *best;
   }
   for (const EvaluationRecord& record : records) {
-    if (record.failure) {
+    if (record.failure || record.model != kStudyModel) {
       continue;
     }
     const bool better =

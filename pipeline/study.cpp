@@ -11,7 +11,7 @@
 #include "pipeline/part_warnings.h"
 #include "pipeline/precision.h"
 #include "pipeline/results.h"
-#include "pipeline/study_kinds.h"
+#include "pipeline/study_stage.h"
 
 namespace meniscus {
 
@@ -38,9 +38,8 @@ class StudyRun {
   EvaluationFields take_fields() { return std::move(fields_); }
 
  private:
-  bool freeze();
-  bool start();
-  VectorX begin();
+  void start_coarse();
+  bool begin();
   void conduct_study();
   bool finish_best();
   void solve_eigenproblems();
@@ -48,101 +47,78 @@ class StudyRun {
   void estimate_errors();
   void combine_errors(const VectorX& coarse);
   void warn();
-  void cannot_begin(const Failure& failure, const Evaluation& there);
 
   const Case& input_;
   StudyStore& store_;
-  const StudyOptions& options_;
+  StudyOptions options_;  // its start and time as stages leave them
   Monitor& monitor_;
   Timer timer_;
-  std::optional<DesignEvaluator> evaluator_;
-  std::optional<MatchTargets> targets_;
-  StudyOutcome outcome_;
+  std::optional<StudyStage> stage_;
   EvaluationFields fields_;
   StageSeconds own_seconds_;  // beside those of the evaluator
   RunResult result_;
 };
 
-void StudyRun::cannot_begin(const Failure& failure, const Evaluation& there) {
-  result_.status = RunStatus::Failed;
-  result_.message = fmt::format("the initial design cannot be evaluated: {}",
-                                failure.message);
-  result_.start = there;
-  result_.best = there;
+/// The answer of the coarser model is where the case's own starts.
+void StudyRun::start_coarse() {
+  if (!(input_.study.coarse_first > 1.0)) {
+    return;
+  }
+  monitor_.log(Severity::Info, "first on a coarser model");
+  CoarseStage coarse = run_coarse_stage(input_, store_, options_);
+  own_seconds_ += coarse.seconds;
+  if (coarse.best) {
+    options_.start = coarse.best;
+  } else {
+    result_.warnings.push_back("the coarser model gave no start: " +
+                               coarse.figures.message);
+  }
+  result_.coarse = std::move(coarse.figures);
+  if (options_.time_limit > 0.0) {  // what it took is gone
+    constexpr double kLeast = 1e-3;
+    options_.time_limit =
+        std::max(options_.time_limit - timer_.seconds(), kLeast);
+  }
 }
 
-bool StudyRun::freeze() {
-  evaluator_.emplace(
-      input_, store_,
-      DesignEvaluatorOptions{.with_gradients = uses_gradients(input_),
-                             .jobs = options_.jobs,
-                             .monitor = options_.monitor});
-  const ForwardModel& model = evaluator_->model();
-  if (model.failure()) {
-    cannot_begin(*model.failure(), model.frozen());
-    fields_.surface.base = model.unfilled_surface();
-    fields_.findings = model.findings();
-    return false;
-  }
+bool StudyRun::begin() {
+  stage_.emplace(input_, store_, options_);
+  const ForwardModel& model = stage_->evaluator().model();
   if (const Adaptation* adaptation = model.adaptation()) {
     result_.adaptation = *adaptation;
   }
-  return true;
-}
-
-bool StudyRun::start() {
-  const EvaluationRecord record =
-      evaluator_->evaluate(initial_design(input_), "start");
-  if (record.failure) {
-    cannot_begin(*record.failure, to_evaluation(record));
+  result_.start = stage_->start();
+  if (stage_->failure()) {
+    result_.status = RunStatus::Failed;
+    result_.message = fmt::format("the initial design cannot be evaluated: {}",
+                                  stage_->failure()->message);
+    result_.best = stage_->start();
+    if (model.failure()) {
+      fields_.surface.base = model.unfilled_surface();
+      fields_.findings = model.findings();
+    }
     return false;
   }
-  result_.start = to_evaluation(record);
-  if (input_.study.kind == StudyKind::Match) {
-    targets_.emplace(input_, record.responses);
-    evaluator_->judge_by([this](const VectorX& responses) {
-      return targets_->mismatch(responses).maxCoeff();
-    });
-  }
   return true;
-}
-
-/// The caller's design where it can be evaluated, else the initial one.
-VectorX StudyRun::begin() {
-  const VectorX& initial = result_.start->design;
-  if (!options_.start || *options_.start == initial) {
-    return initial;
-  }
-  if (const auto failure =
-          evaluator_->evaluate(*options_.start, "start").failure) {
-    monitor_.log(Severity::Info,
-                 "starts from the initial design instead: " + failure->message);
-    return initial;
-  }
-  return *options_.start;
 }
 
 void StudyRun::conduct_study() {
-  const VectorX start = begin();
-  evaluator_->reset_counts();  // the kinds of study ask for the start again
-  outcome_ = conduct({.input = input_,
-                      .evaluator = *evaluator_,
-                      .options = options_,
-                      .targets = targets_ ? &*targets_ : nullptr,
-                      .start = start});
-  result_.status = outcome_.status;
-  result_.message = outcome_.message;
-  result_.objective = outcome_.objective;
-  result_.constraints = outcome_.constraints;
-  result_.sweep = outcome_.sweep;
-  result_.tolerance = outcome_.tolerance;
-  result_.front = outcome_.front;
-  result_.warnings.insert(result_.warnings.end(), outcome_.warnings.begin(),
-                          outcome_.warnings.end());
+  stage_->conduct();
+  const StudyOutcome& outcome = stage_->outcome();
+  result_.status = outcome.status;
+  result_.message = outcome.message;
+  result_.objective = outcome.objective;
+  result_.constraints = outcome.constraints;
+  result_.sweep = outcome.sweep;
+  result_.tolerance = outcome.tolerance;
+  result_.front = outcome.front;
+  result_.warnings.insert(result_.warnings.end(), outcome.warnings.begin(),
+                          outcome.warnings.end());
 }
 
 bool StudyRun::finish_best() {
-  result_.best = evaluator_->with_fields(outcome_.best, fields_);
+  result_.best =
+      stage_->evaluator().with_fields(stage_->outcome().best, fields_);
   if (result_.best->failure) {  // only an analysis can end here
     result_.status = RunStatus::Failed;
     result_.message = result_.best->failure->message;
@@ -161,8 +137,9 @@ bool StudyRun::finish_best() {
 
 void StudyRun::solve_eigenproblems() {
   monitor_.progress({.stage = "fea", .detail = "buckling, frequencies"});
-  result_.eigen = eigen_figures(
-      input_, fields_, evaluator_->model().elasticity(), options_.monitor);
+  result_.eigen =
+      eigen_figures(input_, fields_, stage_->evaluator().model().elasticity(),
+                    options_.monitor);
   own_seconds_.fea += result_.eigen->seconds;
   fields_.modes = mode_shapes(input_, *result_.eigen);
   for (std::string& warning : buckling_warnings(*result_.eigen)) {
@@ -175,7 +152,7 @@ void StudyRun::estimate_element_errors_of_best() {
   const Timer timer;
   ElementErrors errors =
       estimate_element_errors(input_, fields_, result_.best->responses,
-                              evaluator_->model().elasticity());
+                              stage_->evaluator().model().elasticity());
   own_seconds_.fea += timer.seconds();
   if (errors.failure) {
     result_.warnings.push_back("no estimate of the elements' errors: " +
@@ -196,7 +173,7 @@ void StudyRun::estimate_errors() {
     const std::optional<Failure>& failure = coarse.failure();
     Evaluation there;
     if (!failure) {
-      there = coarse.evaluate(outcome_.best);
+      there = coarse.evaluate(stage_->outcome().best);
       own_seconds_ += there.seconds;
     }
     if (failure || there.failure) {
@@ -222,18 +199,21 @@ void StudyRun::combine_errors(const VectorX& coarse) {
           return std::isfinite(part) ? std::max(all, std::abs(part)) : all;
         });
   }
-  if (targets_ && outcome_.jacobian.size() > 0) {
+  if (stage_->targets() != nullptr && stage_->outcome().jacobian.size() > 0) {
     const Eigen::MatrixXd inverse =
-        outcome_.jacobian.completeOrthogonalDecomposition().pseudoInverse();
+        stage_->outcome()
+            .jacobian.completeOrthogonalDecomposition()
+            .pseudoInverse();
     result_.design_errors =
-        inverse.cwiseAbs() * targets_->residual_errors(result_.response_errors);
+        inverse.cwiseAbs() *
+        stage_->targets()->residual_errors(result_.response_errors);
   }
 }
 
 void StudyRun::warn() {
   const std::string note =
-      precision_statement(input_, targets_ ? &*targets_ : nullptr,
-                          result_.best->responses, result_.response_errors);
+      precision_statement(input_, stage_->targets(), result_.best->responses,
+                          result_.response_errors);
   if (!note.empty()) {
     result_.message += ". " + note;
     result_.warnings.push_back(note);
@@ -241,18 +221,19 @@ void StudyRun::warn() {
 }
 
 RunResult StudyRun::run() {
-  if (freeze() && start()) {
+  start_coarse();
+  if (begin()) {
     conduct_study();
     if (finish_best() && options_.estimate_errors) {
       estimate_errors();
     }
     warn();
   }
-  const EvaluationCounts& counts = evaluator_->counts();
+  const EvaluationCounts& counts = stage_->evaluator().counts();
   result_.evaluations = counts.evaluations;
   result_.failed_evaluations = counts.failed;
   result_.gradient_evaluations = counts.gradients;
-  result_.seconds = evaluator_->seconds();
+  result_.seconds = stage_->evaluator().seconds();
   result_.seconds += own_seconds_;
   result_.total_seconds = timer_.seconds();
   return std::move(result_);

@@ -37,6 +37,15 @@ struct Constraint {
   bool satisfied = false;
 };
 
+/// What a first stage on a coarser model came to.
+struct CoarseFigures {
+  double edge_factor = 1.0;  // its edges over the case's
+  VectorX design;            // its answer; empty where it has none
+  std::string message;
+  int evaluations = 0;
+  int gradients = 0;
+};
+
 struct RunResult {
   RunStatus status = RunStatus::Failed;
   std::string message;              // why it ended, in words, with figures
@@ -54,7 +63,9 @@ struct RunResult {
   std::optional<Adaptation> adaptation;  // at the initial design
   std::optional<ElementErrors> element_errors;  // the elements' part of them
   std::optional<EigenFigures> eigen;            // of the best design
-  int evaluations = 0;  // finite-difference ones included
+  std::optional<CoarseFigures> coarse;  // what study.coarse_first asked for
+  int evaluations = 0;  // of the case's own model, finite-difference ones
+                        // included
   int failed_evaluations = 0;
   int gradient_evaluations = 0;
   StageSeconds seconds;  // summed over freeze, evaluations, error estimate

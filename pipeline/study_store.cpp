@@ -269,6 +269,11 @@ std::vector<EvaluationRecord> StudyStore::all() const {
   return select_rows(impl_->database, "");
 }
 
+std::string purpose_of(const EvaluationRecord& record) {
+  return record.model == kStudyModel ? record.phase
+                                     : record.model + " " + record.phase;
+}
+
 FailureKind failure_kind_of(const std::string& name) {
   for (int i = 0; i <= static_cast<int>(FailureKind::NotANumber); ++i) {
     const auto kind = static_cast<FailureKind>(i);

@@ -31,10 +31,13 @@ struct StudyMeta {
   std::string created;          // UTC, "2026-01-31T12:00:00Z"; set by the store
 };
 
+/// The frozen model that a study's answer is of.
+inline constexpr const char* kStudyModel = "base";
+
 struct EvaluationRecord {
-  int number = 0;              // from 1; set by append()
-  std::string model = "base";  // names the frozen model, when a study has more
-  std::string phase;           // why: "start", "difference", "step", ...
+  int number = 0;                   // from 1; set by append()
+  std::string model = kStudyModel;  // another one: of a coarser stage
+  std::string phase;                // why: "start", "difference", "step", ...
   std::vector<std::string> input_names;
   VectorX inputs;  // design variables
   std::vector<std::string> response_names;
@@ -100,6 +103,10 @@ class StudyStore {
   explicit StudyStore(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// What the evaluation was for, for people: its phase, after the model's name
+/// where that is not the study's own.
+std::string purpose_of(const EvaluationRecord& record);
 
 /// The kind that name_of() writes as `name`; throws IoError for no kind.
 FailureKind failure_kind_of(const std::string& name);

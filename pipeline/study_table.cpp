@@ -62,7 +62,7 @@ std::vector<Row> table(const std::vector<EvaluationRecord>& records,
     row.push_back(cell(record.mismatch));
     row.emplace_back(record.failure ? name_of(record.failure->kind) : "ok");
     row.push_back(number(seconds));
-    row.push_back(record.phase);
+    row.push_back(purpose_of(record));
     rows.push_back(std::move(row));
   }
   return rows;

@@ -276,6 +276,10 @@ const Mistake kMistakes[] = {
      "61: responses.mass.keep_in: unknown name 'w'"},
     {"Smoothing", "kind = \"mass\"", "kind = \"thickness\"\nsmoothing = 0",
      "61: responses.mass.smoothing is 0; it must be above 0"},
+    {"CoarseStageThatIsFiner", "kind = \"match\"",
+     "kind = \"match\"\ncoarse_first = 0.5",
+     "64: study.coarse_first is 0.5; it must be above 1 and at most 8, 2 is "
+     "usual"},
     {"KeyOfAnotherKind", "kind = \"mass\"",
      "kind = \"mass\"\nload_case = \"service\"",
      "61: responses.mass.load_case does not belong to a mass; it has no keys "

@@ -58,6 +58,8 @@ OTHER_STUDIES = {
     "sweep": 'kind = "sweep"\ncount = 2\n',
     "tolerance": 'kind = "tolerance"\ndeviations = { foot = 0.1 }\n'
                  'count = 2\n',
+    "coarse": 'kind = "match"\ntargets = { sway = 0.0058 }\n'
+              'coarse_first = 2\n',
     "front": 'kind = "pareto"\nobjectives = ["sway", "weight"]\ncount = 3\n',
 }
 WEIGHT = '\n[responses.weight]\nkind = "mass"\n\n[study]\n'

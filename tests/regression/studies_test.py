@@ -82,6 +82,35 @@ class Minimize(ProgramTest):
                          *more)
         return done, self.result(out)
 
+    def test_a_coarser_model_first_saves_evaluations(self):
+        case = self.sized()
+        done, plain = self.minimum(case, "plain")
+        self.expect(done, 0)
+        coarse = ("--set", "study.coarse_first=1.6")
+        done, result = self.minimum(case, "both", *coarse)
+        self.expect(done, 0)
+        self.assertLess(abs(result["objective"] / plain["objective"] - 1),
+                        1e-4)
+        self.assertLess(result["evaluations"], plain["evaluations"])
+        self.assertGreater(result["coarse"]["evaluations"], 2)
+        self.assertEqual(result["coarse"]["edge_factor"], 1.6)
+        # The start that is told is the initial design on the case's model.
+        self.assertEqual(result["start"], plain["start"])
+        self.expect(self.call("study", "show", self.folder / "both"), 0,
+                    "coarse x1.6 start", "coarse x1.6 step")
+        again, replayed = self.minimum(case, "both", *coarse, "--resume")
+        self.expect(again, 0)
+        self.assertEqual(replayed["responses"], result["responses"])
+
+    def test_a_coarser_model_that_fails_is_told_and_left(self):
+        case = self.sized()
+        done, result = self.minimum(case, "far", "--set",
+                                    "study.coarse_first=8")
+        self.expect(done, 0)
+        self.assertIsNone(result["coarse"]["parameters"])
+        self.assertTrue(any("coarser model gave no start" in text
+                            for text in result["warnings"]))
+
     def test_least_mass_at_equal_deflections(self):
         case = self.sized()
         done, result = self.minimum(case, "a")

@@ -1,0 +1,67 @@
+/// A study on one frozen model, from its initial design to its answer without
+/// files or errors (internal to run_study()).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "pipeline/design_evaluator.h"
+#include "pipeline/match_targets.h"
+#include "pipeline/study.h"
+#include "pipeline/study_kinds.h"
+
+namespace meniscus {
+
+struct StageModel {
+  std::string name = kStudyModel;  // in the database
+  double edge_factor = 1.0;        // as in ForwardModelOptions
+};
+
+class StudyStage {
+ public:
+  /// Freezes the model and evaluates the initial design. All references must
+  /// outlive the stage; throws what ForwardModel's constructor throws.
+  StudyStage(const Case& input, StudyStore& store, const StudyOptions& options,
+             const StageModel& model = {});
+
+  /// Why it cannot begin; then nothing below may be asked but evaluator().
+  const std::optional<Failure>& failure() const { return failure_; }
+  /// The initial design, or what there is of it.
+  const Evaluation& start() const { return start_; }
+
+  /// Does what the case's study asks, from options.start where that can be
+  /// evaluated, else from the initial design. Once.
+  void conduct();
+  const StudyOutcome& outcome() const { return outcome_; }
+
+  DesignEvaluator& evaluator() { return evaluator_; }
+  const DesignEvaluator& evaluator() const { return evaluator_; }
+  /// Of a match, else null.
+  const MatchTargets* targets() const {
+    return targets_ ? &*targets_ : nullptr;
+  }
+
+ private:
+  VectorX begin();
+
+  const Case& input_;
+  const StudyOptions& options_;
+  DesignEvaluator evaluator_;
+  std::optional<Failure> failure_;
+  Evaluation start_;
+  std::optional<MatchTargets> targets_;
+  StudyOutcome outcome_;
+};
+
+/// The same study on a model whose edges are study.coarse_first as long, for
+/// the answer that the study on the case's own model starts from. `best` is
+/// empty where it has none; `message` says why.
+struct CoarseStage {
+  std::optional<VectorX> best;
+  CoarseFigures figures;
+  StageSeconds seconds;
+};
+CoarseStage run_coarse_stage(const Case& input, StudyStore& store,
+                             const StudyOptions& options);
+
+}  // namespace meniscus
