@@ -157,6 +157,17 @@ std::optional<Parts> split(std::string_view text) {
   return parts;
 }
 
+/// What a value of that dimension may stand in.
+std::string advised_unit(std::optional<Dimension> dimension,
+                         const UnitSystem& system) {
+  if (!dimension) {
+    return fmt::format("a number, in units of {}", system.name);
+  }
+  return "a value in " + (*dimension == Dimension::None
+                              ? std::string("plain numbers")
+                              : system.unit_of(*dimension));
+}
+
 std::string no_such_dimension(std::string_view text,
                               std::optional<Dimension> dimension,
                               const UnitSystem& system) {
@@ -167,10 +178,8 @@ std::string no_such_dimension(std::string_view text,
         "times",
         text);
   }
-  return fmt::format(
-      "'{}' is no {}; try a value in {}", text, name_of(*dimension),
-      *dimension == Dimension::None ? "plain numbers"
-                                    : system.unit_of(*dimension));
+  return fmt::format("'{}' is no {}; try {}", text, name_of(*dimension),
+                     advised_unit(dimension, system));
 }
 
 }  // namespace
@@ -270,8 +279,9 @@ double parse_quantity(std::string_view text, std::optional<Dimension> dimension,
   const std::lock_guard<std::mutex> guard(database.lock());
   const Unit from = database.parse(parts->unit);
   if (!from) {
-    throw InvalidInput(
-        fmt::format("unknown unit '{}' in '{}'", parts->unit, text));
+    throw InvalidInput(fmt::format("unknown unit '{}' in '{}'; try {}",
+                                   parts->unit, text,
+                                   advised_unit(dimension, system)));
   }
   const Unit to = database.target(from, dimension, system);
   if (!to) {

@@ -180,8 +180,10 @@ class Solver {
     project(r_);
     problem_.monitor.progress(
         {.stage = "fea",
-         .detail = fmt::format("step {}, error {:.1e}", step + 1,
-                               columns_[0].error)});
+         .detail = std::isfinite(columns_[0].error)
+                       ? fmt::format("step {}, error {:.1e}", step + 1,
+                                     columns_[0].error)
+                       : fmt::format("step {}", step + 1)});
   }
 
   /// Ends columns that have arrived or cannot go on.

@@ -81,9 +81,17 @@ std::string read_members(CaseContext& context, const CaseTable& study,
     return each;
   }
   if (const auto* file = node->as_string()) {
-    MemberFile members = read_member_file(
-        (std::filesystem::path(result.path).parent_path() / file->get())
-            .string());
+    const std::filesystem::path path =
+        std::filesystem::path(result.path).parent_path() / file->get();
+    if (!std::filesystem::is_regular_file(path)) {
+      context.problems.add(
+          study.line("members"),
+          fmt::format("study.members: there is no file '{}'; expected a csv "
+                      "file, its path relative to the case",
+                      path.string()));
+      return each;
+    }
+    MemberFile members = read_member_file(path.string());
     for (const std::string& problem : members.problems) {
       context.problems.add_text(problem);
     }

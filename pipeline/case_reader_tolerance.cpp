@@ -85,11 +85,13 @@ void read_front(CaseContext& context, const CaseTable& table, Case& result) {
   const std::vector<std::string> names = table.names("objectives");
   const SourceLine line = table.line("objectives");
   if (names.size() != 2 || names[0] == names[1]) {
-    context.problems.add(line,
-                         fmt::format("a pareto study needs study.objectives = "
-                                     "[\"a\", \"b\"], two different "
-                                     "responses; found {}",
-                                     names.size()));
+    context.problems.add(
+        line,
+        fmt::format("a pareto study needs study.objectives = "
+                    "[\"a\", \"b\"], two different "
+                    "responses; found {}",
+                    names.empty() ? "none"
+                                  : fmt::format("{}", fmt::join(names, ", "))));
     return;
   }
   result.study.objective = find_response(context, result, names[0], line);

@@ -25,6 +25,12 @@ double share(const std::vector<FrontPoint>& points, const FrontPoint& point,
   return range > 0.0 ? (point.*value - (*least).*value) / range : 0.0;
 }
 
+std::string told(const Case& input, int response, double value) {
+  const std::string unit = response_unit(input, response);
+  return fmt::format("{} = {:.6g}{}{}", input.responses[response].name, value,
+                     unit.empty() ? "" : " ", unit);
+}
+
 }  // namespace
 
 int middle_of_front(const std::vector<FrontPoint>& points) {
@@ -66,10 +72,9 @@ nlohmann::ordered_json front_json(const Case& input,
 std::string front_text(const Case& input, const FrontFigures& figures) {
   std::string text = "  front:\n";
   for (const FrontPoint& point : figures.points) {
-    text +=
-        fmt::format("    {} = {:.6g}, {} = {:.6g} at",
-                    input.responses[*input.study.objective].name, point.first,
-                    input.responses[*input.study.second].name, point.second);
+    text += fmt::format("    {}, {} at",
+                        told(input, *input.study.objective, point.first),
+                        told(input, *input.study.second, point.second));
     for (std::size_t j = 0; j < input.design.size(); ++j) {
       text +=
           fmt::format("{} {} = {:.6g}", j == 0 ? "" : ",", input.design[j].name,

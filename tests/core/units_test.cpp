@@ -94,7 +94,8 @@ TEST(Quantity, TakesAnyDimensionWhenNoneIsAsked) {
 
 TEST(Quantity, RefusesWrongUnitsByName) {
   EXPECT_EQ(error_of("20 furlongs_per", Dimension::Length),
-            "unknown unit 'furlongs_per' in '20 furlongs_per'");
+            "unknown unit 'furlongs_per' in '20 furlongs_per'; try a value in "
+            "mm");
   EXPECT_EQ(error_of("20 N", Dimension::Length),
             "'20 N' is no length; try a value in mm");
   EXPECT_EQ(error_of("20 mm", Dimension::None),

@@ -253,7 +253,8 @@ class Pareto(SweepTest):
     def test_what_is_wrong_is_told_by_line(self):
         for text, told in (
                 ("", "two different responses"),
-                ('objectives = ["mass", "mass"]', "two different responses"),
+                ('objectives = ["mass", "mass"]',
+                 "two different responses; found mass, mass"),
                 ('objectives = ["mass", "softnes"]',
                  "did you mean 'softness'"),
                 ('objectives = ["mass", "softness"]\ncount = 2',
