@@ -3,6 +3,8 @@
 #include <mutex>
 #include <omp.h>
 
+#include <fmt/format.h>
+
 #include "app/case_input.h"
 #include "app/commands.h"
 #include "app/exit_code.h"
@@ -20,7 +22,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void explain(const FamilyResult& result, const fs::path& folder, bool quiet) {
+/// The units of the table's responses, those that have one.
+std::string units_line(const Case& family) {
+  std::string text;
+  for (std::size_t k = 0; k < family.responses.size(); ++k) {
+    const std::string unit = response_unit(family, static_cast<int>(k));
+    if (!unit.empty()) {
+      text += fmt::format("{}{} [{}]", text.empty() ? "  units: " : ", ",
+                          family.responses[k].name, unit);
+    }
+  }
+  return text.empty() ? text : text + "\n";
+}
+
+void explain(const Case& family, const FamilyResult& result,
+             const fs::path& folder, bool quiet) {
   const bool good = result.status == RunStatus::Converged;
   if (!good || !quiet) {
     std::fprintf(good ? stdout : stderr, "%s: %s\n", name_of(result.status),
@@ -30,6 +46,7 @@ void explain(const FamilyResult& result, const fs::path& folder, bool quiet) {
     return;
   }
   std::fputs(family_table_text(family_csv(result.rows)).c_str(), stdout);
+  std::fputs(units_line(family).c_str(), stdout);
   std::printf("  %zu members in %.1f s\n  results in %s\n", result.rows.size(),
               result.total_seconds, folder.string().c_str());
   std::fflush(stdout);
@@ -74,7 +91,7 @@ int run_family_command(const Case& input,
          }});
     result.warnings.insert(result.warnings.begin(), warnings.begin(),
                            warnings.end());
-    explain(result, folder, arguments.common.quiet);
+    explain(input, result, folder, arguments.common.quiet);
     return exit_code_of(result.status);
   } catch (const IoError& error) {
     std::fprintf(stderr, "error: %s\n", error.what());

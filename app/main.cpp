@@ -1,9 +1,12 @@
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <new>
+#include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "app/commands.h"
 #include "app/exit_code.h"
@@ -36,11 +39,38 @@ void add_common(CLI::App& command, CommonArguments& common) {
   command.add_flag("--quiet", common.quiet, "errors only");
 }
 
+/// What is wrong in one line, and where to read on; without any command all
+/// of them.
+std::string usage_error(const CLI::App* app, const CLI::Error& error) {
+  if (app->get_subcommands().empty()) {
+    return fmt::format("{}\n\n{}", error.what(), app->help());
+  }
+  std::string name = app->get_name();
+  while (!app->get_subcommands().empty()) {
+    app = app->get_subcommands().front();
+    name += " " + app->get_name();
+  }
+  return fmt::format("{}; see '{} --help'\n", error.what(), name);
+}
+
+/// A finite number above 0, refused in words that tell so.
+CLI::Validator positive() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0.0;
+        return CLI::detail::lexical_cast(text, value) && value > 0.0 &&
+                       std::isfinite(value)
+                   ? std::string()
+                   : fmt::format("'{}' is no number above 0", text);
+      },
+      "POSITIVE");
+}
+
 int run_program(int argc, char** argv) {
   CLI::App app("Designs load-carrying parts with liquid films.", "meniscus");
   app.require_subcommand(1);
   app.set_version_flag("--version", [] { return meniscus::version_text(); });
-  app.failure_message(CLI::FailureMessage::help);
+  app.failure_message(usage_error);
   std::function<int()> command;
 
   std::string name;
@@ -78,7 +108,7 @@ int run_program(int argc, char** argv) {
       ->check(CLI::Range(1, meniscus::kMostJobs));
   run->add_option("--time-limit", run_arguments.time_limit,
                   "stop after so many seconds and keep the best point")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   run->callback(
       [&] { command = [&] { return meniscus::run_command(run_arguments); }; });
 
@@ -150,7 +180,7 @@ int run_program(int argc, char** argv) {
   write
       ->add_option("--edge", export_arguments.edge,
                    "settle and mesh again at this edge length")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   write->add_option("--out", export_arguments.out,
                     "file (default: into the run's folder)");
   write->callback([&] {

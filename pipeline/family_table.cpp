@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -122,8 +123,9 @@ std::string family_csv(const std::vector<FamilyRow>& rows) {
     add_cells(row.parameters, parameters, cells);
     add_cells(row.design, design, cells);
     add_cells(row.responses, responses, cells);
-    cells.push_back(row.responses.empty() ? ""
-                                          : fmt::format("{}", row.objective));
+    cells.push_back(row.responses.empty() || std::isnan(row.objective)
+                        ? ""
+                        : fmt::format("{}", row.objective));
     cells.push_back(std::to_string(row.evaluations));
     cells.push_back(fmt::format("{:.3f}", row.seconds));
     cells.push_back(row.message);

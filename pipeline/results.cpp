@@ -202,7 +202,9 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
   const Evaluation* best = result.best ? &*result.best : nullptr;
   json["parameters"] = parameters_json(
       input, best != nullptr ? best->design : initial_design(input));
-  json["objective"] = result.objective;
+  const bool has_objective =
+      input.study.kind == StudyKind::Match || input.study.objective;
+  json["objective"] = has_objective ? Json(result.objective) : Json();
   json["constraints"] = Json::object();
   for (const Constraint& c : result.constraints) {
     json["constraints"][c.name] = {

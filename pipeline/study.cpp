@@ -148,7 +148,7 @@ void StudyRun::solve_eigenproblems() {
 }
 
 void StudyRun::estimate_element_errors_of_best() {
-  monitor_.progress({.stage = "error", .detail = "dual solutions"});
+  monitor_.progress({.stage = "accuracy", .detail = "dual solutions"});
   const Timer timer;
   ElementErrors errors =
       estimate_element_errors(input_, fields_, result_.best->responses,
@@ -164,8 +164,8 @@ void StudyRun::estimate_element_errors_of_best() {
 
 void StudyRun::estimate_errors() {
   estimate_element_errors_of_best();
-  monitor_.progress(
-      {.stage = "error", .detail = "a second model with edges twice as long"});
+  monitor_.progress({.stage = "accuracy",
+                     .detail = "a second model with edges twice as long"});
   try {
     const ForwardModel coarse(
         input_, {.edge_factor = kCoarserEdges, .monitor = options_.monitor});

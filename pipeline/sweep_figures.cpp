@@ -108,13 +108,14 @@ std::string sweep_text(const Case& input, const SweepFigures& figures) {
   text += "\n";
   for (std::size_t k = 0; k < figures.responses.size(); ++k) {
     const ResponseRange& range = figures.responses[k];
-    const std::string unit = response_unit(input, static_cast<int>(k));
+    std::string unit = response_unit(input, static_cast<int>(k));
+    unit.insert(0, unit.empty() ? "" : " ");
     text += fmt::format(
-        "  {:<20} mean {:.6g}{}{}\n"
-        "  {:<20} least {:.6g} at {}\n"
-        "  {:<20} largest {:.6g} at {}\n",
-        input.responses[k].name, range.mean, unit.empty() ? "" : " ", unit, "",
-        range.least, place_text(input, range.least_at), "", range.largest,
+        "  {:<20} mean {:.6g}{}\n"
+        "  {:<20} least {:.6g}{} at {}\n"
+        "  {:<20} largest {:.6g}{} at {}\n",
+        input.responses[k].name, range.mean, unit, "", range.least, unit,
+        place_text(input, range.least_at), "", range.largest, unit,
         place_text(input, range.largest_at));
   }
   return text;

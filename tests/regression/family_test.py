@@ -144,6 +144,20 @@ class Family(ProgramTest):
         self.assertEqual(rows["other"]["status"], "converged")
         self.assertEqual(self.result(out)["status"], "infeasible")
 
+    def test_members_that_are_looked_at_only(self):
+        case = self.family("name,length\none,48\n",
+                           ('each = "minimize"\nobjective = "mass"\n',
+                            'each = "analyse"\n'),
+                           ('method = "slsqp"\n', ""))
+        case.write_text(re.sub(r"(?s)\nconstraints = \[.*?\n\]", "",
+                               case.read_text()))
+        out, done = self.sized(case, "out", 0)
+        self.assertIn("1 of 1 members are sized", done.stdout)
+        self.assertIn("units: ", done.stdout)
+        self.assertIn("deflection [mm]", done.stdout)
+        self.assertEqual(self.rows(out)[0]["objective"], "")
+        self.assertIsNone(self.result(out)["members"][0]["objective"])
+
     def test_ctrl_c_then_resume_ends_with_the_same_bits(self):
         case = self.family()
         whole, _ = self.sized(case, "whole", 0)

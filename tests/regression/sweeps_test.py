@@ -70,6 +70,7 @@ class Sweeps(SweepTest):
         self.assert_same(one, three)
         result = self.result(three)
         self.assertEqual(result["evaluations"], 6)
+        self.expect(done, 0, r"least [0-9.e-]+ t at support_x", "accuracy: ")
         sweep = result["sweep"]
         self.assertEqual((sweep["designs"], sweep["looked_at"],
                           sweep["failed"]), (6, 6, 0))
@@ -102,6 +103,7 @@ class Sweeps(SweepTest):
         done, _ = self.run_case(case, "out", "--jobs", "2", "--resume")
         self.expect(done, 0, "looked at all 5 designs")
         self.assertEqual(self.records(out)[:len(first)], first)
+        self.assertIsNone(self.result(out)["objective"])  # it has none
         for row in self.rows(out):
             self.assertTrue(28 <= float(row["radius"]) <= 42)
         shown = self.expect(self.call("study", "show", out), 0, "sweep")
@@ -169,8 +171,11 @@ class Sweeps(SweepTest):
             with self.subTest(text=text):
                 self.expect(self.call("check", self.sweep(text)), 2,
                             re.escape(told), r"case.toml:\d+")
-        self.expect(self.call("run", self.sweep("count = 2"), "--jobs", "0"),
-                    2, "--jobs")
+        for option in ("--jobs", "--time-limit"):
+            done = self.call("run", self.sweep("count = 2"), option, "0")
+            self.expect(done, 2, option)
+            self.assertRegex(done.stderr,
+                             r"^.*0.*; see 'meniscus run --help'\n$")
 
 
 class Tolerances(SweepTest):
