@@ -35,7 +35,7 @@ void check(const TetMesh& mesh, const VectorX& displacement,
 NodalMatrix weakening(const TetMesh& mesh, const ElasticOperator& op,
                       const LoadCase& load_case, const VectorX& displacement,
                       LoadSense sense) {
-  PointStress stress = point_stress(mesh, *op.materials, displacement,
+  PointStress stress = point_stress(mesh, op.materials, displacement,
                                     temperature_change(mesh, load_case));
   if (sense == LoadSense::AsGiven) {
     for (Stress& s : stress.stress) {
@@ -81,7 +81,8 @@ BucklingModes buckling_modes(const ElasticModel& model, const TetMesh& mesh,
                              const BucklingOptions& options) {
   const Timer timer;
   check(mesh, displacement, options);
-  const ElasticOperator op = model.operator_at(mesh, load_cases, load_case);
+  const ElasticOperator op =
+      model.operator_at(mesh, load_cases, load_case, options.materials);
   const LoadCase& loads = load_cases[load_case];
   const NodalMatrix A = weakening(mesh, op, loads, displacement, options.sense);
   const EigenPairs pairs =

@@ -26,6 +26,8 @@ struct BucklingOptions {
   int guards = 2;  // see eigenpairs.h
   int max_iterations = 200;
   Monitor* monitor = nullptr;  // not owned
+  /// Of the design, one per region, not owned; null: those of the model's base.
+  const std::vector<Material>* materials = nullptr;
 };
 
 struct BucklingModes {

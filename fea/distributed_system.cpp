@@ -99,7 +99,7 @@ std::vector<PetscGroup> DistributedSystem::grouped(
 
 ElasticSolution DistributedSystem::solve(
     const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
-    const ElasticSolution* start) const {
+    const RegionMaterials& regions, const ElasticSolution* start) const {
   const Timer timer;
   ElasticSolution result;
   result.displacements.resize(load_cases.size());
@@ -110,7 +110,8 @@ ElasticSolution DistributedSystem::solve(
   if ((result.failure = bad_design(mesh, x))) {
     return result;
   }
-  const std::vector<VectorX> f = base_.solver_forces(mesh, load_cases);
+  const std::vector<VectorX> f =
+      base_.solver_forces(mesh, load_cases, regions.materials);
   std::vector<VectorX> begin;
   for (std::size_t c = 0; start != nullptr && !start->failure && c < f.size();
        ++c) {
@@ -123,7 +124,7 @@ ElasticSolution DistributedSystem::solve(
   const PetscSolution solved = run_petsc(
       {.table = table_,
        .x = x,
-       .laws = base_.laws,
+       .laws = regions.laws,
        .groups = grouped(holdings, f, begin),
        .tolerance = kStricter * base_.options.tolerance,
        .max_iterations = base_.options.max_iterations},
@@ -142,6 +143,7 @@ ElasticSolution DistributedSystem::solve(
                 .f = f[c],
                 .u = group.u[k],
                 .diagonal = group.diagonal,
+                .laws = regions.laws,
                 .holding = holdings[g],
                 .column = group.columns[k]},
                result);
@@ -149,7 +151,7 @@ ElasticSolution DistributedSystem::solve(
   }
   if (!result.failure && load_cases[0].temperature) {
     result.report.strain_energy =
-        strain_energy(mesh, base_.materials, result.displacements[0],
+        strain_energy(mesh, regions.materials, result.displacements[0],
                       temperature_change(mesh, load_cases[0]));
   }
   result.report.setup_seconds = solved.setup_seconds;

@@ -25,6 +25,7 @@ class DistributedSystem {
   /// begin from, or null (the base itself).
   ElasticSolution solve(const TetMesh& mesh,
                         const std::vector<LoadCase>& load_cases,
+                        const RegionMaterials& regions,
                         const ElasticSolution* start) const;
 
  private:

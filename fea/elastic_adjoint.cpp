@@ -73,7 +73,7 @@ void conclude(const KeptState& state, const KeptState::Group& group,
               const VectorX& g, const VectorX& lambda, const CgColumn& column,
               AdjointSolution& result) {
   const Equilibrium equilibrium = check_equilibrium(
-      {state.x, g, internal_forces(*state.table, state.x, *state.laws, lambda),
+      {state.x, g, internal_forces(*state.table, state.x, state.laws, lambda),
        spring_forces(group.holding.springs, lambda), lambda,
        group.holding.freedom, diagonal});
   result.lambda.push_back(to_mesh(*state.order, lambda));
@@ -103,13 +103,14 @@ ElasticState& ElasticState::operator=(ElasticState&&) noexcept = default;
 
 KeptState ElasticSystem::keep(const TetMesh& mesh,
                               const std::vector<LoadCase>& load_cases,
+                              std::vector<ElasticLaw> laws,
                               BlockMatrix<double> matrix) const {
   KeptState state{.table = &shared_->table,
                   .order = &base_.order,
-                  .laws = &base_.laws,
                   .monitor = base_.options.monitor != nullptr
                                  ? base_.options.monitor
                                  : &silent_monitor(),
+                  .laws = std::move(laws),
                   .tolerance = base_.options.tolerance,
                   .max_iterations = base_.options.max_iterations,
                   .groups = {},

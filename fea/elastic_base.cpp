@@ -48,8 +48,7 @@ ElasticBase::ElasticBase(const TetMesh& mesh,
         "0",
         options.tolerance, options.max_iterations));
   }
-  materials = given;
-  laws = elastic_laws(materials);
+  regions = {given, elastic_laws(given)};
   if (!std::all_of(mesh.nodes.begin(), mesh.nodes.end(),
                    [](const Vec3& x) { return x.allFinite(); })) {
     throw MeshError("elasticity: a node position of the mesh is not finite");
@@ -57,7 +56,7 @@ ElasticBase::ElasticBase(const TetMesh& mesh,
   for (const LoadCase& load_case : load_cases) {
     supports.push_back(load_case.supports);
     springs.push_back(load_case.springs);
-    checked_forces(mesh, load_case, materials);
+    checked_forces(mesh, load_case, given);
   }
 }
 
@@ -96,13 +95,25 @@ Points ElasticBase::solver_points(const TetMesh& mesh) const {
 }
 
 std::vector<VectorX> ElasticBase::solver_forces(
-    const TetMesh& mesh, const std::vector<LoadCase>& load_cases) const {
+    const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
+    const std::vector<Material>& materials) const {
   std::vector<VectorX> f;
   f.reserve(load_cases.size());
   for (const LoadCase& load_case : load_cases) {
     f.push_back(to_solver(order, checked_forces(mesh, load_case, materials)));
   }
   return f;
+}
+
+RegionMaterials ElasticBase::of_design(
+    const TetMesh& mesh, const std::vector<Material>& materials) const {
+  check_materials(mesh, materials);
+  if (materials.size() != regions.materials.size()) {
+    throw InvalidInput(
+        fmt::format("elasticity: {} materials, but the base design has {}",
+                    materials.size(), regions.materials.size()));
+  }
+  return {materials, elastic_laws(materials)};
 }
 
 std::vector<int> ElasticBase::solver_elements(const TetMesh& mesh) const {
@@ -178,7 +189,7 @@ void conclude(const ElasticBase& base, const ElementTable& table,
   const int c = solved.load_case;
   const ElasticOptions& options = base.options;
   const VectorX internal =
-      internal_forces(table, solved.x, base.laws, solved.u);
+      internal_forces(table, solved.x, solved.laws, solved.u);
   const Equilibrium equilibrium =
       check_equilibrium({solved.x, solved.f, internal,
                          spring_forces(solved.holding.springs, solved.u),

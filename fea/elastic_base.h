@@ -13,6 +13,12 @@
 
 namespace meniscus {
 
+/// What the regions of a mesh are made of, and the laws of that.
+struct RegionMaterials {
+  std::vector<Material> materials;
+  std::vector<ElasticLaw> laws;
+};
+
 struct ElasticBase {
   /// Checks the input as ElasticModel states. `order`: of `mesh`, to be set
   /// once the mesh has been checked.
@@ -29,7 +35,11 @@ struct ElasticBase {
   Points solver_points(const TetMesh& mesh) const;
   /// Nodal forces of every load case, in the solver's order [force].
   std::vector<VectorX> solver_forces(
-      const TetMesh& mesh, const std::vector<LoadCase>& load_cases) const;
+      const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
+      const std::vector<Material>& materials) const;
+  /// Checks materials of a design; as many as the base's.
+  RegionMaterials of_design(const TetMesh& mesh,
+                            const std::vector<Material>& materials) const;
   /// Elements and regions in the solver's order, as make_element_table and
   /// make_element_list take them.
   std::vector<int> solver_elements(const TetMesh& mesh) const;
@@ -43,8 +53,7 @@ struct ElasticBase {
   static Failure turned(const LoadCase& load_case);
 
   ElasticOptions options;
-  std::vector<Material> materials;
-  std::vector<ElasticLaw> laws;
+  RegionMaterials regions;
   std::vector<int> elements;  // the base's, to compare
   std::vector<int> faces;
   std::vector<std::vector<Support>> supports;
@@ -71,6 +80,7 @@ struct SolvedCase {
   const VectorX& f;         // loads [force]
   const VectorX& u;         // [length]
   const VectorX& diagonal;  // of the stiffness [force/length]
+  const std::vector<ElasticLaw>& laws;
   const Holding& holding;
   const CgColumn& column;
 };

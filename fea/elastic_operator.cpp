@@ -28,8 +28,8 @@ VectorX to_mesh(const NodeOrder& order, const VectorX& v) {
 }
 
 ElasticOperator ElasticSystem::operator_at(
-    const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
-    int load_case) const {
+    const TetMesh& mesh, const std::vector<LoadCase>& load_cases, int load_case,
+    const std::vector<Material>* materials) const {
   const auto group =
       std::find_if(groups_.begin(), groups_.end(), [load_case](const Group& g) {
         return std::find(g.cases.begin(), g.cases.end(), load_case) !=
@@ -47,14 +47,16 @@ ElasticOperator ElasticSystem::operator_at(
         "are no longer the base design's",
         loads.name));
   }
+  const RegionMaterials regions =
+      materials != nullptr ? base_.of_design(mesh, *materials) : base_.regions;
   ElasticOperator result{.table = &shared_->table,
                          .order = &base_.order,
-                         .materials = &base_.materials,
                          .preconditioner = group->preconditioner.get(),
+                         .materials = regions.materials,
                          .K = {},
                          .freedom = std::move(holding.freedom),
                          .x = base_.solver_points(mesh)};
-  if (const auto failure = assemble(mesh, result.K)) {
+  if (const auto failure = assemble(mesh, regions.laws, result.K)) {
     throw MeshError(failure->message);
   }
   add_springs(shared_->table.pattern, holding.springs, result.K);

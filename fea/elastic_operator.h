@@ -16,10 +16,10 @@ struct ElasticOperator {
   // Of the model, not owned:
   const ElementTable* table;
   const NodeOrder* order;
-  const std::vector<Material>* materials;
   const Preconditioner* preconditioner;
 
-  BlockMatrix<double> K;  // with springs
+  std::vector<Material> materials;  // of the design
+  BlockMatrix<double> K;            // with springs
   NodeFreedom freedom;
   Points x;  // of solver's nodes [length]
 };

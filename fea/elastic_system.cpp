@@ -21,7 +21,7 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
       shared_(std::make_unique<Shared>()) {
   order_mesh(base);
   group_supports(base, load_cases);
-  if (const auto failure = assemble(base, matrix)) {
+  if (const auto failure = assemble(base, base_.regions.laws, matrix)) {
     throw MeshError(failure->message);
   }
   build_preconditioners(base, load_cases, matrix);
@@ -66,8 +66,8 @@ void ElasticSystem::build_preconditioners(
 CornerMesh ElasticSystem::build_corners(const TetMesh& base,
                                         BlockMatrix<double>& matrix) {
   CornerMesh corners = make_corner_mesh(base, base_.order);
-  if (const auto bad =
-          meniscus::assemble(corners.table, corners.x, base_.laws, matrix)) {
+  if (const auto bad = meniscus::assemble(corners.table, corners.x,
+                                          base_.regions.laws, matrix)) {
     throw MeshError(fmt::format(
         "element {}: its straight-sided corners enclose no positive volume; "
         "improve the mesh or choose the Cholesky solver",
@@ -128,18 +128,20 @@ void ElasticSystem::build_multigrid(const TetMesh& base,
 }
 
 std::optional<Failure> ElasticSystem::assemble(
-    const TetMesh& mesh, BlockMatrix<double>& matrix) const {
+    const TetMesh& mesh, const std::vector<ElasticLaw>& laws,
+    BlockMatrix<double>& matrix) const {
   if (auto failure = base_.bad_node(mesh)) {
     return failure;
   }
   const auto bad = meniscus::assemble(shared_->table, base_.solver_points(mesh),
-                                      base_.laws, matrix);
+                                      laws, matrix);
   return bad ? std::optional<Failure>(base_.inverted(mesh, *bad))
              : std::nullopt;
 }
 
 ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
                                      const std::vector<LoadCase>& load_cases,
+                                     const RegionMaterials& regions,
                                      const BlockMatrix<double>& matrix,
                                      const ElasticSolution* start) const {
   const Timer timer;
@@ -150,7 +152,8 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
                          : mesh.order == 1 ? "multigrid"
                                            : "p-multigrid";
   result.report.dofs = free_unknowns(groups_.front().holding);
-  const std::vector<VectorX> f = base_.solver_forces(mesh, load_cases);
+  const std::vector<VectorX> f =
+      base_.solver_forces(mesh, load_cases, regions.materials);
   const Points x = base_.solver_points(mesh);
   for (const Group& group : groups_) {
     const Holding holding =
@@ -172,12 +175,13 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
       solve_columns(group, holding,
                     {group.cases.begin() + static_cast<std::ptrdiff_t>(first),
                      group.cases.begin() + static_cast<std::ptrdiff_t>(last)},
-                    x, f, load_cases, plain ? matrix : sprung, start, result);
+                    x, f, load_cases, regions.laws, plain ? matrix : sprung,
+                    start, result);
     }
   }
   if (!result.failure && load_cases[0].temperature) {
     result.report.strain_energy =
-        strain_energy(mesh, base_.materials, result.displacements[0],
+        strain_energy(mesh, regions.materials, result.displacements[0],
                       temperature_change(mesh, load_cases[0]));
   }
   result.report.solve_seconds = timer.seconds();
@@ -187,7 +191,8 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
 void ElasticSystem::solve_columns(
     const Group& group, const Holding& holding, const std::vector<int>& cases,
     const Points& x, const std::vector<VectorX>& f,
-    const std::vector<LoadCase>& load_cases, const BlockMatrix<double>& matrix,
+    const std::vector<LoadCase>& load_cases,
+    const std::vector<ElasticLaw>& laws, const BlockMatrix<double>& matrix,
     const ElasticSolution* start, ElasticSolution& result) const {
   Monitor& monitor = base_.options.monitor != nullptr ? *base_.options.monitor
                                                       : silent_monitor();
@@ -232,6 +237,7 @@ void ElasticSystem::solve_columns(
               .f = f[c],
               .u = u[k],
               .diagonal = diagonal,
+              .laws = laws,
               .holding = holding,
               .column = columns[k]},
              result);

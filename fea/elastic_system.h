@@ -27,22 +27,26 @@ class ElasticSystem {
 
   /// The stiffness of `mesh`, or why there is none.
   std::optional<Failure> assemble(const TetMesh& mesh,
+                                  const std::vector<ElasticLaw>& laws,
                                   BlockMatrix<double>& matrix) const;
 
   /// Solves all load cases; `start`: a solution to begin from, or null.
   ElasticSolution solve(const TetMesh& mesh,
                         const std::vector<LoadCase>& load_cases,
+                        const RegionMaterials& regions,
                         const BlockMatrix<double>& matrix,
                         const ElasticSolution* start) const;
 
   /// What adjoints need of a design that was solved.
   KeptState keep(const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
+                 std::vector<ElasticLaw> laws,
                  BlockMatrix<double> matrix) const;
 
   /// See ElasticModel::operator_at().
   ElasticOperator operator_at(const TetMesh& mesh,
                               const std::vector<LoadCase>& load_cases,
-                              int load_case) const;
+                              int load_case,
+                              const std::vector<Material>* materials) const;
 
  private:
   /// Load cases that are held alike share a preconditioner.
@@ -79,6 +83,7 @@ class ElasticSystem {
                      const std::vector<int>& cases, const Points& x,
                      const std::vector<VectorX>& f,
                      const std::vector<LoadCase>& load_cases,
+                     const std::vector<ElasticLaw>& laws,
                      const BlockMatrix<double>& matrix,
                      const ElasticSolution* start,
                      ElasticSolution& result) const;

@@ -33,12 +33,14 @@ ElasticModel::ElasticModel(const TetMesh& base,
   if (options.solver == SolverKind::Distributed) {
     impl_->distributed.emplace(base, materials, cases, options);
     seconds = timer.seconds();
-    impl_->base = impl_->distributed->solve(base, cases, nullptr);
+    impl_->base = impl_->distributed->solve(
+        base, cases, impl_->distributed->base().regions, nullptr);
   } else {
     BlockMatrix<double> matrix;
     impl_->system.emplace(base, materials, cases, options, matrix);
     seconds = timer.seconds();
-    impl_->base = impl_->system->solve(base, cases, matrix, nullptr);
+    impl_->base = impl_->system->solve(
+        base, cases, impl_->system->base().regions, matrix, nullptr);
   }
   impl_->base.report.setup_seconds += seconds;
 }
@@ -63,33 +65,41 @@ ElasticSolution ElasticModel::solve(
 ElasticSolution ElasticModel::solve(const TetMesh& mesh,
                                     const std::vector<LoadCase>& load_cases,
                                     ElasticState* keep) const {
+  return solve(mesh, load_cases, impl_->input().regions.materials, keep);
+}
+
+ElasticSolution ElasticModel::solve(const TetMesh& mesh,
+                                    const std::vector<LoadCase>& load_cases,
+                                    const std::vector<Material>& materials,
+                                    ElasticState* keep) const {
   const Timer timer;
   if (keep != nullptr) {
     keep->kept_.reset();
   }
   impl_->input().check_same(mesh, load_cases);
+  RegionMaterials regions = impl_->input().of_design(mesh, materials);
   if (impl_->distributed) {
     if (keep != nullptr) {
       throw InvalidInput(
           "elasticity: the solver petsc keeps its matrix in other processes; "
           "exact gradients need another solver");
     }
-    return impl_->distributed->solve(mesh, load_cases, &impl_->base);
+    return impl_->distributed->solve(mesh, load_cases, regions, &impl_->base);
   }
   const ElasticSystem& system = *impl_->system;
   BlockMatrix<double> matrix;
   ElasticSolution result;
-  if (auto failure = system.assemble(mesh, matrix)) {
+  if (auto failure = system.assemble(mesh, regions.laws, matrix)) {
     result.report = impl_->base.report;
     result.failure = std::move(failure);
     return result;
   }
   const double seconds = timer.seconds();
-  result = system.solve(mesh, load_cases, matrix, &impl_->base);
+  result = system.solve(mesh, load_cases, regions, matrix, &impl_->base);
   result.report.setup_seconds += seconds;
   if (keep != nullptr && !result.failure) {
-    keep->kept_ = std::make_unique<KeptState>(
-        system.keep(mesh, load_cases, std::move(matrix)));
+    keep->kept_ = std::make_unique<KeptState>(system.keep(
+        mesh, load_cases, std::move(regions.laws), std::move(matrix)));
   }
   return result;
 }
@@ -106,15 +116,15 @@ AdjointSolution ElasticModel::solve_adjoint(
 }
 
 ElasticOperator ElasticModel::operator_at(
-    const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
-    int load_case) const {
+    const TetMesh& mesh, const std::vector<LoadCase>& load_cases, int load_case,
+    const std::vector<Material>* materials) const {
   impl_->input().check_same(mesh, load_cases);
   if (impl_->distributed) {
     throw InvalidInput(
         "elasticity: the solver petsc keeps its matrix in other processes; "
         "natural frequencies and buckling factors need another solver");
   }
-  return impl_->system->operator_at(mesh, load_cases, load_case);
+  return impl_->system->operator_at(mesh, load_cases, load_case, materials);
 }
 
 }  // namespace meniscus

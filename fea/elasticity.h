@@ -106,6 +106,13 @@ class ElasticModel {
                         const std::vector<LoadCase>& load_cases,
                         ElasticState* keep) const;
 
+  /// The same of other materials, one per region; the preconditioner stays the
+  /// base's. Throws InvalidInput for another number of them, too.
+  ElasticSolution solve(const TetMesh& mesh,
+                        const std::vector<LoadCase>& load_cases,
+                        const std::vector<Material>& materials,
+                        ElasticState* keep) const;
+
   /// Adjoints of load case `load_case` (index), several at once: K lambda = g
   /// for each right-hand side g, 3 per node of the mesh, by the solver and to
   /// the tolerance of solve(). Not to converge is a failure. Throws
@@ -117,10 +124,12 @@ class ElasticModel {
   /// The stiffness of `mesh`, held as in load case `load_case` (index), for
   /// eigenvalue problems; it must not outlive the model. Throws InvalidInput as
   /// solve() does or for a distributed model, MeshError (inverted element) and
-  /// SolverError (supports that turned against each other).
+  /// SolverError (supports that turned against each other). `materials`: one
+  /// per region; null: the base's.
   ElasticOperator operator_at(const TetMesh& mesh,
                               const std::vector<LoadCase>& load_cases,
-                              int load_case) const;
+                              int load_case,
+                              const std::vector<Material>* materials) const;
 
  private:
   struct Impl;

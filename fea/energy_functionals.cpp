@@ -9,6 +9,7 @@
 #include "fea/elastic_law.h"
 #include "fea/element_sweep.h"
 #include "fea/loads.h"
+#include "fea/point_stress.h"
 
 namespace meniscus {
 
@@ -66,6 +67,28 @@ void add_energy_gradient(const TetMesh& mesh,
       });
 }
 
+/// The energy at a given strain is in proportion to Young's modulus.
+std::vector<double> energy_by_modulus(const TetMesh& mesh,
+                                      const std::vector<Material>& materials,
+                                      const VectorX& u, const VectorX& change) {
+  const PointStress points = point_stress(mesh, materials, u, change);
+  const std::vector<ElasticLaw> laws = elastic_laws(materials);
+  std::vector<double> result(materials.size(), 0.0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int region = mesh.element_region[e];
+    const Material& material = materials[region];
+    for (int q = 0; !material.orthotropic && q < points.points_per_element;
+         ++q) {
+      const std::size_t at = points.index(e, q);
+      const Stress& stress = points.stress[at];
+      result[region] += 0.5 * points.volume[at] *
+                        complementary_product(stress, stress, laws[region]) /
+                        material.youngs_modulus;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 Functional compliance_functional(const TetMesh& mesh,
@@ -108,6 +131,8 @@ Functional strain_energy_functional(const TetMesh& mesh,
     result.by_nodes = as_points(by_x);
     add_temperature_slope(mesh, load_case, result.by_temperature,
                           result.by_nodes);
+    result.by_modulus =
+        energy_by_modulus(mesh, materials, displacement, change);
   }
   return result;
 }

@@ -2,6 +2,8 @@
 /// derivatives: what the adjoint method starts from (docs/theory.md).
 #pragma once
 
+#include <vector>
+
 #include "core/types.h"
 
 namespace meniscus {
@@ -19,6 +21,9 @@ struct Functional {
   /// [value/temperature]. Empty without a temperature; what its field changes
   /// where nodes move is in by_nodes already.
   VectorX by_temperature;
+  /// By Young's modulus of each region, nodes and displacement held
+  /// [value/pressure]; 0 for orthotropic ones. Empty where it has no part.
+  std::vector<double> by_modulus;
 };
 
 /// Of a number that depends on a direction, too. The direction may have any

@@ -25,9 +25,9 @@ struct KeptState {
   // Of the model, not owned:
   const ElementTable* table = nullptr;
   const NodeOrder* order = nullptr;
-  const std::vector<ElasticLaw>* laws = nullptr;
   Monitor* monitor = nullptr;
 
+  std::vector<ElasticLaw> laws;  // of the design
   double tolerance = 0.0;
   int max_iterations = 0;
   std::vector<Group> groups;

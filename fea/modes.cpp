@@ -59,8 +59,8 @@ NaturalModes solve(const TetMesh& mesh, const ElasticOperator& op,
                    const Shifted& shifted, const ModeOptions& options) {
   const Timer timer;
   check(options);
-  const NodalMatrix M = mass_matrix(
-      *op.table, op.x, densities(mesh, *op.materials), options.mass);
+  const NodalMatrix M =
+      mass_matrix(*op.table, op.x, densities(mesh, op.materials), options.mass);
   const EigenPairs pairs =
       eigenpairs_of(op, M, shifted.start,
                     {.count = options.count + shifted.rigid,
@@ -91,11 +91,12 @@ NaturalModes natural_modes(const ElasticModel& model, const TetMesh& mesh,
                            const std::vector<LoadCase>& load_cases,
                            int load_case, const ModeOptions& options) {
   const Timer timer;
-  const ElasticOperator op = model.operator_at(mesh, load_cases, load_case);
+  const ElasticOperator op =
+      model.operator_at(mesh, load_cases, load_case, options.materials);
   const LoadCase& held = load_cases[load_case];
   if (!held.springs.empty() &&
       free_motions(mesh, held_directions(mesh, held)).cols() > 0) {
-    return natural_modes(mesh, *op.materials, held, options);
+    return natural_modes(mesh, op.materials, held, options);
   }
   NaturalModes modes = solve(mesh, op, {}, options);
   modes.seconds = timer.seconds();

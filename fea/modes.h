@@ -19,6 +19,8 @@ struct ModeOptions {
   int max_iterations = 200;
   MassRule mass = MassRule::Exact;
   Monitor* monitor = nullptr;  // not owned
+  /// Of the design, one per region, not owned; null: those of the model's base.
+  const std::vector<Material>* materials = nullptr;
 };
 
 struct NaturalModes {

@@ -19,4 +19,9 @@ Functional intrusion_functional(const TetMesh& mesh, const SlopedField& level,
                                 double sharpness,
                                 Derivatives derivatives = Derivatives::All);
 
+/// What intrusion_functional() changes by when the level set at each place
+/// changes by `rate`, the mesh held. Throws likewise.
+double intrusion_rate(const TetMesh& mesh, const NumberOfPlace& level,
+                      const NumberOfPlace& rate, double sharpness);
+
 }  // namespace meniscus

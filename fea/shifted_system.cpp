@@ -75,8 +75,8 @@ void ShiftedSystem::assemble_shifted(const TetMesh& mesh,
                                      const LoadCase& held) {
   operator_ = {.table = &table_,
                .order = &order_,
-               .materials = &materials_,
                .preconditioner = nullptr,
+               .materials = materials_,
                .K = {},
                .freedom = holding_.freedom,
                .x = {}};

@@ -109,6 +109,25 @@ Mat3 by_stress(Measure measure, const Stress& stress, double value,
   return 1.5 / value * A;
 }
 
+/// At a given strain both measures are in proportion to Young's modulus.
+template <class OfValue>
+std::vector<double> by_modulus(const StressFunctionalInput& in, const Sample& s,
+                               const OfValue& weight) {
+  std::vector<double> result(in.materials.size(), 0.0);
+  for (std::size_t e = 0; e < s.counts.size(); ++e) {
+    const int region = in.mesh.element_region[e];
+    const Material& material = in.materials[region];
+    for (int q = 0; s.counts[e] != 0 && !material.orthotropic &&
+                    q < s.points.points_per_element;
+         ++q) {
+      const std::size_t at = s.points.index(static_cast<int>(e), q);
+      result[region] += s.points.volume[at] * weight(s.value[at]).by_value *
+                        s.value[at] / material.youngs_modulus;
+    }
+  }
+  return result;
+}
+
 /// Adds the derivatives, `weight`(value of a point) given.
 template <class OfValue>
 void differentiate(const StressFunctionalInput& in, Measure measure,
@@ -146,6 +165,7 @@ void differentiate(const StressFunctionalInput& in, Measure measure,
   result.by_nodes = as_points(by_x);
   add_temperature_slope(in.mesh, in.load_case, result.by_temperature,
                         result.by_nodes);
+  result.by_modulus = by_modulus(in, s, weight);
 }
 
 Functional variation(const StressFunctionalInput& in, Measure measure) {

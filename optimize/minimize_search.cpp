@@ -1,6 +1,7 @@
 #include "optimize/minimize_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "optimize/nlopt_minimize.h"
@@ -41,6 +42,18 @@ constexpr double kRestartRho = 1e4;
 constexpr double kStepsPerViolation = 0.1;
 // Steep constraints may need finer steps than those asked for.
 constexpr double kFinerSteps = 1e-3;
+
+// Of methods of convex approximations: what constraints may be missed by, step
+// by step [scales], the gain that ends a step as part of that, and the first
+// box.
+constexpr std::array<double, 4> kLoose = {1e-2, 1e-3, 1e-5, 0.0};
+constexpr double kGainPart = 1.0;
+constexpr double kFirstRadius = 0.25;
+constexpr int kMostTurns = 8;
+
+struct Tightening {
+  std::size_t step = 0;
+};
 
 constexpr const char* kFeeler = "cobyla";
 
@@ -126,8 +139,73 @@ NloptResult run_lagrangian(MinimizeEvaluator& evaluator,
   return result;
 }
 
-NloptResult run(MinimizeEvaluator& evaluator, const NloptTraits& traits,
+// An equation as the side of it that the start misses; at a minimum it holds
+// the objective up from one side, too.
+void choose_sides(MinimizeEvaluator& evaluator, NloptTask& task) {
+  const std::vector<ConstraintSide>& sides = evaluator.sides();
+  const MinimizePoint* point =
+      evaluator.evaluate(task.start, EvaluationPhase::Step);
+  task.one_sided = VectorX::Zero(static_cast<Eigen::Index>(sides.size()));
+  for (std::size_t k = 0; point != nullptr && k < sides.size(); ++k) {
+    if (sides[k].equation) {
+      task.one_sided[static_cast<Eigen::Index>(k)] =
+          sides[k].value(point->values) < 0.0 ? -1.0 : 1.0;
+    }
+  }
+}
+
+// Turns the equations that are missed on their free side; false when none is.
+bool turn_sides(const MinimizeEvaluator& evaluator, const VectorX& values,
                 NloptTask& task) {
+  bool turned = false;
+  for (std::size_t k = 0; k < evaluator.sides().size(); ++k) {
+    double& sign = task.one_sided[static_cast<Eigen::Index>(k)];
+    if (sign * evaluator.sides()[k].value(values) <
+        -std::max(task.loose, evaluator.options().feasibility_tolerance)) {
+      sign = -sign;
+      turned = true;
+    }
+  }
+  return turned;
+}
+
+// Methods of convex approximations ask that these be no less than the
+// constraints themselves before they step; missed by little, steps are long.
+NloptResult run_tightening(MinimizeEvaluator& evaluator,
+                           const NloptTraits& traits, NloptTask& task,
+                           Tightening& state) {
+  NloptResult result;
+  int turns = 0;
+  while (true) {
+    task.loose = kLoose[state.step];
+    task.least_gain = kGainPart * task.loose;
+    const int iterations = result.iterations;
+    result = run_nlopt(evaluator, traits, task);
+    result.iterations += iterations;
+    if (evaluator.halted() || !result.finished) {
+      return result;
+    }
+    const MinimizePoint* point =
+        evaluator.evaluate(result.x, EvaluationPhase::Step);
+    if (point == nullptr || point->failure) {
+      return result;
+    }
+    task.start = result.x;
+    if (turn_sides(evaluator, point->values, task) && ++turns <= kMostTurns) {
+      continue;
+    }
+    if (state.step + 1 == kLoose.size()) {
+      return result;
+    }
+    ++state.step;
+  }
+}
+
+NloptResult run(MinimizeEvaluator& evaluator, const NloptTraits& traits,
+                NloptTask& task, Tightening& state) {
+  if (traits.style == ConstraintStyle::NativeInequalities) {
+    return run_tightening(evaluator, traits, task, state);
+  }
   task.step_tolerance = evaluator.options().step_tolerance;
   task.first_step = kFirstStep;
   return uses_lagrangian(evaluator, traits)
@@ -204,11 +282,16 @@ SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
                           const NloptTraits& traits) {
   SearchResult result;
   NloptTask task = first_task(evaluator, start);
+  Tightening tightening;
+  if (traits.style == ConstraintStyle::NativeInequalities) {
+    choose_sides(evaluator, task);
+    task.radius = kFirstRadius;
+  }
   BoxEnd box;
   int idle = 0;
   for (int round = 0; round < kMostRuns; ++round) {
     const Standing before = standing_of(evaluator);
-    const NloptResult last = run(evaluator, traits, task);
+    const NloptResult last = run(evaluator, traits, task, tightening);
     result.iterations += last.iterations;
     result.finished = last.finished;
     result.message = last.message;
@@ -261,7 +344,8 @@ SearchResult search(MinimizeEvaluator& evaluator, const VectorX& start,
   evaluator.begin_stage(
       used + static_cast<int>(kGlobalPart * evaluator.evaluations_left()));
   NloptTask task = first_task(evaluator, start);
-  const NloptResult wide = run(evaluator, traits, task);
+  Tightening tightening;
+  const NloptResult wide = run(evaluator, traits, task, tightening);
   evaluator.end_stage();
   if (evaluator.halted()) {
     return {.iterations = wide.iterations, .message = wide.message};

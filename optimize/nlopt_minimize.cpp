@@ -83,10 +83,11 @@ class Run {
                    static_cast<unsigned>(evaluator.size())) {
     const std::vector<ConstraintSide>& sides = evaluator.sides();
     for (std::size_t k = 0; k < sides.size(); ++k) {
-      if (in_lagrangian(traits, sides[k])) {
+      if (in_lagrangian(traits, sides[k]) && sign_of(k) == 0.0) {
         lagrangian_.push_back(k);
       } else if (traits.style != ConstraintStyle::FeasibleFirst) {
-        (sides[k].equation ? equations_ : inequalities_).push_back(k);
+        (sides[k].equation && sign_of(k) == 0.0 ? equations_ : inequalities_)
+            .push_back(k);
       }
     }
   }
@@ -100,6 +101,11 @@ class Run {
     const Sides* sides = nullptr;
   };
 
+  /// As in NloptTask::one_sided.
+  double sign_of(std::size_t side) const {
+    const auto k = static_cast<Eigen::Index>(side);
+    return k < task_.one_sided.size() ? task_.one_sided[k] : 0.0;
+  }
   void set_up();
   void add_constraints();
   // The point at s, with derivatives if asked; null: failed, or halted, and
@@ -248,18 +254,20 @@ void Run::constraints(unsigned m, double* result, unsigned n, const double* s,
     return;
   }
   for (unsigned i = 0; i < m; ++i) {
-    const ConstraintSide& side = run.evaluator_.sides()[(*group.sides)[i]];
-    result[i] = side.value(point->values);
+    const std::size_t k = (*group.sides)[i];
+    const ConstraintSide& side = run.evaluator_.sides()[k];
+    const double sign = run.sign_of(k) < 0.0 ? -1.0 : 1.0;
+    result[i] = sign * side.value(point->values);
     if (gradient != nullptr) {
       Eigen::Map<VectorX>(gradient + std::size_t{i} * n, n) =
-          run.slope(*point, side);
+          sign * run.slope(*point, side);
     }
   }
 }
 
 void Run::add_constraints() {
-  const double tolerance =
-      kTolerancePart * evaluator_.options().feasibility_tolerance;
+  const double tolerance = std::max(
+      task_.loose, kTolerancePart * evaluator_.options().feasibility_tolerance);
   inequality_group_ = {this, &inequalities_};
   equation_group_ = {this, &equations_};
   if (!inequalities_.empty()) {
@@ -286,7 +294,7 @@ void Run::set_up() {
   optimizer_.set_xtol_abs(
       to_vector(step * evaluator_.ranges().cwiseQuotient(units_)));
   if (gradients) {
-    optimizer_.set_ftol_rel(kGradientGain);
+    optimizer_.set_ftol_rel(std::max(kGradientGain, task_.least_gain));
   }
   optimizer_.set_maxeval(kMoreCalls + kCallsPerEvaluation *
                                           evaluator_.options().max_evaluations);

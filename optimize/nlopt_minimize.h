@@ -34,6 +34,13 @@ struct NloptTask {
   double step_tolerance = 1e-6;  // x range
   double rho = 1.0;
   VectorX multipliers;  // per side
+  /// Per side, where the method keeps inequalities only: +1 or -1 for an
+  /// equation that it sees as value <= 0 or >= 0; 0: in the Lagrangian.
+  VectorX one_sided;
+  /// What the method may miss a constraint by [scales], and the gain of a step,
+  /// x the objective, that ends it; 0: as fine as there is.
+  double loose = 0.0;
+  double least_gain = 0.0;
 };
 
 struct NloptResult {
@@ -50,7 +57,7 @@ struct NloptResult {
 NloptResult run_nlopt(MinimizeEvaluator& evaluator, const NloptTraits& traits,
                       const NloptTask& task);
 
-/// True for a side that the augmented Lagrangian keeps.
+/// True for a side that no one-sided view serves and the method does not keep.
 bool in_lagrangian(const NloptTraits& traits, const ConstraintSide& side);
 
 }  // namespace meniscus

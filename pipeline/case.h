@@ -80,8 +80,9 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
 /// The derivatives of these numbers by one design variable: every number that
 /// has one holds it, what depends on places gives it there; orthotropic
 /// constants, supports and springs, which never depend on the design, are
-/// copies, as are the expressions that films are frozen with. Throws
-/// InvalidInput where an expression has no finite derivative.
+/// copies, as are the expressions that films are frozen with; weights and
+/// regions of responses that do not move are empty. Throws InvalidInput where
+/// an expression has no finite derivative.
 EvaluatedCase rates(const Case& input, const VectorX& design, int variable);
 
 /// "path:12", or "path: --set load_left=x" for what an override put there.

@@ -196,7 +196,14 @@ void check_loads(const Case& input, const EvaluatedCase& numbers,
   }
 }
 
-/// The stiffness of the frozen model belongs to its materials.
+bool takes_scale_of_yield(const Case& input) {
+  return std::any_of(input.responses.begin(), input.responses.end(),
+                     [](const ResponseEntry& r) {
+                       return r.kind == ResponseKind::VonMisesKs && !r.scale;
+                     });
+}
+
+/// What of a material has no derivatives.
 void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
                            const EvaluatedCase& other, CaseProblems& problems) {
   const std::vector<BodyEntry> solid = solid_bodies(input);
@@ -205,24 +212,19 @@ void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
     const Material& b = other.materials[k];
     const MaterialEntry& entry =
         input.materials[static_cast<std::size_t>(solid[k].material)];
-    const bool weighs =
-        std::any_of(initial.load_cases.begin(), initial.load_cases.end(),
-                    [](const LoadCase& c) { return has_weight(c); });
-    if (weighs && a.density != b.density) {
-      problems.add_text(
-          fmt::format("{}: {} depends on a design variable; it cannot in this "
-                      "version where "
-                      "gravity or spin acts",
-                      place(input, entry.density.line), entry.density.key));
+    if (a.poisson_ratio != b.poisson_ratio) {
+      const Quantity& ratio = entry.poisson_ratio;
+      problems.add_text(fmt::format(
+          "{}: {} depends on a design variable; it cannot in this version, "
+          "youngs_modulus and density can",
+          place(input, ratio.line), ratio.key));
     }
-    const bool stiffer = a.youngs_modulus != b.youngs_modulus;
-    if (stiffer || a.poisson_ratio != b.poisson_ratio) {
-      const Quantity& moved =
-          stiffer ? entry.youngs_modulus : entry.poisson_ratio;
-      problems.add_text(
-          fmt::format("{}: {} depends on a design variable; youngs_modulus and "
-                      "poisson_ratio cannot in this version",
-                      place(input, moved.line), moved.key));
+    if (a.yield_strength != b.yield_strength && takes_scale_of_yield(input)) {
+      const Quantity& strength = *entry.yield_strength;
+      problems.add_text(fmt::format(
+          "{}: {} depends on a design variable, and a von_mises_ks without a "
+          "'scale' is measured by it; give that response a scale",
+          place(input, strength.line), strength.key));
     }
   }
 }

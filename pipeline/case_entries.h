@@ -196,15 +196,15 @@ struct ResponseEntry {
   std::string name;
   ResponseKind kind = ResponseKind::MeanDisplacement;
   std::string surface;
-  QuantityVector direction;             // an axis for Rotation
-  int load_case = 0;                    // index
-  std::optional<PlaceQuantity> weight;  // of place alone, no design variable
+  QuantityVector direction;  // an axis for Rotation
+  int load_case = 0;         // index
+  std::optional<PlaceQuantity> weight;
   double power = 8.0;
   double sharpness = 50.0;
   std::optional<double> scale;  // [pressure]
   /// Of thickness and distance [length].
   std::optional<double> smoothing;
-  std::optional<PlaceQuantity> region;  // above 0 in it; of place alone
+  std::optional<PlaceQuantity> region;  // above 0 in it
   RegionSide side = RegionSide::KeepOut;
   std::string film;  // empty: all
   int body = 0;      // index
@@ -249,6 +249,8 @@ struct StudyEntry {
   std::string method = "ceres";
   int max_evaluations = 100;
   double coarse_first = 1.0;       // edges of a first, coarser model; 1: none
+  double time_limit = 0.0;         // [s], 0: none
+  bool refreeze = true;            // where the frozen mesh no longer follows
   std::vector<int> levels;         // of a grid, per design variable; 0: none
   std::vector<double> deviations;  // of tolerances, likewise
   int count = 0;                   // of samples, or points of a front

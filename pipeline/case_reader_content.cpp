@@ -121,7 +121,8 @@ std::string canonical_text(const toml::table& root) {
     } else if (table != nullptr && name == "study") {
       write_table(*table,
                   {"tolerance", "method", "max_evaluations", "coarse_first",
-                   "levels", "count", "seed", "deviations", "each", "members"},
+                   "time_limit", "refreeze", "levels", "count", "seed",
+                   "deviations", "each", "members"},
                   text);
     } else if (table != nullptr && name == "analysis") {
       write_table(*table, eigenvalues, text);

@@ -166,9 +166,6 @@ void read_place(CaseContext& context, const CaseTable& table,
       table.has("keep_in") ? RegionSide::KeepIn : RegionSide::KeepOut;
   response.region =
       table.place_quantity(table.has("keep_in") ? "keep_in" : "keep_out");
-  if (response.region) {
-    require_frozen(context, response.region->quantity, "a region");
-  }
 }
 
 ResponseEntry read_response(CaseContext& context, const CaseTable& table,
@@ -188,9 +185,6 @@ ResponseEntry read_response(CaseContext& context, const CaseTable& table,
     response.load_case = index_of_load_case(context, table, result);
   }
   response.weight = table.place_quantity("weight");
-  if (response.weight) {
-    require_frozen(context, response.weight->quantity, "a response's weight");
-  }
   response.power = read_power(context, table, response);
   response.sharpness =
       constant_above(context, table, "sharpness", 0.0, response.sharpness);

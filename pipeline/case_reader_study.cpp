@@ -94,59 +94,6 @@ StudyKind kind_of(const std::string& name) {
   return at == kinds.end() ? StudyKind::Analyse : at->second;
 }
 
-std::vector<std::string> methods_of(StudyKind kind) {
-  if (kind == StudyKind::Sweep) {
-    return sweep_methods();
-  }
-  if (kind == StudyKind::Tolerance) {
-    return {"latin_hypercube", "sobol"};
-  }
-  if (kind == StudyKind::Match) {
-    return match_methods();
-  }
-  std::vector<std::string> names;
-  for (const MinimizeMethod& method : minimize_methods()) {
-    names.push_back(method.name);
-  }
-  return names;
-}
-
-const char* usual_method(StudyKind kind) {
-  switch (kind) {
-    case StudyKind::Minimize:
-    case StudyKind::Pareto:
-      return "slsqp";
-    case StudyKind::Sweep:
-      return "sobol";
-    case StudyKind::Tolerance:
-      return "latin_hypercube";
-    case StudyKind::Analyse:
-    case StudyKind::Match:
-      break;
-  }
-  return "ceres";
-}
-
-void check_method(CaseContext& context, const CaseTable& table,
-                  const StudyEntry& study) {
-  std::vector<std::string> methods;
-  if (study.kind == StudyKind::Analyse) {  // the method waits, of any kind
-    for (const StudyKind kind :
-         {StudyKind::Match, StudyKind::Minimize, StudyKind::Sweep}) {
-      for (const std::string& name : methods_of(kind)) {
-        methods.push_back(name);
-      }
-    }
-  } else {
-    methods = methods_of(study.kind);
-  }
-  if (std::find(methods.begin(), methods.end(), study.method) ==
-      methods.end()) {
-    context.problems.unknown(table.line("method"), "method", study.method,
-                             methods);
-  }
-}
-
 /// A study that moves something needs something to move.
 void check_variables(CaseContext& context, const CaseTable& table,
                      const std::string& kind, const Case& result) {
@@ -156,45 +103,6 @@ void check_variables(CaseContext& context, const CaseTable& table,
         fmt::format("study.kind {} needs a design variable to move: add "
                     "[design.NAME] with initial and bounds",
                     kind));
-  }
-}
-
-/// Keys that belong to another kind of study; to analyse is to leave a study's
-/// work for later, and its keys wait.
-void check_keys(CaseContext& context, const CaseTable& table,
-                const std::string& kind) {
-  static const std::map<std::string, std::vector<std::string>> owners = {
-      {"equal", {"match"}},
-      {"targets", {"match"}},
-      {"tolerance", {"match", "minimize", "pareto"}},
-      {"max_evaluations", {"match", "minimize", "pareto"}},
-      {"coarse_first", {"match", "minimize"}},
-      {"objective", {"minimize", "sweep"}},
-      {"objectives", {"pareto"}},
-      {"constraints", {"minimize", "sweep", "pareto"}},
-      {"levels", {"sweep"}},
-      {"deviations", {"tolerance"}},
-      {"count", {"sweep", "tolerance", "pareto"}},
-      {"seed", {"sweep", "tolerance"}}};
-  for (const auto& [key, owning] : owners) {
-    if (table.has(key.c_str()) && kind != "analyse" &&
-        std::find(owning.begin(), owning.end(), kind) == owning.end()) {
-      context.problems.add(
-          table.line(key.c_str()),
-          fmt::format("study.{} belongs to kind = \"{}\", and this study's "
-                      "kind is \"{}\"; take it out or change the kind",
-                      key, fmt::join(owning, "\" or \""), kind));
-    }
-  }
-  if (kind == "match" && !table.has("equal") && !table.has("targets")) {
-    context.problems.add(table.line(),
-                         "a match needs study.equal = [\"a\", \"b\"] or "
-                         "study.targets = { a = value }");
-  }
-  if (kind == "minimize" && !table.has("objective")) {
-    context.problems.add(table.line(),
-                         "a minimize study needs study.objective = "
-                         "\"response\"");
   }
 }
 
@@ -317,6 +225,20 @@ void read_coarse_first(CaseContext& context, const CaseTable& table,
   study.coarse_first = *factor;
 }
 
+void read_time_limit(CaseContext& context, const CaseTable& table,
+                     StudyEntry& study) {
+  const std::optional<double> limit = table.constant("time_limit");
+  if (limit && !(*limit > 0.0)) {
+    context.problems.add(
+        table.line("time_limit"),
+        fmt::format("study.time_limit is {:g}; it must be above 0: seconds, or "
+                    "a time such as \"10 min\"",
+                    *limit));
+    return;
+  }
+  study.time_limit = limit.value_or(0.0);
+}
+
 }  // namespace
 
 void read_study(CaseContext& context, const toml::table& root, Case& result) {
@@ -341,11 +263,12 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
                                      "above 0",
                                      study.tolerance));
   }
-  study.method = table->text("method").value_or(usual_method(study.kind));
-  check_method(context, *table, study);
+  read_method(context, *table, study);
   study.max_evaluations = table->positive_integer("max_evaluations")
                               .value_or(study.max_evaluations);
   read_coarse_first(context, *table, study);
+  read_time_limit(context, *table, study);
+  study.refreeze = table->flag("refreeze").value_or(study.refreeze);
   check_keys(context, *table, kind);
   if (study.kind != StudyKind::Analyse) {
     check_variables(context, *table, kind, result);

@@ -9,6 +9,16 @@
 
 namespace meniscus {
 
+/// The study's method, the usual one when left out.
+void read_method(CaseContext& context, const CaseTable& table,
+                 StudyEntry& study);
+
+/// Notes keys that belong to another kind of study and what this kind lacks.
+/// To analyse is to leave a study's work for later, and its keys wait; so do
+/// the file's where --set asks for another kind.
+void check_keys(CaseContext& context, const CaseTable& table,
+                const std::string& kind);
+
 /// Methods of a sweep.
 std::vector<std::string> sweep_methods();
 

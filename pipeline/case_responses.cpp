@@ -48,11 +48,15 @@ ResponseNumbers response_of(const Case& input, const ResponseEntry& response,
     return fmt::format("{}: {}", place(input, of.quantity.line),
                        of.quantity.key);
   };
-  if (const auto& weight = response.weight) {
+  // Rates only of those that have one.
+  const auto counts = [&](const PlaceQuantity& of) {
+    return !values.are_rates() || values.moves(of.quantity);
+  };
+  if (const auto& weight = response.weight; weight && counts(*weight)) {
     result.weight = told(values.field(*weight), 1.0, what(*weight));
     result.weight_slope = told(values.slope(*weight), 1.0, what(*weight));
   }
-  if (const auto& region = response.region) {
+  if (const auto& region = response.region; region && counts(*region)) {
     const double sign = response.side == RegionSide::KeepOut ? 1.0 : -1.0;
     result.level = told(values.field(*region), sign, what(*region));
     result.level_slope = told(values.slope(*region), sign, what(*region));

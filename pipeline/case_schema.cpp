@@ -147,8 +147,7 @@ std::vector<TableSpec> make_tables() {
        N::ForParts,
        "A linear-elastic material: isotropic (youngs_modulus, poisson_ratio) "
        "or orthotropic (youngs_moduli, poisson_ratios, shear_moduli)",
-       {{"youngs_modulus", K::Quantity, D::Pressure, false,
-         "above 0; no design variable may move it"},
+       {{"youngs_modulus", K::Quantity, D::Pressure, false, "above 0"},
         {"poisson_ratio", K::Quantity, D::None, false,
          "above -1 and below 0.5; no design variable may move it"},
         {"density", K::Quantity, D::Density, true, "mass per volume"},
@@ -304,8 +303,8 @@ std::vector<TableSpec> make_tables() {
          "of von_mises_ks: the stress that its sharpness is measured by; the "
          "least yield strength when left out"},
         {"keep_out", K::Place, D::Length, false,
-         "of distance: an expression of x, y, z, no design variable in it: how "
-         "deep a place lies in the region, below 0 outside; or"},
+         "of distance: an expression of x, y, z: how deep a place lies in the "
+         "region, below 0 outside; or"},
         {"keep_in", K::Place, D::Length, false,
          "of distance: the same of a region that the solid must stay within"},
         {"smoothing", K::Constant, D::Length, false,

@@ -69,7 +69,15 @@ std::vector<TableSpec> study_tables() {
          "the case's own model starts; no such stage when left out"},
         {"max_evaluations", K::Integer, D::None, false,
          "of match, minimize and each minimum of pareto: limit, "
-         "finite-difference ones included; 100 when left out"}}},
+         "finite-difference ones included; 100 when left out"},
+        {"time_limit", K::Constant, D::Time, false,
+         "of the whole study, in seconds or as \"10 min\": it stops then and "
+         "keeps the best design; --time-limit counts too, the smaller of the "
+         "two; no limit when left out"},
+        {"refreeze", K::Flag, D::None, false,
+         "of match and minimize: where the frozen mesh no longer follows, "
+         "freeze a new model at the best design and go on from there, three "
+         "times at most; true when left out"}}},
       {"constraint",
        false,
        N::Optional,

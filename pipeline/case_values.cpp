@@ -163,6 +163,14 @@ VectorOfPlace CaseValues::slope(const PlaceQuantity& place_quantity) const {
   };
 }
 
+bool CaseValues::moves(const Quantity& quantity) const {
+  const std::vector<int> used = quantity.expression.names_used();
+  return std::any_of(used.begin(), used.end(), [this](int name) {
+    const auto k = static_cast<std::size_t>(name);
+    return k < duals_.size() && rate_of(duals_[k]) != 0.0;
+  });
+}
+
 double CaseValues::nothing(const Quantity& quantity,
                            const ExpressionError& error) const {
   problems_.push_back(fmt::format("{}: {}: {}{}", place(input_, quantity.line),

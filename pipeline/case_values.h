@@ -26,6 +26,8 @@ class CaseValues {
              std::vector<std::string>& problems, int rate_by);
 
   bool are_rates() const { return !duals_.empty(); }
+  /// Of rates: some name in it changes.
+  bool moves(const Quantity& quantity) const;
 
   double at(const Quantity& quantity) const;
   Vec3 at(const QuantityVector& vector) const {

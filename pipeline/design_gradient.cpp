@@ -1,10 +1,11 @@
 #include "pipeline/design_gradient.h"
 
 #include <algorithm>
-#include <array>
+#include <functional>
 
 #include "core/timer.h"
 #include "fea/elastic_gradient.h"
+#include "fea/material_rates.h"
 #include "fea/rates.h"
 #include "pipeline/case_values.h"
 
@@ -19,6 +20,8 @@ struct Backward {
   VectorX lambda;  // adjoint displacement; empty: does not depend on it
   VectorX adjoint_reactions;
   std::optional<LoadGradient> loads;
+  std::vector<double> by_density;  // per region, of all stages
+  std::vector<double> by_modulus;  // likewise; both empty: 0
   FilmGradient film;
 };
 
@@ -32,6 +35,8 @@ class Adjoint {
   std::vector<char> needed(const std::vector<int>& wanted) const;
   bool solve_adjoints(DesignGradient& result);
   bool solve_adjoints(std::size_t load_case, DesignGradient& result);
+  bool materials_move() const;
+  void through_materials(Backward& backward) const;
   void through_mesh(Backward& backward) const;
   void through_film();
   double rate(const Backward& backward, const EvaluatedCase& rates) const;
@@ -109,6 +114,55 @@ bool Adjoint::solve_adjoints(DesignGradient& result) {
   return true;
 }
 
+/// Some material depends on some design variable.
+bool Adjoint::materials_move() const {
+  const Case& input = in_.input;
+  std::vector<std::string> problems;
+  for (std::size_t j = 0; j < input.design.size(); ++j) {
+    const CaseValues rates(input, in_.fields.numbers.design, problems,
+                           static_cast<int>(j));
+    for (const BodyEntry& body : solid_bodies(input)) {
+      const MaterialEntry& entry = input.materials[body.material];
+      if (rates.at(entry.density) != 0.0 ||
+          (!entry.orthotropic && rates.at(entry.youngs_modulus) != 0.0)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void add(const std::vector<double>& more, std::vector<double>& sum) {
+  sum.resize(std::max(sum.size(), more.size()), 0.0);
+  std::transform(more.begin(), more.end(), sum.begin(), sum.begin(),
+                 std::plus<>());
+}
+
+/// lambda . (f - K u) by the materials, and the loads' part of the response
+/// itself.
+void Adjoint::through_materials(Backward& backward) const {
+  const ResponseInput& fields = in_.fields;
+  const ResponsePartials& partials = backward.partials;
+  add(partials.by_density, backward.by_density);
+  add(partials.by_modulus, backward.by_modulus);
+  if (backward.lambda.size() == 0) {
+    return;
+  }
+  const auto load_case = static_cast<std::size_t>(entry(backward).load_case);
+  const VectorX& u = fields.solution.displacements[load_case];
+  const auto add_work = [&](const VectorX& moved, const VectorX& lambda) {
+    const MaterialGradient by =
+        material_gradient(fields.mesh, fields.numbers.materials,
+                          fields.numbers.load_cases[load_case], moved, lambda);
+    add(by.density, backward.by_density);
+    add(by.youngs_modulus, backward.by_modulus);
+  };
+  add_work(u, backward.lambda);
+  if (partials.by_forces.size() > 0) {
+    add_work(VectorX::Zero(u.size()), partials.by_forces);
+  }
+}
+
 void Adjoint::through_mesh(Backward& backward) const {
   const ResponseInput& fields = in_.fields;
   ResponsePartials& partials = backward.partials;
@@ -163,10 +217,15 @@ double Adjoint::rate(const Backward& backward,
     sum +=
         load_rate(*backward.loads, rates.load_cases[entry(backward).load_case]);
   }
-  for (std::size_t k = 0; k < partials.by_density.size(); ++k) {
-    sum += partials.by_density[k] * rates.materials[k].density;
+  for (std::size_t k = 0; k < backward.by_density.size(); ++k) {
+    sum += backward.by_density[k] * rates.materials[k].density;
   }
-  return sum;
+  for (std::size_t k = 0; k < backward.by_modulus.size(); ++k) {
+    sum += backward.by_modulus[k] * rates.materials[k].youngs_modulus;
+  }
+  return sum + place_rate(entry(backward),
+                          in_.fields.numbers.responses[backward.response],
+                          rates.responses[backward.response], in_.fields);
 }
 
 /// `rates`: of the responses that are no expressions; receives the others.
@@ -210,8 +269,12 @@ DesignGradient Adjoint::run(const std::vector<int>& wanted) {
     result.seconds = timer.seconds();
     return result;
   }
+  const bool materials = materials_move();
   for (Backward& backward : backwards_) {
     through_mesh(backward);
+    if (materials) {
+      through_materials(backward);
+    }
   }
   through_film();
   const auto variables = static_cast<Eigen::Index>(input.design.size());

@@ -61,7 +61,9 @@ Modes or_failure(const Solve& solve) {
 FrequencyFigures frequencies_of(const AnalysisEntry& analysis,
                                 const EvaluationFields& fields,
                                 const ElasticModel& model, Monitor* monitor) {
-  const ModeOptions options{.count = analysis.frequencies, .monitor = monitor};
+  const ModeOptions options{.count = analysis.frequencies,
+                            .monitor = monitor,
+                            .materials = &fields.inputs.materials};
   const int held = analysis.supports_of;
   if (held == AnalysisEntry::kFree) {
     return {"free", or_failure<NaturalModes>([&] {
@@ -100,8 +102,9 @@ EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
   const AnalysisEntry& analysis = input.analysis;
   const std::vector<LoadCase>& cases = fields.inputs.load_cases;
   EigenFigures figures;
-  const BucklingOptions options =
+  BucklingOptions options =
       buckling_options(analysis, model.base_solution().report, monitor);
+  options.materials = &fields.inputs.materials;
   for (std::size_t c = 0; c < cases.size() && options.count > 0; ++c) {
     figures.buckling.push_back(
         {cases[c].name, or_failure<BucklingModes>([&] {

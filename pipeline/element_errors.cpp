@@ -184,7 +184,8 @@ bool ResponseErrors::solve(const std::vector<std::vector<Dual>>& duals,
                   [](double s) { return s == 0.0; })) {
     return false;
   }
-  const ElasticSolution solution = model.solve(fields_.mesh, loads);
+  const ElasticSolution solution =
+      model.solve(fields_.mesh, loads, fields_.inputs.materials, nullptr);
   errors_.failure = solution.failure;
   for (std::size_t k = 0; k < loads.size() && !errors_.failure; ++k) {
     if (scale[k] != 0.0) {

@@ -5,6 +5,7 @@
 #include "fea/body_loads.h"
 #include "io/stl.h"
 #include "pipeline/calculix_export.h"
+#include "pipeline/refreeze.h"
 #include "pipeline/responses.h"
 #include "pipeline/results.h"
 #include "pipeline/stored_case.h"
@@ -28,8 +29,9 @@ Case at_edge(Case input, std::optional<double> edge) {
 
 fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   const StudyStore store = StudyStore::read(folder.string());
-  const Case input = at_edge(restore_case(store.meta()), options.edge);
   const std::vector<EvaluationRecord> records = store.all();
+  const Case input = at_edge(
+      frozen_as_answered(restore_case(store.meta()), records), options.edge);
   const VectorX design = answer_of_run(input, records, folder);
   const double edge = options.edge.value_or(input.resolution.fea);
   fs::path file =

@@ -20,6 +20,7 @@
 #include "pipeline/run_lock.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/study_table.h"
+#include "pipeline/time_limit.h"
 
 namespace meniscus {
 
@@ -85,6 +86,7 @@ class FamilyRun {
         monitor_(options.monitor != nullptr ? *options.monitor
                                             : silent_monitor()),
         lock_(options.folder.string()),
+        limit_(smaller_limit(options.time_limit, family.study.time_limit)),
         members_(family_cases(family)) {}
 
   FamilyResult run();
@@ -109,6 +111,7 @@ class FamilyRun {
   Monitor& monitor_;
   RunLock lock_;
   Timer timer_;
+  double limit_;  // [s], 0: none
   std::vector<Case> members_;
   std::vector<int> parents_;  // -1: none
   FamilyResult result_;
@@ -120,9 +123,7 @@ class FamilyRun {
   double seconds_ = 0.0;  // that computing them took
 };
 
-double FamilyRun::time_left() const {
-  return options_.time_limit - timer_.seconds();
-}
+double FamilyRun::time_left() const { return limit_ - timer_.seconds(); }
 
 void FamilyRun::prepare() {
   remove_leftovers(options_.folder);
@@ -225,8 +226,7 @@ Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
   const Timer timer;
   Json json = compute(
       member, folder, store,
-      {.time_limit =
-           options_.time_limit > 0.0 ? std::max(time_left(), kLeastTime) : 0.0,
+      {.time_limit = limit_ > 0.0 ? std::max(time_left(), kLeastTime) : 0.0,
        .start = start,
        .monitor = &monitor});
   json["member"] = own;
@@ -250,7 +250,7 @@ void FamilyRun::finish(std::size_t k, const Json& result) {
 }
 
 void FamilyRun::size(std::size_t k) {
-  if (options_.time_limit > 0.0 && time_left() <= 0.0) {
+  if (limit_ > 0.0 && time_left() <= 0.0) {
     const std::lock_guard<std::mutex> guard(mutex_);
     result_.rows[k].status = "stopped";
     result_.rows[k].message = "the time limit was reached before it began";

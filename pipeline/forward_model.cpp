@@ -255,7 +255,8 @@ bool ForwardModel::Impl::solve(const TetMesh& mesh, const EvaluatedCase& inputs,
                                Evaluation& result) const {
   const Timer timer;
   try {
-    solution = elasticity->solve(mesh, inputs.load_cases, keep);
+    solution =
+        elasticity->solve(mesh, inputs.load_cases, inputs.materials, keep);
   } catch (const InvalidInput& error) {
     // A load or support that this design's surface cannot take.
     result.failure = Failure{FailureKind::SolverFailed, error.what()};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/refreeze.h"
+
 namespace meniscus {
 
 double violation_of(const ConstraintEntry& constraint, double value) {
@@ -38,8 +40,9 @@ const EvaluationRecord* best_by_objective(
     const StudyEntry& study, const std::vector<EvaluationRecord>& records) {
   const EvaluationRecord* best = nullptr;
   Standing standing;
+  const std::string model = answering_model(records);
   for (const EvaluationRecord& record : records) {
-    if (record.failure || record.model != kStudyModel) {
+    if (record.failure || record.model != model) {
       continue;
     }
     const Standing other = standing_of(study, record.responses);

@@ -30,7 +30,7 @@ Standing standing_of(const StudyEntry& study, const VectorX& responses);
 /// smaller violation; a design that keeps all goes before one that does not.
 bool is_better(const Standing& a, const Standing& b);
 
-/// The first of the best records of the case's own model by objective and
+/// The first of the best records of the answering model by objective and
 /// constraints, or null when all failed. `records` must be of a study with an
 /// objective.
 const EvaluationRecord* best_by_objective(

@@ -9,6 +9,7 @@
 
 #include "fea/loads.h"
 #include "fea/volume_functionals.h"
+#include "pipeline/refreeze.h"
 #include "pipeline/results.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/stress_figures.h"
@@ -216,11 +217,12 @@ PartFigures part_figures(const std::string& name, EvaluationFields& fields) {
 
 RunPart load_run_part(const std::filesystem::path& folder, Monitor* monitor) {
   const StudyStore store = StudyStore::read(folder.string());
-  RunPart part{.input = restore_case(store.meta()),
+  const std::vector<EvaluationRecord> records = store.all();
+  RunPart part{.input = frozen_as_answered(restore_case(store.meta()), records),
                .design = {},
                .fields = {},
                .figures = {}};
-  part.design = answer_of_run(part.input, store.all(), folder);
+  part.design = answer_of_run(part.input, records, folder);
   const ForwardModel model(part.input, {.monitor = monitor});
   const Evaluation found = model.failure()
                                ? model.frozen()

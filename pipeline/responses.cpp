@@ -24,6 +24,7 @@ ResponsePartials taken(Functional functional) {
   result.by_nodes = std::move(functional.by_nodes);
   result.by_displacement = std::move(functional.by_displacement);
   result.by_temperature = std::move(functional.by_temperature);
+  result.by_modulus = std::move(functional.by_modulus);
   return result;
 }
 
@@ -185,15 +186,20 @@ ResponsePartials film_partials(const ResponseEntry& response,
   return result;
 }
 
-/// Extremes over the part's surface, about so sharp where the case says nothing
-/// else: to a tenth of an edge.
+/// Of extremes over the part's surface, where the case says nothing else: to a
+/// tenth of an edge.
+double sharpness_of(const ResponseEntry& response,
+                    const ResponseInput& fields) {
+  constexpr double kPartOfEdge = 0.1;
+  return 1.0 /
+         response.smoothing.value_or(kPartOfEdge * fields.numbers.fea_edge);
+}
+
 ResponsePartials place_partials(const ResponseEntry& response,
                                 const ResponseNumbers& numbers,
                                 const ResponseInput& fields,
                                 Derivatives derivatives) {
-  constexpr double kPartOfEdge = 0.1;
-  const double sharpness =
-      1.0 / response.smoothing.value_or(kPartOfEdge * fields.numbers.fea_edge);
+  const double sharpness = sharpness_of(response, fields);
   if (response.kind == ResponseKind::Thickness) {
     return taken(thickness_functional(fields.mesh, *fields.pairs, sharpness,
                                       derivatives));
@@ -300,6 +306,21 @@ ResponsePartials partials_of(const ResponseEntry& response,
   }
   throw InvalidInput(
       fmt::format("response '{}' has no partial derivatives", response.name));
+}
+
+double place_rate(const ResponseEntry& response, const ResponseNumbers& numbers,
+                  const ResponseNumbers& rates, const ResponseInput& fields) {
+  if (rates.weight) {
+    return weighted_displacement_functional(
+               fields.mesh, response.surface, numbers.direction,
+               {rates.weight, {}},
+               fields.solution.displacements[response.load_case],
+               Derivatives::None)
+        .value;
+  }
+  return rates.level ? intrusion_rate(fields.mesh, numbers.level, rates.level,
+                                      sharpness_of(response, fields))
+                     : 0.0;
 }
 
 bool has_derivatives(const Case& input, int response) {

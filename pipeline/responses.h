@@ -36,6 +36,7 @@ struct ResponsePartials {
   VectorX by_temperature;  // of its load case, per node [value/temperature]
   Vec3 by_direction = Vec3::Zero();
   std::vector<double> by_density;  // per region
+  std::vector<double> by_modulus;  // Young's, per region; displacement held
   FilmCovector film;
 };
 
@@ -55,6 +56,12 @@ ResponsePartials partials_of(const ResponseEntry& response,
                              const ResponseNumbers& numbers,
                              const ResponseInput& fields,
                              Derivatives derivatives);
+
+/// What a weight or a region that moves with the design changes the response
+/// by, all else held; `rates`: of `numbers`, by one design variable. Throws as
+/// respond().
+double place_rate(const ResponseEntry& response, const ResponseNumbers& numbers,
+                  const ResponseNumbers& rates, const ResponseInput& fields);
 
 /// False for peaks of nodal stress, and for what is made of them.
 bool has_derivatives(const Case& input, int response);

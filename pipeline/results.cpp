@@ -8,6 +8,7 @@
 #include "io/atomic_file.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
+#include "pipeline/refreeze.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/study_table.h"
 
@@ -133,6 +134,17 @@ Json coarse_json(const Case& input, const CoarseFigures& coarse) {
           {"gradient_evaluations", coarse.gradients}};
 }
 
+Json refrozen_json(const Case& input, const std::vector<Refreeze>& refrozen) {
+  Json json = Json::array();
+  for (const Refreeze& r : refrozen) {
+    json.push_back({{"evaluation", r.evaluation},
+                    {"reason", r.reason},
+                    {"parameters", value_map(design_names(input), r.design)},
+                    {"shift", value_map(response_names(input), r.shift)}});
+  }
+  return json;
+}
+
 }  // namespace
 
 nlohmann::ordered_json units_json(const UnitSystem& units) {
@@ -241,6 +253,9 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
   if (result.coarse) {
     json["coarse"] = coarse_json(input, *result.coarse);
   }
+  if (!result.refrozen.empty()) {
+    json["refrozen"] = refrozen_json(input, result.refrozen);
+  }
   if (best != nullptr) {
     json["film"] = film_json(best->film);
     json["tet"] = tet_json(best->tet);
@@ -267,7 +282,7 @@ RunResult result_so_far(const Case& input,
                         const std::vector<EvaluationRecord>& records) {
   RunResult result;
   for (const EvaluationRecord& record : records) {
-    if (record.model != kStudyModel) {
+    if (!is_study_model(record.model)) {
       continue;
     }
     if (++result.evaluations == 1) {

@@ -24,6 +24,23 @@ std::string with_error(double value, const VectorX& errors, Eigen::Index k,
   return text;
 }
 
+/// What another mesh changed most, relative to the answer.
+std::string shift_text(const Case& input, const Refreeze& refreeze,
+                       const VectorX& answer) {
+  Eigen::Index worst = -1;
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < refreeze.shift.size(); ++k) {
+    const double relative = std::abs(refreeze.shift[k] / answer[k]);
+    if (std::isfinite(relative) && relative > largest) {
+      worst = k;
+      largest = relative;
+    }
+  }
+  return worst < 0 ? ""
+                   : fmt::format("; the new mesh changes '{}' by {:.2g} %",
+                                 input.responses[worst].name, 100.0 * largest);
+}
+
 /// "  sway   0.09 mm, at most 0.1 mm: kept".
 std::string bounds_text(const Case& input, const ConstraintEntry& entry,
                         const Constraint& constraint) {
@@ -115,6 +132,10 @@ std::string result_text(const Case& input, const RunResult& result) {
         "  left out of stress figures: {}: {} elements, {:.2g} % of the "
         "volume\n",
         zone.where, zone.elements, 100.0 * zone.volume_share);
+  }
+  for (const Refreeze& r : result.refrozen) {
+    text += fmt::format("  frozen anew at evaluation {}: {}{}\n", r.evaluation,
+                        r.reason, shift_text(input, r, best.responses));
   }
   if (result.eigen) {
     text += eigen_text(*result.eigen);

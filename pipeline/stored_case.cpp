@@ -7,6 +7,7 @@
 #include "io/atomic_file.h"
 #include "pipeline/case_reader.h"
 #include "pipeline/incumbent.h"
+#include "pipeline/refreeze.h"
 
 namespace meniscus {
 
@@ -39,8 +40,9 @@ const EvaluationRecord& best_record(
   if (best != nullptr) {
     return *best;
   }
+  const std::string model = answering_model(records);
   for (const EvaluationRecord& record : records) {
-    if (record.failure || record.model != kStudyModel) {
+    if (record.failure || record.model != model) {
       continue;
     }
     const bool better =

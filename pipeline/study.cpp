@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include <Eigen/QR>
@@ -12,6 +13,7 @@
 #include "pipeline/precision.h"
 #include "pipeline/results.h"
 #include "pipeline/study_stage.h"
+#include "pipeline/time_limit.h"
 
 namespace meniscus {
 
@@ -23,6 +25,12 @@ namespace {
 constexpr double kCoarserEdges = 2.0;
 constexpr double kErrorPerChange = 1.5;
 
+int evaluations_of(const std::vector<EvaluationRecord>& records) {
+  return static_cast<int>(std::count_if(
+      records.begin(), records.end(),
+      [](const EvaluationRecord& r) { return is_study_model(r.model); }));
+}
+
 /// From the frozen model to the answer with its error, step by step.
 class StudyRun {
  public:
@@ -31,7 +39,10 @@ class StudyRun {
         store_(store),
         options_(options),
         monitor_(options.monitor != nullptr ? *options.monitor
-                                            : silent_monitor()) {}
+                                            : silent_monitor()),
+        limit_(smaller_limit(options.time_limit, input.study.time_limit)) {
+    options_.time_limit = limit_;
+  }
 
   RunResult run();
   /// Of the best design; or what there is of a surface that was not filled.
@@ -40,6 +51,10 @@ class StudyRun {
  private:
   void start_coarse();
   bool begin();
+  bool refreeze();
+  bool go_on(Refreeze refreeze);
+  void pass_time();
+  void leave_stage();
   void conduct_study();
   bool finish_best();
   void solve_eigenproblems();
@@ -47,15 +62,20 @@ class StudyRun {
   void estimate_errors();
   void combine_errors(const VectorX& coarse);
   void warn();
+  void count();
 
   const Case& input_;
   StudyStore& store_;
   StudyOptions options_;  // its start and time as stages leave them
   Monitor& monitor_;
   Timer timer_;
-  std::optional<StudyStage> stage_;
+  double limit_;                  // [s], 0: none
+  std::unique_ptr<Case> frozen_;  // what the stage's model is frozen of, where
+                                  // that is not the case's initial design
+  std::unique_ptr<StudyStage> stage_;
   EvaluationFields fields_;
-  StageSeconds own_seconds_;  // beside those of the evaluator
+  StageSeconds own_seconds_;   // beside those of the evaluator
+  int earlier_gradients_ = 0;  // of stages before this one
   RunResult result_;
 };
 
@@ -74,15 +94,19 @@ void StudyRun::start_coarse() {
                                coarse.figures.message);
   }
   result_.coarse = std::move(coarse.figures);
-  if (options_.time_limit > 0.0) {  // what it took is gone
-    constexpr double kLeast = 1e-3;
-    options_.time_limit =
-        std::max(options_.time_limit - timer_.seconds(), kLeast);
+  pass_time();
+}
+
+/// What a stage took is gone for the next.
+void StudyRun::pass_time() {
+  constexpr double kLeast = 1e-3;
+  if (limit_ > 0.0) {
+    options_.time_limit = std::max(limit_ - timer_.seconds(), kLeast);
   }
 }
 
 bool StudyRun::begin() {
-  stage_.emplace(input_, store_, options_);
+  stage_ = std::make_unique<StudyStage>(input_, store_, options_);
   const ForwardModel& model = stage_->evaluator().model();
   if (const Adaptation* adaptation = model.adaptation()) {
     result_.adaptation = *adaptation;
@@ -102,8 +126,79 @@ bool StudyRun::begin() {
   return true;
 }
 
+void StudyRun::leave_stage() {
+  own_seconds_ += stage_->evaluator().seconds();
+  earlier_gradients_ += stage_->evaluator().counts().gradients;
+}
+
+/// Freezes the model and works on it; false where it cannot be frozen.
+bool StudyRun::go_on(Refreeze refreeze) {
+  const VectorX before =
+      store_.find(stage_->model_name(), refreeze.design)->responses;
+  const std::string model = refrozen_model(refreeze.evaluation);
+  auto input = std::make_unique<Case>(frozen_at(input_, refreeze.design));
+  input->study.max_evaluations -= evaluations_of(store_.all());
+  options_.start.reset();
+  pass_time();
+  std::string reason;
+  try {
+    auto stage = std::make_unique<StudyStage>(
+        *input, store_, options_,
+        StageModel{.name = model, .reference = result_.start->responses});
+    if (!stage->failure()) {
+      leave_stage();
+      refreeze.shift = stage->start().responses - before;
+      stage_ = std::move(stage);
+      frozen_ = std::move(input);
+      result_.refrozen.push_back(std::move(refreeze));
+      stage_->conduct();
+      return true;
+    }
+    own_seconds_ += stage->evaluator().seconds();
+    reason = stage->failure()->message;
+  } catch (const MeshError& error) {
+    reason = error.what();
+  }
+  result_.warnings.push_back(fmt::format(
+      "{}, but no new model can be frozen there: {}", refreeze.reason, reason));
+  return false;
+}
+
+/// A new model where the study has left the reach of the last; true when the
+/// study went on with it.
+bool StudyRun::refreeze() {
+  const StudyEntry& study = input_.study;
+  const StudyOutcome& outcome = stage_->outcome();
+  const std::vector<EvaluationRecord> records = store_.all();
+  if (!study.refreeze || outcome.status == RunStatus::Stopped ||
+      (study.kind != StudyKind::Match && study.kind != StudyKind::Minimize) ||
+      evaluations_of(records) >= study.max_evaluations) {
+    return false;
+  }
+  const std::optional<Refreeze> wanted = wanted_refreeze(
+      {.input = frozen_ ? *frozen_ : input_,
+       .records = records,
+       .model = stage_->model_name(),
+       .best = outcome.best,
+       .min_dihedral_deg =
+           stage_->evaluator().model().frozen().tet.min_dihedral_deg,
+       .converged = outcome.status == RunStatus::Converged});
+  if (!wanted) {
+    return false;
+  }
+  monitor_.log(Severity::Info,
+               fmt::format("a new model is frozen at evaluation {}: {}",
+                           wanted->evaluation, wanted->reason));
+  return go_on(*wanted);
+}
+
 void StudyRun::conduct_study() {
   stage_->conduct();
+  for (int round = 0; round < kMostRefreezes && refreeze(); ++round) {
+  }
+  if (const Adaptation* adaptation = stage_->evaluator().model().adaptation()) {
+    result_.adaptation = *adaptation;
+  }
   const StudyOutcome& outcome = stage_->outcome();
   result_.status = outcome.status;
   result_.message = outcome.message;
@@ -168,7 +263,8 @@ void StudyRun::estimate_errors() {
                      .detail = "a second model with edges twice as long"});
   try {
     const ForwardModel coarse(
-        input_, {.edge_factor = kCoarserEdges, .monitor = options_.monitor});
+        frozen_ ? *frozen_ : input_,
+        {.edge_factor = kCoarserEdges, .monitor = options_.monitor});
     own_seconds_ += coarse.frozen().seconds;
     const std::optional<Failure>& failure = coarse.failure();
     Evaluation there;
@@ -220,6 +316,18 @@ void StudyRun::warn() {
   }
 }
 
+void StudyRun::count() {
+  leave_stage();
+  for (const EvaluationRecord& record : store_.all()) {
+    if (is_study_model(record.model)) {
+      ++result_.evaluations;
+      result_.failed_evaluations += record.failure ? 1 : 0;
+    }
+  }
+  result_.gradient_evaluations = earlier_gradients_;
+  result_.seconds = own_seconds_;
+}
+
 RunResult StudyRun::run() {
   start_coarse();
   if (begin()) {
@@ -229,12 +337,7 @@ RunResult StudyRun::run() {
     }
     warn();
   }
-  const EvaluationCounts& counts = stage_->evaluator().counts();
-  result_.evaluations = counts.evaluations;
-  result_.failed_evaluations = counts.failed;
-  result_.gradient_evaluations = counts.gradients;
-  result_.seconds = stage_->evaluator().seconds();
-  result_.seconds += own_seconds_;
+  count();
   result_.total_seconds = timer_.seconds();
   return std::move(result_);
 }

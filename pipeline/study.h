@@ -12,6 +12,7 @@
 #include "pipeline/element_errors.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/front_figures.h"
+#include "pipeline/refreeze.h"
 #include "pipeline/stress_figures.h"
 #include "pipeline/study_store.h"
 #include "pipeline/sweep_figures.h"
@@ -64,8 +65,10 @@ struct RunResult {
   std::optional<ElementErrors> element_errors;  // the elements' part of them
   std::optional<EigenFigures> eigen;            // of the best design
   std::optional<CoarseFigures> coarse;  // what study.coarse_first asked for
-  int evaluations = 0;  // of the case's own model, finite-difference ones
-                        // included
+  std::vector<Refreeze> refrozen;       // models after the first, in order
+  /// Designs evaluated at the case's own resolution, each once per frozen
+  /// model, finite-difference ones included: as many as the database holds.
+  int evaluations = 0;
   int failed_evaluations = 0;
   int gradient_evaluations = 0;
   StageSeconds seconds;  // summed over freeze, evaluations, error estimate
@@ -75,7 +78,7 @@ struct RunResult {
 };
 
 struct StudyOptions {
-  double time_limit = 0.0;      // [s], 0: none
+  double time_limit = 0.0;      // [s], 0: none; the case may have its own
   bool estimate_errors = true;  // one more, coarser model
   int jobs = 1;  // independent designs side by side; no effect on what is found
   /// Where the optimizer starts, within the bounds; the model freezes at the

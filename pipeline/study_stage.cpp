@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/refreeze.h"
 #include "pipeline/results.h"
 
 namespace meniscus {
@@ -10,6 +11,7 @@ StudyStage::StudyStage(const Case& input, StudyStore& store,
                        const StudyOptions& options, const StageModel& model)
     : input_(input),
       options_(options),
+      model_(model),
       evaluator_(input, store,
                  DesignEvaluatorOptions{.model = model.name,
                                         .edge_factor = model.edge_factor,
@@ -26,7 +28,7 @@ StudyStage::StudyStage(const Case& input, StudyStore& store,
   failure_ = record.failure;
   start_ = to_evaluation(record);
   if (!failure_ && input_.study.kind == StudyKind::Match) {
-    targets_.emplace(input_, record.responses);
+    targets_.emplace(input_, model_.reference.value_or(record.responses));
     evaluator_.judge_by([this](const VectorX& responses) {
       return targets_->mismatch(responses).maxCoeff();
     });
@@ -74,12 +76,12 @@ CoarseStage run_coarse_stage(const Case& input, StudyStore& store,
       return result;
     }
     stage.conduct();
-    const EvaluationCounts& counts = stage.evaluator().counts();
     result.best = stage.outcome().best;
     result.figures.design = stage.outcome().best;
     result.figures.message = stage.outcome().message;
-    result.figures.evaluations = counts.evaluations;
-    result.figures.gradients = counts.gradients;
+    result.figures.evaluations =
+        count_of_model(store.all(), stage.model_name());
+    result.figures.gradients = stage.evaluator().counts().gradients;
     result.seconds = stage.evaluator().seconds();
   } catch (const MeshError& error) {
     result.figures.message = error.what();

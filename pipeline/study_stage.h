@@ -15,6 +15,9 @@ namespace meniscus {
 struct StageModel {
   std::string name = kStudyModel;  // in the database
   double edge_factor = 1.0;        // as in ForwardModelOptions
+  /// Responses that a match's residuals are measured by; none: those of the
+  /// initial design.
+  std::optional<VectorX> reference = {};
 };
 
 class StudyStage {
@@ -34,6 +37,7 @@ class StudyStage {
   void conduct();
   const StudyOutcome& outcome() const { return outcome_; }
 
+  const std::string& model_name() const { return model_.name; }
   DesignEvaluator& evaluator() { return evaluator_; }
   const DesignEvaluator& evaluator() const { return evaluator_; }
   /// Of a match, else null.
@@ -46,6 +50,7 @@ class StudyStage {
 
   const Case& input_;
   const StudyOptions& options_;
+  StageModel model_;
   DesignEvaluator evaluator_;
   std::optional<Failure> failure_;
   Evaluation start_;

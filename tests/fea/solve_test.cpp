@@ -217,6 +217,35 @@ TEST(Multigrid, HoldsForThinWallsNearlyIncompressibleAndMixedMaterials) {
   }
 }
 
+TEST(Multigrid, OtherMaterialsThanTheBasesAreSolvedByItsPreconditioner) {
+  TetMesh mesh = bar(2, 3);
+  for (int e = 0; e < mesh.element_count(); e += 2) {
+    mesh.element_region[e] = 1;
+  }
+  Material heavy = parts::steel();
+  heavy.density *= 2.0;
+  Material soft = parts::steel();
+  soft.youngs_modulus /= 3.0;
+  LoadCase weight = parts::pulled({0.0, 0.0, -1.0});
+  weight.gravity = {0.0, 1e6, 0.0};
+  const ElasticModel base(mesh, {parts::steel(), parts::steel()}, {weight},
+                          {.solver = SolverKind::Multigrid});
+  const ElasticModel own(mesh, {heavy, soft}, {weight},
+                         {.solver = SolverKind::Multigrid});
+  ElasticState state;
+  const ElasticSolution other =
+      base.solve(mesh, {weight}, {heavy, soft}, &state);
+  ASSERT_FALSE(other.failure) << other.failure->message;
+  const VectorX& u = own.base_solution().displacements[0];
+  EXPECT_LE(difference(other.displacements[0], u), kSolvers);
+  // The adjoint is of the same stiffness.
+  const AdjointSolution adjoint =
+      base.solve_adjoint(state, 0, {nodal_forces(mesh, weight, {heavy, soft})});
+  ASSERT_FALSE(adjoint.failure) << adjoint.failure->message;
+  EXPECT_LE(difference(adjoint.lambda[0], u), kSolvers);
+  EXPECT_THROW(base.solve(mesh, {weight}, {soft}, nullptr), InvalidInput);
+}
+
 TEST(Multigrid, SmallScalesAndLargeOnesGiveTheSameShape) {
   const TetMesh mesh = bar(2, 2);
   const auto solve = [&](double length, double force) {

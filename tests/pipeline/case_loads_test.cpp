@@ -155,10 +155,6 @@ INSTANTIATE_TEST_SUITE_P(
                 changed(with_loads("[{ gravity = [0,0,-1] }]"), "2.8e-9", "0"),
                 "48: materials.aluminium.density is 0, but load case 'service' "
                 "has gravity"},
-        Mistake{"WeightByDesign",
-                changed(with_loads("[{ gravity = [0,0,-1] }]"), "2.8e-9",
-                        "\"1e-10 * foot\""),
-                "cannot in this version where gravity or spin acts"},
         Mistake{"NothingHot",
                 with_loads("[{ temperature = 20, reference = 20 }]"),
                 "has no load that is not 0"},

@@ -141,6 +141,28 @@ TEST(DesignGradient, IsExactUnderEveryKindOfLoad) {
   expect_exact(text, VectorX::Zero(3));
 }
 
+TEST(DesignGradient, IsExactWhereMaterialsFollowTheDesign) {
+  std::string text = changed(
+      every_response(), "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
+      "[{ on = \"head_pad\", force = [\"load\", \"30 * lean\", 0] },\n"
+      "  { gravity = [0, 1e6, -9.8e6] },\n"
+      "  { spin = 20, at = [0, 0, 0], axis = [0, 0.1, 1] },\n"
+      "  { temperature = \"20 + z * fill / 4\", reference = 15 }]");
+  text = changed(text, "youngs_modulus = 71700.0",
+                 "youngs_modulus = \"7e4 + 400 * lean * fill\"\n"
+                 "thermal_expansion = 2.3e-6");
+  text = changed(text, "density = 2.8e-9", "density = \"2.8e-9 * fill^2\"");
+  expect_exact(text, Vec3(0.5, 1.0, 0.03));
+}
+
+TEST(DesignGradient, IsExactWhereWeightsAndRegionsFollowTheDesign) {
+  std::string text = changed(every_response(), "(x - 3) / 20 + y^2 / 400",
+                             "(x - lean) / 20 + fill * y^2 / 400");
+  text = changed(text, "foot_at = 30.0", "foot_at = \"30.0 + lean / 3\"");
+  text = changed(text, "28 - sqrt(x^2", "28 * fill - sqrt(x^2");
+  expect_exact(text, Vec3(0.5, 1.0, 0.03));
+}
+
 TEST(DesignGradient, HasTheSameBitsInAnotherOrderOfDesigns) {
   const Case input = read(every_response());
   const ForwardModel model(input);

@@ -8,6 +8,7 @@ import sqlite3
 import time
 import unittest
 
+import program
 from program import COARSE, ProgramTest
 
 SWEEP = """
@@ -69,7 +70,8 @@ class Sweeps(SweepTest):
         self.expect(done, 0)
         self.assert_same(one, three)
         result = self.result(three)
-        self.assertEqual(result["evaluations"], 6)
+        self.assertEqual(result["evaluations"], 7)  # the start is one, too
+        self.assertEqual(result["evaluations"], len(self.rows(three)))
         self.expect(done, 0, r"least [0-9.e-]+ t at support_x", "accuracy: ")
         sweep = result["sweep"]
         self.assertEqual((sweep["designs"], sweep["looked_at"],
@@ -332,8 +334,34 @@ class Jobs(SweepTest):
         self.expect(done, 3, "time limit of 1 s", "--resume")
         sweep = self.result(out)["sweep"]
         self.assertLess(sweep["looked_at"], 500)
+        self.assertEqual(self.result(out)["evaluations"],
+                         len(self.records(out)))
         # The start is no part of it.
         self.assertEqual(len(self.records(out)), sweep["looked_at"] + 1)
+
+    def test_the_case_may_limit_the_time(self):
+        done, out = self.run_case(
+            self.sweep('count = 500\ntime_limit = "0.02 min"\n'), "out",
+            "--time-limit", "60")
+        self.expect(done, 3, "time limit of 1.2 s")
+        self.expect(self.call("check", self.sweep(
+            "count = 500\ntime_limit = 0\n")), 2,
+            r"case.toml:\d+: study.time_limit is 0; it must be above 0")
+
+
+class OtherKind(SweepTest):
+    def test_keys_of_the_file_wait_while_set_asks_for_another_kind(self):
+        done = self.expect(
+            self.call("run", program.CASE, *COARSE, "--no-pictures", "--set",
+                      "study.kind=sweep", "--set", "study.count=2", "--out",
+                      self.folder / "out"), 0, "looked at all 2 designs",
+            "the file's study.equal, study.tolerance belong to another kind")
+        self.assertIn("--set study.kind=sweep", done.stderr)
+        # What --set itself gives must fit.
+        self.expect(self.call("run", program.CASE, "--set",
+                              "study.kind=sweep", "--set", "study.count=2",
+                              "--set", "study.max_evaluations=3"), 2,
+                    'study.max_evaluations belongs to kind')
 
 
 if __name__ == "__main__":

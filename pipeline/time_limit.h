@@ -1,0 +1,13 @@
+/// Limits of time from several sides.
+#pragma once
+
+#include <algorithm>
+
+namespace meniscus {
+
+/// The smaller of two limits [s], where 0 is none.
+inline double smaller_limit(double a, double b) {
+  return a > 0.0 && b > 0.0 ? std::min(a, b) : std::max(a, b);
+}
+
+}  // namespace meniscus
