@@ -53,10 +53,19 @@ Carry::Carry(const FilmComplex& reference, const std::vector<int>& film_order)
 
 Points Carry::rim_moves(const std::vector<Curve>& curves) const {
   Points moves(reference_.size(), Vec3::Zero());
+  std::vector<std::vector<std::size_t>> rims(curves.size());
+  std::vector<std::vector<double>> parameters(curves.size());
   for (std::size_t v = 0; v < kinds_.size(); ++v) {
     if (kinds_[v].kind == VertexKind::OnCurve) {
-      moves[v] =
-          point_at(curves[kinds_[v].curve].shape, kinds_[v].t) - reference_[v];
+      const auto c = static_cast<std::size_t>(kinds_[v].curve);
+      rims[c].push_back(v);
+      parameters[c].push_back(kinds_[v].t);
+    }
+  }
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const Points places = points_at(curves[c].shape, parameters[c]);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      moves[rims[c][k]] = places[k] - reference_[rims[c][k]];
     }
   }
   return moves;

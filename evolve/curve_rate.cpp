@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "evolve/curve_shape.h"
+#include "evolve/arc_side.h"
+#include "evolve/curve_copy.h"
+#include "evolve/spline_curve.h"
 
 namespace meniscus {
 
@@ -63,14 +65,22 @@ Points rates_of(const Shape& shape, const Shape& rate,
   return result;
 }
 
+Vec3 rate_of(const Vector1& point) {
+  return {point[0].gradient[0], point[1].gradient[0], point[2].gradient[0]};
+}
+
+void require_same_count(const char* what, std::size_t count,
+                        std::size_t rates) {
+  if (rates != count) {
+    throw InvalidInput(fmt::format("a {} of {} points has rates for {} of them",
+                                   what, count, rates));
+  }
+}
+
 Points rates_of(const Polygon& polygon, const Polygon& rate,
                 const std::vector<double>& t) {
   const std::size_t count = polygon.points.size();
-  if (rate.points.size() != count) {
-    throw InvalidInput(
-        fmt::format("a polygon of {} points has rates for {} of them", count,
-                    rate.points.size()));
-  }
+  require_same_count("polygon", count, rate.points.size());
   Points result;
   result.reserve(t.size());
   for (const double at : t) {
@@ -80,6 +90,52 @@ Points rates_of(const Polygon& polygon, const Polygon& rate,
                         place.s * rate.points[(part + 1) % count]);
   }
   return result;
+}
+
+Points rates_of(const Spline& spline, const Spline& rate,
+                const std::vector<double>& t) {
+  require_same_count("spline", spline.points.size(), rate.points.size());
+  std::vector<Vector1> points;
+  for (std::size_t k = 0; k < spline.points.size(); ++k) {
+    points.push_back(moving(spline.points[k], rate.points[k]));
+  }
+  const curve_shape::SplineCurve<Dual1> curve(std::move(points));
+  Points result;
+  result.reserve(t.size());
+  for (const double at : t) {
+    result.push_back(rate_of(curve.at(at)));
+  }
+  return result;
+}
+
+Points rates_of(const Polyline& line, const Polyline& rate,
+                const std::vector<double>& t) {
+  const std::size_t count = line.corners.size();
+  require_same_count("polyline", count, rate.corners.size());
+  require_same_count("polyline", count, rate.via.size());
+  Points result;
+  result.reserve(t.size());
+  for (const double at : t) {
+    const Place place = curve_shape::place_of(line, at);
+    const auto part = static_cast<std::size_t>(place.part);
+    const std::size_t next = (part + 1) % count;
+    if (line.via[part] && place.s > 0.0) {
+      const auto arc = curve_shape::arc_through<Dual1>(
+          moving(line.corners[part], rate.corners[part]),
+          moving(*line.via[part], rate.via[part].value_or(Vec3::Zero())),
+          moving(line.corners[next], rate.corners[next]));
+      result.push_back(rate_of(arc.at(place.s)));
+    } else {
+      result.emplace_back((1.0 - place.s) * rate.corners[part] +
+                          place.s * rate.corners[next]);
+    }
+  }
+  return result;
+}
+
+Points rates_of(const CurveCopy& copy, const CurveCopy& rate,
+                const std::vector<double>& t) {
+  return curve_shape::rates_on(copy, rate, t);
 }
 
 /// Its rates are a parametric curve themselves.

@@ -11,6 +11,12 @@ int part_count(const CurveShape& shape) {
   if (const auto* p = std::get_if<Polygon>(&shape)) {
     return static_cast<int>(p->points.size());
   }
+  if (const auto* p = std::get_if<Polyline>(&shape)) {
+    return static_cast<int>(p->corners.size());
+  }
+  if (const auto* copy = std::get_if<CurveCopy>(&shape)) {
+    return part_count(copy->of->shape);
+  }
   return 1;
 }
 

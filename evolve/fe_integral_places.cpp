@@ -4,8 +4,9 @@ namespace meniscus {
 
 bool fe_is_boundary(const FilmComplex& complex, int curve) {
   const CurveShape& shape = complex.curves[curve].shape;
-  return !std::holds_alternative<Rectangle>(shape) &&
-         !std::holds_alternative<Polygon>(shape);
+  return std::holds_alternative<Circle>(shape) ||
+         std::holds_alternative<Ellipse>(shape) ||
+         std::holds_alternative<ParametricCurve>(shape);
 }
 
 bool fe_on_boundary(const FilmComplex& complex, const ComplexEdge& edge) {

@@ -120,9 +120,12 @@ class StartBuilder {
     Rim rim;
     rim.curve = static_cast<int>(found - system_.curves.begin());
     rim.first = static_cast<int>(result_.mesh.points.size());
-    for (const double t : sample_parameters(found->shape, edge_)) {
-      result_.mesh.points.push_back(point_at(found->shape, t));
-      result_.vertices.push_back({VertexKind::OnCurve, rim.curve, t});
+    const std::vector<double> t = sample_parameters(found->shape, edge_);
+    const Points points = points_at(found->shape, t);
+    result_.mesh.points.insert(result_.mesh.points.end(), points.begin(),
+                               points.end());
+    for (const double at : t) {
+      result_.vertices.push_back({VertexKind::OnCurve, rim.curve, at});
       ++rim.count;
     }
     return rims_.emplace(curve_name, rim).first->second;

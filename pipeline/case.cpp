@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "evolve/fields.h"
+#include "pipeline/case_curves.h"
 #include "pipeline/case_loads.h"
 #include "pipeline/case_responses.h"
 #include "pipeline/case_values.h"
@@ -15,47 +16,6 @@
 namespace meniscus {
 
 namespace {
-
-CurveShape shape_of(const CurveEntry& curve, const CaseValues& values) {
-  switch (curve.kind) {
-    case CurveKind::Circle:
-      return Circle{values.at(curve.center), values.at(curve.normal),
-                    values.at(curve.radius)};
-    case CurveKind::Ellipse:
-      return Ellipse{values.at(curve.center), values.at(curve.normal),
-                     values.at(curve.axis), values.at(curve.radius_1),
-                     values.at(curve.radius_2)};
-    case CurveKind::Rectangle:
-      return Rectangle{values.at(curve.center), values.at(curve.normal),
-                       values.at(curve.axis),   values.at(curve.width),
-                       values.at(curve.height), values.at(curve.corner_radius)};
-    case CurveKind::Polygon:
-      break;
-  }
-  Polygon polygon;
-  for (const QuantityVector& point : curve.points) {
-    polygon.points.push_back(values.at(point));
-  }
-  return polygon;
-}
-
-Curve curve_of(const Case& input, const CurveEntry& entry,
-               const CaseValues& values) {
-  const std::size_t before = values.problems().size();
-  Curve curve{entry.name, shape_of(entry, values)};
-  if (!values.are_rates() && values.problems().size() == before) {
-    try {
-      validate(curve);
-    } catch (const InvalidInput& error) {
-      values.problems().push_back(fmt::format(
-          "{}: {}{}", place(input, entry.line), error.what(),
-          values.where(entry.center, entry.normal, entry.axis, entry.radius,
-                       entry.radius_1, entry.radius_2, entry.width,
-                       entry.height, entry.corner_radius, entry.points)));
-    }
-  }
-  return curve;
-}
 
 constexpr int kPlacesOnCurve = 16;
 
@@ -157,9 +117,7 @@ void add_field(const Case& input, const FieldEntry& field,
 
 FilmSystem films_of(const Case& input, const CaseValues& values) {
   FilmSystem system;
-  for (const CurveEntry& curve : input.curves) {
-    system.curves.push_back(curve_of(input, curve, values));
-  }
+  system.curves = curves_of(input, values);
   for (const FilmEntry& film : input.films) {
     system.films.push_back(film.spec);
     FilmSpec& spec = system.films.back();
@@ -190,8 +148,8 @@ FilmSystem films_of(const Case& input, const CaseValues& values) {
   return system;
 }
 
-std::vector<std::string> curves_of(const Case& input,
-                                   const std::vector<std::string>& films) {
+std::vector<std::string> curves_under(const Case& input,
+                                      const std::vector<std::string>& films) {
   std::vector<std::string> curves;
   for (const FilmEntry& film : input.films) {
     if (std::find(films.begin(), films.end(), film.spec.name) != films.end()) {
@@ -214,7 +172,7 @@ void check_places(const Case& input, const EvaluatedCase& numbers,
   }
   for (std::size_t k = 0; k < input.walls.size(); ++k) {
     const WallSpec& wall = numbers.walls[k];
-    check_on_curves(input, numbers.film_system, curves_of(input, wall.films),
+    check_on_curves(input, numbers.film_system, curves_under(input, wall.films),
                     input.walls[k].thickness, wall.thickness, values);
   }
 }

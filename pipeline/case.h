@@ -11,12 +11,20 @@
 
 namespace meniscus {
 
+/// A file that a case names, kept so that the case can be read again without
+/// it.
+struct CaseFile {
+  std::string path;  // as the case names it
+  std::string text;  // its bytes
+};
+
 struct Case {
   std::string path;
   std::string name;  // the file's, or its folder's for case.toml
   std::string title;
   std::string text;                    // the file, word for word
   std::vector<std::string> overrides;  // as given, "name=value"
+  std::vector<CaseFile> files;         // that it names, in the order of use
   std::string hash;  // of all that evaluations depend on (docs/case-file.md)
   UnitSystem units;
   std::vector<DesignVariable> design;

@@ -131,6 +131,12 @@ void check_use(const Case& input, CaseProblems& problems) {
     }
   }
   for (const CurveEntry& curve : input.curves) {
+    if (curve.copy.of >= 0) {
+      used_curves.insert(
+          input.curves[static_cast<std::size_t>(curve.copy.of)].name);
+    }
+  }
+  for (const CurveEntry& curve : input.curves) {
     if (used_curves.count(curve.name) == 0) {
       problems.warn(curve.line, fmt::format("curve '{}' holds no film or solid",
                                             curve.name));

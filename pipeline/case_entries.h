@@ -50,14 +50,41 @@ struct Parameter {
   Quantity value;
 };
 
-enum class CurveKind { Circle, Ellipse, Rectangle, Polygon };
+enum class CurveKind {
+  Circle,
+  Ellipse,
+  Rectangle,
+  Polygon,
+  Spline,
+  Polyline,
+  Copy
+};
 
+/// A corner of a polyline, or what the arc between two corners goes through.
+struct PathPoint {
+  QuantityVector at;
+  bool through = false;
+};
+
+/// Another curve offset, scaled, mirrored, turned about `axis` and moved.
+struct CopyEntry {
+  int of = -1;  // index of a curve above
+  std::optional<Quantity> offset;
+  QuantityVector scale;
+  std::optional<QuantityVector> mirror;
+  Quantity angle;
+  QuantityVector about, move;
+};
+
+/// What the kind does not need is empty.
 struct CurveEntry {
   std::string name;
   CurveKind kind = CurveKind::Circle;
   QuantityVector center, normal, axis;
   Quantity radius, radius_1, radius_2, width, height, corner_radius;
-  std::vector<QuantityVector> points;
+  std::vector<PathPoint> points;   // of polygon, spline, polyline; or
+  std::vector<Vec3> fixed_points;  // of polygon and spline: from a file
+  CopyEntry copy;
   SourceLine line = 0;
 };
 

@@ -43,7 +43,11 @@ void read_content(const std::string& text, CaseProblems& problems,
         apply_overrides(root, result.overrides, problems);
     read_tables(root, overridden, problems, result);
     check_case(result, problems);
-    result.hash = content_hash(canonical_text(root));
+    std::string content = canonical_text(root);
+    for (const CaseFile& file : result.files) {
+      content += fmt::format("file {}:{}", file.text.size(), file.text);
+    }
+    result.hash = content_hash(content);
   } catch (const toml::parse_error& error) {
     problems.add(static_cast<int>(error.source().begin.line),
                  fmt::format("this is not TOML: {} (column {})",
@@ -54,8 +58,10 @@ void read_content(const std::string& text, CaseProblems& problems,
 }  // namespace
 
 CaseReading read_case_text(const std::string& text, const std::string& path,
-                           const std::vector<std::string>& overrides) {
+                           const std::vector<std::string>& overrides,
+                           std::vector<CaseFile> files) {
   Case result;
+  result.files = std::move(files);
   result.path = path;
   result.name = case_name(path);
   result.text = text;

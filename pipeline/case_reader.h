@@ -25,9 +25,11 @@ struct CaseReading {
 CaseReading read_case_file(const std::string& path,
                            const std::vector<std::string>& overrides = {});
 
-/// The same from text; `path` for messages.
+/// The same from text; `path` for messages. Files that the case names are taken
+/// from `files` where they are there, else from disk beside `path`.
 CaseReading read_case_text(const std::string& text, const std::string& path,
-                           const std::vector<std::string>& overrides = {});
+                           const std::vector<std::string>& overrides = {},
+                           std::vector<CaseFile> files = {});
 
 /// The case, or InvalidInput with all problems, one a line.
 Case read_case(const std::string& path,

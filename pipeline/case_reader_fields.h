@@ -32,6 +32,8 @@ struct CaseContext {
   // Per name: its value when no design variable moves it.
   std::vector<std::optional<double>> constants;
   bool bodies_good = false;  // nothing was wrong with them
+  // Of the copy of an entry with `repeat` that is being read: i, j, k.
+  std::vector<double> indices;
 
   SourceLine line_of(const toml::node& node) const;
 };
@@ -72,8 +74,12 @@ class CaseTable {
   std::optional<PlaceQuantity> place_quantity(const char* key) const;
   std::optional<double> constant(const char* key) const;
   std::vector<double> constants(const char* key) const;
+  /// One to three whole numbers above 0.
+  std::vector<int> counts(const char* key) const;
   std::optional<QuantityVector> vector(const char* key) const;
   std::vector<QuantityVector> vectors(const char* key) const;
+  /// The same, with points that arcs go through: { through = [x, y, z] }.
+  std::vector<PathPoint> path_points(const char* key) const;
   std::optional<Vec3> constant_vector(const char* key) const;
   std::optional<std::array<PlaceQuantity, 3>> place_vector(
       const char* key) const;

@@ -18,46 +18,6 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-struct CurveKeys {
-  CurveKind kind;
-  KindKeys keys;
-};
-
-const std::map<std::string, CurveKeys>& curve_kinds() {
-  static const std::map<std::string, CurveKeys> kinds = {
-      {"circle", {CurveKind::Circle, {{"center", "normal", "radius"}, {}}}},
-      {"ellipse",
-       {CurveKind::Ellipse,
-        {{"center", "normal", "axis", "radius_1", "radius_2"}, {}}}},
-      {"rectangle",
-       {CurveKind::Rectangle,
-        {{"center", "normal", "axis", "width", "height"}, {"corner_radius"}}}},
-      {"polygon", {CurveKind::Polygon, {{"points"}, {}}}}};
-  return kinds;
-}
-
-void read_curves(CaseContext& context, const toml::table& root, Case& result) {
-  for (const CaseTable& table : named_tables(context, root, "curves")) {
-    CurveEntry curve{.name = table.name(), .line = table.line()};
-    if (const auto kind = table.choice("kind")) {
-      const CurveKeys& keys = curve_kinds().at(*kind);
-      curve.kind = keys.kind;
-      table.check_kind(*kind, keys.keys);
-    }
-    curve.center = table.vector_or_zero("center");
-    curve.normal = table.vector_or_zero("normal");
-    curve.axis = table.vector_or_zero("axis");
-    curve.radius = table.quantity_or_zero("radius");
-    curve.radius_1 = table.quantity_or_zero("radius_1");
-    curve.radius_2 = table.quantity_or_zero("radius_2");
-    curve.width = table.quantity_or_zero("width");
-    curve.height = table.quantity_or_zero("height");
-    curve.corner_radius = table.quantity_or_zero("corner_radius");
-    curve.points = table.vectors("points");
-    result.curves.push_back(std::move(curve));
-  }
-}
-
 std::vector<std::string> curve_names(const Case& result) {
   std::vector<std::string> names;
   for (const CurveEntry& curve : result.curves) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/bound_text.h"
 #include "pipeline/case_reader_fields.h"
 
 namespace meniscus {
@@ -30,11 +31,19 @@ std::optional<Quantity> read_expression(CaseContext& context,
                                                   described(node), kQuantity));
     return std::nullopt;
   }
+  static const std::vector<std::string> indices = {"i", "j", "k"};
+  const std::string bound =
+      context.indices.empty()
+          ? text->get()
+          : with_values(text->get(),
+                        {indices.begin(),
+                         indices.begin() + std::ssize(context.indices)},
+                        context.indices);
   try {
     result.expression =
-        looks_like_quantity(text->get())
-            ? Expression(parse_quantity(text->get(), dimension, context.units))
-            : Expression::parse(text->get(), names);
+        looks_like_quantity(bound)
+            ? Expression(parse_quantity(bound, dimension, context.units))
+            : Expression::parse(bound, names);
     for (const int name : result.expression.names_used()) {
       if (static_cast<std::size_t>(name) < context.used.size()) {
         context.used[static_cast<std::size_t>(name)] = 1;

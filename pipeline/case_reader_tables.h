@@ -23,6 +23,9 @@ std::optional<CaseTable> single_table(CaseContext& context,
                                       const toml::table& root,
                                       const char* table);
 
+/// Curves, of which some may come from files.
+void read_curves(CaseContext& context, const toml::table& root, Case& result);
+
 /// Curves, films, solids, materials, bodies, in this order; sets bodies_good.
 void read_geometry(CaseContext& context, const toml::table& root, Case& result);
 

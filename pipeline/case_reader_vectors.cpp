@@ -8,6 +8,8 @@ namespace meniscus {
 
 namespace {
 
+constexpr std::int64_t kMostCount = 1000;
+
 const toml::array* triple(const toml::node& node) {
   const toml::array* array = node.as_array();
   return array != nullptr && array->size() == 3 ? array : nullptr;
@@ -76,6 +78,77 @@ std::vector<QuantityVector> CaseTable::vectors(const char* key) const {
               return read_quantity(*context_, item, dimension(key), path);
             })
             .value_or(QuantityVector{}));
+  }
+  return result;
+}
+
+std::vector<int> CaseTable::counts(const char* key) const {
+  std::vector<int> result;
+  if (!has(key)) {
+    return result;
+  }
+  const auto add = [&](const toml::node& item) {
+    const auto value = item.value_exact<std::int64_t>();
+    if (value && *value >= 1 && *value <= kMostCount) {
+      result.push_back(static_cast<int>(*value));
+    }
+  };
+  const toml::array* array = node(key)->as_array();
+  const std::size_t wanted = array == nullptr ? 1 : array->size();
+  if (array == nullptr) {
+    add(*node(key));
+  } else {
+    for (const toml::node& item : *array) {
+      add(item);
+    }
+  }
+  if (result.size() != wanted || wanted < 1 || wanted > 3) {
+    note(key, fmt::format("a whole number from 1 to {}, or two or three: "
+                          "[8, 4]",
+                          kMostCount));
+    result.clear();
+  }
+  return result;
+}
+
+std::vector<PathPoint> CaseTable::path_points(const char* key) const {
+  std::vector<PathPoint> result;
+  if (!has(key)) {
+    return result;
+  }
+  const auto coordinates = [](const toml::node& item) {
+    const toml::table* table = item.as_table();
+    const toml::node* through = table != nullptr && table->size() == 1
+                                    ? table->get("through")
+                                    : nullptr;
+    return table == nullptr     ? triple(item)
+           : through == nullptr ? nullptr
+                                : triple(*through);
+  };
+  const toml::array* array = node(key)->as_array();
+  if (array == nullptr || array->empty()) {
+    note(key, "points: [[x, y, z], [x, y, z], ...]");
+    return result;
+  }
+  for (std::size_t p = 0; p < array->size(); ++p) {
+    const toml::node& item = (*array)[p];
+    const std::string path = fmt::format("{}.{}[{}]", path_, key, p);
+    const toml::array* three = coordinates(item);
+    if (three == nullptr) {
+      context_->problems.add(
+          context_->line_of(item),
+          fmt::format("{} is {}; expected a point [x, y, z], or in a polyline "
+                      "{{ through = [x, y, z] }} for an arc",
+                      path, described(item)));
+      continue;
+    }
+    auto at = components(
+        *three, path, [&](const toml::node& part, const std::string& name) {
+          return read_quantity(*context_, part, dimension(key), name);
+        });
+    result.push_back(
+        {std::move(at).value_or(QuantityVector{}), item.is_table()});
+    result.back().at[0].line = context_->line_of(item);
   }
   return result;
 }

@@ -40,22 +40,54 @@ std::vector<TableSpec> make_tables() {
        N::Always,
        "A closed boundary curve that holds films; counter-clockwise seen from "
        "the tip of its normal",
-       {{"kind", K::Choice, D::None, true, "its shape",
-         "circle|ellipse|rectangle|polygon", "arc|polyline|spline|file|copy"},
+       {{"kind", K::Choice, D::None, true,
+         "its shape: circle, ellipse, rectangle; polygon: straight sides; "
+         "spline: smooth through points; polyline: straight sides and circular "
+         "arcs; file: points from a file; copy: another curve offset, scaled, "
+         "mirrored, turned, moved",
+         "circle|ellipse|rectangle|polygon|spline|polyline|file|copy", "arc"},
         {"center", K::Vector, D::Length, false,
          "of circle, ellipse, rectangle"},
         {"normal", K::Vector, D::None, false,
          "of circle, ellipse, rectangle; any length but 0"},
         {"axis", K::Vector, D::None, false,
-         "of ellipse, rectangle: direction of radius_1 or width"},
+         "of ellipse, rectangle: direction of radius_1 or width; of copy: what "
+         "it is turned about"},
         {"radius", K::Quantity, D::Length, false, "of circle"},
         {"radius_1", K::Quantity, D::Length, false, "of ellipse, along axis"},
         {"radius_2", K::Quantity, D::Length, false, "of ellipse, across axis"},
-        {"width", K::Quantity, D::Length, false, "of rectangle, along axis"},
-        {"height", K::Quantity, D::Length, false, "of rectangle, across axis"},
+        {"width", K::Quantity, D::Length, false, "of rectangle: along axis"},
+        {"height", K::Quantity, D::Length, false, "of rectangle: across it"},
         {"corner_radius", K::Quantity, D::Length, false,
          "of rectangle; 0 when left out"},
-        {"points", K::Vectors, D::Length, false, "of polygon, in order"}}},
+        {"points", K::Path, D::Length, false,
+         "of polygon, spline, polyline, in order; they close by themselves. In "
+         "a polyline { through = [x, y, z] } makes the side between its "
+         "neighbours an arc"},
+        {"file", K::Text, D::None, false,
+         "of file: a csv file with a head row x,y,z, units if it likes (x "
+         "[in]); relative to the case file"},
+        {"as", K::Choice, D::None, false,
+         "of file: what the points make; spline when left out",
+         "spline|polygon"},
+        {"of", K::Name, D::None, false, "of copy: a curve that stands above"},
+        {"offset", K::Quantity, D::Length, false,
+         "of copy: outwards in the curve's plane, below 0 inwards; corners "
+         "stay sharp, arcs concentric. Not of a copy"},
+        {"scale", K::Quantity, D::None, false, "of copy: a factor above 0, or"},
+        {"scales", K::Vector, D::None, false,
+         "of copy: factors along x, y, z, above 0"},
+        {"mirror", K::Vector, D::None, false,
+         "of copy: normal of the mirror plane; any length but 0"},
+        {"rotate", K::Quantity, D::None, false,
+         "of copy: angle in radians, right-handed about axis"},
+        {"about", K::Vector, D::Length, false,
+         "of copy: the point that scaling, mirror plane and axis go through; "
+         "the origin when left out"},
+        {"move", K::Vector, D::Length, false, "of copy: added at the end"},
+        {"repeat", K::Counts, D::None, false,
+         "makes so many curves NAME_1, NAME_2, ..., whose expressions know the "
+         "number as i; [N, M] makes NAME_1_1, ... with i and j. Not of file"}}},
       {"films",
        true,
        N::Always,
@@ -73,9 +105,7 @@ std::vector<TableSpec> make_tables() {
        N::Optional,
        "A solid surface, named so that loads find it",
        {{"kind", K::Choice, D::None, true,
-         "cap: flat disk across a planar "
-         "curve",
-         "cap", "plate|pad|faces|file"},
+         "cap: flat disk across a planar curve", "cap", "plate|pad|faces|file"},
         {"curve", K::Name, D::None, true, "the cap's rim"}}},
       {"bodies",
        true,

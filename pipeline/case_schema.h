@@ -17,12 +17,14 @@ enum class KeyType {
   Name,    // of something defined elsewhere in the file
   Names,   // array of names
   Integer,
+  Counts,          // one to three integers
   Flag,            // true or false
   Quantity,        // number, expression or "value unit"
   Constant,        // a quantity that no design variable moves
   Place,           // a quantity, or an expression that also knows x, y, z
   Vector,          // array of three quantities
   Vectors,         // array of arrays of three quantities
+  Path,            // the same, or { through = [x, y, z] } between two
   ConstantVector,  // array of three constants
   PlaceVector,     // array of three places
   Axes,            // two arrays of three constants

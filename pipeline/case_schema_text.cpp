@@ -23,6 +23,8 @@ const char* type_text(const KeySpec& key) {
       return "names";
     case K::Integer:
       return "integer";
+    case K::Counts:
+      return "integers";
     case K::Flag:
       return "true or false";
     case K::Quantity:
@@ -34,6 +36,7 @@ const char* type_text(const KeySpec& key) {
     case K::Vector:
       return "3 quantities";
     case K::Vectors:
+    case K::Path:
       return "points";
     case K::ConstantVector:
       return "3 constants";
@@ -63,12 +66,12 @@ const char* type_text(const KeySpec& key) {
 }
 
 const char* dimension_text(const KeySpec& key) {
-  const bool quantity = key.type != K::Text && key.type != K::Choice &&
-                        key.type != K::Name && key.type != K::Names &&
-                        key.type != K::Integer && key.type != K::Flag &&
-                        key.type != K::IntegerMap && key.type != K::Supports &&
-                        key.type != K::Loads && key.type != K::Zones &&
-                        key.type != K::Constraints && key.type != K::Members;
+  const bool quantity =
+      key.type != K::Text && key.type != K::Choice && key.type != K::Name &&
+      key.type != K::Names && key.type != K::Integer && key.type != K::Counts &&
+      key.type != K::Flag && key.type != K::IntegerMap &&
+      key.type != K::Supports && key.type != K::Loads && key.type != K::Zones &&
+      key.type != K::Constraints && key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -144,6 +147,10 @@ Json type_schema(const KeySpec& key) {
       return array(text, 1, 0);
     case K::Integer:
       return {{"type", "integer"}};
+    case K::Counts: {
+      const Json count = {{"type", "integer"}, {"minimum", 1}};
+      return {{"anyOf", {count, array(count, 1, 3)}}};
+    }
     case K::Flag:
       return {{"type", "boolean"}};
     case K::Quantity:
@@ -158,6 +165,14 @@ Json type_schema(const KeySpec& key) {
       return array(array(quantity, 3, 3), 2, 2);
     case K::Vectors:
       return array(array(quantity, 3, 3), 3, 0);
+    case K::Path: {
+      const Json point = array(quantity, 3, 3);
+      const Json arc = {{"type", "object"},
+                        {"properties", {{"through", point}}},
+                        {"required", {"through"}},
+                        {"additionalProperties", false}};
+      return array({{"anyOf", {point, arc}}}, 3, 0);
+    }
     case K::Bounds:
       return array(quantity, 2, 2);
     case K::Constants:

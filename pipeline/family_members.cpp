@@ -43,7 +43,8 @@ CaseReading read_family_member(const Case& family, const MemberEntry& member) {
                    member.overrides.end());
   // Last, so that a member is never a family itself.
   overrides.push_back(fmt::format("study.kind={}", name_of(family.study.kind)));
-  CaseReading reading = read_case_text(family.text, family.path, overrides);
+  CaseReading reading =
+      read_case_text(family.text, family.path, overrides, family.files);
   for (std::string& problem : reading.problems) {
     problem = placed(family, member, problem);
   }

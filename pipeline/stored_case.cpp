@@ -12,10 +12,13 @@
 namespace meniscus {
 
 std::string stored_case(const Case& input) {
-  return nlohmann::ordered_json{{"path", input.path},
-                                {"overrides", input.overrides},
-                                {"text", input.text}}
-      .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  nlohmann::ordered_json stored = {{"path", input.path},
+                                   {"overrides", input.overrides},
+                                   {"text", input.text}};
+  for (const CaseFile& file : input.files) {
+    stored["files"].push_back({{"path", file.path}, {"text", file.text}});
+  }
+  return stored.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 Case restore_case(const StudyMeta& meta) {
@@ -23,9 +26,15 @@ Case restore_case(const StudyMeta& meta) {
   if (!stored.is_object() || !stored.contains("text")) {
     throw IoError("the study holds no case that can be read; run it again");
   }
-  CaseReading reading =
-      read_case_text(stored["text"], stored["path"],
-                     stored["overrides"].get<std::vector<std::string>>());
+  std::vector<CaseFile> files;
+  if (stored.contains("files")) {
+    for (const auto& file : stored["files"]) {
+      files.push_back({file["path"], file["text"]});
+    }
+  }
+  CaseReading reading = read_case_text(
+      stored["text"], stored["path"],
+      stored["overrides"].get<std::vector<std::string>>(), std::move(files));
   if (!reading.input) {
     throw IoError("the study's case cannot be read by this version: " +
                   reading.problems.front());

@@ -1,9 +1,11 @@
 #include "evolve/curve.h"
 
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,8 +34,24 @@ std::vector<CurveShape> all_shapes() {
   ellipse.normal = Vec3(1, 2, 2);
   Rectangle sharp;
   sharp.width = 3.0;
-  return {Circle{Vec3(1, 2, 3), Vec3(0, -3, 1), 2.0}, ellipse, rounded(), sharp,
-          Polygon{{{0, 0, 0}, {4, 0, 0}, {4, 1, 0.5}, {0, 2, 0}}}};
+  const Polyline slot{
+      {{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}},
+      {std::nullopt, Vec3(3, 0, 0.2), std::nullopt, Vec3(-3, 0, 0)}};
+  CurveCopy copy{.of = std::make_shared<const Curve>("slot", slot),
+                 .offset = 0.3,
+                 .scale = Vec3(1, 2, 0.5),
+                 .mirror = Vec3(1, 1, 0),
+                 .angle = 0.7,
+                 .move = Vec3(1, 0, 0)};
+  return {
+      Circle{Vec3(1, 2, 3), Vec3(0, -3, 1), 2.0},
+      ellipse,
+      rounded(),
+      sharp,
+      Polygon{{{0, 0, 0}, {4, 0, 0}, {4, 1, 0.5}, {0, 2, 0}}},
+      Spline{{{2, 0, 0}, {0, 1, 0.3}, {-3, 0, 0}, {-2.5, -0.6, 0}, {0, -1, 0}}},
+      slot,
+      copy};
 }
 
 std::string refusal(const CurveShape& shape) {
@@ -207,6 +225,52 @@ TEST(Curve, RefusesWhatIsNoCurveAndSaysWhy) {
 }
 
 /// One of each kind, its numbers at `p`.
+CurveCopy copy_at(double p, CurveShape of, std::optional<double> offset) {
+  return {.of = std::make_shared<const Curve>("first", std::move(of)),
+          .offset = offset,
+          .scale = Vec3(1.0 + p, 2.0, 1.0 - p),
+          .mirror = Vec3(1.0, p, 0.5),
+          .angle = 0.3 + 2.0 * p,
+          .axis = Vec3(p, 1.0, 1.0),
+          .about = Vec3(0.1, -p, 0.0),
+          .move = Vec3(0.0, 0.4, 3.0 * p)};
+}
+
+CurveCopy copy_rate(CurveShape of, std::optional<double> offset) {
+  return {.of = std::make_shared<const Curve>("first", std::move(of)),
+          .offset = offset,
+          .scale = Vec3(1.0, 0.0, -1.0),
+          .mirror = Vec3(0.0, 1.0, 0.0),
+          .angle = 2.0,
+          .axis = Vec3(1.0, 0.0, 0.0),
+          .about = Vec3(0.0, -1.0, 0.0),
+          .move = Vec3(0.0, 0.0, 3.0)};
+}
+
+std::vector<CurveShape> shapes_at(double p);
+std::vector<CurveShape> shape_rates();
+
+/// Copies of all of them; but for the parametric one offset.
+std::vector<CurveShape> copies_at(double p) {
+  std::vector<CurveShape> result;
+  for (const CurveShape& shape : shapes_at(p)) {
+    const bool plain = std::holds_alternative<ParametricCurve>(shape);
+    result.emplace_back(
+        copy_at(p, shape, plain ? std::nullopt : std::optional(0.1 - 0.4 * p)));
+  }
+  return result;
+}
+
+std::vector<CurveShape> copy_rates() {
+  std::vector<CurveShape> result;
+  for (const CurveShape& shape : shape_rates()) {
+    const bool plain = std::holds_alternative<ParametricCurve>(shape);
+    result.emplace_back(
+        copy_rate(shape, plain ? std::nullopt : std::optional(-0.4)));
+  }
+  return result;
+}
+
 std::vector<CurveShape> shapes_at(double p) {
   const Vec3 center(0.3 + p, 0.2 - 2.0 * p, 0.5 * p);
   const Vec3 normal(0.2, 0.4 + p, 1.0 - 0.5 * p);
@@ -220,7 +284,11 @@ std::vector<CurveShape> shapes_at(double p) {
           round,
           Polygon{{center, axis, normal, Vec3(p, 2.0, -p)}},
           ParametricCurve{{Expression(p), Expression(2.0 * p),
-                           Expression::parse("t", {"t"})}}};
+                           Expression::parse("t", {"t"})}},
+          Spline{{center, Vec3(2.0, p, 0.0), Vec3(1.5, 2.0, p),
+                  Vec3(-1.0, 1.5 - p, 0.2)}},
+          Polyline{{center, Vec3(2.0, p, 0.0), Vec3(1.5, 2.0, p)},
+                   {std::nullopt, Vec3(2.5 + p, 1.0, 0.1), std::nullopt}}};
 }
 
 /// Their derivatives by p.
@@ -233,24 +301,36 @@ std::vector<CurveShape> shape_rates() {
           Rectangle{center, normal, axis, 1.0, -1.0, 0.0},
           Rectangle{center, normal, axis, 1.0, -1.0, 0.5},
           Polygon{{center, axis, normal, Vec3(1.0, 0.0, -1.0)}},
-          ParametricCurve{{Expression(1.0), Expression(2.0), Expression()}}};
+          ParametricCurve{{Expression(1.0), Expression(2.0), Expression()}},
+          Spline{{center, Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitY()}},
+          Polyline{{center, Vec3::UnitY(), Vec3::UnitZ()},
+                   {std::nullopt, Vec3::UnitX(), std::nullopt}}};
 }
 
-TEST(CurveRate, IsTheDifferenceOfPoints) {
+/// Central differences of points against the rates.
+void expect_rates(const std::function<std::vector<CurveShape>(double)>& at,
+                  const std::vector<CurveShape>& rates) {
   constexpr double kStep = 1e-5;
-  constexpr double kDifference = 1e-9;  // of central differences, relative
+  constexpr double kDifference = 1e-8;  // of central differences, relative
   constexpr double kAt = 0.1;
-  const std::vector<CurveShape> rates = shape_rates();
   for (std::size_t k = 0; k < rates.size(); ++k) {
     for (const double t : {0.0, 0.07, 0.3, 0.56, 0.93}) {
-      const Vec3 difference = (point_at(shapes_at(kAt + kStep)[k], t) -
-                               point_at(shapes_at(kAt - kStep)[k], t)) /
-                              (2.0 * kStep);
-      const Vec3 rate = point_rate(shapes_at(kAt)[k], rates[k], t);
+      const Vec3 difference =
+          (point_at(at(kAt + kStep)[k], t) - point_at(at(kAt - kStep)[k], t)) /
+          (2.0 * kStep);
+      const Vec3 rate = point_rate(at(kAt)[k], rates[k], t);
       EXPECT_LT((rate - difference).norm(), kDifference * difference.norm())
           << "shape " << k << " at " << t;
     }
   }
+}
+
+TEST(CurveRate, IsTheDifferenceOfPoints) {
+  expect_rates(shapes_at, shape_rates());
+}
+
+TEST(CurveRate, OfCopiesIsTheDifferenceOfPoints) {
+  expect_rates(copies_at, copy_rates());
 }
 
 TEST(CurveRate, RefusesAnotherKind) {

@@ -1,0 +1,122 @@
+#include "pipeline/case_curves.h"
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+Points points_of(const CurveEntry& entry, const CaseValues& values) {
+  Points points;
+  points.reserve(entry.points.size() + entry.fixed_points.size());
+  for (const PathPoint& point : entry.points) {
+    points.push_back(values.at(point.at));
+  }
+  for (const Vec3& point : entry.fixed_points) {
+    points.push_back(values.are_rates() ? Vec3(Vec3::Zero()) : point);
+  }
+  return points;
+}
+
+Polyline polyline_of(const CurveEntry& entry, const CaseValues& values) {
+  Polyline result;
+  for (const PathPoint& point : entry.points) {
+    if (point.through) {
+      result.via.back() = values.at(point.at);
+    } else {
+      result.corners.push_back(values.at(point.at));
+      result.via.emplace_back();
+    }
+  }
+  return result;
+}
+
+CurveCopy copy_of(const CurveEntry& entry, const std::vector<Curve>& above,
+                  const CaseValues& values) {
+  const CopyEntry& copy = entry.copy;
+  CurveCopy result;
+  result.of =
+      std::make_shared<const Curve>(above[static_cast<std::size_t>(copy.of)]);
+  if (copy.offset) {
+    result.offset = values.at(*copy.offset);
+  }
+  result.scale = values.at(copy.scale);
+  if (copy.mirror) {
+    result.mirror = values.at(*copy.mirror);
+  }
+  result.angle = values.at(copy.angle);
+  result.axis = values.at(entry.axis);
+  result.about = values.at(copy.about);
+  result.move = values.at(copy.move);
+  return result;
+}
+
+CurveShape shape_of(const CurveEntry& curve, const std::vector<Curve>& above,
+                    const CaseValues& values) {
+  switch (curve.kind) {
+    case CurveKind::Circle:
+      return Circle{values.at(curve.center), values.at(curve.normal),
+                    values.at(curve.radius)};
+    case CurveKind::Ellipse:
+      return Ellipse{values.at(curve.center), values.at(curve.normal),
+                     values.at(curve.axis), values.at(curve.radius_1),
+                     values.at(curve.radius_2)};
+    case CurveKind::Rectangle:
+      return Rectangle{values.at(curve.center), values.at(curve.normal),
+                       values.at(curve.axis),   values.at(curve.width),
+                       values.at(curve.height), values.at(curve.corner_radius)};
+    case CurveKind::Spline:
+      return Spline{points_of(curve, values)};
+    case CurveKind::Polyline:
+      return polyline_of(curve, values);
+    case CurveKind::Copy:
+      return copy_of(curve, above, values);
+    case CurveKind::Polygon:
+      break;
+  }
+  return Polygon{points_of(curve, values)};
+}
+
+/// The values of what a curve that is none is made of.
+std::string where(const CurveEntry& entry, const CaseValues& values) {
+  std::vector<QuantityVector> points;
+  points.reserve(entry.points.size());
+  for (const PathPoint& point : entry.points) {
+    points.push_back(point.at);
+  }
+  const CopyEntry& copy = entry.copy;
+  return values.where(entry.center, entry.normal, entry.axis, entry.radius,
+                      entry.radius_1, entry.radius_2, entry.width, entry.height,
+                      entry.corner_radius, points,
+                      copy.offset.value_or(Quantity{}), copy.scale,
+                      copy.mirror.value_or(QuantityVector{}), copy.angle,
+                      copy.about, copy.move);
+}
+
+}  // namespace
+
+std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
+  std::vector<Curve> result;
+  result.reserve(input.curves.size());
+  for (const CurveEntry& entry : input.curves) {
+    const std::size_t before = values.problems().size();
+    Curve curve{entry.name, shape_of(entry, result, values)};
+    if (!values.are_rates() && values.problems().size() == before) {
+      try {
+        validate(curve);
+      } catch (const InvalidInput& error) {
+        values.problems().push_back(
+            fmt::format("{}: {}{}", place(input, entry.line), error.what(),
+                        where(entry, values)));
+      }
+    }
+    result.push_back(std::move(curve));
+  }
+  return result;
+}
+
+}  // namespace meniscus
