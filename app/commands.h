@@ -23,8 +23,10 @@ struct RunArguments {
   CommonArguments common;
   bool resume = false;
   bool pictures = true;
-  int threads = 0;  // 0: OpenMP's own number
-  int jobs = 1;     // independent designs, or members of a family, side by side
+  bool frames = true;           // films of the design's history
+  bool frame_pictures = false;  // and a picture of each
+  int threads = 0;              // 0: OpenMP's own number
+  int jobs = 1;  // independent designs, or members of a family, side by side
   double time_limit = 0.0;  // [s], 0: none
 };
 
@@ -48,6 +50,7 @@ struct EvolveArguments {
   std::string method = "newton";   // "gradient", "conjugate_gradients"
   std::string macro;               // datafiles: run it; empty: our own route
   bool pop = false;                // datafiles: junctions of too many films
+  bool frames = false;             // cases: how the film settles
   bool pictures = true;
 };
 
@@ -55,6 +58,11 @@ struct CheckGradientArguments {
   std::string case_path;
   CommonArguments common;
   std::vector<std::string> at;  // "name=value" of design variables
+};
+
+struct WatchArguments {
+  std::string folder;  // of a run or a family
+  bool once = false;   // one look
 };
 
 int new_command(const std::string& name);
@@ -69,6 +77,8 @@ int evolve_command(const EvolveArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int study_show_command(const std::string& folder, const std::string& csv);
+/// Ends with the exit code of the run that it watches.
+int study_watch_command(const WatchArguments& arguments);
 
 /// Name and version of the program and of every library in it.
 std::string version_text();

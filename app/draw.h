@@ -23,4 +23,13 @@ std::vector<std::string> draw_film(const std::string& title,
                                    const std::filesystem::path& folder,
                                    Monitor& monitor);
 
+/// frames/film_NNNN.png, one of each frame that write_frames() left in
+/// `folder`, all from one fixed camera; `captions`: a line for each.
+std::vector<std::string> draw_frames(const std::string& title,
+                                     const std::vector<std::string>& solids,
+                                     const std::vector<FilmFrame>& frames,
+                                     const std::vector<std::string>& captions,
+                                     const std::filesystem::path& folder,
+                                     Monitor& monitor);
+
 }  // namespace meniscus

@@ -10,9 +10,12 @@
 #include "app/exit_code.h"
 #include "app/run_files.h"
 #include "app/signals.h"
+#include "app/study_events.h"
 #include "app/versions.h"
+#include "core/timer.h"
 #include "io/atomic_file.h"
 #include "pipeline/family.h"
+#include "pipeline/film_frames.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/walls.h"
 
@@ -74,23 +77,44 @@ int run_family_command(const Case& input,
     return kExitWrongInput;
   }
   std::mutex drawing;  // one private display at a time
+  const Timer timer;
+  const auto late = [&] {
+    return arguments.time_limit > 0.0 &&
+           timer.seconds() >= arguments.time_limit;
+  };
   try {
     FamilyResult result = run_family(
-        input,
-        {.folder = folder,
-         .program_version = kProgramVersion,
-         .resume = arguments.resume,
-         .jobs = arguments.jobs,
-         .threads = omp_get_max_threads(),
-         .time_limit = arguments.time_limit,
-         .monitor = &monitor,
-         .write_files = [&](const Case& member, const EvaluationFields& fields,
-                            const fs::path& place, RunResult& outcome) {
-           const std::lock_guard<std::mutex> guard(drawing);
-           write_run_files(member, fields, place, arguments, monitor, outcome);
-         }});
+        input, {.folder = folder,
+                .program_version = kProgramVersion,
+                .resume = arguments.resume,
+                .jobs = arguments.jobs,
+                .threads = omp_get_max_threads(),
+                .time_limit = arguments.time_limit,
+                .frames = arguments.frames ? kMostFrames : 0,
+                .listener =
+                    [&](const StudyNews& news) {
+                      monitor.tell(evaluation_event(input, news));
+                    },
+                .monitor = &monitor,
+                .write_files =
+                    [&](const Case& member, const EvaluationFields& fields,
+                        const fs::path& place, RunResult& outcome) {
+                      const std::lock_guard<std::mutex> guard(drawing);
+                      RunArguments chosen = arguments;
+                      chosen.time_limit = 0.0;  // of all members, kept here
+                      if (chosen.pictures && late()) {
+                        chosen.pictures = false;
+                        outcome.warnings.emplace_back(
+                            "the family's time limit left no time for "
+                            "pictures");
+                      }
+                      write_run_files(member, fields, place, chosen, monitor,
+                                      outcome);
+                    }});
     result.warnings.insert(result.warnings.begin(), warnings.begin(),
                            warnings.end());
+    monitor.tell(
+        end_event(result.status, result.message, result.total_seconds));
     explain(input, result, folder, arguments.common.quiet);
     return exit_code_of(result.status);
   } catch (const IoError& error) {

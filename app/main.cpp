@@ -98,6 +98,10 @@ int run_program(int argc, char** argv) {
                 "go on where an earlier run in the same folder ended");
   run->add_flag("!--no-pictures", run_arguments.pictures,
                 "leave the pictures out");
+  run->add_flag("!--no-frames", run_arguments.frames,
+                "leave out frames.pvd, the films of the design's history");
+  run->add_flag("--frame-pictures", run_arguments.frame_pictures,
+                "a picture of each of these films, from one fixed camera");
   run->add_option("--threads", run_arguments.threads,
                   "threads that a run may use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
@@ -158,6 +162,9 @@ int run_program(int argc, char** argv) {
       "--pop", evolve_arguments.pop,
       "datafiles: split junctions of more than three films, and settle again");
   pop->excludes(script);
+  evolve->add_flag("--frames", evolve_arguments.frames,
+                   "cases: write how the film settles, and pictures of it from "
+                   "one fixed camera");
   evolve->add_flag("!--no-pictures", evolve_arguments.pictures,
                    "leave the picture out");
   evolve->callback([&, script] {
@@ -213,6 +220,16 @@ int run_program(int argc, char** argv) {
   show->add_option("--csv", csv, "write the table as CSV into this file");
   show->callback([&] {
     command = [&] { return meniscus::study_show_command(folder, csv); };
+  });
+
+  meniscus::WatchArguments watch_arguments;
+  CLI::App* watch = study->add_subcommand(
+      "watch", "the figures of a running study, each second, until it ends");
+  watch->add_option("DIR", watch_arguments.folder, "results folder")
+      ->required();
+  watch->add_flag("--once", watch_arguments.once, "look once and end");
+  watch->callback([&] {
+    command = [&] { return meniscus::study_watch_command(watch_arguments); };
   });
 
   try {

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -13,8 +14,10 @@
 #include "io/vtk_files.h"
 #include "pipeline/datafile.h"
 #include "pipeline/family_table.h"
+#include "pipeline/film_frames.h"
 #include "pipeline/new_case.h"
 #include "pipeline/results.h"
+#include "pipeline/stored_case.h"
 #include "pipeline/study_table.h"
 #include "pipeline/walls.h"
 
@@ -146,6 +149,34 @@ int write_walls(const Case& input, const std::vector<CaseWall>& walls,
   return code;
 }
 
+/// frames.pvd with the film's way to rest, and pictures where they are wanted;
+/// returns warnings.
+std::vector<std::string> write_settling(const Case& input,
+                                        const EvaluatedCase& numbers,
+                                        const FilmModel& model,
+                                        const fs::path& folder,
+                                        const EvolveArguments& arguments,
+                                        Monitor& monitor) {
+  const std::vector<FilmFrame> frames =
+      settling_frames(numbers, model, monitor);
+  write_frames(input, frames, folder);
+  if (!arguments.pictures) {
+    return {};
+  }
+  std::vector<std::string> captions;
+  captions.reserve(frames.size());
+  for (const FilmFrame& frame : frames) {
+    captions.push_back(frame.kept == "flowing"
+                           ? fmt::format("step {}", frame.evaluation)
+                           : frame.kept);
+  }
+  std::vector<std::string> solids;
+  for (const CapSpec& cap : numbers.film_system.caps) {
+    solids.push_back(cap.name);
+  }
+  return draw_frames(input.title, solids, frames, captions, folder, monitor);
+}
+
 }  // namespace
 
 int evolve_command(const EvolveArguments& arguments) {
@@ -181,6 +212,9 @@ int evolve_command(const EvolveArguments& arguments) {
     }
     warn(draw_film(input.title, solids, folder, monitor));
   }
+  if (arguments.frames) {
+    warn(write_settling(input, numbers, model, folder, arguments, monitor));
+  }
   if (!common.quiet) {
     std::fputs(film_text(input, film.report).c_str(), stdout);
   }
@@ -191,6 +225,25 @@ int evolve_command(const EvolveArguments& arguments) {
   return write_walls(input, make_walls(numbers, model, film.points), folder,
                      common);
 }
+
+namespace {
+
+/// Of the responses of a study, by name; none where its case cannot be read.
+std::map<std::string, std::string> units_of(const StudyStore& store) {
+  std::map<std::string, std::string> units;
+  try {
+    const Case input = restore_case(store.meta());
+    for (std::size_t k = 0; k < input.responses.size(); ++k) {
+      units[input.responses[k].name] =
+          response_unit(input, static_cast<int>(k));
+    }
+  } catch (const Error&) {
+    units.clear();  // of another version: the table goes without
+  }
+  return units;
+}
+
+}  // namespace
 
 int study_show_command(const std::string& folder, const std::string& csv) {
   try {
@@ -207,7 +260,7 @@ int study_show_command(const std::string& folder, const std::string& csv) {
     const StudyStore store = StudyStore::read(folder);
     const std::vector<EvaluationRecord> records = store.all();
     if (csv.empty()) {
-      std::fputs(study_table_text(records).c_str(), stdout);
+      std::fputs(study_table_text(records, units_of(store)).c_str(), stdout);
     } else {
       write_file(csv, history_csv(records));
     }

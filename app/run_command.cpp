@@ -10,9 +10,11 @@
 #include "app/exit_code.h"
 #include "app/run_files.h"
 #include "app/signals.h"
+#include "app/study_events.h"
 #include "app/versions.h"
 #include "core/timer.h"
 #include "io/atomic_file.h"
+#include "pipeline/film_frames.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/results.h"
 #include "pipeline/stored_case.h"
@@ -33,6 +35,13 @@ StudyStore open_store(const Case& input, const std::string& folder,
                 : StudyStore::start(folder, meta);
 }
 
+TerminalMonitorOptions options_of(const Case& input,
+                                  const CommonArguments& common) {
+  TerminalMonitorOptions options = monitor_options(common);
+  options.outer_stage = outer_stage_of(input);
+  return options;
+}
+
 /// One run from the open study to the files.
 class Run {
  public:
@@ -42,7 +51,7 @@ class Run {
         store_(store),
         arguments_(arguments),
         folder_(std::move(folder)),
-        monitor_(monitor_options(arguments.common)) {}
+        monitor_(options_of(input, arguments.common)) {}
 
   int execute(const std::vector<std::string>& warnings);
 
@@ -65,6 +74,7 @@ void Run::write_all(RunResult& result, const EvaluationFields& fields) {
   result.output_seconds = timer.seconds();
   result.total_seconds += result.output_seconds;
   write_summary(input_, result, store_.all(), kProgramVersion, folder_);
+  monitor_.tell(end_event(result.status, result.message, result.total_seconds));
 }
 
 /// The state of a run that ended early, for people and for --resume.
@@ -74,6 +84,7 @@ int Run::keep(RunStatus status, const std::string& reason) {
   result.message =
       fmt::format("{}; {} finished evaluation{} kept, go on with --resume",
                   reason, store_.size(), store_.size() == 1 ? " is" : "s are");
+  monitor_.tell(end_event(status, result.message, result.total_seconds));
   std::fprintf(stderr, "%s: %s\n", name_of(status), result.message.c_str());
   write_summary(input_, result, store_.all(), kProgramVersion, folder_);
   return exit_code_of(status);
@@ -92,18 +103,26 @@ void Run::explain(const RunResult& result) const {
   std::printf("  results in %s\n", folder_.string().c_str());
   std::fflush(stdout);
   for (const std::string& warning : result.warnings) {
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (result.message.find(warning) == std::string::npos) {  // told already
+      std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    }
   }
 }
 
 int Run::execute(const std::vector<std::string>& warnings) {
   try {
     EvaluationFields fields;
-    RunResult result = run_study(input_, store_,
-                                 {.time_limit = arguments_.time_limit,
-                                  .jobs = arguments_.jobs,
-                                  .monitor = &monitor_},
-                                 &fields);
+    RunResult result =
+        run_study(input_, store_,
+                  {.time_limit = arguments_.time_limit,
+                   .frames = arguments_.frames ? kMostFrames : 0,
+                   .jobs = arguments_.jobs,
+                   .listener =
+                       [this](const StudyNews& news) {
+                         monitor_.tell(evaluation_event(input_, news));
+                       },
+                   .monitor = &monitor_},
+                  &fields);
     result.warnings.insert(result.warnings.begin(), warnings.begin(),
                            warnings.end());
     write_all(result, fields);
@@ -145,6 +164,7 @@ int run_command(const RunArguments& arguments) {
     // An older result must not stand beside a study that is not its own.
     fs::remove(folder / "result.json");
     fs::remove(folder / "family.csv");
+    remove_frames(folder);
   } catch (const IoError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;

@@ -1,24 +1,67 @@
 #include "app/run_files.h"
 
+#include <fmt/format.h>
+
 #include "app/draw.h"
 #include "app/exit_code.h"
+#include "core/timer.h"
+#include "pipeline/film_frames.h"
 #include "pipeline/results.h"
 
 namespace meniscus {
+
+namespace {
+
+void draw_all(const Case& input, const EvaluationFields& fields,
+              const std::filesystem::path& folder,
+              const RunArguments& arguments, Monitor& monitor,
+              RunResult& result) {
+  monitor.progress({.stage = "output", .detail = "drawing pictures"});
+  std::vector<std::string> warnings = draw(input, fields, folder, monitor);
+  if (arguments.frame_pictures && !fields.history.empty()) {
+    std::vector<std::string> captions;
+    captions.reserve(fields.history.size());
+    for (const FilmFrame& frame : fields.history) {
+      captions.push_back(frame_caption(input, frame));
+    }
+    std::vector<std::string> solids;
+    for (const CapSpec& cap : fields.inputs.film_system.caps) {
+      solids.push_back(cap.name);
+    }
+    for (std::string& warning : draw_frames(input.title, solids, fields.history,
+                                            captions, folder, monitor)) {
+      warnings.push_back(std::move(warning));
+    }
+  }
+  for (std::string& warning : warnings) {
+    result.warnings.push_back(std::move(warning));
+  }
+}
+
+}  // namespace
 
 void write_run_files(const Case& input, const EvaluationFields& fields,
                      const std::filesystem::path& folder,
                      const RunArguments& arguments, Monitor& monitor,
                      RunResult& result) {
+  const Timer timer;
   if (!fields.mesh.nodes.empty()) {
     monitor.progress({.stage = "output", .detail = "writing meshes"});
     write_meshes(input, fields, folder);
-    if (arguments.pictures) {
-      monitor.progress({.stage = "output", .detail = "drawing pictures"});
-      for (std::string& warning : draw(input, fields, folder, monitor)) {
-        result.warnings.push_back(std::move(warning));
-      }
+    write_frames(input, fields.history, folder);
+    const bool late = arguments.time_limit > 0.0 &&
+                      result.total_seconds >= arguments.time_limit;
+    if (arguments.pictures && late) {
+      result.warnings.push_back(
+          fmt::format("the time limit of {:g} s left no time for pictures",
+                      arguments.time_limit));
+    } else if (arguments.pictures) {
+      draw_all(input, fields, folder, arguments, monitor, result);
     }
+  }
+  if (result.best && !fields.mesh.nodes.empty()) {
+    result.output_seconds = timer.seconds();
+    result.ledger = make_ledger(input, result, fields, folder);
   }
   for (const std::string& name : write_unfilled(fields, folder)) {
     result.warnings.push_back("look at the surface in " + name);

@@ -1,21 +1,14 @@
 #include "app/terminal_monitor.h"
 
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <string_view>
-#include <system_error>
-#include <unistd.h>
 #include <utility>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sys/ioctl.h>
 
-#include "core/error.h"
+#include "app/terminal.h"
 
 namespace meniscus {
 namespace {
@@ -23,21 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kRedraw = 0.1;  // [s] between two drawings of the status line
-constexpr double kLines = 1.0;   // [s] between two lines of one stage
-constexpr int kColumns = 80;     // of a terminal that does not tell
-
-bool is_terminal(std::FILE* stream) {
-  const char* term = std::getenv("TERM");
-  return isatty(fileno(stream)) != 0 &&
-         (term == nullptr || std::string_view(term) != "dumb");
-}
-
-int columns_of(std::FILE* stream) {
-  winsize size{};
-  const bool told =
-      ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return told ? size.ws_col : kColumns;
-}
+constexpr double kLogged = 1.0;  // [s] between two of one stage in the log
+constexpr double kSilence = 10.0;  // [s] after which a pipe gets a sign of life
 
 const char* prefix(Severity severity) {
   switch (severity) {
@@ -90,37 +70,11 @@ std::string describe(const Progress& progress, double elapsed) {
   return text;
 }
 
-// At most `columns` characters of UTF-8 text, on one line.
-std::string fitted(const std::string& text, int columns) {
-  std::string line;
-  int used = 0;
-  for (const char c : text) {
-    const bool starts = (c & 0xc0) != 0x80;
-    if (starts && ++used > columns) {
-      break;
-    }
-    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    line += control ? ' ' : c;
-  }
-  return line;
-}
-
-std::string timestamp() {
-  const auto now = std::chrono::system_clock::now();
-  const auto milliseconds =
-      std::chrono::duration_cast<std::chrono::milliseconds>(
-          now.time_since_epoch())
-          .count();
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03d}Z",
-                     fmt::gmtime(std::chrono::system_clock::to_time_t(now)),
-                     milliseconds % 1000);
-}
-
 // True, and remembered, when the last time for `stage` is long enough ago.
 bool due(std::map<std::string, double>& last, const std::string& stage,
          double now) {
   const auto [entry, is_new] = last.try_emplace(stage, now);
-  if (!is_new && now - entry->second < kLines) {
+  if (!is_new && now - entry->second < kLogged) {
     return false;
   }
   entry->second = now;
@@ -136,31 +90,18 @@ TerminalMonitor::TerminalMonitor(TerminalMonitorOptions options)
                                                   : MonitorStyle::Lines;
   }
   if (!options_.log_file.empty()) {
-    log_ = std::fopen(options_.log_file.c_str(), "ae");
-    if (log_ == nullptr) {
-      throw IoError(fmt::format(
-          "log file '{}' cannot be written: {}; choose another with --log",
-          options_.log_file,
-          std::error_code(errno, std::generic_category()).message()));
-    }
+    log_ = std::make_unique<JsonLog>(options_.log_file);
   }
+  start_ = now();
+  line_ = start_;
 }
 
-TerminalMonitor::~TerminalMonitor() {
-  erase_status();
-  if (log_ != nullptr) {
-    std::fclose(log_);
-  }
-}
+TerminalMonitor::~TerminalMonitor() { erase_status(); }
 
 void TerminalMonitor::log(Severity severity, const std::string& message) {
   const std::lock_guard<std::mutex> guard(mutex_);
-  if (log_ != nullptr) {
-    const Json line = {{"time", timestamp()},
-                       {"severity", name_of(severity)},
-                       {"message", message}};
-    write_log(line.dump(-1, ' ', false, Json::error_handler_t::replace));
-  }
+  write_log(name_of(severity), now(),
+            {{"event", "message"}, {"stage", stage_}, {"message", message}});
   const Severity least =
       options_.style == MonitorStyle::Quiet ? Severity::Error : Severity::Info;
   if (severity >= least) {
@@ -168,28 +109,45 @@ void TerminalMonitor::log(Severity severity, const std::string& message) {
   }
 }
 
+void TerminalMonitor::tell(const MonitorEvent& event) {
+  const std::lock_guard<std::mutex> guard(mutex_);
+  write_log("info", now(), event.fields);
+  if (!event.status.empty()) {
+    outer_ = event.status;
+    events_ = true;
+  }
+  if (!event.line.empty() && options_.style != MonitorStyle::Quiet) {
+    print_line(event.line);
+  }
+}
+
 void TerminalMonitor::progress(const Progress& progress) {
   const std::lock_guard<std::mutex> guard(mutex_);
   const double time = now();
   if (log_ != nullptr && due(logged_, progress.stage, time)) {
-    const Json line = {{"time", timestamp()},
-                       {"stage", progress.stage},
-                       {"detail", progress.detail},
-                       {"fraction", progress.fraction}};
-    write_log(line.dump(-1, ' ', false, Json::error_handler_t::replace));
+    const bool known = progress.fraction >= 0.0 && progress.fraction <= 1.0;
+    write_log("info", time,
+              {{"event", "progress"},
+               {"stage", progress.stage},
+               {"detail", progress.detail},
+               {"fraction", known ? Json(progress.fraction) : Json()}});
+  }
+  if (progress.stage == options_.outer_stage) {
+    if (events_) {
+      return;  // an event told it, in more words
+    }
+    outer_ = describe(progress, 0.0);
   }
   if (progress.stage != stage_) {
     stage_ = progress.stage;
     began_ = time;
     drawn_ = -std::numeric_limits<double>::infinity();  // shows at once
   }
-  if (progress.stage == options_.outer_stage) {
-    outer_ = describe(progress, 0.0);
-  }
   if (options_.style == MonitorStyle::Terminal) {
     draw(progress, time);
   } else if (options_.style == MonitorStyle::Lines &&
-             due(printed_, progress.stage, time)) {
+             (stages_.insert(progress.stage).second ||
+              time - line_ >= kSilence)) {
     print_line(describe(progress, time - began_));
   }
 }
@@ -226,6 +184,7 @@ void TerminalMonitor::show_status() {
 }
 
 void TerminalMonitor::print_line(const std::string& line) {
+  line_ = now();
   const std::string status = status_;
   erase_status();
   std::fputs((line + '\n').c_str(), options_.stream);
@@ -236,16 +195,21 @@ void TerminalMonitor::print_line(const std::string& line) {
   }
 }
 
-void TerminalMonitor::write_log(const std::string& line) {
-  if (std::fputs((line + '\n').c_str(), log_) < 0 || std::fflush(log_) != 0) {
-    const int code = errno;
-    std::fclose(log_);
-    log_ = nullptr;
+void TerminalMonitor::write_log(const char* level, double now,
+                                const Json& fields) {
+  if (log_ == nullptr) {
+    return;
+  }
+  Json line = {{"level", level}, {"seconds", now - start_}};
+  line.update(fields);
+  if (!log_->write(line)) {
+    const std::string problem = log_->problem();
+    log_.reset();
     if (options_.style != MonitorStyle::Quiet) {
-      print_line(fmt::format(
-          "warning: log file '{}' ends here, it cannot be written: {}",
-          options_.log_file,
-          std::error_code(code, std::generic_category()).message()));
+      print_line(
+          fmt::format("warning: log file '{}' ends here, it cannot be written: "
+                      "{}",
+                      options_.log_file, problem));
     }
   }
 }

@@ -5,9 +5,14 @@
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
+#include "app/json_log.h"
 #include "core/monitor.h"
 
 namespace meniscus {
@@ -15,15 +20,16 @@ namespace meniscus {
 enum class MonitorStyle {
   Automatic,  // Terminal when the stream is one (and TERM is not "dumb")
   Terminal,   // one status line, redrawn in place, messages above it
-  Lines,      // plain lines, at most one per second and stage
+  Lines,      // plain lines: events, messages, the first of each stage, and
+              // a sign of life where nothing else is told for ten seconds
   Quiet       // errors only
 };
 
 struct TerminalMonitorOptions {
   MonitorStyle style = MonitorStyle::Automatic;
   std::FILE* stream = stderr;  // not owned
-  /// JSON lines, appended: {"time", "severity", "message"} or {"time",
-  /// "stage", "detail", "fraction"}; empty: none. Debug messages go here only.
+  /// JSON lines, appended (docs/results.md); empty: none. Debug messages go
+  /// here only.
   std::string log_file = {};
   /// The stage that runs others inside it: its last detail (evaluation, best
   /// so far) stays in the status line before theirs.
@@ -31,6 +37,14 @@ struct TerminalMonitorOptions {
   std::function<bool()> stop = {};     // what stop_requested() answers
   std::function<double()> clock = {};  // [s]; empty: the steady clock
   int columns = 0;                     // of the terminal; 0: asked of it
+};
+
+/// Something worth a line of its own: an evaluation, an end.
+struct MonitorEvent {
+  std::string line;    // for people; empty: for the log only
+  std::string status;  // stays in the status line before the stages' own;
+                       // the outer stage's progress is then not shown
+  nlohmann::ordered_json fields;  // for the log: "event", "stage", ...
 };
 
 /// May be called from several threads at once.
@@ -45,6 +59,7 @@ class TerminalMonitor : public Monitor {
 
   void log(Severity severity, const std::string& message) override;
   void progress(const Progress& progress) override;
+  void tell(const MonitorEvent& event);
   bool stop_requested() const override;
 
  private:
@@ -52,19 +67,23 @@ class TerminalMonitor : public Monitor {
   void erase_status();
   void show_status();
   void print_line(const std::string& line);
-  void write_log(const std::string& line);
+  void write_log(const char* level, double now,
+                 const nlohmann::ordered_json& fields);
   double now() const;
 
   TerminalMonitorOptions options_;
   std::mutex mutex_;
-  std::FILE* log_ = nullptr;
-  std::string outer_;   // last detail of the outer stage
-  std::string stage_;   // the one under way
-  double began_ = 0.0;  // when it began [s]
-  std::string status_;  // as drawn; empty: none on the screen
-  double drawn_ = 0.0;  // when [s]
-  std::map<std::string, double> printed_;  // last line per stage [s]
-  std::map<std::string, double> logged_;   // likewise in the log
+  std::unique_ptr<JsonLog> log_;
+  double start_ = 0.0;            // of the monitor [s]
+  std::string outer_;             // status of the last event or the outer stage
+  bool events_ = false;           // have set it
+  std::string stage_;             // the one under way
+  double began_ = 0.0;            // when it began [s]
+  std::string status_;            // as drawn; empty: none on the screen
+  double drawn_ = 0.0;            // when [s]
+  std::set<std::string> stages_;  // that have had a line
+  double line_ = 0.0;             // the last line of any kind [s]
+  std::map<std::string, double> logged_;  // last line per stage in the log [s]
 };
 
 }  // namespace meniscus

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/memory.h"
+#include "core/operation_count.h"
 
 namespace meniscus {
 
@@ -151,6 +152,8 @@ struct SymmetricFactor::Impl {
   cholmod_factor* factor = nullptr;
   int failed_column = -1;
   int negative_pivots = 0;
+  double factor_work = 0.0;  // operations of a factorisation
+  double factor_entries = 0.0;
 
   ~Impl() { cholmod_l_free_factor(&factor, &session.common); }
 };
@@ -180,6 +183,8 @@ SymmetricFactor::SymmetricFactor(const SparseMatrix& lower, FactorKind kind,
                     "(CHOLMOD status {}): not enough memory?",
                     lower.cols(), common.status));
   }
+  impl_->factor_work = common.fl;
+  impl_->factor_entries = common.lnz;
 }
 
 SymmetricFactor::~SymmetricFactor() = default;
@@ -199,6 +204,7 @@ bool SymmetricFactor::factorize(const SparseMatrix& lower) {
   impl_->failed_column = -1;
   impl_->negative_pivots = 0;
   cholmod_l_factorize(&view.sparse, &factor, &common);
+  count_operations(impl_->factor_work);
   if (common.status == CHOLMOD_OUT_OF_MEMORY ||
       common.status == CHOLMOD_TOO_LARGE) {
     throw SolverError(fmt::format(
@@ -237,6 +243,10 @@ Eigen::MatrixXd SymmetricFactor::solve(const Eigen::MatrixXd& right) const {
     throw SolverError(fmt::format(
         "solve: right side has {} rows, the factor {}", right.rows(), n));
   }
+  // Per entry of L below the diagonal four, per pivot two, of each column.
+  count_operations(
+      (4.0 * impl_->factor_entries - 2.0 * static_cast<double>(n)) *
+      static_cast<double>(right.cols()));
   Session session;  // own workspace: solve may run in several threads
   cholmod_dense b{};
   b.nrow = n;

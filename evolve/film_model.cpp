@@ -13,6 +13,7 @@
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
 #include "evolve/solid_facets.h"
+#include "evolve/start_edge.h"
 #include "evolve/tension_field.h"
 
 namespace meniscus {
@@ -22,8 +23,6 @@ namespace {
 /// Refinements whose vertices a meshed surface uses: a split facet's corners
 /// are of the first, its mid-sides of the second.
 constexpr int kMeshedLevels = 2;
-
-constexpr int kHalvings = 1;  // the start is this many times coarser
 
 /// Steps from the reference to a design: first in one, then in parts, which
 /// are fixed so that the film depends on the design alone.
@@ -192,10 +191,11 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   monitor.progress({"film", "building the start", 0.0});
-  complex = build_start(initial, options.edge * std::exp2(kHalvings));
+  complex = build_start(initial, start_edge(options.edge));
   monitor.progress({"film", "settling the raw start", 0.1});
   reference = find_equilibrium(
-      complex, {.edge = options.edge, .halvings = kHalvings, .settle = settle});
+      complex,
+      {.edge = options.edge, .halvings = kStartHalvings, .settle = settle});
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});

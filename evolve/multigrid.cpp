@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/operation_count.h"
+
 namespace meniscus {
 
 namespace {
@@ -356,6 +358,7 @@ VectorX FilmMultigrid::multiply(const VectorX& x) const {
   const Level& level = *levels_.back();
   const auto n = static_cast<int>(x.size());
   const double* diagonal = fine_values_.data() + level.column.size();
+  count_operations(n + 2.0 * static_cast<double>(level.column.size()));
   VectorX y(n);
   for (int i = 0; i < n; ++i) {
     double sum = diagonal[i] * x[i];
@@ -382,6 +385,9 @@ void FilmMultigrid::cycle(std::size_t l) const {
     return;
   }
   const Level& below = *levels_[l - 1];
+  // Two sweeps over all entries, the residual over half of them, two transfers.
+  count_operations(5.0 * static_cast<double>(level.column.size()) +
+                   4.0 * static_cast<double>(level.p_value.size()) + 2.0 * n);
   level.sweep_down(true);
   std::fill(below.right.begin(), below.right.end(), 0.0F);
   for (int i = 0; i < n; ++i) {

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/operation_count.h"
 #include "fea/block_kernels.h"
 #include "fea/element_stiffness.h"
 #include "fea/tet_element.h"
@@ -56,11 +57,33 @@ std::optional<int> first_bad(const ElementTable& table, const Points& x) {
   return std::nullopt;
 }
 
+/// The outer products of all elements and their blocks; gradients of the shape
+/// functions, a tenth of it, are not counted.
+template <int Nodes>
+double element_work(const ElementTable& table,
+                    const std::vector<ElasticLaw>& laws) {
+  constexpr double kRows = 3.0 * Nodes;
+  constexpr double kPoints = kTetPoints<Nodes>;
+  constexpr double kBlocks = Nodes * (Nodes + 1) / 2.0;
+  constexpr double kIsotropic = 37.0;
+  constexpr double kTensor = 9.0 * (2 * 9 + 1);
+  constexpr double kProducts = kRows * (kPoints + kRows * (2 * kPoints - 1));
+  double work = 0.0;
+  for (const int region : table.region) {
+    work +=
+        kProducts + kBlocks * (laws[static_cast<std::size_t>(region)].isotropic
+                                   ? kIsotropic
+                                   : kTensor);
+  }
+  return work;
+}
+
 template <int Nodes>
 std::optional<int> assemble_all(const ElementTable& table, const Points& x,
                                 const std::vector<ElasticLaw>& laws,
                                 BlockMatrix<double>& matrix) {
   const BlockPattern& p = table.pattern;
+  count_operations(element_work<Nodes>(table, laws));
   over_chunks(p.chunks, RowOrder::Forward, [&](int chunk) {
     const int low = p.chunks.first[chunk];
     const int high = p.chunks.first[chunk + 1];

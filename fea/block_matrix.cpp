@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/operation_count.h"
 #include "fea/block_kernels.h"
 
 namespace meniscus {
@@ -87,6 +88,9 @@ template <int B, int K, class Real>
 void multiply(const BlockPattern& pattern, const Real* diagonal,
               const Real* lower, const Real* x, Real* y) {
   constexpr std::ptrdiff_t kWidth = K * kLanes<B>;
+  // Each block below the diagonal serves twice.
+  count_operations(2.0 * B * B * K *
+                   (pattern.nodes + 2.0 * std::ssize(pattern.column)));
   over_chunks(pattern.chunks, RowOrder::Forward, [&](int chunk) {
     for (int i = pattern.chunks.first[chunk];
          i < pattern.chunks.first[chunk + 1]; ++i) {

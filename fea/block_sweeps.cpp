@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/operation_count.h"
 #include "fea/block_kernels.h"
 
 namespace meniscus {
@@ -66,12 +67,21 @@ inline void scatter_row(const SweepMatrix& matrix, int i, const float* x,
   }
 }
 
+/// Of a sweep: each block below the diagonal gathers and scatters; `terms`
+/// beside the sum are taken off the right-hand side.
+template <int B, int K>
+double sweep_work(const BlockPattern& pattern, int terms) {
+  return K * (4.0 * B * B * std::ssize(pattern.column) +
+              (2.0 * B * B + 1.0 * B * terms) * pattern.nodes);
+}
+
 }  // namespace
 
 template <int B, int K>
 void sweep_forward(const SweepMatrix& matrix, const float* r, float* x,
                    float* upper) {
   const RowChunks& chunks = matrix.pattern->chunks;
+  count_operations(sweep_work<B, K>(*matrix.pattern, 1));
   over_chunks(chunks, RowOrder::Forward, [&](int chunk) {
     for (int i = chunks.first[chunk]; i < chunks.first[chunk + 1]; ++i) {
       relax_row<B, K, false>(matrix, i, r, x, upper);
@@ -86,6 +96,7 @@ template <int B, int K>
 void sweep_backward(const SweepMatrix& matrix, const float* r, float* x,
                     float* upper) {
   const RowChunks& chunks = matrix.pattern->chunks;
+  count_operations(sweep_work<B, K>(*matrix.pattern, 2));
   over_chunks(chunks, RowOrder::Backward, [&](int chunk) {
     for (int i = chunks.first[chunk + 1] - 1; i >= chunks.first[chunk]; --i) {
       relax_row<B, K, true>(matrix, i, r, x, upper);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/operation_count.h"
 #include "fea/block_kernels.h"
 
 namespace meniscus {
@@ -20,6 +21,8 @@ using Sums = std::array<double, K>;
 
 /// Nodes whose products are summed in one piece, whatever the threads.
 constexpr int kPiece = 1024;
+/// Operations of a step on a node's vectors: two products, three sums.
+constexpr double kVectorWork = 5 * 2 * 3;
 
 template <int K>
 class Solver {
@@ -159,6 +162,7 @@ class Solver {
         lane(p_, i, k) = lane(z_, i, k) + beta[k] * lane(p_, i, k);
       }
     });
+    count_operations(kVectorWork * K * nodes_);
     multiply<3, K>(problem_.pattern, problem_.matrix, p_.data(), q_.data());
     const Sums<K> pq = dot(p_, q_);
     Sums<K> alpha{};

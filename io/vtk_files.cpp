@@ -95,6 +95,15 @@ void add_texts(vtkFieldData* data, const std::string& name,
   data->AddArray(array);
 }
 
+void add_numbers(vtkFieldData* data, const Field& field) {
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(field.name.c_str());
+  for (const double value : field.values) {
+    array->InsertNextValue(value);
+  }
+  data->AddArray(array);
+}
+
 void add_fields(vtkDataSet* data, const MeshFields& fields,
                 const fs::path& path) {
   for (const Field& field : fields.points) {
@@ -109,6 +118,12 @@ void add_fields(vtkDataSet* data, const MeshFields& fields,
   }
   for (const auto& [name, text] : fields.notes) {
     add_texts(data->GetFieldData(), name, {text});
+  }
+  for (const auto& [name, texts] : fields.lists) {
+    add_texts(data->GetFieldData(), name, texts);
+  }
+  for (const Field& field : fields.numbers) {
+    add_numbers(data->GetFieldData(), field);
   }
 }
 

@@ -28,6 +28,9 @@ struct MeshFields {
   std::vector<Field> cells;
   /// Name and text, stored as field data: title, length unit, provenance.
   std::vector<std::pair<std::string, std::string>> notes;
+  /// Field data too: names, one text each, and numbers (of one component).
+  std::vector<std::pair<std::string, std::vector<std::string>>> lists = {};
+  std::vector<Field> numbers = {};
 };
 
 /// Tetrahedra with the cell data `region`.

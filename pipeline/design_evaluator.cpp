@@ -31,7 +31,14 @@ DesignEvaluator::DesignEvaluator(const Case& input, StudyStore& store,
       monitor_(options_.monitor),
       model_(input,
              {.edge_factor = options_.edge_factor, .monitor = &monitor_}),
-      seconds_(model_.frozen().seconds) {}
+      seconds_(model_.frozen().seconds),
+      teller_(input, options_.model, options_.time_limit) {
+  if (options_.listener) {
+    for (const EvaluationRecord& record : store_.all()) {
+      teller_.remember(record);
+    }
+  }
+}
 
 EvaluationRecord DesignEvaluator::keep(const Evaluation& evaluation,
                                        const std::string& phase) {
@@ -43,7 +50,11 @@ EvaluationRecord DesignEvaluator::keep(const Evaluation& evaluation,
     record.mismatch = mismatch_(record.responses);
   }
   record.number = store_.append(record);
-  monitor_.log(Severity::Info, describe(input_, record));
+  if (options_.listener) {
+    options_.listener(teller_.tell(record));
+  } else {
+    monitor_.log(Severity::Info, describe(input_, record));
+  }
   return record;
 }
 

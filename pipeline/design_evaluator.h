@@ -10,6 +10,7 @@
 #include "optimize/problem.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/study_monitor.h"
+#include "pipeline/study_news.h"
 #include "pipeline/study_store.h"
 
 namespace meniscus {
@@ -23,8 +24,10 @@ struct DesignEvaluatorOptions {
                                 // at once, 1 to kMostJobs; no effect on what
                                 // is found. Each needs the memory of one
   // evaluation beside the model (docs/performance)
-  Monitor* monitor = nullptr;  // not owned, outlives this; for several jobs
-                               // it must bear calls from several threads
+  double time_limit = 0.0;      // what the listener's estimate counts to [s]
+  StudyListener listener = {};  // as in StudyOptions
+  Monitor* monitor = nullptr;   // not owned, outlives this; for several jobs
+                                // it must bear calls from several threads
 };
 
 /// What the study has asked for, found in the database or computed.
@@ -106,6 +109,7 @@ class DesignEvaluator {
   std::function<double(const VectorX&)> mismatch_;
   EvaluationCounts counts_;
   StageSeconds seconds_;
+  StudyTeller teller_;
   // What the last computed evaluation left, so that a gradient or the best
   // design's meshes need no second one when it came last.
   Evaluation last_;

@@ -16,6 +16,7 @@
 #include "optimize/family_tree.h"
 #include "pipeline/content_hash.h"
 #include "pipeline/family_members.h"
+#include "pipeline/film_frames.h"
 #include "pipeline/results.h"
 #include "pipeline/run_lock.h"
 #include "pipeline/stored_case.h"
@@ -99,6 +100,7 @@ class FamilyRun {
   Json study(std::size_t k, const std::optional<VectorX>& start);
   Json compute(const Case& member, const fs::path& folder, StudyStore& store,
                const StudyOptions& options);
+  StudyListener listener_of(std::size_t k) const;
   std::optional<VectorX> start_of(std::size_t k) const;
   Json passport(std::size_t k, const std::optional<VectorX>& start) const;
   void finish(std::size_t k, const Json& result);
@@ -205,6 +207,18 @@ Json FamilyRun::compute(const Case& member, const fs::path& folder,
   return result_json(member, result, options_.program_version);
 }
 
+/// The family's, told whose news it is.
+StudyListener FamilyRun::listener_of(std::size_t k) const {
+  if (!options_.listener) {
+    return {};
+  }
+  return [this, name = result_.rows[k].name](const StudyNews& news) {
+    StudyNews named = news;
+    named.member = name;
+    options_.listener(named);
+  };
+}
+
 /// The member's result, read or computed and written.
 Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
   const Case& member = members_[k];
@@ -222,12 +236,15 @@ Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
   StudyStore store = open_store(member, folder, options_);
   remove_leftovers(folder);
   fs::remove(folder / "result.json");
+  remove_frames(folder);
   MemberMonitor monitor(monitor_, result_.rows[k].name);
   const Timer timer;
   Json json = compute(
       member, folder, store,
       {.time_limit = limit_ > 0.0 ? std::max(time_left(), kLeastTime) : 0.0,
+       .frames = options_.frames,
        .start = start,
+       .listener = listener_of(k),
        .monitor = &monitor});
   json["member"] = own;
   write_file(folder / "result.json", json.dump(2) + "\n");

@@ -14,6 +14,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/adaptation.h"
 #include "pipeline/responses.h"
+#include "pipeline/stage_meter.h"
 #include "pipeline/walls.h"
 
 namespace meniscus {
@@ -82,7 +83,7 @@ struct ForwardModel::Impl {
 bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
                                      const ForwardModelOptions& options,
                                      Monitor& monitor) {
-  const Timer timer;
+  const StageMeter meter;
   monitor.progress({.stage = "film", .detail = "settling the start"});
   int refinements = input.resolution.refinements;
   if (input.analysis.adapt) {
@@ -94,13 +95,13 @@ bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
                                   .monitor = &monitor}));
   frozen.film = film->reference().report;
   frozen.failure = film->reference().failure;
-  frozen.seconds.film = timer.seconds();
+  meter.add_to(frozen.seconds.film, frozen.operations.film);
   return !frozen.failure;
 }
 
 bool ForwardModel::Impl::freeze_mesh(const TetrahedralizeOptions& options,
                                      Monitor& monitor) {
-  const Timer timer;
+  const StageMeter meter;
   monitor.progress({.stage = "mesh", .detail = "filling the surface"});
   const QuadraticSurface surface = film->surface(film->reference().points);
   Tetrahedralization filled = tetrahedralize(surface.base, options);
@@ -114,13 +115,13 @@ bool ForwardModel::Impl::freeze_mesh(const TetrahedralizeOptions& options,
     base_mesh = make_quadratic(filled.mesh, surface, &curve_edge);
     frozen.tet = figures(base_mesh, filled.quality);
   }
-  frozen.seconds.mesh += timer.seconds();
+  meter.add_to(frozen.seconds.mesh, frozen.operations.mesh);
   return !frozen.failure;
 }
 
 bool ForwardModel::Impl::freeze_elasticity(const EvaluatedCase& inputs,
                                            Monitor& monitor) {
-  const Timer timer;
+  const StageMeter meter;
   monitor.progress({.stage = "fea",
                     .detail = fmt::format("{} ten-node tetrahedra",
                                           base_mesh.element_count())});
@@ -136,7 +137,7 @@ bool ForwardModel::Impl::freeze_elasticity(const EvaluatedCase& inputs,
   } catch (const MeshError& error) {
     frozen.failure = Failure{FailureKind::ElementsInverted, error.what()};
   }
-  frozen.seconds.fea += timer.seconds();
+  meter.add_to(frozen.seconds.fea, frozen.operations.fea);
   return !frozen.failure;
 }
 
@@ -253,7 +254,7 @@ bool ForwardModel::Impl::place_nodes(const QuadraticSurface& surface,
 bool ForwardModel::Impl::solve(const TetMesh& mesh, const EvaluatedCase& inputs,
                                ElasticSolution& solution, ElasticState* keep,
                                Evaluation& result) const {
-  const Timer timer;
+  const StageMeter meter;
   try {
     solution =
         elasticity->solve(mesh, inputs.load_cases, inputs.materials, keep);
@@ -263,7 +264,7 @@ bool ForwardModel::Impl::solve(const TetMesh& mesh, const EvaluatedCase& inputs,
     return false;
   }
   result.fea = solution.report;
-  result.seconds.fea = timer.seconds();
+  meter.add_to(result.seconds.fea, result.operations.fea);
   result.failure = solution.failure;
   return !result.failure;
 }
@@ -302,6 +303,8 @@ const std::optional<Failure>& ForwardModel::failure() const {
 
 const Evaluation& ForwardModel::frozen() const { return impl_->frozen; }
 
+const FilmModel& ForwardModel::film() const { return *impl_->film; }
+
 const ElasticModel& ForwardModel::elasticity() const {
   return *impl_->elasticity;
 }
@@ -324,21 +327,21 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
     return result;
   }
 
-  Timer film_timer;
+  const StageMeter film_meter;
   FilmState film_state =
       impl_->film->settle(inputs.film_system, {.monitor = impl_->watcher});
   result.film = film_state.report;
-  result.seconds.film = film_timer.seconds();
+  film_meter.add_to(result.seconds.film, result.operations.film);
   if (film_state.failure) {
     result.failure = film_state.failure;
     return result;
   }
 
-  Timer mesh_timer;
+  const StageMeter mesh_meter;
   const QuadraticSurface surface = impl_->film->surface(film_state.points);
   TetMesh mesh = impl_->base_mesh;
   const bool placed = impl_->place_nodes(surface, mesh, result);
-  result.seconds.mesh = mesh_timer.seconds();
+  mesh_meter.add_to(result.seconds.mesh, result.operations.mesh);
   if (!placed) {
     return result;
   }

@@ -40,6 +40,14 @@ struct StageSeconds {
   }
 };
 
+/// Floating-point operations (core/operation_count.h); 0 where they are not
+/// counted: in other processes.
+struct StageOperations {
+  double film = 0.0;
+  double mesh = 0.0;
+  double fea = 0.0;
+};
+
 /// What one design came to. `responses` stand in the case's order and are
 /// empty when there is a failure; figures of the stages that ran are kept.
 struct Evaluation {
@@ -50,6 +58,7 @@ struct Evaluation {
   TetFigures tet;
   ElasticReport fea;
   StageSeconds seconds;
+  StageOperations operations;
 };
 
 /// A mode of vibration or buckling, 3 per node.
@@ -57,6 +66,15 @@ struct ModeShape {
   std::string name;   // "mode_1", "buckling_service_1"
   std::string value;  // for people
   VectorX shape;
+};
+
+/// The film of one design of a study's history, on the model's triangulation.
+struct FilmFrame {
+  int evaluation = 0;  // its number in the database
+  std::string kept;    // why it is among the kept: "start", "better", "best"
+  VectorX design;
+  VectorX responses;
+  SurfaceMesh surface;  // films and caps as meshed, without mid-sides
 };
 
 /// The fields behind an evaluation, for files and pictures.
@@ -69,6 +87,7 @@ struct EvaluationFields {
   ElasticSolution solution;
   std::vector<PartStress> stresses;  // per load case; found once, at the end
   std::vector<ModeShape> modes;      // that the case asks for; the same
+  std::vector<FilmFrame> history;    // of the study, by evaluation; the same
   EvaluatedCase inputs;
   Exclusion exclusion;  // the model's
 };
@@ -114,6 +133,10 @@ class ForwardModel {
 
   /// Figures of the freeze itself: its film report and seconds per stage.
   const Evaluation& frozen() const;
+
+  /// The film that evaluate() settles first: alone, settle() of a design's
+  /// film system costs a hundredth of an evaluation and has the same bits.
+  const FilmModel& film() const;
 
   /// The elasticity that evaluate() solves with.
   const ElasticModel& elasticity() const;

@@ -274,6 +274,9 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
   json["seconds"] = seconds_json(result.seconds);
   json["seconds"]["output"] = result.output_seconds;
   json["seconds"]["total"] = result.total_seconds;
+  if (result.ledger) {
+    json["ledger"] = ledger_json(*result.ledger);
+  }
   json["warnings"] = result.warnings;
   return json;
 }

@@ -162,6 +162,9 @@ std::string result_text(const Case& input, const RunResult& result) {
       result.evaluations, result.gradient_evaluations, result.total_seconds,
       result.seconds.film, result.seconds.mesh, result.seconds.fea,
       result.seconds.gradient);
+  if (result.ledger) {
+    text += ledger_text(*result.ledger, input.units.length);
+  }
   return text;
 }
 

@@ -81,6 +81,34 @@ bool take(int file) {
 
 }  // namespace
 
+std::optional<std::string> holder_of_run(const std::string& folder) {
+  std::error_code code;
+  const fs::path place = fs::canonical(folder, code);
+  if (code) {
+    return std::nullopt;
+  }
+  const std::string path = place.string() + "/.lock";
+  const std::lock_guard<std::mutex> guard(held_mutex);
+  if (held().count(path) != 0) {
+    return "this process";
+  }
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) {
+    return std::nullopt;
+  }
+  struct flock request {};
+  request.l_type = F_WRLCK;
+  request.l_whence = SEEK_SET;
+  const bool taken =
+      fcntl(file, F_GETLK, &request) == 0 && request.l_type != F_UNLCK;
+  std::optional<std::string> holder;
+  if (taken) {
+    holder = holder_of(file);
+  }
+  close(file);
+  return holder;
+}
+
 RunLock::RunLock(const std::string& folder)
     : path_(canonical_folder(folder) + "/.lock") {
   const std::lock_guard<std::mutex> guard(held_mutex);

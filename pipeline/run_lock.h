@@ -1,6 +1,7 @@
 /// One run at a time in a results folder.
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace meniscus {
@@ -27,5 +28,9 @@ class RunLock {
   std::string path_;  // canonical; empty: holds nothing
   int file_ = -1;
 };
+
+/// Who holds the folder, "process 12 on host"; none when no run is at work in
+/// it. Takes nothing and creates nothing.
+std::optional<std::string> holder_of_run(const std::string& folder);
 
 }  // namespace meniscus

@@ -9,9 +9,11 @@
 #include <fmt/format.h>
 
 #include "core/timer.h"
+#include "pipeline/film_frames.h"
 #include "pipeline/part_warnings.h"
 #include "pipeline/precision.h"
 #include "pipeline/results.h"
+#include "pipeline/study_monitor.h"
 #include "pipeline/study_stage.h"
 #include "pipeline/time_limit.h"
 
@@ -40,7 +42,8 @@ class StudyRun {
         options_(options),
         monitor_(options.monitor != nullptr ? *options.monitor
                                             : silent_monitor()),
-        limit_(smaller_limit(options.time_limit, input.study.time_limit)) {
+        limit_(smaller_limit(options.time_limit, input.study.time_limit)),
+        limited_(monitor_, limit_) {
     options_.time_limit = limit_;
   }
 
@@ -57,6 +60,9 @@ class StudyRun {
   void leave_stage();
   void conduct_study();
   bool finish_best();
+  template <class Work>
+  void in_time_left(const char* what, const Work& work);
+  void keep_history();
   void solve_eigenproblems();
   void estimate_element_errors_of_best();
   void estimate_errors();
@@ -68,8 +74,10 @@ class StudyRun {
   StudyStore& store_;
   StudyOptions options_;  // its start and time as stages leave them
   Monitor& monitor_;
+  double limit_;            // [s], 0: none
+  LimitedMonitor limited_;  // of what may be left out at the end
+  std::vector<std::string> left_out_;
   Timer timer_;
-  double limit_;                  // [s], 0: none
   std::unique_ptr<Case> frozen_;  // what the stage's model is frozen of, where
                                   // that is not the case's initial design
   std::unique_ptr<StudyStage> stage_;
@@ -112,6 +120,7 @@ bool StudyRun::begin() {
     result_.adaptation = *adaptation;
   }
   result_.start = stage_->start();
+  result_.frozen = model.frozen();
   if (stage_->failure()) {
     result_.status = RunStatus::Failed;
     result_.message = fmt::format("the initial design cannot be evaluated: {}",
@@ -226,15 +235,40 @@ bool StudyRun::finish_best() {
   for (std::string& warning : part_warnings(input_, fields_, result_.stress)) {
     result_.warnings.push_back(std::move(warning));
   }
-  solve_eigenproblems();
   return true;
+}
+
+/// What an answer can do without; told in the warnings where it is missing.
+template <class Work>
+void StudyRun::in_time_left(const char* what, const Work& work) {
+  bool done = false;
+  if (!limited_.late()) {
+    try {
+      work();
+      done = true;
+    } catch (const Interrupted&) {
+      if (monitor_.stop_requested()) {
+        throw;
+      }
+    }
+  }
+  if (!done) {
+    left_out_.emplace_back(what);
+  }
+}
+
+void StudyRun::keep_history() {
+  fields_.history =
+      film_frames(input_, stage_->evaluator().model(),
+                  kept_designs(input_, store_.all(), stage_->outcome().best,
+                               options_.frames),
+                  limited_);
 }
 
 void StudyRun::solve_eigenproblems() {
   monitor_.progress({.stage = "fea", .detail = "buckling, frequencies"});
-  result_.eigen =
-      eigen_figures(input_, fields_, stage_->evaluator().model().elasticity(),
-                    options_.monitor);
+  result_.eigen = eigen_figures(
+      input_, fields_, stage_->evaluator().model().elasticity(), &limited_);
   own_seconds_.fea += result_.eigen->seconds;
   fields_.modes = mode_shapes(input_, *result_.eigen);
   for (std::string& warning : buckling_warnings(*result_.eigen)) {
@@ -264,7 +298,7 @@ void StudyRun::estimate_errors() {
   try {
     const ForwardModel coarse(
         frozen_ ? *frozen_ : input_,
-        {.edge_factor = kCoarserEdges, .monitor = options_.monitor});
+        {.edge_factor = kCoarserEdges, .monitor = &limited_});
     own_seconds_ += coarse.frozen().seconds;
     const std::optional<Failure>& failure = coarse.failure();
     Evaluation there;
@@ -307,6 +341,11 @@ void StudyRun::combine_errors(const VectorX& coarse) {
 }
 
 void StudyRun::warn() {
+  if (!left_out_.empty()) {
+    result_.warnings.push_back(
+        fmt::format("the time limit of {:g} s left no time for: {}",
+                    limited_.limit(), fmt::join(left_out_, ", ")));
+  }
   const std::string note =
       precision_statement(input_, stage_->targets(), result_.best->responses,
                           result_.response_errors);
@@ -332,8 +371,14 @@ RunResult StudyRun::run() {
   start_coarse();
   if (begin()) {
     conduct_study();
-    if (finish_best() && options_.estimate_errors) {
-      estimate_errors();
+    if (finish_best()) {
+      in_time_left("buckling and frequencies", [&] { solve_eigenproblems(); });
+      if (options_.estimate_errors) {
+        in_time_left("estimates of the errors", [&] { estimate_errors(); });
+      }
+      if (options_.frames > 0) {
+        in_time_left("films of the history", [&] { keep_history(); });
+      }
     }
     warn();
   }

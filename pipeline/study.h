@@ -12,8 +12,10 @@
 #include "pipeline/element_errors.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/front_figures.h"
+#include "pipeline/ledger.h"
 #include "pipeline/refreeze.h"
 #include "pipeline/stress_figures.h"
+#include "pipeline/study_news.h"
 #include "pipeline/study_store.h"
 #include "pipeline/sweep_figures.h"
 #include "pipeline/tolerance_figures.h"
@@ -71,6 +73,8 @@ struct RunResult {
   int evaluations = 0;
   int failed_evaluations = 0;
   int gradient_evaluations = 0;
+  Evaluation frozen;             // the freeze of the case's own model
+  std::optional<Ledger> ledger;  // once its files are written
   StageSeconds seconds;  // summed over freeze, evaluations, error estimate
   double output_seconds = 0.0;
   double total_seconds = 0.0;
@@ -80,11 +84,14 @@ struct RunResult {
 struct StudyOptions {
   double time_limit = 0.0;      // [s], 0: none; the case may have its own
   bool estimate_errors = true;  // one more, coarser model
+  int frames = 0;  // at most so many films of the design's history; 0: none
   int jobs = 1;  // independent designs side by side; no effect on what is found
   /// Where the optimizer starts, within the bounds; the model freezes at the
   /// case's initial design all the same, and that is the start where this one
   /// cannot be evaluated. None: the initial design.
   std::optional<VectorX> start = {};
+  StudyListener listener = {};  // hears of every evaluation that is computed;
+                                // then the monitor is not told of it
   Monitor* monitor = nullptr;
 };
 

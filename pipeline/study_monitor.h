@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "core/monitor.h"
+#include "core/timer.h"
 
 namespace meniscus {
 
@@ -68,6 +69,30 @@ class StudyMonitor : public Monitor {
   std::atomic<bool> muted_ = false;
   std::atomic<bool> hurried_ = false;
   Clock::time_point deadline_;
+};
+
+/// Asks to stop when the time is up too: for work that can be left out. May be
+/// called from several threads if `user` may.
+class LimitedMonitor : public Monitor {
+ public:
+  /// `user` must outlive this; `limit` counts from now [s], 0: none.
+  LimitedMonitor(Monitor& user, double limit) : user_(user), limit_(limit) {}
+
+  void log(Severity severity, const std::string& message) override {
+    user_.log(severity, message);
+  }
+  void progress(const Progress& progress) override { user_.progress(progress); }
+  bool stop_requested() const override {
+    return user_.stop_requested() || late();
+  }
+
+  bool late() const { return limit_ > 0.0 && timer_.seconds() >= limit_; }
+  double limit() const { return limit_; }
+
+ private:
+  Monitor& user_;
+  double limit_;
+  Timer timer_;
 };
 
 }  // namespace meniscus

@@ -17,6 +17,8 @@ StudyStage::StudyStage(const Case& input, StudyStore& store,
                                         .edge_factor = model.edge_factor,
                                         .with_gradients = uses_gradients(input),
                                         .jobs = options.jobs,
+                                        .time_limit = options.time_limit,
+                                        .listener = options.listener,
                                         .monitor = options.monitor}) {
   if (evaluator_.model().failure()) {
     failure_ = evaluator_.model().failure();

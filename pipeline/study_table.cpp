@@ -81,9 +81,16 @@ std::string history_csv(const std::vector<EvaluationRecord>& records) {
   return csv_text(rows);
 }
 
-std::string study_table_text(const std::vector<EvaluationRecord>& records) {
-  const std::vector<Row> rows =
+std::string study_table_text(const std::vector<EvaluationRecord>& records,
+                             const std::map<std::string, std::string>& units) {
+  std::vector<Row> rows =
       table(records, [](double value) { return fmt::format("{:.6g}", value); });
+  for (std::string& name : rows.front()) {
+    const auto unit = units.find(name);
+    if (unit != units.end() && !unit->second.empty()) {
+      name += fmt::format(" [{}]", unit->second);
+    }
+  }
   std::string text = aligned_text(rows);
   for (const EvaluationRecord& record : records) {
     if (record.failure) {

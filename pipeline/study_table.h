@@ -1,6 +1,7 @@
 /// A study as text: the table of `study show` and history.csv.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,10 @@ namespace meniscus {
 /// whatever the locale; empty where there is none. Lines end with \n.
 std::string history_csv(const std::vector<EvaluationRecord>& records);
 
-/// Aligned columns for people, six digits; failures explained below.
-std::string study_table_text(const std::vector<EvaluationRecord>& records);
+/// Aligned columns for people, six digits; failures explained below. `units`,
+/// by name of a response, go into the head line.
+std::string study_table_text(
+    const std::vector<EvaluationRecord>& records,
+    const std::map<std::string, std::string>& units = {});
 
 }  // namespace meniscus

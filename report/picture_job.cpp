@@ -48,6 +48,10 @@ PictureJob to_job(const Json& json) {
     job.view = to_vector(json.at("view"));
   }
   job.facet_edges = json.value("facet_edges", false);
+  for (const Json& place : json.value("seen", Json::array())) {
+    job.seen.push_back(to_vector(place));
+  }
+  job.caption = json.value("caption", "");
   constexpr int kLeast = 200;
   constexpr int kMost = 8000;
   for (const int size : {job.width, job.height}) {
@@ -71,6 +75,10 @@ std::string to_json(const std::vector<PictureJob>& jobs) {
                        {"direction", to_json(load.direction)},
                        {"label", load.label}});
     }
+    Json seen = Json::array();
+    for (const Vec3& place : job.seen) {
+      seen.push_back(to_json(place));
+    }
     list.push_back({{"kind", kKinds.at(static_cast<std::size_t>(job.kind))},
                     {"output", job.output},
                     {"part", job.part},
@@ -83,7 +91,9 @@ std::string to_json(const std::vector<PictureJob>& jobs) {
                     {"solids", job.solids},
                     {"loads", loads},
                     {"view", to_json(job.view)},
-                    {"facet_edges", job.facet_edges}});
+                    {"facet_edges", job.facet_edges},
+                    {"seen", seen},
+                    {"caption", job.caption}});
   }
   // A path need not be UTF-8; such bytes are replaced, not thrown about.
   return list.dump(1, ' ', false, Json::error_handler_t::replace);

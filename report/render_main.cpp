@@ -53,6 +53,7 @@ void draw_one(const PictureJob& job) {
   } else {
     layout.model = {0.05, 0.05, 0.95, 0.87};
     draw_film(panel, job, load_surface(job.film));
+    line = job.caption;
   }
   panel.fit_camera(job.view, layout.model);
   panel.add_text(0.025, 1.0 - 2.2 * layout.text / job.height, job.title,

@@ -243,7 +243,18 @@ void Panel::add_label(const Vec3& at, const std::string& text,
   actor->SetInput(text.c_str());
   actor->SetPosition(at.x(), at.y(), at.z());
   set_text(actor->GetTextProperty(), style);
-  actor->GetTextProperty()->SetVerticalJustificationToCentered();
+  vtkTextProperty* property = actor->GetTextProperty();
+  switch (style.stand) {
+    case Stand::Below:
+      property->SetVerticalJustificationToTop();
+      break;
+    case Stand::Centred:
+      property->SetVerticalJustificationToCentered();
+      break;
+    case Stand::Above:
+      property->SetVerticalJustificationToBottom();
+      break;
+  }
   renderer_->AddActor(actor);
 }
 

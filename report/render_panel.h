@@ -23,12 +23,15 @@ struct Box {
 };
 
 enum class Justify { Left, Centre, Right };
+/// Where text stands to its position's height.
+enum class Stand { Below, Centred, Above };
 
 struct TextStyle {
   int size = 20;  // [pixel]
   Colour colour = {0.13, 0.16, 0.20};
   bool bold = false;
   Justify justify = Justify::Left;
+  Stand stand = Stand::Centred;  // of labels
 };
 
 struct SurfaceStyle {

@@ -140,6 +140,25 @@ void draw_supports(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
   }
 }
 
+/// A load's label grows away from its arrow, whichever way that points on the
+/// screen; `away`: from the arrow to the label.
+TextStyle beside_arrow(const Vec3& away, const Vec3& view, int text) {
+  constexpr double kSlanted = 0.35;
+  const Vec3 right = Vec3::UnitZ().cross(view).normalized();
+  const Vec3 up = view.cross(right).normalized();
+  const double x = away.dot(right);
+  const double y = away.dot(up);
+  return {.size = text,
+          .colour = kLoadColour,
+          .bold = true,
+          .justify = x > kSlanted    ? Justify::Left
+                     : x < -kSlanted ? Justify::Right
+                                     : Justify::Centre,
+          .stand = y > kSlanted    ? Stand::Above
+                   : y < -kSlanted ? Stand::Below
+                                   : Stand::Centred};
+}
+
 void draw_loads(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
                 double diagonal, int text) {
   double largest = 0.0;
@@ -166,11 +185,9 @@ void draw_loads(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
     if (!load.label.empty()) {
       const Vec3 at =
           presses ? Vec3(tail - 3 * gap * along) : Vec3(tip + 3 * gap * along);
-      panel.add_label(at, load.label,
-                      {.size = text,
-                       .colour = kLoadColour,
-                       .bold = true,
-                       .justify = Justify::Centre});
+      panel.add_label(
+          at, load.label,
+          beside_arrow(presses ? Vec3(-along) : along, job.view, text));
       const Vec3 aside = Vec3::UnitZ().cross(job.view).normalized();
       const Vec3 half(0, 0, 0.03 * diagonal);
       panel.show({at + half, at - half, at + 0.05 * diagonal * aside,
@@ -258,6 +275,7 @@ void draw_film(Panel& panel, const PictureJob& job,
   }
   panel.add_tubes(mesh.points, rim_edges(mesh), 0.0045 * diagonal, kRimColour);
   panel.show(mesh.points);
+  panel.show(job.seen);
 }
 
 void draw_cut_mesh(Panel& panel, const PictureJob& job,

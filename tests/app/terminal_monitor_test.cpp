@@ -44,15 +44,27 @@ class TerminalMonitorTest : public testing::Test {
   std::FILE* stream_;
 };
 
-TEST_F(TerminalMonitorTest, PipesGetOneLinePerSecondAndStage) {
+TEST_F(TerminalMonitorTest, PipesGetTheFirstLineOfAStageAndSignsOfLife) {
   TerminalMonitor monitor(options(MonitorStyle::Lines));
   for (int i = 0; i < 25; ++i) {
-    time_ = 100.0 + 0.1 * i;
+    time_ = 100.0 + i;
     monitor.progress({"film", "step " + std::to_string(i), -1.0});
     monitor.progress({"fea", "", -1.0});
   }
-  EXPECT_EQ(shown(),
-            "film: step 0\nfea\nfilm: step 10\nfea\nfilm: step 20\nfea\n");
+  EXPECT_EQ(shown(), "film: step 0\nfea\nfilm: step 10\nfilm: step 20\n");
+}
+
+TEST_F(TerminalMonitorTest, EventsTellMoreThanTheOuterStage) {
+  TerminalMonitor monitor(options(MonitorStyle::Terminal));
+  monitor.progress({"match", "before", -1.0});
+  monitor.tell({.line = "evaluation 1: good",
+                .status = "match: evaluation 1",
+                .fields = {}});
+  monitor.progress({"match", "the same in fewer words", -1.0});
+  monitor.progress({"fea", "step 3", -1.0});
+  EXPECT_THAT(shown(), HasSubstr("\r\x1b[Kevaluation 1: good\n"));
+  EXPECT_THAT(shown(), HasSubstr("match: evaluation 1 | fea: step 3"));
+  EXPECT_THAT(shown(), Not(HasSubstr("fewer words")));
 }
 
 TEST_F(TerminalMonitorTest, AutomaticStyleTakesAPipeForLines) {
@@ -124,6 +136,9 @@ TEST_F(TerminalMonitorTest, LogsJsonLines) {
     monitor.log(Severity::Debug, "a \"quoted\" detail");
     monitor.progress({"fea", "iteration 1", 0.5});
     monitor.progress({"fea", "iteration 2", 0.6});
+    monitor.tell({.line = {},
+                  .status = {},
+                  .fields = {{"event", "end"}, {"stage", "run"}}});
   }
   EXPECT_THAT(shown(), Not(HasSubstr("quoted")));
   std::ifstream file(path);
@@ -133,12 +148,30 @@ TEST_F(TerminalMonitorTest, LogsJsonLines) {
     lines.push_back(nlohmann::json::parse(line));
   }
   std::filesystem::remove(path);
-  ASSERT_EQ(lines.size(), 2U);
-  EXPECT_EQ(lines[0]["severity"], "debug");
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0]["level"], "debug");
   EXPECT_EQ(lines[0]["message"], "a \"quoted\" detail");
   EXPECT_EQ(lines[0]["time"].get<std::string>().size(), 24U);
   EXPECT_EQ(lines[1]["stage"], "fea");
   EXPECT_EQ(lines[1]["fraction"], 0.5);
+  EXPECT_EQ(lines[1]["event"], "progress");
+  EXPECT_EQ(lines[2]["event"], "end");
+  EXPECT_EQ(lines[2]["seconds"], 0.0);
+}
+
+TEST_F(TerminalMonitorTest, ALogThatAKillCutShortGoesOnInALineOfItsOwn) {
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("meniscus_log_" + std::to_string(std::rand()));
+  std::ofstream(path) << "{\"whole\": 1}\n{\"cut";
+  {
+    JsonLog log(path.string());
+    EXPECT_TRUE(log.write({{"event", "message"}}));
+  }
+  std::ifstream file(path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::filesystem::remove(path);
+  EXPECT_THAT(text, HasSubstr("{\"cut\n{\"time\""));
+  EXPECT_EQ(text.back(), '\n');
 }
 
 TEST_F(TerminalMonitorTest, ALogThatCannotBeOpenedIsRefused) {

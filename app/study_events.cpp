@@ -1,0 +1,141 @@
+#include "app/study_events.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/results.h"
+
+namespace meniscus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json value_map(const std::vector<std::string>& names, const VectorX& values) {
+  Json map = Json::object();
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    map[names[static_cast<std::size_t>(k)]] = values[k];
+  }
+  return map;
+}
+
+const char* stage_name(const Case& input) {
+  switch (input.study.kind) {
+    case StudyKind::Match:
+      return "match";
+    case StudyKind::Minimize:
+      return "minimize";
+    case StudyKind::Sweep:
+      return "sweep";
+    case StudyKind::Tolerance:
+      return "tolerance";
+    case StudyKind::Pareto:
+      return "pareto";
+    case StudyKind::Analyse:
+      break;
+  }
+  return "analyse";
+}
+
+Json best_json(const StudyNews& news) {
+  if (!news.best) {
+    return {};
+  }
+  return {{"evaluation", news.best->evaluation},
+          {"objective", or_null(news.best->objective)},
+          {"violation", or_null(news.best->violation)}};
+}
+
+Json evaluation_json(const Case& input, const StudyNews& news) {
+  const EvaluationRecord& record = *news.record;
+  double seconds = 0.0;
+  for (const auto& [stage, value] : record.seconds) {
+    seconds += value;
+  }
+  Json json = {{"event", "evaluation"}, {"stage", stage_name(input)}};
+  if (!news.member.empty()) {
+    json["member"] = news.member;
+  }
+  json["model"] = record.model;
+  json["phase"] = record.phase;
+  json["evaluation"] = record.number;
+  json["design"] = value_map(record.input_names, record.inputs);
+  json["responses"] = value_map(record.response_names, record.responses);
+  json["objective"] = or_null(news.standing.objective);
+  json["violation"] = or_null(news.standing.violation);
+  json["best"] = best_json(news);
+  json["evaluation_seconds"] = seconds;
+  json["evaluations"] = news.evaluations;
+  json["failed"] = news.failed;
+  json["planned"] = or_null(news.planned);
+  json["left"] = or_null(news.left);
+  json["failure"] = Json();
+  if (record.failure) {
+    json["failure"] = {{"kind", name_of(record.failure->kind)},
+                       {"message", record.failure->message}};
+  }
+  return json;
+}
+
+/// "minimize: evaluation 12 of at most 300, mass = 0.0123 t, violation 0.02,
+/// best so far mass = 0.012 t (evaluation 9), at most 3 min left".
+std::string status_text(const Case& input, const StudyNews& news) {
+  std::string text =
+      fmt::format("{}: evaluation {}", stage_name(input), news.evaluations);
+  if (news.planned && *news.planned > 1) {
+    text += fmt::format(" of at most {}", *news.planned);
+  }
+  if (news.standing.objective) {
+    text += fmt::format(
+        ", {} = {:.6g}{}{}", news.objective_name, *news.standing.objective,
+        news.objective_unit.empty() ? "" : " ", news.objective_unit);
+  }
+  const std::string standing = standing_text(news);
+  return standing.empty() ? text : text + ", " + standing;
+}
+
+}  // namespace
+
+MonitorEvent evaluation_event(const Case& input, const StudyNews& news) {
+  const std::string member =
+      news.member.empty() ? std::string() : news.member + ": ";
+  const std::string standing = standing_text(news);
+  return {.line = member + describe(input, *news.record) +
+                  (standing.empty() ? "" : "; " + standing),
+          // Members side by side have one line of status: the family's.
+          .status = member.empty() ? status_text(input, news) : std::string(),
+          .fields = evaluation_json(input, news)};
+}
+
+MonitorEvent end_event(RunStatus status, const std::string& message,
+                       double seconds) {
+  return {.line = {},
+          .status = {},
+          .fields = {{"event", "end"},
+                     {"stage", "run"},
+                     {"status", name_of(status)},
+                     {"message", message},
+                     {"total_seconds", seconds}}};
+}
+
+std::string outer_stage_of(const Case& input) {
+  switch (input.study.kind) {
+    case StudyKind::Minimize:
+    case StudyKind::Pareto:
+      return "minimize";
+    case StudyKind::Sweep:
+    case StudyKind::Tolerance:
+      return "study";
+    case StudyKind::Match:
+    case StudyKind::Analyse:
+      break;
+  }
+  return "match";
+}
+
+}  // namespace meniscus

@@ -1,0 +1,21 @@
+/// What a study tells, as lines for people and records for the log.
+#pragma once
+
+#include <string>
+
+#include "app/terminal_monitor.h"
+#include "pipeline/study.h"
+
+namespace meniscus {
+
+/// Of an evaluation that has ended.
+MonitorEvent evaluation_event(const Case& input, const StudyNews& news);
+
+/// Of a run, for the log only. `seconds`: it took.
+MonitorEvent end_event(RunStatus status, const std::string& message,
+                       double seconds);
+
+/// The stage whose progress the events of a study tell in more words.
+std::string outer_stage_of(const Case& input);
+
+}  // namespace meniscus

@@ -1,0 +1,18 @@
+/// Terminals and pipes.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace meniscus {
+
+/// A stream that understands cursor movements (TERM is not "dumb").
+bool is_terminal(std::FILE* stream);
+
+/// Its width; 80 of one that does not tell.
+int columns_of(std::FILE* stream);
+
+/// At most `columns` characters of UTF-8 text, on one line.
+std::string fitted(const std::string& text, int columns);
+
+}  // namespace meniscus

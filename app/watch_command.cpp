@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <sstream>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/exit_code.h"
+#include "app/run_files.h"
+#include "app/terminal.h"
+#include "core/error.h"
+#include "pipeline/study_watch.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr auto kRefresh = std::chrono::seconds(1);
+
+std::string head_of(const StudyGlance& glance) {
+  return fmt::format(
+      "{}{}\n", glance.title.empty() ? "" : glance.title + ": ",
+      glance.at_work ? "running (" + glance.holder + ")" : "no run is at work");
+}
+
+/// Draws over what it drew before.
+class Screen {
+ public:
+  void show(const std::string& text) {
+    if (lines_ > 0) {
+      std::printf("\x1b[%dA\x1b[J", lines_);
+    }
+    lines_ = 0;
+    std::istringstream rest(text);
+    for (std::string line; std::getline(rest, line); ++lines_) {
+      std::puts(fitted(line, columns_of(stdout) - 1).c_str());
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  int lines_ = 0;
+};
+
+int exit_code_of_status(const std::string& status) {
+  for (const RunStatus known :
+       {RunStatus::Converged, RunStatus::Infeasible, RunStatus::Stopped,
+        RunStatus::Failed, RunStatus::Error, RunStatus::Interrupted}) {
+    if (status == name_of(known)) {
+      return exit_code_of(known);
+    }
+  }
+  return kExitError;
+}
+
+int tell_end(const StudyGlance& glance) {
+  if (glance.status.empty()) {
+    std::printf(
+        "the run has ended without a result: it was killed or never began to "
+        "write one; go on with 'meniscus run CASE --resume'\n");
+  } else {
+    std::printf("%s: %s\n", glance.status.c_str(), glance.message.c_str());
+  }
+  std::fflush(stdout);
+  return exit_code_of_status(glance.status);
+}
+
+int watch(const WatchArguments& arguments) {
+  StudyWatch study(arguments.folder);
+  const bool redraws = is_terminal(stdout) && !arguments.once;
+  Screen screen;
+  bool first = true;
+  while (true) {
+    const StudyGlance glance = study.look();
+    if (redraws) {
+      screen.show(head_of(glance) + glance.text);
+    } else if (arguments.once) {
+      std::fputs((head_of(glance) + glance.text).c_str(), stdout);
+    } else {
+      if (first) {
+        std::fputs(head_of(glance).c_str(), stdout);
+      }
+      for (const std::string& line : glance.news) {
+        std::puts(line.c_str());
+      }
+    }
+    std::fflush(stdout);
+    first = false;
+    if (!glance.at_work) {
+      return tell_end(glance);
+    }
+    if (arguments.once) {
+      return kExitDone;
+    }
+    std::this_thread::sleep_for(kRefresh);
+  }
+}
+
+}  // namespace
+
+int study_watch_command(const WatchArguments& arguments) {
+  try {
+    return watch(arguments);
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+}
+
+}  // namespace meniscus

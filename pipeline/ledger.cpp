@@ -1,0 +1,215 @@
+#include "pipeline/ledger.h"
+
+#include <algorithm>
+#include <array>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "evolve/grooming.h"
+#include "evolve/start_edge.h"
+#include "pipeline/calculix_export.h"
+#include "pipeline/results.h"
+
+namespace meniscus {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double kPoint = sizeof(Vec3);
+constexpr double kFacet = sizeof(Triangle) + sizeof(int);  // and its label
+
+double area_of(const SurfaceMesh& mesh) {
+  double twice = 0.0;
+  for (const Triangle& t : mesh.facets) {
+    const Vec3& a = mesh.points[static_cast<std::size_t>(t[0])];
+    const Vec3& b = mesh.points[static_cast<std::size_t>(t[1])];
+    const Vec3& c = mesh.points[static_cast<std::size_t>(t[2])];
+    twice += (b - a).cross(c - a).norm();
+  }
+  return 0.5 * twice;
+}
+
+LedgerAmount amount_of(const SurfaceMesh& mesh) {
+  const auto facets = static_cast<double>(mesh.facets.size());
+  return {.elements = facets,
+          .area = area_of(mesh),
+          .bytes = kPoint * static_cast<double>(mesh.points.size()) +
+                   kFacet * facets};
+}
+
+/// With the mid-sides that make its facets curved.
+LedgerAmount amount_of(const QuadraticSurface& surface) {
+  LedgerAmount amount = amount_of(surface.base);
+  amount.bytes += kPoint * static_cast<double>(surface.mid.size());
+  return amount;
+}
+
+/// `area`: of the surface that it fills.
+LedgerAmount amount_of(const TetMesh& mesh, const std::optional<double>& area) {
+  return {.elements = static_cast<double>(mesh.element_count()),
+          .area = area,
+          .bytes = kPoint * static_cast<double>(mesh.nodes.size()) +
+                   sizeof(int) *
+                       static_cast<double>(
+                           mesh.elements.size() + mesh.element_region.size() +
+                           mesh.faces.size() + mesh.face_label.size())};
+}
+
+double bytes_of(const ElasticSolution& solution) {
+  double numbers = 0.0;
+  for (const auto* vectors : {&solution.displacements, &solution.reactions}) {
+    for (const VectorX& vector : *vectors) {
+      numbers += static_cast<double>(vector.size());
+    }
+  }
+  return sizeof(double) * numbers;
+}
+
+/// Of no work at all: it was done elsewhere, or by what does not count.
+std::optional<double> counted(double operations) {
+  return operations > 0.0 ? std::optional(operations) : std::nullopt;
+}
+
+SurfaceMesh start_surface(const EvaluationFields& fields) {
+  return build_start(fields.inputs.film_system,
+                     start_edge(fields.inputs.fea_edge))
+      .mesh;
+}
+
+/// The files of a run that hold the part, and the deck as it would be exported.
+std::vector<FileBytes> files_of(const Case& input,
+                                const EvaluationFields& fields,
+                                const fs::path& folder) {
+  std::vector<std::string> names = {"film.vtp", "part.vtu", "part_surface.vtp"};
+  if (input.resolution.export_edges.empty()) {
+    names.push_back(stl_name(input.resolution.film));
+  }
+  for (const double edge : input.resolution.export_edges) {
+    names.push_back(stl_name(edge));
+  }
+  std::vector<FileBytes> files;
+  for (const std::string& name : names) {
+    std::error_code code;
+    const auto bytes = fs::file_size(folder / name, code);
+    if (!code) {
+      files.push_back({name, static_cast<double>(bytes), true});
+    }
+  }
+  try {
+    const CalculixDeck deck =
+        calculix_deck_of(input, fields.inputs, fields.mesh);
+    files.push_back(
+        {fmt::format("part_{:g}.inp", input.resolution.fea),
+         static_cast<double>(calculix_deck(fields.mesh, deck).size()), false});
+  } catch (const InvalidInput&) {
+    // A case that no deck can say has none.
+  }
+  return files;
+}
+
+Json amount_json(const LedgerAmount& amount) {
+  return {{"elements", amount.elements},
+          {"area", amount.area ? Json(*amount.area) : Json()},
+          {"bytes", amount.bytes}};
+}
+
+std::string size_text(double bytes) {
+  constexpr std::array<const char*, 4> kUnits = {"byte", "kB", "MB", "GB"};
+  std::size_t unit = 0;
+  while (bytes >= 1000.0 && unit + 1 < kUnits.size()) {
+    bytes /= 1000.0;
+    ++unit;
+  }
+  return fmt::format("{:.3g} {}", bytes, kUnits[unit]);
+}
+
+}  // namespace
+
+Ledger make_ledger(const Case& input, const RunResult& result,
+                   const EvaluationFields& fields, const fs::path& folder) {
+  const Evaluation& best = *result.best;
+  const Evaluation& frozen = result.frozen;
+  Ledger ledger;
+  ledger.input_bytes = static_cast<double>(input.text.size());
+  ledger.files = files_of(input, fields, folder);
+  const LedgerAmount curves = {
+      .elements = static_cast<double>(input.curves.size()),
+      .area = {},
+      .bytes = ledger.input_bytes};
+  const LedgerAmount start = amount_of(start_surface(fields));
+  const LedgerAmount film = amount_of(fields.film);
+  const LedgerAmount surface = amount_of(fields.surface);
+  const LedgerAmount mesh = amount_of(fields.mesh, surface.area);
+  LedgerAmount solved = mesh;
+  solved.bytes = bytes_of(fields.solution);
+  LedgerAmount files = solved;
+  files.bytes = 0.0;
+  for (const FileBytes& file : ledger.files) {
+    files.bytes += file.written ? file.bytes : 0.0;
+  }
+  ledger.stages = {
+      {"start", curves, start, counted(frozen.operations.film),
+       frozen.seconds.film},
+      {"film", start, film, counted(best.operations.film), best.seconds.film},
+      {"surface", film, surface, {}, {}},
+      {"filling", surface, mesh, counted(frozen.operations.mesh),
+       frozen.seconds.mesh},
+      {"motion", mesh, mesh, counted(best.operations.mesh), best.seconds.mesh},
+      {"elasticity", mesh, solved, counted(best.operations.fea),
+       best.seconds.fea},
+      {"files", solved, files, {}, result.output_seconds}};
+  return ledger;
+}
+
+nlohmann::ordered_json ledger_json(const Ledger& ledger) {
+  Json stages = Json::array();
+  for (const LedgerStage& stage : ledger.stages) {
+    stages.push_back(
+        {{"name", stage.name},
+         {"before", amount_json(stage.before)},
+         {"after", amount_json(stage.after)},
+         {"operations", stage.operations ? Json(*stage.operations) : Json()},
+         {"seconds", stage.seconds ? Json(*stage.seconds) : Json()}});
+  }
+  Json files = Json::array();
+  for (const FileBytes& file : ledger.files) {
+    files.push_back({{"name", file.name},
+                     {"bytes", file.bytes},
+                     {"written", file.written}});
+  }
+  return {{"stages", stages},
+          {"input_bytes", ledger.input_bytes},
+          {"files", files}};
+}
+
+std::string ledger_text(const Ledger& ledger, const std::string& length_unit) {
+  std::string text;
+  for (const LedgerStage& stage : ledger.stages) {
+    if (stage.operations && stage.seconds && *stage.seconds > 0.0) {
+      text += fmt::format(
+          "  {:<12} {:.3g} -> {:.3g} elements, {:.3g} operations in {:.3g} s "
+          "({:.2g} a second)\n",
+          stage.name, stage.before.elements, stage.after.elements,
+          *stage.operations, *stage.seconds,
+          *stage.operations / *stage.seconds);
+    }
+  }
+  double bytes = 0.0;
+  for (const FileBytes& file : ledger.files) {
+    bytes += file.written ? file.bytes : 0.0;
+  }
+  const LedgerStage& first = ledger.stages.front();
+  text += fmt::format(
+      "  from {} of case, {:.0f} curves, to {} of files of a part of {:.4g} "
+      "{}2\n",
+      size_text(ledger.input_bytes), first.before.elements, size_text(bytes),
+      ledger.stages[1].after.area.value_or(0.0), length_unit);
+  return text;
+}
+
+}  // namespace meniscus
