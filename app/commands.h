@@ -23,8 +23,9 @@ struct RunArguments {
   CommonArguments common;
   bool resume = false;
   bool pictures = true;
-  int threads = 0;  // 0: OpenMP's own number
-  int jobs = 1;     // independent designs, or members of a family, side by side
+  bool report = true;  // report.html
+  int threads = 0;     // 0: OpenMP's own number
+  int jobs = 1;  // independent designs, or members of a family, side by side
   double time_limit = 0.0;  // [s], 0: none
 };
 
@@ -33,6 +34,11 @@ struct ExportArguments {
   std::string format;          // "stl", "inp", "vtu"
   std::optional<double> edge;  // [length]; the run's own when absent
   std::string out;             // file; empty: into the run's folder
+};
+
+struct ReportArguments {
+  std::string folder;  // of a run, a family or a comparison
+  bool pictures = true;
 };
 
 struct CompareArguments {
@@ -68,6 +74,7 @@ int run_family_command(const Case& input,
 int evolve_command(const EvolveArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
+int report_command(const ReportArguments& arguments);
 int study_show_command(const std::string& folder, const std::string& csv);
 
 /// Name and version of the program and of every library in it.
