@@ -16,7 +16,7 @@ std::string load_label(const Vec3& force, const std::string& unit) {
 
 }  // namespace
 
-std::vector<std::string> draw(const Case& input, const EvaluatedCase& numbers,
+std::vector<std::string> draw(const Case& input, const EvaluationFields& fields,
                               const std::filesystem::path& folder,
                               Monitor& monitor) {
   PictureJob job;
@@ -24,10 +24,10 @@ std::vector<std::string> draw(const Case& input, const EvaluatedCase& numbers,
   job.part_surface = (folder / "part_surface.vtp").string();
   job.film = (folder / "film.vtp").string();
   job.title = input.title;
-  for (const CapSpec& cap : numbers.film_system.caps) {
+  for (const CapSpec& cap : fields.inputs.film_system.caps) {
     job.solids.push_back(cap.name);
   }
-  const LoadCase& load_case = numbers.load_cases.front();
+  const LoadCase& load_case = fields.inputs.load_cases.front();
   for (const Support& support : load_case.supports) {
     job.supports.push_back(support.surface);
   }

@@ -12,7 +12,7 @@ namespace meniscus {
 
 /// film.png, part.png and overview.png from the mesh files in `folder`.
 /// Returns warnings for what could not be drawn.
-std::vector<std::string> draw(const Case& input, const EvaluatedCase& numbers,
+std::vector<std::string> draw(const Case& input, const EvaluationFields& fields,
                               const std::filesystem::path& folder,
                               Monitor& monitor);
 

@@ -8,6 +8,7 @@
 #include "app/terminal_monitor.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "pipeline/forward_model.h"
 #include "pipeline/stored_case.h"
 #include "report/report_page.h"
 
@@ -25,9 +26,9 @@ void draw_again(const fs::path& folder, Monitor& monitor) {
   }
   const StudyStore store = StudyStore::read(folder.string());
   const Case input = restore_case(store.meta());
-  const EvaluatedCase numbers =
-      evaluate(input, answer_of_run(input, store.all(), folder));
-  for (const std::string& warning : draw(input, numbers, folder, monitor)) {
+  EvaluationFields fields;
+  fields.inputs = evaluate(input, answer_of_run(input, store.all(), folder));
+  for (const std::string& warning : draw(input, fields, folder, monitor)) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
 }

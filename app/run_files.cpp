@@ -15,7 +15,7 @@ void write_run_files(const Case& input, const EvaluationFields& fields,
     write_meshes(input, fields, folder);
     if (arguments.pictures) {
       monitor.progress({.stage = "output", .detail = "drawing pictures"});
-      for (std::string& warning : draw(input, fields.inputs, folder, monitor)) {
+      for (std::string& warning : draw(input, fields, folder, monitor)) {
         result.warnings.push_back(std::move(warning));
       }
     }

@@ -103,7 +103,6 @@ function constraintChart(data: PageData, rows: HistoryRow[]): HTMLElement | null
     : chart("Constrained responses as parts of their bounds; at 1 (dashed) a bound is just met.", {
         x: axisX,
         y: { label: "\u2191 response / bound", tickFormat: tick },
-        color: { legend: true },
         symbol: { legend: true },
         marks: [Plot.ruleY([1], { strokeDasharray: "5 4" }), ...lineAndDots(found, true)],
       });
@@ -123,7 +122,6 @@ function responseCharts(data: PageData, rows: HistoryRow[]): HTMLElement[] {
         chart(`Responses ${what} per evaluation.`, {
           x: axisX,
           y: { label: `\u2191 ${names.length === 1 ? words(names[0]) : "response"} ${what}`, tickFormat: tick },
-          color: { legend: names.length > 1 },
           symbol: { legend: names.length > 1 },
           marks: lineAndDots(found, names.length > 1),
         }),
@@ -147,7 +145,6 @@ function designChart(data: PageData, rows: HistoryRow[]): HTMLElement | null {
     : chart("Design variables between their lower (0 %) and upper (100 %) bound.", {
         x: axisX,
         y: { label: "\u2191 place between the bounds [%]", domain: [0, 100] },
-        color: { legend: true },
         symbol: { legend: true },
         marks: lineAndDots(found, true),
       });

@@ -15,6 +15,68 @@ function cell(key: string, value: unknown): string {
   return Number.isInteger(value) ? count(value) : number(value);
 }
 
+interface Amount {
+  elements: number;
+  area: number | null;
+  bytes: number;
+}
+
+interface Stage {
+  name: string;
+  before: Amount;
+  after: Amount;
+  operations: number | null;
+  seconds: number | null;
+}
+
+interface FileSize {
+  name: string;
+  bytes: number;
+  written: boolean;
+}
+
+function change(before: string, after: string): string {
+  return before === after ? after : `${before} \u2192 ${after}`;
+}
+
+function stagesTable(stages: Stage[], length: string): HTMLElement {
+  const numeric = true;
+  const area = (a: Amount) => (a.area === null || a.area === undefined ? "\u2013" : number(a.area));
+  return table(
+    "One evaluation of the answer, and what was done once before it",
+    [
+      { head: "stage" },
+      { head: "curves, facets or elements", numeric },
+      { head: `area [${length}\u00b2]`, numeric },
+      { head: "size", numeric },
+      { head: "operations", numeric },
+      { head: "time", numeric },
+    ],
+    stages.map((s) => [
+      s.name,
+      change(count(s.before.elements), count(s.after.elements)),
+      change(area(s.before), area(s.after)),
+      change(bytes(s.before.bytes), bytes(s.after.bytes)),
+      number(s.operations, 3),
+      s.seconds === null ? "\u2013" : quantity(s.seconds, "s", 3),
+    ]),
+  );
+}
+
+function filesTable(files: FileSize[], input: number): HTMLElement {
+  const numeric = true;
+  return table(
+    `The same part as files, beside the case file of ${bytes(input)}`,
+    [{ head: "file" }, { head: "size", numeric }, { head: "times the case file", numeric }, { head: "" }],
+    files.map((f) => [
+      f.name,
+      bytes(f.bytes),
+      input > 0 ? `\u00d7 ${number(f.bytes / input, 3)}` : "\u2013",
+      f.written ? "" : "if exported",
+    ]),
+  );
+}
+
 type Entries = [string, unknown][];
 
 function isTable(value: unknown): value is Record<string, object> {
@@ -53,11 +115,17 @@ function named(list: unknown[]): Entries {
 }
 
 /** Every group of the ledger as a table, single figures together. */
-function ledgerTables(ledger: Record<string, unknown>): HTMLElement[] {
+function ledgerTables(ledger: Record<string, unknown>, length: string): HTMLElement[] {
   const tables: HTMLElement[] = [];
   const single: Entries = [];
   for (const [name, value] of Object.entries(ledger)) {
-    if (Array.isArray(value)) {
+    if (name === "stages" && Array.isArray(value) && value.every((s) => s.before && s.after)) {
+      tables.push(stagesTable(value as Stage[], length));
+    } else if (name === "files" && Array.isArray(value)) {
+      tables.push(filesTable(value as FileSize[], Number(ledger.input_bytes ?? 0)));
+    } else if (name === "input_bytes") {
+      continue; // stands above the files
+    } else if (Array.isArray(value)) {
       tables.push(rowsTable(words(name), named(value)));
     } else if (isTable(value)) {
       tables.push(rowsTable(words(name), Object.entries(value)));
@@ -108,7 +176,7 @@ export function ledgerSection(data: PageData): HTMLElement | null {
   if (Array.isArray(ledger)) {
     children.push(rowsTable("Stages", named(ledger)));
   } else if (typeof ledger === "object" && ledger !== null) {
-    children.push(...ledgerTables(ledger as Record<string, unknown>));
+    children.push(...ledgerTables(ledger as Record<string, unknown>, result.units.length));
   }
   return children.length > 0
     ? section("cost", "What it cost", h("div", { class: "columns" }, ...children))

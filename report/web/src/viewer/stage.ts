@@ -82,7 +82,7 @@ export class Stage {
       Math.max(1, this.canvas.clientHeight);
     const half = (0.5 * FIELD * Math.PI) / 180;
     const fit = Math.min(half, Math.atan(Math.tan(half) * aspect));
-    const distance = (0.95 * this.radius) / Math.sin(fit);
+    const distance = (0.86 * this.radius) / Math.sin(fit);
     this.camera.position
       .set(...from)
       .normalize()

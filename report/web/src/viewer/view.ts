@@ -16,7 +16,7 @@ const STEPS = 1000; // of a slider
 type Axis = "" | "x" | "y" | "z";
 const NORMALS: Record<Exclude<Axis, "">, [number, number, number]> = {
   x: [1, 0, 0],
-  y: [0, 1, 0],
+  y: [0, -1, 0], // the half nearer to the usual view goes
   z: [0, 0, 1],
 };
 
@@ -69,7 +69,7 @@ class View {
     );
     this.paneTitles();
     element.append(frameBox, this.panel());
-    this.fullRange();
+    this.usualRange();
     this.refresh();
     this.stage.look(VIEWS.Oblique);
     document.addEventListener("meniscus-look", () => this.stage.draw());
@@ -147,7 +147,7 @@ class View {
         id: "field",
         onchange: () => {
           this.field = this.infos.find((i) => i.key === select.value) ?? null;
-          this.fullRange();
+          this.usualRange();
           this.refresh();
         },
       },
@@ -199,7 +199,7 @@ class View {
             type: "button",
             id: "middle-range",
             title: "Leaves the outermost 1 % at either end out, such as peaks at clamps",
-            onclick: () => { this.setRange(middleRange(this.values())); this.refresh(); },
+            onclick: () => { this.usualRange(); this.refresh(); },
           },
           "Without peaks",
         ),
@@ -335,11 +335,13 @@ class View {
   }
 
   private fullRange(): void {
-    this.setRange(
-      this.field?.on === "film"
-        ? middleRange(this.values())
-        : rangeOf(this.values()),
-    );
+    this.setRange(rangeOf(this.values()));
+  }
+
+  /** What shows most: without the peaks of clamps and rims, from 0 on. */
+  private usualRange(): void {
+    const [low, high] = middleRange(this.values());
+    this.setRange([low >= 0 && low < 0.4 * high ? 0 : low, high]);
   }
 
   private setRange(range: [number, number]): void {
@@ -358,10 +360,10 @@ class View {
         pane.part.showEdges(this.edges);
       }
       if (normal && pane === this.model.panes[0]) {
-        const c = normal.indexOf(1);
+        const c = normal.findIndex((v) => v !== 0);
         const at = pane.box.low[c] + this.level * (pane.box.high[c] - pane.box.low[c]);
         const sign = this.flipped ? -1 : 1;
-        this.shared.plane.value.set(sign * normal[0], sign * normal[1], sign * normal[2], sign * at);
+        this.shared.plane.value.set(sign * normal[0], sign * normal[1], sign * normal[2], sign * normal[c] * at);
       }
       const plane = this.shared.plane.value;
       pane.part?.showSection(
@@ -392,8 +394,10 @@ class View {
     const strip = h("div", { class: "strip" });
     strip.style.background = mapGradient(this.map);
     const ticks = h("div", { class: "ticks" });
+    const [least, most] = rangeOf(this.values());
     for (let k = 0; k <= 4; ++k) {
-      ticks.append(h("span", {}, number(low + ((high - low) * k) / 4, 3)));
+      const beyond = k === 4 && most > high * (1 + 1e-4) ? "\u2265 " : k === 0 && least < low - 1e-4 * (high - low) ? "\u2264 " : "";
+      ticks.append(h("span", {}, beyond + number(low + ((high - low) * k) / 4, 3)));
     }
     const loadCase = this.model.panes[0]?.part?.mesh.loadCase;
     const of = this.field.on === "part" && loadCase ? `, load case \u201c${loadCase}\u201d` : "";
@@ -402,6 +406,7 @@ class View {
       h("div", {}, `${this.field.label} [${this.field.unit}]${of}`),
       strip,
       ticks,
+      h("div", { class: "soft" }, `found: ${number(least, 3)} to ${quantity(most, this.field.unit)}`),
     );
     const text = `${this.field.label} from ${quantity(low, this.field.unit)} to ${quantity(high, this.field.unit)}`;
     this.stage.canvas.setAttribute(
@@ -422,6 +427,11 @@ export function view3d(data: PageData, units: Units): HTMLElement {
   // Sizes must be known before the camera is set.
   requestAnimationFrame(() => {
     try {
+      const probe = document.createElement("canvas").getContext("webgl2");
+      if (probe === null) {
+        throw new Error("the browser offers no WebGL 2");
+      }
+      probe.getExtension("WEBGL_lose_context")?.loseContext();
       new View(data, units, canvas, element);
     } catch (error) {
       console.info(`No 3-D view: ${String(error)}`);
