@@ -25,6 +25,7 @@ struct RunArguments {
   bool pictures = true;
   bool frames = true;           // films of the design's history
   bool frame_pictures = false;  // and a picture of each
+  bool report = true;           // report.html
   int threads = 0;              // 0: OpenMP's own number
   int jobs = 1;  // independent designs, or members of a family, side by side
   double time_limit = 0.0;  // [s], 0: none
@@ -35,6 +36,11 @@ struct ExportArguments {
   std::string format;          // "stl", "inp", "vtu"
   std::optional<double> edge;  // [length]; the run's own when absent
   std::string out;             // file; empty: into the run's folder
+};
+
+struct ReportArguments {
+  std::string folder;  // of a run, a family or a comparison
+  bool pictures = true;
 };
 
 struct CompareArguments {
@@ -76,6 +82,7 @@ int run_family_command(const Case& input,
 int evolve_command(const EvolveArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
+int report_command(const ReportArguments& arguments);
 int study_show_command(const std::string& folder, const std::string& csv);
 /// Ends with the exit code of the run that it watches.
 int study_watch_command(const WatchArguments& arguments);

@@ -7,12 +7,14 @@
 
 #include "app/commands.h"
 #include "app/exit_code.h"
+#include "app/report_file.h"
 #include "app/signals.h"
 #include "app/terminal_monitor.h"
 #include "app/versions.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "pipeline/part_comparison.h"
+#include "pipeline/results.h"
 #include "pipeline/stl_part.h"
 #include "pipeline/text_table.h"
 
@@ -38,9 +40,17 @@ std::string for_people(std::vector<TextRow> table) {
   return aligned_text(table);
 }
 
+/// Its surface with stresses beside compare.json, for the report page.
+void keep_surface(const Case& input, const EvaluationFields& fields,
+                  const fs::path& folder, std::vector<PartFigures>& parts) {
+  parts.back().surface = fmt::format("part_{}.vtp", parts.size());
+  write_part_surface(folder / parts.back().surface, input, fields);
+}
+
 /// All runs, then the files, which take the first run's loads.
 std::vector<PartFigures> load_parts(const CompareArguments& arguments,
                                     Monitor& monitor, UnitSystem& units) {
+  const fs::path folder = arguments.out;
   std::vector<PartFigures> parts;
   if (is_stl(arguments.parts.front())) {
     throw InvalidInput(
@@ -49,11 +59,15 @@ std::vector<PartFigures> load_parts(const CompareArguments& arguments,
   }
   RunPart first = load_run_part(arguments.parts.front(), &monitor);
   units = first.input.units;
+  make_folder(folder);
   parts.push_back(first.figures);
+  keep_surface(first.input, first.fields, folder, parts);
   for (std::size_t k = 1; k < arguments.parts.size(); ++k) {
     const fs::path path = arguments.parts[k];
     if (is_stl(path)) {
-      parts.push_back(stl_part_figures(path, first, &monitor));
+      EvaluationFields fields;
+      parts.push_back(stl_part_figures(path, first, &monitor, &fields));
+      keep_surface(first.input, fields, folder, parts);
       continue;
     }
     const RunPart run = load_run_part(path, &monitor);
@@ -65,6 +79,7 @@ std::vector<PartFigures> load_parts(const CompareArguments& arguments,
           units.name));
     }
     parts.push_back(run.figures);
+    keep_surface(run.input, run.fields, folder, parts);
   }
   return parts;
 }
@@ -85,10 +100,10 @@ int compare_command(const CompareArguments& arguments) {
     if (!arguments.quiet) {
       std::fputs(for_people(table).c_str(), stdout);
     }
-    make_folder(folder);
     write_file(folder / "compare.csv", csv_text(table));
     write_file(folder / "compare.json",
                comparison_json(parts, units, kProgramVersion).dump(2) + "\n");
+    report_aloud(folder, {}, monitor);
     if (!arguments.quiet) {
       std::printf("written to %s\n", (folder / "compare.json").c_str());
     }

@@ -8,6 +8,7 @@
 #include "app/case_input.h"
 #include "app/commands.h"
 #include "app/exit_code.h"
+#include "app/report_file.h"
 #include "app/run_files.h"
 #include "app/signals.h"
 #include "app/study_events.h"
@@ -72,6 +73,7 @@ int run_family_command(const Case& input,
     refuse_walls(input);
     require_solver(input);
     make_folder(folder);
+    fs::remove(folder / "report.html");
   } catch (const IoError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
@@ -113,6 +115,12 @@ int run_family_command(const Case& input,
                     }});
     result.warnings.insert(result.warnings.begin(), warnings.begin(),
                            warnings.end());
+    for (const FamilyRow& row : result.rows) {
+      if (fs::exists(folder / row.folder / "result.json")) {
+        report_aloud(folder / row.folder, arguments, monitor);
+      }
+    }
+    report_aloud(folder, arguments, monitor);
     monitor.tell(
         end_event(result.status, result.message, result.total_seconds));
     explain(input, result, folder, arguments.common.quiet);

@@ -102,6 +102,7 @@ int run_program(int argc, char** argv) {
                 "leave out frames.pvd, the films of the design's history");
   run->add_flag("--frame-pictures", run_arguments.frame_pictures,
                 "a picture of each of these films, from one fixed camera");
+  run->add_flag("!--no-report", run_arguments.report, "leave report.html out");
   run->add_option("--threads", run_arguments.threads,
                   "threads that a run may use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
@@ -208,6 +209,19 @@ int run_program(int argc, char** argv) {
   compare->add_flag("--quiet", compare_arguments.quiet, "errors only");
   compare->callback([&] {
     command = [&] { return meniscus::compare_command(compare_arguments); };
+  });
+
+  meniscus::ReportArguments report_arguments;
+  CLI::App* report = app.add_subcommand(
+      "report", "make report.html and the pictures of a run again");
+  report
+      ->add_option("RUN", report_arguments.folder,
+                   "folder of a run, a family or a comparison")
+      ->required();
+  report->add_flag("!--no-pictures", report_arguments.pictures,
+                   "leave the pictures out");
+  report->callback([&] {
+    command = [&] { return meniscus::report_command(report_arguments); };
   });
 
   std::string folder;

@@ -8,6 +8,7 @@
 #include "app/case_input.h"
 #include "app/commands.h"
 #include "app/exit_code.h"
+#include "app/report_file.h"
 #include "app/run_files.h"
 #include "app/signals.h"
 #include "app/study_events.h"
@@ -87,6 +88,7 @@ int Run::keep(RunStatus status, const std::string& reason) {
   monitor_.tell(end_event(status, result.message, result.total_seconds));
   std::fprintf(stderr, "%s: %s\n", name_of(status), result.message.c_str());
   write_summary(input_, result, store_.all(), kProgramVersion, folder_);
+  report_aloud(folder_, arguments_, monitor_);
   return exit_code_of(status);
 }
 
@@ -126,6 +128,7 @@ int Run::execute(const std::vector<std::string>& warnings) {
     result.warnings.insert(result.warnings.begin(), warnings.begin(),
                            warnings.end());
     write_all(result, fields);
+    report_aloud(folder_, arguments_, monitor_);
     explain(result);
     return exit_code_of(result.status);
   } catch (const Interrupted&) {
@@ -165,6 +168,7 @@ int run_command(const RunArguments& arguments) {
     fs::remove(folder / "result.json");
     fs::remove(folder / "family.csv");
     remove_frames(folder);
+    fs::remove(folder / "report.html");
   } catch (const IoError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;

@@ -177,6 +177,9 @@ Json part_json(const PartFigures& part) {
   Json json = {{"name", part.name},         {"parts", part.parts},
                {"volume", part.volume},     {"mass", part.mass},
                {"elements", part.elements}, {"load_cases", Json::object()}};
+  if (!part.surface.empty()) {
+    json["surface"] = part.surface;
+  }
   for (const PartLoadFigures& f : part.load_cases) {
     Json entry = {{"stiffness", nullptr},
                   {"stiffness_per_mass", nullptr},

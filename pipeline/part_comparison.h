@@ -36,6 +36,7 @@ struct PartFigures {
   double mass = 0.0;
   int elements = 0;
   std::vector<PartLoadFigures> load_cases;
+  std::string surface;  // file beside compare.json with its fields, or empty
 };
 
 /// `fields` as evaluate() leaves them.

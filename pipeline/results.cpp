@@ -313,6 +313,11 @@ void write_part(const std::filesystem::path& file, const Case& input,
   write_vtu(file, fields.mesh, part_fields(input, fields));
 }
 
+void write_part_surface(const std::filesystem::path& file, const Case& input,
+                        const EvaluationFields& fields) {
+  write_boundary_vtp(file, fields.mesh, part_fields(input, fields));
+}
+
 std::vector<std::string> write_meshes(const Case& input,
                                       const EvaluationFields& fields,
                                       const std::filesystem::path& folder) {

@@ -50,6 +50,10 @@ void write_film(const Case& input, const SurfaceMesh& film,
 void write_part(const std::filesystem::path& file, const Case& input,
                 const EvaluationFields& fields);
 
+/// The boundary of the same, with its point data, as a .vtp file.
+void write_part_surface(const std::filesystem::path& file, const Case& input,
+                        const EvaluationFields& fields);
+
 /// film.vtp, part.vtu, part_surface.vtp and the STL files of a finished run.
 /// Returns the names written. Throws IoError.
 std::vector<std::string> write_meshes(const Case& input,

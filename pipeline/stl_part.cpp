@@ -145,7 +145,8 @@ SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
 }
 
 PartFigures stl_part_figures(const std::filesystem::path& path,
-                             const RunPart& run, Monitor* monitor) {
+                             const RunPart& run, Monitor* monitor,
+                             EvaluationFields* kept) {
   if (run.fields.inputs.materials.size() != 1) {
     throw InvalidInput(fmt::format(
         "{}: the run has {} bodies with materials; a part from a file is of "
@@ -170,7 +171,11 @@ PartFigures stl_part_figures(const std::filesystem::path& path,
   if (fields.solution.failure) {
     throw SolverError(path.string() + ": " + fields.solution.failure->message);
   }
-  return part_figures(path.string(), fields);
+  PartFigures figures = part_figures(path.string(), fields);
+  if (kept != nullptr) {
+    *kept = std::move(fields);
+  }
+  return figures;
 }
 
 }  // namespace meniscus

@@ -22,7 +22,9 @@ SurfaceMesh with_short_edges(SurfaceMesh surface, double longest);
 /// Throws InvalidInput (file, a surface that loads or supports name and the
 /// file does not have, a run of several materials), IoError, MeshError (no
 /// mesh), SolverError.
+/// `kept`, when given, receives the meshes and the solution.
 PartFigures stl_part_figures(const std::filesystem::path& path,
-                             const RunPart& run, Monitor* monitor);
+                             const RunPart& run, Monitor* monitor,
+                             EvaluationFields* kept = nullptr);
 
 }  // namespace meniscus

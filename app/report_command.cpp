@@ -1,0 +1,55 @@
+#include <cstdio>
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/draw.h"
+#include "app/exit_code.h"
+#include "app/signals.h"
+#include "app/terminal_monitor.h"
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "pipeline/forward_model.h"
+#include "pipeline/stored_case.h"
+#include "report/report_page.h"
+
+namespace meniscus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The pictures again, of the answer whose meshes stand in the folder.
+void draw_again(const fs::path& folder, Monitor& monitor) {
+  if (!fs::exists(folder / "part_surface.vtp") ||
+      !fs::exists(folder / "study.sqlite")) {
+    return;
+  }
+  const StudyStore store = StudyStore::read(folder.string());
+  const Case input = restore_case(store.meta());
+  EvaluationFields fields;
+  fields.inputs = evaluate(input, answer_of_run(input, store.all(), folder));
+  for (const std::string& warning : draw(input, fields, folder, monitor)) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+}
+
+}  // namespace
+
+int report_command(const ReportArguments& arguments) {
+  catch_stop_signals();
+  TerminalMonitor monitor({.stop = [] { return stop_signal() != 0; }});
+  const fs::path folder = arguments.folder;
+  try {
+    write_report(folder, {.versions = version_text()});
+    if (arguments.pictures) {
+      draw_again(folder, monitor);
+    }
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+  std::printf("%s\n", (folder / "report.html").c_str());
+  return kExitDone;
+}
+
+}  // namespace meniscus

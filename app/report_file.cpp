@@ -1,0 +1,23 @@
+#include "app/report_file.h"
+
+#include <cstdio>
+
+#include "core/error.h"
+#include "report/report_page.h"
+
+namespace meniscus {
+
+void report_aloud(const std::filesystem::path& folder,
+                  const RunArguments& arguments, Monitor& monitor) {
+  if (!arguments.report) {
+    return;
+  }
+  try {
+    monitor.progress({.stage = "output", .detail = "writing the report page"});
+    write_report(folder, {.versions = version_text()});
+  } catch (const Error& error) {
+    std::fprintf(stderr, "warning: no report page: %s\n", error.what());
+  }
+}
+
+}  // namespace meniscus

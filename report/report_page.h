@@ -1,0 +1,30 @@
+/// report.html: one file that shows a run, a family or a comparison in any
+/// browser, without a network. It is made of what stands in the folder alone
+/// (docs/report.md), so that it can be made again at any time.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace meniscus {
+
+/// Bytes that a page may have.
+inline constexpr double kMostPageBytes = 8e6;
+
+struct ReportOptions {
+  std::string versions;  // of the program and its libraries, for people
+};
+
+/// Whether this program holds the page: it does when npm built it.
+bool has_report_page();
+
+/// Writes FOLDER/report.html from FOLDER/result.json (a run or a family) or
+/// FOLDER/compare.json, and from the meshes, the study and the list of frames
+/// beside it as far as they are there. Meshes are thinned out until the page is
+/// below kMostPageBytes, and the page says so. Throws InvalidInput, naming the
+/// file, when the folder holds no results or damaged ones; IoError when the
+/// page cannot be written. Nothing is left half-written then.
+void write_report(const std::filesystem::path& folder,
+                  const ReportOptions& options = {});
+
+}  // namespace meniscus

@@ -1,0 +1,205 @@
+import * as Plot from "@observablehq/plot";
+import { chart, row, tick } from "./charts";
+import type { PageData } from "./data";
+import { h, section, table } from "./dom";
+import { number, plusMinus, quantity, words } from "./format";
+import { historyOf } from "./history";
+
+function unitOf(data: PageData, response: string): string {
+  return data.case?.responses.find((r) => r.name === response)?.unit ?? "";
+}
+
+function label(name: string, unit: string): string {
+  return unit ? `${words(name)} [${unit}]` : words(name);
+}
+
+/** A sweep: every response over every design variable. */
+export function sweepSection(data: PageData): HTMLElement | null {
+  const sweep = data.result?.sweep;
+  if (!sweep) {
+    return null;
+  }
+  const rows = historyOf(data).filter((r) => r.status === "ok");
+  const charts: HTMLElement[] = [];
+  for (const response of Object.keys(sweep.responses)) {
+    for (const design of data.case?.design ?? []) {
+      const found = rows.flatMap((r) => {
+        const x = r.values[design.name];
+        const y = r.values[response];
+        return typeof x === "number" && typeof y === "number" ? [{ x, y }] : [];
+      });
+      const unit = unitOf(data, response);
+      charts.push(
+        chart(`${label(response, unit)} over ${words(design.name)}, ${found.length} designs.`, {
+          x: { label: `${words(design.name)} \u2192`, tickFormat: tick },
+          y: { label: `\u2191 ${label(response, unit)}`, tickFormat: tick },
+          marks: [Plot.dot(found, { x: "x", y: "y", stroke: "#0072b2", r: 3.2 })],
+        }),
+      );
+    }
+  }
+  const numeric = true;
+  return section(
+    "sweep",
+    "The sweep",
+    h("p", {}, `${sweep.looked_at} of ${sweep.designs} designs looked at, ${sweep.failed} could not be evaluated.`),
+    table(
+      "Responses over all designs",
+      [{ head: "response" }, { head: "least", numeric }, { head: "mean", numeric }, { head: "largest", numeric }],
+      Object.entries(sweep.responses).map(([name, s]) => {
+        const unit = unitOf(data, name);
+        return [words(name), quantity(s.least, unit), quantity(s.mean, unit), quantity(s.largest, unit)];
+      }),
+    ),
+    row(...charts.slice(0, 24)),
+  );
+}
+
+/** Compromises of two responses. */
+export function frontSection(data: PageData): HTMLElement | null {
+  const front = data.result?.front;
+  if (!front) {
+    return null;
+  }
+  const [first, second] = front.objectives;
+  const found = front.points.flatMap((p) => {
+    const x = p[first];
+    const y = p[second];
+    return typeof x === "number" && typeof y === "number" ? [{ x, y, parameters: p.parameters }] : [];
+  });
+  const [a, b] = [first, second].map((name) => label(name, unitOf(data, name)));
+  const names = (data.case?.design ?? []).map((d) => d.name);
+  const numeric = true;
+  return section(
+    "front",
+    "Compromises",
+    row(
+      chart(`Designs that no other beats in both ${words(first)} and ${words(second)}.`, {
+        x: { label: `${a} \u2192`, tickFormat: tick },
+        y: { label: `\u2191 ${b}`, tickFormat: tick },
+        marks: [
+          Plot.line(found, { x: "x", y: "y", stroke: "#0072b2", strokeOpacity: 0.5 }),
+          Plot.dot(found, { x: "x", y: "y", fill: "#0072b2", r: 4 }),
+        ],
+      }),
+    ),
+    table(
+      "Points of the front",
+      [{ head: a, numeric }, { head: b, numeric }, ...names.map((n) => ({ head: words(n), numeric }))],
+      found.map((p) => [number(p.x), number(p.y), ...names.map((n) => number(p.parameters[n]))]),
+    ),
+  );
+}
+
+/** How far the responses spread when the design scatters. */
+export function toleranceSection(data: PageData): HTMLElement | null {
+  const tolerance = data.result?.tolerance;
+  if (!tolerance) {
+    return null;
+  }
+  const shares = Object.entries(tolerance.responses).flatMap(([response, r]) =>
+    Object.entries(r.shares ?? {}).map(([variable, share]) => ({
+      response: words(response),
+      variable: words(variable),
+      share: 100 * (share ?? 0),
+    })),
+  );
+  const numeric = true;
+  return section(
+    "tolerance",
+    "Scatter",
+    table(
+      "Standard deviations of the design variables",
+      [{ head: "design variable" }, { head: "deviation", numeric }],
+      Object.entries(tolerance.deviations).map(([name, d]) => [words(name), number(d)]),
+    ),
+    table(
+      "Standard deviations of the responses",
+      [{ head: "response" }, { head: "by the gradient", numeric }, { head: "sampled", numeric }, { head: "sampled mean", numeric }, { head: "least to largest sampled", numeric }],
+      Object.entries(tolerance.responses).map(([name, r]) => {
+        const unit = unitOf(data, name);
+        const s = r.sampled;
+        return [
+          words(name),
+          quantity(r.deviation, unit),
+          s ? `${quantity(s.deviation, unit)} ${plusMinus(s.deviation_error, unit)}` : "\u2013",
+          s ? `${quantity(s.mean, unit)} ${plusMinus(s.mean_error, unit)}` : "\u2013",
+          s ? `${number(s.least)} to ${quantity(s.largest, unit)}` : "\u2013",
+        ];
+      }),
+    ),
+    shares.length > 0
+      ? row(
+          chart("Which design variable the scatter of each response comes from.", {
+            marginLeft: 140,
+            x: { label: "share of the variance [%] \u2192" },
+            y: { label: null },
+            color: { legend: true },
+            marks: [Plot.barX(shares, { x: "share", y: "response", fill: "variable" })],
+          }),
+        )
+      : null,
+  );
+}
+
+/** What a step of each design variable does to each response. */
+export function sensitivitySection(data: PageData): HTMLElement | null {
+  const gradients = data.gradients;
+  const design = data.case?.design ?? [];
+  if (!gradients || design.length === 0) {
+    return null;
+  }
+  const rows: (string | Node)[][] = [];
+  const bars: { response: string; variable: string; change: number }[] = [];
+  data.case!.responses.forEach((response, r) => {
+    const line = gradients.rows[r] ?? [];
+    if (line.every((g) => g === null)) {
+      return;
+    }
+    const value = data.result?.responses?.[response.name];
+    design.forEach((variable, k) => {
+      const g = line[k];
+      const range = (variable.upper ?? 1) - (variable.lower ?? 0);
+      if (g !== null && g !== undefined && value) {
+        bars.push({ response: words(response.name), variable: words(variable.name), change: (g * range) / Math.abs(value) });
+      }
+    });
+    rows.push([words(response.name), ...line.map((g) => quantity(g, response.unit))]);
+  });
+  if (rows.length === 0) {
+    return null;
+  }
+  bars.sort((a, b) => Math.abs(b.change) - Math.abs(a.change));
+  const text = gradients.at_answer
+    ? "Exact derivatives at the answer."
+    : `Exact derivatives at evaluation ${gradients.evaluation}, the nearest to the answer that has them.`;
+  const arrows = data.curves?.some((c) => Object.keys(c.motion).length > 0)
+    ? " \u201cPush the curves this way\u201d in the 3-D view draws them on the boundary curves: arrows show how to move the curves to cut or raise a response, longer where it helps more."
+    : "";
+  return section(
+    "sensitivities",
+    "What moves the responses",
+    h("p", {}, text + arrows),
+    row(
+      bars.length > 0
+        ? chart("Change of a response, in percent of its value, per 1 % of a design variable's range.", {
+            marginLeft: 150,
+            height: Math.min(700, 90 + 20 * bars.slice(0, 30).length),
+            x: { label: "change [%] \u2192", tickFormat: tick },
+            y: { label: null, domain: bars.slice(0, 30).map((b) => `${b.response}, by ${b.variable}`) },
+            marks: [
+              Plot.barX(bars.slice(0, 30), { x: "change", y: (b) => `${b.response}, by ${b.variable}`, fill: (b) => (b.change > 0 ? "raises" : "lowers"), inset: 1 }),
+              Plot.ruleX([0]),
+            ],
+            color: { domain: ["raises", "lowers"], legend: true },
+          })
+        : null,
+    ),
+    table(
+      "Change of each response per unit of each design variable",
+      [{ head: "response" }, ...design.map((d) => ({ head: `per unit of ${words(d.name)}`, numeric: true }))],
+      rows,
+    ),
+  );
+}
+

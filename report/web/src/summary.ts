@@ -1,0 +1,190 @@
+import type { PageData, Result } from "./data";
+import { h, section, table } from "./dom";
+import { count, number, percent, plusMinus, quantity, seconds, unitText, words } from "./format";
+
+const STATUS: Record<string, string> = {
+  converged: "done",
+  infeasible: "no acceptable design",
+  stopped: "stopped at a limit",
+  failed: "failed",
+  error: "broken off",
+  interrupted: "interrupted",
+};
+
+export function headline(data: PageData): HTMLElement {
+  const result = data.result;
+  const title = result?.case || data.case?.path || data.folder;
+  document.title = `${title} \u2013 Meniscus report`;
+  const status = result?.status ?? "converged";
+  const good = status === "converged";
+  return h(
+    "header",
+    {},
+    h("p", { class: "kicker" }, `Meniscus \u00b7 ${kindText(data)}`),
+    h("h1", {}, title),
+    result
+      ? h(
+          "p",
+          { class: `status ${good ? "good" : "bad"}`, role: good ? null : "alert" },
+          h("strong", {}, STATUS[status] ?? status),
+          ` ${result.message}`,
+        )
+      : null,
+  );
+}
+
+function kindText(data: PageData): string {
+  if (data.kind === "comparison") {
+    return "parts side by side";
+  }
+  const kinds: Record<string, string> = {
+    analyse: "analysis",
+    match: "deflection matching",
+    minimize: "minimisation",
+    sweep: "sweep",
+    tolerance: "scatter of the design",
+    pareto: "compromises of two responses",
+  };
+  const kind = kinds[data.case?.study.kind ?? ""] ?? "run";
+  return data.kind === "family" ? `family, ${kind}` : kind;
+}
+
+function card(value: string, what: string): HTMLElement {
+  return h("div", { class: "card" }, h("dd", {}, value), h("dt", {}, what));
+}
+
+/** The few figures that one wants first. */
+export function keyFigures(data: PageData): HTMLElement | null {
+  const result = data.result;
+  if (!result || data.kind !== "run") {
+    return null;
+  }
+  const cards: HTMLElement[] = [];
+  for (const response of (data.case?.responses ?? []).slice(0, 4)) {
+    const value = result.responses?.[response.name];
+    if (value !== undefined) {
+      cards.push(card(quantity(value, unitText(response.unit)), words(response.name)));
+    }
+  }
+  const first = Object.values(result.stress ?? {})[0];
+  if (first) {
+    cards.push(card(quantity(first.max_von_mises, result.units.pressure), "largest von Mises stress"));
+    if (first.safety_factor?.smallest) {
+      cards.push(card(number(first.safety_factor.smallest, 3), "safety against yield"));
+    }
+  }
+  if (result.evaluations !== undefined && result.seconds?.total !== undefined) {
+    cards.push(card(seconds(result.seconds.total), `${count(result.evaluations)} evaluations`));
+  }
+  return cards.length > 0 ? h("dl", { class: "cards" }, ...cards) : null;
+}
+
+/** Parameters and responses with their errors. */
+export function answerSection(data: PageData): HTMLElement | null {
+  const result = data.result;
+  if (!result || data.kind !== "run") {
+    return null;
+  }
+  const numeric = true;
+  const designs = data.case?.design ?? [];
+  const names = designs.map((d) => d.name);
+  const parameters = result.parameters ?? {};
+  const designRows = designs.map((d) => [
+    words(d.name),
+    number(parameters[d.name]),
+    plusMinus(result.parameter_errors?.[d.name]),
+    number(result.start?.parameters[d.name] ?? d.initial),
+    `${number(d.lower)} to ${number(d.upper)}`,
+  ]);
+  const others = Object.entries(parameters).filter(([name]) => !names.includes(name));
+  const responses = Object.entries(result.responses ?? {});
+  const unitOf = (name: string) => unitText(data.case?.responses.find((r) => r.name === name)?.unit ?? "");
+  return section(
+    "answer",
+    "The answer",
+    designRows.length > 0
+      ? table(
+          "Design variables",
+          [{ head: "design variable" }, { head: "answer", numeric }, { head: "mesh error", numeric }, { head: "at the start", numeric }, { head: "bounds", numeric }],
+          designRows,
+        )
+      : null,
+    responses.length > 0
+      ? table(
+          "Responses",
+          [{ head: "response" }, { head: "answer", numeric }, { head: "mesh error", numeric }, { head: "at the start", numeric }],
+          responses.map(([name, value]) => [
+            words(name),
+            quantity(value, unitOf(name)),
+            plusMinus(result.response_errors?.[name], unitOf(name)),
+            quantity(result.start?.responses[name], unitOf(name)),
+          ]),
+        )
+      : null,
+    constraintTable(data, result),
+    others.length > 0
+      ? table(
+          "Parameters of the case",
+          [{ head: "parameter" }, { head: "value", numeric }],
+          others.map(([name, value]) => [words(name), number(value)]),
+        )
+      : null,
+  );
+}
+
+function constraintTable(data: PageData, result: Result): HTMLElement | null {
+  const constraints = Object.entries(result.constraints ?? {});
+  if (constraints.length === 0) {
+    return null;
+  }
+  const matches = data.case?.study.kind === "match";
+  return table(
+    matches ? "Targets: relative mismatch" : "Constraints",
+    [{ head: matches ? "target" : "constraint" }, { head: "value", numeric: true }, { head: matches ? "tolerance" : "bound", numeric: true }, { head: "kept" }],
+    constraints.map(([name, c]) => [
+      words(name),
+      number(c.value),
+      number(c.bound),
+      c.satisfied ? "\u2713 yes" : h("strong", { class: "bad" }, "\u2717 no"),
+    ]),
+  );
+}
+
+/** How far to trust it. */
+export function checksSection(data: PageData): HTMLElement | null {
+  const result = data.result;
+  if (!result) {
+    return null;
+  }
+  const rows: (string | Node)[][] = [];
+  const mark = (good: boolean) => (good ? "\u2713" : "\u2717");
+  if (result.film) {
+    const f = result.film;
+    rows.push(
+      [mark(f.verdict === "stable"), "film at rest and stable", `${f.verdict}; smallest eigenvalue ${number(f.min_eigenvalue, 3)}`],
+      [mark(f.residual <= f.residual_bound), "film's forces in balance", `residual ${number(f.residual, 2)} ${result.units.force} (bound ${number(f.residual_bound, 2)})`],
+    );
+  }
+  if (result.tet) {
+    const good = result.tet.min_dihedral_deg > 5 && result.tet.max_dihedral_deg < 175;
+    rows.push([mark(good), "shape of the elements", `${count(result.tet.elements)} elements, angles ${number(result.tet.min_dihedral_deg, 3)}\u00b0 to ${number(result.tet.max_dihedral_deg, 4)}\u00b0`]);
+  }
+  if (result.fea) {
+    rows.push([mark(result.fea.reaction_imbalance < 1e-6), "reactions balance the loads", `off by ${number(result.fea.reaction_imbalance, 2)} of them; ${count(result.fea.dofs)} unknowns`]);
+  }
+  if (result.element_errors) {
+    rows.push([mark(result.element_errors.energy < 0.15), "elements' own error in energy", percent(result.element_errors.energy, 2)]);
+  }
+  const warnings = result.warnings ?? [];
+  if (rows.length === 0 && warnings.length === 0) {
+    return null;
+  }
+  return section(
+    "checks",
+    "Checks and warnings",
+    rows.length > 0 ? table("Checks of the answer", [{ head: "" }, { head: "check" }, { head: "found" }], rows) : null,
+    warnings.length > 0
+      ? h("ul", { class: "warnings" }, ...warnings.map((w) => h("li", {}, w)))
+      : h("p", {}, "No warnings."),
+  );
+}

@@ -1,0 +1,57 @@
+import type { PageData } from "../data";
+import { h } from "../dom";
+import { number, quantity, words } from "../format";
+import { historyOf } from "../history";
+
+/** A slider through the designs that the study looked at; null: none kept. */
+export function historyControl(
+  data: PageData,
+  show: (frame: number | null) => void,
+): HTMLElement | null {
+  const frames = data.frames?.frames ?? [];
+  if (frames.length === 0) {
+    return null;
+  }
+  const rows = historyOf(data);
+  const output = h("output", { class: "design-text", "aria-live": "polite" });
+  const slider = h("input", {
+    type: "range",
+    id: "history",
+    min: 0,
+    max: frames.length,
+    step: 1,
+    value: frames.length,
+    "aria-label": "design of the history",
+  });
+  const describe = (index: number): string => {
+    if (index === frames.length) {
+      return "the answer, with its stresses";
+    }
+    const evaluation = frames[index].evaluation;
+    const row = rows.find((r) => r.evaluation === evaluation);
+    const numbers = [
+      ...(data.case?.design ?? []).map(
+        (d) => `${words(d.name)} ${number(row?.values[d.name])}`,
+      ),
+      ...(data.case?.responses ?? []).map(
+        (r) => `${words(r.name)} ${quantity(row?.values[r.name], r.unit)}`,
+      ),
+    ];
+    return `evaluation ${evaluation}: ${numbers.join(", ")}`;
+  };
+  const update = () => {
+    const index = Number(slider.value);
+    output.textContent = describe(index);
+    slider.setAttribute("aria-valuetext", describe(index));
+    show(index === frames.length ? null : index);
+  };
+  slider.addEventListener("input", update);
+  output.textContent = describe(frames.length);
+  return h(
+    "fieldset",
+    {},
+    h("legend", {}, "Designs on the way"),
+    h("div", { class: "row" }, slider),
+    output,
+  );
+}

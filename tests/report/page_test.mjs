@@ -1,0 +1,408 @@
+// report.html in a real browser: small runs of the program, every control.
+//   page_test.mjs PROGRAM FOLDER_WITH_NODE_MODULES ROOT OUTPUT
+// Screenshots are kept in OUTPUT for the eye.
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import fs from "node:fs";
+import { createRequire } from "node:module";
+import path from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [, , program, web, root, output] = process.argv;
+const { chromium } = createRequire(path.join(web, "/"))("playwright-core");
+
+const MOST_BYTES = 8e6;
+const COARSE = ["--set", "resolution.fea=20", "--set", "resolution.film=10"];
+const TWO_ARM = path.join(root, "cases/two_arm/case.toml");
+const INJECTED = "# </script><script>window.injected = 1</script> \u00fc";
+
+const STRUTS = `title = "Struts"
+units = "mm-N-MPa"
+[parameters]
+height = 60
+[curves.base]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = 25
+[curves.head]
+kind = "circle"
+center = [0, 0, "height"]
+normal = [0, 0, 1]
+radius = 20
+[films.skin]
+kind = "branch"
+curves = ["base", "head"]
+[solids.foot]
+kind = "cap"
+curve = "base"
+[solids.top]
+kind = "cap"
+curve = "head"
+[bodies.part]
+enclosed_by = ["skin", "foot", "top"]
+volume = "1500 * height"
+material = "aluminium"
+[resolution]
+fea = 10
+[materials.aluminium]
+youngs_modulus = 71700.0
+poisson_ratio = 0.33
+density = 2.8e-9
+[load_cases.service]
+supports = [{ on = "foot", fix = "xyz" }]
+loads = [{ on = "top", force = [1000, 0, 0] }]
+[responses.sway]
+kind = "mean_displacement"
+on = "top"
+direction = [1, 0, 0]
+[responses.mass]
+kind = "mass"
+[analysis]
+buckling = 0
+[study]
+kind = "family"
+each = "analyse"
+[study.members.short]
+height = 50
+[study.members.long]
+height = 60
+`;
+
+// A chamber of its own that runs into the bracket: it cannot be filled.
+const PEG = `
+[curves.outer]
+kind = "circle"
+center = [0, 80, 60]
+normal = [0, 1, 0]
+radius = 15
+
+[curves.inner]
+kind = "circle"
+center = [0, 0, 60]
+normal = [0, -1, 0]
+radius = 15
+
+[films.peg]
+kind = "loft"
+curves = ["outer", "inner"]
+
+[solids.outer_pad]
+kind = "cap"
+curve = "outer"
+
+[solids.inner_pad]
+kind = "cap"
+curve = "inner"
+
+[bodies.peg_body]
+enclosed_by = ["peg", "outer_pad", "inner_pad"]
+volume = 5.6e4
+material = "aluminium"
+`;
+
+function run(code, ...args) {
+  const done = spawnSync(program, args, { cwd: output, encoding: "utf-8" });
+  assert.equal(done.status, code, `${args.join(" ")}:\n${done.stdout}${done.stderr}`);
+  return done.stdout + done.stderr;
+}
+
+function makeRuns() {
+  fs.rmSync(output, { recursive: true, force: true });
+  fs.mkdirSync(output, { recursive: true });
+  const text = fs.readFileSync(TWO_ARM, "utf-8");
+  fs.writeFileSync(path.join(output, "case.toml"), `${INJECTED}\n${text}`);
+  run(0, "run", "case.toml", ...COARSE, "--no-pictures", "--out", "arms");
+  run(0, "run", "case.toml", ...COARSE, "--no-pictures", "--out", "even", "--set", "load_left=60000");
+  fs.writeFileSync(path.join(output, "crossed.toml"), text + PEG);
+  run(3, "run", "crossed.toml", "--set", "resolution.fea=8", "--set", "resolution.film=4", "--no-pictures", "--out", "crossed");
+  fs.writeFileSync(path.join(output, "struts.toml"), STRUTS);
+  run(0, "run", "struts.toml", "--no-pictures", "--out", "struts");
+  run(0, "compare", "arms", "even", "--out", "compared");
+  // Two designs of a history, whoever wrote them.
+  const arms = path.join(output, "arms");
+  if (!fs.existsSync(path.join(arms, "frames.pvd"))) {
+    fs.mkdirSync(path.join(arms, "frames"));
+    for (const n of [1, 2]) {
+      fs.copyFileSync(path.join(arms, "film.vtp"), path.join(arms, "frames", `film_000${n}.vtp`));
+    }
+    const sets = [1, 2].map((n) => `<DataSet timestep="${n}" part="0" file="frames/film_000${n}.vtp"/>`);
+    fs.writeFileSync(path.join(arms, "frames.pvd"), `<VTKFile type="Collection"><Collection>${sets.join("\n")}</Collection></VTKFile>\n`);
+  }
+  run(0, "report", "arms", "--no-pictures");
+}
+
+/** Folders that are no results or damaged: told, exit 2, the page left. */
+function testDamaged() {
+  const folder = path.join(output, "damaged");
+  const page = path.join(folder, "report.html");
+  const refuse = (pattern) => {
+    fs.writeFileSync(page, "as before");
+    assert.match(run(2, "report", "damaged", "--no-pictures"), pattern);
+    assert.equal(fs.readFileSync(page, "utf-8"), "as before");
+    assert.deepEqual(fs.readdirSync(folder).filter((name) => /^\.(?!lock)/.test(name)), []);
+  };
+  run(2, "report", "nowhere");
+  fs.mkdirSync(folder);
+  refuse(/no result\.json/);
+  const spoil = (name, change) => {
+    fs.rmSync(folder, { recursive: true });
+    fs.cpSync(path.join(output, "arms"), folder, { recursive: true });
+    const file = path.join(folder, name);
+    fs.writeFileSync(file, change(fs.readFileSync(file)));
+  };
+  for (const name of ["result.json", "part.vtu", "part_surface.vtp", "film.vtp"]) {
+    spoil(name, (bytes) => bytes.subarray(0, bytes.length / 2));
+    refuse(new RegExp(name.replace(".", "\\.")));
+  }
+  spoil("study.sqlite", (bytes) => bytes.fill(7, 100, 3000));
+  refuse(/study\.sqlite/);
+  spoil("result.json", () => "[1, 2]");
+  refuse(/result\.json/);
+  spoil("result.json", (bytes) => bytes.toString().replace(/"status": "\w+"/, '"status": 7'));
+  fs.rmSync(page);
+  fs.mkdirSync(page);
+  assert.match(run(2, "report", "damaged", "--no-pictures"), /report\.html/);
+  fs.rmSync(folder, { recursive: true });
+}
+
+const FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+class Visit {
+  static async to(browser, folder, options = {}) {
+    const visit = new Visit();
+    visit.faults = [];
+    visit.page = await browser.newPage({ viewport: { width: 1280, height: 800 }, ...options });
+    visit.page.on("console", (m) => m.type() === "error" && visit.faults.push(m.text()));
+    visit.page.on("pageerror", (e) => visit.faults.push(String(e)));
+    visit.page.on("request", (r) => {
+      if (!/^(file|data|blob):/.test(r.url())) {
+        visit.faults.push(`request of ${r.url()}`);
+      }
+    });
+    const file = path.join(output, folder, "report.html");
+    assert.ok(fs.statSync(file).size < MOST_BYTES);
+    visit.url = pathToFileURL(file).href;
+    await visit.page.goto(visit.url);
+    await visit.settle();
+    return visit;
+  }
+
+  /** Until what was asked for is drawn. */
+  async settle() {
+    await this.page.evaluate(async () => {
+      for (let k = 0; k < 4; ++k) {
+        await new Promise((done) => requestAnimationFrame(done));
+      }
+    });
+  }
+
+  picture() {
+    return this.page.evaluate(() => {
+      const text = document.querySelector("canvas").toDataURL();
+      let hash = 0;
+      for (let i = 0; i < text.length; ++i) {
+        hash = (hash * 31 + text.charCodeAt(i)) | 0;
+      }
+      return hash;
+    });
+  }
+
+  /** Colours in the canvas. */
+  colours() {
+    return this.page.evaluate(() => {
+      const from = document.querySelector("canvas");
+      const copy = document.createElement("canvas");
+      copy.width = 160;
+      copy.height = 120;
+      const context = copy.getContext("2d");
+      context.drawImage(from, 0, 0, 160, 120);
+      const bytes = context.getImageData(0, 0, 160, 120).data;
+      return new Set(new Uint32Array(bytes.buffer)).size;
+    });
+  }
+
+  async changes(what, act) {
+    const before = await this.picture();
+    await act();
+    await this.settle();
+    assert.notEqual(await this.picture(), before, `${what} changes nothing`);
+  }
+
+  set(id, value) {
+    return this.page.evaluate(
+      ([key, v]) => {
+        const control = document.getElementById(key);
+        control.value = v;
+        control.dispatchEvent(new Event(control.type === "range" ? "input" : "change"));
+      },
+      [id, value],
+    );
+  }
+
+  press(name) {
+    return this.page.evaluate((text) => {
+      [...document.querySelectorAll("button")].find((b) => b.textContent === text).click();
+    }, name);
+  }
+
+  async shot(name) {
+    await this.page.screenshot({ path: path.join(output, `${name}.png`), fullPage: true });
+  }
+
+  /** What every page must keep; then it is closed. */
+  async leave() {
+    assert.deepEqual(this.faults, []);
+    const problems = await this.page.evaluate(() => {
+      const found = [];
+      for (const control of document.querySelectorAll("button, input, select")) {
+        const label = control.getAttribute("aria-label") ?? control.closest("label")?.textContent ?? control.textContent;
+        if (!label.trim()) {
+          found.push(`${control.outerHTML} has no name`);
+        }
+        if (control.tabIndex < 0) {
+          found.push(`${control.outerHTML} is out of the keyboard's reach`);
+        }
+      }
+      for (const table of document.querySelectorAll("table")) {
+        if (!table.caption?.textContent) {
+          found.push(`${table.textContent.slice(0, 80)}: no caption`);
+        }
+      }
+      for (const svg of document.querySelectorAll("figure.chart svg[aria-label]")) {
+        if (svg.textContent.includes("NaN")) {
+          found.push(`${svg.ariaLabel}: NaN`);
+        }
+      }
+      if (document.documentElement.scrollWidth > window.innerWidth) {
+        found.push(`wider than the window: ${document.documentElement.scrollWidth}`);
+      }
+      if (/undefined|NaN|\[object/.test(document.querySelector("main").innerText)) {
+        found.push("undefined, NaN or [object in the text");
+      }
+      return found;
+    });
+    assert.deepEqual(problems, []);
+    await this.page.close();
+  }
+}
+
+async function testRun(browser) {
+  const visit = await Visit.to(browser, "arms");
+  const { page } = visit;
+  await visit.shot("arms");
+  assert.ok((await visit.colours()) > 100, "the canvas is blank");
+  const first = await visit.picture();
+  const text = await page.evaluate(() => document.querySelector("main").innerText);
+  for (const pattern of [/Two-arm bracket/, /left deflection/, /\u00b1/, /mm/, /MPa/, /40\s?000/]) {
+    assert.match(text, pattern);
+  }
+  assert.equal(await page.evaluate(() => window.injected), undefined);
+  assert.equal(await page.evaluate(() => document.querySelector(".code li").textContent), INJECTED);
+  assert.ok((await page.evaluate(() => document.querySelectorAll("figure.chart svg rect").length)) > 50);
+
+  for (const field of ["displacement", "energy_density", "stress_error", "mean_curvature", "von_mises"]) {
+    await visit.changes(field, () => visit.set("field", field));
+    const bar = await page.evaluate(() => document.querySelector(".bar").innerText);
+    assert.match(bar, /\[.+\]/);
+  }
+  // Film at rest: pressure = 2 T H with T = 1 here.
+  await visit.set("field", "mean_curvature");
+  const curvature = await page.evaluate(() => {
+    const range = [...document.querySelectorAll(".panel input[type=number]")].map((i) => Number(i.value));
+    return (range[0] + range[1]) / 2;
+  });
+  const result = JSON.parse(fs.readFileSync(path.join(output, "arms/result.json")));
+  const exact = result.film.bodies.part.pressure / 2;
+  assert.ok(Math.abs(curvature - exact) < 0.1 * exact, `${curvature}, not ${exact}`);
+  await visit.set("field", "von_mises");
+  await visit.settle();
+
+  for (const view of ["Front", "Side", "Top", "+", "\u2212", "Oblique"]) {
+    await visit.changes(view, () => visit.press(view));
+  }
+  await visit.changes("cividis", () => visit.set("map", "cividis"));
+  await visit.set("map", "viridis");
+  await visit.changes("Full range", () => visit.press("Full range"));
+  await visit.changes("Without peaks", () => visit.press("Without peaks"));
+  await visit.changes("deflection", () => visit.set("deflection", "900"));
+  await visit.changes("no deflection", () => visit.press("None"));
+  await visit.press("Clear to see");
+  await visit.changes("section", () => visit.set("section-axis", "y"));
+  await visit.changes("place of the section", () => visit.set("section-level", "300"));
+  await visit.changes("other half", () => page.click("#section-flip"));
+  await page.click("#section-flip");
+  await visit.changes("edges", () => page.click("#edges"));
+  await visit.shot("arms_section");
+  await visit.set("section-axis", "");
+  await page.click("#edges");
+  for (const id of ["film", "film-edges", "curves", "loads"]) {
+    await visit.changes(id, () => page.click(`#${id}`));
+    await page.click(`#${id}`);
+  }
+  await visit.changes("pushes", () => visit.set("push", "0"));
+  await visit.shot("arms_push");
+  await visit.set("push", "");
+  await visit.changes("history", () => visit.set("history", "0"));
+  assert.match(await page.evaluate(() => document.querySelector(".design-text").textContent), /evaluation 1: support x/);
+  await visit.shot("arms_history");
+  await visit.set("history", "99");
+
+  await page.focus("canvas");
+  for (const key of ["ArrowLeft", "ArrowUp", "ArrowRight", "ArrowDown", "+", "-"]) {
+    await visit.changes(key, () => page.keyboard.press(key));
+  }
+  await page.keyboard.press("0");
+  await visit.settle();
+  assert.equal(await visit.picture(), first, "not as at first");
+  await visit.leave();
+}
+
+async function testOthers(browser) {
+  const phone = await Visit.to(browser, "arms", { viewport: { width: 390, height: 780 }, colorScheme: "dark" });
+  await phone.shot("arms_phone");
+  await phone.leave();
+
+  const crossed = await Visit.to(browser, "crossed");
+  const said = await crossed.page.evaluate(() => document.querySelector("main").innerText);
+  assert.match(said, /failed/);
+  assert.match(said, /red marks/);
+  assert.ok((await crossed.colours()) > 50);
+  await crossed.shot("crossed");
+  await crossed.leave();
+
+  const struts = await Visit.to(browser, "struts");
+  assert.equal(await struts.page.evaluate(() => document.querySelectorAll(".pane-title").length), 2);
+  await struts.changes("displacement", () => struts.set("field", "displacement"));
+  await struts.shot("struts");
+  const link = await struts.page.evaluate(() => document.querySelector("#members a").getAttribute("href"));
+  assert.ok(fs.existsSync(path.join(output, "struts", link)));
+  await struts.leave();
+
+  const compared = await Visit.to(browser, "compared");
+  assert.match(await compared.page.evaluate(() => document.querySelector("#comparison").innerText), /stiffness per mass/);
+  await compared.changes("Full range", () => compared.press("Full range"));
+  await compared.shot("compared");
+  await compared.leave();
+}
+
+async function testWithoutWebgl() {
+  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-3d-apis"] });
+  const visit = await Visit.to(browser, "arms");
+  assert.match(await visit.page.evaluate(() => document.getElementById("no-webgl").textContent), /WebGL/);
+  assert.ok((await visit.page.evaluate(() => document.querySelectorAll("figure.chart svg").length)) >= 4);
+  await visit.leave();
+  await browser.close();
+}
+
+makeRuns();
+testDamaged();
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
+try {
+  await testRun(browser);
+  await testOthers(browser);
+} finally {
+  await browser.close();
+}
+await testWithoutWebgl();
+console.log(`screenshots in ${output}`);
