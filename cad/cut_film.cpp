@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <map>
 
 #include <fmt/format.h>
 
-#include "cad/film_splitter.h"
+#include "cad/film_tubes.h"
 #include "cad/harmonic.h"
 #include "core/error.h"
 
@@ -15,129 +15,6 @@ namespace meniscus {
 namespace {
 
 constexpr int kTubeSeams = 4;  // of a tube between two rims
-constexpr int kMostTries = 60;
-constexpr double kShrink = 0.85;  // of a tube's measure, from try to try
-
-std::vector<int> facets_of(const SplitFilm& split, int cell) {
-  std::vector<int> facets;
-  for (std::size_t f = 0; f < split.cell.size(); ++f) {
-    if (split.cell[f] == cell) {
-      facets.push_back(static_cast<int>(f));
-    }
-  }
-  return facets;
-}
-
-std::vector<Triangle> corners_of(const FilmMesh& mesh,
-                                 const std::vector<int>& facets) {
-  std::vector<Triangle> result;
-  result.reserve(facets.size());
-  for (const int f : facets) {
-    result.push_back(mesh.facets[f]);
-  }
-  return result;
-}
-
-SplitFilm start(FilmMesh mesh, const std::vector<FilmRim>& rims) {
-  SplitFilm split;
-  split.rims = &rims;
-  split.film.rim_of.assign(mesh.points.size(), -1);
-  split.film.rim_position.assign(mesh.points.size(), 0.0);
-  for (std::size_t r = 0; r < rims.size(); ++r) {
-    const std::vector<int>& loop = rims[r].loop;
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const int next = loop[(k + 1) % loop.size()];
-      split.film.rim_of[loop[k]] = static_cast<int>(r);
-      split.film.rim_position[loop[k]] = rims[r].positions[k];
-      split.rim_edges.insert(
-          {std::min(loop[k], next), std::max(loop[k], next)});
-    }
-  }
-  split.cell.assign(mesh.facets.size(), 0);
-  split.sector.assign(mesh.facets.size(), 0);
-  split.film.mesh = std::move(mesh);
-  return split;
-}
-
-/// A column per rim: 1 on it, 0 on the others, harmonic between.
-Eigen::MatrixXd harmonic_measures(const SplitFilm& split) {
-  const FilmMesh& mesh = split.film.mesh;
-  HarmonicProblem problem{mesh, facets_of(split, 0), {}, {}};
-  problem.fixed.assign(mesh.points.size(), 0);
-  problem.values =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(mesh.points.size()),
-                            static_cast<Eigen::Index>(split.rims->size()));
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    if (split.film.rim_of[v] >= 0) {
-      problem.fixed[v] = 1;
-      problem.values(static_cast<Eigen::Index>(v), split.film.rim_of[v]) = 1.0;
-    }
-  }
-  return harmonic(problem);
-}
-
-/// A tube's loops: on its rim, and the other.
-struct Tube {
-  std::vector<int> bottom;
-  std::vector<int> top;
-};
-
-/// The loops of a cell; nothing where it is no tube.
-std::optional<Tube> tube_of(const SplitFilm& split, int cell,
-                            std::size_t& loops) {
-  const std::vector<std::vector<int>> found =
-      boundary_loops(corners_of(split.film.mesh, facets_of(split, cell)));
-  loops = found.size();
-  if (found.size() != 2) {
-    return {};
-  }
-  const bool first = split.film.rim_of[found[0][0]] == cell;
-  return Tube{found[first ? 0 : 1], found[first ? 1 : 0]};
-}
-
-int count_in(const std::vector<int>& some, const std::vector<int>& all) {
-  return static_cast<int>(std::count_if(some.begin(), some.end(), [&](int v) {
-    return std::find(all.begin(), all.end(), v) != all.end();
-  }));
-}
-
-struct Tubes {
-  SplitFilm split;
-  std::vector<Tube> tubes;
-  std::vector<int> nodes;  // where three tubes meet
-};
-
-/// Tubes by the greatest measure. One that lies between others, so that these
-/// do not meet, has its measure made less until they do.
-Tubes cut_into_tubes(const SplitFilm& whole) {
-  const Eigen::MatrixXd measures = harmonic_measures(whole);
-  const int count = static_cast<int>(measures.cols());
-  VectorX factors = VectorX::Ones(count);
-  for (int round = 0; round < kMostTries; ++round) {
-    Tubes result{whole, {}, {}};
-    result.nodes =
-        split_by_greatest(result.split, measures * factors.asDiagonal());
-    result.split.sector.assign(result.split.cell.size(), 0);
-    bool done = true;
-    for (int k = 0; k < count; ++k) {
-      std::size_t loops = 0;
-      const std::optional<Tube> tube = tube_of(result.split, k, loops);
-      if (loops > 2) {
-        factors[k] *= kShrink;
-      }
-      if (!tube || count_in(result.nodes, tube->top) < 2) {
-        done = false;
-        continue;
-      }
-      result.tubes.push_back(*tube);
-    }
-    if (done) {
-      return result;
-    }
-  }
-  throw MeshError(fmt::format(
-      "a film with {} rims has no cut into tubes that meet in threes", count));
-}
 
 /// Vertices of a loop from `start` on, backwards where asked.
 std::vector<int> turned(std::vector<int> loop, int start, bool backwards) {
@@ -201,6 +78,26 @@ std::vector<double> values_at(const SplitFilm& split, int cell,
   return result;
 }
 
+/// The vertex where the first seam of a tube between smooth rims begins: in the
+/// middle of a side, of a rim that has sides.
+int first_seam(const SplitFilm& split, const Tube& tube) {
+  const auto curve_of = [&](const std::vector<int>& loop) -> const RimCurve& {
+    return *(*split.rims)[split.film.rim_of[loop.front()]].curve;
+  };
+  const bool bottom =
+      curve_of(tube.bottom).piece_count() >= curve_of(tube.top).piece_count();
+  const std::vector<int>& loop = bottom ? tube.bottom : tube.top;
+  const RimCurve& curve = curve_of(loop);
+  const double place =
+      curve.piece_count() > 1 ? 0.5 * curve.start_of(1) : curve.start_of(0);
+  const auto off = [&](int v) {
+    const double d = split.film.rim_position[v] - place;
+    return std::abs(d - curve.length() * std::round(d / curve.length()));
+  };
+  return *std::min_element(loop.begin(), loop.end(),
+                           [&](int v, int w) { return off(v) < off(w); });
+}
+
 /// Where the seams of a tube between two rims lie: at sharp corners, or a
 /// quarter apart from the first rim's beginning.
 std::vector<double> seam_levels(const SplitFilm& split, const Tube& tube) {
@@ -227,10 +124,7 @@ std::vector<double> seam_levels(const SplitFilm& split, const Tube& tube) {
   if (corners.size() >= 2) {
     return values_at(split, 0, corners);
   }
-  const int start = *std::min_element(
-      tube.bottom.begin(), tube.bottom.end(), [&](int v, int w) {
-        return split.film.rim_position[v] < split.film.rim_position[w];
-      });
+  const int start = first_seam(split, tube);
   const double first = values_at(split, 0, {start})[0];
   std::vector<double> levels;
   for (int k = 0; k < kTubeSeams; ++k) {
@@ -383,13 +277,8 @@ CutFilm cut_film(FilmMesh mesh, const std::vector<FilmRim>& rims) {
                     "least 2 are needed",
                     rims.size()));
   }
-  Tubes tubes{start(std::move(mesh), rims), {}, {}};
   const bool between_rims = rims.size() == 2;
-  if (between_rims) {
-    tubes.tubes.push_back({rims[0].loop, rims[1].loop});
-  } else {
-    tubes = cut_into_tubes(tubes.split);
-  }
+  Tubes tubes = film_tubes(std::move(mesh), rims);
   SplitFilm& split = tubes.split;
   std::vector<int> sectors;
   for (std::size_t k = 0; k < tubes.tubes.size(); ++k) {

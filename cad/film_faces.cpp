@@ -282,7 +282,7 @@ std::vector<BrepUse> FaceBuilder::outline(const FilmPatch& patch) const {
 /// How far the surface's own boundary leaves its rims' exact curves.
 void FaceBuilder::measure_gaps(const FilmPatch& patch,
                                const PatchSides& sides) {
-  constexpr int kSamples = 100;
+  constexpr int kSamples = 500;
   for (const int side : {0, 2}) {
     if (patch.lines[side] >= 0) {
       continue;

@@ -17,7 +17,7 @@ constexpr int kSamplesPerSpan = 4;  // in each direction
 constexpr int kNormalsPerSpan = 4;
 // Beside 1 per point of the film: third differences of poles, and how far the
 // row of poles next to a side leaves the tangent plane there.
-constexpr double kThirdDifferenceWeight = 1e-4;
+constexpr double kThirdDifferenceWeight = 1e-7;
 constexpr double kNormalWeight = 300.0;
 
 /// `per_span` parameters in each knot span, evenly.

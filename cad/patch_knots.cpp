@@ -11,7 +11,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr double kMostTurn = 0.2;  // of a rim in a span [rad]
+constexpr double kMostTurn = 0.12;  // of a rim in a span [rad]
 constexpr int kLeastSpans = 4;
 constexpr double kSamePlace = 1e-6;
 constexpr int kTurnSamples = 16;

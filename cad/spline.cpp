@@ -9,7 +9,7 @@ namespace meniscus {
 namespace {
 
 constexpr int kDegree = 3;
-constexpr double kThirdDifferenceWeight = 1e-4;  // beside 1 per point
+constexpr double kThirdDifferenceWeight = 1e-7;  // beside 1 per point
 constexpr double kTangentWeight = 1e4;
 
 int span_of(const std::vector<double>& knots, double x) {

@@ -131,7 +131,7 @@ void ShapeBuilder::add_edges() {
     double last = 1.0;
     const Handle(Geom_Curve) curve = curve_of(edge, first, last);
     const double tolerance =
-        std::max(kPrecision, 1.01 * scale_ * edge.gap + kPrecision);
+        std::max(kPrecision, 1.2 * scale_ * edge.gap + kPrecision);
     TopoDS_Edge shape;
     builder_.MakeEdge(shape, curve, tolerance);
     builder_.Add(shape, vertices_[edge.from].Oriented(TopAbs_FORWARD));

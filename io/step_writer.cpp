@@ -168,6 +168,7 @@ StepReport write_step(const std::filesystem::path& path, const Brep& brep,
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
   Interface_Static::SetCVal("write.step.unit", unit.step);
   Interface_Static::SetCVal("write.step.product.name", name.c_str());
+  Interface_Static::SetIVal("write.precision.mode", 1);  // the greatest
   Interface_Static::SetIVal("write.surfacecurve.mode", 0);
   Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
   writer.SetColorMode(false);

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "cad/bulge_volume.h"
 #include "cad/film_solid.h"
 #include "core/error.h"
 #include "evolve/curve_shape.h"
@@ -96,6 +97,45 @@ std::vector<NamedRim> rims_of(const FilmSystem& system,
   return rims;
 }
 
+/// Volumes are those of flat facets, and the smooth film encloses more where
+/// it bulges: the same system with each body's volume so much less.
+FilmSystem for_smooth_films(FilmSystem system, const SurfaceMesh& mesh) {
+  std::vector<char> flat;
+  for (const std::string& label : mesh.labels) {
+    flat.push_back(
+        std::any_of(system.caps.begin(), system.caps.end(),
+                    [&](const CapSpec& cap) { return cap.name == label; })
+            ? 1
+            : 0);
+  }
+  const std::vector<double> bulges = bulge_volumes(mesh, flat);
+  const auto bodies_of = [&](const std::string& surface) {
+    return std::count_if(system.bodies.begin(), system.bodies.end(),
+                         [&](const BodySpec& b) {
+                           return std::count(b.enclosed_by.begin(),
+                                             b.enclosed_by.end(), surface) > 0;
+                         });
+  };
+  for (BodySpec& body : system.bodies) {
+    for (const std::string& surface : body.enclosed_by) {
+      const int label = mesh.label_of(surface);
+      if (body.volume && label >= 0 && bodies_of(surface) == 1) {
+        *body.volume -= (body.is_void ? -1.0 : 1.0) * bulges[label];
+      }
+    }
+  }
+  return system;
+}
+
+FilmModel settled(const FilmSystem& system, double edge) {
+  FilmModel model = FilmModel::freeze(system, {.edge = edge, .refinements = 0});
+  if (model.reference().failure) {
+    throw MeshError(fmt::format("no film at edge {:g}: {}", edge,
+                                model.reference().failure->message));
+  }
+  return model;
+}
+
 void tell(const StepExport& options, const FilmSolidReport& film,
           const StepReport& step) {
   Monitor& monitor =
@@ -129,18 +169,15 @@ void tell(const StepExport& options, const FilmSolidReport& film,
 
 void export_step(const std::filesystem::path& file, const FilmSystem& system,
                  const StepExport& options) {
-  const FilmModel model =
-      FilmModel::freeze(system, {.edge = options.edge, .refinements = 0});
-  if (model.reference().failure) {
-    throw MeshError(fmt::format("no film at edge {:g}: {}", options.edge,
-                                model.reference().failure->message));
-  }
-  const SurfaceMesh mesh = model.boundary(model.reference().points);
+  FilmModel model = settled(system, options.edge);
+  SurfaceMesh mesh = model.boundary(model.reference().points);
   const StepOptions names{.name = options.title, .unit = options.unit};
   if (options.faceted) {
     write_step(file, faceted_solid(mesh), names);
     return;
   }
+  model = settled(for_smooth_films(system, mesh), options.edge);
+  mesh = model.boundary(model.reference().points);
   FilmSolidInput input{mesh, rims_of(system, model), {}, options.edge};
   for (const CapSpec& cap : system.caps) {
     input.caps.push_back(cap.name);
