@@ -184,7 +184,7 @@ int run_program(int argc, char** argv) {
       ->add_option("--format", export_arguments.format,
                    "stl (surface), inp (CalculiX), vtu (ParaView)")
       ->required()
-      ->check(CLI::IsMember({"stl", "inp", "vtu"}));
+      ->check(CLI::IsMember({"stl", "step", "step-faceted", "inp", "vtu"}));
   write
       ->add_option("--edge", export_arguments.edge,
                    "settle and mesh again at this edge length")

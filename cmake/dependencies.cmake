@@ -13,6 +13,17 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
   FiltersSources IOXML IOGeometry IOImage RenderingCore RenderingOpenGL2
   RenderingAnnotation RenderingFreeType InteractionStyle)
 
+# Only what reads and writes STEP; its targets bring what they stand on, but not
+# their headers.
+find_package(OpenCASCADE REQUIRED)
+if(NOT TARGET deps::opencascade)
+  add_library(deps::opencascade INTERFACE IMPORTED GLOBAL)
+  target_include_directories(deps::opencascade SYSTEM
+    INTERFACE ${OpenCASCADE_INCLUDE_DIR})
+  target_link_libraries(deps::opencascade
+    INTERFACE TKXDESTEP TKXCAF TKSTEP TKTopAlgo TKMesh)
+endif()
+
 # meniscus_find_library(TARGET header library...): an imported target for a
 # package that ships neither a CMake nor a pkg-config file.
 function(meniscus_find_library target header)

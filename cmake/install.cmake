@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 set(MENISCUS_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/meniscus)
 set_target_properties(meniscus_options PROPERTIES EXPORT_NAME options)
 install(TARGETS meniscus_options EXPORT meniscusTargets)
-foreach(folder core evolve mesh_tet fea optimize io pipeline report)
+foreach(folder core evolve mesh_tet fea optimize cad io pipeline report)
   set_target_properties(meniscus_${folder} PROPERTIES EXPORT_NAME ${folder})
   install(TARGETS meniscus_${folder} EXPORT meniscusTargets)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}

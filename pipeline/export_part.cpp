@@ -5,6 +5,7 @@
 #include "fea/body_loads.h"
 #include "io/stl.h"
 #include "pipeline/calculix_export.h"
+#include "pipeline/export_step.h"
 #include "pipeline/refreeze.h"
 #include "pipeline/responses.h"
 #include "pipeline/results.h"
@@ -25,6 +26,10 @@ Case at_edge(Case input, std::optional<double> edge) {
   return input;
 }
 
+std::string extension(const ExportOptions& options) {
+  return options.format == "step-faceted" ? "step" : options.format;
+}
+
 }  // namespace
 
 fs::path export_part(const fs::path& folder, const ExportOptions& options) {
@@ -36,12 +41,22 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   const double edge = options.edge.value_or(input.resolution.fea);
   fs::path file =
       options.out.empty()
-          ? folder / fmt::format("part_{:g}.{}", edge, options.format)
+          ? folder / fmt::format("part_{:g}.{}", edge, extension(options))
           : options.out;
   if (options.format == "stl") {
     const EvaluatedCase numbers = evaluate(input, design);
     write_stl(file, settle_again(numbers.film_system, edge),
               {.name = input.title, .unit = input.units.length});
+    return file;
+  }
+  if (options.format == "step" || options.format == "step-faceted") {
+    const EvaluatedCase numbers = evaluate(input, design);
+    export_step(file, numbers.film_system,
+                {.title = input.title,
+                 .unit = input.units.length,
+                 .edge = edge,
+                 .faceted = options.format == "step-faceted",
+                 .monitor = options.monitor});
     return file;
   }
   const ForwardModel model(input, {.monitor = options.monitor});
@@ -68,7 +83,8 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
     write_part(file, input, fields);
   } else {
     throw InvalidInput(fmt::format(
-        "format '{}' is not known; there are stl, inp, vtu", options.format));
+        "format '{}' is not known; there are stl, step, step-faceted, inp, vtu",
+        options.format));
   }
   return file;
 }

@@ -10,7 +10,7 @@
 namespace meniscus {
 
 struct ExportOptions {
-  std::string format = "stl";   // "stl", "inp", "vtu"
+  std::string format = "stl";   // "stl", "step", "step-faceted", "inp", "vtu"
   std::optional<double> edge;   // [length]; the run's own when absent
   std::filesystem::path out;    // file; empty: part_<edge>.<format> in the run
   std::string program_version;  // for the deck's head

@@ -7,6 +7,7 @@ build_packages=(
   libudunits2-dev libqhull-dev libsuitesparse-dev libmetis-dev libopenblas-dev
   libspectra-dev libtet1.5-dev libnlopt-dev libnlopt-cxx-dev libceres-dev
   libsqlite3-dev libvtk9-dev
+  libocct-data-exchange-dev libocct-ocaf-dev
 )
 run_packages=(xvfb libudunits2-data)
 test_packages=(

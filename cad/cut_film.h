@@ -1,0 +1,45 @@
+/// A film cut into four-sided patches. Two rims: a tube, cut by seams along
+/// its length. More: one tube to each rim, to the line where the harmonic
+/// measures of two rims are alike; those lines meet in threes at nodes, from
+/// each of which a seam runs down each of its tubes.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "cad/film_mesh.h"
+#include "cad/rim_curve.h"
+
+namespace meniscus {
+
+/// One of a film's boundary loops and the curve that it lies on.
+struct FilmRim {
+  const RimCurve* curve = nullptr;
+  std::vector<int> loop;          // vertices, film on the left
+  std::vector<double> positions;  // one each: place on the curve
+};
+
+/// Sides: 0 bottom (on a rim, along a), 1 right (along b), 2 top (along a),
+/// 3 left (along b); a x b points out of the body.
+struct FilmPatch {
+  std::vector<int> facets;
+  std::array<std::vector<int>, 4> chains;    // vertices along growing a or b
+  std::array<int, 4> lines{-1, -1, -1, -1};  // into CutFilm::lines; -1: rim
+  std::array<bool, 4> reversed{};            // runs against that line
+  int bottom_rim = -1;
+  int top_rim = -1;  // -1: a line between tubes
+};
+
+struct CutFilm {
+  FilmMesh mesh;
+  std::vector<int> rim_of;           // per vertex: rim, -1
+  std::vector<double> rim_position;  // per vertex on a rim
+  std::vector<FilmPatch> patches;
+  std::vector<std::vector<int>> lines;  // between patches: seams and others
+};
+
+/// Throws MeshError for a film that has no such cut: fewer than two rims, or
+/// rims whose measures do not come to meet.
+CutFilm cut_film(FilmMesh mesh, const std::vector<FilmRim>& rims);
+
+}  // namespace meniscus

@@ -1,0 +1,343 @@
+#include "cad/film_faces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cad/patch_knots.h"
+
+namespace meniscus {
+
+namespace {
+
+/// A side of a patch that lies on a rim.
+struct RimSide {
+  const RimEdges* rim = nullptr;
+  double from = 0.0;
+  double to = 0.0;
+  bool growing = true;
+};
+
+class FaceBuilder {
+ public:
+  FaceBuilder(const FilmPiece& film, const std::vector<RimEdges>& rims,
+              double span, Brep& brep)
+      : film_(film), rims_(rims), span_(span), brep_(brep) {}
+
+  FilmFaces build();
+
+ private:
+  const FilmMesh& mesh() const { return film_.cut.mesh; }
+  double length_of(const std::vector<int>& chain) const;
+  std::vector<double> shares_of(const std::vector<int>& chain) const;
+  RimSide rim_side(const FilmPatch& patch, int side) const;
+  SideDemand demand(const RimSide& side, bool backwards) const;
+  void set_knots();
+  int vertex_of(int v);
+  Vec3 normal_of(int v) const;
+  void fit_lines();
+  SplineCurve fit_rim(const RimSide& side,
+                      const std::vector<double>& knots) const;
+  PatchSides sides_of(const FilmPatch& patch) const;
+  void measure_gaps(const FilmPatch& patch, const PatchSides& sides);
+  std::vector<BrepUse> outline(const FilmPatch& patch) const;
+  Vec3 end_of(int v) { return brep_.vertices[vertex_of(v)]; }
+
+  const FilmPiece& film_;
+  const std::vector<RimEdges>& rims_;
+  double span_;
+  Brep& brep_;
+  std::vector<std::vector<double>> line_knots_;   // per line
+  std::vector<std::vector<double>> patch_knots_;  // along a, per patch
+  std::map<int, int> nodes_;                      // film vertex: brep vertex
+  std::vector<int> line_edges_;
+  std::vector<SplineCurve> line_normals_;
+};
+
+double FaceBuilder::length_of(const std::vector<int>& chain) const {
+  double length = 0.0;
+  for (std::size_t k = 1; k < chain.size(); ++k) {
+    length += (mesh().points[chain[k]] - mesh().points[chain[k - 1]]).norm();
+  }
+  return length;
+}
+
+std::vector<double> FaceBuilder::shares_of(
+    const std::vector<int>& chain) const {
+  const double whole = length_of(chain);
+  std::vector<double> shares{0.0};
+  double length = 0.0;
+  for (std::size_t k = 1; k < chain.size(); ++k) {
+    length += (mesh().points[chain[k]] - mesh().points[chain[k - 1]]).norm();
+    shares.push_back(k + 1 == chain.size() ? 1.0 : length / whole);
+  }
+  return shares;
+}
+
+RimSide FaceBuilder::rim_side(const FilmPatch& patch, int side) const {
+  const int rim = side == 0 ? patch.bottom_rim : patch.top_rim;
+  const std::vector<int>& chain = patch.chains[side];
+  const std::vector<double>& at = film_.cut.rim_position;
+  RimSide result{&rims_[film_.rims[rim]], at[chain.front()], at[chain.back()]};
+  const double length = result.rim->curve().length();
+  const double step = at[chain[1]] - at[chain[0]];
+  result.growing = step - length * std::round(step / length) > 0.0;
+  return result;
+}
+
+SideDemand FaceBuilder::demand(const RimSide& side, bool backwards) const {
+  SideDemand result{side.rim->way(side.from, side.to, side.growing), side.rim,
+                    side.from, side.to, side.growing};
+  if (backwards) {
+    std::swap(result.from, result.to);
+    result.growing = !result.growing;
+  }
+  return result;
+}
+
+/// Patches on the two sides of a line share its knots; so do all seams of one
+/// tube.
+void FaceBuilder::set_knots() {
+  const CutFilm& cut = film_.cut;
+  line_knots_.resize(cut.lines.size());
+  patch_knots_.resize(cut.patches.size());
+  std::map<int, std::vector<SideDemand>> seams;   // per tube
+  std::map<int, std::vector<SideDemand>> across;  // per line between tubes
+  for (const FilmPatch& patch : cut.patches) {
+    for (const int side : {1, 3}) {
+      seams[patch.bottom_rim].push_back({length_of(patch.chains[side])});
+    }
+    if (patch.top_rim < 0) {
+      std::vector<SideDemand>& demands = across[patch.lines[2]];
+      demands.push_back(demand(rim_side(patch, 0), patch.reversed[2]));
+      demands.push_back({length_of(patch.chains[2])});
+    }
+  }
+  for (const auto& [line, demands] : across) {
+    line_knots_[line] = common_knots(demands, span_);
+  }
+  for (std::size_t p = 0; p < cut.patches.size(); ++p) {
+    const FilmPatch& patch = cut.patches[p];
+    for (const int side : {1, 3}) {
+      line_knots_[patch.lines[side]] =
+          common_knots(seams[patch.bottom_rim], span_);
+    }
+    if (patch.top_rim >= 0) {
+      patch_knots_[p] = common_knots({demand(rim_side(patch, 0), false),
+                                      demand(rim_side(patch, 2), false)},
+                                     span_);
+    } else {
+      SplineCurve knots{line_knots_[patch.lines[2]], {}};
+      patch_knots_[p] = patch.reversed[2] ? reversed(knots).knots : knots.knots;
+    }
+  }
+}
+
+int FaceBuilder::vertex_of(int v) {
+  const int rim = film_.cut.rim_of[v];
+  if (rim >= 0) {
+    return rims_[film_.rims[rim]].vertex(film_.cut.rim_position[v]);
+  }
+  const auto found = nodes_.find(v);
+  if (found != nodes_.end()) {
+    return found->second;
+  }
+  nodes_[v] = static_cast<int>(brep_.vertices.size());
+  brep_.vertices.push_back(mesh().points[v]);
+  return nodes_[v];
+}
+
+/// The film's normal, at right angles to the rim.
+Vec3 FaceBuilder::normal_of(int v) const {
+  Vec3 normal = mesh().normals[v];
+  const int rim = film_.cut.rim_of[v];
+  if (rim >= 0) {
+    const RimEdges& edges = rims_[film_.rims[rim]];
+    const double place = edges.place(film_.cut.rim_position[v]);
+    const Vec3 tangent = edges.curve().tangent(place);
+    normal = (normal - normal.dot(tangent) * tangent).normalized();
+  }
+  return normal;
+}
+
+void FaceBuilder::fit_lines() {
+  const CutFilm& cut = film_.cut;
+  for (std::size_t k = 0; k < cut.lines.size(); ++k) {
+    const std::vector<int>& chain = cut.lines[k];
+    CurveFit fit;
+    fit.knots = line_knots_[k];
+    fit.at = shares_of(chain);
+    for (const int v : chain) {
+      fit.points.push_back(mesh().points[v]);
+    }
+    fit.start = end_of(chain.front());
+    fit.end = end_of(chain.back());
+    fit.start_normal = normal_of(chain.front());
+    fit.end_normal = normal_of(chain.back());
+    line_edges_.push_back(static_cast<int>(brep_.edges.size()));
+    brep_.edges.push_back({vertex_of(chain.front()), vertex_of(chain.back()),
+                           fit_curve(fit), 0.0, 1.0});
+    fit.points.clear();
+    for (const int v : chain) {
+      fit.points.push_back(mesh().normals[v]);
+    }
+    fit.start = fit.start_normal;
+    fit.end = fit.end_normal;
+    fit.start_normal = fit.end_normal = Vec3::Zero();
+    line_normals_.push_back(fit_curve(fit));
+  }
+}
+
+SplineCurve FaceBuilder::fit_rim(const RimSide& side,
+                                 const std::vector<double>& knots) const {
+  constexpr int kPerSpan = 6;
+  CurveFit fit;
+  fit.knots = knots;
+  const RimCurve& curve = side.rim->curve();
+  const double start = side.rim->place(side.from);
+  const double way = side.rim->way(side.from, side.to, side.growing);
+  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+    for (int i = 0; i < kPerSpan && knots[k + 1] > knots[k]; ++i) {
+      const double share =
+          knots[k] + (knots[k + 1] - knots[k]) * (i + 0.5) / kPerSpan;
+      fit.at.push_back(share);
+      fit.points.push_back(curve.point(side.growing ? start + share * way
+                                                    : start - share * way));
+    }
+  }
+  fit.start = brep_.vertices[side.rim->vertex(side.from)];
+  fit.end = brep_.vertices[side.rim->vertex(side.to)];
+  return fit_curve(fit);
+}
+
+PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
+  const std::size_t p = &patch - film_.cut.patches.data();
+  PatchSides sides;
+  for (int side = 0; side < 4; ++side) {
+    const int line = patch.lines[side];
+    if (line < 0) {
+      const RimSide rim = rim_side(patch, side);
+      sides.curves[side] = fit_rim(rim, patch_knots_[p]);
+      const double start = rim.rim->place(rim.from);
+      const double way = rim.rim->way(rim.from, rim.to, rim.growing);
+      const double length = rim.rim->curve().length();
+      const std::vector<int>& chain = patch.chains[side];
+      for (std::size_t k = 0; k < chain.size(); ++k) {
+        const double d = (rim.growing ? 1.0 : -1.0) *
+                         (film_.cut.rim_position[chain[k]] - start);
+        // The ends may be a little off the vertices that they became.
+        const double middle = d - 0.5 * way;
+        const double share =
+            (middle - length * std::round(middle / length) + 0.5 * way) / way;
+        sides.at[side].push_back(k == 0 ? 0.0
+                                 : k + 1 == chain.size()
+                                     ? 1.0
+                                     : std::clamp(share, 0.0, 1.0));
+      }
+      continue;
+    }
+    const auto& edge = brep_.edges[line_edges_[line]];
+    const auto& curve = std::get<SplineCurve>(edge.curve);
+    const bool back = patch.reversed[side];
+    sides.curves[side] = back ? reversed(curve) : curve;
+    sides.normals[side] =
+        back ? reversed(line_normals_[line]) : line_normals_[line];
+    sides.at[side] = shares_of(patch.chains[side]);
+  }
+  return sides;
+}
+
+Vec2 on_side(int side, double share) {
+  return side == 0   ? Vec2(share, 0.0)
+         : side == 1 ? Vec2(1.0, share)
+         : side == 2 ? Vec2(share, 1.0)
+                     : Vec2(0.0, share);
+}
+
+std::vector<BrepUse> FaceBuilder::outline(const FilmPatch& patch) const {
+  std::vector<BrepUse> uses;
+  for (int side = 0; side < 4; ++side) {
+    const bool along = side < 2;  // the outline runs along growing a or b
+    const int line = patch.lines[side];
+    if (line >= 0) {
+      const bool back = patch.reversed[side];
+      uses.push_back({line_edges_[line], along != back,
+                      on_side(side, back ? 1.0 : 0.0),
+                      on_side(side, back ? 0.0 : 1.0)});
+      continue;
+    }
+    const RimSide rim = rim_side(patch, side);
+    std::vector<RimEdges::Step> steps =
+        rim.rim->between(rim.from, rim.to, rim.growing);
+    if (!along) {
+      std::reverse(steps.begin(), steps.end());
+    }
+    for (const RimEdges::Step& step : steps) {
+      uses.push_back({step.edge, along == step.forward,
+                      on_side(side, step.first), on_side(side, step.last)});
+    }
+  }
+  return uses;
+}
+
+/// How far the surface's own boundary leaves its rims' exact curves.
+void FaceBuilder::measure_gaps(const FilmPatch& patch,
+                               const PatchSides& sides) {
+  constexpr int kSamples = 500;
+  for (const int side : {0, 2}) {
+    if (patch.lines[side] >= 0) {
+      continue;
+    }
+    const RimSide rim = rim_side(patch, side);
+    for (const RimEdges::Step& step :
+         rim.rim->between(rim.from, rim.to, rim.growing)) {
+      BrepEdge& edge = brep_.edges[step.edge];
+      for (int k = 0; k <= kSamples; ++k) {
+        const double t = static_cast<double>(k) / kSamples;
+        const Vec3 exact =
+            point_of(edge.curve, edge.first + t * (edge.last - edge.first));
+        const Vec3 own = point_of(sides.curves[side],
+                                  step.first + t * (step.last - step.first));
+        edge.gap = std::max(edge.gap, (exact - own).norm());
+      }
+    }
+  }
+}
+
+FilmFaces FaceBuilder::build() {
+  set_knots();
+  fit_lines();
+  FilmFaces faces;
+  faces.first_face = static_cast<int>(brep_.faces.size());
+  for (const FilmPatch& patch : film_.cut.patches) {
+    const PatchSides sides = sides_of(patch);
+    faces.patches.push_back(fit_patch(mesh(), patch, sides));
+    measure_gaps(patch, sides);
+    brep_.faces.push_back(
+        {film_.name, faces.patches.back().surface, {outline(patch)}});
+  }
+  return faces;
+}
+
+}  // namespace
+
+void want_corners(const FilmPiece& film, std::vector<RimEdges>& rims) {
+  for (const FilmPatch& patch : film.cut.patches) {
+    for (const int side : {0, 2}) {
+      if (patch.lines[side] >= 0) {
+        continue;
+      }
+      const int rim = side == 0 ? patch.bottom_rim : patch.top_rim;
+      for (const int v :
+           {patch.chains[side].front(), patch.chains[side].back()}) {
+        rims[film.rims[rim]].want(film.cut.rim_position[v]);
+      }
+    }
+  }
+}
+
+FilmFaces add_faces(const FilmPiece& film, const std::vector<RimEdges>& rims,
+                    double span, Brep& brep) {
+  return FaceBuilder(film, rims, span, brep).build();
+}
+
+}  // namespace meniscus

@@ -1,0 +1,295 @@
+#include "cad/film_solid.h"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "cad/film_faces.h"
+#include "cad/measure_solid.h"
+#include "core/error.h"
+#include "core/facet_tree.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kSpanInEdges = 2.0;   // longest knot span
+constexpr double kMergeInEdges = 0.1;  // corners on a rim that become one
+constexpr double kPlanar = 1e-6;       // of the diagonal
+
+/// Facets of one label that hang together by edges, in order of the first.
+std::vector<std::vector<int>> connected_parts(const SurfaceMesh& mesh) {
+  std::map<Edge, std::vector<int>> at_edge;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = mesh.facets[f][k];
+      const int b = mesh.facets[f][(k + 1) % 3];
+      at_edge[{std::min(a, b), std::max(a, b)}].push_back(static_cast<int>(f));
+    }
+  }
+  std::vector<char> seen(mesh.facets.size(), 0);
+  std::vector<std::vector<int>> parts;
+  for (std::size_t first = 0; first < mesh.facets.size(); ++first) {
+    if (seen[first] != 0) {
+      continue;
+    }
+    seen[first] = 1;
+    std::vector<int> part;
+    std::deque<int> queue{static_cast<int>(first)};
+    while (!queue.empty()) {
+      const int f = queue.front();
+      queue.pop_front();
+      part.push_back(f);
+      for (int k = 0; k < 3; ++k) {
+        const int a = mesh.facets[f][k];
+        const int b = mesh.facets[f][(k + 1) % 3];
+        for (const int g : at_edge[{std::min(a, b), std::max(a, b)}]) {
+          if (seen[g] == 0 && mesh.facet_label[g] == mesh.facet_label[f]) {
+            seen[g] = 1;
+            queue.push_back(g);
+          }
+        }
+      }
+    }
+    std::sort(part.begin(), part.end());
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+class SolidBuilder {
+ public:
+  explicit SolidBuilder(const FilmSolidInput& input)
+      : input_(input), mesh_(input.mesh) {
+    for (const NamedRim& rim : input.rims) {
+      curves_.push_back(rim.curve);
+      members_.emplace_back(rim.vertices.begin(), rim.vertices.end());
+    }
+  }
+  FilmSolid build();
+
+ private:
+  struct Cap {
+    std::string name;
+    std::vector<int> facets;
+    std::vector<std::vector<int>> loops;
+    std::vector<int> rims;  // one per loop
+  };
+
+  int rim_of(const std::vector<int>& loop);
+  void add_film(const std::string& name, const std::vector<int>& facets);
+  void add_cap(const std::string& name, const std::vector<int>& facets);
+  BrepFace face_of(const Cap& cap, const std::vector<RimEdges>& rims) const;
+
+  const FilmSolidInput& input_;
+  const SurfaceMesh& mesh_;
+  std::deque<RimCurve> curves_;  // addresses stay
+  std::vector<std::set<int>> members_;
+  std::vector<FilmPiece> films_;
+  std::vector<Cap> caps_;
+};
+
+/// The curve that a loop lies on; a new one where there is none.
+int SolidBuilder::rim_of(const std::vector<int>& loop) {
+  for (std::size_t r = 0; r < members_.size(); ++r) {
+    if (std::all_of(loop.begin(), loop.end(),
+                    [&](int v) { return members_[r].count(v) > 0; })) {
+      return static_cast<int>(r);
+    }
+  }
+  Points points;
+  for (const int v : loop) {
+    points.push_back(mesh_.points[v]);
+  }
+  curves_.push_back(rim_through(points));
+  members_.emplace_back(loop.begin(), loop.end());
+  return static_cast<int>(members_.size()) - 1;
+}
+
+void SolidBuilder::add_film(const std::string& name,
+                            const std::vector<int>& facets) {
+  FilmMesh mesh;
+  std::map<int, int> local;
+  std::vector<int> global;
+  for (const int f : facets) {
+    Triangle t{};
+    for (int k = 0; k < 3; ++k) {
+      const int v = mesh_.facets[f][k];
+      const auto [at, fresh] = local.emplace(v, static_cast<int>(local.size()));
+      if (fresh) {
+        mesh.points.push_back(mesh_.points[v]);
+        global.push_back(v);
+      }
+      t[k] = at->second;
+    }
+    mesh.facets.push_back(t);
+  }
+  set_normals(mesh);
+  FilmPiece film;
+  film.name = name;
+  film.facets = facets;
+  std::vector<FilmRim> rims;
+  for (std::vector<int>& loop : boundary_loops(mesh.facets)) {
+    std::vector<int> whole;
+    for (const int v : loop) {
+      whole.push_back(global[v]);
+    }
+    film.rims.push_back(rim_of(whole));
+    FilmRim rim{&curves_[film.rims.back()], std::move(loop), {}};
+    for (const int v : whole) {
+      rim.positions.push_back(rim.curve->nearest(mesh_.points[v]));
+    }
+    rims.push_back(std::move(rim));
+  }
+  try {
+    film.cut = cut_film(std::move(mesh), rims);
+  } catch (const MeshError& error) {
+    throw MeshError(
+        fmt::format("film '{}': {}; a finer edge may help, or a faceted file",
+                    name, error.what()));
+  }
+  films_.push_back(std::move(film));
+}
+
+void SolidBuilder::add_cap(const std::string& name,
+                           const std::vector<int>& facets) {
+  Cap cap{name, facets, {}, {}};
+  std::vector<Triangle> corners;
+  Vec3 normal = Vec3::Zero();
+  for (const int f : facets) {
+    corners.push_back(mesh_.facets[f]);
+    normal += area_vector2(mesh_, f);
+  }
+  normal.normalize();
+  const double tolerance = kPlanar * bounding_diagonal(mesh_.points);
+  for (const Triangle& t : corners) {
+    for (const int v : t) {
+      const double off =
+          normal.dot(mesh_.points[v] - mesh_.points[corners[0][0]]);
+      if (std::abs(off) > tolerance) {
+        throw InvalidInput(
+            fmt::format("cap '{}' is not flat: vertex {} is {:g} off its plane",
+                        name, v, off));
+      }
+    }
+  }
+  cap.loops = boundary_loops(corners);
+  for (const std::vector<int>& loop : cap.loops) {
+    cap.rims.push_back(rim_of(loop));
+  }
+  caps_.push_back(std::move(cap));
+}
+
+BrepFace SolidBuilder::face_of(const Cap& cap,
+                               const std::vector<RimEdges>& rims) const {
+  Vec3 normal = Vec3::Zero();
+  for (const int f : cap.facets) {
+    normal += area_vector2(mesh_, f);
+  }
+  normal.normalize();
+  BrepFace face{
+      cap.name,
+      PlaneSurface{mesh_.points[mesh_.facets[cap.facets[0]][0]], normal},
+      {}};
+  std::vector<std::pair<double, std::vector<BrepUse>>> loops;
+  for (std::size_t k = 0; k < cap.loops.size(); ++k) {
+    const std::vector<int>& loop = cap.loops[k];
+    const RimEdges& rim = rims[cap.rims[k]];
+    const Vec3& p = mesh_.points[loop[0]];
+    const double here = rim.curve().nearest(p);
+    const bool growing =
+        rim.curve().tangent(here).dot(mesh_.points[loop[1]] - p) > 0.0;
+    Vec3 area = Vec3::Zero();
+    for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+      area += (mesh_.points[loop[i]] - p).cross(mesh_.points[loop[i + 1]] - p);
+    }
+    std::vector<BrepUse> uses;
+    for (const RimEdges::Step& step : rim.between(0.0, 0.0, growing)) {
+      uses.push_back({step.edge, step.forward});
+    }
+    loops.emplace_back(-area.dot(normal), std::move(uses));
+  }
+  std::stable_sort(
+      loops.begin(), loops.end(),
+      [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& loop : loops) {
+    face.loops.push_back(std::move(loop.second));
+  }
+  return face;
+}
+
+FilmSolid SolidBuilder::build() {
+  for (const std::vector<int>& part : connected_parts(mesh_)) {
+    const std::string& name = mesh_.labels[mesh_.facet_label[part[0]]];
+    if (std::count(input_.caps.begin(), input_.caps.end(), name) > 0) {
+      add_cap(name, part);
+    } else {
+      add_film(name, part);
+    }
+  }
+  FilmSolid solid;
+  std::vector<RimEdges> rims(curves_.begin(), curves_.end());
+  std::vector<char> used(rims.size(), 0);
+  for (const FilmPiece& film : films_) {
+    want_corners(film, rims);
+    for (const int r : film.rims) {
+      used[r] = 1;
+    }
+  }
+  for (std::size_t r = 0; r < rims.size(); ++r) {
+    if (used[r] != 0) {
+      rims[r].build(kMergeInEdges * input_.edge, solid.brep);
+    }
+  }
+  for (const Cap& cap : caps_) {
+    solid.brep.faces.push_back(face_of(cap, rims));
+    solid.report.planes += 1;
+  }
+  for (const FilmPiece& film : films_) {
+    const FilmFaces faces =
+        add_faces(film, rims, kSpanInEdges * input_.edge, solid.brep);
+    solid.report.patches += static_cast<int>(faces.patches.size());
+    measure_film(film, faces, solid.brep, FacetTree(mesh_, film.facets),
+                 input_.edge, solid.report);
+  }
+  return solid;
+}
+
+}  // namespace
+
+FilmSolid film_solid(const FilmSolidInput& input) {
+  return SolidBuilder(input).build();
+}
+
+Brep faceted_solid(const SurfaceMesh& mesh) {
+  Brep brep;
+  brep.vertices = mesh.points;
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(mesh.facets, edges, facet_edges);
+  for (const Edge& e : edges) {
+    const Vec3 way = mesh.points[e[1]] - mesh.points[e[0]];
+    brep.edges.push_back({e[0], e[1],
+                          StraightLine{mesh.points[e[0]], way.normalized()},
+                          0.0, way.norm()});
+  }
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Triangle& t = mesh.facets[f];
+    std::vector<BrepUse> loop;
+    for (int k = 0; k < 3; ++k) {
+      loop.push_back({facet_edges[f][k], edges[facet_edges[f][k]][0] == t[k]});
+    }
+    const Vec3 normal = area_vector2(mesh, static_cast<int>(f)).normalized();
+    brep.faces.push_back({mesh.labels[mesh.facet_label[f]],
+                          PlaneSurface{mesh.points[t[0]], normal},
+                          {std::move(loop)}});
+  }
+  return brep;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,185 @@
+#include "cad/film_tubes.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "cad/harmonic.h"
+#include "core/error.h"
+
+namespace meniscus {
+
+std::vector<int> facets_of(const SplitFilm& split, int cell) {
+  std::vector<int> facets;
+  for (std::size_t f = 0; f < split.cell.size(); ++f) {
+    if (split.cell[f] == cell) {
+      facets.push_back(static_cast<int>(f));
+    }
+  }
+  return facets;
+}
+
+std::vector<Triangle> corners_of(const FilmMesh& mesh,
+                                 const std::vector<int>& facets) {
+  std::vector<Triangle> result;
+  result.reserve(facets.size());
+  for (const int f : facets) {
+    result.push_back(mesh.facets[f]);
+  }
+  return result;
+}
+
+int count_in(const std::vector<int>& some, const std::vector<int>& all) {
+  return static_cast<int>(std::count_if(some.begin(), some.end(), [&](int v) {
+    return std::find(all.begin(), all.end(), v) != all.end();
+  }));
+}
+
+namespace {
+
+constexpr int kMostTries = 60;
+constexpr int kMostRefinements = 3;
+constexpr std::size_t kEnoughFacets = 8000;  // for smooth cuts
+constexpr double kShrink = 0.85;  // of a tube's measure, from try to try
+
+SplitFilm start(FilmMesh mesh, const std::vector<FilmRim>& rims) {
+  SplitFilm split;
+  split.rims = &rims;
+  split.film.rim_of.assign(mesh.points.size(), -1);
+  split.film.rim_position.assign(mesh.points.size(), 0.0);
+  for (std::size_t r = 0; r < rims.size(); ++r) {
+    const std::vector<int>& loop = rims[r].loop;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const int next = loop[(k + 1) % loop.size()];
+      split.film.rim_of[loop[k]] = static_cast<int>(r);
+      split.film.rim_position[loop[k]] = rims[r].positions[k];
+      split.rim_edges.insert(
+          {std::min(loop[k], next), std::max(loop[k], next)});
+    }
+  }
+  split.cell.assign(mesh.facets.size(), 0);
+  split.sector.assign(mesh.facets.size(), 0);
+  split.film.mesh = std::move(mesh);
+  return split;
+}
+
+/// Every facet in four, new vertices on the smooth film and on the rims'
+/// curves: cuts are then as smooth as the film, however coarse it is.
+void refine(SplitFilm& split) {
+  FilmMesh& mesh = split.film.mesh;
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(mesh.facets, edges, facet_edges);
+  const int first = static_cast<int>(mesh.points.size());
+  for (const Edge& edge : edges) {
+    add_vertex(split, edge[0], edge[1], 0.5);
+  }
+  std::vector<Triangle> facets;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Triangle t = mesh.facets[f];
+    Triangle m = facet_edges[f];
+    for (int& v : m) {
+      v += first;
+    }
+    facets.insert(facets.end(),
+                  {Triangle{t[0], m[0], m[2]}, Triangle{m[0], t[1], m[1]},
+                   Triangle{m[2], m[1], t[2]}, m});
+  }
+  mesh.facets = std::move(facets);
+  set_normals(mesh);
+  split.cell.assign(mesh.facets.size(), 0);
+  split.sector.assign(mesh.facets.size(), 0);
+}
+
+/// Loops of the refined film, in the rims' order.
+std::vector<std::vector<int>> loops_of_rims(const SplitFilm& split) {
+  std::vector<std::vector<int>> loops(split.rims->size());
+  for (std::vector<int>& loop : boundary_loops(split.film.mesh.facets)) {
+    const int rim = split.film.rim_of[loop[0]];
+    loops[rim] = std::move(loop);
+  }
+  return loops;
+}
+
+/// A column per rim: 1 on it, 0 on the others, harmonic between.
+Eigen::MatrixXd harmonic_measures(const SplitFilm& split) {
+  const FilmMesh& mesh = split.film.mesh;
+  HarmonicProblem problem{mesh, facets_of(split, 0), {}, {}};
+  problem.fixed.assign(mesh.points.size(), 0);
+  problem.values =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(mesh.points.size()),
+                            static_cast<Eigen::Index>(split.rims->size()));
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (split.film.rim_of[v] >= 0) {
+      problem.fixed[v] = 1;
+      problem.values(static_cast<Eigen::Index>(v), split.film.rim_of[v]) = 1.0;
+    }
+  }
+  return harmonic(problem);
+}
+
+/// The loops of a cell; nothing where it is no tube.
+std::optional<Tube> tube_of(const SplitFilm& split, int cell,
+                            std::size_t& loops) {
+  const std::vector<std::vector<int>> found =
+      boundary_loops(corners_of(split.film.mesh, facets_of(split, cell)));
+  loops = found.size();
+  if (found.size() != 2) {
+    return {};
+  }
+  const bool first = split.film.rim_of[found[0][0]] == cell;
+  return Tube{found[first ? 0 : 1], found[first ? 1 : 0]};
+}
+
+/// Tubes by the greatest measure. One that lies between others, so that these
+/// do not meet, has its measure made less until they do.
+Tubes cut_into_tubes(const SplitFilm& whole) {
+  const Eigen::MatrixXd measures = harmonic_measures(whole);
+  const int count = static_cast<int>(measures.cols());
+  VectorX factors = VectorX::Ones(count);
+  for (int round = 0; round < kMostTries; ++round) {
+    Tubes result{whole, {}, {}};
+    result.nodes =
+        split_by_greatest(result.split, measures * factors.asDiagonal());
+    result.split.sector.assign(result.split.cell.size(), 0);
+    bool done = true;
+    for (int k = 0; k < count; ++k) {
+      std::size_t loops = 0;
+      const std::optional<Tube> tube = tube_of(result.split, k, loops);
+      if (loops > 2) {
+        factors[k] *= kShrink;
+      }
+      if (!tube || count_in(result.nodes, tube->top) < 2) {
+        done = false;
+        continue;
+      }
+      result.tubes.push_back(*tube);
+    }
+    if (done) {
+      return result;
+    }
+  }
+  throw MeshError(fmt::format(
+      "a film with {} rims has no cut into tubes that meet in threes", count));
+}
+
+}  // namespace
+
+Tubes film_tubes(FilmMesh mesh, const std::vector<FilmRim>& rims) {
+  Tubes tubes{start(std::move(mesh), rims), {}, {}};
+  for (int round = 0; round < kMostRefinements &&
+                      tubes.split.film.mesh.facets.size() < kEnoughFacets;
+       ++round) {
+    refine(tubes.split);
+  }
+  if (rims.size() == 2) {
+    const std::vector<std::vector<int>> loops = loops_of_rims(tubes.split);
+    tubes.tubes.push_back({loops[0], loops[1]});
+  } else {
+    tubes = cut_into_tubes(tubes.split);
+  }
+  return tubes;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,85 @@
+/// A solid as its faces: what leaves films for CAD programs. Plain arrays like
+/// SurfaceMesh; faces share edges and edges share vertices by number, so that
+/// what is closed here is closed without sewing.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/types.h"
+
+namespace meniscus {
+
+using Vec2 = Eigen::Vector2d;
+
+/// start + t direction, direction of unit length: t is a length.
+struct StraightLine {
+  Vec3 start = Vec3::Zero();
+  Vec3 direction = Vec3::UnitX();
+};
+
+/// center + cos(t) u + sin(t) v; u and v at right angles, a circle where they
+/// are of one length.
+struct EllipseCurve {
+  Vec3 center = Vec3::Zero();
+  Vec3 u = Vec3::UnitX();
+  Vec3 v = Vec3::UnitY();
+};
+
+/// Cubic; `knots` with their multiplicities, four at each end.
+struct SplineCurve {
+  std::vector<double> knots;
+  Points poles;  // knots.size() - 4
+};
+
+using EdgeCurve = std::variant<StraightLine, EllipseCurve, SplineCurve>;
+
+/// The part of a curve from parameter `first` to `last` > first.
+struct BrepEdge {
+  int from = 0;  // vertex at first
+  int to = 0;    // at last
+  EdgeCurve curve;
+  double first = 0.0;
+  double last = 1.0;
+  double gap = 0.0;  // the farthest that an adjoining surface's own boundary
+                     // lies from the curve [length]
+};
+
+struct PlaneSurface {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();  // unit, out of the solid
+};
+
+/// Bicubic tensor product over [0,1] x [0,1]; dS/da x dS/db points out of the
+/// solid.
+struct SplineSurface {
+  std::vector<double> knots_a;
+  std::vector<double> knots_b;
+  Points poles;  // pole (i, j) at i * (knots_b.size() - 4) + j
+};
+
+/// An edge in a face's loop. The surface's parameters at the edge's own first
+/// and last, between which they run linearly; not used on planes.
+struct BrepUse {
+  int edge = 0;
+  bool forward = true;
+  Vec2 at_first = Vec2::Zero();
+  Vec2 at_last = Vec2::Zero();
+};
+
+struct BrepFace {
+  std::string name;
+  std::variant<PlaneSurface, SplineSurface> surface;
+  // Closed, counter-clockwise seen from outside, the outer one first.
+  std::vector<std::vector<BrepUse>> loops;
+};
+
+/// One closed solid; several shells where it has cavities or parts.
+struct Brep {
+  Points vertices;  // [length]
+  std::vector<BrepEdge> edges;
+  std::vector<BrepFace> faces;
+};
+
+}  // namespace meniscus
