@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 #include <unistd.h>
+#include <vector>
 
 namespace meniscus {
 
@@ -14,6 +15,11 @@ bool is_executable_file(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) &&
          ::access(path.c_str(), X_OK) == 0;
+}
+
+std::vector<fs::path>& added_folders() {
+  static std::vector<fs::path> folders;
+  return folders;
 }
 
 }  // namespace
@@ -53,13 +59,19 @@ std::optional<fs::path> find_helper(const std::string& name,
     return std::nullopt;
   }
   const fs::path here = self.parent_path();
-  for (const fs::path& path :
-       {here / name, here.parent_path() / "libexec" / "meniscus" / name}) {
-    if (is_executable_file(path)) {
-      return path;
+  std::vector<fs::path> folders = added_folders();
+  folders.push_back(here);
+  folders.push_back(here.parent_path() / "libexec" / "meniscus");
+  for (const fs::path& folder : folders) {
+    if (is_executable_file(folder / name)) {
+      return folder / name;
     }
   }
   return std::nullopt;
+}
+
+void add_helper_folder(const std::string& folder) {
+  added_folders().emplace_back(folder);
 }
 
 }  // namespace meniscus

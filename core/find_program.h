@@ -12,9 +12,14 @@ namespace meniscus {
 std::optional<std::filesystem::path> find_program(const std::string& name);
 
 /// A helper of this program: the path in the environment variable `variable`
-/// if that is set, else beside the running program, else in
-/// ../libexec/meniscus from there. Nothing when it is not executable there.
+/// if that is set, else in the folders that were added, else beside the
+/// running program, else in ../libexec/meniscus from there. Nothing when it is
+/// not executable there.
 std::optional<std::filesystem::path> find_helper(const std::string& name,
                                                  const std::string& variable);
+
+/// One more folder of helpers, for a library within another program, before
+/// any other thread looks for one.
+void add_helper_folder(const std::string& folder);
 
 }  // namespace meniscus

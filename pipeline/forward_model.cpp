@@ -1,19 +1,13 @@
 #include "pipeline/forward_model.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/timer.h"
 #include "fea/petsc_child.h"
-#include "mesh_tet/mesh_motion.h"
-#include "mesh_tet/motion_check.h"
 #include "mesh_tet/quadratic.h"
-#include "mesh_tet/tet_quality.h"
-#include "mesh_tet/tetrahedralize.h"
-#include "pipeline/adaptation.h"
-#include "pipeline/responses.h"
+#include "pipeline/forward_model_impl.h"
 #include "pipeline/stage_meter.h"
 #include "pipeline/walls.h"
 
@@ -27,58 +21,7 @@ constexpr int kAdaptiveRefinements = 2;
 // TetGen now and then leaves a flat element; another edge, and it does not.
 constexpr std::array<double, 3> kEdgeFactors = {1.0, 1.1, 0.9};
 
-TetFigures figures(const TetMesh& mesh, const TetQuality& quality) {
-  return {.nodes = static_cast<int>(mesh.nodes.size()),
-          .elements = mesh.element_count(),
-          .min_dihedral_deg = quality.min_dihedral_deg,
-          .max_dihedral_deg = quality.max_dihedral_deg};
-}
-
-Failure not_a_number(const Case& input, const VectorX& responses) {
-  Eigen::Index worst = 0;
-  while (std::isfinite(responses[worst])) {
-    ++worst;
-  }
-  return {FailureKind::NotANumber,
-          fmt::format("response '{}' is {}",
-                      input.responses[static_cast<std::size_t>(worst)].name,
-                      responses[worst])};
-}
-
 }  // namespace
-
-struct ForwardModel::Impl {
-  Case input;
-  Evaluation frozen;
-  SurfaceMesh unfilled;
-  std::vector<Finding> findings;
-  std::optional<FilmModel> film;
-  TetMesh base_mesh;  // ten-node, at the initial design
-  std::vector<char> curve_edge;
-  std::optional<MeshMotion> motion;
-  std::optional<ElasticModel> elasticity;
-  Exclusion exclusion;
-  ThicknessPairs pairs;
-  std::optional<Adaptation> adaptation;
-  Monitor* watcher = nullptr;  // of evaluations
-
-  void freeze(const ForwardModelOptions& options);
-  bool freeze_film(const EvaluatedCase& inputs,
-                   const ForwardModelOptions& options, Monitor& monitor);
-  bool freeze_mesh(const TetrahedralizeOptions& options, Monitor& monitor);
-  bool freeze_elasticity(const EvaluatedCase& inputs, Monitor& monitor);
-  bool freeze_pairs();
-  bool adapt(const EvaluatedCase& inputs, Monitor& monitor);
-  AdaptedState state(const EvaluatedCase& inputs) const;
-  VectorX responses(const EvaluatedCase& inputs, const FilmState& film_state,
-                    const TetMesh& mesh, const ElasticSolution& solution) const;
-  Points to_film(const TetMesh& mesh, const Points& by_nodes) const;
-  bool place_nodes(const QuadraticSurface& surface, TetMesh& mesh,
-                   Evaluation& result) const;
-  bool solve(const TetMesh& mesh, const EvaluatedCase& inputs,
-             ElasticSolution& solution, ElasticState* keep,
-             Evaluation& result) const;
-};
 
 bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
                                      const ForwardModelOptions& options,
@@ -113,7 +56,7 @@ bool ForwardModel::Impl::freeze_mesh(const TetrahedralizeOptions& options,
     motion.emplace(filled.mesh, static_cast<int>(surface.base.points.size()));
     curve_edge.clear();
     base_mesh = make_quadratic(filled.mesh, surface, &curve_edge);
-    frozen.tet = figures(base_mesh, filled.quality);
+    frozen.tet = figures_of(base_mesh, filled.quality);
   }
   meter.add_to(frozen.seconds.mesh, frozen.operations.mesh);
   return !frozen.failure;
@@ -156,13 +99,6 @@ VectorX ForwardModel::Impl::responses(const EvaluatedCase& inputs,
                                       const ElasticSolution& solution) const {
   return respond(input, {inputs, mesh, solution, exclusion.element, &*film,
                          &film_state, &pairs});
-}
-
-/// From a gradient by all nodes of the mesh to that by the film's vertices.
-Points ForwardModel::Impl::to_film(const TetMesh& mesh,
-                                   const Points& by_nodes) const {
-  const QuadraticGradient by = transpose_quadratic(mesh, by_nodes, curve_edge);
-  return film->transpose_surface(motion->transpose(by.corners), by.mid);
 }
 
 AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
@@ -242,33 +178,6 @@ void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
   }
 }
 
-bool ForwardModel::Impl::place_nodes(const QuadraticSurface& surface,
-                                     TetMesh& mesh, Evaluation& result) const {
-  move_quadratic(mesh, motion->move(surface.base.points), surface, curve_edge);
-  TetQuality quality;
-  result.failure = check_moved(mesh, {}, &quality);
-  result.tet = figures(mesh, quality);
-  return !result.failure;
-}
-
-bool ForwardModel::Impl::solve(const TetMesh& mesh, const EvaluatedCase& inputs,
-                               ElasticSolution& solution, ElasticState* keep,
-                               Evaluation& result) const {
-  const StageMeter meter;
-  try {
-    solution =
-        elasticity->solve(mesh, inputs.load_cases, inputs.materials, keep);
-  } catch (const InvalidInput& error) {
-    // A load or support that this design's surface cannot take.
-    result.failure = Failure{FailureKind::SolverFailed, error.what()};
-    return false;
-  }
-  result.fea = solution.report;
-  meter.add_to(result.seconds.fea, result.operations.fea);
-  result.failure = solution.failure;
-  return !result.failure;
-}
-
 void require_solver(const Case& input) {
   if (input.analysis.solver == SolverKind::Distributed) {
     require_petsc();
@@ -311,91 +220,6 @@ const ElasticModel& ForwardModel::elasticity() const {
 
 const Adaptation* ForwardModel::adaptation() const {
   return impl_->adaptation ? &*impl_->adaptation : nullptr;
-}
-
-Evaluation ForwardModel::evaluate(const VectorX& design,
-                                  EvaluationFields* fields,
-                                  AdjointState* adjoint) const {
-  Evaluation result;
-  result.design = design;
-  EvaluatedCase inputs;
-  try {
-    inputs = meniscus::evaluate(impl_->input, design);
-  } catch (const InvalidInput& error) {
-    // Numbers that hold at the ends of the bounds may fail between them.
-    result.failure = Failure{FailureKind::NotANumber, error.what()};
-    return result;
-  }
-
-  const StageMeter film_meter;
-  FilmState film_state =
-      impl_->film->settle(inputs.film_system, {.monitor = impl_->watcher});
-  result.film = film_state.report;
-  film_meter.add_to(result.seconds.film, result.operations.film);
-  if (film_state.failure) {
-    result.failure = film_state.failure;
-    return result;
-  }
-
-  const StageMeter mesh_meter;
-  const QuadraticSurface surface = impl_->film->surface(film_state.points);
-  TetMesh mesh = impl_->base_mesh;
-  const bool placed = impl_->place_nodes(surface, mesh, result);
-  mesh_meter.add_to(result.seconds.mesh, result.operations.mesh);
-  if (!placed) {
-    return result;
-  }
-
-  ElasticSolution solution;
-  ElasticState* keep = adjoint != nullptr ? &adjoint->elastic : nullptr;
-  if (!impl_->solve(mesh, inputs, solution, keep, result)) {
-    return result;
-  }
-  try {
-    result.responses = impl_->responses(inputs, film_state, mesh, solution);
-  } catch (const InvalidInput& error) {  // an expression of place
-    result.failure = Failure{FailureKind::NotANumber, error.what()};
-    return result;
-  }
-  if (!result.responses.allFinite()) {
-    result.failure = not_a_number(impl_->input, result.responses);
-    result.responses.resize(0);
-    return result;
-  }
-  if (fields != nullptr) {
-    *fields = {.film = impl_->film->fine_mesh(film_state.points),
-               .boundary = impl_->film->boundary(film_state.points),
-               .surface = surface,
-               .mesh = std::move(mesh),
-               .solution = std::move(solution),
-               .inputs = inputs,
-               .exclusion = impl_->exclusion};
-  }
-  if (adjoint != nullptr) {
-    adjoint->film = std::move(film_state);
-  }
-  return result;
-}
-
-DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
-                                      const EvaluationFields& fields,
-                                      const AdjointState& adjoint,
-                                      const std::vector<int>& wanted) const {
-  const ResponseInput responses{
-      fields.inputs, fields.mesh,   fields.solution, fields.exclusion.element,
-      &*impl_->film, &adjoint.film, &impl_->pairs};
-  try {
-    return design_gradient({impl_->input, responses, evaluation.responses,
-                            *impl_->elasticity, adjoint.elastic,
-                            [&](const Points& by_nodes) {
-                              return impl_->to_film(fields.mesh, by_nodes);
-                            }},
-                           wanted);
-  } catch (const InvalidInput& error) {
-    DesignGradient none;
-    none.failure = Failure{FailureKind::NotANumber, error.what()};
-    return none;
-  }
 }
 
 }  // namespace meniscus

@@ -159,6 +159,7 @@ class ForwardModel {
                           const std::vector<int>& wanted) const;
 
  private:
+  friend class DesignStages;  // evaluate(), stage by stage
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

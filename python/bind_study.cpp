@@ -1,0 +1,170 @@
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "core/error.h"
+#include "pipeline/ordered_jobs.h"
+#include "pipeline/stored_case.h"
+#include "pipeline/study_store.h"
+#include "python/array_view.h"
+#include "python/bindings.h"
+#include "python/call.h"
+#include "python/study_run.h"
+
+namespace meniscus::python {
+
+namespace {
+
+/// The evaluations of a study, from its database.
+struct StudyTable {
+  StudyMeta meta;
+  std::vector<EvaluationRecord> records;
+  std::vector<std::string> design_names, response_names;
+  std::vector<double> designs, responses;  // by row; NaN: failed
+  std::vector<double> answer;
+  Case input;
+};
+
+StudyTable read_table(const std::string& folder) {
+  const StudyStore store = StudyStore::read(folder);
+  StudyTable table{.meta = store.meta(), .records = store.all()};
+  table.input = restore_case(table.meta);
+  table.design_names = design_names(table.input);
+  table.response_names = response_names(table.input);
+  const auto nothing = std::numeric_limits<double>::quiet_NaN();
+  for (const EvaluationRecord& record : table.records) {
+    table.designs.insert(table.designs.end(), record.inputs.begin(),
+                         record.inputs.end());
+    for (std::size_t k = 0; k < table.response_names.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      table.responses.push_back(
+          at < record.responses.size() ? record.responses[at] : nothing);
+    }
+  }
+  const bool some =
+      std::any_of(table.records.begin(), table.records.end(),
+                  [](const EvaluationRecord& record) {
+                    return !record.failure && record.model == kStudyModel;
+                  });
+  if (some) {
+    const VectorX answer = answer_of_run(table.input, table.records, folder);
+    table.answer.assign(answer.begin(), answer.end());
+  }
+  return table;
+}
+
+py::array rows_of(const py::object& self, std::vector<double> StudyTable::*rows,
+                  std::vector<std::string> StudyTable::*names) {
+  const auto& table = self.cast<const StudyTable&>();
+  return view((table.*rows).data(),
+              {static_cast<py::ssize_t>(table.records.size()),
+               static_cast<py::ssize_t>((table.*names).size())},
+              self);
+}
+
+template <class Value, class Get>
+std::vector<Value> column(const StudyTable& table, const Get& get) {
+  std::vector<Value> values;
+  values.reserve(table.records.size());
+  for (const EvaluationRecord& record : table.records) {
+    values.push_back(get(record));
+  }
+  return values;
+}
+
+void bind_columns(py::class_<StudyTable>& type) {
+  type.def_property_readonly(
+          "designs",
+          [](const py::object& self) {
+            return rows_of(self, &StudyTable::designs,
+                           &StudyTable::design_names);
+          },
+          "The design of each evaluation, float64 (evaluations, design "
+          "variables); a read-only view.")
+      .def_property_readonly(
+          "responses",
+          [](const py::object& self) {
+            return rows_of(self, &StudyTable::responses,
+                           &StudyTable::response_names);
+          },
+          "The responses of each evaluation, NaN where it failed, float64 "
+          "(evaluations, responses); a read-only view.")
+      .def_property_readonly(
+          "failures",
+          [](const StudyTable& self) {
+            return column<std::optional<Failure>>(
+                self, [](const EvaluationRecord& r) { return r.failure; });
+          },
+          "Per evaluation why it failed (Failure), or None.")
+      .def_property_readonly(
+          "phases",
+          [](const StudyTable& self) {
+            return column<std::string>(
+                self, [](const EvaluationRecord& r) { return purpose_of(r); });
+          },
+          "Per evaluation what it was for: 'start', 'step', 'difference', ...")
+      .def_readonly("design_names", &StudyTable::design_names,
+                    "Columns of `designs`.")
+      .def_readonly("response_names", &StudyTable::response_names,
+                    "Columns of `responses`.")
+      .def(
+          "__len__", [](const StudyTable& self) { return self.records.size(); },
+          "Number of evaluations.");
+}
+
+void run_study_in(const ReadCase& input, StudyRunOptions options,
+                  const py::object& progress) {
+  if (options.jobs < 1 || options.jobs > kMostJobs) {
+    throw InvalidInput(fmt::format("jobs: found {}, expected 1 to {}",
+                                   options.jobs, kMostJobs));
+  }
+  if (!std::isfinite(options.time_limit) || options.time_limit < 0.0) {
+    throw InvalidInput(
+        fmt::format("time_limit: found {}, expected seconds above 0, or None",
+                    options.time_limit));
+  }
+  options.threads = thread_count();
+  options.warnings = input.warnings;
+  Call call(progress);
+  call.run([&] { run_into_folder(*input.input, options, call); });
+}
+
+}  // namespace
+
+void bind_study(py::module_& module) {
+  py::class_<StudyTable> table(module, "Evaluations",
+                               "The evaluations of a study, from its "
+                               "database, in their order.");
+  bind_columns(table);
+  table.def_property_readonly(
+      "_answer", [](const StudyTable& self) { return self.answer; },
+      "The design of the study's answer; empty without one.");
+  table.def_property_readonly(
+      "_case",
+      [](const StudyTable& self) {
+        return ReadCase{std::make_shared<const Case>(self.input), {}};
+      },
+      "The case as the study keeps it.");
+  module.def("_read_study", &read_table, py::arg("folder"),
+             "The evaluations in FOLDER/study.sqlite; may be running.");
+  module.def(
+      "_run_study",
+      [](const ReadCase& input, const std::string& folder, bool resume,
+         int jobs, double time_limit, bool estimate_errors,
+         const py::object& progress) {
+        run_study_in(input,
+                     {.folder = folder,
+                      .resume = resume,
+                      .jobs = jobs,
+                      .time_limit = time_limit,
+                      .estimate_errors = estimate_errors},
+                     progress);
+      },
+      py::arg("case"), py::arg("folder"), py::arg("resume"), py::arg("jobs"),
+      py::arg("time_limit"), py::arg("estimate_errors"), py::arg("progress"),
+      "Runs the case's study into a folder.");
+}
+
+}  // namespace meniscus::python

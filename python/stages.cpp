@@ -1,0 +1,180 @@
+#include "python/stages.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "fea/stress.h"
+#include "pipeline/adaptation.h"
+#include "python/call.h"
+#include "python/errors.h"
+
+namespace meniscus::python {
+
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+Stage after(Stage stage) {
+  return static_cast<Stage>(static_cast<int>(stage) + 1);
+}
+
+}  // namespace
+
+const std::optional<Failure>& FrozenModel::failure() const {
+  return whole ? whole->failure() : film_alone->reference().failure;
+}
+
+const FilmModel& FrozenModel::film() const {
+  return whole ? whole->film() : *film_alone;
+}
+
+std::shared_ptr<const FrozenModel> freeze_whole(
+    const std::shared_ptr<const Case>& input, double edge_factor,
+    Monitor& monitor) {
+  auto model = std::make_shared<FrozenModel>();
+  model->input = input;
+  model->whole.emplace(*input, ForwardModelOptions{.edge_factor = edge_factor,
+                                                   .monitor = &monitor});
+  return model;
+}
+
+std::shared_ptr<const FrozenModel> freeze_film(
+    const std::shared_ptr<const Case>& input, double edge_factor,
+    Monitor& monitor) {
+  auto model = std::make_shared<FrozenModel>();
+  model->input = input;
+  const EvaluatedCase numbers = evaluate(*input, initial_design(*input));
+  model->film_alone.emplace(FilmModel::freeze(
+      numbers.film_system, {.edge = numbers.fea_edge * edge_factor,
+                            .refinements = input->resolution.refinements,
+                            .monitor = &monitor}));
+  return model;
+}
+
+DesignWork::DesignWork(std::shared_ptr<const FrozenModel> model, VectorX design,
+                       KeepStiffness keep)
+    : model_(std::move(model)), design_(std::move(design)), keep_(keep) {
+  responses_ = VectorX::Constant(
+      static_cast<Eigen::Index>(input().responses.size()), kNothing);
+  staged_.evaluation.design = design_;
+  staged_.evaluation.failure = model_->failure();
+}
+
+void DesignWork::settle_alone() {
+  Evaluation& result = staged_.evaluation;
+  try {
+    staged_.fields.inputs = evaluate(input(), design_);
+  } catch (const InvalidInput& error) {
+    result.failure = Failure{FailureKind::NotANumber, error.what()};
+    return;
+  }
+  FilmState& film = staged_.adjoint.film;
+  film = model_->film().settle(staged_.fields.inputs.film_system,
+                               {.monitor = &Call::of_this_thread()});
+  result.film = film.report;
+  result.failure = film.failure;
+}
+
+bool DesignWork::run(Stage stage) {
+  if (!model_->whole) {
+    if (stage != Stage::Film) {
+      throw InvalidInput(
+          "this film was settled without elements; use meniscus.Model");
+    }
+    settle_alone();
+    return !staged_.evaluation.failure;
+  }
+  const DesignStages stages(*model_->whole);
+  switch (stage) {
+    case Stage::Film:
+      return stages.settle(design_, staged_);
+    case Stage::Mesh:
+      return stages.place_mesh(staged_);
+    case Stage::Solution:
+      return stages.solve(staged_, keep_);
+    default:
+      break;
+  }
+  if (!stages.respond(staged_)) {
+    return false;
+  }
+  responses_ = staged_.evaluation.responses;
+  return true;
+}
+
+void DesignWork::advance(Stage stage) {
+  const std::lock_guard lock(mutex_);
+  while (done_ < stage && !staged_.evaluation.failure) {
+    // Interrupted, the stage is run anew when it is asked for again.
+    run(after(done_));
+    done_ = after(done_);
+    failed_ = done_;
+  }
+}
+
+std::optional<Failure> DesignWork::failure(Stage stage) const {
+  const std::lock_guard lock(mutex_);
+  return failed_ <= stage ? staged_.evaluation.failure : std::nullopt;
+}
+
+void DesignWork::require(Stage stage) const {
+  refuse_failed(failure(stage));
+  if (dropped_) {
+    throw InvalidInput(
+        "this design was evaluated for its responses alone; evaluate it with "
+        "keep='fields' or keep='all'");
+  }
+}
+
+const SurfaceMesh& DesignWork::fine_film() {
+  require(Stage::Film);
+  const std::lock_guard lock(mutex_);
+  if (!fine_film_) {
+    fine_film_ = model_->film().fine_mesh(staged_.adjoint.film.points);
+  }
+  return *fine_film_;
+}
+
+const QuadraticSurface& DesignWork::surface() {
+  require(Stage::Film);
+  const std::lock_guard lock(mutex_);
+  if (!surface_) {
+    surface_ = model_->film().surface(staged_.adjoint.film.points);
+  }
+  return *surface_;
+}
+
+const std::vector<PartStress>& DesignWork::stresses() {
+  require(Stage::Solution);
+  const std::lock_guard lock(mutex_);
+  if (!stresses_) {
+    stresses_ = part_stresses(staged_.fields.mesh, staged_.fields.inputs,
+                              staged_.fields.solution);
+    nodal_.resize(stresses_->size());
+  }
+  return *stresses_;
+}
+
+const StressField& DesignWork::stress(int load_case) {
+  const PartStress& part = stresses()[load_case];
+  const std::lock_guard lock(mutex_);
+  std::unique_ptr<StressField>& nodal = nodal_[load_case];
+  if (nodal == nullptr) {
+    nodal = std::make_unique<StressField>(
+        nodal_stress(staged_.fields.mesh, part.recovered));
+  }
+  return *nodal;
+}
+
+void DesignWork::drop_fields() {
+  dropped_ = true;
+  staged_.fields = {};
+  staged_.adjoint = {};
+}
+
+DesignGradient DesignWork::gradient(const std::vector<int>& wanted) const {
+  return model_->whole->gradient(staged_.evaluation, staged_.fields,
+                                 staged_.adjoint, wanted);
+}
+
+}  // namespace meniscus::python
