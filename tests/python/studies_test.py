@@ -47,7 +47,7 @@ class Studies(PackageTest):
 
         def stop_late(stage, detail, fraction):
             seen.append(stage)
-            if seen.count("study") == 3:
+            if seen.count("minimize") == 3:
                 raise KeyError("enough")
 
         with self.assertRaisesRegex(KeyError, "enough"):
