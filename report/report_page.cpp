@@ -221,9 +221,8 @@ void add_family(const fs::path& folder, const Room& room, Json& page) {
     // Side by side each is small: its surface is enough.
     if (has_file(place / "part_surface.vtp")) {
       std::string note;
-      PageMesh mesh =
-          without_midsides(load_page_part(place / "part_surface.vtp", {}, {}));
-      mesh = fit(std::move(mesh), each, note);
+      const PageMesh mesh =
+          fit(load_page_part(place / "part_surface.vtp", {}, {}), each, note);
       page["parts"].push_back(
           {{"name", member.value("name", "")}, {"mesh", to_json(mesh)}});
       if (has_file(place / "report.html")) {
