@@ -302,17 +302,11 @@ std::string safe_text(const Json& page) {
 
 }  // namespace
 
-bool has_report_page() { return !page_template().empty(); }
-
-void write_report(const fs::path& folder, const ReportOptions& options) {
+std::vector<std::string> write_report(const fs::path& folder,
+                                      const ReportOptions& options) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) {
     throw InvalidInput(fmt::format("there is no folder '{}'", folder.string()));
-  }
-  if (!has_report_page()) {
-    throw InvalidInput(
-        "this program was built without npm and holds no report page; install "
-        "npm (Debian packages nodejs and npm) and build it again");
   }
   std::string data;
   try {
@@ -323,6 +317,11 @@ void write_report(const fs::path& folder, const ReportOptions& options) {
         folder.string(), error.what()));
   }
   const std::string_view page = page_template();
+  if (page.empty()) {
+    return {
+        "no report page: npm was missing when this program was built (Debian "
+        "packages nodejs and npm)"};
+  }
   const std::size_t at = page.find(kPageDataMark);
   std::string text;
   text.reserve(page.size() + data.size());
@@ -330,6 +329,7 @@ void write_report(const fs::path& folder, const ReportOptions& options) {
   text += data;
   text += page.substr(at + kPageDataMark.size());
   write_file(folder / "report.html", text);
+  return {};
 }
 
 }  // namespace meniscus

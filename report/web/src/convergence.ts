@@ -145,7 +145,8 @@ function responseCharts(data: PageData, rows: HistoryRow[]): HTMLElement[] {
   const charts: HTMLElement[] = [];
   for (const [unit, names] of byUnit) {
     const found = names.flatMap((name) => points(rows, words(name), (r) => r.values[name]));
-    if (found.length >= 2) {
+    const shown = names.length === 1 && names[0] === data.case?.study.objective;
+    if (found.length >= 2 && !shown) {
       const what = unit ? `[${unit}]` : "";
       charts.push(
         chart(`Responses ${what} per evaluation.`, {
@@ -184,13 +185,17 @@ export function convergenceSection(data: PageData): HTMLElement | null {
   const all = historyOf(data);
   const rows = all.filter((r) => !r.phase.startsWith("coarse "));
   const failed = rows.filter((r) => r.status !== "ok");
-  const charts = [
-    mismatchChart(data, rows),
-    objectiveChart(data, rows),
-    constraintChart(data, rows),
-    ...(data.result?.sweep ? [] : responseCharts(data, rows)),
-    designChart(data, rows),
-  ].filter((c) => c !== null);
+  const kind = data.case?.study.kind;
+  const searches = kind !== "sweep" && kind !== "tolerance";
+  const charts = searches
+    ? [
+        mismatchChart(data, rows),
+        objectiveChart(data, rows),
+        constraintChart(data, rows),
+        ...responseCharts(data, rows),
+        designChart(data, rows),
+      ].filter((c) => c !== null)
+    : [];
   if (charts.length === 0 && failed.length === 0) {
     return null;
   }
