@@ -18,6 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+}
+
 /// The pictures again, of the answer whose meshes stand in the folder.
 void draw_again(const fs::path& folder, Monitor& monitor) {
   if (!fs::exists(folder / "part_surface.vtp") ||
@@ -28,9 +34,7 @@ void draw_again(const fs::path& folder, Monitor& monitor) {
   const Case input = restore_case(store.meta());
   EvaluationFields fields;
   fields.inputs = evaluate(input, answer_of_run(input, store.all(), folder));
-  for (const std::string& warning : draw(input, fields, folder, monitor)) {
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  }
+  warn(draw(input, fields, folder, monitor));
 }
 
 }  // namespace
@@ -40,7 +44,7 @@ int report_command(const ReportArguments& arguments) {
   TerminalMonitor monitor({.stop = [] { return stop_signal() != 0; }});
   const fs::path folder = arguments.folder;
   try {
-    write_report(folder, {.versions = version_text()});
+    warn(write_report(folder, {.versions = version_text()}));
     if (arguments.pictures) {
       draw_again(folder, monitor);
     }
@@ -48,7 +52,9 @@ int report_command(const ReportArguments& arguments) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
   }
-  std::printf("%s\n", (folder / "report.html").c_str());
+  if (fs::exists(folder / "report.html")) {
+    std::printf("%s\n", (folder / "report.html").c_str());
+  }
   return kExitDone;
 }
 

@@ -14,7 +14,10 @@ void report_aloud(const std::filesystem::path& folder,
   }
   try {
     monitor.progress({.stage = "output", .detail = "writing the report page"});
-    write_report(folder, {.versions = version_text()});
+    for (const std::string& warning :
+         write_report(folder, {.versions = version_text()})) {
+      std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    }
   } catch (const Error& error) {
     std::fprintf(stderr, "warning: no report page: %s\n", error.what());
   }

@@ -221,9 +221,8 @@ void add_family(const fs::path& folder, const Room& room, Json& page) {
     // Side by side each is small: its surface is enough.
     if (has_file(place / "part_surface.vtp")) {
       std::string note;
-      PageMesh mesh =
-          without_midsides(load_page_part(place / "part_surface.vtp", {}, {}));
-      mesh = fit(std::move(mesh), each, note);
+      const PageMesh mesh =
+          fit(load_page_part(place / "part_surface.vtp", {}, {}), each, note);
       page["parts"].push_back(
           {{"name", member.value("name", "")}, {"mesh", to_json(mesh)}});
       if (has_file(place / "report.html")) {
@@ -303,17 +302,11 @@ std::string safe_text(const Json& page) {
 
 }  // namespace
 
-bool has_report_page() { return !page_template().empty(); }
-
-void write_report(const fs::path& folder, const ReportOptions& options) {
+std::vector<std::string> write_report(const fs::path& folder,
+                                      const ReportOptions& options) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) {
     throw InvalidInput(fmt::format("there is no folder '{}'", folder.string()));
-  }
-  if (!has_report_page()) {
-    throw InvalidInput(
-        "this program was built without npm and holds no report page; install "
-        "npm (Debian packages nodejs and npm) and build it again");
   }
   std::string data;
   try {
@@ -324,6 +317,11 @@ void write_report(const fs::path& folder, const ReportOptions& options) {
         folder.string(), error.what()));
   }
   const std::string_view page = page_template();
+  if (page.empty()) {
+    return {
+        "no report page: npm was missing when this program was built (Debian "
+        "packages nodejs and npm)"};
+  }
   const std::size_t at = page.find(kPageDataMark);
   std::string text;
   text.reserve(page.size() + data.size());
@@ -331,6 +329,7 @@ void write_report(const fs::path& folder, const ReportOptions& options) {
   text += data;
   text += page.substr(at + kPageDataMark.size());
   write_file(folder / "report.html", text);
+  return {};
 }
 
 }  // namespace meniscus

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace meniscus {
 
@@ -15,16 +16,14 @@ struct ReportOptions {
   std::string versions;  // of the program and its libraries, for people
 };
 
-/// Whether this program holds the page: it does when npm built it.
-bool has_report_page();
-
 /// Writes FOLDER/report.html from FOLDER/result.json (a run or a family) or
 /// FOLDER/compare.json, and from the meshes, the study and the list of frames
 /// beside it as far as they are there. Meshes are thinned out until the page is
-/// below kMostPageBytes, and the page says so. Throws InvalidInput, naming the
-/// file, when the folder holds no results or damaged ones; IoError when the
-/// page cannot be written. Nothing is left half-written then.
-void write_report(const std::filesystem::path& folder,
-                  const ReportOptions& options = {});
+/// below kMostPageBytes, and the page says so. Returns a warning instead where
+/// this program holds no page. Throws InvalidInput, naming the file, when the
+/// folder holds no results or damaged ones; IoError when the page cannot be
+/// written. Nothing is left half-written then.
+std::vector<std::string> write_report(const std::filesystem::path& folder,
+                                      const ReportOptions& options = {});
 
 }  // namespace meniscus

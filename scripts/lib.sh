@@ -9,11 +9,14 @@ build_packages=(
   libsqlite3-dev libvtk9-dev
   libocct-data-exchange-dev libocct-ocaf-dev
 )
+# The report page is built by npm; where somebody else's Node.js is installed,
+# which has npm in it, Debian's own would not go beside it.
+command -v npm >/dev/null || build_packages+=(nodejs npm)
 run_packages=(xvfb libudunits2-data)
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
   calculix-ccx evolver evolver-doc tetgen admesh git locales python3
-  libpetsc-real-dev openmpi-bin
+  libpetsc-real-dev openmpi-bin chromium
 )
 
 fuzz_packages=(clang libclang-rt-14-dev)

@@ -33,7 +33,12 @@ export function tick(value: number): string {
   if (size !== 0 && (size >= 1e5 || size < 1e-3)) {
     return value.toExponential(0).replace("e+", "e");
   }
-  return String(Number(value.toPrecision(4)));
+  return String(Number(value.toPrecision(6)));
+}
+
+/** Room for words at the left of a plot. */
+export function roomFor(texts: string[]): number {
+  return 24 + 6.6 * Math.max(0, ...texts.map((text) => text.length));
 }
 
 export function row(...charts: (HTMLElement | null)[]): HTMLElement {

@@ -5,7 +5,36 @@ import { h, section } from "./dom";
 import { number, words } from "./format";
 import { historyOf, type HistoryRow } from "./history";
 
-const axisX = { label: "evaluation \u2192", tickFormat: (d: number) => (Number.isInteger(d) ? String(d) : "") };
+/** Whole numbers only, at most a dozen. */
+function axisX(rows: HistoryRow[]): Plot.ScaleOptions {
+  const last = Math.max(1, ...rows.map((r) => r.evaluation));
+  const step = Math.ceil(last / 12);
+  const ticks = Array.from({ length: last }, (_v, k) => k + 1);
+  return {
+    label: "evaluation \u2192",
+    ticks: ticks.filter((k) => k % step === 0 || step === 1),
+    tickFormat: String,
+  } as Plot.ScaleOptions;
+}
+
+/** The stored mismatch, or what the responses of a match come to. */
+function mismatchOf(data: PageData, row: HistoryRow): number | null {
+  const stored = row.values.mismatch;
+  const study = data.case?.study;
+  if (typeof stored === "number" || !study) {
+    return stored ?? null;
+  }
+  const value = (name: string) => row.values[name] ?? NaN;
+  const off = Object.entries(study.targets).map(
+    ([name, target]) => Math.abs(value(name) - target) / Math.abs(target),
+  );
+  for (const name of study.equal.slice(1)) {
+    const a = value(study.equal[0]);
+    const b = value(name);
+    off.push((2 * Math.abs(a - b)) / (Math.abs(a) + Math.abs(b)));
+  }
+  return off.length > 0 ? Math.max(...off) : null;
+}
 
 interface Point {
   evaluation: number;
@@ -43,7 +72,7 @@ function lineAndDots(data: Point[], many: boolean): Plot.Markish[] {
 }
 
 function mismatchChart(data: PageData, rows: HistoryRow[]): HTMLElement | null {
-  const found = points(rows, "mismatch", (r) => r.values.mismatch).filter((p) => p.value > 0);
+  const found = points(rows, "mismatch", (r) => mismatchOf(data, r)).filter((p) => p.value > 0);
   const tolerance = data.case?.study.tolerance;
   if (found.length === 0 || data.case?.study.kind !== "match") {
     return null;
@@ -51,7 +80,7 @@ function mismatchChart(data: PageData, rows: HistoryRow[]): HTMLElement | null {
   return chart(
     `Largest relative mismatch per evaluation (log scale)${tolerance ? `; dashed: the tolerance ${number(tolerance, 2)}` : ""}.`,
     {
-      x: axisX,
+      x: axisX(rows),
       y: { type: "log", label: "\u2191 mismatch", tickFormat: tick, ticks: 6 },
       marks: [
         tolerance ? Plot.ruleY([tolerance], { strokeDasharray: "5 4" }) : null,
@@ -73,7 +102,7 @@ function objectiveChart(data: PageData, rows: HistoryRow[]): HTMLElement | null 
   return found.length < 2
     ? null
     : chart(`Objective ${words(name)} [${unit}] per evaluation${log ? " (log scale)" : ""}.`, {
-        x: axisX,
+        x: axisX(rows),
         y: { type: log ? "log" : "linear", label: `\u2191 ${words(name)} [${unit}]`, tickFormat: tick },
         marks: lineAndDots(found, false),
       });
@@ -101,7 +130,7 @@ function constraintChart(data: PageData, rows: HistoryRow[]): HTMLElement | null
   return found.length < 2
     ? null
     : chart("Constrained responses as parts of their bounds; at 1 (dashed) a bound is just met.", {
-        x: axisX,
+        x: axisX(rows),
         y: { label: "\u2191 response / bound", tickFormat: tick },
         symbol: { legend: true },
         marks: [Plot.ruleY([1], { strokeDasharray: "5 4" }), ...lineAndDots(found, true)],
@@ -116,11 +145,12 @@ function responseCharts(data: PageData, rows: HistoryRow[]): HTMLElement[] {
   const charts: HTMLElement[] = [];
   for (const [unit, names] of byUnit) {
     const found = names.flatMap((name) => points(rows, words(name), (r) => r.values[name]));
-    if (found.length >= 2) {
+    const shown = names.length === 1 && names[0] === data.case?.study.objective;
+    if (found.length >= 2 && !shown) {
       const what = unit ? `[${unit}]` : "";
       charts.push(
         chart(`Responses ${what} per evaluation.`, {
-          x: axisX,
+          x: axisX(rows),
           y: { label: `\u2191 ${names.length === 1 ? words(names[0]) : "response"} ${what}`, tickFormat: tick },
           symbol: { legend: names.length > 1 },
           marks: lineAndDots(found, names.length > 1),
@@ -143,7 +173,7 @@ function designChart(data: PageData, rows: HistoryRow[]): HTMLElement | null {
   return found.length < 2
     ? null
     : chart("Design variables between their lower (0 %) and upper (100 %) bound.", {
-        x: axisX,
+        x: axisX(rows),
         y: { label: "\u2191 place between the bounds [%]", domain: [0, 100] },
         symbol: { legend: true },
         marks: lineAndDots(found, true),
@@ -155,13 +185,17 @@ export function convergenceSection(data: PageData): HTMLElement | null {
   const all = historyOf(data);
   const rows = all.filter((r) => !r.phase.startsWith("coarse "));
   const failed = rows.filter((r) => r.status !== "ok");
-  const charts = [
-    mismatchChart(data, rows),
-    objectiveChart(data, rows),
-    constraintChart(data, rows),
-    ...(data.result?.sweep ? [] : responseCharts(data, rows)),
-    designChart(data, rows),
-  ].filter((c) => c !== null);
+  const kind = data.case?.study.kind;
+  const searches = kind !== "sweep" && kind !== "tolerance";
+  const charts = searches
+    ? [
+        mismatchChart(data, rows),
+        objectiveChart(data, rows),
+        constraintChart(data, rows),
+        ...responseCharts(data, rows),
+        designChart(data, rows),
+      ].filter((c) => c !== null)
+    : [];
   if (charts.length === 0 && failed.length === 0) {
     return null;
   }

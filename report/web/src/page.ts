@@ -23,14 +23,21 @@ function notes(data: PageData): HTMLElement | null {
   return texts.length > 0 ? h("ul", { class: "hint" }, ...texts.map((t) => h("li", {}, t))) : null;
 }
 
+const MOST_FAULTS = 50;
+
 function faults(data: PageData): HTMLElement | null {
   const messages = data.findings?.messages ?? [];
   return messages.length > 0
     ? h(
         "div",
         {},
-        h("p", {}, `The closed surface could not be filled with elements; red marks show where (${messages.length} found):`),
-        h("ul", {}, ...messages.slice(0, 20).map((m) => h("li", {}, m))),
+        h("p", {}, `The closed surface could not be filled with elements; red marks show where (${messages.length} found).`),
+        h(
+          "details",
+          {},
+          h("summary", {}, messages.length > MOST_FAULTS ? `The first ${MOST_FAULTS} of them` : "All of them"),
+          h("ul", {}, ...messages.slice(0, MOST_FAULTS).map((m) => h("li", {}, m))),
+        ),
       )
     : null;
 }
@@ -42,8 +49,8 @@ export function showPage(root: HTMLElement, data: PageData): void {
     section(
       "view",
       data.kind === "run" ? "The part" : "The parts, with one camera and one colour scale",
-      faults(data),
       view3d(data, units),
+      faults(data),
       notes(data),
     ),
     comparisonSection(data),

@@ -1,5 +1,5 @@
 import * as Plot from "@observablehq/plot";
-import { chart, row, tick } from "./charts";
+import { chart, roomFor, row, tick } from "./charts";
 import type { PageData } from "./data";
 import { h, section, table } from "./dom";
 import { number, plusMinus, quantity, words } from "./format";
@@ -131,7 +131,7 @@ export function toleranceSection(data: PageData): HTMLElement | null {
     shares.length > 0
       ? row(
           chart("Which design variable the scatter of each response comes from.", {
-            marginLeft: 140,
+            marginLeft: roomFor(shares.map((s) => s.response)),
             x: { label: "share of the variance [%] \u2192" },
             y: { label: null },
             color: { legend: true },
@@ -183,7 +183,7 @@ export function sensitivitySection(data: PageData): HTMLElement | null {
     row(
       bars.length > 0
         ? chart("Change of a response, in percent of its value, per 1 % of a design variable's range.", {
-            marginLeft: 150,
+            marginLeft: roomFor(bars.map((b) => `${b.response}, by ${b.variable}`)),
             height: Math.min(700, 90 + 20 * bars.slice(0, 30).length),
             x: { label: "change [%] \u2192", tickFormat: tick },
             y: { label: null, domain: bars.slice(0, 30).map((b) => `${b.response}, by ${b.variable}`) },

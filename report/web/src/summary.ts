@@ -73,7 +73,7 @@ export function keyFigures(data: PageData): HTMLElement | null {
       cards.push(card(number(first.safety_factor.smallest, 3), "safety against yield"));
     }
   }
-  if (result.evaluations !== undefined && result.seconds?.total !== undefined) {
+  if (result.evaluations && result.seconds?.total !== undefined) {
     cards.push(card(seconds(result.seconds.total), `${count(result.evaluations)} evaluations`));
   }
   return cards.length > 0 ? h("dl", { class: "cards" }, ...cards) : null;
@@ -101,11 +101,11 @@ export function answerSection(data: PageData): HTMLElement | null {
   const unitOf = (name: string) => unitText(data.case?.responses.find((r) => r.name === name)?.unit ?? "");
   return section(
     "answer",
-    "The answer",
+    responses.length > 0 ? "The answer" : "The design",
     designRows.length > 0
       ? table(
           "Design variables",
-          [{ head: "design variable" }, { head: "answer", numeric }, { head: "mesh error", numeric }, { head: "at the start", numeric }, { head: "bounds", numeric }],
+          [{ head: "design variable" }, { head: responses.length > 0 ? "answer" : "value", numeric }, { head: "mesh error", numeric }, { head: "at the start", numeric }, { head: "bounds", numeric }],
           designRows,
         )
       : null,
@@ -165,11 +165,11 @@ export function checksSection(data: PageData): HTMLElement | null {
       [mark(f.residual <= f.residual_bound), "film's forces in balance", `residual ${number(f.residual, 2)} ${result.units.force} (bound ${number(f.residual_bound, 2)})`],
     );
   }
-  if (result.tet) {
+  if (result.tet && result.tet.elements > 0) {
     const good = result.tet.min_dihedral_deg > 5 && result.tet.max_dihedral_deg < 175;
     rows.push([mark(good), "shape of the elements", `${count(result.tet.elements)} elements, angles ${number(result.tet.min_dihedral_deg, 3)}\u00b0 to ${number(result.tet.max_dihedral_deg, 4)}\u00b0`]);
   }
-  if (result.fea) {
+  if (result.fea && result.fea.dofs > 0) {
     rows.push([mark(result.fea.reaction_imbalance < 1e-6), "reactions balance the loads", `off by ${number(result.fea.reaction_imbalance, 2)} of them; ${count(result.fea.dofs)} unknowns`]);
   }
   if (result.element_errors) {
