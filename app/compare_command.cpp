@@ -12,8 +12,8 @@
 #include "app/versions.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "pipeline/imported_part.h"
 #include "pipeline/part_comparison.h"
-#include "pipeline/stl_part.h"
 #include "pipeline/text_table.h"
 
 namespace meniscus {
@@ -21,10 +21,6 @@ namespace meniscus {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_stl(const fs::path& path) {
-  return path.extension() == ".stl" || path.extension() == ".STL";
-}
 
 /// Labels flush left in a table whose columns are flush right.
 std::string for_people(std::vector<TextRow> table) {
@@ -42,7 +38,7 @@ std::string for_people(std::vector<TextRow> table) {
 std::vector<PartFigures> load_parts(const CompareArguments& arguments,
                                     Monitor& monitor, UnitSystem& units) {
   std::vector<PartFigures> parts;
-  if (is_stl(arguments.parts.front())) {
+  if (is_part_file(arguments.parts.front())) {
     throw InvalidInput(
         "the first part must be a run: a file takes material, supports and "
         "loads from it");
@@ -52,8 +48,8 @@ std::vector<PartFigures> load_parts(const CompareArguments& arguments,
   parts.push_back(first.figures);
   for (std::size_t k = 1; k < arguments.parts.size(); ++k) {
     const fs::path path = arguments.parts[k];
-    if (is_stl(path)) {
-      parts.push_back(stl_part_figures(path, first, &monitor));
+    if (is_part_file(path)) {
+      parts.push_back(imported_part_figures(path, first, &monitor));
       continue;
     }
     const RunPart run = load_run_part(path, &monitor);

@@ -13,15 +13,13 @@
 #include "mesh_tet/tet_quality.h"
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/adaptation.h"
+#include "pipeline/film_options.h"
 #include "pipeline/responses.h"
 #include "pipeline/walls.h"
 
 namespace meniscus {
 
 namespace {
-
-/// So that the mid-sides of halved facets are on the film too.
-constexpr int kAdaptiveRefinements = 2;
 
 // TetGen now and then leaves a flat element; another edge, and it does not.
 constexpr std::array<double, 3> kEdgeFactors = {1.0, 1.1, 0.9};
@@ -84,13 +82,9 @@ bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
                                      Monitor& monitor) {
   const Timer timer;
   monitor.progress({.stage = "film", .detail = "settling the start"});
-  int refinements = input.resolution.refinements;
-  if (input.analysis.adapt) {
-    refinements = std::max(refinements, kAdaptiveRefinements);
-  }
   film.emplace(FilmModel::freeze(inputs.film_system,
                                  {.edge = inputs.fea_edge * options.edge_factor,
-                                  .refinements = refinements,
+                                  .refinements = film_refinements(input),
                                   .monitor = &monitor}));
   frozen.film = film->reference().report;
   frozen.failure = film->reference().failure;
