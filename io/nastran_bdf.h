@@ -4,7 +4,7 @@
 /// Nodes and elements are numbered from 1 in the mesh's order; element n of
 /// region r has property and material r + 1. Load case k is SUBCASE k. Node
 /// sets of the surfaces are SETs of the case control, named in comments. Long
-/// fields of 16 characters carry 12 digits or more. What belongs to nothing in
+/// fields of 16 characters carry 11 digits or more. What belongs to nothing in
 /// the file is left out: rotations are held by GRDSET.
 #pragma once
 
@@ -28,7 +28,7 @@ void write_nastran_bdf(const std::filesystem::path& path, const TetMesh& mesh,
                        const AnalysisDeck& deck);
 
 /// A real number as Nastran reads it, at most 16 characters, with as many
-/// digits as these hold (12 or more).
+/// digits as these hold: 11 or more, 10 beyond 1e99 and below 1e-99.
 std::string nastran_real(double value);
 
 }  // namespace meniscus

@@ -45,6 +45,8 @@ void fe(ExportJob& job, const fs::path& file) {
   comments.push_back(fmt::format("energy of the films and fields: {} ({})",
                                  film.state.report.energy,
                                  job.input().units.unit_of(Dimension::Energy)));
+  comments.emplace_back(
+      "'m 0; g' sets the pressures that 'hessian' asks for, and moves nothing");
   write_file(file, film.model.datafile(film.state, job.numbers().film_system,
                                        comments));
 }
