@@ -20,6 +20,8 @@ namespace {
 // Longest edge over the wanted one: halves of it are not below two thirds.
 constexpr double kLongestEdge = 4.0 / 3.0;
 
+constexpr const char* kNameless = "unnamed";  // as readers call it
+
 /// The facet's parts where some of its edges have a point half way (-1: none),
 /// which stand at (01), (12), (20).
 std::vector<Triangle> parts_of(const Triangle& t, std::array<int, 3> mid) {
@@ -78,11 +80,17 @@ void check_names(const SurfaceMesh& surface, const EvaluatedCase& numbers,
                  const std::string& path) {
   for (const std::string& name : surfaces_used(numbers)) {
     if (surface.label_of(name) < 0) {
+      const bool nameless =
+          surface.labels.size() == 1 && surface.labels[0] == kNameless;
       throw InvalidInput(fmt::format(
-          "{}: no face '{}', which the run's loads and supports name; there "
-          "are {}; write its facets as `solid {}` of an ASCII STL file, or as "
-          "group `g {}` of an OBJ file (a binary STL file has no names)",
-          path, name, fmt::join(surface.labels, ", "), name, name));
+          "{}: no face '{}', which the run's loads and supports name; {}; "
+          "write its facets as `solid {}` of an ASCII STL file or as group "
+          "`g {}` of an OBJ file",
+          path, name,
+          nameless
+              ? "the file has no names (binary STL never has)"
+              : fmt::format("there are {}", fmt::join(surface.labels, ", ")),
+          name, name));
     }
   }
 }
