@@ -13,9 +13,9 @@
 #include "app/versions.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "pipeline/imported_part.h"
 #include "pipeline/part_comparison.h"
 #include "pipeline/results.h"
-#include "pipeline/stl_part.h"
 #include "pipeline/text_table.h"
 
 namespace meniscus {
@@ -23,10 +23,6 @@ namespace meniscus {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_stl(const fs::path& path) {
-  return path.extension() == ".stl" || path.extension() == ".STL";
-}
 
 /// Labels flush left in a table whose columns are flush right.
 std::string for_people(std::vector<TextRow> table) {
@@ -52,7 +48,7 @@ std::vector<PartFigures> load_parts(const CompareArguments& arguments,
                                     Monitor& monitor, UnitSystem& units) {
   const fs::path folder = arguments.out;
   std::vector<PartFigures> parts;
-  if (is_stl(arguments.parts.front())) {
+  if (is_part_file(arguments.parts.front())) {
     throw InvalidInput(
         "the first part must be a run: a file takes material, supports and "
         "loads from it");
@@ -64,9 +60,9 @@ std::vector<PartFigures> load_parts(const CompareArguments& arguments,
   keep_surface(first.input, first.fields, folder, parts);
   for (std::size_t k = 1; k < arguments.parts.size(); ++k) {
     const fs::path path = arguments.parts[k];
-    if (is_stl(path)) {
+    if (is_part_file(path)) {
       EvaluationFields fields;
-      parts.push_back(stl_part_figures(path, first, &monitor, &fields));
+      parts.push_back(imported_part_figures(path, first, &monitor, &fields));
       keep_surface(first.input, fields, folder, parts);
       continue;
     }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -13,25 +14,60 @@
 
 namespace meniscus {
 
-int export_command(const ExportArguments& arguments) {
-  catch_stop_signals();
-  TerminalMonitor monitor({.stop = [] { return stop_signal() != 0; }});
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One run; what goes wrong with it is told. Returns the exit code.
+int export_run(const fs::path& run, const ExportOptions& options) {
   try {
-    const std::filesystem::path file =
-        export_part(arguments.run_folder, {.format = arguments.format,
-                                           .edge = arguments.edge,
-                                           .out = arguments.out,
-                                           .program_version = kProgramVersion,
-                                           .monitor = &monitor});
+    const fs::path file = export_part(run, options);
     std::printf("%s\n", file.string().c_str());
+    return kExitDone;
   } catch (const IoError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
+  } catch (const InvalidInput& error) {
+    std::fprintf(stderr, "%s: %s\n", run.c_str(), error.what());
+    return kExitWrongInput;
   } catch (const MeshError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
+    std::fprintf(stderr, "%s: %s\n", run.c_str(), error.what());
+    return kExitNoSolution;
+  } catch (const SolverError& error) {
+    std::fprintf(stderr, "%s: %s\n", run.c_str(), error.what());
     return kExitNoSolution;
   }
-  return kExitDone;
+}
+
+}  // namespace
+
+int export_command(const ExportArguments& arguments) {
+  catch_stop_signals();
+  TerminalMonitor monitor({.stop = [] { return stop_signal() != 0; }});
+  const fs::path folder = arguments.run_folder;
+  std::vector<fs::path> runs;
+  try {
+    runs = runs_in(folder);
+  } catch (const IoError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+  if (!arguments.out.empty() && runs.front() != folder) {
+    throw InvalidInput(fmt::format(
+        "{} is a family, whose {} members are written into their folders; "
+        "--out takes one of them: give {}",
+        folder.string(), runs.size(), runs.front().string()));
+  }
+  int code = kExitDone;
+  for (const fs::path& run : runs) {
+    // The worst that a member came to; the others are written all the same.
+    code = std::max(code, export_run(run, {.format = arguments.format,
+                                           .edge = arguments.edge,
+                                           .out = arguments.out,
+                                           .program_version = kProgramVersion,
+                                           .monitor = &monitor}));
+  }
+  return code;
 }
 
 }  // namespace meniscus

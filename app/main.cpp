@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/thread_waits.h"
+#include "pipeline/export_part.h"
 #include "pipeline/ordered_jobs.h"
 
 namespace {
@@ -64,6 +65,25 @@ CLI::Validator positive() {
                    : fmt::format("'{}' is no number above 0", text);
       },
       "POSITIVE");
+}
+
+/// "stl (surface, binary, for printing), ..."
+std::string formats_text() {
+  std::vector<std::string> texts;
+  for (const meniscus::ExportFormat& format : meniscus::export_formats()) {
+    texts.push_back(fmt::format("{} ({})", format.name, format.what));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string no_export_format(const std::string& name) {
+  for (const meniscus::ExportFormat& format : meniscus::export_formats()) {
+    if (format.name == name) {
+      return "";
+    }
+  }
+  return fmt::format("'{}' is no format; there are {}", name,
+                     meniscus::export_format_names());
 }
 
 int run_program(int argc, char** argv) {
@@ -178,13 +198,14 @@ int run_program(int argc, char** argv) {
   meniscus::ExportArguments export_arguments;
   CLI::App* write =
       app.add_subcommand("export", "write a run's part for another program");
-  write->add_option("RUN", export_arguments.run_folder, "results folder")
-      ->required();
   write
-      ->add_option("--format", export_arguments.format,
-                   "stl (surface), inp (CalculiX), vtu (ParaView)")
+      ->add_option("RUN", export_arguments.run_folder,
+                   "results folder; of a family all members are written")
+      ->required();
+  write->add_option("--format", export_arguments.format, formats_text())
       ->required()
-      ->check(CLI::IsMember({"stl", "step", "step-faceted", "inp", "vtu"}));
+      ->type_name("FORMAT")
+      ->check(no_export_format);
   write
       ->add_option("--edge", export_arguments.edge,
                    "settle and mesh again at this edge length")
@@ -200,8 +221,8 @@ int run_program(int argc, char** argv) {
       "compare", "parts side by side: mass, stiffness, stress, uniformity");
   compare
       ->add_option("PART", compare_arguments.parts,
-                   "results folders; after the first also ASCII STL files with "
-                   "a solid for each named face")
+                   "results folders; after the first also files: ASCII STL "
+                   "with a solid for each named face, OBJ with a group")
       ->required()
       ->expected(2, 100);
   compare->add_option("--out", compare_arguments.out,

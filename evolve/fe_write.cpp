@@ -19,8 +19,13 @@ constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
 
 class FeWriter {
  public:
-  explicit FeWriter(const FilmComplex& complex)
-      : complex_(complex), places_(complex) {}
+  FeWriter(const FilmComplex& complex, const std::vector<std::string>& comments)
+      : complex_(complex), places_(complex) {
+    add("// Written by Meniscus.\n");
+    for (const std::string& line : comments) {
+      add("// {}\n", one_line(line));
+    }
+  }
 
   std::string write() {
     number_edges();
@@ -94,8 +99,7 @@ class FeWriter {
           "gravity is ({}, {}, {}); a datafile has it along z only",
           complex_.gravity.x(), complex_.gravity.y(), complex_.gravity.z()));
     }
-    add("// Written by Meniscus.\ngravity_constant {}\n",
-        -complex_.gravity.z());
+    add("gravity_constant {}\n", -complex_.gravity.z());
     add("integral_order_1d {}\n", 2 * complex_.line_points - 1);
     add("gap_constant {}\n", complex_.gap_constant);
     if (complex_.volume_rule == VolumeRule::Cone) {
@@ -380,8 +384,9 @@ class FeWriter {
 
 }  // namespace
 
-std::string fe_text(const FilmComplex& complex) {
-  return FeWriter(complex).write();
+std::string fe_text(const FilmComplex& complex,
+                    const std::vector<std::string>& comments) {
+  return FeWriter(complex, comments).write();
 }
 
 }  // namespace meniscus

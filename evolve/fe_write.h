@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "evolve/film_complex.h"
 
@@ -13,9 +14,12 @@ namespace meniscus {
 /// parametric curves become boundaries; on rectangles and polygons vertices
 /// and edges are written as fixed. Vertices inside caps are written as fixed.
 ///
+/// `comments`: lines at the head.
+///
 /// Throws InvalidInput for what a datafile cannot say: gravity that does not
 /// point down, vertices that slide on rectangles or polygons, a held quantity
 /// over one body's volume, an expression nested too deep.
-std::string fe_text(const FilmComplex& complex);
+std::string fe_text(const FilmComplex& complex,
+                    const std::vector<std::string>& comments = {});
 
 }  // namespace meniscus

@@ -352,9 +352,14 @@ SurfaceMesh FilmModel::fine_mesh(const Points& points) const {
   return mesh;
 }
 
-SurfaceMesh FilmModel::boundary(const Points& points) const {
+SurfaceMesh FilmModel::solids(const Points& points) const {
   SurfaceMesh mesh = fine_mesh(points);
   keep_solids(impl_->complex, impl_->regions, mesh);
+  return mesh;
+}
+
+SurfaceMesh FilmModel::boundary(const Points& points) const {
+  SurfaceMesh mesh = solids(points);
   drop_interfaces(mesh);
   return mesh;
 }

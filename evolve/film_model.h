@@ -113,9 +113,19 @@ class FilmModel {
   /// pictures.
   SurfaceMesh fine_mesh(const Points& points) const;
 
-  /// Those of them that bound material, for the files that printers read:
-  /// closed surfaces without interfaces. Points as fine_mesh().
+  /// Those of them that bound material, with the regions on their sides, as
+  /// surface() has them. Points as fine_mesh().
+  SurfaceMesh solids(const Points& points) const;
+
+  /// The same without interfaces between regions: closed surfaces.
   SurfaceMesh boundary(const Points& points) const;
+
+  /// A state of settle(system) as a Surface Evolver datafile: the fine mesh on
+  /// the design's curves, its tensions, volumes, pressures and fields, caps as
+  /// fixed facets of tension 0. `comments`: lines at its head. Throws as
+  /// transpose() does for the state, and as fe_text().
+  std::string datafile(const FilmState& state, const FilmSystem& system,
+                       const std::vector<std::string>& comments = {}) const;
 
   /// Vertices of the fine mesh on a curve; none for a curve that the model has
   /// not.

@@ -11,6 +11,7 @@
 #include "io/calculix_material.h"
 #include "io/calculix_names.h"
 #include "io/calculix_springs.h"
+#include "io/file_notes.h"
 
 namespace meniscus {
 
@@ -38,7 +39,7 @@ class DeckWriter {
   }
 
   std::string text() {
-    check();
+    check_deck(mesh_, deck_);
     head();
     nodes();
     elements();
@@ -62,70 +63,6 @@ class DeckWriter {
   Out out() { return std::back_inserter(buffer_); }
   void add(const std::string& text) {
     buffer_.append(text.data(), text.data() + text.size());
-  }
-
-  int label(const std::string& surface, const DeckStep& step) const {
-    const int id = mesh_.label_of(surface);
-    if (id < 0) {
-      throw InvalidInput(fmt::format(
-          "step '{}' of the deck names the surface '{}'; the mesh has: {}",
-          step.name, surface, fmt::join(mesh_.labels, ", ")));
-    }
-    return id;
-  }
-
-  void check() const {
-    const int regions =
-        mesh_.element_region.empty()
-            ? 0
-            : 1 + *std::max_element(mesh_.element_region.begin(),
-                                    mesh_.element_region.end());
-    if (static_cast<int>(deck_.materials.size()) != regions) {
-      throw InvalidInput(fmt::format(
-          "the deck has {} materials for {} regions; give one per region",
-          deck_.materials.size(), regions));
-    }
-    for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
-      const DeckStep& step = deck_.steps[s];
-      const auto size = static_cast<std::size_t>(step.nodal_forces.size());
-      if (size != 0 && size != 3 * mesh_.nodes.size()) {
-        throw InvalidInput(fmt::format(
-            "step '{}' of the deck has {} nodal forces; {} nodes need {}",
-            step.name, size, mesh_.nodes.size(), 3 * mesh_.nodes.size()));
-      }
-      const auto heated =
-          static_cast<std::size_t>(step.temperature_change.size());
-      if (heated != 0 && heated != mesh_.nodes.size()) {
-        throw InvalidInput(fmt::format(
-            "step '{}' of the deck has {} temperatures for {} nodes", step.name,
-            heated, mesh_.nodes.size()));
-      }
-      if (step.supports.empty() && deck_.equations.empty() &&
-          !have_springs(deck_.springs, s)) {
-        throw InvalidInput(fmt::format(
-            "step '{}' of the deck has no support; fix a surface", step.name));
-      }
-      for (const DeckSupport& support : step.supports) {
-        check_support(support, step);
-      }
-    }
-  }
-
-  void check_support(const DeckSupport& support, const DeckStep& step) const {
-    const std::vector<int> nodes = nodes_of(support, step);
-    const int count = static_cast<int>(mesh_.nodes.size());
-    if (nodes.empty()) {
-      throw InvalidInput(
-          fmt::format("step '{}' of the deck fixes no node of '{}'", step.name,
-                      support.surface));
-    }
-    for (const int node : nodes) {
-      if (node < 0 || node >= count) {
-        throw InvalidInput(fmt::format(
-            "step '{}' of the deck fixes node {}; the mesh has {} nodes",
-            step.name, node, count));
-      }
-    }
   }
 
   void head() {
@@ -170,22 +107,10 @@ class DeckWriter {
     }
   }
 
-  std::vector<int> surface_nodes(int id) const {
-    std::vector<int> ids;
-    for (int f = 0; f < mesh_.face_count(); ++f) {
-      if (mesh_.face_label[static_cast<std::size_t>(f)] == id) {
-        const auto face = mesh_.face(f);
-        ids.insert(ids.end(), face.begin(), face.end());
-      }
-    }
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-    return ids;
-  }
-
   void surfaces() {
     for (std::size_t s = 0; s < names_.size(); ++s) {
-      const std::vector<int> ids = surface_nodes(static_cast<int>(s));
+      const std::vector<int> ids =
+          deck_surface_nodes(mesh_, static_cast<int>(s));
       if (!ids.empty()) {
         fmt::format_to(out(), "*NSET, NSET={}\n", names_[s]);
         write_ids(out(), ids);
@@ -230,20 +155,13 @@ class DeckWriter {
     }
   }
 
-  std::vector<int> nodes_of(const DeckSupport& support,
-                            const DeckStep& step) const {
-    if (support.surface.empty()) {
-      return support.nodes;
-    }
-    return surface_nodes(label(support.surface, step));
-  }
-
   /// Sets belong to the model: CalculiX takes none after the first step.
   void supported_sets() {
     for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
       std::set<int> nodes;
       for (const DeckSupport& support : deck_.steps[s].supports) {
-        const std::vector<int> ids = nodes_of(support, deck_.steps[s]);
+        const std::vector<int> ids =
+            supported_nodes(mesh_, support, deck_.steps[s]);
         nodes.insert(ids.begin(), ids.end());
       }
       fmt::format_to(out(), "*NSET, NSET={}\n", supported_name(s));
@@ -260,7 +178,7 @@ class DeckWriter {
           targets.push_back(std::to_string(node + 1));
         }
       } else {
-        const int id = label(support.surface, step);
+        const int id = surface_of_step(mesh_, support.surface, step);
         targets.push_back(names_[static_cast<std::size_t>(id)]);
       }
       const std::array<bool, 3> fixed = {support.fix_x, support.fix_y,
@@ -289,12 +207,13 @@ class DeckWriter {
     fmt::format_to(out(), "*DLOAD, OP=NEW\n");
     body_loads(step);
     for (const DeckPressure& load : step.pressures) {
-      const int id = label(load.surface, step);
+      const int id = surface_of_step(mesh_, load.surface, step);
       for (int f = 0; f < mesh_.face_count(); ++f) {
         if (mesh_.face_label[static_cast<std::size_t>(f)] == id) {
           fmt::format_to(out(), "{}, P{}, {:.12e}\n",
                          mesh_.face_element[static_cast<std::size_t>(f)] + 1,
-                         face_number(f), load.pressure);
+                         calculix_face(corner_off_face(mesh_, f)),
+                         load.pressure);
         }
       }
     }
@@ -330,21 +249,6 @@ class DeckWriter {
     for (Eigen::Index i = 0; i < step.temperature_change.size(); ++i) {
       fmt::format_to(out(), "{}, {:.12e}\n", i + 1, step.temperature_change[i]);
     }
-  }
-
-  int face_number(int f) const {
-    const auto face = mesh_.face(f);
-    const auto element =
-        mesh_.element(mesh_.face_element[static_cast<std::size_t>(f)]);
-    for (int corner = 0; corner < 4; ++corner) {
-      if (std::find(face.begin(), face.begin() + 3, element[corner]) ==
-          face.begin() + 3) {
-        return calculix_face(corner);
-      }
-    }
-    throw MeshError(fmt::format(
-        "boundary face {} does not belong to the element {} behind it", f,
-        mesh_.face_element[static_cast<std::size_t>(f)]));
   }
 
   void step(const DeckStep& step, std::size_t number) {

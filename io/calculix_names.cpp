@@ -1,6 +1,5 @@
 #include "io/calculix_names.h"
 
-#include <algorithm>
 #include <cctype>
 #include <set>
 
@@ -41,13 +40,6 @@ std::vector<std::string> deck_names(const std::vector<std::string>& names) {
     result.push_back(candidate);
   }
   return result;
-}
-
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-  return text;
 }
 
 }  // namespace meniscus

@@ -1,43 +1,14 @@
 #include "io/calculix_springs.h"
 
-#include <algorithm>
 #include <iterator>
 
 #include <fmt/format.h>
-
-#include "core/error.h"
 
 namespace meniscus {
 
 namespace {
 
 using Out = std::back_insert_iterator<fmt::memory_buffer>;
-
-bool acts(const DeckSprings& set, std::size_t step) {
-  return std::find(set.steps.begin(), set.steps.end(),
-                   static_cast<int>(step)) != set.steps.end();
-}
-
-void check(const TetMesh& mesh, const DeckSprings& set, std::size_t number) {
-  if (!(set.stiffness > 0.0)) {
-    throw InvalidInput(fmt::format(
-        "springs {} of the deck have stiffness {}; it must be above 0", number,
-        set.stiffness));
-  }
-  const int count = static_cast<int>(mesh.nodes.size());
-  for (const DeckSprings::Spring& spring : set.springs) {
-    const bool fits =
-        spring.nodes.size() == spring.coefficients.size() &&
-        std::all_of(spring.nodes.begin(), spring.nodes.end(),
-                    [&](int node) { return node >= 0 && node < count; });
-    if (!fits) {
-      throw InvalidInput(fmt::format(
-          "a spring of set {} of the deck has {} nodes, {} coefficients; the "
-          "mesh has {} nodes",
-          number, spring.nodes.size(), spring.coefficients.size(), count));
-    }
-  }
-}
 
 /// -d + g + sum c . u = 0: component 1 of the spring's node is what the spring
 /// feels, component 2 its ground.
@@ -70,7 +41,6 @@ std::string springs_text(const TetMesh& mesh,
   int element = mesh.element_count() + 1;
   for (std::size_t s = 0; s < springs.size(); ++s) {
     const DeckSprings& set = springs[s];
-    check(mesh, set, s + 1);
     const int first = node;
     fmt::format_to(out, "*NODE, NSET=SPRING_NODES_{}\n", s + 1);
     for (const DeckSprings::Spring& spring : set.springs) {
@@ -97,14 +67,9 @@ std::string springs_boundary_text(const std::vector<DeckSprings>& springs,
   for (std::size_t s = 0; s < springs.size(); ++s) {
     // A ground that is not held follows, and the spring pulls with nothing.
     text += fmt::format("SPRING_NODES_{}, {}, 3\n", s + 1,
-                        acts(springs[s], step) ? 2 : 3);
+                        acts_in(springs[s], step) ? 2 : 3);
   }
   return text;
-}
-
-bool have_springs(const std::vector<DeckSprings>& springs, std::size_t step) {
-  return std::any_of(springs.begin(), springs.end(),
-                     [step](const DeckSprings& s) { return acts(s, step); });
 }
 
 }  // namespace meniscus

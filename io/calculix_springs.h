@@ -8,16 +8,12 @@
 namespace meniscus {
 
 /// Nodes, elements, stiffnesses and equations. Springs' nodes and elements are
-/// numbered after the mesh's. Throws InvalidInput where a spring does not fit
-/// the mesh or has no stiffness.
+/// numbered after the mesh's. The springs went through check_deck().
 std::string springs_text(const TetMesh& mesh,
                          const std::vector<DeckSprings>& springs);
 
 /// The lines of *BOUNDARY that let the step's springs act and no others.
 std::string springs_boundary_text(const std::vector<DeckSprings>& springs,
                                   std::size_t step);
-
-/// Some springs act in the step.
-bool have_springs(const std::vector<DeckSprings>& springs, std::size_t step);
 
 }  // namespace meniscus

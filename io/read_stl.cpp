@@ -3,6 +3,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <map>
 
 #include <fmt/format.h>
@@ -13,6 +15,9 @@
 namespace meniscus {
 
 namespace {
+
+constexpr std::size_t kHeadBytes = 84;   // of a binary file
+constexpr std::size_t kFacetBytes = 50;  // normal, corners, two bytes more
 
 class Reader {
  public:
@@ -33,6 +38,9 @@ class Reader {
   void solid();
   void facet();
   int point();
+  int known(const std::array<double, 3>& x);
+  void add_facet(int a, int b, int c);
+  SurfaceMesh binary();
 
   const std::string& text_;
   const std::string& path_;
@@ -99,6 +107,10 @@ int Reader::point() {
   for (double& coordinate : x) {
     coordinate = number();
   }
+  return known(x);
+}
+
+int Reader::known(const std::array<double, 3>& x) {
   const auto [entry, is_new] =
       known_.emplace(x, static_cast<int>(mesh_.points.size()));
   if (is_new) {
@@ -120,10 +132,48 @@ void Reader::facet() {
   const int c = point();
   expect("endloop");
   expect("endfacet");
+  add_facet(a, b, c);
+}
+
+void Reader::add_facet(int a, int b, int c) {
   if (a != b && b != c && c != a) {
     mesh_.facets.push_back({a, b, c});
     mesh_.facet_label.push_back(static_cast<int>(mesh_.labels.size()) - 1);
   }
+}
+
+SurfaceMesh Reader::binary() {
+  mesh_.labels = {"unnamed"};
+  for (std::size_t at = kHeadBytes; at < text_.size(); at += kFacetBytes) {
+    std::array<float, 9> raw{};
+    std::memcpy(raw.data(), text_.data() + at + 3 * sizeof(float), sizeof raw);
+    std::array<int, 3> corner{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::array<double, 3> x{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        x[i] = raw[3 * k + i] + 0.0;  // -0 is 0
+        if (!std::isfinite(x[i])) {
+          throw InvalidInput(fmt::format(
+              "{}: facet {} of the binary STL file has a coordinate that is "
+              "not finite",
+              path_, (at - kHeadBytes) / kFacetBytes));
+        }
+      }
+      corner[k] = known(x);
+    }
+    add_facet(corner[0], corner[1], corner[2]);
+  }
+  return std::move(mesh_);
+}
+
+/// The size that the facet count of a binary file asks for; 0: too short.
+std::size_t binary_size(const std::string& bytes) {
+  std::uint32_t count = 0;
+  if (bytes.size() < kHeadBytes) {
+    return 0;
+  }
+  std::memcpy(&count, bytes.data() + kHeadBytes - sizeof count, sizeof count);
+  return kHeadBytes + kFacetBytes * count;
 }
 
 /// After "solid".
@@ -149,10 +199,17 @@ void Reader::solid() {
 }
 
 SurfaceMesh Reader::read() {
+  const std::size_t size = binary_size(text_);
+  if (size > kHeadBytes && size == text_.size()) {
+    return binary();
+  }
   if (text_.find('\0') != std::string::npos) {
-    refuse(
-        "a binary STL file; it has no names: write ASCII with a `solid "
-        "NAME` for each face");
+    throw InvalidInput(fmt::format(
+        "{}: neither an ASCII STL file nor a whole binary one: {} bytes, found "
+        "{}",
+        path_,
+        size == 0 ? "at least 84" : fmt::format("its facets need {}", size),
+        text_.size()));
   }
   for (std::string next = word(); !next.empty(); next = word()) {
     if (next != "solid") {

@@ -1,4 +1,4 @@
-/// ASCII STL in: a closed surface whose faces have names.
+/// STL in: a closed surface, from ASCII files with named faces.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,15 @@
 
 namespace meniscus {
 
-/// Each `solid NAME ... endsolid` becomes one named surface, the blocks
-/// together one body; corners with equal coordinates are one point, facets
-/// without area are dropped. Normals in the file are not looked at.
-/// Throws InvalidInput ("FILE:LINE: what, found, expected"): a binary file, a
-/// solid without a name or with one that another has, anything that is no STL;
-/// IoError when the file cannot be read.
+/// ASCII: each `solid NAME ... endsolid` becomes one named surface, the blocks
+/// together one body. Binary (84 bytes and 50 a facet): all one surface,
+/// "unnamed", for the format has no names. Corners with equal coordinates are
+/// one point, facets without area are dropped. Normals in the file are not
+/// looked at.
+/// Throws InvalidInput ("FILE:LINE: what, found, expected"): a binary file of
+/// another size or with coordinates that are not finite, a solid without a name
+/// or with one that another has, anything that is no STL; IoError when the file
+/// cannot be read.
 SurfaceMesh read_stl(const std::filesystem::path& path);
 
 /// The same from text; `path` for messages.

@@ -11,6 +11,7 @@ namespace meniscus {
 struct StlOptions {
   std::string name;  // goes, shortened, into the 80-byte header
   std::string unit;  // of the coordinates, into the header: "mm"
+  std::string program = "Meniscus";  // before the name, with its version
 };
 
 /// Coordinates become 32-bit floats. Throws InvalidInput (no facets, a bad

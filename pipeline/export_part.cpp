@@ -1,15 +1,20 @@
 #include "pipeline/export_part.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
-#include "fea/body_loads.h"
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "io/gmsh_msh.h"
+#include "io/nastran_bdf.h"
+#include "io/obj.h"
 #include "io/stl.h"
+#include "io/three_mf.h"
 #include "pipeline/calculix_export.h"
+#include "pipeline/export_job.h"
 #include "pipeline/export_step.h"
-#include "pipeline/refreeze.h"
-#include "pipeline/responses.h"
 #include "pipeline/results.h"
-#include "pipeline/stored_case.h"
 
 namespace meniscus {
 
@@ -17,76 +22,174 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The case of the study with its resolution changed to `edge`.
-Case at_edge(Case input, std::optional<double> edge) {
-  if (edge) {
-    input.resolution.fea = *edge;
-    input.resolution.film = *edge / std::exp2(input.resolution.refinements);
-  }
-  return input;
+void stl(ExportJob& job, const fs::path& file) {
+  const SettledFilm& film = job.film();
+  write_stl(file, film.model.boundary(film.state.points),
+            {.name = job.input().title,
+             .unit = job.input().units.length,
+             .program = job.notes().program});
 }
 
-std::string extension(const ExportOptions& options) {
-  return options.format == "step-faceted" ? "step" : options.format;
+void three_mf(ExportJob& job, const fs::path& file) {
+  write_3mf(file, job.bodies_surface(),
+            {.notes = job.notes(), .bodies = job.body_names()});
+}
+
+void obj(ExportJob& job, const fs::path& file) {
+  write_obj(file, job.bodies_surface(),
+            {.notes = job.notes(), .bodies = job.body_names()});
+}
+
+void fe(ExportJob& job, const fs::path& file) {
+  const SettledFilm& film = job.film();
+  std::vector<std::string> comments = comment_lines(job.notes());
+  comments.push_back(fmt::format("energy of the films and fields: {} ({})",
+                                 film.state.report.energy,
+                                 job.input().units.unit_of(Dimension::Energy)));
+  comments.emplace_back(
+      "'m 0; g' sets the pressures that 'hessian' asks for, and moves nothing");
+  write_file(file, film.model.datafile(film.state, job.numbers().film_system,
+                                       comments));
+}
+
+void step(ExportJob& job, const fs::path& file, bool faceted) {
+  export_step(file, job.numbers().film_system,
+              {.title = job.input().title,
+               .unit = job.input().units.length,
+               .edge = job.edge().value_or(job.input().resolution.fea),
+               .faceted = faceted,
+               .monitor = job.monitor()});
+}
+
+void smooth_step(ExportJob& job, const fs::path& file) {
+  step(job, file, false);
+}
+
+void faceted_step(ExportJob& job, const fs::path& file) {
+  step(job, file, true);
+}
+
+CalculixDeck deck(ExportJob& job) {
+  const EvaluationFields& fields = job.fields();
+  CalculixDeck deck = calculix_deck_of(job.input(), fields.inputs, fields.mesh);
+  const FileNotes notes = job.notes();
+  deck.comments.insert(deck.comments.begin(), notes.program);
+  deck.comments.insert(deck.comments.end(), notes.lines.begin(),
+                       notes.lines.end());
+  return deck;
+}
+
+void inp(ExportJob& job, const fs::path& file) {
+  write_calculix_inp(file, job.fields().mesh, deck(job));
+}
+
+void bdf(ExportJob& job, const fs::path& file) {
+  write_nastran_bdf(file, job.fields().mesh, deck(job));
+}
+
+void msh(ExportJob& job, const fs::path& file) {
+  const EvaluationFields& fields = job.fields();
+  MshOptions options{
+      .notes = job.notes(), .regions = job.body_names(), .fields = {}};
+  const UnitSystem& units = job.input().units;
+  for (std::size_t k = 0; k < fields.stresses.size(); ++k) {
+    const std::string& load_case = fields.inputs.load_cases[k].name;
+    const VectorX& u = fields.solution.displacements[k];
+    options.fields.push_back(
+        {.name = fmt::format("displacement, {} [{}]", load_case, units.length),
+         .components = 3,
+         .values = {u.begin(), u.end()}});
+    options.fields.push_back(
+        {.name = fmt::format("von Mises, {} [{}]", load_case, units.pressure),
+         .components = 1,
+         .values = nodal_stress(fields.mesh, fields.stresses[k].recovered)
+                       .von_mises});
+  }
+  write_msh(file, fields.mesh, options);
+}
+
+void vtu(ExportJob& job, const fs::path& file) {
+  const FileNotes notes = job.notes();
+  write_part(
+      file, job.input(), job.fields(),
+      {{"program", notes.program},
+       {"case_and_design", fmt::format("{}", fmt::join(notes.lines, "; "))}});
+}
+
+const ExportFormat& format_named(const std::string& name) {
+  for (const ExportFormat& format : export_formats()) {
+    if (format.name == name) {
+      return format;
+    }
+  }
+  throw InvalidInput(fmt::format("format '{}' is not known; there are {}", name,
+                                 export_format_names()));
 }
 
 }  // namespace
 
+const std::vector<ExportFormat>& export_formats() {
+  static const std::vector<ExportFormat> formats = {
+      {"stl", "stl", "surface, binary, for printing", true, stl},
+      {"3mf", "3mf", "surface with its unit, for slicers", true, three_mf},
+      {"obj", "obj", "surface with named groups", true, obj},
+      {"step", "step", "CAD, films as B-spline faces", false, smooth_step},
+      {"step-faceted", "step", "CAD, a plane for each facet", false,
+       faceted_step},
+      {"fe", "fe", "film for Surface Evolver", true, fe},
+      {"inp", "inp", "deck for CalculiX and Abaqus", false, inp},
+      {"bdf", "bdf", "deck for Nastran", false, bdf},
+      {"msh", "msh", "elements for Gmsh", false, msh},
+      {"vtu", "vtu", "elements and fields for ParaView", false, vtu},
+  };
+  return formats;
+}
+
+std::string export_format_names() {
+  std::vector<std::string> names;
+  for (const ExportFormat& format : export_formats()) {
+    names.emplace_back(format.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 fs::path export_part(const fs::path& folder, const ExportOptions& options) {
-  const StudyStore store = StudyStore::read(folder.string());
-  const std::vector<EvaluationRecord> records = store.all();
-  const Case input = at_edge(
-      frozen_as_answered(restore_case(store.meta()), records), options.edge);
-  const VectorX design = answer_of_run(input, records, folder);
-  const double edge = options.edge.value_or(input.resolution.fea);
+  const ExportFormat& format = format_named(options.format);
+  ExportJob job(folder, {.edge = options.edge,
+                         .program_version = options.program_version,
+                         .monitor = options.monitor});
+  const Resolution& resolution = job.input().resolution;
+  const double edge =
+      options.edge.value_or(format.of_film ? resolution.film : resolution.fea);
   fs::path file =
       options.out.empty()
-          ? folder / fmt::format("part_{:g}.{}", edge, extension(options))
+          ? folder / fmt::format("part_{:g}.{}", edge, format.extension)
           : options.out;
-  if (options.format == "stl") {
-    const EvaluatedCase numbers = evaluate(input, design);
-    write_stl(file, settle_again(numbers.film_system, edge),
-              {.name = input.title, .unit = input.units.length});
-    return file;
-  }
-  if (options.format == "step" || options.format == "step-faceted") {
-    const EvaluatedCase numbers = evaluate(input, design);
-    export_step(file, numbers.film_system,
-                {.title = input.title,
-                 .unit = input.units.length,
-                 .edge = edge,
-                 .faceted = options.format == "step-faceted",
-                 .monitor = options.monitor});
-    return file;
-  }
-  const ForwardModel model(input, {.monitor = options.monitor});
-  EvaluationFields fields;
-  const Evaluation evaluation =
-      model.failure() ? model.frozen() : model.evaluate(design, &fields);
-  if (evaluation.failure) {
-    throw MeshError(fmt::format("no part at edge {:g}: {}", edge,
-                                evaluation.failure->message));
-  }
-  if (options.format == "inp") {
-    CalculixDeck deck = calculix_deck_of(input, fields.inputs, fields.mesh);
-    deck.comments.insert(deck.comments.begin(),
-                         "Meniscus " + options.program_version);
-    for (std::size_t k = 0; k < input.design.size(); ++k) {
-      deck.comments.push_back(
-          fmt::format("{} = {}", input.design[k].name,
-                      design[static_cast<Eigen::Index>(k)]));
-    }
-    write_calculix_inp(file, fields.mesh, deck);
-  } else if (options.format == "vtu") {
-    fields.stresses =
-        part_stresses(fields.mesh, fields.inputs, fields.solution);
-    write_part(file, input, fields);
-  } else {
-    throw InvalidInput(fmt::format(
-        "format '{}' is not known; there are stl, step, step-faceted, inp, vtu",
-        options.format));
-  }
+  format.write(job, file);
   return file;
+}
+
+std::vector<fs::path> runs_in(const fs::path& folder) {
+  std::error_code error;
+  const fs::path members = folder / "members";
+  if (fs::exists(folder / "study.sqlite", error) ||
+      !fs::is_directory(members, error)) {
+    return {folder};  // where the study is missing, reading it tells
+  }
+  std::vector<fs::path> runs;
+  for (fs::directory_iterator entry(members, error), end;
+       !error && entry != end; entry.increment(error)) {
+    if (fs::exists(entry->path() / "study.sqlite", error)) {
+      runs.push_back(entry->path());
+    }
+  }
+  if (error || runs.empty()) {
+    throw IoError(fmt::format(
+        "no member of the family in '{}' has a study{}; run the family",
+        folder.string(), error ? " (" + error.message() + ")" : ""));
+  }
+  std::sort(runs.begin(), runs.end());
+  return runs;
 }
 
 }  // namespace meniscus

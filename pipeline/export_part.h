@@ -4,24 +4,48 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/monitor.h"
 
 namespace meniscus {
 
+class ExportJob;
+
+/// One line of the table of formats.
+struct ExportFormat {
+  const char* name;       // as --format takes it
+  const char* extension;  // of its files
+  const char* what;       // for --help and messages: "surface for slicers"
+  bool of_film;           // of the film's own mesh; else of the elements
+  void (*write)(ExportJob& job, const std::filesystem::path& file);
+};
+
+/// All of them, in the order in which they are listed.
+const std::vector<ExportFormat>& export_formats();
+
+/// Their names: "stl, 3mf, ...".
+std::string export_format_names();
+
 struct ExportOptions {
-  std::string format = "stl";   // "stl", "step", "step-faceted", "inp", "vtu"
+  std::string format = "stl";   // of export_formats()
   std::optional<double> edge;   // [length]; the run's own when absent
   std::filesystem::path out;    // file; empty: part_<edge>.<format> in the run
-  std::string program_version;  // for the deck's head
+  std::string program_version;  // for the file's head
   Monitor* monitor = nullptr;
 };
 
-/// Settles and meshes the best design of the study in `folder` again, which is
-/// the same bits when no edge is given, and writes it. Returns the file.
-/// Throws IoError (no study there, file), InvalidInput (unknown format, no
-/// finished evaluation), MeshError (no film or mesh at that edge).
+/// Settles and, where the format is of elements, meshes the answer of the study
+/// in `folder` again, which is the same bits when no edge is given, and writes
+/// it. Returns the file. Throws IoError (no study there, file), InvalidInput
+/// (unknown format, no finished evaluation), MeshError (no film or mesh at that
+/// edge).
 std::filesystem::path export_part(const std::filesystem::path& folder,
                                   const ExportOptions& options);
+
+/// The folders to export for a results folder: itself, or those of a family's
+/// members, by name. Throws IoError for a folder that is not there or has
+/// neither a study nor members.
+std::vector<std::filesystem::path> runs_in(const std::filesystem::path& folder);
 
 }  // namespace meniscus

@@ -7,6 +7,7 @@
 #include "core/timer.h"
 #include "fea/petsc_child.h"
 #include "mesh_tet/quadratic.h"
+#include "pipeline/film_options.h"
 #include "pipeline/forward_model_impl.h"
 #include "pipeline/stage_meter.h"
 #include "pipeline/walls.h"
@@ -14,9 +15,6 @@
 namespace meniscus {
 
 namespace {
-
-/// So that the mid-sides of halved facets are on the film too.
-constexpr int kAdaptiveRefinements = 2;
 
 // TetGen now and then leaves a flat element; another edge, and it does not.
 constexpr std::array<double, 3> kEdgeFactors = {1.0, 1.1, 0.9};
@@ -28,13 +26,9 @@ bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
                                      Monitor& monitor) {
   const StageMeter meter;
   monitor.progress({.stage = "film", .detail = "settling the start"});
-  int refinements = input.resolution.refinements;
-  if (input.analysis.adapt) {
-    refinements = std::max(refinements, kAdaptiveRefinements);
-  }
   film.emplace(FilmModel::freeze(inputs.film_system,
                                  {.edge = inputs.fea_edge * options.edge_factor,
-                                  .refinements = refinements,
+                                  .refinements = film_refinements(input),
                                   .monitor = &monitor}));
   frozen.film = film->reference().report;
   frozen.failure = film->reference().failure;

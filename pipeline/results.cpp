@@ -309,8 +309,11 @@ void write_film(const Case& input, const SurfaceMesh& film,
 }
 
 void write_part(const std::filesystem::path& file, const Case& input,
-                const EvaluationFields& fields) {
-  write_vtu(file, fields.mesh, part_fields(input, fields));
+                const EvaluationFields& fields,
+                const std::vector<std::pair<std::string, std::string>>& notes) {
+  MeshFields part = part_fields(input, fields);
+  part.notes.insert(part.notes.end(), notes.begin(), notes.end());
+  write_vtu(file, fields.mesh, part);
 }
 
 void write_part_surface(const std::filesystem::path& file, const Case& input,

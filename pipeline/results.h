@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -46,9 +47,12 @@ std::string film_text(const Case& input, const FilmReport& film);
 void write_film(const Case& input, const SurfaceMesh& film,
                 const std::filesystem::path& folder);
 
-/// The meshed part with displacement and stress as a .vtu file.
-void write_part(const std::filesystem::path& file, const Case& input,
-                const EvaluationFields& fields);
+/// The meshed part with displacement and stress as a .vtu file; `notes` (name,
+/// text) go in beside title, unit and load case.
+void write_part(
+    const std::filesystem::path& file, const Case& input,
+    const EvaluationFields& fields,
+    const std::vector<std::pair<std::string, std::string>>& notes = {});
 
 /// The boundary of the same, with its point data, as a .vtp file.
 void write_part_surface(const std::filesystem::path& file, const Case& input,

@@ -6,7 +6,7 @@ build_packages=(
   libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev
   libudunits2-dev libqhull-dev libsuitesparse-dev libmetis-dev libopenblas-dev
   libspectra-dev libtet1.5-dev libnlopt-dev libnlopt-cxx-dev libceres-dev
-  libsqlite3-dev libvtk9-dev
+  libsqlite3-dev libvtk9-dev lib3mf-dev
   libocct-data-exchange-dev libocct-ocaf-dev
 )
 # The report page is built by npm; where somebody else's Node.js is installed,
@@ -15,7 +15,7 @@ command -v npm >/dev/null || build_packages+=(nodejs npm)
 run_packages=(xvfb libudunits2-data)
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
-  calculix-ccx evolver evolver-doc tetgen admesh git locales python3
+  calculix-ccx evolver evolver-doc tetgen admesh gmsh git locales python3
   libpetsc-real-dev openmpi-bin chromium
 )
 

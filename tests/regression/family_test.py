@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import sqlite3
+import struct
 import time
 import unittest
 
@@ -256,6 +257,30 @@ def block(width, depth, height):
     return text
 
 
+def as_obj(stl):
+    """The same facets in groups."""
+    text = ""
+    for line in stl.splitlines():
+        words = line.split()
+        if words[0] == "solid":
+            text += f"g {words[1]}\n"
+        elif words[0] == "vertex":
+            text += "v " + " ".join(words[1:]) + "\n"
+        elif words[0] == "endloop":
+            text += "f -3 -2 -1\n"
+    return text
+
+
+def as_binary(stl):
+    corners = [[float(x) for x in line.split()[1:]]
+               for line in stl.splitlines() if line.startswith("vertex")]
+    data = bytes(80) + struct.pack("<I", len(corners) // 3)
+    for k in range(0, len(corners), 3):
+        data += struct.pack("<12fH", 0, 0, 0, *corners[k], *corners[k + 1],
+                            *corners[k + 2], 0)
+    return data
+
+
 class ImportedPart(ProgramTest):
     def run_strut(self):
         out = self.folder / "run"
@@ -272,10 +297,13 @@ class ImportedPart(ProgramTest):
         run = self.run_strut()
         stl = self.folder / "block.stl"
         stl.write_text(block(20, 10, 100))
+        obj = self.folder / "block.OBJ"
+        obj.write_text(as_obj(stl.read_text()))
         there = self.folder / "sides"
-        self.expect(self.call("compare", run, stl, "--out", there), 0)
-        part = json.loads(
-            (there / "compare.json").read_text())["parts"][1]
+        self.expect(self.call("compare", run, stl, obj, "--out", there), 0)
+        _, part, same = json.loads(
+            (there / "compare.json").read_text())["parts"]
+        self.assertEqual({**part, "name": ""}, {**same, "name": ""})
         # Pulled evenly: E A / L, the same stress everywhere.
         push = part["load_cases"]["push"]
         self.assertAlmostEqual(push["stiffness"] / (71700 * 200 / 100), 1, 5)
@@ -302,6 +330,16 @@ class ImportedPart(ProgramTest):
             with self.subTest(told=told):
                 stl.write_text(text)
                 self.expect(self.call("compare", run, stl), 2, told)
+        stl.write_bytes(as_binary(whole))
+        self.expect(self.call("compare", run, stl), 2,
+                    "no face 'eye_pad'.*no names .binary STL")
+        obj = self.folder / "part.obj"
+        for text, told in (
+                (as_obj(whole).replace("eye_pad", "eye"), "no face 'eye_pad'"),
+                ("solid x\n", r"part.obj:1: found 'solid'"),
+                ("", r"part.obj:1: the file has no faces")):
+            obj.write_text(text)
+            self.expect(self.call("compare", run, obj), 2, told)
         stl.write_text(re.sub(r"(?s)solid eye_pad.*?endsolid eye_pad\n",
                               "solid eye_pad\nendsolid eye_pad\n", whole))
         self.expect(self.call("compare", run, stl), 3, "(?i)open|closed")

@@ -1,11 +1,14 @@
-#include "pipeline/stl_part.h"
+#include "pipeline/imported_part.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <map>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "io/obj.h"
 #include "io/read_stl.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -16,6 +19,8 @@ namespace {
 
 // Longest edge over the wanted one: halves of it are not below two thirds.
 constexpr double kLongestEdge = 4.0 / 3.0;
+
+constexpr const char* kNameless = "unnamed";  // as readers call it
 
 /// The facet's parts where some of its edges have a point half way (-1: none),
 /// which stand at (01), (12), (20).
@@ -75,10 +80,17 @@ void check_names(const SurfaceMesh& surface, const EvaluatedCase& numbers,
                  const std::string& path) {
   for (const std::string& name : surfaces_used(numbers)) {
     if (surface.label_of(name) < 0) {
+      const bool nameless =
+          surface.labels.size() == 1 && surface.labels[0] == kNameless;
       throw InvalidInput(fmt::format(
-          "{}: no face '{}', which the run's loads and supports name; there "
-          "are {}; write its facets as `solid {}`",
-          path, name, fmt::join(surface.labels, ", "), name));
+          "{}: no face '{}', which the run's loads and supports name; {}; "
+          "write its facets as `solid {}` of an ASCII STL file or as group "
+          "`g {}` of an OBJ file",
+          path, name,
+          nameless
+              ? "the file has no names (binary STL never has)"
+              : fmt::format("there are {}", fmt::join(surface.labels, ", ")),
+          name, name));
     }
   }
 }
@@ -103,7 +115,38 @@ TetMesh filled(const SurfaceMesh& surface, double edge, const std::string& path,
   return make_quadratic(linear.mesh, quadratic);
 }
 
+struct PartReader {
+  const char* ending;
+  SurfaceMesh (*read)(const std::filesystem::path& path);
+};
+constexpr std::array<PartReader, 2> kReaders = {
+    {{".stl", read_stl}, {".obj", read_obj}}};
+
+const PartReader* reader_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  });
+  const auto* const reader =
+      std::find_if(kReaders.begin(), kReaders.end(),
+                   [&](const PartReader& r) { return ending == r.ending; });
+  return reader != kReaders.end() ? reader : nullptr;
+}
+
 }  // namespace
+
+bool is_part_file(const std::filesystem::path& path) {
+  return reader_of(path) != nullptr;
+}
+
+SurfaceMesh read_part_file(const std::filesystem::path& path) {
+  const PartReader* reader = reader_of(path);
+  if (reader == nullptr) {
+    throw InvalidInput(fmt::format(
+        "{}: no file of a part; there are .stl and .obj", path.string()));
+  }
+  return reader->read(path);
+}
 
 SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
   while (true) {
@@ -144,9 +187,9 @@ SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
   }
 }
 
-PartFigures stl_part_figures(const std::filesystem::path& path,
-                             const RunPart& run, Monitor* monitor,
-                             EvaluationFields* kept) {
+PartFigures imported_part_figures(const std::filesystem::path& path,
+                                  const RunPart& run, Monitor* monitor,
+                                  EvaluationFields* kept) {
   if (run.fields.inputs.materials.size() != 1) {
     throw InvalidInput(fmt::format(
         "{}: the run has {} bodies with materials; a part from a file is of "
@@ -155,7 +198,7 @@ PartFigures stl_part_figures(const std::filesystem::path& path,
   }
   const double edge = run.input.resolution.fea;
   const SurfaceMesh surface =
-      with_short_edges(read_stl(path), kLongestEdge * edge);
+      with_short_edges(read_part_file(path), kLongestEdge * edge);
   check_names(surface, run.fields.inputs, path.string());
   EvaluationFields fields;
   fields.inputs = run.fields.inputs;

@@ -1,10 +1,17 @@
-#include "pipeline/stl_part.h"
+#include "pipeline/imported_part.h"
+
+#include <cstring>
+#include <limits>
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/mesh_checks.h"
+#include "io/atomic_file.h"
 #include "io/read_stl.h"
+#include "io/stl.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
 
 namespace meniscus {
 namespace {
@@ -57,7 +64,29 @@ TEST(ReadStl, WrongFilesAreToldByLine) {
   }
 }
 
-TEST(StlPart, ShortEdgesKeepTheShape) {
+TEST(ReadStl, BinaryFilesAreOneFace) {
+  const SurfaceMesh ball = shapes::sphere(2.0, 2);
+  const TempFolder folder;
+  write_stl(folder / "ball.STL", ball, {.name = "solid ball"});
+  ASSERT_TRUE(is_part_file(folder / "ball.STL"));
+  const SurfaceMesh mesh = read_part_file(folder / "ball.STL");
+  EXPECT_EQ(mesh.facets.size(), ball.facets.size());
+  EXPECT_EQ(mesh.points.size(), ball.points.size());
+  EXPECT_EQ(mesh.labels.size(), 1U);
+  constexpr double kFloats = 1e-6;  // 32-bit coordinates
+  EXPECT_NEAR(enclosed_volume(mesh) / enclosed_volume(ball), 1.0, kFloats);
+  EXPECT_TRUE(check_surface(mesh).empty());
+
+  std::string bytes = read_file(folder / "ball.STL");
+  EXPECT_THROW(read_stl_text(bytes.substr(0, bytes.size() - 1), "b.stl"),
+               InvalidInput);
+  const float broken = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(bytes.data() + 84 + 50 * 7 + 12, &broken, sizeof broken);
+  EXPECT_THROW(read_stl_text(bytes, "b.stl"), InvalidInput);
+  EXPECT_THROW(read_part_file(folder / "ball.stp"), InvalidInput);
+}
+
+TEST(ImportedPart, ShortEdgesKeepTheShape) {
   const SurfaceMesh coarse = read_stl_text(tetrahedron(), "t.stl");
   for (const double longest : {5.0, 2.5, 1.1, 0.4}) {
     const SurfaceMesh fine = with_short_edges(coarse, longest);

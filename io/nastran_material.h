@@ -1,0 +1,13 @@
+/// A region's material as bulk data (internal to the Nastran writer).
+#pragma once
+
+#include <string>
+
+#include "io/analysis_deck.h"
+
+namespace meniscus {
+
+/// PSOLID and MAT1, or MAT9 with its axes in CORD2R, all of number `id`.
+std::string nastran_material(const DeckMaterial& material, int id);
+
+}  // namespace meniscus

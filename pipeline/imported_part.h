@@ -1,0 +1,39 @@
+/// A part from another program, analysed as a run's own part is.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/monitor.h"
+#include "core/surface_mesh.h"
+#include "pipeline/part_comparison.h"
+
+namespace meniscus {
+
+/// Edges longer than `longest` [length] halved, and again, until none is;
+/// shape, labels and bodies stay.
+SurfaceMesh with_short_edges(SurfaceMesh surface, double longest);
+
+/// A file's name ends as those of parts that can be read: .stl, .obj, in any
+/// case.
+bool is_part_file(const std::filesystem::path& path);
+
+/// The closed surface of such a file, its faces by name. Throws what the
+/// format's reader throws, InvalidInput for another ending.
+SurfaceMesh read_part_file(const std::filesystem::path& path);
+
+/// The part that the file `path` encloses: ASCII STL with a `solid NAME` for
+/// each face, OBJ with a group for each, binary STL all of one face. Meshed at
+/// the run's resolution.fea (shorter where the file's own facets are), of the
+/// run's material, held and loaded as the run's answer is by the names of its
+/// surfaces, and solved by the same solver. Sides are straight: the file knows
+/// no others.
+/// Throws InvalidInput (file, a surface that loads or supports name and the
+/// file does not have, a run of several materials), IoError, MeshError (no
+/// mesh), SolverError.
+/// `kept`, when given, receives the meshes and the solution.
+PartFigures imported_part_figures(const std::filesystem::path& path,
+                                  const RunPart& run, Monitor* monitor,
+                                  EvaluationFields* kept = nullptr);
+
+}  // namespace meniscus

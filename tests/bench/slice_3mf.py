@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""PrusaSlicer's command line on the 3MF of the two-arm bracket: does it find
+one manifold part of the film's volume, and does it slice? Not part of the tests:
+a large package. Use: slice_3mf.py PROGRAM, from anywhere."""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+CASE = pathlib.Path(__file__).resolve().parents[2] / "cases/two_arm/case.toml"
+LAYER = 0.3  # mm
+VOLUME = 1e-3  # relative
+
+
+def call(*command):
+    done = subprocess.run([str(c) for c in command], capture_output=True,
+                          text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{command[0]} ended with {done.returncode}:\n{done.stdout}"
+                 f"\n{done.stderr}")
+    return done.stdout
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        call(program, "run", CASE, "--set", "study.kind=analyse",
+             "--no-pictures", "--out", folder / "run")
+        part = folder / "part.3mf"
+        call(program, "export", folder / "run", "--format", "3mf", "--out",
+             part)
+        info = dict(re.findall(r"^(\w+) = +(\S+)$",
+                               call("prusa-slicer", "--info", part), re.M))
+        film = json.loads((folder / "run" / "result.json").read_text())["film"]
+        (body,) = film["bodies"].values()
+        off = float(info["volume"]) / body["volume"] - 1
+        call("prusa-slicer", "--export-gcode", "--layer-height", LAYER,
+             "--bed-shape", "0x0,400x0,400x400,0x400", "--max-print-height",
+             "400", "--support-material", "--output", folder / "part.gcode",
+             part)
+        gcode = (folder / "part.gcode").read_text()
+        tops = {float(z) for z in re.findall(r"^;Z:([\d.]+)$", gcode, re.M)}
+        print(f"PrusaSlicer: manifold {info['manifold']}, parts "
+              f"{info['number_of_parts']}, facets {info['number_of_facets']}, "
+              f"height {info['size_z']} mm, volume off by {off:.1e}; sliced at "
+              f"{LAYER} mm, top layer at {max(tops):g} mm")
+        if (info["manifold"] != "yes" or info["number_of_parts"] != "1" or
+                abs(off) > VOLUME or
+                abs(max(tops) - float(info["size_z"])) > 2 * LAYER):
+            sys.exit("PrusaSlicer finds another part")
+
+
+if __name__ == "__main__":
+    main()

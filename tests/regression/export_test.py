@@ -1,0 +1,379 @@
+#!/usr/bin/env python3
+"""`meniscus export`: the programs that the files are for open them and find the
+same part: Gmsh, admesh, Surface Evolver, CalculiX; 3MF and Nastran decks by
+strict readers of their own."""
+import collections
+import ctypes
+import ctypes.util
+import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import tempfile
+import unittest
+import pathlib
+import xml.etree.ElementTree
+import zipfile
+
+import bulk_data
+import program
+from program import COARSE, ProgramTest
+
+FORMATS = ["stl", "3mf", "obj", "fe", "inp", "bdf", "msh", "vtu"]
+SOLIDS = 1e-3  # of volume: what another program may find otherwise
+# CalculiX prints seven digits.
+AGREEMENT = 1e-6
+# Evolver sums in doubles what is written to the last digit.
+ENERGY = 1e-10
+
+
+def run_program(*command, folder=None, timeout=120):
+    """Output of a program that must end well."""
+    done = subprocess.run([str(c) for c in command], capture_output=True,
+                          text=True, timeout=timeout, cwd=folder,
+                          env={**os.environ, "LC_ALL": "C"})
+    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    return done.stdout + done.stderr
+
+
+class Gmsh:
+    """The model in a file, as Gmsh's own library has it."""
+
+    def __init__(self, file):
+        self.library = ctypes.CDLL(ctypes.util.find_library("gmsh"))
+        self.call("Initialize", 0, None, 0)
+        self.call("OptionSetNumber", b"General.Verbosity", number(2))
+        self.call("Open", str(file).encode())
+
+    def call(self, name, *arguments):
+        error = ctypes.c_int()
+        getattr(self.library, "gmsh" + name)(*arguments, ctypes.byref(error))
+        assert error.value == 0, f"gmsh{name}: {error.value}"
+
+    def close(self):
+        self.call("Finalize")
+
+    def determinants(self, element_type):
+        """Weights of the integration points, and the Jacobian's determinants
+        at those of all elements."""
+        points, weights = Array(), Array()
+        self.call("ModelMeshGetIntegrationPoints", element_type, b"Gauss4",
+                  *points.out(), *weights.out())
+        jacobians, found, places = Array(), Array(), Array()
+        self.call("ModelMeshGetJacobians", element_type, points.data,
+                  points.size, *jacobians.out(), *found.out(), *places.out(),
+                  -1, size(0), size(1))
+        return weights.values(), found.values()
+
+    def volume(self, element_type=11):
+        weights, found = self.determinants(element_type)
+        return sum(weights[k % len(weights)] * d for k, d in enumerate(found))
+
+    def names(self, dimension):
+        tags = Array(ctypes.c_int)
+        self.call("ModelGetPhysicalGroups", *tags.out(), dimension)
+        names = []
+        for tag in tags.values()[1::2]:
+            name = ctypes.c_char_p()
+            self.call("ModelGetPhysicalName", dimension, tag,
+                      ctypes.byref(name))
+            names.append(name.value.decode())
+        return names
+
+
+number = ctypes.c_double
+size = ctypes.c_size_t
+
+
+class Array:
+    """One that a C function makes."""
+
+    def __init__(self, kind=ctypes.c_double):
+        self.data = ctypes.POINTER(kind)()
+        self.size = size()
+
+    def out(self):
+        return ctypes.byref(self.data), ctypes.byref(self.size)
+
+    def values(self):
+        return self.data[:self.size.value]
+
+
+def volume_of(points, facets):
+    total = 0.0
+    for a, b, c in ([points[k] for k in facet] for facet in facets):
+        total += (a[0] * (b[1] * c[2] - b[2] * c[1]) +
+                  a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                  a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
+    return total
+
+
+def edges_are_paired(facets):
+    """Every edge once in each direction."""
+    edges = collections.Counter(
+        (facet[k], facet[(k + 1) % 3]) for facet in facets for k in range(3))
+    return all(n == 1 and edges[(b, a)] == 1 for (a, b), n in edges.items())
+
+
+def nodal_field(msh, name):
+    """The values of a $NodeData section, one list per node."""
+    for section in msh.split("$NodeData\n")[1:]:
+        lines = section.split("\n")
+        if name in lines[1]:
+            count = int(lines[7])
+            return [[float(x) for x in line.split()[1:]]
+                    for line in lines[8:8 + count]]
+    raise AssertionError(f"no field {name}")
+
+
+def displacements(dat, count):
+    """Of the first step in CalculiX's .dat file."""
+    lines = dat.split("displacements")[1].split("\n")[2:2 + count]
+    return [[float(x) for x in line.split()[1:]] for line in lines]
+
+
+def difference(a, b):
+    """Largest over the largest."""
+    largest = max(abs(x) for row in b for x in row)
+    return max(abs(x - y) for p, q in zip(a, b)
+               for x, y in zip(p, q)) / largest
+
+
+class Export(ProgramTest):
+    """One coarse run; each test opens one file of it."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.home = pathlib.Path(tempfile.mkdtemp(prefix="meniscus export "))
+        cls.out = cls.home / "run"
+        run_program(program.PROGRAM, "run", program.CASE, *COARSE,
+                    "--no-pictures", "--out", cls.out)
+        cls.found = json.loads((cls.out / "result.json").read_text())
+        for name in FORMATS:
+            run_program(program.PROGRAM, "export", cls.out, "--format", name,
+                        "--out", cls.home / f"part.{name}")
+        cls.volume = abs(volume_of(*cls.stl()))
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.home)
+
+    @classmethod
+    def stl(cls):
+        data = (cls.home / "part.stl").read_bytes()
+        count = struct.unpack_from("<I", data, 80)[0]
+        number_of, facets = {}, []
+        for k in range(count):
+            c = struct.unpack_from("<9f", data, 84 + 50 * k + 12)
+            facets.append([number_of.setdefault(c[3 * i:3 * i + 3],
+                                                len(number_of))
+                           for i in range(3)])
+        return list(number_of), facets
+
+    def file(self, name):
+        return self.home / f"part.{name}"
+
+    def text(self, name):
+        return self.file(name).read_text()
+
+    def test_each_file_says_where_it_is_from(self):
+        for name in FORMATS:
+            data = self.file(name).read_bytes()
+            if name == "3mf":
+                data = zipfile.ZipFile(self.file(name)).read(
+                    "3D/3dmodel.model")
+            if name == "vtu":  # its texts are compressed
+                told = all(b'Name="%s"' % key in data
+                           for key in (b"program", b"case_and_design"))
+            else:
+                told = (re.search(rb"Meniscus \d+\.\d+", data) and
+                        b"two-arm" in data.lower())
+            self.assertTrue(told, name)
+
+    def test_the_runs_own_surface_comes_again(self):
+        runs = next(self.out.glob("part_*.stl"))
+        self.assertEqual(runs.read_bytes()[84:],
+                         self.file("stl").read_bytes()[84:])
+
+    def test_stl_is_closed(self):
+        said = run_program("admesh", self.file("stl"))
+        self.assertRegex(said, r"Total disconnected facets +: +0 +0")
+        self.assertRegex(said, r"Number of parts +: +1 ")
+        found = float(re.search(r"Volume +: +([\d.]+)", said).group(1))
+        self.assertAlmostEqual(found / self.volume, 1, 4)
+
+    def test_gmsh_fills_the_stl(self):
+        script = self.home / "fill.geo"
+        script.write_text('Merge "part.stl";\nSurface Loop(1) = Surface{:};\n'
+                          "Volume(1) = {1};\n")
+        said = run_program("gmsh", "-3", script, "-o", self.home / "filled.msh",
+                           "-v", "5", folder=self.home)
+        self.assertNotRegex(said, "(?i)error|overlap|intersect")
+        gmsh = Gmsh(self.home / "filled.msh")
+        try:
+            self.assertAlmostEqual(gmsh.volume(4) / self.volume, 1,
+                                   delta=SOLIDS)
+        finally:
+            gmsh.close()
+
+    def mesh_volume(self):
+        """Of the ten-node elements, by the program."""
+        there = self.home / "sides"
+        run_program(program.PROGRAM, "compare", self.out, self.out, "--out",
+                    there)
+        parts = json.loads((there / "compare.json").read_text())["parts"]
+        return parts[0]["volume"]
+
+    def test_gmsh_finds_valid_elements_of_that_volume(self):
+        gmsh = Gmsh(self.file("msh"))
+        try:
+            self.assertGreater(min(gmsh.determinants(11)[1]), 0)
+            self.assertAlmostEqual(gmsh.volume() / self.mesh_volume(), 1,
+                                   delta=SOLIDS)
+            self.assertEqual(gmsh.names(3), ["part"])
+            self.assertEqual(set(gmsh.names(2)),
+                             {"skin", "support_pad", "left_pad", "right_pad"})
+        finally:
+            gmsh.close()
+
+    def test_3mf_is_closed_and_in_the_cases_unit(self):
+        root = xml.etree.ElementTree.fromstring(
+            zipfile.ZipFile(self.file("3mf")).read("3D/3dmodel.model"))
+        space = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+        self.assertEqual(root.get("unit"), "millimeter")
+        (part,) = root.iter(space + "object")
+        self.assertEqual(part.get("name"), "part")
+        points = [[float(v.get(k)) for k in "xyz"]
+                  for v in part.iter(space + "vertex")]
+        facets = [[int(t.get(k)) for k in ("v1", "v2", "v3")]
+                  for t in part.iter(space + "triangle")]
+        self.assertTrue(edges_are_paired(facets))
+        self.assertAlmostEqual(volume_of(points, facets) / self.volume, 1, 6)
+
+    def test_obj_is_closed_and_keeps_the_names(self):
+        lines = [line.split() for line in self.text("obj").split("\n") if line]
+        points = [[float(x) for x in line[1:]] for line in lines
+                  if line[0] == "v"]
+        facets = [[int(x) - 1 for x in line[1:]] for line in lines
+                  if line[0] == "f"]
+        self.assertTrue(edges_are_paired(facets))
+        self.assertAlmostEqual(volume_of(points, facets) / self.volume, 1, 6)
+        self.assertEqual({line[1] for line in lines if line[0] == "g"},
+                         {"skin", "support_pad", "left_pad", "right_pad"})
+
+    def test_evolver_finds_the_same_energy_at_rest(self):
+        script = self.home / "measure.cmd"
+        script.write_text('printf "LOADED %.17g %.17g\\n",total_energy,'
+                          "sum(body,volume)\nm 0\ng\nhessian\n"
+                          'printf "RESTED %.17g\\n",total_energy\nq\nq\n')
+        said = run_program("evolver", "-x", "-f", script, self.file("fe"))
+        loaded = re.search(r"LOADED (\d\S+) (\S+)", said)
+        film = self.found["film"]
+        self.assertAlmostEqual(float(loaded.group(1)) / film["energy"], 1,
+                               delta=ENERGY)
+        (body,) = film["bodies"].values()
+        self.assertAlmostEqual(float(loaded.group(2)) / body["volume"], 1,
+                               delta=ENERGY)
+        # Its Newton step may slide vertices along the film too: little to gain.
+        rested = float(re.search(r"RESTED (\d\S+)", said).group(1))
+        self.assertAlmostEqual(rested / film["energy"], 1, delta=1e-7)
+
+    def solved(self, deck, name):
+        """Displacements by CalculiX."""
+        (self.home / f"{name}.inp").write_text(deck)
+        run_program("ccx", "-i", name, folder=self.home)
+        count = len(nodal_field(self.text("msh"), "displacement"))
+        return displacements((self.home / f"{name}.dat").read_text(), count)
+
+    def test_calculix_solves_the_deck_with_the_same_answer(self):
+        ours = nodal_field(self.text("msh"), "displacement")
+        self.assertLess(difference(ours, self.solved(self.text("inp"), "own")),
+                        AGREEMENT)
+
+    def test_the_nastran_deck_says_the_same(self):
+        """Read by the book, said again to CalculiX."""
+        deck = bulk_data.read(self.text("bdf"))
+        ours = nodal_field(self.text("msh"), "displacement")
+        theirs = self.solved(bulk_data.calculix_deck(deck, 1), "bulk")
+        self.assertLess(difference(ours, theirs), AGREEMENT)
+        self.assertEqual(len(deck.sets), 4)
+
+
+class Trouble(ProgramTest):
+    def run_strut(self, out="run"):
+        path = self.folder / "case.toml"
+        path.write_text(program.SIZED_STRUT)
+        self.expect(self.call("run", path, "--set", "study.kind=analyse",
+                              "--set", "resolution.fea=14", "--no-pictures",
+                              "--out", self.folder / out), 0)
+        return self.folder / out
+
+    def test_another_edge_and_the_files_names(self):
+        run = self.run_strut()
+        for name, edge in (("3mf", "9"), ("msh", "18")):
+            done = self.call("export", run, "--format", name, "--edge", edge)
+            self.expect(done, 0)
+            self.assertEqual(done.stdout, f"{run}/part_{edge}.{name}\n")
+            self.assertTrue((run / f"part_{edge}.{name}").exists())
+
+    def test_what_is_no_run_is_told(self):
+        run = self.run_strut()
+        self.expect(self.call("export", run, "--format", "stp"), 2,
+                    "'stp' is no format; there are stl, 3mf, obj, fe, .*vtu")
+        self.expect(self.call("export", self.folder, "--format", "stl"), 2,
+                    "no study in")
+        self.expect(self.call("export", self.folder / "none", "--format",
+                              "stl"), 2, "no study in")
+        self.expect(self.call("export", run, "--format", "stl", "--out",
+                              self.folder / "none" / "a.stl"), 2, "a.stl")
+        self.expect(self.call("export", run, "--format", "3mf", "--out", run),
+                    2, "cannot write")
+        before = sorted(run.iterdir())
+        database = run / "study.sqlite"
+        whole = database.read_bytes()
+        for bytes_left in (whole[:1000], b"not a database " * 99,
+                           whole[:5000] + b"\0" * (len(whole) - 5000), b""):
+            database.write_bytes(bytes_left)
+            self.expect(self.call("export", run, "--format", "obj"), 2,
+                        "study.sqlite|study")
+            self.assertEqual(sorted(run.iterdir()), before)
+
+    def test_a_read_only_folder_is_told(self):
+        run = self.run_strut()
+        # Root writes everywhere: somebody else then.
+        other = {"user": 65534} if os.geteuid() == 0 else {}
+        self.folder.chmod(0o777)
+        run.chmod(0o555)
+        self.addCleanup(run.chmod, 0o700)
+        self.expect(self.call("export", run, "--format", "obj", **other), 2,
+                    "cannot write")
+        self.expect(self.call("export", run, "--format", "obj", "--out",
+                              self.folder / "a.obj", **other), 0)
+
+    def test_a_familys_members_are_all_written(self):
+        case = self.folder / "case.toml"
+        text = program.SIZED_STRUT.replace("[parameters]", "")
+        text = re.sub(r"(?s)\[study\].*", "", text) + (
+            '[study]\nkind = "family"\neach = "analyse"\n'
+            "[study.members.a]\nresolution.fea = 14\n"
+            "[study.members.b]\nresolution.fea = 15\n")
+        case.write_text(text)
+        out = self.folder / "out"
+        self.expect(self.call("run", case, "--no-pictures", "--out", out), 0)
+        done = self.call("export", out, "--format", "3mf", "--edge", "9")
+        self.expect(done, 0)
+        for name in "ab":
+            self.assertTrue(
+                (out / "members" / name / "part_9.3mf").exists(), done.stdout)
+        self.expect(self.call("export", out, "--format", "3mf", "--out",
+                              self.folder / "a.3mf"), 2, "family.*members/a")
+        (out / "members" / "a" / "study.sqlite").write_bytes(b"broken" * 99)
+        self.expect(self.call("export", out, "--format", "obj", "--edge", "9"),
+                    2, "members/a")
+        self.assertTrue((out / "members" / "b" / "part_9.obj").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
