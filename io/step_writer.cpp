@@ -12,6 +12,7 @@
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
+#include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Writer.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
@@ -164,13 +165,15 @@ StepReport write_step(const std::filesystem::path& path, const Brep& brep,
       TDataStd_Name::Set(label, ascii(brep.faces[f].name).c_str());
     }
   }
-  STEPCAFControl_Writer writer;
+  STEPCAFControl_Controller::Init();  // before its settings, and they before
+                                      // use
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
   Interface_Static::SetCVal("write.step.unit", unit.step);
   Interface_Static::SetCVal("write.step.product.name", name.c_str());
   Interface_Static::SetIVal("write.precision.mode", 1);  // the greatest
   Interface_Static::SetIVal("write.surfacecurve.mode", 0);
   Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
+  STEPCAFControl_Writer writer;
   writer.SetColorMode(false);
   writer.SetLayerMode(false);
   writer.SetNameMode(true);

@@ -36,7 +36,11 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   const Case input = at_edge(restore_case(store.meta()), options.edge);
   const std::vector<EvaluationRecord> records = store.all();
   const VectorX design = answer_of_run(input, records, folder);
-  const double edge = options.edge.value_or(input.resolution.fea);
+  // A STEP file's faces are as true as the film behind them.
+  const bool step =
+      options.format == "step" || options.format == "step-faceted";
+  const double edge = options.edge.value_or(step ? input.resolution.film
+                                                 : input.resolution.fea);
   fs::path file =
       options.out.empty()
           ? folder / fmt::format("part_{:g}.{}", edge, extension(options))
@@ -47,7 +51,7 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
               {.name = input.title, .unit = input.units.length});
     return file;
   }
-  if (options.format == "step" || options.format == "step-faceted") {
+  if (step) {
     const EvaluatedCase numbers = evaluate(input, design);
     export_step(file, numbers.film_system,
                 {.title = input.title,

@@ -12,7 +12,7 @@ build_packages=(
 run_packages=(xvfb libudunits2-data)
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
-  calculix-ccx evolver evolver-doc tetgen admesh git locales python3
+  calculix-ccx evolver evolver-doc tetgen admesh gmsh git locales python3
   libpetsc-real-dev openmpi-bin
 )
 
