@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/step_reader.h"
 #include "tests/support/temp_folder.h"
 
 namespace meniscus {
@@ -77,6 +78,44 @@ TEST_F(StepWriter, WritesTheSameBitsTwice) {
   write_step(one, box({1.0, 2.0, 3.0}), {.name = "box"});
   write_step(two, box({1.0, 2.0, 3.0}), {.name = "box"});
   EXPECT_EQ(read_file(one), read_file(two));
+}
+
+TEST_F(StepWriter, WhatIsWrittenIsReadWithItsNames) {
+  const auto file = folder_.path() / "box.step";
+  write_step(file, box({1.0, 2.0, 3.0}), {.name = "box", .unit = "in"});
+  const SurfaceMesh mesh = read_step_part(file, {.unit = "in", .edge = 0.5});
+  EXPECT_EQ(mesh.points.size(), 8U);
+  EXPECT_EQ(mesh.facets.size(), 12U);
+  EXPECT_NEAR(enclosed_volume(mesh), 6.0, 1e-12);
+  ASSERT_EQ(mesh.labels.size(), 6U);
+  EXPECT_NEAR(surface_area(mesh, mesh.label_of("side_0")), 2.0, 1e-12);
+  const SurfaceMesh metric = read_step_part(file, {.unit = "mm", .edge = 10});
+  EXPECT_NEAR(enclosed_volume(metric), 6.0 * 25.4 * 25.4 * 25.4, 1e-8);
+}
+
+TEST_F(StepWriter, EdgesAreReadAsCurves) {
+  const auto file = folder_.path() / "box.step";
+  write_step(file, box({1.0, 2.0, 3.0}));
+  double length = 0.0;
+  for (int k = 1; k <= 12; ++k) {
+    const Points points =
+        read_step_curve(file, std::to_string(k), {.edge = 0.1});
+    length += (points.back() - points.front()).norm();
+  }
+  EXPECT_NEAR(length, 4.0 * (1.0 + 2.0 + 3.0), 1e-12);
+  EXPECT_THROW(read_step_curve(file, "13", {.edge = 0.1}), InvalidInput);
+  EXPECT_THROW(read_step_curve(file, "rim", {.edge = 0.1}), InvalidInput);
+}
+
+TEST_F(StepWriter, ReadersRefuseWhatIsNoStep) {
+  const auto file = folder_.path() / "text.step";
+  write_file(file, "solid x\n");
+  EXPECT_THROW(read_step_part(file, {.edge = 1.0}), InvalidInput);
+  write_file(file, "ISO-10303-21;\nHEADER;\n");
+  EXPECT_THROW(read_step_part(file, {.edge = 1.0}), InvalidInput);
+  EXPECT_THROW(read_step_part(folder_.path() / "none", {.edge = 1.0}), IoError);
+  write_step(file, box({1.0, 1.0, 1.0}));
+  EXPECT_THROW(read_step_part(file, {.edge = 0.0}), InvalidInput);
 }
 
 TEST_F(StepWriter, RefusesWhatIsNoSolid) {
