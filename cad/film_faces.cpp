@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "cad/patch_knots.h"
 
 namespace meniscus {
 
 namespace {
+
+constexpr int kNormalRounds = 3;
 
 /// A side of a patch that lies on a rim.
 struct RimSide {
@@ -41,6 +45,8 @@ class FaceBuilder {
   void measure_gaps(const FilmPatch& patch, const PatchSides& sides);
   std::vector<BrepUse> outline(const FilmPatch& patch) const;
   Vec3 end_of(int v) { return brep_.vertices[vertex_of(v)]; }
+
+  void average_normals(const std::vector<FittedPatch>& patches);
 
   const FilmPiece& film_;
   const std::vector<RimEdges>& rims_;
@@ -303,17 +309,57 @@ void FaceBuilder::measure_gaps(const FilmPatch& patch,
   }
 }
 
+/// Normals along the lines between patches become the mean of what the patches
+/// have there: near a corner the film's own, which are of facets, ask for a
+/// twist that no surface has.
+void FaceBuilder::average_normals(const std::vector<FittedPatch>& patches) {
+  constexpr int kPerLine = 200;
+  std::vector<Points> sums(line_normals_.size(),
+                           Points(kPerLine + 1, Vec3::Zero()));
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const FilmPatch& patch = film_.cut.patches[p];
+    for (int side = 0; side < 4; ++side) {
+      for (int k = 0; k <= kPerLine && patch.lines[side] >= 0; ++k) {
+        const double t = static_cast<double>(k) / kPerLine;
+        const SurfaceJet jet =
+            jet_of(patches[p].surface,
+                   on_side(side, patch.reversed[side] ? 1.0 - t : t));
+        sums[patch.lines[side]][k] += jet.by_a.cross(jet.by_b).normalized();
+      }
+    }
+  }
+  for (std::size_t line = 0; line < sums.size(); ++line) {
+    CurveFit fit;
+    fit.knots = line_knots_[line];
+    fit.start = line_normals_[line].poles.front();
+    fit.end = line_normals_[line].poles.back();
+    for (int k = 0; k <= kPerLine; ++k) {
+      fit.at.push_back(static_cast<double>(k) / kPerLine);
+      fit.points.push_back(sums[line][k].normalized());
+    }
+    line_normals_[line] = fit_curve(fit);
+  }
+}
+
 FilmFaces FaceBuilder::build() {
   set_knots();
   fit_lines();
   FilmFaces faces;
   faces.first_face = static_cast<int>(brep_.faces.size());
-  for (const FilmPatch& patch : film_.cut.patches) {
-    const PatchSides sides = sides_of(patch);
-    faces.patches.push_back(fit_patch(mesh(), patch, sides));
-    measure_gaps(patch, sides);
+  for (int round = 0; round <= kNormalRounds; ++round) {
+    if (round > 0) {
+      average_normals(faces.patches);
+      faces.patches.clear();
+    }
+    for (const FilmPatch& patch : film_.cut.patches) {
+      faces.patches.push_back(fit_patch(mesh(), patch, sides_of(patch)));
+    }
+  }
+  for (std::size_t p = 0; p < faces.patches.size(); ++p) {
+    const FilmPatch& patch = film_.cut.patches[p];
+    measure_gaps(patch, sides_of(patch));
     brep_.faces.push_back(
-        {film_.name, faces.patches.back().surface, {outline(patch)}});
+        {film_.name, faces.patches[p].surface, {outline(patch)}});
   }
   return faces;
 }

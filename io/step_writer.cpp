@@ -10,8 +10,7 @@
 #include <BRepGProp.hxx>
 #include <GProp_GProps.hxx>
 #include <Interface_Static.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
+#include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Writer.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
@@ -30,30 +29,12 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/step_session.h"
 #include "io/step_shape.h"
 
 namespace meniscus {
 
 namespace {
-
-struct UnitWords {
-  double millimetres;
-  const char* step;
-};
-
-UnitWords unit_words(const std::string& unit) {
-  if (unit == "mm") {
-    return {1.0, "MM"};
-  }
-  if (unit == "m") {
-    return {1000.0, "M"};
-  }
-  if (unit == "in") {
-    return {25.4, "INCH"};
-  }
-  throw InvalidInput(
-      fmt::format("unit '{}' of a STEP file is none of mm, m, in", unit));
-}
 
 /// What BRepCheck_Analyzer finds first; empty for a valid shape.
 std::string fault_of(const StepShape& shape, const Brep& brep) {
@@ -93,20 +74,6 @@ std::string fault_of(const StepShape& shape, const Brep& brep) {
   return "its shells";
 }
 
-/// Nothing of OpenCASCADE's talk reaches the terminal.
-class Silence {
- public:
-  Silence() : printers_(Message::DefaultMessenger()->Printers()) {
-    Message::DefaultMessenger()->ChangePrinters().Clear();
-  }
-  ~Silence() { Message::DefaultMessenger()->ChangePrinters() = printers_; }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-
- private:
-  Message_SequenceOfPrinters printers_;
-};
-
 void set_header(STEPCAFControl_Writer& writer, const std::string& name) {
   APIHeaderSection_MakeHeader header(writer.ChangeWriter().Model());
   const auto text = [](const char* words) {
@@ -133,8 +100,8 @@ std::string ascii(const std::string& text) {
 
 StepReport write_step(const std::filesystem::path& path, const Brep& brep,
                       const StepOptions& options) {
-  const UnitWords unit = unit_words(options.unit);
-  const Silence silence;
+  const StepUnit unit = step_unit(options.unit);
+  const StepSilence silence;
   const StepShape shape = step_shape(brep, unit.millimetres);
   const std::string fault = fault_of(shape, brep);
   if (!fault.empty()) {
@@ -164,13 +131,15 @@ StepReport write_step(const std::filesystem::path& path, const Brep& brep,
       TDataStd_Name::Set(label, ascii(brep.faces[f].name).c_str());
     }
   }
-  STEPCAFControl_Writer writer;
+  STEPCAFControl_Controller::Init();  // before its settings, and they before
+                                      // use
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
-  Interface_Static::SetCVal("write.step.unit", unit.step);
+  Interface_Static::SetCVal("write.step.unit", unit.name);
   Interface_Static::SetCVal("write.step.product.name", name.c_str());
   Interface_Static::SetIVal("write.precision.mode", 1);  // the greatest
   Interface_Static::SetIVal("write.surfacecurve.mode", 0);
   Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
+  STEPCAFControl_Writer writer;
   writer.SetColorMode(false);
   writer.SetLayerMode(false);
   writer.SetNameMode(true);

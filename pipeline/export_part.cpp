@@ -56,7 +56,7 @@ void step(ExportJob& job, const fs::path& file, bool faceted) {
   export_step(file, job.numbers().film_system,
               {.title = job.input().title,
                .unit = job.input().units.length,
-               .edge = job.edge().value_or(job.input().resolution.fea),
+               .edge = job.edge().value_or(job.input().resolution.film),
                .faceted = faceted,
                .monitor = job.monitor()});
 }
@@ -133,8 +133,8 @@ const std::vector<ExportFormat>& export_formats() {
       {"stl", "stl", "surface, binary, for printing", true, stl},
       {"3mf", "3mf", "surface with its unit, for slicers", true, three_mf},
       {"obj", "obj", "surface with named groups", true, obj},
-      {"step", "step", "CAD, films as B-spline faces", false, smooth_step},
-      {"step-faceted", "step", "CAD, a plane for each facet", false,
+      {"step", "step", "CAD, films as B-spline faces", true, smooth_step},
+      {"step-faceted", "step", "CAD, a plane for each facet", true,
        faceted_step},
       {"fe", "fe", "film for Surface Evolver", true, fe},
       {"inp", "inp", "deck for CalculiX and Abaqus", false, inp},
