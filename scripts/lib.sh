@@ -6,13 +6,13 @@ build_packages=(
   libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev
   libudunits2-dev libqhull-dev libsuitesparse-dev libmetis-dev libopenblas-dev
   libspectra-dev libtet1.5-dev libnlopt-dev libnlopt-cxx-dev libceres-dev
-  libsqlite3-dev libvtk9-dev
+  libsqlite3-dev libvtk9-dev pybind11-dev python3-dev python3-numpy
 )
 run_packages=(xvfb libudunits2-data)
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
   calculix-ccx evolver evolver-doc tetgen admesh git locales python3
-  libpetsc-real-dev openmpi-bin
+  libpetsc-real-dev openmpi-bin python3-scipy
 )
 
 fuzz_packages=(clang libclang-rt-14-dev)
