@@ -8,6 +8,7 @@ build_packages=(
   libspectra-dev libtet1.5-dev libnlopt-dev libnlopt-cxx-dev libceres-dev
   libsqlite3-dev libvtk9-dev lib3mf-dev
   libocct-data-exchange-dev libocct-ocaf-dev
+  pybind11-dev python3-dev python3-numpy
 )
 # The report page is built by npm; where somebody else's Node.js is installed,
 # which has npm in it, Debian's own would not go beside it.
@@ -16,7 +17,7 @@ run_packages=(xvfb libudunits2-data)
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
   calculix-ccx evolver evolver-doc tetgen admesh gmsh git locales python3
-  libpetsc-real-dev openmpi-bin chromium
+  libpetsc-real-dev openmpi-bin chromium python3-scipy
 )
 
 fuzz_packages=(clang libclang-rt-14-dev)
