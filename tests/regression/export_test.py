@@ -327,6 +327,46 @@ class ExportOfThreeBodies(Export):
     edges = ["--set", "resolution.fea=22", "--set", "resolution.film=11"]
 
 
+LOADS = """
+[load_cases.service]
+supports = [{ on = "foot_pad", fix = "xyz" }]
+loads = [
+  { on = "top", pressure = 3 }, { gravity = [0, 5000, -9810] },
+  { spin = 40, axis = [1, 0, 2], at = [30, 5, 0] }]
+
+[load_cases.heat]
+supports = [{ on = "foot_pad", fix = "xyz" }]
+loads = [{ temperature = "20 + x", reference = 20 }]
+"""
+
+
+class NastranLoads(ProgramTest):
+    def test_mean_the_same_to_calculix(self):
+        text = program.SIZED_STRUT.replace(
+            "density = 2.8e-9", "density = 2.8e-9\nthermal_expansion = 2e-5")
+        text = re.sub(r"(?s)\[load_cases.service\].*?(?=\[responses)",
+                      LOADS.lstrip() + "\n", text)
+        text = re.sub(r"(?s)(\[responses.sway\].*?)\n\n",
+                      r'\1\nload_case = "service"\n\n', text)
+        text = re.sub(r"(?s)\[study\].*", '[study]\nkind = "analyse"\n', text)
+        case = self.folder / "case.toml"
+        case.write_text(text)
+        out = self.folder / "out"
+        self.expect(self.call("run", case, "--set", "resolution.fea=14",
+                              "--no-pictures", "--out", out), 0)
+        for name in ("bdf", "msh"):
+            self.expect(self.call("export", out, "--format", name), 0)
+        deck = bulk_data.read((out / "part_14.bdf").read_text())
+        msh = (out / "part_14.msh").read_text()
+        for subcase, name in ((1, "service"), (2, "heat")):
+            ours = nodal_field(msh, f"displacement, {name}")
+            (out / "bulk.inp").write_text(
+                bulk_data.calculix_deck(deck, subcase))
+            run_program("ccx", "-i", "bulk", folder=out)
+            theirs = displacements((out / "bulk.dat").read_text(), len(ours))
+            self.assertLess(difference(ours, theirs), AGREEMENT, name)
+
+
 class Trouble(ProgramTest):
     def run_strut(self, out="run"):
         path = self.folder / "case.toml"
