@@ -67,13 +67,13 @@ CLI::Validator positive() {
       "POSITIVE");
 }
 
-/// "stl (surface, binary, for printing), ..."
+/// A line for each format.
 std::string formats_text() {
-  std::vector<std::string> texts;
+  std::string text = "one of";
   for (const meniscus::ExportFormat& format : meniscus::export_formats()) {
-    texts.push_back(fmt::format("{} ({})", format.name, format.what));
+    text += fmt::format("\n{}: {}", format.name, format.what);
   }
-  return fmt::format("{}", fmt::join(texts, ", "));
+  return text;
 }
 
 std::string no_export_format(const std::string& name) {

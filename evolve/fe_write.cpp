@@ -21,7 +21,9 @@ class FeWriter {
  public:
   FeWriter(const FilmComplex& complex, const std::vector<std::string>& comments)
       : complex_(complex), places_(complex) {
-    add("// Written by Meniscus.\n");
+    if (comments.empty()) {
+      add("// written by Meniscus\n");
+    }
     for (const std::string& line : comments) {
       add("// {}\n", one_line(line));
     }

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <map>
 
+#include <Model/COM/NMR_DLLInterfaces.h>
 #include <fmt/format.h>
 
-#include "Model/COM/NMR_DLLInterfaces.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/body_surfaces.h"

@@ -1,10 +1,10 @@
 #include <limits>
 #include <map>
 
+#include <Model/COM/NMR_DLLInterfaces.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "Model/COM/NMR_DLLInterfaces.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/obj.h"

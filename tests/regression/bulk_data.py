@@ -1,11 +1,12 @@
 """Reads Nastran bulk data strictly by columns, and says its first subcases to
 CalculiX: what the file means to a program that knows nothing of its writer."""
 import collections
+import math
 import re
 
 # Cards that the decks of this program may have, and no others.
 KNOWN = {"PARAM", "GRDSET", "GRID", "CTETRA", "PSOLID", "MAT1", "SPC1", "LOAD",
-         "FORCE", "PLOAD4", "GRAV"}
+         "FORCE", "PLOAD4", "GRAV", "RFORCE", "TEMP", "TEMPD"}
 LINE = 72  # columns that count
 
 
@@ -44,7 +45,8 @@ class Deck:
         self.loads = {}
         self.forces = collections.defaultdict(list)
         self.pressures = collections.defaultdict(list)
-        self.gravity = {}
+        self.gravity, self.spin = {}, {}
+        self.heat = collections.defaultdict(dict)
 
 
 def read_case_control(text, deck):
@@ -59,7 +61,7 @@ def read_case_control(text, deck):
             deck.sets[int(index)] = value
         elif key == "SUBCASE":
             subcase = int(index)
-        elif key in ("SPC", "LOAD"):
+        elif key in ("SPC", "LOAD", "TEMPERATURE(LOAD)"):
             deck.subcases[subcase][key] = int(value)
 
 
@@ -80,7 +82,9 @@ def read(text):
         elif name == "PSOLID":
             deck.properties[int(f[0])] = int(f[1])
         elif name == "MAT1":
-            deck.materials[int(f[0])] = (real(f[1]), real(f[3]), real(f[4]))
+            deck.materials[int(f[0])] = (real(f[1]), real(f[3]),
+                                          *(real(x) if x else 0.0
+                                            for x in [*f[4:6], ""][:2]))
         elif name == "SPC1":
             deck.held[int(f[0])].append((f[1], [int(n) for n in f[2:] if n]))
         elif name == "LOAD":
@@ -96,6 +100,14 @@ def read(text):
                 (int(f[1]), real(f[2]), int(f[6]), int(f[7])))
         elif name == "GRAV":
             deck.gravity[int(f[0])] = (real(f[2]), [real(x) for x in f[3:6]])
+        elif name == "RFORCE":
+            deck.spin[int(f[0])] = (int(f[1]), real(f[3]),
+                                    [real(x) for x in f[4:7]])
+        elif name == "TEMPD":
+            if real(f[1]) != 0.0:
+                raise ValueError("a default temperature")
+        elif name == "TEMP":
+            deck.heat[int(f[0])][int(f[1])] = real(f[2])
     return deck
 
 
@@ -109,16 +121,22 @@ def calculix_deck(deck, subcase):
         # Both have mid-sides 12 23 31 14 24 34.
         out += [f"{e}, " + ", ".join(map(str, nodes))
                 for e, (p, nodes) in deck.elements.items() if p == pid]
-        young, poisson, density = deck.materials[mid]
+        young, poisson, density, expansion = deck.materials[mid]
         out += [f"*MATERIAL, NAME=M{mid}", "*ELASTIC",
                 f"{young:.12e}, {poisson:.12e}", "*DENSITY", f"{density:.12e}",
+                "*EXPANSION", f"{expansion:.12e}",
                 f"*SOLID SECTION, ELSET=P{pid}, MATERIAL=M{mid}"]
     case = deck.subcases[subcase]
+    heat = deck.heat[case.get("TEMPERATURE(LOAD)")]
+    if heat:
+        out += ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "NALL, 0."]
     out += ["*STEP", "*STATIC", "*BOUNDARY"]
     for components, nodes in deck.held[case["SPC"]]:
         out += [f"{n}, {c}, {c}" for n in nodes for c in components]
-    for part in deck.loads[case["LOAD"]]:
+    for part in deck.loads.get(case.get("LOAD"), []):
         out += load_lines(deck, part)
+    if heat:
+        out += ["*TEMPERATURE", *(f"{n}, {t:.12e}" for n, t in heat.items())]
     out += ["*NODE PRINT, NSET=NALL", "U", "*END STEP", ""]
     return "\n".join(out)
 
@@ -142,5 +160,12 @@ def load_lines(deck, part):
         out.append("*DLOAD")
         out += [f"P{pid}, GRAV, {size:.12e}, " +
                 ", ".join(f"{x:.12e}" for x in axis)
+                for pid in deck.properties]
+    if part in deck.spin:
+        point, turns, axis = deck.spin[part]
+        rate = 2 * math.pi * turns
+        numbers = [rate * rate, *deck.grids[point], *axis]
+        out.append("*DLOAD")
+        out += [f"P{pid}, CENTRIF, " + ", ".join(f"{x:.12e}" for x in numbers)
                 for pid in deck.properties]
     return out
