@@ -1,6 +1,7 @@
 #include "cad/film_tubes.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include <fmt/format.h>
@@ -41,7 +42,9 @@ namespace {
 constexpr int kMostTries = 60;
 constexpr int kMostRefinements = 3;
 constexpr std::size_t kEnoughFacets = 8000;  // for smooth cuts
-constexpr double kShrink = 0.85;  // of a tube's measure, from try to try
+constexpr double kGrow = 1.06;
+constexpr double kLongLine = 0.15;  // of a tube's end: long enough
+constexpr double kShrink = 0.85;    // of a tube's measure, from try to try
 
 SplitFilm start(FilmMesh mesh, const std::vector<FilmRim>& rims) {
   SplitFilm split;
@@ -132,12 +135,57 @@ std::optional<Tube> tube_of(const SplitFilm& split, int cell,
   return Tube{found[first ? 0 : 1], found[first ? 1 : 0]};
 }
 
+/// The line between two tubes that is the shortest share of a tube's end.
+struct ShortLine {
+  double share = 1.0;
+  std::array<int, 2> tubes{-1, -1};
+};
+
+ShortLine shortest_line(const Tubes& tubes) {
+  const FilmMesh& mesh = tubes.split.film.mesh;
+  std::map<Edge, int> cell_at;  // directed edge
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      cell_at[{mesh.facets[f][k], mesh.facets[f][(k + 1) % 3]}] =
+          tubes.split.cell[f];
+    }
+  }
+  ShortLine shortest;
+  for (std::size_t tube = 0; tube < tubes.tubes.size(); ++tube) {
+    std::vector<int> top = tubes.tubes[tube].top;
+    const auto node = std::find_if(top.begin(), top.end(), [&](int v) {
+      return count_in({v}, tubes.nodes) > 0;
+    });
+    std::rotate(top.begin(), node, top.end());
+    double whole = 0.0;
+    std::vector<std::pair<double, int>> lines;  // length, other tube
+    for (std::size_t k = 0; k < top.size(); ++k) {
+      const int next = top[(k + 1) % top.size()];
+      if (count_in({top[k]}, tubes.nodes) > 0) {
+        lines.emplace_back(0.0, cell_at.at({next, top[k]}));
+      }
+      const double length = (mesh.points[next] - mesh.points[top[k]]).norm();
+      lines.back().first += length;
+      whole += length;
+    }
+    for (const auto& [length, other] : lines) {
+      if (length / whole < shortest.share) {
+        shortest = {length / whole, {static_cast<int>(tube), other}};
+      }
+    }
+  }
+  return shortest;
+}
+
 /// Tubes by the greatest measure. One that lies between others, so that these
-/// do not meet, has its measure made less until they do.
+/// do not meet, has its measure made less until they do; two that hardly meet
+/// have theirs made greater.
 Tubes cut_into_tubes(const SplitFilm& whole) {
   const Eigen::MatrixXd measures = harmonic_measures(whole);
   const int count = static_cast<int>(measures.cols());
   VectorX factors = VectorX::Ones(count);
+  std::optional<Tubes> best;
+  double best_share = 0.0;
   for (int round = 0; round < kMostTries; ++round) {
     Tubes result{whole, {}, {}};
     result.nodes =
@@ -156,12 +204,27 @@ Tubes cut_into_tubes(const SplitFilm& whole) {
       }
       result.tubes.push_back(*tube);
     }
-    if (done) {
-      return result;
+    if (!done) {
+      continue;
+    }
+    const ShortLine line = shortest_line(result);
+    for (const int tube : line.tubes) {
+      factors[tube] *= kGrow;
+    }
+    if (line.share > best_share) {
+      best_share = line.share;
+      best = std::move(result);
+    }
+    if (best_share >= kLongLine) {
+      break;
     }
   }
-  throw MeshError(fmt::format(
-      "a film with {} rims has no cut into tubes that meet in threes", count));
+  if (!best) {
+    throw MeshError(fmt::format(
+        "a film with {} rims has no cut into tubes that meet in threes",
+        count));
+  }
+  return std::move(*best);
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ namespace meniscus {
 
 namespace {
 
+constexpr double kMostDeviation = 0.1;  // of the film's edge: else a warning
+constexpr double kMostBreak = 1.0;      // [degree]
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 RimPiece line_piece(const Vec3& from, const Vec3& to) {
