@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
+#include <tuple>
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDataArray.h>
+#include <vtkDataArraySelection.h>
 #include <vtkFieldData.h>
 #include <vtkIdList.h>
 #include <vtkInformation.h>
@@ -121,6 +122,10 @@ PictureTets load_tets(const std::string& path) {
   require_file(path);
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
+  // The fields are nine tenths of the file.
+  reader->UpdateInformation();
+  reader->GetPointDataArraySelection()->DisableAllArrays();
+  reader->GetCellDataArraySelection()->DisableAllArrays();
   reader->Update();
   vtkUnstructuredGrid* grid = reader->GetOutput();
   PictureTets tets;
@@ -151,12 +156,14 @@ SurfaceMesh cut_open(const PictureTets& tets, const Vec3& normal) {
   }
   const double level = normal.dot(0.5 * (low + high));
   struct Side {
+    Triangle key;  // corners, sorted
     Triangle corners;
-    int kept = 0, removed = 0;
+    bool kept;
   };
   constexpr std::array<Triangle, 4> kFaces = {
       {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-  std::map<Triangle, Side> sides;
+  std::vector<Side> sides;
+  sides.reserve(4 * tets.corners.size());
   for (const auto& tet : tets.corners) {
     Vec3 middle = Vec3::Zero();
     for (const int id : tet) {
@@ -169,21 +176,24 @@ SurfaceMesh cut_open(const PictureTets& tets, const Vec3& normal) {
                             tet[static_cast<std::size_t>(face[2])]};
       Triangle key = ids;
       std::sort(key.begin(), key.end());
-      Side& side = sides[key];
-      if (kept) {
-        side.corners = ids;
-      }
-      ++(kept ? side.kept : side.removed);
+      sides.push_back({key, ids, kept});
     }
   }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.key, b.kept) < std::tie(b.key, a.kept);
+  });
   SurfaceMesh result;
   result.labels = {"outside", "inside"};
   result.points = tets.nodes;
-  for (const auto& [key, side] : sides) {
-    if (side.kept == 1) {
-      result.facets.push_back(side.corners);
-      result.facet_label.push_back(side.removed);
+  // Of a face's two sides the kept one comes first.
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const bool two = i + 1 < sides.size() && sides[i + 1].key == sides[i].key;
+    const bool both_kept = two && sides[i].kept && sides[i + 1].kept;
+    if (sides[i].kept && !both_kept) {
+      result.facets.push_back(sides[i].corners);
+      result.facet_label.push_back(two ? 1 : 0);
     }
+    i += two ? 1 : 0;
   }
   return result;
 }

@@ -17,6 +17,11 @@ export function headline(data: PageData): HTMLElement {
   document.title = `${title} \u2013 Meniscus report`;
   const status = result?.status ?? "converged";
   const good = status === "converged";
+  // What a good end adds to its first sentence stands below it.
+  const message = result?.message ?? "";
+  const end = good ? message.search(/\. (?=[A-Z'])/) : -1;
+  const first = end < 0 ? message : message.slice(0, end + 1);
+  const rest = end < 0 ? "" : message.slice(end + 2);
   return h(
     "header",
     {},
@@ -27,7 +32,8 @@ export function headline(data: PageData): HTMLElement {
           "p",
           { class: `status ${good ? "good" : "bad"}`, role: good ? null : "alert" },
           h("strong", {}, STATUS[status] ?? status),
-          ` ${result.message}`,
+          ` ${first}`,
+          rest ? h("small", {}, rest) : null,
         )
       : null,
   );

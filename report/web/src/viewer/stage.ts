@@ -47,6 +47,12 @@ export class Stage {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
+    // Whoever only scrolls past must not zoom.
+    this.controls.enableZoom = false;
+    const zooms = (on: boolean) => () => (this.controls.enableZoom = on);
+    canvas.addEventListener("pointerdown", zooms(true), { capture: true });
+    canvas.addEventListener("focus", zooms(true));
+    canvas.addEventListener("blur", zooms(false));
     this.controls.addEventListener("change", () => this.draw());
     canvas.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.draw()).observe(canvas);

@@ -68,7 +68,13 @@ class View {
       this.bar,
     );
     this.paneTitles();
-    element.append(frameBox, this.panel());
+    const hint =
+      "Drag to turn, with the right button to move; after a click the wheel " +
+      "zooms. Arrow keys turn, + and \u2212 zoom, 0 resets.";
+    element.append(
+      h("div", {}, frameBox, h("p", { class: "hint" }, hint)),
+      this.panel(),
+    );
     this.usualRange();
     this.refresh();
     this.stage.look(VIEWS.Oblique);
