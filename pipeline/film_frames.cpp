@@ -231,23 +231,33 @@ std::string frame_name(int evaluation) {
 }
 
 std::string frame_caption(const Case& input, const FilmFrame& frame) {
-  constexpr Eigen::Index kMostResponses = 3;
-  std::string text =
-      fmt::format("evaluation {} ({})", frame.evaluation, frame.kept);
+  constexpr Eigen::Index kMostDesigns = 3;
+  constexpr int kMostResponses = 3;
+  std::vector<std::string> parts;
   const std::vector<std::string> designs = design_names(input);
-  for (Eigen::Index k = 0; k < frame.design.size(); ++k) {
-    text += fmt::format("{} {} = {:.4g}", k == 0 ? ":" : ",",
-                        designs[static_cast<std::size_t>(k)], frame.design[k]);
+  for (Eigen::Index k = 0;
+       k < frame.design.size() && frame.design.size() <= kMostDesigns; ++k) {
+    parts.push_back(fmt::format(
+        "{} = {:.4g}", designs[static_cast<std::size_t>(k)], frame.design[k]));
   }
-  const std::vector<std::string> names = response_names(input);
-  for (Eigen::Index k = 0; k < std::min(frame.responses.size(), kMostResponses);
-       ++k) {
-    const std::string unit = response_unit(input, static_cast<int>(k));
-    text += fmt::format("{} {} = {:.4g}{}{}", k == 0 ? ";" : ",",
-                        names[static_cast<std::size_t>(k)], frame.responses[k],
-                        unit.empty() ? "" : " ", unit);
+  const auto add = [&](int k) {
+    const std::string unit = response_unit(input, k);
+    parts.push_back(fmt::format(
+        "{} = {:.4g}{}{}", input.responses[static_cast<std::size_t>(k)].name,
+        frame.responses[k], unit.empty() ? "" : " ", unit));
+  };
+  const int first = input.study.objective.value_or(-1);
+  if (first >= 0) {
+    add(first);
   }
-  return text;
+  const auto count = static_cast<int>(frame.responses.size());
+  for (int k = 0; k < std::min(count, kMostResponses); ++k) {
+    if (k != first) {
+      add(k);
+    }
+  }
+  return fmt::format("evaluation {} ({}): {}", frame.evaluation, frame.kept,
+                     fmt::join(parts, ", "));
 }
 
 void remove_frames(const fs::path& folder) {

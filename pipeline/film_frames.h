@@ -43,8 +43,9 @@ void write_frames(const Case& input, const std::vector<FilmFrame>& frames,
 /// "film_0012.vtp" of evaluation 12.
 std::string frame_name(int evaluation);
 
-/// "evaluation 12 (better): foot = 25.3; mass = 0.0119 t": a frame's caption,
-/// of the design variables and at most three responses.
+/// "evaluation 12 (better): foot = 25.3, mass = 0.0119 t": a frame's caption,
+/// of the design variables unless they are many, and some responses, the
+/// objective first.
 std::string frame_caption(const Case& input, const FilmFrame& frame);
 
 /// From the raw start of a design to its settled film, as it flows and is

@@ -2,23 +2,24 @@
 
 #include "evolve/curvature_flow.h"
 #include "evolve/grooming.h"
+#include "evolve/start_edge.h"
 #include "pipeline/film_frames.h"
 
 namespace meniscus {
 
 namespace {
 
-// Flow, meshing anew, flow: as a film is found, in steps small enough to see.
-constexpr int kRounds = 3;
-constexpr int kSteps = 20;
-constexpr double kSmoothing = 1.0;  // edges in the first step
+// As a film is found, coarse first, but in steps small enough to see.
+constexpr int kSteps = 30;          // at most, coarse and fine
+constexpr double kSmoothing = 0.5;  // edges in the first step
 
 }  // namespace
 
 std::vector<FilmFrame> settling_frames(const EvaluatedCase& numbers,
                                        const FilmModel& model, Monitor& monitor,
                                        int most) {
-  FilmComplex complex = build_start(numbers.film_system, numbers.fea_edge);
+  FilmComplex complex =
+      build_start(numbers.film_system, start_edge(numbers.fea_edge));
   std::vector<FilmFrame> all;
   const auto keep = [&](const char* kept, SurfaceMesh surface) {
     all.push_back({.evaluation = static_cast<int>(all.size()),
@@ -34,12 +35,12 @@ std::vector<FilmFrame> settling_frames(const EvaluatedCase& numbers,
     keep("flowing", std::move(surface));
     return false;
   };
-  bool settled = false;
-  for (int round = 0; round < kRounds && !settled; ++round) {
-    throw_if_stopped(monitor, "film");
-    settled = flow_to_rest(complex, flow).settled;
-    remesh_films(complex, {.edge = numbers.fea_edge});
-  }
+  // Long facets between the curves have nothing to flow with.
+  remesh_films(complex, {.edge = start_edge(numbers.fea_edge)});
+  flow_to_rest(complex, flow);
+  complex = refine(complex).complex;
+  remesh_films(complex, {.edge = numbers.fea_edge});
+  flow_to_rest(complex, flow);
   if (!model.reference().failure) {
     keep("settled", model.fine_mesh(model.reference().points));
   }

@@ -39,7 +39,7 @@ struct PictureJob {
   Vec3 view = Vec3(0.26, -1.0, 0.62);  // from the part to the eye; z is up
   bool facet_edges = false;            // Film: thin lines along facets
   // Film, of a series seen by one fixed camera:
-  Points seen;          // places that must be in view beside the film's own
+  Points seen;          // what must be in view; empty: the film
   std::string caption;  // a line below the title
 };
 

@@ -122,6 +122,7 @@ Panel::Panel(const Box& place, int picture_width, int picture_height)
       height_((place.top - place.bottom) * picture_height) {
   renderer_->SetViewport(place.left, place.bottom, place.right, place.top);
   renderer_->SetBackground(1.0, 1.0, 1.0);
+  renderer_->UseFXAAOn();
   renderer_->AutomaticLightCreationOff();
   vtkNew<vtkLightKit> lights;
   lights->SetKeyLightIntensity(0.95);

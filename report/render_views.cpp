@@ -274,8 +274,8 @@ void draw_film(Panel& panel, const PictureJob& job,
     panel.add_surface(caps.data, cap);
   }
   panel.add_tubes(mesh.points, rim_edges(mesh), 0.0045 * diagonal, kRimColour);
-  panel.show(mesh.points);
-  panel.show(job.seen);
+  // The camera of a series must not depend on the film.
+  panel.show(job.seen.empty() ? mesh.points : job.seen);
 }
 
 void draw_cut_mesh(Panel& panel, const PictureJob& job,

@@ -15,11 +15,18 @@
 
 namespace meniscus {
 
+namespace {
+
+// Of 0 to 9: a tenth more bytes than 6, in a third of its time.
+constexpr int kCompression = 3;
+
+}  // namespace
+
 void save_picture(const std::vector<Panel*>& panels, int width, int height,
                   const std::string& path) {
   vtkNew<vtkRenderWindow> window;
   window->SetOffScreenRendering(1);
-  window->SetMultiSamples(0);  // supersampling smooths text and lines as well
+  window->SetMultiSamples(0);  // they do not go with depth peeling
   window->SetAlphaBitPlanes(1);
   window->SetSize(width * kSupersampling, height * kSupersampling);
   for (Panel* panel : panels) {
@@ -56,7 +63,7 @@ void save_picture(const std::vector<Panel*>& panels, int width, int height,
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputData(image);
   writer->WriteToMemoryOn();
-  writer->SetCompressionLevel(6);
+  writer->SetCompressionLevel(kCompression);
   writer->Write();
   vtkUnsignedCharArray* bytes = writer->GetResult();
   if (bytes == nullptr || bytes->GetNumberOfValues() == 0) {

@@ -10,6 +10,7 @@
 #include "fea/block_sweeps.h"
 #include "fea/conjugate_gradients.h"
 #include "fea/node_freedom.h"
+#include "fea/tet_element.h"
 #include "tests/fea/parts.h"
 
 namespace meniscus {
