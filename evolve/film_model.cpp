@@ -12,6 +12,7 @@
 #include "evolve/film_model_impl.h"
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
+#include "evolve/rim_grading.h"
 #include "evolve/solid_facets.h"
 #include "evolve/tension_field.h"
 
@@ -23,7 +24,8 @@ namespace {
 /// are of the first, its mid-sides of the second.
 constexpr int kMeshedLevels = 2;
 
-constexpr int kHalvings = 1;  // the start is this many times coarser
+// The start is this many times coarser, unless sides are too short for that.
+constexpr int kHalvings = 1;
 
 /// Steps from the reference to a design: first in one, then in parts, which
 /// are fixed so that the film depends on the design alone.
@@ -192,10 +194,12 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   monitor.progress({"film", "building the start", 0.0});
-  complex = build_start(initial, options.edge * std::exp2(kHalvings));
+  const int halvings =
+      halving_is_too_fine(initial, options.edge) ? 0 : kHalvings;
+  complex = build_start(initial, options.edge * std::exp2(halvings));
   monitor.progress({"film", "settling the raw start", 0.1});
   reference = find_equilibrium(
-      complex, {.edge = options.edge, .halvings = kHalvings, .settle = settle});
+      complex, {.edge = options.edge, .halvings = halvings, .settle = settle});
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
