@@ -4,6 +4,7 @@
 
 #include "evolve/grooming.h"
 #include "evolve/neck.h"
+#include "evolve/rim_grading.h"
 
 namespace meniscus {
 
@@ -48,7 +49,8 @@ std::string bring_near(FilmComplex& complex, std::optional<double> edge,
       return kFilmTears;
     }
     if (edge) {
-      remesh_films(complex, {.edge = *edge});
+      remesh_films(complex,
+                   {.edge = *edge, .edge_field = graded_edge(complex, *edge)});
     }
     if (report.settled || report.steps == 0) {
       break;

@@ -98,6 +98,14 @@ class EarClipper {
 
 constexpr int kPasses = 8;
 
+double mean_piece(const Points& rim) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    sum += (rim[(i + 1) % rim.size()] - rim[i]).norm();
+  }
+  return sum / static_cast<double>(rim.size());
+}
+
 }  // namespace
 
 Vec3 polygon_area_vector(const Points& rim) {
@@ -108,12 +116,8 @@ Vec3 polygon_area_vector(const Points& rim) {
   return 0.5 * sum;
 }
 
-SurfaceMesh fill_disk(const Points& rim, double edge) {
-  double piece = 0.0;
-  for (std::size_t i = 0; i < rim.size(); ++i) {
-    piece += (rim[(i + 1) % rim.size()] - rim[i]).norm();
-  }
-  piece /= static_cast<double>(rim.size());
+SurfaceMesh fill_disk(const Points& rim, double edge,
+                      const std::function<double(const Vec3&)>& edge_field) {
   FilmComplex disk;
   disk.mesh.points = rim;
   disk.mesh.facets = EarClipper(rim).run();
@@ -122,7 +126,9 @@ SurfaceMesh fill_disk(const Points& rim, double edge) {
   disk.vertices.assign(rim.size(), {.kind = VertexKind::Fixed});
   SurfaceEditor editor(std::move(disk));
   // Where the curve is cut finer than asked, the inside follows it.
-  make_isotropic(editor, {.edge = std::min(edge, piece)}, kPasses);
+  make_isotropic(editor,
+                 {.edge = std::min(edge, mean_piece(rim)), .field = edge_field},
+                 kPasses);
   return std::move(editor).finish().mesh;
 }
 

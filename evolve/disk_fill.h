@@ -1,6 +1,8 @@
 /// Fills a closed curve with triangles.
 #pragma once
 
+#include <functional>
+
 #include "core/surface_mesh.h"
 
 namespace meniscus {
@@ -12,9 +14,11 @@ Vec3 polygon_area_vector(const Points& rim);
 /// Isotropic triangles of about `edge` inside the simple polygon `rim`
 /// (planar, or one whose shadow along its area vector is simple): the rim
 /// points come first with their numbers, no other lies on the rim, and facets
-/// run along it in its direction. No labels. Throws MeshError when the rim
-/// crosses itself.
+/// run along it in its direction. No labels. `edge_field`: the edge wanted at a
+/// place instead. Throws MeshError when the rim crosses itself.
 /// Ear clipping, then isotropic remeshing (Botsch and Kobbelt 2004).
-SurfaceMesh fill_disk(const Points& rim, double edge);
+SurfaceMesh fill_disk(
+    const Points& rim, double edge,
+    const std::function<double(const Vec3&)>& edge_field = {});
 
 }  // namespace meniscus

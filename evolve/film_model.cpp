@@ -12,6 +12,7 @@
 #include "evolve/film_model_impl.h"
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
+#include "evolve/rim_grading.h"
 #include "evolve/solid_facets.h"
 #include "evolve/start_edge.h"
 #include "evolve/tension_field.h"
@@ -191,11 +192,11 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   monitor.progress({"film", "building the start", 0.0});
-  complex = build_start(initial, start_edge(options.edge));
+  const int halvings = start_halvings(initial, options.edge);
+  complex = build_start(initial, start_edge(initial, options.edge));
   monitor.progress({"film", "settling the raw start", 0.1});
   reference = find_equilibrium(
-      complex,
-      {.edge = options.edge, .halvings = kStartHalvings, .settle = settle});
+      complex, {.edge = options.edge, .halvings = halvings, .settle = settle});
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});

@@ -14,6 +14,7 @@
 #include "evolve/junctions.h"
 #include "evolve/neck.h"
 #include "evolve/nested_newton.h"
+#include "evolve/rim_grading.h"
 
 namespace meniscus {
 
@@ -72,7 +73,8 @@ std::string bring_near_by_levels(FilmComplex& complex,
       if (level < levels) {
         complex = refine(complex).complex;
       }
-      remesh_films(complex, {.edge = *edge});
+      remesh_films(complex,
+                   {.edge = *edge, .edge_field = graded_edge(complex, *edge)});
     }
     std::string reason = bring_near(complex, edge, options.max_rounds, steps,
                                     {.monitor = options.settle.monitor});

@@ -13,6 +13,8 @@
 #include "evolve/grooming.h"
 #include "evolve/hull.h"
 #include "evolve/loft.h"
+#include "evolve/raise_disks.h"
+#include "evolve/rim_grading.h"
 #include "evolve/rim_stitcher.h"
 #include "evolve/tension_field.h"
 
@@ -51,6 +53,7 @@ class StartBuilder {
     for (const CapSpec& cap : system_.caps) {
       add_cap(cap);
     }
+    raise_disks(system_, result_);
     for (const BodySpec& body : system_.bodies) {
       add_body(body);
     }
@@ -194,7 +197,10 @@ class StartBuilder {
   void fill(const Rim& rim, int label, VertexKind kind) {
     SurfaceMesh disk;
     try {
-      disk = fill_disk(points_of(rim), edge_);
+      const Points points = points_of(rim);
+      disk = has_many_sides(system_.curves[rim.curve].shape)
+                 ? fill_disk(points, edge_, graded_edge(points, edge_))
+                 : fill_disk(points, edge_);
     } catch (const MeshError& error) {
       throw InvalidInput(fmt::format(
           "curve '{}': {}", system_.curves[rim.curve].name, error.what()));

@@ -228,6 +228,7 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
   EvaluatedCase result = numbers_of(input, values);
   result.design = design;
   if (problems.size() == before) {
+    check_meetings(input, result.film_system, values);
     check_places(input, result, values);
   }
   return result;

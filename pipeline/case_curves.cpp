@@ -1,10 +1,12 @@
 #include "pipeline/case_curves.h"
 
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evolve/curve_contact.h"
 
 namespace meniscus {
 
@@ -97,6 +99,27 @@ std::string where(const CurveEntry& entry, const CaseValues& values) {
                       copy.about, copy.move);
 }
 
+bool may_meet_itself(const CurveEntry& entry) {
+  return entry.kind == CurveKind::Polygon || entry.kind == CurveKind::Spline ||
+         entry.kind == CurveKind::Polyline || entry.copy.offset.has_value();
+}
+
+/// Refuses what is no curve, and one that crosses itself.
+void check(const CurveEntry& entry, const Curve& curve) {
+  validate(curve);
+  if (!may_meet_itself(entry)) {
+    return;
+  }
+  if (const auto at = meets_itself(curve.shape)) {
+    throw InvalidInput(fmt::format(
+        "curve '{}': crosses or touches itself near ({:.4g}, {:.4g}, {:.4g}); "
+        "no film can start there: {}",
+        curve.name, at->x(), at->y(), at->z(),
+        entry.copy.offset ? "offset it less"
+                          : "points must follow each other around the curve"));
+  }
+}
+
 }  // namespace
 
 std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
@@ -107,7 +130,7 @@ std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
     Curve curve{entry.name, shape_of(entry, result, values)};
     if (!values.are_rates() && values.problems().size() == before) {
       try {
-        validate(curve);
+        check(entry, curve);
       } catch (const InvalidInput& error) {
         values.problems().push_back(
             fmt::format("{}: {}{}", place(input, entry.line), error.what(),
@@ -117,6 +140,38 @@ std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
     result.push_back(std::move(curve));
   }
   return result;
+}
+
+void check_meetings(const Case& input, const FilmSystem& system,
+                    const CaseValues& values) {
+  std::vector<std::size_t> rims;  // what holds a film or a cap
+  std::vector<const CurveShape*> shapes;
+  for (std::size_t c = 0; c < system.curves.size(); ++c) {
+    const std::string& name = system.curves[c].name;
+    const bool held =
+        std::any_of(system.films.begin(), system.films.end(),
+                    [&](const FilmSpec& film) {
+                      return std::find(film.curves.begin(), film.curves.end(),
+                                       name) != film.curves.end();
+                    }) ||
+        std::any_of(system.caps.begin(), system.caps.end(),
+                    [&](const CapSpec& cap) { return cap.curve == name; });
+    if (held) {
+      rims.push_back(c);
+      shapes.push_back(&system.curves[c].shape);
+    }
+  }
+  for (const CurveMeeting& meeting : meetings_of(shapes)) {
+    const std::size_t a = rims[static_cast<std::size_t>(meeting.first)];
+    const std::size_t b = rims[static_cast<std::size_t>(meeting.second)];
+    const Vec3& at = meeting.place;
+    values.problems().push_back(fmt::format(
+        "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; films "
+        "join where they name the same curve, other curves must keep apart",
+        place(input, input.curves[b].line), input.curves[a].name,
+        input.curves[b].name, at.x(), at.y(), at.z(),
+        where(input.curves[b], values)));
+  }
 }
 
 }  // namespace meniscus

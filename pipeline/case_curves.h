@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "evolve/curve.h"
+#include "evolve/film_system.h"
 #include "pipeline/case_values.h"
 
 namespace meniscus {
@@ -11,5 +11,9 @@ namespace meniscus {
 /// One per entry, in order; values, or rates. A value that makes no curve is
 /// told in the problems of `values`.
 std::vector<Curve> curves_of(const Case& input, const CaseValues& values);
+
+/// Tells of curves that hold films or caps and touch or cross each other.
+void check_meetings(const Case& input, const FilmSystem& system,
+                    const CaseValues& values);
 
 }  // namespace meniscus

@@ -38,8 +38,7 @@ std::vector<TableSpec> make_tables() {
       {"curves",
        true,
        N::Always,
-       "A closed boundary curve that holds films; counter-clockwise seen from "
-       "the tip of its normal",
+       "A closed boundary curve, counter-clockwise seen from its normal's tip",
        {{"kind", K::Choice, D::None, true,
          "its shape: circle, ellipse, rectangle; polygon: straight sides; "
          "spline: smooth through points; polyline: straight sides and circular "

@@ -76,8 +76,9 @@ std::optional<double> counted(double operations) {
 }
 
 SurfaceMesh start_surface(const EvaluationFields& fields) {
-  return build_start(fields.inputs.film_system,
-                     start_edge(fields.inputs.fea_edge))
+  return build_start(
+             fields.inputs.film_system,
+             start_edge(fields.inputs.film_system, fields.inputs.fea_edge))
       .mesh;
 }
 

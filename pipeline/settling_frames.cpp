@@ -18,8 +18,8 @@ constexpr double kSmoothing = 0.5;  // edges in the first step
 std::vector<FilmFrame> settling_frames(const EvaluatedCase& numbers,
                                        const FilmModel& model, Monitor& monitor,
                                        int most) {
-  FilmComplex complex =
-      build_start(numbers.film_system, start_edge(numbers.fea_edge));
+  FilmComplex complex = build_start(
+      numbers.film_system, start_edge(numbers.film_system, numbers.fea_edge));
   std::vector<FilmFrame> all;
   const auto keep = [&](const char* kept, SurfaceMesh surface) {
     all.push_back({.evaluation = static_cast<int>(all.size()),
