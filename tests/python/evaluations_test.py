@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Frozen models: stages, gradients, failures, threads, wrong arguments."""
+import signal
 import threading
 import unittest
 
@@ -191,6 +192,14 @@ class Threads(PackageTest):
         stop.set()
         ticker.join()
         self.assertGreater(len(ticks), 5)
+
+    def test_ctrl_c_ends_a_freeze(self):
+        timer = threading.Timer(0.4, signal.raise_signal, [signal.SIGINT])
+        with self.assertRaises(KeyboardInterrupt):
+            timer.start()
+            meniscus.Model(meniscus.read_case(CASE, {
+                "resolution.fea": 6.0, "resolution.film": 3.0}))
+        self.assertTrue(model().evaluate([1.0]).ok)
 
     def test_progress_comes_on_the_calling_thread(self):
         heard = []
