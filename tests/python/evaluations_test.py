@@ -58,14 +58,14 @@ class Stages(PackageTest):
                     + 3 * (xy ** 2 + yz ** 2 + zx ** 2)), rtol=1e-10)
 
     def test_gradients_are_those_of_differences(self):
-        names = bracket_names = [r.name for r in bracket().responses]
+        names = [r.name for r in bracket().responses]
         at = model().evaluate([7.0])
         exact = at.gradient()
         step = 0.01
         rise = (model().evaluate([7.0 + step]).responses
                 - model().evaluate([7.0 - step]).responses) / (2 * step)
         np.testing.assert_allclose(exact[:, 0], rise, rtol=DIFFERENCE)
-        np.testing.assert_allclose(at.gradient(bracket_names), exact,
+        np.testing.assert_allclose(at.gradient(names), exact,
                                    rtol=1e-12)
         self.assertEqual(at.gradient(names[1]).shape, (1,))
         self.assertEqual(at.gradient(names[1:]).shape, (1, 1))
