@@ -1,7 +1,7 @@
 import os
 import pathlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Literal, Optional, Union, overload
+from typing import Any, Literal, Optional, Union
 
 import numpy as np
 import numpy.typing as npt

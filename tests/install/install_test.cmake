@@ -21,3 +21,8 @@ run(${CMAKE_COMMAND} -E env
   MENISCUS_TETGEN=${prefix}/${LIBEXEC}/meniscus/meniscus-tetgen
   ${WORK}/outside/outside ${CASE})
 run(${prefix}/${BIN}/meniscus check ${CASE})
+# The package finds the mesher below the prefix by itself.
+if(PYTHON)
+  run(${CMAKE_COMMAND} -E env --unset=MENISCUS_TETGEN
+    PYTHONPATH=${prefix}/${PYTHON_FOLDER} ${PYTHON} ${IMPORT} ${CASE} ${prefix})
+endif()

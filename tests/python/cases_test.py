@@ -3,13 +3,14 @@
 import ast
 import inspect
 import pathlib
+import re
 import tomllib
 import unittest
 
 import numpy as np
 
 import meniscus
-from support import CASE, COARSE, STRUTS, PackageTest, bracket
+from support import CASE, STRUTS, PackageTest, bracket
 
 
 class Reading(PackageTest):
@@ -123,6 +124,32 @@ class PublicNames(PackageTest):
             for member in self.members(known):
                 self.assertTrue(own_words(getattr(known, member).__doc__),
                                 f"{name}.{member}")
+
+    def test_arguments_are_those_of_the_types(self):
+        def told(known):
+            """Names of arguments, from Python or pybind11's first line."""
+            try:
+                return list(inspect.signature(known).parameters)
+            except ValueError:
+                first = known.__doc__.strip().splitlines()[0]
+                inside = first[first.index("(") + 1:first.rindex(") ->")]
+                return re.findall(r"(?:^|, )(\w+):", inside)
+
+        def typed(function):
+            return [a.arg for a in (*function.args.args,
+                                    *function.args.kwonlyargs)]
+
+        stub = pathlib.Path(meniscus.__file__).with_suffix(".pyi").read_text()
+        for node in ast.parse(stub).body:
+            if isinstance(node, ast.FunctionDef):
+                self.assertEqual(typed(node), told(getattr(
+                    meniscus, node.name)), node.name)
+            for item in getattr(node, "body", []):
+                if isinstance(item, ast.FunctionDef) and not (
+                        item.decorator_list):
+                    known = getattr(getattr(meniscus, node.name), item.name)
+                    self.assertEqual(typed(item)[1:], told(known)[1:],
+                                     f"{node.name}.{item.name}")
 
     def test_arrays_tell_shape_and_kind(self):
         stub = pathlib.Path(meniscus.__file__).with_suffix(".pyi").read_text()

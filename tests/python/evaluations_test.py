@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Frozen models: stages, gradients, failures, threads, wrong arguments."""
+import signal
 import threading
 import unittest
 
@@ -57,14 +58,14 @@ class Stages(PackageTest):
                     + 3 * (xy ** 2 + yz ** 2 + zx ** 2)), rtol=1e-10)
 
     def test_gradients_are_those_of_differences(self):
-        names = bracket_names = [r.name for r in bracket().responses]
+        names = [r.name for r in bracket().responses]
         at = model().evaluate([7.0])
         exact = at.gradient()
         step = 0.01
         rise = (model().evaluate([7.0 + step]).responses
                 - model().evaluate([7.0 - step]).responses) / (2 * step)
         np.testing.assert_allclose(exact[:, 0], rise, rtol=DIFFERENCE)
-        np.testing.assert_allclose(at.gradient(bracket_names), exact,
+        np.testing.assert_allclose(at.gradient(names), exact,
                                    rtol=1e-12)
         self.assertEqual(at.gradient(names[1]).shape, (1,))
         self.assertEqual(at.gradient(names[1:]).shape, (1, 1))
@@ -191,6 +192,14 @@ class Threads(PackageTest):
         stop.set()
         ticker.join()
         self.assertGreater(len(ticks), 5)
+
+    def test_ctrl_c_ends_a_freeze(self):
+        timer = threading.Timer(0.4, signal.raise_signal, [signal.SIGINT])
+        with self.assertRaises(KeyboardInterrupt):
+            timer.start()
+            meniscus.Model(meniscus.read_case(CASE, {
+                "resolution.fea": 6.0, "resolution.film": 3.0}))
+        self.assertTrue(model().evaluate([1.0]).ok)
 
     def test_progress_comes_on_the_calling_thread(self):
         heard = []

@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 
 import meniscus
-from support import (CASE, COARSE, PackageTest, bracket, strut_tree)
+from support import CASE, COARSE, PackageTest, bracket, strut_tree
 
 SET = [part for name, value in COARSE.items()
        for part in ("--set", f"{name}={value}")]
