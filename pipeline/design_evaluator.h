@@ -55,6 +55,12 @@ class DesignEvaluator {
     mismatch_ = std::move(mismatch);
   }
 
+  /// Told of each design that evaluate() has found, stored or not; what it
+  /// throws passes through.
+  void watch_by(std::function<void(const EvaluationRecord&)> watch) {
+    watch_ = std::move(watch);
+  }
+
   /// `phase`: what the design is for, as the record tells it when it is new.
   EvaluationRecord evaluate(const VectorX& design, const std::string& phase);
 
@@ -104,6 +110,7 @@ class DesignEvaluator {
   std::optional<StudyMonitor::Clock::time_point> deadline_;
   ForwardModel model_;
   std::function<double(const VectorX&)> mismatch_;
+  std::function<void(const EvaluationRecord&)> watch_;
   EvaluationCounts counts_;
   StageSeconds seconds_;
   // What the last computed evaluation left, so that a gradient or the best
