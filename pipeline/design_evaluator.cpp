@@ -68,6 +68,9 @@ EvaluationRecord DesignEvaluator::evaluate(const VectorX& design,
     record = keep(last_, phase);
   }
   counts_.failed += record->failure ? 1 : 0;
+  if (watch_) {
+    watch_(*record);
+  }
   return *std::move(record);
 }
 

@@ -58,6 +58,12 @@ class DesignEvaluator {
     mismatch_ = std::move(mismatch);
   }
 
+  /// Told of each design that evaluate() has found, stored or not; what it
+  /// throws passes through.
+  void watch_by(std::function<void(const EvaluationRecord&)> watch) {
+    watch_ = std::move(watch);
+  }
+
   /// `phase`: what the design is for, as the record tells it when it is new.
   EvaluationRecord evaluate(const VectorX& design, const std::string& phase);
 
@@ -107,6 +113,7 @@ class DesignEvaluator {
   std::optional<StudyMonitor::Clock::time_point> deadline_;
   ForwardModel model_;
   std::function<double(const VectorX&)> mismatch_;
+  std::function<void(const EvaluationRecord&)> watch_;
   EvaluationCounts counts_;
   StageSeconds seconds_;
   StudyTeller teller_;

@@ -45,8 +45,8 @@ Case frozen_as_answered(Case input,
 
 /// What a study on one model has come to.
 struct FrozenStage {
-  const Case& input;                             // frozen at its initial design
-  const std::vector<EvaluationRecord>& records;  // all of the database
+  const Case& input;                      // frozen at its initial design
+  std::vector<EvaluationRecord> records;  // designs asked for
   const std::string& model;
   const VectorX& best;            // of the model's evaluated designs
   double min_dihedral_deg = 0.0;  // of the freeze

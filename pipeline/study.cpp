@@ -27,12 +27,6 @@ namespace {
 constexpr double kCoarserEdges = 2.0;
 constexpr double kErrorPerChange = 1.5;
 
-int evaluations_of(const std::vector<EvaluationRecord>& records) {
-  return static_cast<int>(std::count_if(
-      records.begin(), records.end(),
-      [](const EvaluationRecord& r) { return is_study_model(r.model); }));
-}
-
 /// From the frozen model to the answer with its error, step by step.
 class StudyRun {
  public:
@@ -54,8 +48,10 @@ class StudyRun {
  private:
   void start_coarse();
   bool begin();
+  bool may_refreeze() const;
   bool refreeze();
-  bool go_on(Refreeze refreeze);
+  std::unique_ptr<StudyStage> stage_at(const Refreeze& refreeze,
+                                       const Case& input);
   void pass_time();
   void leave_stage();
   void conduct_study();
@@ -84,6 +80,7 @@ class StudyRun {
   EvaluationFields fields_;
   StageSeconds own_seconds_;   // beside those of the evaluator
   int earlier_gradients_ = 0;  // of stages before this one
+  int earlier_evaluations_ = 0;
   RunResult result_;
 };
 
@@ -138,30 +135,20 @@ bool StudyRun::begin() {
 void StudyRun::leave_stage() {
   own_seconds_ += stage_->evaluator().seconds();
   earlier_gradients_ += stage_->evaluator().counts().gradients;
+  earlier_evaluations_ += stage_->evaluations();
 }
 
-/// Freezes the model and works on it; false where it cannot be frozen.
-bool StudyRun::go_on(Refreeze refreeze) {
-  const VectorX before =
-      store_.find(stage_->model_name(), refreeze.design)->responses;
-  const std::string model = refrozen_model(refreeze.evaluation);
-  auto input = std::make_unique<Case>(frozen_at(input_, refreeze.design));
-  input->study.max_evaluations -= evaluations_of(store_.all());
-  options_.start.reset();
-  pass_time();
+/// A stage on a model frozen there, or null where it cannot be.
+std::unique_ptr<StudyStage> StudyRun::stage_at(const Refreeze& refreeze,
+                                               const Case& input) {
   std::string reason;
   try {
     auto stage = std::make_unique<StudyStage>(
-        *input, store_, options_,
-        StageModel{.name = model, .reference = result_.start->responses});
+        input, store_, options_,
+        StageModel{.name = refrozen_model(refreeze.evaluation),
+                   .reference = result_.start->responses});
     if (!stage->failure()) {
-      leave_stage();
-      refreeze.shift = stage->start().responses - before;
-      stage_ = std::move(stage);
-      frozen_ = std::move(input);
-      result_.refrozen.push_back(std::move(refreeze));
-      stage_->conduct();
-      return true;
+      return stage;
     }
     own_seconds_ += stage->evaluator().seconds();
     reason = stage->failure()->message;
@@ -170,40 +157,57 @@ bool StudyRun::go_on(Refreeze refreeze) {
   }
   result_.warnings.push_back(fmt::format(
       "{}, but no new model can be frozen there: {}", refreeze.reason, reason));
-  return false;
+  return nullptr;
 }
 
-/// A new model where the study has left the reach of the last; true when the
-/// study went on with it.
+/// Goes on with a new model where the study has left the reach of the last;
+/// false when there is none.
 bool StudyRun::refreeze() {
-  const StudyEntry& study = input_.study;
   const StudyOutcome& outcome = stage_->outcome();
-  const std::vector<EvaluationRecord> records = store_.all();
-  if (!study.refreeze || outcome.status == RunStatus::Stopped ||
-      (study.kind != StudyKind::Match && study.kind != StudyKind::Minimize) ||
-      evaluations_of(records) >= study.max_evaluations) {
+  const int evaluations = earlier_evaluations_ + stage_->evaluations();
+  if (!may_refreeze() || outcome.status == RunStatus::Stopped ||
+      evaluations >= input_.study.max_evaluations) {
     return false;
   }
-  const std::optional<Refreeze> wanted = wanted_refreeze(
-      {.input = frozen_ ? *frozen_ : input_,
-       .records = records,
-       .model = stage_->model_name(),
-       .best = outcome.best,
-       .min_dihedral_deg =
-           stage_->evaluator().model().frozen().tet.min_dihedral_deg,
-       .converged = outcome.status == RunStatus::Converged});
+  std::optional<Refreeze> wanted =
+      stage_->wanted(outcome.best, outcome.status == RunStatus::Converged);
   if (!wanted) {
     return false;
   }
   monitor_.log(Severity::Info,
                fmt::format("a new model is frozen at evaluation {}: {}",
                            wanted->evaluation, wanted->reason));
-  return go_on(*wanted);
+  auto input = std::make_unique<Case>(frozen_at(input_, wanted->design));
+  input->study.max_evaluations -= evaluations;
+  pass_time();
+  std::unique_ptr<StudyStage> stage = stage_at(*wanted, *input);
+  if (stage == nullptr) {
+    return false;
+  }
+  wanted->shift = stage->start().responses -
+                  store_.find(stage_->model_name(), wanted->design)->responses;
+  leave_stage();
+  options_.start.reset();
+  stage_ = std::move(stage);
+  frozen_ = std::move(input);
+  result_.refrozen.push_back(*std::move(wanted));
+  return true;
+}
+
+bool StudyRun::may_refreeze() const {
+  const StudyEntry& study = input_.study;
+  return study.refreeze &&
+         static_cast<int>(result_.refrozen.size()) < kMostRefreezes &&
+         (study.kind == StudyKind::Match || study.kind == StudyKind::Minimize);
 }
 
 void StudyRun::conduct_study() {
-  stage_->conduct();
-  for (int round = 0; round < kMostRefreezes && refreeze(); ++round) {
+  using Leave = StudyStage::Leave;
+  do {
+    stage_->conduct(may_refreeze() ? Leave::Early : Leave::Late);
+  } while (refreeze());
+  if (stage_->left_early()) {
+    stage_->conduct();
   }
   if (const Adaptation* adaptation = stage_->evaluator().model().adaptation()) {
     result_.adaptation = *adaptation;

@@ -1,11 +1,23 @@
 #include "pipeline/study_stage.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "pipeline/refreeze.h"
 #include "pipeline/results.h"
+#include "pipeline/stored_case.h"
 
 namespace meniscus {
+
+namespace {
+
+/// The study goes on with another model, from there.
+struct OutOfReach {
+  VectorX best;
+};
+
+}  // namespace
 
 StudyStage::StudyStage(const Case& input, StudyStore& store,
                        const StudyOptions& options, const StageModel& model)
@@ -29,6 +41,7 @@ StudyStage::StudyStage(const Case& input, StudyStore& store,
       evaluator_.evaluate(initial_design(input_), "start");
   failure_ = record.failure;
   start_ = to_evaluation(record);
+  see(record);
   if (!failure_ && input_.study.kind == StudyKind::Match) {
     targets_.emplace(input_, model_.reference.value_or(record.responses));
     evaluator_.judge_by([this](const VectorX& responses) {
@@ -53,14 +66,65 @@ VectorX StudyStage::begin() {
   return *options_.start;
 }
 
-void StudyStage::conduct() {
+std::optional<Refreeze> StudyStage::wanted(const VectorX& best,
+                                           bool converged) const {
+  return wanted_refreeze(
+      {.input = input_,
+       .records = seen_,
+       .model = model_.name,
+       .best = best,
+       .min_dihedral_deg = evaluator_.model().frozen().tet.min_dihedral_deg,
+       .converged = converged});
+}
+
+void StudyStage::see(const EvaluationRecord& record) {
+  if (std::none_of(seen_.begin(), seen_.end(), [&](const EvaluationRecord& r) {
+        return r.number == record.number;
+      })) {
+    seen_.push_back(record);
+    seen_.back().gradient.resize(0, 0);
+  }
+}
+
+/// Ends the study after so many designs that invert elements, when the mesh is
+/// what holds it up.
+void StudyStage::leave_at_walls(const EvaluationRecord& record) {
+  constexpr int kPatience = 6;
+  if (!record.failure ||
+      record.failure->kind != FailureKind::ElementsInverted ||
+      ++inverted_ < kPatience) {
+    return;
+  }
+  const VectorX best = best_record(input_, seen_).inputs;
+  if (wanted(best, false)) {
+    throw OutOfReach{best};
+  }
+}
+
+void StudyStage::conduct(Leave leave) {
   const VectorX start = begin();
   evaluator_.reset_counts();  // the kinds of study ask for the start again
-  outcome_ = meniscus::conduct({.input = input_,
-                                .evaluator = evaluator_,
-                                .options = options_,
-                                .targets = targets(),
-                                .start = start});
+  left_early_ = false;
+  inverted_ = 0;
+  evaluator_.watch_by([this, leave](const EvaluationRecord& record) {
+    see(record);
+    if (leave == Leave::Early) {
+      leave_at_walls(record);
+    }
+  });
+  try {
+    outcome_ = meniscus::conduct({.input = input_,
+                                  .evaluator = evaluator_,
+                                  .options = options_,
+                                  .targets = targets(),
+                                  .start = start});
+  } catch (const OutOfReach& left) {
+    left_early_ = true;
+    outcome_ = {.status = RunStatus::Infeasible,
+                .message = "the study left the reach of its frozen mesh",
+                .best = left.best};
+  }
+  evaluator_.watch_by({});
 }
 
 CoarseStage run_coarse_stage(const Case& input, StudyStore& store,

@@ -7,6 +7,7 @@
 
 #include "pipeline/design_evaluator.h"
 #include "pipeline/match_targets.h"
+#include "pipeline/refreeze.h"
 #include "pipeline/study.h"
 #include "pipeline/study_kinds.h"
 
@@ -33,9 +34,17 @@ class StudyStage {
   const Evaluation& start() const { return start_; }
 
   /// Does what the case's study asks, from options.start where that can be
-  /// evaluated, else from the initial design. Once.
-  void conduct();
+  /// evaluated, else from the initial design. `Leave::Early`: ends it, without
+  /// convergence, once it is clear that wanted_refreeze() will want a new
+  /// model; a second call then does the rest.
+  enum class Leave { Late, Early };
+  void conduct(Leave leave = Leave::Late);
+  /// What a new model is wanted for, as things stand.
+  std::optional<Refreeze> wanted(const VectorX& best, bool converged) const;
   const StudyOutcome& outcome() const { return outcome_; }
+  /// Designs that the stage has asked for.
+  int evaluations() const { return static_cast<int>(seen_.size()); }
+  bool left_early() const { return left_early_; }
 
   const std::string& model_name() const { return model_.name; }
   DesignEvaluator& evaluator() { return evaluator_; }
@@ -48,7 +57,13 @@ class StudyStage {
  private:
   VectorX begin();
 
+  void see(const EvaluationRecord& record);
+  void leave_at_walls(const EvaluationRecord& record);
+
   const Case& input_;
+  // Designs asked for, each once: not what the database holds, which on a
+  // resumed run knows what comes later.
+  std::vector<EvaluationRecord> seen_;
   const StudyOptions& options_;
   StageModel model_;
   DesignEvaluator evaluator_;
@@ -56,6 +71,8 @@ class StudyStage {
   Evaluation start_;
   std::optional<MatchTargets> targets_;
   StudyOutcome outcome_;
+  bool left_early_ = false;
+  int inverted_ = 0;  // designs that the study has asked for
 };
 
 /// The same study on a model whose edges are study.coarse_first as long, for

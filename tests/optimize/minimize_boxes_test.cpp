@@ -57,6 +57,42 @@ TEST_P(Tunnel, IsFollowedToItsEnd) {
   EXPECT_LE(report.evaluations, kEvaluations) << report.message;
 }
 
+// (x - 2)^2 + (y - 1)^2 along x = y: least, 1/2, at (3/2, 3/2).
+MinimizeProblem along_diagonal(const VectorX& start) {
+  MinimizeProblem problem;
+  problem.variables = {{"x", start[0], -5.0, 5.0}, {"y", start[1], -5.0, 5.0}};
+  problem.objective = "distance";
+  problem.constraints = {{.name = "x - y", .lower = 0.0, .upper = 0.0}};
+  problem.function = [](const VectorX& x) -> VectorAnswer {
+    const double distance =
+        (x[0] - 2.0) * (x[0] - 2.0) + (x[1] - 1.0) * (x[1] - 1.0);
+    return {.values = vector_of({distance, x[0] - x[1]}), .failure = {}};
+  };
+  problem.jacobian = [](const VectorX& x) -> JacobianAnswer {
+    Eigen::MatrixXd jacobian(2, 2);
+    jacobian << 2.0 * (x[0] - 2.0), 2.0 * (x[1] - 1.0),  //
+        1.0, -1.0;
+    return {.jacobian = jacobian, .failure = {}};
+  };
+  return problem;
+}
+
+class OneSided : public testing::TestWithParam<const char*> {};
+
+// From below the line the objective pulls through it; from above its own
+// minimum lies on the free side, and the side has to turn.
+TEST_P(OneSided, EquationsAreKeptFromEitherSide) {
+  for (const VectorX& start : {vector_of({3.0, 0.0}), vector_of({0.0, 3.0})}) {
+    const MinimizeReport report =
+        minimize(along_diagonal(start), {.method = GetParam()});
+    EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+    EXPECT_NEAR(report.objective, 0.5, 1e-4) << report.message;
+    EXPECT_LE(report.evaluations, kEvaluations) << report.message;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, OneSided, testing::Values("mma", "ccsa"));
+
 INSTANTIATE_TEST_SUITE_P(Methods, Tunnel,
                          testing::Values("slsqp", "mma", "ccsa"));
 

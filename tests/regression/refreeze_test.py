@@ -76,7 +76,7 @@ buckling = 0
 kind = "match"
 targets = { middle = 33 }
 """
-KILLS = 4
+KILLS = 2
 
 
 class Refreeze(Study):
