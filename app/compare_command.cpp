@@ -36,10 +36,35 @@ std::string for_people(std::vector<TextRow> table) {
   return aligned_text(table);
 }
 
+std::string surface_name(std::size_t part) {
+  return fmt::format("part_{}.vtp", part);
+}
+
+/// Surfaces of a comparison that comes to nothing do not stay.
+class Surfaces {
+ public:
+  Surfaces(fs::path folder, std::size_t parts)
+      : folder_(std::move(folder)), parts_(parts) {}
+  ~Surfaces() {
+    std::error_code ignored;
+    for (std::size_t part = 1; part <= parts_; ++part) {
+      fs::remove(folder_ / surface_name(part), ignored);
+    }
+  }
+  Surfaces(const Surfaces&) = delete;
+  Surfaces& operator=(const Surfaces&) = delete;
+
+  void keep() { parts_ = 0; }
+
+ private:
+  fs::path folder_;
+  std::size_t parts_;
+};
+
 /// Its surface with stresses beside compare.json, for the report page.
 void keep_surface(const Case& input, const EvaluationFields& fields,
                   const fs::path& folder, std::vector<PartFigures>& parts) {
-  parts.back().surface = fmt::format("part_{}.vtp", parts.size());
+  parts.back().surface = surface_name(parts.size());
   write_part_surface(folder / parts.back().surface, input, fields);
 }
 
@@ -88,6 +113,7 @@ int compare_command(const CompareArguments& arguments) {
       {.style = arguments.quiet ? MonitorStyle::Quiet : MonitorStyle::Automatic,
        .stop = [] { return stop_signal() != 0; }});
   const fs::path folder = arguments.out;
+  Surfaces surfaces(folder, arguments.parts.size());
   try {
     UnitSystem units;
     const std::vector<PartFigures> parts =
@@ -99,6 +125,7 @@ int compare_command(const CompareArguments& arguments) {
     write_file(folder / "compare.csv", csv_text(table));
     write_file(folder / "compare.json",
                comparison_json(parts, units, kProgramVersion).dump(2) + "\n");
+    surfaces.keep();
     report_aloud(folder, {}, monitor);
     if (!arguments.quiet) {
       std::printf("written to %s\n", (folder / "compare.json").c_str());

@@ -66,6 +66,7 @@ bool has_range(const Curve& curve) {
 
 std::vector<double> even_parameters() {
   std::vector<double> t;
+  t.reserve(kCurvePoints);
   for (int k = 0; k < kCurvePoints; ++k) {
     t.push_back(static_cast<double>(k) / kCurvePoints);
   }
@@ -132,6 +133,7 @@ Json page_curves(const Case& input, const VectorX& design) {
         continue;
       }
       Points points;
+      points.reserve(kCurvePoints);
       for (const double t : even_parameters()) {
         points.push_back(point_at(curve.shape, t));
       }

@@ -36,6 +36,7 @@ std::vector<int> labels_of(const VtkInput& surface, const fs::path& path,
   }
   names = texts->second;
   std::vector<int> ids;
+  ids.reserve(labels->second.size());
   for (const double label : labels->second) {
     ids.push_back(static_cast<int>(label));
     if (ids.back() < 0 || ids.back() >= static_cast<int>(names.size())) {
@@ -78,6 +79,7 @@ double mixed_area(const Vec3& at, const Vec3& next, const Vec3& last) {
 std::vector<char> rim_vertices(std::size_t count,
                                const std::vector<Triangle>& facets) {
   std::vector<Edge> out;  // directed edges
+  out.reserve(3 * facets.size());
   for (const Triangle& f : facets) {
     for (std::size_t k = 0; k < 3; ++k) {
       out.push_back({f[k], f[(k + 1) % 3]});
@@ -129,6 +131,7 @@ Json page_film(const fs::path& path, const std::vector<std::string>& solids) {
   std::vector<std::string> names;
   const std::vector<int> labels = labels_of(surface, path, names);
   std::vector<bool> solid;
+  solid.reserve(names.size());
   for (const std::string& name : names) {
     solid.push_back(std::find(solids.begin(), solids.end(), name) !=
                     solids.end());

@@ -125,6 +125,7 @@ std::optional<StoredRun> stored_run(const fs::path& folder, const Json& result,
 
 std::vector<std::string> solids_of(const Case& input) {
   std::vector<std::string> names;
+  names.reserve(input.caps.size());
   for (const CapEntry& cap : input.caps) {
     names.push_back(cap.spec.name);
   }

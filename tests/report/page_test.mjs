@@ -119,6 +119,9 @@ function makeRuns() {
   fs.writeFileSync(path.join(output, "struts.toml"), STRUTS);
   run(0, "run", "struts.toml", "--no-pictures", "--out", "struts");
   run(0, "compare", "arms", "even", "--out", "compared");
+  fs.writeFileSync(path.join(output, "open.stl"), "solid left_pad\nendsolid\n");
+  run(2, "compare", "arms", "open.stl", "--out", "nothing");
+  assert.deepEqual(fs.readdirSync(path.join(output, "nothing")), []);
   // Two designs of a history, whoever wrote them.
   const arms = path.join(output, "arms");
   if (!fs.existsSync(path.join(arms, "frames.pvd"))) {
