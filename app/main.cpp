@@ -174,7 +174,8 @@ int run_program(int argc, char** argv) {
       ->required();
   write
       ->add_option("--format", export_arguments.format,
-                   "stl (surface), inp (CalculiX), vtu (ParaView)")
+                   "stl (surface), step (CAD), step-faceted, inp "
+                   "(CalculiX), vtu (ParaView)")
       ->required()
       ->check(CLI::IsMember({"stl", "step", "step-faceted", "inp", "vtu"}));
   write
