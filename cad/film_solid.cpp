@@ -103,6 +103,7 @@ int SolidBuilder::rim_of(const std::vector<int>& loop) {
     }
   }
   Points points;
+  points.reserve(loop.size());
   for (const int v : loop) {
     points.push_back(mesh_.points[v]);
   }
@@ -136,6 +137,7 @@ void SolidBuilder::add_film(const std::string& name,
   std::vector<FilmRim> rims;
   for (std::vector<int>& loop : boundary_loops(mesh.facets)) {
     std::vector<int> whole;
+    whole.reserve(loop.size());
     for (const int v : loop) {
       whole.push_back(global[v]);
     }
@@ -160,6 +162,7 @@ void SolidBuilder::add_cap(const std::string& name,
                            const std::vector<int>& facets) {
   Cap cap{name, facets, {}, {}};
   std::vector<Triangle> corners;
+  corners.reserve(facets.size());
   Vec3 normal = Vec3::Zero();
   for (const int f : facets) {
     corners.push_back(mesh_.facets[f]);

@@ -16,9 +16,9 @@ constexpr double kOnLevel = 1e-9;
 
 Edge sorted(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Replaces facet f by the polygon's fan from its first corner.
+/// The polygon's fan from its first corner.
 template <class Corner, class Make>
-void fan(std::vector<Corner> corners, Make make) {
+void fan(const std::vector<Corner>& corners, const Make& make) {
   for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
     make(corners[0], corners[k], corners[k + 1]);
   }
@@ -269,7 +269,7 @@ void LevelCutter::cut(int f) {
     return;
   }
   bool first = true;
-  for (std::vector<Corner>& side : sides) {
+  for (const std::vector<Corner>& side : sides) {
     fan(side, [&](const Corner& a, const Corner& b, const Corner& c) {
       const Triangle facet{a.vertex, b.vertex, c.vertex};
       const std::array<double, 3> value{a.value, b.value, c.value};

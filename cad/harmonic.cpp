@@ -26,15 +26,13 @@ double edge_weight(const FilmMesh& mesh, const Triangle& t, int k) {
   return std::clamp(0.5 * cotangent, kLeastWeight, kMostWeight);
 }
 
-}  // namespace
-
-Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
-  const FilmMesh& mesh = problem.mesh;
-  std::vector<int> unknown(mesh.points.size(), -1);
-  int count = 0;
+/// Numbers of the free vertices, -1 for others. Throws where none is fixed.
+std::vector<int> number_free(const HarmonicProblem& problem, int& count) {
+  std::vector<int> unknown(problem.mesh.points.size(), -1);
+  count = 0;
   int fixed = 0;
   for (const int f : problem.facets) {
-    for (const int v : mesh.facets[f]) {
+    for (const int v : problem.mesh.facets[f]) {
       if (problem.fixed[v] != 0) {
         ++fixed;
       } else if (unknown[v] < 0) {
@@ -45,6 +43,15 @@ Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
   if (fixed == 0) {
     throw MeshError("no vertex of the film is held on a rim");
   }
+  return unknown;
+}
+
+}  // namespace
+
+Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
+  const FilmMesh& mesh = problem.mesh;
+  int count = 0;
+  const std::vector<int> unknown = number_free(problem, count);
   const Eigen::Index columns = problem.values.cols();
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, columns);
   std::vector<Eigen::Triplet<double>> entries;

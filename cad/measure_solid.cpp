@@ -13,8 +13,9 @@ namespace {
 
 constexpr int kPerSpan = 3;
 
-/// Distance from `p` to the surface, by Gauss-Newton from about its foot.
-double distance_to(const SplineSurface& surface, const Vec3& p, Vec2 at) {
+/// Distance from `p` to the surface, by Gauss-Newton from about its foot; `at`
+/// becomes the foot.
+double distance_to(const SplineSurface& surface, const Vec3& p, Vec2& at) {
   double best = (jet_of(surface, at).point - p).norm();
   for (int round = 0; round < 10; ++round) {
     const SurfaceJet jet = jet_of(surface, at);
@@ -24,6 +25,37 @@ double distance_to(const SplineSurface& surface, const Vec3& p, Vec2 at) {
     at += normal.inverse() * (slopes.transpose() * (p - jet.point));
     at = at.cwiseMax(0.0).cwiseMin(1.0);
     best = std::min(best, (jet_of(surface, at).point - p).norm());
+  }
+  return best;
+}
+
+/// The same from the nearest of some points of the surface.
+double distance_to(const SplineSurface& surface, const Vec3& p) {
+  constexpr int kGrid = 12;
+  Vec2 start = Vec2::Zero();
+  double nearest = -1.0;
+  for (int k = 0; k <= kGrid * (kGrid + 2); ++k) {
+    const Vec2 at(static_cast<double>(k / (kGrid + 1)) / kGrid,
+                  static_cast<double>(k % (kGrid + 1)) / kGrid);
+    const double distance = (jet_of(surface, at).point - p).norm();
+    if (nearest < 0.0 || distance < nearest) {
+      nearest = distance;
+      start = at;
+    }
+  }
+  return distance_to(surface, p, start);
+}
+
+/// Distance of the film's vertex that one patch has; beside its side it may lie
+/// on another.
+double distance_of(const FilmFaces& faces, std::size_t patch, const Vec3& p,
+                   Vec2 at) {
+  double best = distance_to(faces.patches[patch].surface, p, at);
+  const bool at_side = (at.array() == 0.0).any() || (at.array() == 1.0).any();
+  for (std::size_t q = 0; q < faces.patches.size() && at_side; ++q) {
+    if (q != patch) {
+      best = std::min(best, distance_to(faces.patches[q].surface, p));
+    }
   }
   return best;
 }
@@ -111,11 +143,12 @@ void measure_film(const FilmPiece& film, const FilmFaces& faces,
                   FilmSolidReport& report) {
   const int most = *std::max_element(film.facets.begin(), film.facets.end());
   const std::vector<int> part_of(most + 1, 0);
-  for (const FittedPatch& patch : faces.patches) {
+  for (std::size_t p = 0; p < faces.patches.size(); ++p) {
+    const FittedPatch& patch = faces.patches[p];
     for (std::size_t k = 0; k < patch.vertices.size(); ++k) {
       report.film_to_solid = std::max(
           report.film_to_solid,
-          distance_to(patch.surface, film.cut.mesh.points[patch.vertices[k]],
+          distance_of(faces, p, film.cut.mesh.points[patch.vertices[k]],
                       patch.at[k]));
     }
     measure_samples(patch.surface, tree, part_of, edge, report);

@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "cad/spline.h"
+#include "core/error.h"
 
 namespace meniscus {
 
@@ -145,6 +146,9 @@ double RimCurve::turning(int k) const {
 
 RimCurve rim_through(const Points& points, double sharp) {
   const int n = static_cast<int>(points.size());
+  if (n < 3) {
+    throw MeshError("a rim has fewer than three points");
+  }
   std::vector<int> corners;
   for (int i = 0; i < n; ++i) {
     const Vec3 in = points[i] - points[(i + n - 1) % n];

@@ -46,7 +46,8 @@ Vec3 point_of(const EdgeCurve& curve, double t);
 Vec3 slope_of(const EdgeCurve& curve, double t);
 
 /// A closed spline with two continuous derivatives through `points`, cut where
-/// it turns by more than `sharp` [rad] at a point.
+/// it turns by more than `sharp` [rad] at a point. Throws MeshError for fewer
+/// than three points.
 RimCurve rim_through(const Points& points, double sharp = 0.5);
 
 }  // namespace meniscus

@@ -103,6 +103,7 @@ std::vector<NamedRim> rims_of(const FilmSystem& system,
 /// it bulges: the same system with each body's volume so much less.
 FilmSystem for_smooth_films(FilmSystem system, const SurfaceMesh& mesh) {
   std::vector<char> flat;
+  flat.reserve(mesh.labels.size());
   for (const std::string& label : mesh.labels) {
     flat.push_back(
         std::any_of(system.caps.begin(), system.caps.end(),
