@@ -448,7 +448,7 @@ class Trouble(ProgramTest):
         self.addCleanup(run.chmod, 0o700)
         command = [program_here, "export", run, "--format", "obj"]
         for more, code, told in (([], 2, "cannot write"),
-                                 (["--out", self.folder / "a.obj"], 0, "")):
+                                 (["--out", self.folder / "a.obj"], 0, "a.obj")):
             done = subprocess.run(command + more, capture_output=True,
                                   text=True, timeout=120, cwd=self.folder,
                                   **other)
