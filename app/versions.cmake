@@ -36,6 +36,9 @@ if(NOT toml_version)
 endif()
 meniscus_header_version(cli11_version CLI/Version.hpp
   "CLI11_VERSION \"([0-9.]+)\"")
+meniscus_header_version(lib3mf_version lib3mf/Model/COM/NMR_COMVersion.h
+  "INTERFACE_MAJOR +([0-9]+)" "INTERFACE_MINOR +([0-9]+)"
+  "INTERFACE_MICRO +([0-9]+)")
 # These name no version in a header; Debian 12 ships exactly one.
 set(tetgen_version "1.5.0")
 set(udunits_version "2.2.28")
@@ -48,7 +51,7 @@ foreach(entry
     "CHOLMOD ${cholmod_version}" "METIS ${metis_version}"
     "OpenBLAS ${openblas_version}" "Qhull ${qhull_version}"
     "SQLite ${SQLite3_VERSION}" "toml++ ${toml_version}"
-    "UDUNITS ${udunits_version}" "CLI11 ${cli11_version}"
+    "UDUNITS ${udunits_version}" "lib3mf ${lib3mf_version}" "CLI11 ${cli11_version}"
     "fmt ${fmt_VERSION}" "nlohmann-json ${nlohmann_json_VERSION}")
   string(APPEND MENISCUS_LIBRARY_VERSIONS "  ${entry}\\n")
 endforeach()

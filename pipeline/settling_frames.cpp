@@ -36,7 +36,8 @@ std::vector<FilmFrame> settling_frames(const EvaluatedCase& numbers,
     return false;
   };
   // Long facets between the curves have nothing to flow with.
-  remesh_films(complex, {.edge = start_edge(numbers.fea_edge)});
+  remesh_films(complex,
+               {.edge = start_edge(numbers.film_system, numbers.fea_edge)});
   flow_to_rest(complex, flow);
   complex = refine(complex).complex;
   remesh_films(complex, {.edge = numbers.fea_edge});

@@ -6,7 +6,13 @@ import re
 
 # Cards that the decks of this program may have, and no others.
 KNOWN = {"PARAM", "GRDSET", "GRID", "CTETRA", "PSOLID", "MAT1", "SPC1", "LOAD",
-         "FORCE", "PLOAD4", "GRAV", "RFORCE", "TEMP", "TEMPD"}
+         "FORCE", "PLOAD4", "GRAV", "RFORCE", "TEMP", "TEMPD",
+         "SPOINT", "CELAS2", "MPC", "MAT9", "CORD2R"}
+# CalculiX's order of the 21 constants of an anisotropic material: pairs of
+# stresses as Nastran counts them (11 22 33 12 23 31).
+ANISO = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2), (0, 3), (1, 3), (2, 3),
+         (3, 3), (0, 5), (1, 5), (2, 5), (3, 5), (5, 5), (0, 4), (1, 4), (2, 4),
+         (3, 4), (4, 5), (4, 4)]
 LINE = 72  # columns that count
 
 
@@ -46,6 +52,8 @@ class Deck:
         self.forces = collections.defaultdict(list)
         self.pressures = collections.defaultdict(list)
         self.gravity, self.spin = {}, {}
+        self.axes, self.springs, self.equations = {}, [], []
+        self.scalars = []
         self.heat = collections.defaultdict(dict)
 
 
@@ -81,6 +89,25 @@ def read(text):
             deck.elements[int(f[0])] = (int(f[1]), [int(n) for n in f[2:12]])
         elif name == "PSOLID":
             deck.properties[int(f[0])] = int(f[1])
+            if f[2] and int(f[2]) != int(f[1]):
+                raise ValueError("axes of another material")
+        elif name == "MAT9":
+            deck.materials[int(f[0])] = [real(x) if x else 0.0
+                                         for x in [*f[1:], *[""] * 8]]
+        elif name == "CORD2R":
+            deck.axes[int(f[0])] = [real(x) for x in f[2:11]]
+        elif name == "SPOINT":
+            points = [int(n) for n in f if n]
+            deck.scalars += points
+            deck.grids.update({n: [0.0, 0.0, 0.0] for n in points})
+        elif name == "CELAS2":
+            deck.springs.append((int(f[0]), real(f[1]), int(f[2])))
+        elif name == "MPC":
+            terms = [g[k:k + 3] for g in (f[i:i + 8]
+                                          for i in range(0, len(f), 8))
+                     for k in (1, 4)]
+            deck.equations.append([(int(n), max(int(c), 1), real(a))
+                                   for n, c, a in terms if n])
         elif name == "MAT1":
             deck.materials[int(f[0])] = (real(f[1]), real(f[3]),
                                           *(real(x) if x else 0.0
@@ -121,24 +148,53 @@ def calculix_deck(deck, subcase):
         # Both have mid-sides 12 23 31 14 24 34.
         out += [f"{e}, " + ", ".join(map(str, nodes))
                 for e, (p, nodes) in deck.elements.items() if p == pid]
-        young, poisson, density, expansion = deck.materials[mid]
-        out += [f"*MATERIAL, NAME=M{mid}", "*ELASTIC",
-                f"{young:.12e}, {poisson:.12e}", "*DENSITY", f"{density:.12e}",
-                "*EXPANSION", f"{expansion:.12e}",
-                f"*SOLID SECTION, ELSET=P{pid}, MATERIAL=M{mid}"]
+        out += material_lines(deck, pid, mid)
+    for e, stiffness, node in deck.springs:
+        out += [f"*ELEMENT, TYPE=SPRING1, ELSET=S{e}", f"{e}, {node}",
+                f"*SPRING, ELSET=S{e}", "1", f"{stiffness:.12e}"]
+    for terms in deck.equations:
+        texts = [f"{n}, {c}, {a:.12e}" for n, c, a in terms]
+        out += ["*EQUATION", str(len(terms)), *texts]
     case = deck.subcases[subcase]
     heat = deck.heat[case.get("TEMPERATURE(LOAD)")]
     if heat:
         out += ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "NALL, 0."]
     out += ["*STEP", "*STATIC", "*BOUNDARY"]
+    out += [f"{n}, 2, 3" for n in deck.scalars]
     for components, nodes in deck.held[case["SPC"]]:
-        out += [f"{n}, {c}, {c}" for n in nodes for c in components]
+        out += [f"{n}, {c}, {c}" for n in nodes
+                for c in components.replace("0", "1")]
     for part in deck.loads.get(case.get("LOAD"), []):
         out += load_lines(deck, part)
     if heat:
         out += ["*TEMPERATURE", *(f"{n}, {t:.12e}" for n, t in heat.items())]
     out += ["*NODE PRINT, NSET=NALL", "U", "*END STEP", ""]
     return "\n".join(out)
+
+
+def material_lines(deck, pid, mid):
+    numbers = deck.materials[mid]
+    section = f"*SOLID SECTION, ELSET=P{pid}, MATERIAL=M{mid}"
+    out = [f"*MATERIAL, NAME=M{mid}"]
+    if mid not in deck.axes:
+        young, poisson, density, expansion = numbers
+        return out + ["*ELASTIC", f"{young:.12e}, {poisson:.12e}", "*DENSITY",
+                      f"{density:.12e}", "*EXPANSION", f"{expansion:.12e}",
+                      section]
+    upper = [(i, j) for i in range(6) for j in range(i, 6)]
+    constants = [f"{numbers[upper.index(pair)]:.9e}" for pair in ANISO]
+    out += ["*ELASTIC, TYPE=ANISO", ", ".join(constants[:8]),
+            ", ".join(constants[8:16]), ", ".join(constants[16:]),
+            "*DENSITY", f"{numbers[21]:.12e}", "*EXPANSION, TYPE=ORTHO",
+            ", ".join(f"{x:.12e}" for x in numbers[22:25])]
+    origin, z, x = (deck.axes[mid][k:k + 3] for k in (0, 3, 6))
+    if any(origin):
+        raise ValueError("an origin")
+    y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2],
+         z[0] * x[1] - z[1] * x[0]]
+    return out + [f"*ORIENTATION, NAME=O{mid}, SYSTEM=RECTANGULAR",
+                  ", ".join(f"{v:.12e}" for v in [*x, *y]),
+                  section + f", ORIENTATION=O{mid}"]
 
 
 def load_lines(deck, part):
