@@ -70,7 +70,7 @@ struct RunResult {
                         // included
   int failed_evaluations = 0;
   int gradient_evaluations = 0;
-  Evaluation frozen;  // the freeze of the case's own model
+  Evaluation frozen;             // the freeze of the case's own model
   std::optional<Ledger> ledger;  // once its files are written
   StageSeconds seconds;  // summed over freeze, evaluations, error estimate
   double output_seconds = 0.0;

@@ -77,9 +77,13 @@ std::string render_with(const std::string& helper, const Display& display,
   child.time_limit = options.time_limit;
   child.error_tail = 1000;
   child.monitor = options.monitor;
-  child.environment = {{"DISPLAY", display.name},
-                       // No home folder is needed, nothing is left in it.
-                       {"MESA_SHADER_CACHE_DISABLE", "true"}};
+  child.environment = {{"DISPLAY", display.name}};
+  // Mesa's cache of compiled shaders halves a picture's time; without a home
+  // folder it has no place and would complain.
+  const char* home = std::getenv("HOME");
+  if (home == nullptr || *home == '\0') {
+    child.environment.emplace_back("MESA_SHADER_CACHE_DISABLE", "true");
+  }
   if (display.server) {
     child.environment.emplace_back("LIBGL_ALWAYS_SOFTWARE", "1");
     child.environment.emplace_back("XAUTHORITY", std::nullopt);
