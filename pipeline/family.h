@@ -17,10 +17,10 @@ struct FamilyOptions {
   std::string program_version;
   /// Members that are finished are read, begun ones go on.
   bool resume = false;
-  int jobs = 1;             // members side by side, >= 1; same bits for any
-  int threads = 1;          // of all jobs together, >= 1
-  double time_limit = 0.0;  // of the whole family [s], 0: none
-  int frames = 0;           // as in StudyOptions, of each member
+  int jobs = 1;                 // members side by side, >= 1; same bits for any
+  int threads = 1;              // of all jobs together, >= 1
+  double time_limit = 0.0;      // of the whole family [s], 0: none
+  int frames = 0;               // as in StudyOptions, of each member
   StudyListener listener = {};  // as in StudyOptions; on a member's thread
   Monitor* monitor = nullptr;
   /// Writes a member's meshes and pictures into its folder, adds to its

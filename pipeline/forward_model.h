@@ -15,6 +15,7 @@
 #include "pipeline/design_gradient.h"
 #include "pipeline/exclusion.h"
 #include "pipeline/part_stress.h"
+#include "pipeline/stage_meter.h"
 
 namespace meniscus {
 
@@ -23,29 +24,6 @@ struct TetFigures {
   int elements = 0;
   double min_dihedral_deg = 0.0;  // of the straight-sided elements
   double max_dihedral_deg = 0.0;
-};
-
-struct StageSeconds {
-  double film = 0.0;
-  double mesh = 0.0;
-  double fea = 0.0;
-  double gradient = 0.0;
-
-  StageSeconds& operator+=(const StageSeconds& other) {
-    film += other.film;
-    mesh += other.mesh;
-    fea += other.fea;
-    gradient += other.gradient;
-    return *this;
-  }
-};
-
-/// Floating-point operations (core/operation_count.h); 0 where they are not
-/// counted: in other processes.
-struct StageOperations {
-  double film = 0.0;
-  double mesh = 0.0;
-  double fea = 0.0;
 };
 
 /// What one design came to. `responses` stand in the case's order and are

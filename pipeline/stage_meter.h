@@ -1,10 +1,33 @@
-/// What a stage takes: seconds and counted operations.
+/// What stages take: seconds and counted operations.
 #pragma once
 
 #include "core/operation_count.h"
 #include "core/timer.h"
 
 namespace meniscus {
+
+struct StageSeconds {
+  double film = 0.0;
+  double mesh = 0.0;
+  double fea = 0.0;
+  double gradient = 0.0;
+
+  StageSeconds& operator+=(const StageSeconds& other) {
+    film += other.film;
+    mesh += other.mesh;
+    fea += other.fea;
+    gradient += other.gradient;
+    return *this;
+  }
+};
+
+/// Floating-point operations (core/operation_count.h); 0 where they are not
+/// counted: in other processes.
+struct StageOperations {
+  double film = 0.0;
+  double mesh = 0.0;
+  double fea = 0.0;
+};
 
 /// Runs from its construction, on the constructing thread.
 class StageMeter {
