@@ -225,7 +225,7 @@ TEST(CaseCurves, ThatAreWrongAreRefusedByLine) {
       problems_of(disk("[curves.rim]\nkind = \"spline\"\npoints = [[0,0,0], "
                        "[3,0,\"sqrt(1 - width)\"], [3,2,0]]\n")),
       testing::Contains(AllOf(HasSubstr("case.toml:13"),
-                              HasSubstr("curves.rim.points[1][y]"))));
+                              HasSubstr("curves.rim.points[1][z]"))));
   EXPECT_THAT(
       problems_of(disk("[curves.rim]\nkind = \"polygon\"\npoints = [[0,0,0], "
                        "{ through = [1, 1, 0] }, [3,2,0], [3,0,0]]\n")),
