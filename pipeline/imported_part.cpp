@@ -117,10 +117,22 @@ TetMesh filled(const SurfaceMesh& surface, double edge, const std::string& path,
 
 struct PartReader {
   const char* ending;
-  SurfaceMesh (*read)(const std::filesystem::path& path);
+  SurfaceMesh (*read)(const std::filesystem::path& path,
+                      const ReadStepOptions& options);
 };
-constexpr std::array<PartReader, 2> kReaders = {
-    {{".stl", read_stl}, {".obj", read_obj}}};
+
+SurfaceMesh stl(const std::filesystem::path& path, const ReadStepOptions&) {
+  return read_stl(path);
+}
+
+SurfaceMesh obj(const std::filesystem::path& path, const ReadStepOptions&) {
+  return read_obj(path);
+}
+
+constexpr std::array<PartReader, 4> kReaders = {{{".stl", stl},
+                                                 {".obj", obj},
+                                                 {".step", read_step_part},
+                                                 {".stp", read_step_part}}};
 
 const PartReader* reader_of(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
@@ -139,13 +151,15 @@ bool is_part_file(const std::filesystem::path& path) {
   return reader_of(path) != nullptr;
 }
 
-SurfaceMesh read_part_file(const std::filesystem::path& path) {
+SurfaceMesh read_part_file(const std::filesystem::path& path,
+                           const ReadStepOptions& options) {
   const PartReader* reader = reader_of(path);
   if (reader == nullptr) {
-    throw InvalidInput(fmt::format(
-        "{}: no file of a part; there are .stl and .obj", path.string()));
+    throw InvalidInput(
+        fmt::format("{}: no file of a part; there are .stl, .obj and .step",
+                    path.string()));
   }
-  return reader->read(path);
+  return reader->read(path, options);
 }
 
 SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
@@ -197,8 +211,9 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
         path.string(), run.fields.inputs.materials.size()));
   }
   const double edge = run.input.resolution.fea;
-  const SurfaceMesh surface =
-      with_short_edges(read_part_file(path), kLongestEdge * edge);
+  const SurfaceMesh surface = with_short_edges(
+      read_part_file(path, {.unit = run.input.units.length, .edge = edge}),
+      kLongestEdge * edge);
   check_names(surface, run.fields.inputs, path.string());
   EvaluationFields fields;
   fields.inputs = run.fields.inputs;

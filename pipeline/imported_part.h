@@ -6,6 +6,7 @@
 
 #include "core/monitor.h"
 #include "core/surface_mesh.h"
+#include "io/step_reader.h"
 #include "pipeline/part_comparison.h"
 
 namespace meniscus {
@@ -14,18 +15,21 @@ namespace meniscus {
 /// shape, labels and bodies stay.
 SurfaceMesh with_short_edges(SurfaceMesh surface, double longest);
 
-/// A file's name ends as those of parts that can be read: .stl, .obj, in any
-/// case.
+/// A file's name ends as those of parts that can be read: .stl, .obj, .step,
+/// .stp, in any case.
 bool is_part_file(const std::filesystem::path& path);
 
-/// The closed surface of such a file, its faces by name. Throws what the
-/// format's reader throws, InvalidInput for another ending.
-SurfaceMesh read_part_file(const std::filesystem::path& path);
+/// The closed surface of such a file, its faces by name; `options` say how
+/// curved faces become facets. Throws what the format's reader throws,
+/// InvalidInput for another ending.
+SurfaceMesh read_part_file(const std::filesystem::path& path,
+                           const ReadStepOptions& options);
 
 /// The part that the file `path` encloses: ASCII STL with a `solid NAME` for
-/// each face, OBJ with a group for each, binary STL all of one face. Meshed at
-/// the run's resolution.fea (shorter where the file's own facets are), of the
-/// run's material, held and loaded as the run's answer is by the names of its
+/// each face, OBJ with a group for each, binary STL all of one face, STEP by
+/// the names of its faces, in the case's unit. Meshed at the run's
+/// resolution.fea (shorter where the file's own facets are), of the run's
+/// material, held and loaded as the run's answer is by the names of its
 /// surfaces, and solved by the same solver. Sides are straight: the file knows
 /// no others.
 /// Throws InvalidInput (file, a surface that loads or supports name and the

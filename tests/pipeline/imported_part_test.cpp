@@ -69,7 +69,7 @@ TEST(ReadStl, BinaryFilesAreOneFace) {
   const TempFolder folder;
   write_stl(folder / "ball.STL", ball, {.name = "solid ball"});
   ASSERT_TRUE(is_part_file(folder / "ball.STL"));
-  const SurfaceMesh mesh = read_part_file(folder / "ball.STL");
+  const SurfaceMesh mesh = read_part_file(folder / "ball.STL", {});
   EXPECT_EQ(mesh.facets.size(), ball.facets.size());
   EXPECT_EQ(mesh.points.size(), ball.points.size());
   EXPECT_EQ(mesh.labels.size(), 1U);
@@ -83,7 +83,7 @@ TEST(ReadStl, BinaryFilesAreOneFace) {
   const float broken = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(bytes.data() + 84 + 50 * 7 + 12, &broken, sizeof broken);
   EXPECT_THROW(read_stl_text(bytes, "b.stl"), InvalidInput);
-  EXPECT_THROW(read_part_file(folder / "ball.stp"), InvalidInput);
+  EXPECT_THROW(read_part_file(folder / "ball.igs", {}), InvalidInput);
 }
 
 TEST(ImportedPart, ShortEdgesKeepTheShape) {
