@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """STEP files of the cases: true to the film, closed, and read by gmsh."""
+import json
 import os
 import re
 import shutil
@@ -12,6 +13,8 @@ MOST_GAP = 0.01  # mm
 MOST_DEVIATION = 0.1  # of the film's edge
 MOST_BREAK = 1.0  # degrees between faces of one film
 MOST_VOLUME_ERROR = 1e-3
+# Straight sides where the run has curved ones, edges of 20 mm.
+MOST_FACETED = 0.05
 NUMBER = r"([-+.\deE]+)"
 
 
@@ -80,6 +83,18 @@ class Step(program.ProgramTest):
             self.assertIn(f"ADVANCED_FACE('{name}'", text)
         again, _ = self.export(run, name="again.step")
         self.assertEqual(file.read_bytes(), again.read_bytes())
+
+        self.compare_with_itself(run, file)
+
+    def compare_with_itself(self, run, file):
+        """A run's own STEP file under its loads, named faces and all."""
+        there = self.folder / "compared"
+        self.expect(self.call("compare", run, file, "--out", there), 0)
+        own, read = json.loads((there / "compare.json").read_text())["parts"]
+        self.assertLess(abs(read["mass"] / own["mass"] - 1.0), MOST_FACETED)
+        stiffness = [part["load_cases"]["service"]["stiffness"]
+                     for part in (own, read)]
+        self.assertLess(abs(stiffness[1] / stiffness[0] - 1.0), MOST_FACETED)
 
     def test_three_films_in_one_part(self):
         self.check("two_arm_sized", 8.2e5, (14, 3), 10)
