@@ -14,7 +14,7 @@ import subprocess
 import time
 import unittest
 
-from program import SIZED_STRUT, ProgramTest
+from program import SIZED_STRUT, ProgramTest, without_seconds
 
 MOMENTS = int(os.environ.get("MENISCUS_KILLS", "50"))
 # Of a record: all but the seconds, which no two runs share.
@@ -26,13 +26,6 @@ def opened(*arguments, **options):
     """A database that is closed at the end, which `with` alone does not do: an
     open one keeps its log beside it."""
     return contextlib.closing(sqlite3.connect(*arguments, **options))
-
-
-def without_seconds(value):
-    if isinstance(value, dict):
-        return {key: without_seconds(item) for key, item in value.items()
-                if "seconds" not in key}
-    return value
 
 
 class Study(ProgramTest):

@@ -9,7 +9,7 @@ import time
 import unittest
 
 import program
-from program import COARSE, ProgramTest
+from program import COARSE, ProgramTest, without_seconds
 
 SWEEP = """
 [responses.mass]
@@ -46,8 +46,7 @@ class SweepTest(ProgramTest):
 
     def kept(self, out):
         """What of result.json must not depend on when or how fast."""
-        return json.dumps({k: v for k, v in self.result(out).items()
-                           if k != "seconds"})
+        return json.dumps(without_seconds(self.result(out)))
 
     def rows(self, out):
         with open(out / "history.csv", newline="") as file:
