@@ -67,6 +67,7 @@ EvaluationStage evaluate_design(const WholeModel& self,
 
 std::vector<std::string> findings_of(const WholeModel& self) {
   std::vector<std::string> messages;
+  messages.reserve(self.frozen->whole->findings().size());
   for (const Finding& finding : self.frozen->whole->findings()) {
     messages.push_back(finding.message);
   }

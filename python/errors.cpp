@@ -1,6 +1,7 @@
 #include "python/errors.h"
 
 #include <optional>
+#include <utility>
 
 namespace meniscus::python {
 
@@ -42,7 +43,7 @@ void raise_failed(const DesignFailed& error) {
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) {
-      std::rethrow_exception(thrown);
+      std::rethrow_exception(std::move(thrown));
     }
   } catch (const DesignFailed& error) {
     raise_failed(error);
