@@ -159,7 +159,7 @@ material = "aluminium"
 
     def test_curve_off_the_hull(self):
         path = self.write_case((r"center = \[120, 0, 72\]",
-                                "center = [-90, 0, 72]"))
+                                "center = [-60, 0, 90]"))
         self.expect(self.call("run", path, "--no-pictures", *COARSE), 2,
                     "left|right", "hull")
 
