@@ -41,6 +41,12 @@ function(meniscus_find_library target header)
   endforeach()
 endfunction()
 meniscus_find_library(deps::cholmod cholmod.h cholmod metis openblas)
+# Debian's Ceres names ATLAS, whose kernels would then serve CHOLMOD as well. One
+# BLAS for all, OpenBLAS, which has LAPACK in it: other bits and slower otherwise.
+get_target_property(ceres_links Ceres::ceres INTERFACE_LINK_LIBRARIES)
+list(FILTER ceres_links EXCLUDE REGEX "/lib(lapack|blas|f77blas|atlas)\\.so")
+set_target_properties(Ceres::ceres PROPERTIES
+  INTERFACE_LINK_LIBRARIES "${ceres_links};deps::cholmod")
 meniscus_find_library(deps::tetgen tetgen.h tet)
 meniscus_find_library(deps::udunits udunits2.h udunits2)
 meniscus_find_library(deps::qhull libqhull_r/libqhull_r.h qhull_r)

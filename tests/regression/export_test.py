@@ -418,7 +418,7 @@ class Trouble(ProgramTest):
     def test_what_is_no_run_is_told(self):
         run = self.run_strut()
         self.expect(self.call("export", run, "--format", "stp"), 2,
-                    "'stp' is no format; there are stl, 3mf, obj, fe, .*vtu")
+                    "'stp' is no format; there are stl, 3mf, obj, step, .*vtu")
         self.expect(self.call("export", self.folder, "--format", "stl"), 2,
                     "no study in")
         self.expect(self.call("export", self.folder / "none", "--format",

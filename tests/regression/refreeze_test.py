@@ -9,6 +9,7 @@ import subprocess
 import unittest
 
 from killed_test import Study
+from results_test import documented
 
 # A tube that is bent: the film settled at 30 degrees is not the one that can
 # follow to 115.
@@ -96,6 +97,7 @@ class Refreeze(Study):
             (out / "history.csv").read_text().splitlines()) - 1)
         self.assertTrue(1 <= len(result["refrozen"]) <= 3)
         for refrozen in result["refrozen"]:
+            self.assertEqual(set(refrozen), documented()["refrozen"])
             self.assertRegex(refrozen["reason"], "dihedral|invert")
             self.assertTrue(15 < refrozen["parameters"]["angle"] < 135)
             # Another mesh of the same part.

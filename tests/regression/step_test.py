@@ -104,8 +104,8 @@ class Step(program.ProgramTest):
         self.check("strut_family", volume, (4, 2), 5)
 
     def test_faceted_is_asked_for_by_name(self):
-        run = self.analysed("strut_family", "--set", "resolution.fea=12",
-                            "--set", "resolution.film=12")
+        run = self.analysed("strut_family", "--set", "resolution.fea=10",
+                            "--set", "resolution.film=10")
         file = self.folder / "facets.step"
         self.expect(self.call("export", run, "--format", "step-faceted",
                               "--out", file), 0)
