@@ -284,6 +284,7 @@ Brep faceted_solid(const SurfaceMesh& mesh) {
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     const Triangle& t = mesh.facets[f];
     std::vector<BrepUse> loop;
+    loop.reserve(3);
     for (int k = 0; k < 3; ++k) {
       loop.push_back({facet_edges[f][k], edges[facet_edges[f][k]][0] == t[k]});
     }

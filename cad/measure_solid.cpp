@@ -35,8 +35,10 @@ double distance_to(const SplineSurface& surface, const Vec3& p) {
   Vec2 start = Vec2::Zero();
   double nearest = -1.0;
   for (int k = 0; k <= kGrid * (kGrid + 2); ++k) {
-    const Vec2 at(static_cast<double>(k / (kGrid + 1)) / kGrid,
-                  static_cast<double>(k % (kGrid + 1)) / kGrid);
+    const int row = k / (kGrid + 1);
+    const int column = k % (kGrid + 1);
+    const Vec2 at(static_cast<double>(row) / kGrid,
+                  static_cast<double>(column) / kGrid);
     const double distance = (jet_of(surface, at).point - p).norm();
     if (nearest < 0.0 || distance < nearest) {
       nearest = distance;
