@@ -151,9 +151,9 @@ void tell(const StepExport& options, const FilmSolidReport& film,
   monitor.log(
       Severity::Info,
       fmt::format(
-          "gap at edges {:.2g} {} at most; film to faces {:.2g}, faces "
-          "to film {:.2g} ({:.2g} of its edge)",
-          film.gap, unit, film.film_to_solid, film.solid_to_film,
+          "gap at edges {:.2g} {} at most; film to faces {:.2g} {}, faces "
+          "to film {:.2g} {} ({:.2g} of its edge)",
+          film.gap, unit, film.film_to_solid, unit, film.solid_to_film, unit,
           std::max(film.film_to_solid, film.solid_to_film) / options.edge));
   monitor.log(
       Severity::Info,
