@@ -3,8 +3,6 @@
 #include <omp.h>
 #include <optional>
 
-#include <fmt/format.h>
-
 #include "app/case_input.h"
 #include "app/commands.h"
 #include "app/exit_code.h"
@@ -18,7 +16,7 @@
 #include "pipeline/film_frames.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/results.h"
-#include "pipeline/stored_case.h"
+#include "pipeline/run_folder.h"
 #include "pipeline/walls.h"
 
 namespace meniscus {
@@ -26,15 +24,6 @@ namespace meniscus {
 namespace {
 
 namespace fs = std::filesystem;
-
-StudyStore open_store(const Case& input, const std::string& folder,
-                      bool resume) {
-  const StudyMeta meta{.program_version = kProgramVersion,
-                       .case_hash = input.hash,
-                       .case_text = stored_case(input)};
-  return resume ? StudyStore::resume(folder, meta)
-                : StudyStore::start(folder, meta);
-}
 
 TerminalMonitorOptions options_of(const Case& input,
                                   const CommonArguments& common) {
@@ -80,11 +69,8 @@ void Run::write_all(RunResult& result, const EvaluationFields& fields) {
 
 /// The state of a run that ended early, for people and for --resume.
 int Run::keep(RunStatus status, const std::string& reason) {
-  RunResult result = result_so_far(input_, store_.all());
-  result.status = status;
-  result.message =
-      fmt::format("{}; {} finished evaluation{} kept, go on with --resume",
-                  reason, store_.size(), store_.size() == 1 ? " is" : "s are");
+  const RunResult result =
+      kept_result(input_, store_, status, reason, "--resume");
   monitor_.tell(end_event(status, result.message, result.total_seconds));
   std::fprintf(stderr, "%s: %s\n", name_of(status), result.message.c_str());
   write_summary(input_, result, store_.all(), kProgramVersion, folder_);
@@ -162,17 +148,10 @@ int run_command(const RunArguments& arguments) {
     refuse_walls(input);
     require_solver(input);
     make_folder(folder);
-    store.emplace(open_store(input, folder.string(), arguments.resume));
-    remove_leftovers(folder);
-    // An older result must not stand beside a study that is not its own.
-    fs::remove(folder / "result.json");
-    fs::remove(folder / "family.csv");
-    remove_frames(folder);
-    fs::remove(folder / "report.html");
+    store.emplace(open_run(
+        input, folder, arguments.resume ? RunBegins::Resumed : RunBegins::Anew,
+        kProgramVersion));
   } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
-  } catch (const fs::filesystem_error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
   }

@@ -16,8 +16,8 @@
 #include "optimize/family_tree.h"
 #include "pipeline/content_hash.h"
 #include "pipeline/family_members.h"
-#include "pipeline/film_frames.h"
 #include "pipeline/results.h"
+#include "pipeline/run_folder.h"
 #include "pipeline/run_lock.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/study_table.h"
@@ -68,15 +68,12 @@ std::optional<Json> stored_result(const fs::path& folder) {
 
 StudyStore open_store(const Case& member, const fs::path& folder,
                       const FamilyOptions& options) {
-  const StudyMeta meta{.program_version = options.program_version,
-                       .case_hash = member.hash,
-                       .case_text = stored_case(member)};
   bool same = false;
   if (options.resume && fs::exists(folder / "study.sqlite")) {
     same = StudyStore::read(folder.string()).meta().case_hash == member.hash;
   }
-  return same ? StudyStore::resume(folder.string(), meta)
-              : StudyStore::start(folder.string(), meta);
+  return open_run(member, folder, same ? RunBegins::Resumed : RunBegins::Anew,
+                  options.program_version);
 }
 
 class FamilyRun {
@@ -234,9 +231,6 @@ Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
     }
   }
   StudyStore store = open_store(member, folder, options_);
-  remove_leftovers(folder);
-  fs::remove(folder / "result.json");
-  remove_frames(folder);
   MemberMonitor monitor(monitor_, result_.rows[k].name);
   const Timer timer;
   Json json = compute(

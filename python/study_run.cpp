@@ -9,7 +9,7 @@
 #include "io/atomic_file.h"
 #include "pipeline/family.h"
 #include "pipeline/results.h"
-#include "pipeline/stored_case.h"
+#include "pipeline/run_folder.h"
 #include "pipeline/walls.h"
 
 namespace meniscus::python {
@@ -44,17 +44,6 @@ void run_members(const Case& input, const StudyRunOptions& options,
   }
 }
 
-/// The state of a run that ended early, for readers and for resume.
-void keep(const Case& input, const StudyStore& store, RunStatus status,
-          const std::string& reason, const fs::path& folder) {
-  RunResult result = result_so_far(input, store.all());
-  result.status = status;
-  result.message =
-      fmt::format("{}; {} finished evaluation{} kept, go on with resume",
-                  reason, store.size(), store.size() == 1 ? " is" : "s are");
-  write_summary(input, result, store.all(), MENISCUS_VERSION, folder);
-}
-
 void run_alone(const Case& input, const StudyRunOptions& options,
                StudyStore& store, Monitor& monitor) {
   EvaluationFields fields;
@@ -86,23 +75,20 @@ void run_into_folder(const Case& input, const StudyRunOptions& options,
     run_members(input, options, monitor);
     return;
   }
-  const StudyMeta meta{.program_version = MENISCUS_VERSION,
-                       .case_hash = input.hash,
-                       .case_text = stored_case(input)};
-  StudyStore store = options.resume ? StudyStore::resume(options.folder, meta)
-                                    : StudyStore::start(options.folder, meta);
-  remove_leftovers(folder);
-  // An older result must not stand beside a study that is not its own.
-  std::error_code ignored;
-  fs::remove(folder / "result.json", ignored);
-  fs::remove(folder / "family.csv", ignored);
+  StudyStore store = open_run(
+      input, folder, options.resume ? RunBegins::Resumed : RunBegins::Anew,
+      MENISCUS_VERSION);
+  const auto keep = [&](RunStatus status, const std::string& reason) {
+    write_summary(input, kept_result(input, store, status, reason, "resume"),
+                  store.all(), MENISCUS_VERSION, folder);
+  };
   try {
     run_alone(input, options, store, monitor);
   } catch (const Interrupted&) {
-    keep(input, store, RunStatus::Interrupted, "stopped on request", folder);
+    keep(RunStatus::Interrupted, "stopped on request");
     throw;
   } catch (const IoError& error) {
-    keep(input, store, RunStatus::Error, error.what(), folder);
+    keep(RunStatus::Error, error.what());
     throw;
   }
 }

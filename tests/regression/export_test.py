@@ -42,14 +42,14 @@ class Gmsh:
     """The model in a file, as Gmsh's own library has it."""
 
     def __init__(self, file):
-        self.library = ctypes.CDLL(ctypes.util.find_library("gmsh"))
+        self.gmsh = ctypes.CDLL(ctypes.util.find_library("gmsh"))
         self.call("Initialize", 0, None, 0)
         self.call("OptionSetNumber", b"General.Verbosity", number(2))
         self.call("Open", str(file).encode())
 
     def call(self, name, *arguments):
         error = ctypes.c_int()
-        getattr(self.library, "gmsh" + name)(*arguments, ctypes.byref(error))
+        getattr(self.gmsh, "gmsh" + name)(*arguments, ctypes.byref(error))
         assert error.value == 0, f"gmsh{name}: {error.value}"
 
     def close(self):

@@ -77,6 +77,18 @@ export function fieldMaterial(shared: Shared): THREE.ShaderMaterial {
   });
 }
 
+function oneColour(
+  shared: Shared,
+  colour: string,
+  opacity: number,
+): Record<string, THREE.IUniform> {
+  return {
+    ...shared,
+    colour: { value: new THREE.Color(colour) },
+    opacity: { value: opacity },
+  };
+}
+
 /** A surface or its inside in one colour. */
 export function plainMaterial(
   shared: Shared,
@@ -84,11 +96,7 @@ export function plainMaterial(
   opacity = 1,
 ): THREE.ShaderMaterial {
   return new THREE.ShaderMaterial({
-    uniforms: {
-      ...shared,
-      colour: { value: new THREE.Color(colour) },
-      opacity: { value: opacity },
-    } as Record<string, THREE.IUniform>,
+    uniforms: oneColour(shared, colour, opacity),
     side: THREE.DoubleSide,
     transparent: opacity < 1,
     depthWrite: opacity >= 1,
@@ -123,11 +131,7 @@ export function lineMaterial(
   opacity = 1,
 ): THREE.ShaderMaterial {
   return new THREE.ShaderMaterial({
-    uniforms: {
-      ...shared,
-      colour: { value: new THREE.Color(colour) },
-      opacity: { value: opacity },
-    } as Record<string, THREE.IUniform>,
+    uniforms: oneColour(shared, colour, opacity),
     transparent: opacity < 1,
     vertexShader: /* glsl */ `
       ${MOVED}
