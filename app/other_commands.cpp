@@ -14,6 +14,7 @@
 #include "io/vtk_files.h"
 #include "pipeline/datafile.h"
 #include "pipeline/family_table.h"
+#include "pipeline/film_figures.h"
 #include "pipeline/film_frames.h"
 #include "pipeline/new_case.h"
 #include "pipeline/results.h"
@@ -205,6 +206,7 @@ int evolve_command(const EvolveArguments& arguments) {
                             .monitor = &monitor});
   const FilmState& film = model.reference();
   write_film(input, model.fine_mesh(film.points), folder);
+  write_film_figures(input, model, folder);
   if (arguments.pictures) {
     std::vector<std::string> solids;
     for (const CapSpec& cap : numbers.film_system.caps) {

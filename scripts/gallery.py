@@ -1,0 +1,252 @@
+#!/usr/bin/env python3
+"""Runs the cases, compares them with their expected.json and writes
+docs/gallery: README.md, pictures, and the result table of each case's README.
+usage: gallery.py [--quick] [--out DIR] PROGRAM [CASE...]
+  --quick  quick sizes, and nothing is written but to DIR"""
+import argparse
+import html
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import cases
+
+GALLERY = cases.ROOT / "docs" / "gallery"
+WIDTH = 900          # [pixel]
+LARGEST = 300 * 1000  # [byte]
+BEGIN, END = "<!-- results -->", "<!-- /results -->"
+
+
+def save_picture(source, target):
+    """Scaled and quantised, so that a page of many stays small."""
+    from PIL import Image  # only here: quick sizes do without
+
+    with Image.open(source) as picture:
+        picture = picture.convert("RGB")
+        width = min(WIDTH, picture.width)
+        for colours in (256, 160, 96, 64, 32):
+            small = picture.resize(
+                (width, round(picture.height * width / picture.width)),
+                Image.LANCZOS)
+            small = small.quantize(colours, method=Image.MEDIANCUT,
+                                   dither=Image.NONE)
+            small.save(target, optimize=True)
+            if target.stat().st_size < LARGEST:
+                return
+    raise RuntimeError(f"{target} stays above {LARGEST} bytes")
+
+
+def number(value):
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return html.escape(str(value), quote=False)
+    return f"{value:.5g}"
+
+
+def off_by(row):
+    if row.exact or row.wanted is None:
+        return "" if row.fine else "**no**"
+    text = (f"{100 * (row.found / row.wanted - 1):+.2f} %"
+            if row.wanted and "absolute" not in row.figure
+            else f"{row.found - row.wanted:+.2g}")
+    return text if row.fine else f"**{text}**"
+
+
+def allowed(row):
+    if row.exact:
+        return "equal"
+    words = []
+    if row.wanted is not None:
+        words.append(
+            f"{row.figure['absolute']:g}" if "absolute" in row.figure
+            else f"{100 * cases.room_of(row.figure) / abs(row.wanted):g} %")
+    for key, sign in (("at_least", ">="), ("at_most", "<=")):
+        if key in row.figure:
+            words.append(f"{sign} {row.figure[key]:g}")
+    return ", ".join(words)
+
+
+def scaled(row, value):
+    """In the unit of the table, when it is another one than the file's."""
+    factor = row.figure.get("scale", 1)
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return number(value if row.exact else value * factor)
+    return number(value)
+
+
+def table(outcomes, rates):
+    lines = []
+    reasons = []
+    for outcome in outcomes.values():
+        if not outcome.rows:
+            continue
+        referenced = any("reference" in row.figure for row in outcome.rows)
+        head = [f"`{outcome.run['command']}`", "expected", "found", "off",
+                "allowed"]
+        if referenced:
+            head.insert(1, "reference")
+        lines += ["| " + " | ".join(head) + " |",
+                  "|" + "---|" * len(head)]
+        for row in outcome.rows:
+            name = (row.label if row.label != row.path else f"`{row.path}`")
+            if row.unit:
+                name += f" [{row.unit}]"
+            why = row.figure.get("why")
+            if why:
+                if why not in reasons:
+                    reasons.append(why)
+                name += f" ({reasons.index(why) + 1})"
+            cells = [name, "" if row.wanted is None
+                     else scaled(row, row.wanted),
+                     scaled(row, row.found), off_by(row), allowed(row)]
+            if referenced:
+                cells.insert(1, scaled(row, row.figure["reference"])
+                             if "reference" in row.figure else "")
+            lines.append("| " + " | ".join(cells) + " |")
+        lines.append("")
+    if rates:
+        lines += ["| error over the runs | exact | errors | observed order | "
+                  "expected |", "|---|---|---|---|---|"]
+        for rate in rates:
+            lines.append("| {} | {:.8g} | {} | {} | {} +- {} |".format(
+                rate.item.get("label", f"`{rate.item['path']}`"),
+                rate.item["exact"],
+                ", ".join(f"{e:.2e}" for e in rate.errors),
+                ", ".join(f"{o:.2f}" for o in rate.orders),
+                rate.item["order"], rate.item["absolute"]))
+        lines.append("")
+    for k, why in enumerate(reasons, 1):
+        lines.append(f"({k}) {why}")
+        lines.append("")
+    return "\n".join(lines).rstrip() + "\n"
+
+
+class Page:
+    """A case's part of the gallery."""
+
+    def __init__(self, folder, spec, outcomes, rates):
+        self.folder = folder
+        self.name = folder.name
+        self.text = (folder / "README.md").read_text(encoding="utf-8")
+        self.outcomes = outcomes
+        self.table = table(outcomes, rates)
+        self.pictures = [picture for run in spec["runs"]
+                         for picture in run.get("pictures", [])]
+        self.problems = [problem for outcome in outcomes.values()
+                         for problem in outcome.problems]
+        self.problems += [problem for rate in rates
+                          for problem in rate.problems()]
+        self.figures = sum(len(o.rows) for o in outcomes.values()) + len(rates)
+
+    def title(self):
+        return re.search(r"^# (.+)$", self.text, re.MULTILINE).group(1)
+
+    def question(self):
+        """The README's first paragraph that is no sketch."""
+        for paragraph in self.text.split("\n\n")[1:]:
+            if re.match(r"[A-Z]", paragraph):
+                return paragraph.strip()
+        return ""
+
+    def write_table(self):
+        """Into the case's own README, between its marks."""
+        pattern = re.compile(f"{BEGIN}.*?{END}", re.DOTALL)
+        if not pattern.search(self.text):
+            raise RuntimeError(f"{self.name}/README.md has no {BEGIN}")
+        text = pattern.sub(
+            lambda _: f"{BEGIN}\n{self.table}{END}", self.text)
+        (self.folder / "README.md").write_text(text, encoding="utf-8")
+
+    def summary(self):
+        seconds = sum(o.seconds for o in self.outcomes.values())
+        processor = sum(o.processor for o in self.outcomes.values())
+        fine = ("all" if not self.problems
+                else f"**{len(self.problems)} not**")
+        return (f"| [{self.title()}](#{anchor(self.title())}) | "
+                f"[cases/{self.name}](../../cases/{self.name}/README.md) | "
+                f"{self.figures} | {fine} | {seconds:.0f} | {processor:.0f} |")
+
+    def section(self):
+        text = [f"## {self.title()}", "", self.question(), ""]
+        for picture in self.pictures:
+            text += [f"![{picture['caption']}]({picture['name']})", "",
+                     f"*{picture['caption']}*", ""]
+        text += [self.table]
+        return "\n".join(text)
+
+
+def anchor(title):
+    """As GitHub makes it."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+
+
+INTRO = """# Gallery
+
+Written by `./scripts/gallery`, which runs every folder of [cases](../../cases), compares
+it with its `expected.json` ([format](../../cases/README.md)) and draws it. Allowed are
+0.5 % for figures of films, 2 % for displacements, 5 % for stresses; wider rooms have
+their reason below the table. Seconds are those of the clock and of the processor, on two
+cores, all runs and pictures of the case.
+
+| part | folder | figures | as expected | s | s of processor |
+|---|---|---|---|---|---|
+"""
+
+
+def write_gallery(pages, version):
+    GALLERY.mkdir(parents=True, exist_ok=True)
+    text = INTRO + "\n".join(page.summary() for page in pages)
+    text += f"\n\nMade by {version}.\n\n"
+    text += "\n".join(page.section() for page in pages)
+    (GALLERY / "README.md").write_text(text.rstrip() + "\n", encoding="utf-8")
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--out", type=pathlib.Path)
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("cases", nargs="*")
+    return parser.parse_args()
+
+
+def main():
+    arguments = parse()
+    program = arguments.program.resolve()
+    known = cases.folders()
+    chosen = [f for f in known
+              if not arguments.cases or f.name in arguments.cases]
+    if len(chosen) < len(set(arguments.cases)):
+        sys.exit(f"there are {', '.join(f.name for f in known)}")
+    out = arguments.out or pathlib.Path(tempfile.mkdtemp(prefix="gallery-"))
+    pages = []
+    for folder in chosen:
+        print(f"{folder.name} ...", flush=True)
+        spec = cases.read(folder)
+        outcomes, rates = cases.run_case(
+            program, folder, spec, (out / folder.name).resolve(),
+            arguments.quick, not arguments.quick)
+        page = Page(folder, spec, outcomes, rates)
+        pages.append(page)
+        print(page.table)
+        for problem in page.problems:
+            print(f"  NOT AS EXPECTED: {problem}", flush=True)
+        if not arguments.quick:
+            GALLERY.mkdir(parents=True, exist_ok=True)
+            for outcome in outcomes.values():
+                for picture in outcome.run.get("pictures", []):
+                    save_picture(outcome.folder / picture["file"],
+                                 GALLERY / picture["name"])
+            page.write_table()
+    if not arguments.quick and not arguments.cases:
+        version = subprocess.run(
+            [str(program), "--version"], capture_output=True, text=True,
+            check=True).stdout.splitlines()[0]
+        write_gallery(pages, version)
+    print(f"results in {out}")
+    return 1 if any(page.problems for page in pages) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
