@@ -86,7 +86,7 @@ def read(folder):
     where = f"{folder.name}/expected.json"
     try:
         spec = json.loads(path.read_text(encoding="utf-8"))
-    except json.JSONDecodeError as error:
+    except (OSError, json.JSONDecodeError) as error:
         raise BadFormat(f"{where}: {error}") from error
     check_keys("case", spec, where, ["runs"])
     names = [run.get("name") for run in spec["runs"]]

@@ -39,15 +39,17 @@ def save_picture(source, target):
 
 
 def number(value):
+    if value is None:
+        return "none"
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return html.escape(str(value), quote=False)
     return f"{value:.5g}"
 
 
 def off_by(row):
-    if row.exact or row.wanted is None:
+    if row.exact or row.wanted is None or row.found is None:
         return "" if row.fine else "**no**"
-    text = (f"{100 * (row.found / row.wanted - 1):+.2f} %"
+    text = (f"{100 * (row.found / row.wanted - 1):+.2g} %"
             if row.wanted and "absolute" not in row.figure
             else f"{row.found - row.wanted:+.2g}")
     return text if row.fine else f"**{text}**"
