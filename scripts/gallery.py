@@ -26,13 +26,13 @@ def save_picture(source, target):
     with Image.open(source) as picture:
         picture = picture.convert("RGB")
         width = min(WIDTH, picture.width)
-        for colours in (256, 160, 96, 64, 32):
-            small = picture.resize(
-                (width, round(picture.height * width / picture.width)),
-                Image.LANCZOS)
-            small = small.quantize(colours, method=Image.MEDIANCUT,
-                                   dither=Image.NONE)
-            small.save(target, optimize=True)
+        small = picture.resize(
+            (width, round(picture.height * width / picture.width)),
+            Image.LANCZOS)
+        for colours in (None, 256, 128, 64, 32):
+            kept = small if colours is None else small.quantize(
+                colours, method=Image.MEDIANCUT)
+            kept.save(target, optimize=True)
             if target.stat().st_size < LARGEST:
                 return
     raise RuntimeError(f"{target} stays above {LARGEST} bytes")
@@ -47,7 +47,7 @@ def number(value):
 
 
 def off_by(row):
-    if row.exact or row.wanted is None or row.found is None:
+    if row.wanted is None or row.found is None:
         return "" if row.fine else "**no**"
     text = (f"{100 * (row.found / row.wanted - 1):+.2g} %"
             if row.wanted and "absolute" not in row.figure
@@ -56,8 +56,6 @@ def off_by(row):
 
 
 def allowed(row):
-    if row.exact:
-        return "equal"
     words = []
     if row.wanted is not None:
         words.append(
@@ -73,40 +71,52 @@ def scaled(row, value):
     """In the unit of the table, when it is another one than the file's."""
     factor = row.figure.get("scale", 1)
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return number(value if row.exact else value * factor)
+        return number(value * factor)
     return number(value)
+
+
+def run_table(outcome, reasons):
+    """Figures as a table, what must be equal in a line below it."""
+    lines = []
+    figures = [row for row in outcome.rows if not row.exact]
+    referenced = any("reference" in row.figure for row in figures)
+    command = f"`{outcome.run['command']}`"
+    if figures:
+        head = [command, "expected", "found", "off", "allowed"]
+        if referenced:
+            head.insert(1, "reference")
+        lines += ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    for row in figures:
+        name = (row.label if row.label != row.path else f"`{row.path}`")
+        if row.unit:
+            name += f" [{row.unit}]"
+        why = row.figure.get("why")
+        if why:
+            if why not in reasons:
+                reasons.append(why)
+            name += f" ({reasons.index(why) + 1})"
+        cells = [name,
+                 "" if row.wanted is None else scaled(row, row.wanted),
+                 scaled(row, row.found), off_by(row), allowed(row)]
+        if referenced:
+            cells.insert(1, scaled(row, row.figure["reference"])
+                         if "reference" in row.figure else "")
+        lines.append("| " + " | ".join(cells) + " |")
+    equal = ", ".join(
+        f"`{row.path}` {number(row.found)}" +
+        ("" if row.fine else f" **not {number(row.wanted)}**")
+        for row in outcome.rows if row.exact)
+    if equal:
+        lines += ["", equal + "." if figures else f"{command}: {equal}."]
+    return lines + [""]
 
 
 def table(outcomes, rates):
     lines = []
     reasons = []
     for outcome in outcomes.values():
-        if not outcome.rows:
-            continue
-        referenced = any("reference" in row.figure for row in outcome.rows)
-        head = [f"`{outcome.run['command']}`", "expected", "found", "off",
-                "allowed"]
-        if referenced:
-            head.insert(1, "reference")
-        lines += ["| " + " | ".join(head) + " |",
-                  "|" + "---|" * len(head)]
-        for row in outcome.rows:
-            name = (row.label if row.label != row.path else f"`{row.path}`")
-            if row.unit:
-                name += f" [{row.unit}]"
-            why = row.figure.get("why")
-            if why:
-                if why not in reasons:
-                    reasons.append(why)
-                name += f" ({reasons.index(why) + 1})"
-            cells = [name, "" if row.wanted is None
-                     else scaled(row, row.wanted),
-                     scaled(row, row.found), off_by(row), allowed(row)]
-            if referenced:
-                cells.insert(1, scaled(row, row.figure["reference"])
-                             if "reference" in row.figure else "")
-            lines.append("| " + " | ".join(cells) + " |")
-        lines.append("")
+        if outcome.rows:
+            lines += run_table(outcome, reasons)
     if rates:
         lines += ["| error over the runs | exact | errors | observed order | "
                   "expected |", "|---|---|---|---|---|"]
