@@ -211,7 +211,8 @@ def arguments_of(run, out, quick, pictures):
     if quick:
         words += shlex.split(run["quick"])
     words += ["--out", str(out / run["name"]), "--quiet"]
-    if words[0] in ("run", "evolve") and not pictures:
+    wanted = pictures and run.get("pictures")
+    if words[0] in ("run", "evolve") and not wanted:
         words.append("--no-pictures")
     return words
 

@@ -12,6 +12,8 @@ sys.path.insert(0, str(program.ROOT / "scripts"))
 import cases  # noqa: E402  (scripts/ is found only now)
 
 NAME = os.environ["MENISCUS_CASE"]
+# The case whose pictures are drawn, too: one will do, and each costs seconds.
+PICTURED = "two_arm"
 
 
 class Case(ProgramTest):
@@ -19,7 +21,8 @@ class Case(ProgramTest):
         folder = cases.CASES / NAME
         spec = cases.read(folder)
         outcomes, rates = cases.run_case(program.PROGRAM, folder, spec,
-                                         self.folder, quick=True)
+                                         self.folder, quick=True,
+                                         pictures=NAME == PICTURED)
         for name, outcome in outcomes.items():
             with self.subTest(run=name):
                 self.assertEqual(outcome.problems, [])
@@ -40,7 +43,10 @@ class Case(ProgramTest):
             self.assertTrue(list(part.glob("part_*.stl")), part)
             for name in ("film.vtp", "part.vtu", "history.csv",
                          "study.sqlite"):
-                self.assertGreater((part / name).stat().st_size, 300, name)
+                self.assertGreater((part / name).stat().st_size, 100, name)
+        if NAME == PICTURED:
+            for name in ("part.png", "film.png", "overview.png"):
+                self.assertGreater((out / name).stat().st_size, 10000, name)
 
     def test_wrong_cases_are_told(self):
         folder = cases.CASES / NAME
