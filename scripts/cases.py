@@ -20,7 +20,7 @@ CASES = ROOT / "cases"
 ROOM = {"film": 0.005, "displacement": 0.02, "stress": 0.05}
 # What a command leaves to read figures from.
 RESULT = {"run": "result.json", "evolve": "film.json",
-          "compare": "compare.json"}
+          "compare": "compare.json", "check-gradient": None}
 SECONDS = 180  # of one run at its default size on two cores
 KEYS = {
     "case": {"runs", "convergence", "wrong"},
@@ -210,7 +210,9 @@ def arguments_of(run, out, quick, pictures):
     words = shlex.split(run["command"].replace("{out}", str(out)))
     if quick:
         words += shlex.split(run["quick"])
-    words += ["--out", str(out / run["name"]), "--quiet"]
+    if RESULT[words[0]]:
+        words += ["--out", str(out / run["name"])]
+    words.append("--quiet")
     wanted = pictures and run.get("pictures")
     if words[0] in ("run", "evolve") and not wanted:
         words.append("--no-pictures")
@@ -244,6 +246,8 @@ def execute(program, folder, run, out, quick=False, pictures=False):
         outcome.problems.append(
             f"took {outcome.seconds:.0f} s, {outcome.processor:.0f} s of "
             f"processor time; {limit} s are allowed")
+    if not RESULT[words[0]]:
+        return outcome
     file = outcome.folder / RESULT[words[0]]
     if not file.exists():
         outcome.problems.append(f"no {file.name}")
@@ -308,7 +312,7 @@ def run_wrong(program, folder, item):
             text = text.replace(old, new, 1)
         case.write_text(text, encoding="utf-8")
         words = shlex.split(item.get("command", "check case.toml"))
-        if words[0] in RESULT:
+        if RESULT.get(words[0]):
             words += ["--out", str(pathlib.Path(place) / "out"), "--quiet"]
         if words[0] in ("run", "evolve"):
             words.append("--no-pictures")

@@ -7,14 +7,13 @@ import argparse
 import html
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
 import cases
 
 GALLERY = cases.ROOT / "docs" / "gallery"
-WIDTH = 900          # [pixel]
+WIDTH = 1200          # [pixel]
 LARGEST = 300 * 1000  # [byte]
 BEGIN, END = "<!-- results -->", "<!-- /results -->"
 
@@ -117,6 +116,9 @@ def table(outcomes, rates):
     for outcome in outcomes.values():
         if outcome.rows:
             lines += run_table(outcome, reasons)
+        elif not outcome.problems:
+            lines += [f"`{outcome.run['command']}`: exit "
+                      f"{outcome.run.get('exit', 0)}, as asked.", ""]
     if rates:
         lines += ["| error over the runs | exact | errors | observed order | "
                   "expected |", "|---|---|---|---|---|"]
@@ -135,21 +137,14 @@ def table(outcomes, rates):
 
 
 class Page:
-    """A case's part of the gallery."""
+    """A case's part of the gallery: what its folder says, results included."""
 
-    def __init__(self, folder, spec, outcomes, rates):
+    def __init__(self, folder, spec):
         self.folder = folder
         self.name = folder.name
         self.text = (folder / "README.md").read_text(encoding="utf-8")
-        self.outcomes = outcomes
-        self.table = table(outcomes, rates)
         self.pictures = [picture for run in spec["runs"]
                          for picture in run.get("pictures", [])]
-        self.problems = [problem for outcome in outcomes.values()
-                         for problem in outcome.problems]
-        self.problems += [problem for rate in rates
-                          for problem in rate.problems()]
-        self.figures = sum(len(o.rows) for o in outcomes.values()) + len(rates)
 
     def title(self):
         return re.search(r"^# (.+)$", self.text, re.MULTILINE).group(1)
@@ -161,31 +156,28 @@ class Page:
                 return paragraph.strip()
         return ""
 
-    def write_table(self):
+    def table(self):
+        return self.text.split(BEGIN)[1].split(END)[0].strip()
+
+    def write_table(self, text):
         """Into the case's own README, between its marks."""
         pattern = re.compile(f"{BEGIN}.*?{END}", re.DOTALL)
         if not pattern.search(self.text):
             raise RuntimeError(f"{self.name}/README.md has no {BEGIN}")
-        text = pattern.sub(
-            lambda _: f"{BEGIN}\n{self.table}{END}", self.text)
-        (self.folder / "README.md").write_text(text, encoding="utf-8")
+        self.text = pattern.sub(lambda _: f"{BEGIN}\n{text}{END}", self.text)
+        (self.folder / "README.md").write_text(self.text, encoding="utf-8")
 
-    def summary(self):
-        seconds = sum(o.seconds for o in self.outcomes.values())
-        processor = sum(o.processor for o in self.outcomes.values())
-        fine = ("all" if not self.problems
-                else f"**{len(self.problems)} not**")
+    def row(self, figures):
         return (f"| [{self.title()}](#{anchor(self.title())}) | "
                 f"[cases/{self.name}](../../cases/{self.name}/README.md) | "
-                f"{self.figures} | {fine} | {seconds:.0f} | {processor:.0f} |")
+                f"{figures} |")
 
     def section(self):
         text = [f"## {self.title()}", "", self.question(), ""]
         for picture in self.pictures:
             text += [f"![{picture['caption']}]({picture['name']})", "",
                      f"*{picture['caption']}*", ""]
-        text += [self.table]
-        return "\n".join(text)
+        return "\n".join([*text, self.table(), ""])
 
 
 def anchor(title):
@@ -195,23 +187,46 @@ def anchor(title):
 
 INTRO = """# Gallery
 
-Written by `./scripts/gallery`, which runs every folder of [cases](../../cases), compares
-it with its `expected.json` ([format](../../cases/README.md)) and draws it. Allowed are
-0.5 % for figures of films, 2 % for displacements, 5 % for stresses; wider rooms have
-their reason below the table. Seconds are those of the clock and of the processor, on two
-cores, all runs and pictures of the case.
+Written by `./scripts/gallery`, which runs the folders of [cases](../../cases/README.md),
+compares each with its `expected.json` and draws it. Allowed are 0.5 % for figures of
+films, 2 % for displacements, 5 % for stresses; wider rooms have their reason below the
+table. Seconds are those of the clock and of the processor, all runs and pictures of the
+case, on two cores that other work may share.
 
 | part | folder | figures | as expected | s | s of processor |
 |---|---|---|---|---|---|
 """
 
 
-def write_gallery(pages, version):
-    GALLERY.mkdir(parents=True, exist_ok=True)
-    text = INTRO + "\n".join(page.summary() for page in pages)
-    text += f"\n\nMade by {version}.\n\n"
+def figures_of(outcomes, rates):
+    """The cells of a case that was run."""
+    count = sum(len(o.rows) or 1 for o in outcomes.values()) + len(rates)
+    wrong = len(problems_of(outcomes, rates))
+    return " | ".join([
+        str(count), f"**{wrong} not**" if wrong else "all",
+        f"{sum(o.seconds for o in outcomes.values()):.0f}",
+        f"{sum(o.processor for o in outcomes.values()):.0f}"])
+
+
+def problems_of(outcomes, rates):
+    problems = [text for o in outcomes.values() for text in o.problems]
+    return problems + [text for rate in rates for text in rate.problems()]
+
+
+def write_gallery(figures):
+    """The whole page; of cases that were not run now what it said before."""
+    path = GALLERY / "README.md"
+    before = path.read_text(encoding="utf-8") if path.exists() else ""
+    pages = [Page(folder, cases.read(folder)) for folder in cases.folders()]
+    rows = []
+    for page in pages:
+        told = re.search(rf"cases/{page.name}/README.md\) \| (.*) \|$",
+                         before, re.MULTILINE)
+        rows.append(page.row(figures.get(
+            page.name, told.group(1) if told else "not run | | |")))
+    text = INTRO + "\n".join(rows) + "\n\n"
     text += "\n".join(page.section() for page in pages)
-    (GALLERY / "README.md").write_text(text.rstrip() + "\n", encoding="utf-8")
+    path.write_text(text.rstrip() + "\n", encoding="utf-8")
 
 
 def parse():
@@ -232,32 +247,31 @@ def main():
     if len(chosen) < len(set(arguments.cases)):
         sys.exit(f"there are {', '.join(f.name for f in known)}")
     out = arguments.out or pathlib.Path(tempfile.mkdtemp(prefix="gallery-"))
-    pages = []
+    GALLERY.mkdir(parents=True, exist_ok=True)
+    figures = {}
+    failed = False
     for folder in chosen:
         print(f"{folder.name} ...", flush=True)
         spec = cases.read(folder)
         outcomes, rates = cases.run_case(
             program, folder, spec, (out / folder.name).resolve(),
             arguments.quick, not arguments.quick)
-        page = Page(folder, spec, outcomes, rates)
-        pages.append(page)
-        print(page.table)
-        for problem in page.problems:
+        text = table(outcomes, rates)
+        print(text)
+        for problem in problems_of(outcomes, rates):
             print(f"  NOT AS EXPECTED: {problem}", flush=True)
-        if not arguments.quick:
-            GALLERY.mkdir(parents=True, exist_ok=True)
-            for outcome in outcomes.values():
-                for picture in outcome.run.get("pictures", []):
-                    save_picture(outcome.folder / picture["file"],
-                                 GALLERY / picture["name"])
-            page.write_table()
-    if not arguments.quick and not arguments.cases:
-        version = subprocess.run(
-            [str(program), "--version"], capture_output=True, text=True,
-            check=True).stdout.splitlines()[0]
-        write_gallery(pages, version)
+            failed = True
+        if arguments.quick:
+            continue
+        figures[folder.name] = figures_of(outcomes, rates)
+        for outcome in outcomes.values():
+            for picture in outcome.run.get("pictures", []):
+                save_picture(outcome.folder / picture["file"],
+                             GALLERY / picture["name"])
+        Page(folder, spec).write_table(text)
+        write_gallery(figures)
     print(f"results in {out}")
-    return 1 if any(page.problems for page in pages) else 0
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

@@ -26,7 +26,8 @@ class Case(ProgramTest):
         for name, outcome in outcomes.items():
             with self.subTest(run=name):
                 self.assertEqual(outcome.problems, [])
-                self.assertGreater(len(outcome.rows), 0)
+                if not outcome.run["command"].startswith("check-gradient"):
+                    self.assertGreater(len(outcome.rows), 0)
                 self.check_files(outcome)
         for rate in rates:
             with self.subTest(rate=rate.item["path"]):
