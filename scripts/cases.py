@@ -64,6 +64,8 @@ def check_figure(figure, where):
     if isinstance(figure, (str, bool, int)):
         return
     check_keys("figure", figure, where)
+    if "value" in figure and figure["value"] is None:
+        raise BadFormat(f"{where}: no value yet; scripts/gallery --fill")
     if "value" not in figure:
         check("at_least" in figure or "at_most" in figure, where,
               "neither 'value' nor 'at_least' nor 'at_most'")
@@ -80,8 +82,9 @@ def check_figure(figure, where):
           f"{room_of(figure):g} is more room than {usual:g}: say 'why'")
 
 
-def read(folder):
-    """expected.json of a case, checked. Throws BadFormat."""
+def read(folder, unfilled=False):
+    """expected.json of a case, checked; `unfilled`: but for its figures. Throws
+    BadFormat."""
     path = folder / "expected.json"
     where = f"{folder.name}/expected.json"
     try:
@@ -100,7 +103,7 @@ def read(folder):
               f"the command is none of {', '.join(RESULT)}")
         if "quick" in run:
             check("expected_quick" in run, at, "'expected_quick' is missing")
-        for table in ("expected", "expected_quick"):
+        for table in () if unfilled else ("expected", "expected_quick"):
             for name, figure in run.get(table, {}).items():
                 check_figure(figure, f"{at}: {table}: {name}")
         for picture in run.get("pictures", []):
@@ -115,6 +118,38 @@ def read(folder):
     for item in spec.get("wrong", []):
         check_keys("wrong", item, where, ["what", "exit", "says"])
     return spec
+
+
+def text_of(spec):
+    """As expected.json is written: a figure a line."""
+    text = json.dumps(spec, indent=2, ensure_ascii=False)
+    text = re.sub(r"\{\n\s+([^{}\[\]]*?)\n\s+\}",
+                  lambda m: "{ " + re.sub(r"\n\s+", " ", m.group(1)) + " }",
+                  text)
+    return text + "\n"
+
+
+def fill(program, folder, out):
+    """Runs both sizes of a case and puts what comes out where expected.json
+    has a value of null."""
+    spec = read(folder, unfilled=True)
+    for run in spec["runs"]:
+        for quick in (False, True):
+            table = run.get("expected_quick" if quick else "expected", {})
+            open_figures = {path: figure for path, figure in table.items()
+                            if isinstance(figure, dict) and
+                            figure.get("value", 0) is None}
+            if quick and "quick" not in run:
+                continue
+            result = execute(program, folder, {**run, "expected": {},
+                                               "expected_quick": {}},
+                             out, quick).result
+            for path, figure in open_figures.items():
+                found = find(result, path)
+                check(isinstance(found, (int, float)), folder.name,
+                      f"{path} is {found}")
+                figure["value"] = float(f"{found:.5g}")
+    (folder / "expected.json").write_text(text_of(spec), encoding="utf-8")
 
 
 def folders():

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Runs the cases, compares them with their expected.json and writes
 docs/gallery: README.md, pictures, and the result table of each case's README.
-usage: gallery.py [--quick] [--out DIR] PROGRAM [CASE...]
-  --quick  quick sizes, and nothing is written but to DIR"""
+usage: gallery.py [--quick] [--fill] [--out DIR] PROGRAM [CASE...]
+  --quick  quick sizes, and nothing is written but to DIR
+  --fill   only puts what comes out where an expected.json has the value null"""
 import argparse
 import html
 import pathlib
@@ -232,6 +233,7 @@ def write_gallery(figures):
 def parse():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--fill", action="store_true")
     parser.add_argument("--out", type=pathlib.Path)
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("cases", nargs="*")
@@ -252,6 +254,9 @@ def main():
     failed = False
     for folder in chosen:
         print(f"{folder.name} ...", flush=True)
+        if arguments.fill:
+            cases.fill(program, folder, (out / folder.name).resolve())
+            continue
         spec = cases.read(folder)
         outcomes, rates = cases.run_case(
             program, folder, spec, (out / folder.name).resolve(),

@@ -58,6 +58,7 @@ class Cases(ProgramTest):
                 ((*figure, "relative"), 0.006, "more room.*say 'why'"),
                 ((*figure, "absolute"), 0.6, "more room.*say 'why'"),
                 (figure, {"value": 1.0}, "no 'kind'"),
+                ((*figure, "value"), None, "neither 'value'"),
                 (figure, {"value": 1.0, "absolute": 0.1}, "say 'why'"),
                 (figure, {"kind": "film"}, "neither 'value'"),
                 (figure, 1.5, "a table is expected")):
@@ -73,6 +74,14 @@ class Cases(ProgramTest):
                     table[last] = new
                 with self.assertRaisesRegex(cases.BadFormat, told):
                     self.read(spec)
+
+    def test_figures_without_a_value_are_told(self):
+        spec = copy.deepcopy(GOOD)
+        spec["runs"][0]["expected"]["film.area"]["value"] = None
+        with self.assertRaisesRegex(cases.BadFormat, "--fill"):
+            self.read(spec)
+        cases.read(self.folder, unfilled=True)
+        self.assertEqual(json.loads(cases.text_of(spec)), spec)
 
     def row(self, figure, found):
         return cases.Row("x", figure, found).fine
