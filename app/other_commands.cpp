@@ -52,6 +52,9 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
     return kExitWrongInput;
   }
   const Case& input = *reading.input;
+  for (const std::string& remark : input.remarks) {
+    std::printf("%s\n", remark.c_str());
+  }
   std::printf(
       "%s: nothing wrong found: %zu curves, %zu films, %zu bodies, %zu design "
       "variables, %zu responses%s\n",

@@ -195,8 +195,13 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   const int halvings = start_halvings(initial, options.edge);
   complex = build_start(initial, start_edge(initial, options.edge));
   monitor.progress({"film", "settling the raw start", 0.1});
-  reference = find_equilibrium(
-      complex, {.edge = options.edge, .halvings = halvings, .settle = settle});
+  FindOptions find{
+      .edge = options.edge, .halvings = halvings, .settle = settle};
+  if (initial.keep_facets) {
+    find.edge.reset();
+    find.refinements = halvings;
+  }
+  reference = find_equilibrium(complex, find);
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});

@@ -4,6 +4,7 @@
 /// numbers do.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,7 +18,14 @@ namespace meniscus {
 enum class FilmKind {
   Branch,  // convex hull of any number of closed curves, less their caps
   Loft,    // band between two closed curves
-  Disk     // flat start across one closed curve
+  Disk,    // flat start across one closed curve
+  Facets   // given, its rims on any number of curves
+};
+
+/// Facets that a film starts from; only freezing a model looks at them.
+struct StartFacets {
+  Points points;                 // [length]
+  std::vector<Triangle> facets;  // of points
 };
 
 struct FilmSpec {
@@ -27,12 +35,18 @@ struct FilmSpec {
   double tension = 1.0;  // energy per area of the whole film [force/length]
   // Over x, y, z; replaces tension, the same for every design of a model.
   std::optional<Expression> tension_field;
+  std::shared_ptr<const StartFacets> start;  // of Facets
+  double within = 0.0;  // its rims may be so far off their curves [length]
 };
 
-/// Flat solid disk across a planar closed curve; carries no tension.
+/// Solid; carries no tension. A flat disk across a planar closed curve, or
+/// facets as they are, whose rims lie on curves.
 struct CapSpec {
   std::string name;
-  std::string curve;
+  std::string curve;  // of a disk
+  std::shared_ptr<const StartFacets> start = nullptr;
+  std::vector<std::string> rims = {};  // of facets: their curves
+  double within = 0.0;                 // as of films
 };
 
 struct BodySpec {
@@ -52,6 +66,9 @@ struct FilmSystem {
   // Field energies; like tension fields, the same for every design of a model.
   std::vector<FieldSpec> fields;
   std::vector<PressureSpec> pressures;
+  /// Facets that are given are the film's own: halved until they are as small
+  /// as its edge, never remeshed.
+  bool keep_facets = false;
 };
 
 }  // namespace meniscus

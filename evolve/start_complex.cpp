@@ -8,14 +8,14 @@
 
 #include "core/error.h"
 #include "evolve/body_sides.h"
+#include "evolve/branch_facets.h"
 #include "evolve/disk_fill.h"
+#include "evolve/facet_start.h"
 #include "evolve/fields.h"
 #include "evolve/grooming.h"
-#include "evolve/hull.h"
 #include "evolve/loft.h"
 #include "evolve/raise_disks.h"
 #include "evolve/rim_grading.h"
-#include "evolve/rim_stitcher.h"
 #include "evolve/tension_field.h"
 
 namespace meniscus {
@@ -39,13 +39,18 @@ class StartBuilder {
   FilmComplex build() {
     check_names();
     result_.curves = system_.curves;
+    facets_ = start_from_facets(system_, edge_, system_.keep_facets);
+    facet_points_.assign(facets_.points.size(), -1);
     for (const FilmSpec& film : system_.films) {
       for (const std::string& name : film.curves) {
         rim_of(name, film.name);
       }
     }
     for (const CapSpec& cap : system_.caps) {
-      rim_of(cap.curve, cap.name);
+      for (const std::string& name :
+           cap.start ? cap.rims : std::vector<std::string>{cap.curve}) {
+        rim_of(name, cap.name);
+      }
     }
     for (const FilmSpec& film : system_.films) {
       add_film(film);
@@ -123,7 +128,10 @@ class StartBuilder {
     Rim rim;
     rim.curve = static_cast<int>(found - system_.curves.begin());
     rim.first = static_cast<int>(result_.mesh.points.size());
-    const std::vector<double> t = sample_parameters(found->shape, edge_);
+    const auto cuts = facets_.cuts.find(rim.curve);
+    const std::vector<double> t = cuts != facets_.cuts.end()
+                                      ? cuts->second
+                                      : sample_parameters(found->shape, edge_);
     const Points points = points_at(found->shape, t);
     result_.mesh.points.insert(result_.mesh.points.end(), points.begin(),
                                points.end());
@@ -170,6 +178,9 @@ class StartBuilder {
       case FilmKind::Disk:
         require_curves(film, 1);
         fill(rim_of(film.curves[0], film.name), label, VertexKind::Free);
+        break;
+      case FilmKind::Facets:
+        add_sheet(film.name, label, VertexKind::Free);
         break;
     }
   }
@@ -218,7 +229,48 @@ class StartBuilder {
     }
   }
 
+  /// Facets of the system's own.
+  void add_sheet(const std::string& name, int label, VertexKind kind) {
+    const auto sheet =
+        std::find_if(facets_.sheets.begin(), facets_.sheets.end(),
+                     [&](const FacetSheet& s) { return s.name == name; });
+    if (sheet == facets_.sheets.end()) {
+      throw InvalidInput(fmt::format("'{}' has no facets", name));
+    }
+    for (const auto& corners : sheet->facets) {
+      Triangle t;
+      for (int k = 0; k < 3; ++k) {
+        const FacetCorner& corner = corners[k];
+        if (corner.point < 0) {
+          t[k] = rim_of(system_.curves[corner.curve].name, name).first +
+                 corner.cut;
+          continue;
+        }
+        int& id = facet_points_[corner.point];
+        if (id < 0) {
+          id = static_cast<int>(result_.mesh.points.size());
+          result_.mesh.points.push_back(facets_.points[corner.point]);
+          result_.vertices.push_back({kind, -1, 0.0});
+        } else if (result_.vertices[id].kind != kind) {
+          const Vec3& p = facets_.points[corner.point];
+          throw InvalidInput(
+              fmt::format("solid '{}' meets a film at ({:.6g}, {:.6g}, {:.6g}) "
+                          "on no curve; "
+                          "films are held by curves: name one there for both",
+                          name, p.x(), p.y(), p.z()));
+        }
+        t[k] = id;
+      }
+      add_facet(t, label);
+    }
+  }
+
   void add_cap(const CapSpec& cap) {
+    if (cap.start) {
+      add_sheet(cap.name, add_surface({cap.name, false, 0.0}),
+                VertexKind::InCap);
+      return;
+    }
     const Rim rim = rim_of(cap.curve, cap.name);
     const Points points = points_of(rim);
     const Vec3 normal = polygon_area_vector(points).normalized();
@@ -236,8 +288,6 @@ class StartBuilder {
   }
 
   void add_branch(const FilmSpec& film, int label);
-  void keep_hull_facets(const FilmSpec& film, const std::vector<Rim>& rims,
-                        const Points& points, std::vector<Triangle>& facets);
 
   void add_body(const BodySpec& body) {
     ComplexBody made{body.name, {}, body.volume, body.pressure};
@@ -303,6 +353,8 @@ class StartBuilder {
   double edge_;
   FilmComplex result_;
   std::map<std::string, Rim> rims_;
+  FacetStart facets_;
+  std::vector<int> facet_points_;  // ids of its points; -1: not yet
 };
 
 void StartBuilder::add_branch(const FilmSpec& film, int label) {
@@ -312,66 +364,19 @@ void StartBuilder::add_branch(const FilmSpec& film, int label) {
                     "or more; use kind disk for one",
                     film.name, film.curves.size()));
   }
-  std::vector<Rim> rims;
+  std::vector<int> counts;
+  std::vector<int> ids;
   Points points;
   for (const std::string& name : film.curves) {
-    rims.push_back(rim_of(name, film.name));
-    const Points rim = points_of(rims.back());
-    points.insert(points.end(), rim.begin(), rim.end());
-  }
-  std::vector<Triangle> facets;
-  try {
-    facets = convex_hull(points);
-  } catch (const MeshError& error) {
-    throw InvalidInput(fmt::format("film '{}': {}", film.name, error.what()));
-  }
-  keep_hull_facets(film, rims, points, facets);
-  std::vector<int> ids;
-  for (const Rim& rim : rims) {
+    const Rim& rim = rim_of(name, film.name);
+    counts.push_back(rim.count);
     for (int i = 0; i < rim.count; ++i) {
       ids.push_back(rim.first + i);
+      points.push_back(result_.mesh.points[rim.first + i]);
     }
   }
-  for (const Triangle& t : facets) {
+  for (const Triangle& t : branch_facets(film, points, counts)) {
     add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
-  }
-}
-
-// Drops the caps and makes sure that what is left ends exactly at the curves.
-void StartBuilder::keep_hull_facets(const FilmSpec& film,
-                                    const std::vector<Rim>& rims,
-                                    const Points& points,
-                                    std::vector<Triangle>& facets) {
-  std::vector<int> rim_of_point;
-  for (std::size_t r = 0; r < rims.size(); ++r) {
-    rim_of_point.insert(rim_of_point.end(), rims[r].count, static_cast<int>(r));
-  }
-  std::erase_if(facets, [&](const Triangle& t) {
-    return rim_of_point[t[0]] == rim_of_point[t[1]] &&
-           rim_of_point[t[0]] == rim_of_point[t[2]];
-  });
-  RimStitcher stitcher(points, facets);
-  std::size_t border = 0;
-  int first = 0;
-  for (std::size_t r = 0; r < rims.size(); ++r) {
-    const int off = stitcher.stitch(first, rims[r].count);
-    if (off >= 0) {
-      const Vec3& p = points[off];
-      throw InvalidInput(fmt::format(
-          "film '{}': curve '{}' is off the convex hull of the film's curves "
-          "near ({:.6g}, {:.6g}, {:.6g}); a branch film starts from that hull: "
-          "move or turn the curve, make it convex, or use films of another "
-          "kind",
-          film.name, film.curves[r], p.x(), p.y(), p.z()));
-    }
-    border += rims[r].count;
-    first += rims[r].count;
-  }
-  if (stitcher.open_edges() != border) {
-    throw InvalidInput(fmt::format(
-        "film '{}': its convex hull is open away from its curves; a curve is "
-        "not planar or not convex: use films of another kind",
-        film.name));
   }
 }
 

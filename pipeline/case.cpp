@@ -115,6 +115,16 @@ void add_field(const Case& input, const FieldEntry& field,
   system.fields.push_back(std::move(spec));
 }
 
+std::shared_ptr<const StartFacets> start_of(const FilmEntry& film,
+                                            const CaseValues& values) {
+  auto start = std::make_shared<StartFacets>();
+  start->facets = film.facets;
+  for (const QuantityVector& vertex : film.vertices) {
+    start->points.push_back(values.at(vertex));
+  }
+  return start;
+}
+
 FilmSystem films_of(const Case& input, const CaseValues& values) {
   FilmSystem system;
   system.curves = curves_of(input, values);
@@ -126,7 +136,11 @@ FilmSystem films_of(const Case& input, const CaseValues& values) {
     } else {
       spec.tension = values.positive(film.tension.quantity);
     }
+    if (!film.facets.empty() && !values.are_rates()) {
+      spec.start = start_of(film, values);
+    }
   }
+  system.keep_facets = input.resolution.keep_facets;
   for (const CapEntry& cap : input.caps) {
     system.caps.push_back(cap.spec);
   }

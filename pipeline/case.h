@@ -42,6 +42,8 @@ struct Case {
   Resolution resolution;
   AnalysisEntry analysis;
   StudyEntry study;
+  std::vector<MergedCurves> merged;  // films and solids name the kept ones
+  std::vector<std::string> remarks;  // "PATH:LINE: ...": how it was read
 };
 
 /// A film made solid by thickness.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/case_curves.h"
 #include "pipeline/case_loads.h"
 
 namespace meniscus {
@@ -69,7 +70,8 @@ bool names_are_known(const Case& input, const BodyEntry& body) {
       body.enclosed_by.begin(), body.enclosed_by.end(),
       [&](const std::string& name) { return contains(surfaces, name); });
   for (const FilmEntry& film : input.films) {
-    known = known && !film.spec.curves.empty();
+    known = known &&
+            (film.spec.kind == FilmKind::Facets || !film.spec.curves.empty());
   }
   const auto is_curve = [&](const std::string& name) {
     return std::any_of(input.curves.begin(), input.curves.end(),
@@ -83,8 +85,8 @@ bool names_are_known(const Case& input, const BodyEntry& body) {
 
 void check_closed(const Case& input, const BodyEntry& body,
                   CaseProblems& problems) {
-  if (!names_are_known(input, body)) {
-    return;
+  if (!names_are_known(input, body) || has_facets(input, body)) {
+    return;  // facets may join elsewhere than on curves: see check_start()
   }
   for (const auto& [curve, surfaces] : surfaces_at_curves(input, body)) {
     if (surfaces.size() != 2) {
@@ -123,12 +125,17 @@ void check_use(const Case& input, CaseProblems& problems) {
   }
   for (const CapEntry& cap : input.caps) {
     used_curves.insert(cap.spec.curve);
+    used_curves.insert(cap.spec.rims.begin(), cap.spec.rims.end());
     if (used_surfaces.count(cap.spec.name) == 0) {
       problems.add(cap.line,
                    fmt::format("solid '{}' encloses no body; add it to a "
                                "body's enclosed_by or take it out",
                                cap.spec.name));
     }
+  }
+  for (const MergedCurves& pair : input.merged) {
+    used_curves.insert(
+        input.curves[static_cast<std::size_t>(pair.dropped)].name);
   }
   for (const CurveEntry& curve : input.curves) {
     if (curve.copy.of >= 0) {
@@ -251,6 +258,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
   if (!problems.empty()) {
     return;
   }
+  check_start(input, numbers, problems);
   check_loads(input, numbers, problems);
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     for (const double end : {input.design[k].lower, input.design[k].upper}) {
@@ -258,6 +266,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
       design[static_cast<Eigen::Index>(k)] = end;
       const EvaluatedCase there = at(design);
       if (problems.empty()) {
+        check_merged(input, numbers, there, problems);
         check_fixed_materials(input, numbers, there, problems);
       }
     }

@@ -24,6 +24,15 @@ void check_bodies(const Case& input, CaseProblems& problems);
 /// ends of every design variable, and warnings of what serves nothing.
 void check_case(const Case& input, CaseProblems& problems);
 
+/// Films and solids that start from facets put onto their curves, at the
+/// initial design: rims that find no curve, bodies that stay open.
+void check_start(const Case& input, const EvaluatedCase& numbers,
+                 CaseProblems& problems);
+
+/// Some film or solid, or one of those that enclose a body, is of facets.
+bool has_facets(const Case& input);
+bool has_facets(const Case& input, const BodyEntry& body);
+
 /// Films and solids.
 std::vector<std::string> surface_names(const Case& input);
 std::vector<std::string> film_names(const Case& input);

@@ -88,14 +88,23 @@ struct CurveEntry {
   SourceLine line = 0;
 };
 
+/// Two curves in one place, indices of curves: one for films and solids.
+struct MergedCurves {
+  int kept = 0;
+  int dropped = 0;
+};
+
 struct FilmEntry {
-  FilmSpec spec;  // tension filled in by evaluate()
+  FilmSpec spec;  // tension and start filled in by evaluate()
   PlaceQuantity tension;
+  std::vector<QuantityVector> vertices;  // of facets in the case
+  std::vector<Triangle> facets;          // of vertices
   SourceLine line = 0;
 };
 
 struct CapEntry {
   CapSpec spec;
+  bool is_file = false;  // else a flat disk
   SourceLine line = 0;
 };
 
@@ -241,9 +250,10 @@ struct ResponseEntry {
 };
 
 struct Resolution {
-  double fea = 0.0;     // edge of the meshed film [length]
-  double film = 0.0;    // edge of its nested refinement [length]
-  int refinements = 1;  // film = fea / 2^refinements
+  double fea = 0.0;          // edge of the meshed film [length]
+  double film = 0.0;         // edge of its nested refinement [length]
+  int refinements = 1;       // film = fea / 2^refinements
+  bool keep_facets = false;  // of films of facets: halved, never remeshed
   std::vector<double> export_edges;
 };
 

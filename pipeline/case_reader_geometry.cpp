@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/case_checks.h"
+#include "pipeline/case_curves.h"
 #include "pipeline/case_reader_tables.h"
 
 namespace meniscus {
@@ -16,96 +17,6 @@ constexpr const char* kVoidName = "void";
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-std::vector<std::string> curve_names(const Case& result) {
-  std::vector<std::string> names;
-  for (const CurveEntry& curve : result.curves) {
-    names.push_back(curve.name);
-  }
-  return names;
-}
-
-struct FilmNeeds {
-  FilmKind kind;
-  std::size_t least;
-  std::size_t most;
-  const char* text;
-};
-
-void check_film_curves(CaseContext& context, const CaseTable& table,
-                       const std::vector<std::string>& known,
-                       const std::vector<std::string>& curves) {
-  std::set<std::string> seen;
-  for (const std::string& curve : curves) {
-    if (!contains(known, curve)) {
-      context.problems.unknown(table.line("curves"), "curve", curve, known);
-    } else if (!seen.insert(curve).second) {
-      context.problems.add(table.line("curves"),
-                           fmt::format("{} names curve '{}' twice; name each "
-                                       "once",
-                                       table.path(), curve));
-    }
-  }
-}
-
-void read_films(CaseContext& context, const toml::table& root, Case& result) {
-  static const std::map<std::string, FilmNeeds> kinds = {
-      {"branch",
-       {FilmKind::Branch, 2, std::size_t(-1), "a branch needs two or more"}},
-      {"loft", {FilmKind::Loft, 2, 2, "a loft needs two"}},
-      {"disk", {FilmKind::Disk, 1, 1, "a disk needs one"}}};
-  const std::vector<std::string> known = curve_names(result);
-  for (const CaseTable& table : named_tables(context, root, "films")) {
-    FilmEntry film{.line = table.line()};
-    film.spec.name = table.name();
-    film.spec.curves = table.names("curves");
-    const std::size_t count = film.spec.curves.size();
-    const auto kind = table.choice("kind");
-    if (kind && count > 0) {
-      const FilmNeeds& needs = kinds.at(*kind);
-      film.spec.kind = needs.kind;
-      if (count < needs.least || count > needs.most) {
-        context.problems.add(
-            table.line("curves"),
-            fmt::format("{} names {} curve{}; {}", table.path(), count,
-                        count == 1 ? "" : "s", needs.text));
-      }
-    }
-    check_film_curves(context, table, known, film.spec.curves);
-    film.tension = table.place_quantity("tension").value_or(
-        PlaceQuantity{{.expression = Expression(1.0),
-                       .line = table.line(),
-                       .key = table.path() + ".tension"}});
-    if (film.tension.of_place) {
-      require_frozen(context, film.tension.quantity, "a tension of x, y, z");
-    }
-    result.films.push_back(std::move(film));
-  }
-}
-
-void read_solids(CaseContext& context, const toml::table& root, Case& result) {
-  const std::vector<std::string> known = curve_names(result);
-  for (const CaseTable& table : named_tables(context, root, "solids")) {
-    table.choice("kind");
-    CapEntry cap{.spec = {.name = table.name(), .curve = ""},
-                 .line = table.line()};
-    if (const auto curve = table.text("curve")) {
-      cap.spec.curve = *curve;
-      if (!contains(known, *curve)) {
-        context.problems.unknown(table.line("curve"), "curve", *curve, known);
-      }
-    }
-    for (const FilmEntry& film : result.films) {
-      if (film.spec.name == cap.spec.name) {
-        context.problems.add(
-            table.line(), fmt::format("'{}' is both a film and a solid; rename "
-                                      "one, or loads could not tell them apart",
-                                      cap.spec.name));
-      }
-    }
-    result.caps.push_back(std::move(cap));
-  }
 }
 
 /// Notes keys of one kind of material that the other has or this one lacks.
@@ -244,6 +155,7 @@ void read_geometry(CaseContext& context, const toml::table& root,
   read_curves(context, root, result);
   read_films(context, root, result);
   read_solids(context, root, result);
+  merge_curves(result, context.problems);
   read_materials(context, root, result);
   const std::size_t before = context.problems.size();
   read_bodies(context, root, result);

@@ -35,77 +35,6 @@ std::vector<TableSpec> make_tables() {
        {{"initial", K::Constant, std::nullopt, true,
          "value at which the model freezes and the study starts"},
         {"bounds", K::Bounds, std::nullopt, true, "[least, largest]"}}},
-      {"curves",
-       true,
-       N::Always,
-       "A closed boundary curve, counter-clockwise seen from its normal's tip",
-       {{"kind", K::Choice, D::None, true,
-         "its shape: circle, ellipse, rectangle; polygon: straight sides; "
-         "spline: smooth through points; polyline: straight sides and circular "
-         "arcs; file: points from a file; copy: another curve offset, scaled, "
-         "mirrored, turned, moved",
-         "circle|ellipse|rectangle|polygon|spline|polyline|file|copy", "arc"},
-        {"center", K::Vector, D::Length, false,
-         "of circle, ellipse, rectangle"},
-        {"normal", K::Vector, D::None, false,
-         "of circle, ellipse, rectangle; any length but 0"},
-        {"axis", K::Vector, D::None, false,
-         "of ellipse, rectangle: direction of radius_1 or width; of copy: what "
-         "it is turned about"},
-        {"radius", K::Quantity, D::Length, false, "of circle"},
-        {"radius_1", K::Quantity, D::Length, false, "of ellipse, along axis"},
-        {"radius_2", K::Quantity, D::Length, false, "of ellipse, across axis"},
-        {"width", K::Quantity, D::Length, false, "of rectangle: along axis"},
-        {"height", K::Quantity, D::Length, false, "of rectangle: across it"},
-        {"corner_radius", K::Quantity, D::Length, false,
-         "of rectangle; 0 when left out"},
-        {"points", K::Path, D::Length, false,
-         "of polygon, spline, polyline, in order; they close by themselves. In "
-         "a polyline { through = [x, y, z] } makes the side between its "
-         "neighbours an arc"},
-        {"file", K::Text, D::None, false,
-         "of file: a csv file with a head row x,y,z, units if it likes (x "
-         "[in]); relative to the case file"},
-        {"as", K::Choice, D::None, false,
-         "of file: what the points make; spline when left out",
-         "spline|polygon"},
-        {"of", K::Name, D::None, false, "of copy: a curve that stands above"},
-        {"offset", K::Quantity, D::Length, false,
-         "of copy: outwards in the curve's plane, below 0 inwards; corners "
-         "stay sharp, arcs concentric. Not of a copy"},
-        {"scale", K::Quantity, D::None, false, "of copy: a factor above 0, or"},
-        {"scales", K::Vector, D::None, false,
-         "of copy: factors along x, y, z, above 0"},
-        {"mirror", K::Vector, D::None, false,
-         "of copy: normal of the mirror plane; any length but 0"},
-        {"rotate", K::Quantity, D::None, false,
-         "of copy: angle in radians, right-handed about axis"},
-        {"about", K::Vector, D::Length, false,
-         "of copy: the point that scaling, mirror plane and axis go through; "
-         "the origin when left out"},
-        {"move", K::Vector, D::Length, false, "of copy: added at the end"},
-        {"repeat", K::Counts, D::None, false,
-         "makes so many curves NAME_1, NAME_2, ..., whose expressions know the "
-         "number as i; [N, M] makes NAME_1_1, ... with i and j. Not of file"}}},
-      {"films",
-       true,
-       N::Always,
-       "A liquid film between curves",
-       {{"kind", K::Choice, D::None, true,
-         "how the liquid starts: branch (convex hull of any number of curves "
-         "less their caps), loft (band between two), disk (across one)",
-         "branch|loft|disk", "facets|file"},
-        {"curves", K::Names, D::None, true, "the curves that hold it"},
-        {"tension", K::Place, D::Tension, false,
-         "energy per area of the film, above 0; 1 when left out. An expression "
-         "of x, y, z cannot depend on design variables"}}},
-      {"solids",
-       true,
-       N::Optional,
-       "A solid surface, named so that loads find it",
-       {{"kind", K::Choice, D::None, true,
-         "cap: flat disk across a planar curve", "cap", "plate|pad|faces|file"},
-        {"curve", K::Name, D::None, true, "the cap's rim"}}},
       {"bodies",
        true,
        N::ForParts,
@@ -170,7 +99,11 @@ std::vector<TableSpec> make_tables() {
          "taken); fea / 2 when left out"},
         {"export", K::Constants, D::Length, false,
          "of the STL files, each settled again; the film's own when left "
-         "out"}}},
+         "out"},
+        {"keep_facets", K::Flag, D::None, false,
+         "films of kind facets and file keep their facets: each is cut in four "
+         "until they are about as small as fea, and never remeshed; false when "
+         "left out"}}},
       {"materials",
        true,
        N::ForParts,
@@ -349,13 +282,38 @@ std::vector<TableSpec> make_tables() {
   };
 }
 
+bool can_repeat(const std::string& table) {
+  static const std::vector<std::string> tables = {
+      "curves",  "films",     "solids",  "bodies", "walls",     "fields",
+      "support", "responses", "exclude", "load",   "constraint"};
+  return std::find(tables.begin(), tables.end(), table) != tables.end();
+}
+
+KeySpec repeat_key() {
+  return {"repeat", K::Counts, D::None, false,
+          "makes so many: NAME_1, NAME_2, ..., which know their number as i in "
+          "expressions and as {i} in names; [N, M] makes NAME_1_1, ... with i "
+          "and j"};
+}
+
 }  // namespace
 
 const std::vector<TableSpec>& case_tables() {
   static const std::vector<TableSpec> tables = [] {
     std::vector<TableSpec> all = make_tables();
+    const auto bodies =
+        std::find_if(all.begin(), all.end(), [](const TableSpec& table) {
+          return std::string(table.name) == "bodies";
+        });
+    const std::vector<TableSpec> shapes = shape_tables();
+    all.insert(bodies, shapes.begin(), shapes.end());
     for (TableSpec& table : study_tables()) {
       all.push_back(std::move(table));
+    }
+    for (TableSpec& table : all) {
+      if (can_repeat(table.name)) {
+        table.keys.push_back(repeat_key());
+      }
     }
     return all;
   }();

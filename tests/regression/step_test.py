@@ -16,6 +16,26 @@ MOST_VOLUME_ERROR = 1e-3
 # Straight sides where the run has curved ones, edges of 20 mm.
 MOST_FACETED = 0.05
 NUMBER = r"([-+.\deE]+)"
+MOST_FLAT = 1e-3  # of flat facets of a twentieth of the radius
+CATENOID = """title = "Catenoid"
+units = "mm-N-MPa"
+[curves.low]
+kind = "file"
+file = "can.step"
+edge = {low}
+[curves.high]
+kind = "file"
+file = "can.step"
+edge = {high}
+[films.skin]
+kind = "loft"
+curves = ["low", "high"]
+[walls.web]
+films = ["skin"]
+thickness = 0.1
+[resolution]
+fea = 1.0
+"""
 
 
 def gmsh_volume(path):
@@ -102,6 +122,41 @@ class Step(program.ProgramTest):
     def test_strut_from_rounded_square_to_circle(self):
         volume = 70 * (38 ** 2 + 3.141592653589793 * 14 ** 2) / 2
         self.check("strut_family", volume, (4, 2), 5)
+
+    def test_curves_from_a_file_of_gmsh(self):
+        """A catenoid between the rims of a can that gmsh has written."""
+        if not shutil.which("gmsh"):
+            if os.environ.get("MENISCUS_NO_SKIPS"):
+                self.fail("gmsh is not installed")
+            self.skipTest("gmsh is not installed")
+        script = self.folder / "can.geo"
+        can = self.folder / "can.step"
+        script.write_text(f"""SetFactory("OpenCASCADE");
+Cylinder(1) = {{0, 0, 0, 0, 0, 10, 10}};
+Save "{can}";
+""")
+        subprocess.run(["gmsh", script, "-", "-parse_and_exit"],
+                       capture_output=True, timeout=120, check=True)
+        case = self.folder / "rims.toml"
+
+        def check(low, high):
+            case.write_text(CATENOID.format(low=low, high=high))
+            return self.call("check", case)
+
+        there = check(99, 98).stderr
+        circles = re.findall(rf"(\d+): circle of length {NUMBER} about", there)
+        self.assertEqual(len(circles), 2, there)
+        self.assertIn("rims.toml:6: curves.low.edge", there)
+        for _, length in circles:
+            self.assertAlmostEqual(float(length), 62.832, places=3)
+        done = self.expect(check(*(number for number, _ in circles)), 0)
+        self.assertEqual(done.stdout.count("a circle of radius 10 mm, exact"),
+                         2)
+        out = self.folder / "film"
+        done = self.expect(self.call("evolve", case, "--out", out,
+                                     "--no-pictures"), 0)
+        area = float(re.search(rf"area {NUMBER}", done.stdout).group(1))
+        self.assertLess(abs(area / 599.179697580228 - 1.0), MOST_FLAT)
 
     def test_faceted_is_asked_for_by_name(self):
         run = self.analysed("strut_family", "--set", "resolution.fea=10",
