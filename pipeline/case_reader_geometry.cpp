@@ -155,7 +155,9 @@ void read_geometry(CaseContext& context, const toml::table& root,
   read_curves(context, root, result);
   read_films(context, root, result);
   read_solids(context, root, result);
-  merge_curves(result, context.problems);
+  if (context.problems.empty()) {
+    merge_curves(result, context.problems);
+  }
   read_materials(context, root, result);
   const std::size_t before = context.problems.size();
   read_bodies(context, root, result);

@@ -15,7 +15,7 @@ std::vector<TableSpec> shape_tables() {
   return {
       {"curves",
        true,
-       N::Always,
+       N::Optional,
        "A closed boundary curve, counter-clockwise seen from its normal's tip",
        {{"kind", K::Choice, D::None, true,
          "its shape: circle, ellipse, rectangle; polygon: straight sides; "

@@ -70,13 +70,14 @@ const char* type_text(const KeySpec& key) {
 }
 
 const char* dimension_text(const KeySpec& key) {
-  const bool quantity =
-      key.type != K::Text && key.type != K::Choice && key.type != K::Name &&
-      key.type != K::Names && key.type != K::NamesOrNumbers &&
-      key.type != K::Integer && key.type != K::Counts && key.type != K::Flag &&
-      key.type != K::IntegerMap && key.type != K::Supports &&
-      key.type != K::Loads && key.type != K::Zones &&
-      key.type != K::Constraints && key.type != K::Members;
+  const bool quantity = key.type != K::Text && key.type != K::Choice &&
+                        key.type != K::Name && key.type != K::Names &&
+                        key.type != K::NamesOrNumbers &&
+                        key.type != K::Integer && key.type != K::Counts &&
+                        key.type != K::Facets && key.type != K::Flag &&
+                        key.type != K::IntegerMap && key.type != K::Supports &&
+                        key.type != K::Loads && key.type != K::Zones &&
+                        key.type != K::Constraints && key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
