@@ -21,6 +21,45 @@ struct RimSide {
   bool growing = true;
 };
 
+/// Directions a and b of patches in classes, each direction along its class or
+/// against it.
+class DirectionClasses {
+ public:
+  struct Member {
+    int root = 0;
+    bool flipped = false;
+  };
+  explicit DirectionClasses(int patches) {
+    for (int k = 0; k < 2 * patches; ++k) {
+      parents_.push_back({k, false});
+    }
+  }
+  Member of(int patch, int side) const {
+    Member at = parents_[2 * patch + side % 2];
+    while (parents_[at.root].root != at.root) {
+      const Member& next = parents_[at.root];
+      at = {next.root, at.flipped != next.flipped};
+    }
+    return at;
+  }
+  void join(int patch, int side, int other_patch, int other_side,
+            bool against) {
+    const Member p = of(patch, side);
+    const Member q = of(other_patch, other_side);
+    if (p.root != q.root) {
+      const bool flipped = (p.flipped != q.flipped) != against;
+      parents_[std::max(p.root, q.root)] = {std::min(p.root, q.root), flipped};
+    }
+  }
+
+ private:
+  std::vector<Member> parents_;
+};
+
+std::vector<double> turned(const std::vector<double>& knots, bool backwards) {
+  return backwards ? reversed(SplineCurve{knots, {}}).knots : knots;
+}
+
 class FaceBuilder {
  public:
   FaceBuilder(const FilmPiece& film, const std::vector<RimEdges>& rims,
@@ -52,9 +91,9 @@ class FaceBuilder {
   const std::vector<RimEdges>& rims_;
   double span_;
   Brep& brep_;
-  std::vector<std::vector<double>> line_knots_;   // per line
-  std::vector<std::vector<double>> patch_knots_;  // along a, per patch
-  std::map<int, int> nodes_;                      // film vertex: brep vertex
+  std::vector<std::vector<double>> line_knots_;                  // per line
+  std::vector<std::array<std::vector<double>, 2>> patch_knots_;  // along a, b
+  std::map<int, int> nodes_;  // film vertex: brep vertex
   std::vector<int> line_edges_;
   std::vector<SplineCurve> line_normals_;
 };
@@ -80,7 +119,7 @@ std::vector<double> FaceBuilder::shares_of(
 }
 
 RimSide FaceBuilder::rim_side(const FilmPatch& patch, int side) const {
-  const int rim = side == 0 ? patch.bottom_rim : patch.top_rim;
+  const int rim = patch.rims[side];
   const std::vector<int>& chain = patch.chains[side];
   const std::vector<double>& at = film_.cut.rim_position;
   RimSide result{&rims_[film_.rims[rim]], at[chain.front()], at[chain.back()]};
@@ -100,40 +139,51 @@ SideDemand FaceBuilder::demand(const RimSide& side, bool backwards) const {
   return result;
 }
 
-/// Patches on the two sides of a line share its knots; so do all seams of one
-/// tube.
+/// Opposite sides of a patch share their knots, and so do patches on the two
+/// sides of a line: a class of directions runs through the film.
 void FaceBuilder::set_knots() {
   const CutFilm& cut = film_.cut;
-  line_knots_.resize(cut.lines.size());
-  patch_knots_.resize(cut.patches.size());
-  std::map<int, std::vector<SideDemand>> seams;   // per tube
-  std::map<int, std::vector<SideDemand>> across;  // per line between tubes
-  for (const FilmPatch& patch : cut.patches) {
-    for (const int side : {1, 3}) {
-      seams[patch.bottom_rim].push_back({length_of(patch.chains[side])});
-    }
-    if (patch.top_rim < 0) {
-      std::vector<SideDemand>& demands = across[patch.lines[2]];
-      demands.push_back(demand(rim_side(patch, 0), patch.reversed[2]));
-      demands.push_back({length_of(patch.chains[2])});
+  DirectionClasses classes(static_cast<int>(cut.patches.size()));
+  std::vector<std::array<int, 2>> user(cut.lines.size(), {-1, -1});
+  for (std::size_t p = 0; p < cut.patches.size(); ++p) {
+    for (int side = 0; side < 4; ++side) {
+      const int line = cut.patches[p].lines[side];
+      if (line >= 0 && user[line][0] < 0) {
+        user[line] = {static_cast<int>(p), side};
+      } else if (line >= 0) {
+        const auto [q, other] = user[line];
+        classes.join(
+            static_cast<int>(p), side, q, other,
+            cut.patches[p].reversed[side] != cut.patches[q].reversed[other]);
+      }
     }
   }
-  for (const auto& [line, demands] : across) {
-    line_knots_[line] = common_knots(demands, span_);
-  }
+  std::map<int, std::vector<SideDemand>> demands;
   for (std::size_t p = 0; p < cut.patches.size(); ++p) {
     const FilmPatch& patch = cut.patches[p];
-    for (const int side : {1, 3}) {
-      line_knots_[patch.lines[side]] =
-          common_knots(seams[patch.bottom_rim], span_);
+    for (int side = 0; side < 4; ++side) {
+      const auto [root, flipped] = classes.of(static_cast<int>(p), side);
+      demands[root].push_back(
+          patch.rims[side] >= 0
+              ? demand(rim_side(patch, side), flipped)
+              : SideDemand{.length = length_of(patch.chains[side])});
     }
-    if (patch.top_rim >= 0) {
-      patch_knots_[p] = common_knots({demand(rim_side(patch, 0), false),
-                                      demand(rim_side(patch, 2), false)},
-                                     span_);
-    } else {
-      SplineCurve knots{line_knots_[patch.lines[2]], {}};
-      patch_knots_[p] = patch.reversed[2] ? reversed(knots).knots : knots.knots;
+  }
+  std::map<int, std::vector<double>> knots;
+  for (const auto& [root, sides] : demands) {
+    knots[root] = common_knots(sides, span_);
+  }
+  line_knots_.resize(cut.lines.size());
+  patch_knots_.resize(cut.patches.size());
+  for (std::size_t p = 0; p < cut.patches.size(); ++p) {
+    const FilmPatch& patch = cut.patches[p];
+    for (int side = 0; side < 4; ++side) {
+      const auto [root, flipped] = classes.of(static_cast<int>(p), side);
+      patch_knots_[p][side % 2] = turned(knots[root], flipped);
+      if (patch.lines[side] >= 0) {
+        line_knots_[patch.lines[side]] =
+            turned(knots[root], flipped != patch.reversed[side]);
+      }
     }
   }
 }
@@ -222,7 +272,7 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
     const int line = patch.lines[side];
     if (line < 0) {
       const RimSide rim = rim_side(patch, side);
-      sides.curves[side] = fit_rim(rim, patch_knots_[p]);
+      sides.curves[side] = fit_rim(rim, patch_knots_[p][side % 2]);
       const double start = rim.rim->place(rim.from);
       const double way = rim.rim->way(rim.from, rim.to, rim.growing);
       const double length = rim.rim->curve().length();
@@ -289,8 +339,8 @@ std::vector<BrepUse> FaceBuilder::outline(const FilmPatch& patch) const {
 void FaceBuilder::measure_gaps(const FilmPatch& patch,
                                const PatchSides& sides) {
   constexpr int kSamples = 500;
-  for (const int side : {0, 2}) {
-    if (patch.lines[side] >= 0) {
+  for (int side = 0; side < 4; ++side) {
+    if (patch.rims[side] < 0) {
       continue;
     }
     const RimSide rim = rim_side(patch, side);
@@ -368,11 +418,11 @@ FilmFaces FaceBuilder::build() {
 
 void want_corners(const FilmPiece& film, std::vector<RimEdges>& rims) {
   for (const FilmPatch& patch : film.cut.patches) {
-    for (const int side : {0, 2}) {
-      if (patch.lines[side] >= 0) {
+    for (int side = 0; side < 4; ++side) {
+      const int rim = patch.rims[side];
+      if (rim < 0) {
         continue;
       }
-      const int rim = side == 0 ? patch.bottom_rim : patch.top_rim;
       for (const int v :
            {patch.chains[side].front(), patch.chains[side].back()}) {
         rims[film.rims[rim]].want(film.cut.rim_position[v]);
