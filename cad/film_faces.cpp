@@ -5,56 +5,16 @@
 
 #include <Eigen/Geometry>
 
+#include "cad/direction_classes.h"
 #include "cad/patch_knots.h"
+#include "cad/rim_side.h"
 
 namespace meniscus {
 
 namespace {
 
 constexpr int kNormalRounds = 3;
-
-/// A side of a patch that lies on a rim.
-struct RimSide {
-  const RimEdges* rim = nullptr;
-  double from = 0.0;
-  double to = 0.0;
-  bool growing = true;
-};
-
-/// Directions a and b of patches in classes, each direction along its class or
-/// against it.
-class DirectionClasses {
- public:
-  struct Member {
-    int root = 0;
-    bool flipped = false;
-  };
-  explicit DirectionClasses(int patches) {
-    for (int k = 0; k < 2 * patches; ++k) {
-      parents_.push_back({k, false});
-    }
-  }
-  Member of(int patch, int side) const {
-    Member at = parents_[2 * patch + side % 2];
-    while (parents_[at.root].root != at.root) {
-      const Member& next = parents_[at.root];
-      at = {next.root, at.flipped != next.flipped};
-    }
-    return at;
-  }
-  void join(int patch, int side, int other_patch, int other_side,
-            bool against) {
-    const Member p = of(patch, side);
-    const Member q = of(other_patch, other_side);
-    if (p.root != q.root) {
-      const bool flipped = (p.flipped != q.flipped) != against;
-      parents_[std::max(p.root, q.root)] = {std::min(p.root, q.root), flipped};
-    }
-  }
-
- private:
-  std::vector<Member> parents_;
-};
+constexpr double kSamePlace = 1e-6;  // of a rim's length
 
 std::vector<double> turned(const std::vector<double>& knots, bool backwards) {
   return backwards ? reversed(SplineCurve{knots, {}}).knots : knots;
@@ -73,13 +33,11 @@ class FaceBuilder {
   double length_of(const std::vector<int>& chain) const;
   std::vector<double> shares_of(const std::vector<int>& chain) const;
   RimSide rim_side(const FilmPatch& patch, int side) const;
-  SideDemand demand(const RimSide& side, bool backwards) const;
   void set_knots();
   int vertex_of(int v);
   Vec3 normal_of(int v) const;
+  bool at_corner(int v) const;
   void fit_lines();
-  SplineCurve fit_rim(const RimSide& side,
-                      const std::vector<double>& knots) const;
   PatchSides sides_of(const FilmPatch& patch) const;
   void measure_gaps(const FilmPatch& patch, const PatchSides& sides);
   std::vector<BrepUse> outline(const FilmPatch& patch) const;
@@ -96,6 +54,7 @@ class FaceBuilder {
   std::map<int, int> nodes_;  // film vertex: brep vertex
   std::vector<int> line_edges_;
   std::vector<SplineCurve> line_normals_;
+  std::vector<std::array<bool, 2>> line_corner_;  // at their ends
 };
 
 double FaceBuilder::length_of(const std::vector<int>& chain) const {
@@ -126,16 +85,6 @@ RimSide FaceBuilder::rim_side(const FilmPatch& patch, int side) const {
   const double length = result.rim->curve().length();
   const double step = at[chain[1]] - at[chain[0]];
   result.growing = step - length * std::round(step / length) > 0.0;
-  return result;
-}
-
-SideDemand FaceBuilder::demand(const RimSide& side, bool backwards) const {
-  SideDemand result{side.rim->way(side.from, side.to, side.growing), side.rim,
-                    side.from, side.to, side.growing};
-  if (backwards) {
-    std::swap(result.from, result.to);
-    result.growing = !result.growing;
-  }
   return result;
 }
 
@@ -215,6 +164,26 @@ Vec3 FaceBuilder::normal_of(int v) const {
   return normal;
 }
 
+/// True at a sharp corner of a rim.
+bool FaceBuilder::at_corner(int v) const {
+  const int rim = film_.cut.rim_of[v];
+  if (rim < 0) {
+    return false;
+  }
+  const RimEdges& edges = rims_[film_.rims[rim]];
+  const RimCurve& curve = edges.curve();
+  const double place = edges.place(film_.cut.rim_position[v]);
+  for (int k = 0; k < curve.piece_count() && curve.piece_count() > 1; ++k) {
+    const double d = place - curve.start_of(k);
+    if (curve.is_sharp(k) &&
+        std::abs(d - curve.length() * std::round(d / curve.length())) <
+            kSamePlace * curve.length()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void FaceBuilder::fit_lines() {
   const CutFilm& cut = film_.cut;
   for (std::size_t k = 0; k < cut.lines.size(); ++k) {
@@ -227,8 +196,12 @@ void FaceBuilder::fit_lines() {
     }
     fit.start = end_of(chain.front());
     fit.end = end_of(chain.back());
-    fit.start_normal = normal_of(chain.front());
-    fit.end_normal = normal_of(chain.back());
+    const Vec3 none = Vec3::Zero();
+    const Vec3 start_normal = normal_of(chain.front());
+    const Vec3 end_normal = normal_of(chain.back());
+    line_corner_.push_back({at_corner(chain.front()), at_corner(chain.back())});
+    fit.start_normal = line_corner_[k][0] ? none : start_normal;
+    fit.end_normal = line_corner_[k][1] ? none : end_normal;
     line_edges_.push_back(static_cast<int>(brep_.edges.size()));
     brep_.edges.push_back({vertex_of(chain.front()), vertex_of(chain.back()),
                            fit_curve(fit), 0.0, 1.0});
@@ -236,33 +209,11 @@ void FaceBuilder::fit_lines() {
     for (const int v : chain) {
       fit.points.push_back(mesh().normals[v]);
     }
-    fit.start = fit.start_normal;
-    fit.end = fit.end_normal;
+    fit.start = start_normal;
+    fit.end = end_normal;
     fit.start_normal = fit.end_normal = Vec3::Zero();
     line_normals_.push_back(fit_curve(fit));
   }
-}
-
-SplineCurve FaceBuilder::fit_rim(const RimSide& side,
-                                 const std::vector<double>& knots) const {
-  constexpr int kPerSpan = 6;
-  CurveFit fit;
-  fit.knots = knots;
-  const RimCurve& curve = side.rim->curve();
-  const double start = side.rim->place(side.from);
-  const double way = side.rim->way(side.from, side.to, side.growing);
-  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
-    for (int i = 0; i < kPerSpan && knots[k + 1] > knots[k]; ++i) {
-      const double share =
-          knots[k] + (knots[k + 1] - knots[k]) * (i + 0.5) / kPerSpan;
-      fit.at.push_back(share);
-      fit.points.push_back(curve.point(side.growing ? start + share * way
-                                                    : start - share * way));
-    }
-  }
-  fit.start = brep_.vertices[side.rim->vertex(side.from)];
-  fit.end = brep_.vertices[side.rim->vertex(side.to)];
-  return fit_curve(fit);
 }
 
 PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
@@ -272,7 +223,7 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
     const int line = patch.lines[side];
     if (line < 0) {
       const RimSide rim = rim_side(patch, side);
-      sides.curves[side] = fit_rim(rim, patch_knots_[p][side % 2]);
+      sides.curves[side] = fit_rim(rim, patch_knots_[p][side % 2], brep_);
       const double start = rim.rim->place(rim.from);
       const double way = rim.rim->way(rim.from, rim.to, rim.growing);
       const double length = rim.rim->curve().length();
@@ -297,6 +248,10 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
     sides.curves[side] = back ? reversed(curve) : curve;
     sides.normals[side] =
         back ? reversed(line_normals_[line]) : line_normals_[line];
+    sides.corner[side] = line_corner_[line];
+    if (back) {
+      std::swap(sides.corner[side][0], sides.corner[side][1]);
+    }
     sides.at[side] = shares_of(patch.chains[side]);
   }
   return sides;

@@ -13,9 +13,9 @@ namespace meniscus {
 namespace {
 
 constexpr double kExact = 1e-7;  // of rims, of the film's size
-constexpr double kSagittaShare = 0.25;
 constexpr double kHalfTurn = std::numbers::pi;
 constexpr int kRimSamples = 32;
+constexpr int kMostSecants = 12;
 
 double size_of(const FilmMesh& mesh) { return bounding_diagonal(mesh.points); }
 
@@ -124,8 +124,7 @@ std::optional<SimpleFilm> cylinder_of(const FilmMesh& mesh,
     const double r = surface.axis.cross(p - surface.center).norm();
     film.off = std::max(film.off, std::abs(r - surface.radius));
   }
-  if (film.off >
-      std::max(limit, kSagittaShare * sagitta(edge, surface.radius))) {
+  if (film.off > std::max(limit, sagitta(edge, surface.radius))) {
     return {};
   }
   surface.inward = looks_inward(mesh, surface.center, surface.axis);
@@ -173,6 +172,49 @@ double best_height(const FilmMesh& mesh, const RimCircle& circle,
   return normal > 0.0 ? right / normal : 0.0;
 }
 
+/// Mean distance of the smooth film from `center`.
+double mean_distance(const FilmMesh& mesh, const Vec3& center) {
+  double sum = 0.0;
+  double whole = 0.0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Triangle& t = mesh.facets[f];
+    const Vec3 u = mesh.points[t[1]] - mesh.points[t[0]];
+    const double area = u.cross(mesh.points[t[2]] - mesh.points[t[0]]).norm();
+    for (int k = 0; k < 3; ++k) {
+      Vec3 at = Vec3::Constant(0.5);
+      at[k] = 0.0;
+      sum +=
+          area * (smooth_point(mesh, static_cast<int>(f), at) - center).norm();
+    }
+    whole += 3.0 * area;
+  }
+  return sum / whole;
+}
+
+/// From that of best_height() on: where the film lies as much inside of the
+/// sphere as outside, so that both enclose the same volume. By secants.
+double even_height(const FilmMesh& mesh, const RimCircle& circle,
+                   const Vec3& axis) {
+  const auto off = [&](double t) {
+    return mean_distance(mesh, circle.center + t * axis) -
+           std::hypot(circle.radius, t);
+  };
+  double t = best_height(mesh, circle, axis);
+  double last = t + 1e-3 * circle.radius;
+  double off_last = off(last);
+  for (int round = 0; round < kMostSecants; ++round) {
+    const double here = off(t);
+    if (here == off_last || std::abs(here) < kExact * kExact * circle.radius) {
+      break;
+    }
+    const double next = t - here * (t - last) / (here - off_last);
+    last = t;
+    off_last = here;
+    t = next;
+  }
+  return t;
+}
+
 std::optional<SimpleFilm> sphere_of(const FilmMesh& mesh,
                                     const std::vector<RimCircle>& rims,
                                     double limit, double edge) {
@@ -188,6 +230,7 @@ std::optional<SimpleFilm> sphere_of(const FilmMesh& mesh,
     if (!fit_ball(mesh, surface.center, surface.radius)) {
       return {};
     }
+    surface.radius = mean_distance(mesh, surface.center);
   } else {
     const RimCircle& low = rims[0];
     Vec3 mean = Vec3::Zero();
@@ -197,7 +240,7 @@ std::optional<SimpleFilm> sphere_of(const FilmMesh& mesh,
     const Vec3 up = rims.size() == 2 ? Vec3(rims[1].center - low.center) : mean;
     surface.axis = low.normal.dot(up) < 0.0 ? Vec3(-low.normal) : low.normal;
     surface.zero = low.zero;
-    double t = best_height(mesh, low, surface.axis);
+    double t = even_height(mesh, low, surface.axis);
     if (rims.size() == 2) {
       const double h = up.norm();  // both circles lie on it
       t = (h * h + std::pow(rims[1].radius, 2) - std::pow(low.radius, 2)) /
@@ -214,8 +257,7 @@ std::optional<SimpleFilm> sphere_of(const FilmMesh& mesh,
     film.off = std::max(film.off,
                         std::abs((p - surface.center).norm() - surface.radius));
   }
-  if (film.off >
-      std::max(limit, kSagittaShare * sagitta(edge, surface.radius))) {
+  if (film.off > std::max(limit, sagitta(edge, surface.radius))) {
     return {};
   }
   surface.inward = looks_inward(mesh, surface.center, Vec3::Zero());

@@ -24,8 +24,8 @@ struct SimpleFilm {
 };
 
 /// What the film is if no vertex lies farther off than its own discretisation
-/// can tell: `limit_in_edges` of its `edge` [length], or a quarter of what a
-/// chord of that length leaves the surface. Planes: of any rims that lie in
+/// can tell: `limit_in_edges` of its `edge` [length], or what a chord of that
+/// length leaves the surface. Planes: of any rims that lie in
 /// one. Cylinders: between two equal circles opposite to each other. Spheres:
 /// between one circle and its pole, between two circles on one axis, or whole.
 std::optional<SimpleFilm> simple_film(const FilmMesh& mesh,

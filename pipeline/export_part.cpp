@@ -14,6 +14,7 @@
 #include "pipeline/calculix_export.h"
 #include "pipeline/export_job.h"
 #include "pipeline/export_step.h"
+#include "pipeline/ledger.h"
 #include "pipeline/results.h"
 
 namespace meniscus {
@@ -166,6 +167,7 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
           ? folder / fmt::format("part_{:g}.{}", edge, format.extension)
           : options.out;
   format.write(job, file);
+  note_file(folder, file, fmt::format("part_{:g}.{}", edge, format.name));
   return file;
 }
 

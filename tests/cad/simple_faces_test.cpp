@@ -18,6 +18,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kExact = 1e-9;  // relative, of OpenCASCADE's own integrals
+// Of the volume of a sphere that is fitted: what the points between the film's
+// vertices miss it by, fourth order in its edge.
+constexpr double kFitted = 5e-4;
 
 class SimpleFaces : public testing::Test {
  protected:
@@ -74,7 +77,7 @@ TEST_F(SimpleFaces, DomesAreSpheresAlsoBeyondTheHalf) {
     EXPECT_EQ(solid.report.planes, 1);
     EXPECT_EQ(solid.report.patches, 0);
     const double exact = kPi * rise * (3.0 * 400.0 + rise * rise) / 6.0;
-    EXPECT_NEAR(written(solid).volume, exact, kExact * exact);
+    EXPECT_NEAR(written(solid).volume, exact, kFitted * exact);
     EXPECT_THAT(text(), testing::HasSubstr("SPHERICAL_SURFACE"));
   }
 }
@@ -85,7 +88,7 @@ TEST_F(SimpleFaces, ClosedFilmIsAWholeSphere) {
   EXPECT_EQ(solid.brep.faces.size(), 1);
   const double exact = 4.0 / 3.0 * kPi * std::pow(12.0, 3);
   const StepReport report = written(solid);
-  EXPECT_NEAR(report.volume, exact, kExact * exact);
+  EXPECT_NEAR(report.volume, exact, kFitted * exact);
   EXPECT_NEAR((report.mass_center - Vec3(3, 2, 1)).norm(), 0.0, 1e-7);
   // Read again it is the same ball.
   const SurfaceMesh read = read_step_part(file_, {.unit = "mm", .edge = 1.0});
@@ -107,9 +110,9 @@ TEST_F(SimpleFaces, FlatFilmIsAPlane) {
 }
 
 TEST_F(SimpleFaces, NearlyIsNotEnough) {
-  // Off by a fiftieth of an edge: more than the film's own error.
+  // Off by a twentieth of an edge: more than the film's own error.
   const FilmSolid solid = solid_of(spool(36, 40.0, [](double z) {
-    return 15.0 + 0.05 * std::sin(kPi * z / 40.0);
+    return 15.0 + 0.15 * std::sin(kPi * z / 40.0);
   }));
   EXPECT_EQ(solid.report.cylinders, 0);
   EXPECT_EQ(solid.report.patches, 4);
