@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 CASE = pathlib.Path(__file__).resolve().parents[2] / "cases/two_arm/case.toml"
-SETTINGS = ["resolution.fea=16", "resolution.film=8"]
+SETTINGS = ["resolution.fea=24", "resolution.film=12"]
 # Of the counted work: what the formulas may leave out or say too much.
 MOST_ERROR = {"start": 0.05, "film": 0.05, "motion": 0.05, "elasticity": 0.05}
 
