@@ -18,6 +18,7 @@
 #include "pipeline/family.h"
 #include "pipeline/film_frames.h"
 #include "pipeline/forward_model.h"
+#include "pipeline/stored_case.h"
 #include "pipeline/walls.h"
 
 namespace meniscus {
@@ -26,21 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The units of the table's responses, those that have one.
-std::string units_line(const Case& family) {
-  std::string text;
-  for (std::size_t k = 0; k < family.responses.size(); ++k) {
-    const std::string unit = response_unit(family, static_cast<int>(k));
-    if (!unit.empty()) {
-      text += fmt::format("{}{} [{}]", text.empty() ? "  units: " : ", ",
-                          family.responses[k].name, unit);
-    }
-  }
-  return text.empty() ? text : text + "\n";
-}
-
-void explain(const Case& family, const FamilyResult& result,
-             const fs::path& folder, bool quiet) {
+void explain(const FamilyResult& result, const fs::path& folder, bool quiet) {
   const bool good = result.status == RunStatus::Converged;
   if (!good || !quiet) {
     std::fprintf(good ? stdout : stderr, "%s: %s\n", name_of(result.status),
@@ -49,8 +36,9 @@ void explain(const Case& family, const FamilyResult& result,
   if (quiet) {
     return;
   }
-  std::fputs(family_table_text(family_csv(result.rows)).c_str(), stdout);
-  std::fputs(units_line(family).c_str(), stdout);
+  std::fputs(
+      family_table_text(family_csv(result.rows), stored_units(folder)).c_str(),
+      stdout);
   std::printf("  %zu members in %.1f s\n  results in %s\n", result.rows.size(),
               result.total_seconds, folder.string().c_str());
   std::fflush(stdout);
@@ -123,7 +111,7 @@ int run_family_command(const Case& input,
     report_aloud(folder, arguments, monitor);
     monitor.tell(
         end_event(result.status, result.message, result.total_seconds));
-    explain(input, result, folder, arguments.common.quiet);
+    explain(result, folder, arguments.common.quiet);
     return exit_code_of(result.status);
   } catch (const IoError& error) {
     std::fprintf(stderr, "error: %s\n", error.what());

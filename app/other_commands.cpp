@@ -231,32 +231,14 @@ int evolve_command(const EvolveArguments& arguments) {
                      common);
 }
 
-namespace {
-
-/// Of the responses of a study, by name; none where its case cannot be read.
-std::map<std::string, std::string> units_of(const StudyStore& store) {
-  std::map<std::string, std::string> units;
-  try {
-    const Case input = restore_case(store.meta());
-    for (std::size_t k = 0; k < input.responses.size(); ++k) {
-      units[input.responses[k].name] =
-          response_unit(input, static_cast<int>(k));
-    }
-  } catch (const Error&) {
-    units.clear();  // of another version: the table goes without
-  }
-  return units;
-}
-
-}  // namespace
-
 int study_show_command(const std::string& folder, const std::string& csv) {
   try {
     const fs::path family = fs::path(folder) / "family.csv";
     if (fs::exists(family)) {
       const std::string table = read_file(family);
       if (csv.empty()) {
-        std::fputs(family_table_text(table).c_str(), stdout);
+        std::fputs(family_table_text(table, stored_units(folder)).c_str(),
+                   stdout);
       } else {
         write_file(csv, table);
       }
@@ -265,7 +247,8 @@ int study_show_command(const std::string& folder, const std::string& csv) {
     const StudyStore store = StudyStore::read(folder);
     const std::vector<EvaluationRecord> records = store.all();
     if (csv.empty()) {
-      std::fputs(study_table_text(records, units_of(store)).c_str(), stdout);
+      std::fputs(study_table_text(records, stored_units(folder)).c_str(),
+                 stdout);
     } else {
       write_file(csv, history_csv(records));
     }

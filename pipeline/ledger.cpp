@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "evolve/grooming.h"
 #include "evolve/start_edge.h"
+#include "io/atomic_file.h"
 #include "pipeline/calculix_export.h"
 #include "pipeline/results.h"
 
@@ -186,6 +187,39 @@ nlohmann::ordered_json ledger_json(const Ledger& ledger) {
   return {{"stages", stages},
           {"input_bytes", ledger.input_bytes},
           {"files", files}};
+}
+
+void note_file(const fs::path& folder, const fs::path& file,
+               const std::string& name) {
+  const fs::path result = folder / "result.json";
+  std::error_code code;
+  const auto bytes = static_cast<double>(fs::file_size(file, code));
+  if (code || !fs::exists(result, code)) {
+    return;
+  }
+  const bool inside = fs::equivalent(
+      file.parent_path().empty() ? fs::path(".") : file.parent_path(), folder,
+      code);
+  const Json entry = {{"name", inside ? file.filename().string() : name},
+                      {"bytes", bytes},
+                      {"written", inside}};
+  try {
+    Json json = Json::parse(read_file(result));
+    Json& files = json.at("ledger").at("files");
+    const auto same = std::find_if(
+        files.begin(), files.end(),
+        [&](auto& other) { return other.at("name") == entry["name"]; });
+    if (same != files.end()) {
+      *same = entry;
+    } else {
+      files.push_back(entry);
+    }
+    write_file(result, json.dump(2) + "\n");
+  } catch (const Json::exception&) {
+    return;  // of another version
+  } catch (const IoError&) {
+    return;  // of somebody else's
+  }
 }
 
 std::string ledger_text(const Ledger& ledger, const std::string& length_unit) {

@@ -85,12 +85,7 @@ std::string study_table_text(const std::vector<EvaluationRecord>& records,
                              const std::map<std::string, std::string>& units) {
   std::vector<Row> rows =
       table(records, [](double value) { return fmt::format("{:.6g}", value); });
-  for (std::string& name : rows.front()) {
-    const auto unit = units.find(name);
-    if (unit != units.end() && !unit->second.empty()) {
-      name += fmt::format(" [{}]", unit->second);
-    }
-  }
+  add_units(units, rows.front());
   std::string text = aligned_text(rows);
   for (const EvaluationRecord& record : records) {
     if (record.failure) {

@@ -227,6 +227,22 @@ class Export(ProgramTest):
         finally:
             gmsh.close()
 
+    def test_vtk_reads_the_vtu(self):
+        said = run_program(program.PROGRAM.parent / "read_vtu",
+                           self.file("vtu")).splitlines()
+        rows = [line.split("|") for line in said]
+        tet = self.found["tet"]
+        self.assertIn(["points", str(tet["nodes"])], rows)
+        self.assertIn(["cells", str(tet["elements"])], rows)
+        self.assertEqual([row[1] for row in rows if row[0] == "type"],
+                         ["24"])  # VTK_QUADRATIC_TETRA
+        (field,) = [row for row in rows if row[0] == "point" and
+                    row[1].startswith("displacement") and row[3] == "3"][:1]
+        ours = nodal_field(self.text("msh"), "displacement")
+        self.assertEqual(int(field[2]), len(ours))
+        largest = max(sum(x * x for x in row) for row in ours) ** 0.5
+        self.assertAlmostEqual(float(field[5]) / largest, 1, delta=1e-6)
+
     def mesh_volume(self):
         """Of the ten-node elements, by the program."""
         there = self.home / "sides"
