@@ -9,7 +9,6 @@
 #include "app/commands.h"
 #include "app/exit_code.h"
 #include "app/report_file.h"
-#include "app/run_files.h"
 #include "app/signals.h"
 #include "app/study_events.h"
 #include "app/versions.h"
@@ -20,6 +19,7 @@
 #include "pipeline/forward_model.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/walls.h"
+#include "report/run_output.h"
 
 namespace meniscus {
 
@@ -90,16 +90,17 @@ int run_family_command(const Case& input,
                     [&](const Case& member, const EvaluationFields& fields,
                         const fs::path& place, RunResult& outcome) {
                       const std::lock_guard<std::mutex> guard(drawing);
-                      RunArguments chosen = arguments;
-                      chosen.time_limit = 0.0;  // of all members, kept here
+                      RunOutputOptions chosen{
+                          .pictures = arguments.pictures,
+                          .frame_pictures = arguments.frame_pictures,
+                          .monitor = &monitor};
                       if (chosen.pictures && late()) {
                         chosen.pictures = false;
                         outcome.warnings.emplace_back(
                             "the family's time limit left no time for "
                             "pictures");
                       }
-                      write_run_files(member, fields, place, chosen, monitor,
-                                      outcome);
+                      RunOutput(member, place, chosen).finish(fields, outcome);
                     }});
     result.warnings.insert(result.warnings.begin(), warnings.begin(),
                            warnings.end());

@@ -6,21 +6,21 @@
 
 #include "app/case_input.h"
 #include "app/commands.h"
-#include "app/draw.h"
 #include "app/exit_code.h"
 #include "app/signals.h"
 #include "app/versions.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
 #include "pipeline/datafile.h"
+#include "pipeline/evolved_film.h"
 #include "pipeline/family_table.h"
-#include "pipeline/film_figures.h"
 #include "pipeline/film_frames.h"
 #include "pipeline/new_case.h"
 #include "pipeline/results.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/study_table.h"
 #include "pipeline/walls.h"
+#include "report/run_pictures.h"
 
 namespace meniscus {
 
@@ -104,15 +104,10 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
   }
-  const std::string warning = write_datafile_result(result, folder);
+  const std::string title = path.filename().string();
+  const std::string warning = write_datafile_result(result, title, folder);
   if (arguments.pictures) {
-    std::vector<std::string> solids;
-    for (const ComplexSurface& surface : result.complex.surfaces) {
-      if (!surface.liquid) {
-        solids.push_back(surface.name);
-      }
-    }
-    warn(draw_film(path.filename().string(), solids, folder, monitor));
+    warn(draw_film(title, solids_of(result.complex), folder, monitor));
   }
   if (!common.quiet) {
     std::fputs(datafile_text(result).c_str(), stdout);
@@ -153,32 +148,40 @@ int write_walls(const Case& input, const std::vector<CaseWall>& walls,
   return code;
 }
 
-/// frames.pvd with the film's way to rest, and pictures where they are wanted;
-/// returns warnings.
-std::vector<std::string> write_settling(const Case& input,
-                                        const EvaluatedCase& numbers,
-                                        const FilmModel& model,
-                                        const fs::path& folder,
-                                        const EvolveArguments& arguments,
-                                        Monitor& monitor) {
-  const std::vector<FilmFrame> frames =
-      settling_frames(numbers, model, monitor);
-  write_frames(input, frames, folder);
-  if (!arguments.pictures) {
-    return {};
-  }
-  std::vector<std::string> captions;
-  captions.reserve(frames.size());
-  for (const FilmFrame& frame : frames) {
-    captions.push_back(frame.kept == "flowing"
-                           ? fmt::format("step {}", frame.evaluation)
-                           : frame.kept);
-  }
+/// film.vtp, film.json and, where they are wanted, the film's way to rest and
+/// pictures.
+void write_evolved(const Case& input, const EvaluatedCase& numbers,
+                   const FilmModel& model, const fs::path& folder,
+                   const EvolveArguments& arguments, Monitor& monitor) {
+  const FilmState& film = model.reference();
   std::vector<std::string> solids;
   for (const CapSpec& cap : numbers.film_system.caps) {
     solids.push_back(cap.name);
   }
-  return draw_frames(input.title, solids, frames, captions, folder, monitor);
+  write_film(input, model.fine_mesh(film.points), folder);
+  std::vector<FilmFrame> frames;
+  if (arguments.frames) {
+    frames = settling_frames(numbers, model, monitor);
+    write_frames(input, frames, folder);
+  }
+  write_evolved_film({.title = input.title,
+                      .units = input.units,
+                      .report = film.report,
+                      .failure = film.failure,
+                      .solids = solids,
+                      .areas = areas_of_films(input, model),
+                      .curves = pieces_of_curves(numbers.film_system.curves)},
+                     frames, folder);
+  if (!arguments.pictures) {
+    return;
+  }
+  warn(draw_film(input.title, solids, folder, monitor));
+  std::vector<std::string> captions;
+  captions.reserve(frames.size());
+  for (const FilmFrame& frame : frames) {
+    captions.push_back(settling_caption(frame));
+  }
+  warn(draw_frames(input.title, solids, frames, captions, folder, monitor));
 }
 
 }  // namespace
@@ -208,18 +211,7 @@ int evolve_command(const EvolveArguments& arguments) {
                             .refinements = input.resolution.refinements,
                             .monitor = &monitor});
   const FilmState& film = model.reference();
-  write_film(input, model.fine_mesh(film.points), folder);
-  write_film_figures(input, model, folder);
-  if (arguments.pictures) {
-    std::vector<std::string> solids;
-    for (const CapSpec& cap : numbers.film_system.caps) {
-      solids.push_back(cap.name);
-    }
-    warn(draw_film(input.title, solids, folder, monitor));
-  }
-  if (arguments.frames) {
-    warn(write_settling(input, numbers, model, folder, arguments, monitor));
-  }
+  write_evolved(input, numbers, model, folder, arguments, monitor);
   if (!common.quiet) {
     std::fputs(film_text(input, film.report).c_str(), stdout);
   }

@@ -376,6 +376,9 @@ RunResult StudyRun::run() {
   if (begin()) {
     conduct_study();
     if (finish_best()) {
+      if (options_.answered) {
+        options_.answered(fields_);
+      }
       in_time_left("buckling and frequencies", [&] { solve_eigenproblems(); });
       if (options_.estimate_errors) {
         in_time_left("estimates of the errors", [&] { estimate_errors(); });

@@ -1,12 +1,15 @@
-#include "app/draw.h"
+#include "report/run_pictures.h"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "io/vtk_files.h"
 #include "pipeline/film_frames.h"
 #include "report/picture.h"
 
 namespace meniscus {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -36,20 +39,14 @@ Points corners_of_all(const std::vector<FilmFrame>& frames) {
   return corners;
 }
 
-}  // namespace
-
-std::vector<std::string> draw(const Case& input, const EvaluationFields& fields,
-                              const std::filesystem::path& folder,
-                              Monitor& monitor) {
+/// What all three have in common; the shapes are the caller's.
+PictureJob run_job(const Case& input, const EvaluatedCase& numbers) {
   PictureJob job;
-  job.part = (folder / "part.vtu").string();
-  job.part_surface = (folder / "part_surface.vtp").string();
-  job.film = (folder / "film.vtp").string();
   job.title = input.title;
-  for (const CapSpec& cap : fields.inputs.film_system.caps) {
+  for (const CapSpec& cap : numbers.film_system.caps) {
     job.solids.push_back(cap.name);
   }
-  const LoadCase& load_case = fields.inputs.load_cases.front();
+  const LoadCase& load_case = numbers.load_cases.front();
   for (const Support& support : load_case.supports) {
     job.supports.push_back(support.surface);
   }
@@ -68,6 +65,10 @@ std::vector<std::string> draw(const Case& input, const EvaluationFields& fields,
                          .direction = force.total,
                          .label = load_label(force.total, input.units.force)});
   }
+  return job;
+}
+
+std::vector<PictureJob> three_of(PictureJob job, const fs::path& folder) {
   std::vector<PictureJob> jobs;
   const auto add = [&](PictureKind kind, const char* name, int width,
                        int height) {
@@ -80,16 +81,68 @@ std::vector<std::string> draw(const Case& input, const EvaluationFields& fields,
   add(PictureKind::Part, "part.png", kStillWidth, kStillHeight);
   add(PictureKind::Film, "film.png", kStillWidth, kStillHeight);
   add(PictureKind::Overview, "overview.png", 2700, 945);
-  return render_pictures(jobs, {.monitor = &monitor});
+  return jobs;
+}
+
+PictureSurface part_surface(const Case& input, const EvaluationFields& fields) {
+  BoundarySurface boundary = boundary_surface(fields.mesh);
+  const StressField nodal =
+      nodal_stress(fields.mesh, fields.stresses.front().recovered);
+  const VectorX& u = fields.solution.displacements.front();
+  PictureSurface surface;
+  surface.mesh = std::move(boundary.mesh);
+  surface.length_unit = input.units.length;
+  surface.stress_unit = input.units.pressure;
+  for (const int node : boundary.nodes) {
+    surface.displacement.emplace_back(u.segment<3>(3 * node));
+    surface.von_mises.push_back(
+        nodal.von_mises[static_cast<std::size_t>(node)]);
+  }
+  return surface;
+}
+
+PictureTets corner_tets(const TetMesh& mesh) {
+  PictureTets tets;
+  tets.nodes.assign(mesh.nodes.begin(), mesh.nodes.begin() + mesh.corner_count);
+  tets.corners.reserve(static_cast<std::size_t>(mesh.element_count()));
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const std::span<const int> nodes = mesh.element(e);
+    tets.corners.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
+  }
+  return tets;
+}
+
+}  // namespace
+
+std::vector<PictureJob> run_pictures(const Case& input,
+                                     const EvaluationFields& fields,
+                                     const fs::path& folder) {
+  PictureJob job = run_job(input, fields.inputs);
+  PictureSurface film;
+  film.mesh = fields.film;
+  job.film.data = std::make_shared<const PictureSurface>(std::move(film));
+  job.part_surface.data =
+      std::make_shared<const PictureSurface>(part_surface(input, fields));
+  job.part.data = std::make_shared<const PictureTets>(corner_tets(fields.mesh));
+  return three_of(std::move(job), folder);
+}
+
+std::vector<PictureJob> stored_run_pictures(const Case& input,
+                                            const EvaluatedCase& numbers,
+                                            const fs::path& folder) {
+  PictureJob job = run_job(input, numbers);
+  job.part.file = (folder / "part.vtu").string();
+  job.part_surface.file = (folder / "part_surface.vtp").string();
+  job.film.file = (folder / "film.vtp").string();
+  return three_of(std::move(job), folder);
 }
 
 std::vector<std::string> draw_film(const std::string& title,
                                    const std::vector<std::string>& solids,
-                                   const std::filesystem::path& folder,
-                                   Monitor& monitor) {
+                                   const fs::path& folder, Monitor& monitor) {
   PictureJob job;
   job.kind = PictureKind::Film;
-  job.film = (folder / "film.vtp").string();
+  job.film.file = (folder / "film.vtp").string();
   job.output = (folder / "film.png").string();
   job.title = title;
   job.width = kStillWidth;
@@ -102,8 +155,7 @@ std::vector<std::string> draw_frames(const std::string& title,
                                      const std::vector<std::string>& solids,
                                      const std::vector<FilmFrame>& frames,
                                      const std::vector<std::string>& captions,
-                                     const std::filesystem::path& folder,
-                                     Monitor& monitor) {
+                                     const fs::path& folder, Monitor& monitor) {
   PictureJob job;
   job.kind = PictureKind::Film;
   job.title = title;
@@ -114,10 +166,9 @@ std::vector<std::string> draw_frames(const std::string& title,
   std::vector<PictureJob> jobs;
   jobs.reserve(frames.size());
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    const std::filesystem::path film =
-        folder / "frames" / frame_name(frames[k].evaluation);
-    job.film = film.string();
-    job.output = std::filesystem::path(film).replace_extension("png").string();
+    const fs::path film = folder / "frames" / frame_name(frames[k].evaluation);
+    job.film.file = film.string();
+    job.output = fs::path(film).replace_extension("png").string();
     job.caption = captions[k];
     jobs.push_back(job);
   }
