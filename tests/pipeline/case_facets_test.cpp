@@ -110,8 +110,10 @@ TEST(CaseFacets, AFreeBodyIsRemeshedToItsEdgeAndFollowsItsVolume) {
   more.film_system.bodies[0].volume = 1.3;
   const FilmState larger = model.settle(more.film_system);
   ASSERT_FALSE(larger.failure) << larger.failure->message;
+  // Vertices move along the start's normals, which are not quite radial.
+  constexpr double kNotRadial = 1e-5;
   EXPECT_NEAR(larger.report.area / model.reference().report.area,
-              std::pow(1.3, 2.0 / 3.0), 1e-6);
+              std::pow(1.3, 2.0 / 3.0), kNotRadial);
   // The pressure is the derivative of the energy by the volume.
   constexpr double kStep = 1e-3;
   more.film_system.bodies[0].volume = 1.3 + kStep;

@@ -74,9 +74,9 @@ const Mistake kMistakes[] = {
      "25: films.skin.kind is the text 'brunch'; did you mean 'branch'?"},
     {"EmptyKind", "kind = \"branch\"", "kind = \"\"",
      "25: films.skin.kind is the text ''; expected one of branch, loft, disk"},
-    {"LaterKind", "kind = \"branch\"", "kind = \"facets\"",
-     "25: films.skin.kind 'facets' is not available in this version; expected "
-     "one of branch, loft, disk"},
+    {"LaterKind", "kind = \"circle\"", "kind = \"arc\"",
+     "13: curves.base.kind 'arc' is not available in this version; expected "
+     "one of circle, ellipse"},
     {"UnknownName", "\"foot\"", "\"fot\"",
      "16: curves.base.radius: unknown name 'fot' (did you mean 'foot'?) in "
      "'fot' at character 1"},
@@ -347,9 +347,9 @@ TEST(CaseTrouble, IsToldUpToTwentyTimes) {
 
 TEST(CaseTrouble, MissingTablesAreNamed) {
   const std::vector<std::string> problems = problems_of("title = \"x\"\n");
-  for (const char* table : {"units", "[curves.NAME]", "[films.NAME]",
-                            "[bodies.NAME]", "[resolution]", "[materials.NAME]",
-                            "[load_cases.NAME]", "[responses.NAME]"}) {
+  for (const char* table :
+       {"units", "[films.NAME]", "[bodies.NAME]", "[resolution]",
+        "[materials.NAME]", "[load_cases.NAME]", "[responses.NAME]"}) {
     EXPECT_THAT(problems, Contains(HasSubstr(table)));
   }
 }
