@@ -17,7 +17,7 @@ run_packages=(xvfb libudunits2-data)
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev clang-format clang-tidy
   calculix-ccx evolver evolver-doc tetgen admesh gmsh git locales python3
-  libpetsc-real-dev openmpi-bin chromium python3-scipy valgrind
+  libpetsc-real-dev openmpi-bin chromium python3-scipy
 )
 
 gallery_packages=(python3 python3-pil)

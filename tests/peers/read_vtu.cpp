@@ -2,7 +2,6 @@
 /// with their types, arrays with their least
 /// and greatest values. For tests/regression/export_test.py.
 #include <cstdio>
-
 #include <vtkCellData.h>
 #include <vtkCellTypes.h>
 #include <vtkDataArray.h>
