@@ -189,11 +189,41 @@ std::vector<char> FilmModel::Impl::straight() const {
 void FilmModel::Impl::find_reference(const FilmSystem& initial,
                                      const FilmModelOptions& options,
                                      const SettleOptions& settle) {
+  const int halvings = start_halvings(initial, options.edge);
+  find_reference_from(halvings, initial, options, settle);
+  const auto tears = [this] {
+    return reference.failure &&
+           reference.failure->kind != FailureKind::FilmUnstable;
+  };
+  if (!tears() || halvings == 0 || initial.keep_facets) {
+    return;
+  }
+  // Coarse facets may fold where rims are not much larger than they: once more
+  // without them.
+  const FilmComplex coarse = complex;
+  const SurfaceMesh coarse_mesh = meshed;
+  const std::vector<Edge> coarse_parents = parents;
+  const FilmState failed = reference;
+  find_reference_from(0, initial, options, settle);
+  if (tears()) {
+    complex = coarse;
+    meshed = coarse_mesh;
+    parents = coarse_parents;
+    reference = failed;
+    energy.reset();
+  }
+}
+
+void FilmModel::Impl::find_reference_from(int halvings,
+                                          const FilmSystem& initial,
+                                          const FilmModelOptions& options,
+                                          const SettleOptions& settle) {
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   monitor.progress({"film", "building the start", 0.0});
-  const int halvings = start_halvings(initial, options.edge);
-  complex = build_start(initial, start_edge(initial, options.edge));
+  complex = build_start(initial, std::ldexp(options.edge, halvings));
+  parents.clear();
+  energy.reset();
   monitor.progress({"film", "settling the raw start", 0.1});
   FindOptions find{
       .edge = options.edge, .halvings = halvings, .settle = settle};

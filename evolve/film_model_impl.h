@@ -38,6 +38,10 @@ struct FilmModel::Impl {
   void find_reference(const FilmSystem& initial,
                       const FilmModelOptions& options,
                       const SettleOptions& settle);
+  /// The same, from a start whose edges are options.edge x 2^halvings.
+  void find_reference_from(int halvings, const FilmSystem& initial,
+                           const FilmModelOptions& options,
+                           const SettleOptions& settle);
   EdgeMiddles middles() const;
   std::vector<char> straight() const;
   /// A state that settle() gave for `system`. Throws InvalidInput for others.
