@@ -30,9 +30,11 @@ ENERGY = 1e-10
 
 
 def run_program(*command, folder=None, timeout=120):
-    """Output of a program that must end well."""
+    """Output of a program that must end well; admesh writes the header of a
+    binary file with what lies behind it."""
     done = subprocess.run([str(c) for c in command], capture_output=True,
-                          text=True, timeout=timeout, cwd=folder,
+                          text=True, errors="replace", timeout=timeout,
+                          cwd=folder,
                           env={**os.environ, "LC_ALL": "C"})
     assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
     return done.stdout + done.stderr
