@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "evolve/curve_shape.h"
 
@@ -11,16 +12,15 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kChords = 256;
+constexpr int kChordsOfCurve = 256;
 constexpr int kSections = 60;  // each 0.62 as wide: to rounding
 
 }  // namespace
 
 std::vector<CurvePlace> nearest_places(const CurveShape& shape,
                                        const Points& points) {
-  constexpr double kGolden = 1.0 / std::numbers::phi;
   const std::vector<double> t =
-      sample_parameters(shape, length_of(shape), kChords);
+      sample_parameters(shape, length_of(shape), kChordsOfCurve);
   const Points at = points_at(shape, t);
   const std::size_t n = at.size();
   std::vector<double> low;
@@ -41,6 +41,14 @@ std::vector<CurvePlace> nearest_places(const CurveShape& shape,
     low.push_back(t[best]);
     high.push_back(best + 1 < n ? t[best + 1] : 1.0);
   }
+  return nearest_between(shape, points, std::move(low), std::move(high));
+}
+
+std::vector<CurvePlace> nearest_between(const CurveShape& shape,
+                                        const Points& points,
+                                        std::vector<double> low,
+                                        std::vector<double> high) {
+  constexpr double kGolden = 1.0 / std::numbers::phi;
   std::vector<double> x(points.size());
   std::vector<double> y(points.size());
   for (int round = 0; round < kSections; ++round) {

@@ -17,6 +17,13 @@ struct CurvePlace {
 std::vector<CurvePlace> nearest_places(const CurveShape& shape,
                                        const Points& points);
 
+/// The same between `low` and `high`, one pair of parameters per point, where
+/// the distance has one minimum.
+std::vector<CurvePlace> nearest_between(const CurveShape& shape,
+                                        const Points& points,
+                                        std::vector<double> low,
+                                        std::vector<double> high);
+
 /// Parameters at which a curve may have corners, increasing; none where it is
 /// smooth all around.
 std::vector<double> corner_parameters(const CurveShape& shape);

@@ -204,12 +204,14 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   const SurfaceMesh coarse_mesh = meshed;
   const std::vector<Edge> coarse_parents = parents;
   const FilmState failed = reference;
+  const double coarse_edge = start_edge;
   find_reference_from(0, initial, options, settle);
   if (tears()) {
     complex = coarse;
     meshed = coarse_mesh;
     parents = coarse_parents;
     reference = failed;
+    start_edge = coarse_edge;
     energy.reset();
   }
 }
@@ -221,7 +223,8 @@ void FilmModel::Impl::find_reference_from(int halvings,
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   monitor.progress({"film", "building the start", 0.0});
-  complex = build_start(initial, std::ldexp(options.edge, halvings));
+  start_edge = std::ldexp(options.edge, halvings);
+  complex = build_start(initial, start_edge);
   parents.clear();
   energy.reset();
   monitor.progress({"film", "settling the raw start", 0.1});
@@ -335,6 +338,7 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
 }
 
 const FilmState& FilmModel::reference() const { return impl_->reference; }
+double FilmModel::start_edge() const { return impl_->start_edge; }
 
 FilmState FilmModel::settle(const FilmSystem& system,
                             const SettleOptions& options) const {

@@ -50,6 +50,9 @@ class FilmModel {
   /// The settled film at the initial design.
   const FilmState& reference() const;
 
+  /// Edge length of the start that the reference was found from [length].
+  double start_edge() const;
+
   /// Equilibrium for another design of the same system; a pure function of
   /// the model and `system`, and may run in several threads. A film that is
   /// not found is in the state's failure, not thrown. Throws InvalidInput for

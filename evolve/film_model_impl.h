@@ -21,6 +21,7 @@ struct FilmModel::Impl {
   FilmTargets targets;
   FilmState reference;
   double usual_neck = 0.0;   // of the reference [length]
+  double start_edge = 0.0;   // of the start that it was found from [length]
   std::vector<int> regions;  // per body, -1: void
   SurfaceNodes nodes;        // the meshed level's, facets split
 

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/surface_mesh.h"
+#include "evolve/curve_place.h"
 
 namespace meniscus {
 
@@ -22,7 +23,6 @@ constexpr int kMostPoints = 2048;
 constexpr int kAll = StepPiece::kIntervals;
 constexpr double kStraight = 1e-9;  // sagitta that is none [chord]
 constexpr double kGoesOn = 1e-7;    // off the line or circle before
-constexpr int kSearches = 40;       // of the nearest place, each 0.62 as wide
 
 double length_of(const StepLoop& loop) {
   double sum = 0.0;
@@ -49,37 +49,6 @@ bool is_smooth(const StepLoop& loop) {
     }
   }
   return true;
-}
-
-/// For each place the distance to the spline: the least that golden sections
-/// of its own interval of t find, all at once.
-double spline_miss(const Spline& spline, const Points& places,
-                   const std::vector<double>& low,
-                   const std::vector<double>& high) {
-  constexpr double kGolden = 1.0 / std::numbers::phi;
-  std::vector<double> a = low;
-  std::vector<double> b = high;
-  std::vector<double> x(a.size());
-  std::vector<double> y(a.size());
-  for (int round = 0; round < kSearches; ++round) {
-    for (std::size_t k = 0; k < a.size(); ++k) {
-      x[k] = b[k] - kGolden * (b[k] - a[k]);
-      y[k] = a[k] + kGolden * (b[k] - a[k]);
-    }
-    const Points at_x = points_at(spline, x);
-    const Points at_y = points_at(spline, y);
-    for (std::size_t k = 0; k < a.size(); ++k) {
-      const bool left =
-          (at_x[k] - places[k]).norm() < (at_y[k] - places[k]).norm();
-      (left ? b[k] : a[k]) = left ? y[k] : x[k];
-    }
-  }
-  const Points found = points_at(spline, x);
-  double most = 0.0;
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    most = std::max(most, (found[k] - places[k]).norm());
-  }
-  return most;
 }
 
 /// A spline through about `count` points, and how far it misses the others.
@@ -114,7 +83,11 @@ Spline spline_through(const StepLoop& loop, int count, double& miss) {
     low.push_back(t[static_cast<std::size_t>(k)] / t.back());
     high.push_back(t[static_cast<std::size_t>(k) + 1] / t.back());
   }
-  miss = spline_miss(spline, places, low, high);
+  miss = 0.0;
+  for (const CurvePlace& place :
+       nearest_between(spline, places, std::move(low), std::move(high))) {
+    miss = std::max(miss, place.distance);
+  }
   return spline;
 }
 
