@@ -68,6 +68,7 @@ std::vector<CurvePieces> pieces_of_curves(const FilmComplex& complex) {
     }
   }
   std::vector<CurvePieces> all;
+  all.reserve(ends.size());
   for (auto& [curve, points] : ends) {
     all.push_back({complex.curves[static_cast<std::size_t>(curve)].name,
                    std::move(points)});
