@@ -14,7 +14,7 @@ namespace meniscus {
 namespace {
 
 constexpr int kNormalRounds = 3;
-constexpr double kSamePlace = 1e-6;  // of a rim's length
+constexpr double kSamePlane = 0.9;  // cosine
 
 std::vector<double> turned(const std::vector<double>& knots, bool backwards) {
   return backwards ? reversed(SplineCurve{knots, {}}).knots : knots;
@@ -35,8 +35,7 @@ class FaceBuilder {
   RimSide rim_side(const FilmPatch& patch, int side) const;
   void set_knots();
   int vertex_of(int v);
-  Vec3 normal_of(int v) const;
-  bool at_corner(int v) const;
+  Vec3 normal_of(int v, bool& free) const;
   void fit_lines();
   PatchSides sides_of(const FilmPatch& patch) const;
   void measure_gaps(const FilmPatch& patch, const PatchSides& sides);
@@ -54,7 +53,7 @@ class FaceBuilder {
   std::map<int, int> nodes_;  // film vertex: brep vertex
   std::vector<int> line_edges_;
   std::vector<SplineCurve> line_normals_;
-  std::vector<std::array<bool, 2>> line_corner_;  // at their ends
+  std::vector<std::array<bool, 2>> line_free_;  // at their ends
 };
 
 double FaceBuilder::length_of(const std::vector<int>& chain) const {
@@ -151,37 +150,27 @@ int FaceBuilder::vertex_of(int v) {
   return nodes_[v];
 }
 
-/// The film's normal, at right angles to the rim.
-Vec3 FaceBuilder::normal_of(int v) const {
-  Vec3 normal = mesh().normals[v];
-  const int rim = film_.cut.rim_of[v];
-  if (rim >= 0) {
-    const RimEdges& edges = rims_[film_.rims[rim]];
-    const double place = edges.place(film_.cut.rim_position[v]);
-    const Vec3 tangent = edges.curve().tangent(place);
-    normal = (normal - normal.dot(tangent) * tangent).normalized();
-  }
-  return normal;
-}
-
-/// True at a sharp corner of a rim.
-bool FaceBuilder::at_corner(int v) const {
+/// The film's normal, at right angles to the rim; at a rim's corner to both of
+/// its sides. Where that is not the film's at all, the film has no tangent
+/// plane there, and `free` becomes true.
+Vec3 FaceBuilder::normal_of(int v, bool& free) const {
+  const Vec3& normal = mesh().normals[v];
+  free = false;
   const int rim = film_.cut.rim_of[v];
   if (rim < 0) {
-    return false;
+    return normal;
   }
   const RimEdges& edges = rims_[film_.rims[rim]];
-  const RimCurve& curve = edges.curve();
   const double place = edges.place(film_.cut.rim_position[v]);
-  for (int k = 0; k < curve.piece_count() && curve.piece_count() > 1; ++k) {
-    const double d = place - curve.start_of(k);
-    if (curve.is_sharp(k) &&
-        std::abs(d - curve.length() * std::round(d / curve.length())) <
-            kSamePlace * curve.length()) {
-      return true;
-    }
+  const int corner = edges.curve().sharp_corner(place);
+  if (corner >= 0) {
+    Vec3 both = edges.curve().corner_normal(corner);
+    both *= both.dot(normal) < 0.0 ? -1.0 : 1.0;
+    free = both.dot(normal) < kSamePlane;
+    return free ? normal : both;
   }
-  return false;
+  const Vec3 tangent = edges.curve().tangent(place);
+  return (normal - normal.dot(tangent) * tangent).normalized();
 }
 
 void FaceBuilder::fit_lines() {
@@ -197,11 +186,12 @@ void FaceBuilder::fit_lines() {
     fit.start = end_of(chain.front());
     fit.end = end_of(chain.back());
     const Vec3 none = Vec3::Zero();
-    const Vec3 start_normal = normal_of(chain.front());
-    const Vec3 end_normal = normal_of(chain.back());
-    line_corner_.push_back({at_corner(chain.front()), at_corner(chain.back())});
-    fit.start_normal = line_corner_[k][0] ? none : start_normal;
-    fit.end_normal = line_corner_[k][1] ? none : end_normal;
+    std::array<bool, 2> free{};
+    const Vec3 start_normal = normal_of(chain.front(), free[0]);
+    const Vec3 end_normal = normal_of(chain.back(), free[1]);
+    line_free_.push_back(free);
+    fit.start_normal = free[0] ? none : start_normal;
+    fit.end_normal = free[1] ? none : end_normal;
     line_edges_.push_back(static_cast<int>(brep_.edges.size()));
     brep_.edges.push_back({vertex_of(chain.front()), vertex_of(chain.back()),
                            fit_curve(fit), 0.0, 1.0});
@@ -248,9 +238,9 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
     sides.curves[side] = back ? reversed(curve) : curve;
     sides.normals[side] =
         back ? reversed(line_normals_[line]) : line_normals_[line];
-    sides.corner[side] = line_corner_[line];
+    sides.free_end[side] = line_free_[line];
     if (back) {
-      std::swap(sides.corner[side][0], sides.corner[side][1]);
+      std::swap(sides.free_end[side][0], sides.free_end[side][1]);
     }
     sides.at[side] = shares_of(patch.chains[side]);
   }

@@ -8,6 +8,7 @@
 #include "mesh_tet/quadratic.h"
 #include "pipeline/forward_model_impl.h"
 #include "pipeline/stage_meter.h"
+#include "pipeline/walls.h"
 
 namespace meniscus {
 
@@ -43,7 +44,38 @@ Points ForwardModel::Impl::to_film(const TetMesh& mesh,
 DesignStages::DesignStages(const ForwardModel& model) : model_(model) {}
 
 bool DesignStages::settle(const VectorX& design, StagedDesign& staged) const {
-  const ForwardModel::Impl& model = *model_.impl_;
+  return settle_on(*model_.impl_, design, staged);
+}
+
+bool DesignStages::place_mesh(StagedDesign& staged) const {
+  return place_on(*model_.impl_, staged);
+}
+
+bool DesignStages::mesh_of(const Case& input, const VectorX& design,
+                           Monitor* monitor, StagedDesign& staged) {
+  if (input.analysis.adapt) {
+    const ForwardModel model(input, {.monitor = monitor});
+    const DesignStages stages(model);
+    staged.evaluation.failure = model.failure();
+    return !model.failure() && stages.settle(design, staged) &&
+           stages.place_mesh(staged);
+  }
+  refuse_walls(input);
+  ForwardModel::Impl model;
+  model.input = input;
+  model.watcher = monitor;
+  Monitor& told = monitor != nullptr ? *monitor : silent_monitor();
+  const EvaluatedCase inputs = meniscus::evaluate(input, initial_design(input));
+  if (!model.freeze_film(inputs, {.monitor = monitor}, told) ||
+      !model.freeze_mesh({.monitor = &told}, told)) {
+    staged.evaluation.failure = model.frozen.failure;
+    return false;
+  }
+  return settle_on(model, design, staged) && place_on(model, staged);
+}
+
+bool DesignStages::settle_on(const ForwardModel::Impl& model,
+                             const VectorX& design, StagedDesign& staged) {
   Evaluation& result = staged.evaluation;
   result.design = design;
   try {
@@ -63,8 +95,8 @@ bool DesignStages::settle(const VectorX& design, StagedDesign& staged) const {
   return !result.failure;
 }
 
-bool DesignStages::place_mesh(StagedDesign& staged) const {
-  const ForwardModel::Impl& model = *model_.impl_;
+bool DesignStages::place_on(const ForwardModel::Impl& model,
+                            StagedDesign& staged) {
   Evaluation& result = staged.evaluation;
   const StageMeter meter;
   QuadraticSurface& surface = staged.fields.surface;

@@ -71,7 +71,7 @@ void faceted_step(ExportJob& job, const fs::path& file) {
 }
 
 CalculixDeck deck(ExportJob& job) {
-  const EvaluationFields& fields = job.fields();
+  const EvaluationFields& fields = job.meshed();
   CalculixDeck deck = calculix_deck_of(job.input(), fields.inputs, fields.mesh);
   const FileNotes notes = job.notes();
   deck.comments.insert(deck.comments.begin(), notes.program);
@@ -81,11 +81,11 @@ CalculixDeck deck(ExportJob& job) {
 }
 
 void inp(ExportJob& job, const fs::path& file) {
-  write_calculix_inp(file, job.fields().mesh, deck(job));
+  write_calculix_inp(file, job.meshed().mesh, deck(job));
 }
 
 void bdf(ExportJob& job, const fs::path& file) {
-  write_nastran_bdf(file, job.fields().mesh, deck(job));
+  write_nastran_bdf(file, job.meshed().mesh, deck(job));
 }
 
 void msh(ExportJob& job, const fs::path& file) {
