@@ -7,7 +7,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr double kSamePlace = 1e-9;  // of the rim's length
+constexpr double kSameRimPlace = 1e-9;  // of the rim's length
 
 double apart(double s, double t, double length) {
   const double d = s - t;
@@ -35,7 +35,7 @@ void RimEdges::build(double tolerance, Brep& brep) {
       }
     }
   };
-  put(exact_, kSamePlace * length);
+  put(exact_, kSameRimPlace * length);
   put(wanted_, tolerance);
   if (places_.empty()) {
     places_.push_back(0.0);

@@ -32,7 +32,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kShown = 12;        // edges that a message lists
+constexpr int kNamesShown = 12;   // edges that a message lists
 constexpr double kClosed = 1e-6;  // gap between edges [their length]
 
 std::string text_of(const Vec3& p) {
@@ -234,7 +234,7 @@ int StepEdges::Impl::find(const std::string& edge) const {
   std::erase(names, "");
   const std::string near = nearest_name(edge, names);
   std::vector<std::string> there;
-  for (int k = 1; k <= edges.Extent() && k <= kShown; ++k) {
+  for (int k = 1; k <= edges.Extent() && k <= kNamesShown; ++k) {
     if (!BRep_Tool::Degenerated(TopoDS::Edge(edges(k)))) {
       there.push_back(described(k));
     }
@@ -243,7 +243,7 @@ int StepEdges::Impl::find(const std::string& edge) const {
       "{} has no edge '{}'{}; it has {}, by number: {}{}", file.path.string(),
       edge, near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
       edges.Extent(), fmt::join(there, "; "),
-      edges.Extent() > kShown ? "; ..." : ""));
+      edges.Extent() > kNamesShown ? "; ..." : ""));
 }
 
 int StepEdges::Impl::find_face(const std::string& face) const {
@@ -272,8 +272,8 @@ int StepEdges::Impl::find_face(const std::string& face) const {
     return number;
   }
   const std::string near = nearest_name(face, names);
-  if (names.size() > kShown) {
-    names.resize(kShown);
+  if (names.size() > kNamesShown) {
+    names.resize(kNamesShown);
     names.emplace_back("...");
   }
   throw InvalidInput(fmt::format(

@@ -126,8 +126,8 @@ std::string load_key(CaseContext& context, const CaseTable& table,
   return "";
 }
 
-void check_keys(CaseContext& context, const CaseTable& table,
-                const std::string& key) {
+void check_load_keys(CaseContext& context, const CaseTable& table,
+                     const std::string& key) {
   const LoadKeys& keys = load_keys().at(key);
   if (keys.on_surface && !table.has("on")) {
     context.problems.add(table.line(),
@@ -169,7 +169,7 @@ void read_load(CaseContext& context, const CaseTable& table, const Case& result,
   if (key.empty()) {
     return;
   }
-  check_keys(context, table, key);
+  check_load_keys(context, table, key);
   load.kind = load_keys().at(key).kind;
   if (key == "force" && (table.has("at") || table.has("moment"))) {
     load.kind = LoadKind::Remote;

@@ -11,30 +11,30 @@
 
 namespace meniscus {
 
-using Json = nlohmann::json;  // sent as CBOR, which knows plain bytes
+using Cbor = nlohmann::json;  // sent as CBOR, which knows plain bytes
 
 namespace {
 
 constexpr std::array<const char*, 3> kKinds = {"part", "film", "overview"};
 
-Json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Cbor to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-Vec3 to_vector(const Json& json) {
+Vec3 to_vector(const Cbor& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(),
           json.at(2).get<double>()};
 }
 
 template <class Item>
-Json pack(const std::vector<Item>& items) {
+Cbor pack(const std::vector<Item>& items) {
   std::vector<std::uint8_t> bytes(items.size() * sizeof(Item));
   if (!bytes.empty()) {
     std::memcpy(bytes.data(), items.data(), bytes.size());
   }
-  return Json::binary(std::move(bytes));
+  return Cbor::binary(std::move(bytes));
 }
 
 template <class Item>
-std::vector<Item> unpack(const Json& json) {
+std::vector<Item> unpack(const Cbor& json) {
   const auto& bytes = json.get_binary();
   std::vector<Item> items(bytes.size() / sizeof(Item));
   if (items.size() * sizeof(Item) != bytes.size()) {
@@ -51,7 +51,7 @@ std::vector<Item> unpack(const Json& json) {
 class Shapes {
  public:
   template <class Data>
-  Json source(const PictureSource<Data>& from) {
+  Cbor source(const PictureSource<Data>& from) {
     if (from.data == nullptr) {
       return from.file;
     }
@@ -62,10 +62,10 @@ class Shapes {
     return at->second;
   }
 
-  Json take() { return std::move(all_); }
+  Cbor take() { return std::move(all_); }
 
  private:
-  static Json shape(const PictureSurface& surface) {
+  static Cbor shape(const PictureSurface& surface) {
     return {{"points", pack(surface.mesh.points)},
             {"facets", pack(surface.mesh.facets)},
             {"facet_label", pack(surface.mesh.facet_label)},
@@ -75,22 +75,22 @@ class Shapes {
             {"length_unit", surface.length_unit},
             {"stress_unit", surface.stress_unit}};
   }
-  static Json shape(const PictureTets& tets) {
+  static Cbor shape(const PictureTets& tets) {
     return {{"points", pack(tets.nodes)}, {"corners", pack(tets.corners)}};
   }
 
   std::map<const void*, std::size_t> numbers_;
-  Json all_ = Json::array();
+  Cbor all_ = Cbor::array();
 };
 
 /// The shapes back, each once.
 class StoredShapes {
  public:
-  explicit StoredShapes(const Json& all) : all_(all) {}
+  explicit StoredShapes(const Cbor& all) : all_(all) {}
 
   template <class Data>
   PictureSource<Data> source(
-      const Json& json,
+      const Cbor& json,
       std::map<std::size_t, std::shared_ptr<Data>>& made) const {
     if (json.is_string()) {
       return {nullptr, json.get<std::string>()};
@@ -122,7 +122,7 @@ class StoredShapes {
     }
   }
 
-  static void fill(const Json& json, PictureSurface& surface) {
+  static void fill(const Cbor& json, PictureSurface& surface) {
     SurfaceMesh& mesh = surface.mesh;
     mesh.points = unpack<Vec3>(json.at("points"));
     mesh.facets = unpack<Triangle>(json.at("facets"));
@@ -144,16 +144,16 @@ class StoredShapes {
       throw InvalidInput("picture jobs: a surface's arrays do not fit");
     }
   }
-  static void fill(const Json& json, PictureTets& tets) {
+  static void fill(const Cbor& json, PictureTets& tets) {
     tets.nodes = unpack<Vec3>(json.at("points"));
     tets.corners = unpack<std::array<int, 4>>(json.at("corners"));
     check(tets.corners, tets.nodes.size());
   }
 
-  const Json& all_;
+  const Cbor& all_;
 };
 
-PictureJob to_job(const Json& json, StoredShapes& shapes) {
+PictureJob to_job(const Cbor& json, StoredShapes& shapes) {
   PictureJob job;
   const auto kind = std::find(kKinds.begin(), kKinds.end(),
                               json.at("kind").get<std::string>());
@@ -171,7 +171,7 @@ PictureJob to_job(const Json& json, StoredShapes& shapes) {
   json.at("height").get_to(job.height);
   json.at("supports").get_to(job.supports);
   json.at("solids").get_to(job.solids);
-  for (const Json& load : json.at("loads")) {
+  for (const Cbor& load : json.at("loads")) {
     job.loads.push_back({load.at("surface").get<std::string>(),
                          to_vector(load.at("direction")),
                          load.at("label").get<std::string>()});
@@ -192,8 +192,8 @@ PictureJob to_job(const Json& json, StoredShapes& shapes) {
   return job;
 }
 
-Json to_json(const PictureJob& job, Shapes& shapes) {
-  Json loads = Json::array();
+Cbor to_json(const PictureJob& job, Shapes& shapes) {
+  Cbor loads = Cbor::array();
   for (const PictureLoad& load : job.loads) {
     loads.push_back({{"surface", load.surface},
                      {"direction", to_json(load.direction)},
@@ -220,25 +220,25 @@ Json to_json(const PictureJob& job, Shapes& shapes) {
 
 std::string to_bytes(const std::vector<PictureJob>& jobs) {
   Shapes shapes;
-  Json list = Json::array();
+  Cbor list = Cbor::array();
   for (const PictureJob& job : jobs) {
     list.push_back(to_json(job, shapes));
   }
   std::string bytes;
-  Json::to_cbor({{"jobs", std::move(list)}, {"shapes", shapes.take()}}, bytes);
+  Cbor::to_cbor({{"jobs", std::move(list)}, {"shapes", shapes.take()}}, bytes);
   return bytes;
 }
 
 std::vector<PictureJob> picture_jobs_from_bytes(const std::string& bytes) {
   try {
-    const Json all = Json::from_cbor(bytes);
+    const Cbor all = Cbor::from_cbor(bytes);
     StoredShapes shapes(all.at("shapes"));
     std::vector<PictureJob> jobs;
-    for (const Json& job : all.at("jobs")) {
+    for (const Cbor& job : all.at("jobs")) {
       jobs.push_back(to_job(job, shapes));
     }
     return jobs;
-  } catch (const Json::exception& error) {
+  } catch (const Cbor::exception& error) {
     throw InvalidInput(std::string("picture jobs: ") + error.what());
   }
 }

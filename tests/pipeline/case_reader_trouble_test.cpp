@@ -20,17 +20,17 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-struct Mistake {
+struct Trouble {
   const char* name;
   const char* from;  // in strut()
   const char* to;
   const char* message;  // must appear in the first problem, after "case.toml:"
 };
 
-class MistakeTest : public testing::TestWithParam<Mistake> {};
+class MistakeTest : public testing::TestWithParam<Trouble> {};
 
 TEST_P(MistakeTest, IsToldWithItsLine) {
-  const Mistake& mistake = GetParam();
+  const Trouble& mistake = GetParam();
   const std::vector<std::string> problems =
       problems_of(changed(strut(), mistake.from, mistake.to));
   ASSERT_EQ(problems.size(), 1U) << testing::PrintToString(problems);
@@ -38,7 +38,7 @@ TEST_P(MistakeTest, IsToldWithItsLine) {
               HasSubstr(std::string("case.toml:") + mistake.message));
 }
 
-const Mistake kMistakes[] = {
+const Trouble kMistakes[] = {
     {"MissingTitle", "title = \"A strut\"", "",
      "1: the file has no 'title' (one line for people); add it"},
     {"UnknownUnits", "mm-N-MPa", "mm-N",

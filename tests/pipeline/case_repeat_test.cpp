@@ -55,8 +55,9 @@ thickness = 0.1
 fea = 4
 )case";
 
-std::vector<std::string> problems_of(std::string text, const std::string& from,
-                                     const std::string& to) {
+std::vector<std::string> problems_of_repeated(std::string text,
+                                              const std::string& from,
+                                              const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
@@ -137,30 +138,32 @@ fea = 6
 
 TEST(CaseRepeat, ErrorsNameLineAndCopy) {
   EXPECT_THAT(
-      problems_of(kRing, "\"node_{i % spokes + 1}_{j}\"",
-                  "\"node_{i + 1}_{j}\""),
+      problems_of_repeated(kRing, "\"node_{i % spokes + 1}_{j}\"",
+                           "\"node_{i + 1}_{j}\""),
       ElementsAre(AllOf(HasSubstr("case.toml:25:"), HasSubstr("'node_7_1'")),
                   AllOf(HasSubstr("case.toml:25:"), HasSubstr("'node_7_2'"))));
-  EXPECT_THAT(problems_of(kRing, "radius = 4", "radius = \"4 - i\""),
+  EXPECT_THAT(problems_of_repeated(kRing, "radius = 4", "radius = \"4 - i\""),
               Contains(AllOf(HasSubstr("case.toml:"), HasSubstr("node_4_1"))));
-  EXPECT_THAT(problems_of(kRing, "{i % spokes + 1}", "{i % spokes + }"),
-              Contains(AllOf(HasSubstr("case.toml:25"),
-                             HasSubstr("'{i % spokes + }'"))));
-  EXPECT_THAT(problems_of(kRing, "{i % spokes + 1}", "{i / 4}"),
+  EXPECT_THAT(
+      problems_of_repeated(kRing, "{i % spokes + 1}", "{i % spokes + }"),
+      Contains(
+          AllOf(HasSubstr("case.toml:25"), HasSubstr("'{i % spokes + }'"))));
+  EXPECT_THAT(problems_of_repeated(kRing, "{i % spokes + 1}", "{i / 4}"),
               Contains(HasSubstr("1 / 4, which is no whole number")));
-  EXPECT_THAT(problems_of(kRing, "{i % spokes + 1}", "{count}"),
+  EXPECT_THAT(problems_of_repeated(kRing, "{i % spokes + 1}", "{count}"),
               Contains(HasSubstr("'count', which has no constant value")));
   EXPECT_THAT(
-      problems_of(kRing, "spokes = 6", "spokes = 2.5"),
+      problems_of_repeated(kRing, "spokes = 6", "spokes = 2.5"),
       Contains(AllOf(HasSubstr("case.toml:10: curves.node.repeat is 2.5"),
                      HasSubstr("whole number"))));
-  EXPECT_THAT(problems_of(kRing, "spokes = 6", "spokes = 6\ni = 2"),
+  EXPECT_THAT(problems_of_repeated(kRing, "spokes = 6", "spokes = 6\ni = 2"),
               Contains(HasSubstr("counts with i, which is also a parameter")));
-  EXPECT_THAT(problems_of(kRing, "[walls.all]", "[walls.rib_2]"),
+  EXPECT_THAT(problems_of_repeated(kRing, "[walls.all]", "[walls.rib_2]"),
               Contains(HasSubstr("makes 'rib_2', which is there already")));
-  EXPECT_THAT(problems_of(kRing, "repeat = [\"spokes\", 2]\n[curves.far]",
-                          "repeat = [500, 500]\n[curves.far]"),
-              Contains(HasSubstr("at most 4000 are taken")));
+  EXPECT_THAT(
+      problems_of_repeated(kRing, "repeat = [\"spokes\", 2]\n[curves.far]",
+                           "repeat = [500, 500]\n[curves.far]"),
+      Contains(HasSubstr("at most 4000 are taken")));
 }
 
 /// Two tubes that end on curves of their own in one place; `second` is the
@@ -232,10 +235,11 @@ TEST(CaseMerge, CurvesThatPartOrOnlyTouchAreRefused) {
                      HasSubstr("part where design variables"))));
   EXPECT_THAT(read_case_text(tubes("1.001 * wide"), "case.toml").problems,
               IsEmpty());  // near, and two
-  EXPECT_THAT(problems_of(tubes("wide"), "curves = [\"low\", \"middle\"]",
-                          "curves = [\"same\", \"middle\"]"),
-              Contains(HasSubstr("names the curves 'same' and 'middle', which "
-                                 "lie on each other")));
+  EXPECT_THAT(
+      problems_of_repeated(tubes("wide"), "curves = [\"low\", \"middle\"]",
+                           "curves = [\"same\", \"middle\"]"),
+      Contains(HasSubstr("names the curves 'same' and 'middle', which "
+                         "lie on each other")));
 }
 
 }  // namespace
