@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "evolve/grooming.h"
-#include "evolve/start_edge.h"
 #include "io/atomic_file.h"
 #include "pipeline/calculix_export.h"
 #include "pipeline/results.h"
@@ -77,10 +76,7 @@ std::optional<double> counted(double operations) {
 }
 
 SurfaceMesh start_surface(const EvaluationFields& fields) {
-  return build_start(
-             fields.inputs.film_system,
-             start_edge(fields.inputs.film_system, fields.inputs.fea_edge))
-      .mesh;
+  return build_start(fields.inputs.film_system, fields.start_edge).mesh;
 }
 
 /// The files of a run that hold the part, and the deck as it would be exported.
