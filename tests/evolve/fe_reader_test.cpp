@@ -1,6 +1,6 @@
 // The datafile language on small files of our own: what is read, what is
 // refused and how.
-#include <chrono>
+#include <ctime>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -344,13 +344,13 @@ TEST(FeReader, EndsOnLargeGarbageInBoundedTime) {
     while (text.size() < kSize) {
       text += text;
     }
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();  // whatever else runs
     const std::string message = message_of_text(text);
-    const std::chrono::duration<double> taken =
-        std::chrono::steady_clock::now() - start;
+    const double taken =
+        static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     EXPECT_THAT(message, StartsWith("a.fe:")) << pattern;
     EXPECT_LT(message.size(), 1000) << pattern;
-    EXPECT_LT(taken.count(), kSeconds) << pattern;
+    EXPECT_LT(taken, kSeconds) << pattern;
   }
 }
 
