@@ -28,7 +28,8 @@ template <class Item>
 Cbor pack(const std::vector<Item>& items) {
   std::vector<std::uint8_t> bytes(items.size() * sizeof(Item));
   if (!bytes.empty()) {
-    std::memcpy(bytes.data(), items.data(), bytes.size());
+    std::memcpy(bytes.data(), static_cast<const void*>(items.data()),
+                bytes.size());
   }
   return Cbor::binary(std::move(bytes));
 }
