@@ -31,15 +31,23 @@ std::filesystem::path results_folder(const Case& input,
                      : std::filesystem::path(out);
 }
 
-std::pair<std::string, double> named_number(const std::string& option,
-                                            const std::string& text) {
+std::pair<std::string, std::string> named_text(const std::string& option,
+                                               const std::string& text,
+                                               const char* expected) {
   const std::size_t at = text.find('=');
   if (at == std::string::npos || at == 0) {
-    throw InvalidInput(fmt::format("{} {}: expected NAME=VALUE", option, text));
+    throw InvalidInput(
+        fmt::format("{} {}: expected {}", option, text, expected));
   }
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+std::pair<std::string, double> named_number(const std::string& option,
+                                            const std::string& text) {
+  const auto [name, value] = named_text(option, text, "NAME=VALUE");
   try {
-    return {text.substr(0, at), Expression::parse(text.substr(at + 1), {})
-                                    .evaluate(std::span<const double>())};
+    return {name,
+            Expression::parse(value, {}).evaluate(std::span<const double>())};
   } catch (const ExpressionError& error) {
     throw InvalidInput(fmt::format("{} {}: {}", option, text, error.what()));
   }

@@ -18,6 +18,13 @@ CaseReading read_case_aloud(const std::string& path,
 /// `out`, or results/<case name> below the working folder.
 std::filesystem::path results_folder(const Case& input, const std::string& out);
 
+/// What stands before and behind the first '=' of the `text` that `option` was
+/// given. Throws InvalidInput with both and what is `expected` where there is
+/// none or nothing before it.
+std::pair<std::string, std::string> named_text(const std::string& option,
+                                               const std::string& text,
+                                               const char* expected);
+
 /// "NAME=VALUE" that `option` ("--at") was given; VALUE is an expression
 /// without names. Throws InvalidInput, naming both, for anything else.
 std::pair<std::string, double> named_number(const std::string& option,

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/case_input.h"
 #include "app/commands.h"
 #include "app/exit_code.h"
 #include "app/report_file.h"
@@ -69,19 +70,12 @@ void keep_surface(const Case& input, const EvaluationFields& fields,
   write_part_surface(folder / parts.back().surface, input, fields);
 }
 
-/// NAME=FACE as FACE and NAME.
 FaceNames face_names(const std::vector<std::string>& texts) {
   FaceNames names;
   for (const std::string& text : texts) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0 ||
-        equals + 1 == text.size()) {
-      throw InvalidInput(fmt::format(
-          "--face {}: NAME=FACE is expected, NAME of the run's, FACE of the "
-          "file's surfaces",
-          text));
-    }
-    names[text.substr(equals + 1)] = text.substr(0, equals);
+    auto [name, face] = named_text(
+        "--face", text, "NAME=FACE, the run's name and the file's surface");
+    names[std::move(face)] = std::move(name);
   }
   return names;
 }

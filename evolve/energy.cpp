@@ -22,10 +22,6 @@ constexpr double kConeSlopeWork = 55.0;
 constexpr double kLumpWork = 25.0;
 constexpr double kCosineWork = 48.0;
 
-std::array<Vec3, 3> corners_of(const Points& points, const Triangle& t) {
-  return {points[t[0]], points[t[1]], points[t[2]]};
-}
-
 }  // namespace
 
 FilmTargets targets_of(const FilmComplex& complex) {

@@ -10,11 +10,17 @@
 ///   volume of the cone to the origin V = a . (b x c) / 6.
 #pragma once
 
+#include <array>
+
 #include <Eigen/Geometry>
 
 #include "core/types.h"
 
 namespace meniscus {
+
+inline std::array<Vec3, 3> corners_of(const Points& points, const Triangle& t) {
+  return {points[t[0]], points[t[1]], points[t[2]]};
+}
 
 struct FacetFrame {
   std::array<Vec3, 3> corner;    // relative to the local origin [length]

@@ -19,10 +19,6 @@ constexpr std::array<std::array<double, 2>, 4> kSlope = {{{1.0, 2.0 / 3.0},
                                                           {-2.0, 1.0 / 12.0}}};
 constexpr double kTermStep = 1e-3;
 
-Corners corners_of(const Points& points, const Triangle& t) {
-  return {points[t[0]], points[t[1]], points[t[2]]};
-}
-
 /// What a motion of its corners does to a facet.
 struct FacetMotion {
   std::array<Vec3, 3> opposite;  // of e_i

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlopt.hpp>
 
+#include "optimize/nlopt_vector.h"
+
 namespace meniscus {
 namespace {
 
@@ -61,10 +63,6 @@ double objective(unsigned n, const double* x, double* /*gradient*/,
     return penalty;
   }
   return answer->failure ? penalty : cost_of(*answer);
-}
-
-std::vector<double> to_vector(const VectorX& x) {
-  return {x.data(), x.data() + x.size()};
 }
 
 const char* words(nlopt::result result) {
