@@ -13,6 +13,7 @@ namespace meniscus {
 
 namespace {
 
+constexpr double kNearRest = 1e-3;   // of the residual / (tension x edge)
 constexpr double kUnresolved = 2.0;  // neck below this many edges: pinching
 constexpr double kThinned = 0.2;     // a settled film's neck / the usual one
 constexpr double kThinning = 0.5;    // the same where no equilibrium was found
@@ -23,6 +24,23 @@ std::string place(const Vec3& p) {
 
 constexpr const char* kAdvice =
     "a larger volume, shorter arms or larger rims would help";
+
+/// Normals that turn at every step make Newton's steps shrink by a factor only,
+/// and on a coarse film that may be near 1. From near rest it goes on along the
+/// normals as they are, where it converges quadratically.
+NewtonResult along_its_normals(const FilmEnergy& energy,
+                               const FilmTargets& targets,
+                               NewtonOptions options, NewtonResult near) {
+  options.rule = DirectionRule::Fixed;
+  NewtonResult found =
+      FilmNewton(energy, targets, options)
+          .run(near.points, energy.space().directions(near.points), {});
+  if (!found.converged) {
+    return near;
+  }
+  found.iterations += near.iterations;
+  return found;
+}
 
 FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
                  const FilmTargets& targets, const Points& base,
@@ -41,6 +59,10 @@ FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
                        .monitor = options.monitor};
   NewtonResult found =
       FilmNewton(energy, targets, newton).run(base, directions, start);
+  if (!found.converged && rule == DirectionRule::CurrentNormals &&
+      found.residual <= kNearRest * tension * energy.mean_edge(base)) {
+    found = along_its_normals(energy, targets, newton, std::move(found));
+  }
   if (!found.converged) {
     newton.aim = NewtonAim::Equilibrium;
     newton.max_iterations = std::min(20, options.max_iterations);
