@@ -21,4 +21,11 @@ SurfaceMesh fill_disk(
     const Points& rim, double edge,
     const std::function<double(const Vec3&)>& edge_field = {});
 
+/// The same with holes: `holes` are closed polygons inside `rim`, in either
+/// direction, clear of it and of each other; their points come after the
+/// rim's. Throws MeshError also where a hole is not inside.
+SurfaceMesh fill_disk(
+    const Points& rim, const std::vector<Points>& holes, double edge,
+    const std::function<double(const Vec3&)>& edge_field = {});
+
 }  // namespace meniscus

@@ -106,6 +106,9 @@ std::vector<FilmGradient> FilmModel::transpose(
   for (const FilmCovector& response : responses) {
     impl_->check_response(response);
   }
+  if (impl_->energy->unknowns() == 0) {
+    return impl_->rigid_gradients(responses);
+  }
   const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
                             film.directions, state.points, state.heights,
                             film.pressure);

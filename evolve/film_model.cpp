@@ -21,10 +21,6 @@ namespace meniscus {
 
 namespace {
 
-/// Refinements whose vertices a meshed surface uses: a split facet's corners
-/// are of the first, its mid-sides of the second.
-constexpr int kMeshedLevels = 2;
-
 /// Steps from the reference to a design: first in one, then in parts, which
 /// are fixed so that the film depends on the design alone.
 constexpr std::array<int, 2> kParts = {1, 4};
@@ -192,6 +188,10 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   monitor.progress({"film", "building the start", 0.0});
+  if (initial.films.empty()) {
+    build_rigid(initial, options);
+    return;
+  }
   const int halvings = start_halvings(initial, options.edge);
   complex = build_start(initial, start_edge(initial, options.edge));
   monitor.progress({"film", "settling the raw start", 0.1});
@@ -200,11 +200,7 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
-    Refinement finer = refine(complex);
-    complex = std::move(finer.complex);
-    if (level < kMeshedLevels) {
-      parents.insert(parents.end(), finer.parents.begin(), finer.parents.end());
-    }
+    refine_once(level);
     if (!reference.failure) {
       energy.emplace(complex);
       reference = settle_in_normals(*energy, complex, targets_of(complex),
@@ -217,6 +213,9 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
 FilmState FilmModel::Impl::settle_in_parts(const Points& moves,
                                            const FilmTargets& goal, int parts,
                                            const SettleOptions& options) const {
+  if (energy->unknowns() == 0) {
+    return rigid_state(carry->at(moves, 1.0), goal);
+  }
   FilmState state;
   int iterations = 0;
   try {

@@ -38,12 +38,19 @@ struct FilmModel::Impl {
   void find_reference(const FilmSystem& initial,
                       const FilmModelOptions& options,
                       const SettleOptions& settle);
+  void build_rigid(const FilmSystem& initial, const FilmModelOptions& options);
+  /// One level finer; keeps the new vertices' parents where a meshed surface
+  /// uses them.
+  void refine_once(int level);
+  FilmState rigid_state(const Points& points, const FilmTargets& goal) const;
   EdgeMiddles middles() const;
   std::vector<char> straight() const;
   /// A state that settle() gave for `system`. Throws InvalidInput for others.
   AtRest at_rest(const FilmState& state, const FilmSystem& system) const;
   void check_response(const FilmCovector& response) const;
   std::vector<RimGradient> rim_gradients(const Points& by_base) const;
+  std::vector<FilmGradient> rigid_gradients(
+      const std::vector<FilmCovector>& responses) const;
   FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,
                             int parts, const SettleOptions& options) const;
 };

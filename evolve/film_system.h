@@ -29,7 +29,10 @@ struct FilmSpec {
   std::optional<Expression> tension_field;
 };
 
-/// Flat solid disk across a planar closed curve; carries no tension.
+/// Flat solid disk across a planar closed curve; carries no tension. Caps of one
+/// name, which follow each other, are one surface: a curve that lies within
+/// another one's disk is a hole in it. Where polygons have the same side their
+/// disks are joined (evolve/shared_sides.h).
 struct CapSpec {
   std::string name;
   std::string curve;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -8,6 +9,7 @@
 
 #include "core/error.h"
 #include "evolve/body_sides.h"
+#include "evolve/cap_faces.h"
 #include "evolve/disk_fill.h"
 #include "evolve/fields.h"
 #include "evolve/grooming.h"
@@ -16,25 +18,24 @@
 #include "evolve/raise_disks.h"
 #include "evolve/rim_grading.h"
 #include "evolve/rim_stitcher.h"
+#include "evolve/shared_sides.h"
 #include "evolve/tension_field.h"
 
 namespace meniscus {
 
 namespace {
 
-// A point of a cap may be this far off its plane [curve's size].
-constexpr double kFlatness = 1e-9;
-
 struct Rim {
   int curve = 0;
-  int first = 0;  // id of its first point; the others follow
-  int count = 0;
+  std::vector<int> ids;  // of its points, in order
+
+  int count() const { return static_cast<int>(ids.size()); }
 };
 
 class StartBuilder {
  public:
   StartBuilder(const FilmSystem& system, double edge)
-      : system_(system), edge_(edge) {}
+      : system_(system), edge_(edge), shared_(system.curves) {}
 
   FilmComplex build() {
     check_names();
@@ -47,6 +48,7 @@ class StartBuilder {
     for (const CapSpec& cap : system_.caps) {
       rim_of(cap.curve, cap.name);
     }
+    shared_.mark_edges(result_);
     for (const FilmSpec& film : system_.films) {
       add_film(film);
     }
@@ -100,8 +102,12 @@ class StartBuilder {
                         film.name, film.tension));
       }
     }
+    std::string last;  // faces of one name follow each other
     for (const CapSpec& cap : system_.caps) {
-      add(cap.name);
+      if (cap.name != last) {
+        add(cap.name);
+      }
+      last = cap.name;
     }
   }
 
@@ -122,21 +128,30 @@ class StartBuilder {
     }
     Rim rim;
     rim.curve = static_cast<int>(found - system_.curves.begin());
-    rim.first = static_cast<int>(result_.mesh.points.size());
     const std::vector<double> t = sample_parameters(found->shape, edge_);
+    if (shared_.shares(rim.curve)) {
+      rim.ids = shared_.rim(rim.curve, t, result_);
+      return rims_.emplace(curve_name, rim).first->second;
+    }
+    rim.ids.resize(t.size());
+    std::iota(rim.ids.begin(), rim.ids.end(),
+              static_cast<int>(result_.mesh.points.size()));
     const Points points = points_at(found->shape, t);
     result_.mesh.points.insert(result_.mesh.points.end(), points.begin(),
                                points.end());
     for (const double at : t) {
       result_.vertices.push_back({VertexKind::OnCurve, rim.curve, at});
-      ++rim.count;
     }
     return rims_.emplace(curve_name, rim).first->second;
   }
 
   Points points_of(const Rim& rim) const {
-    const auto first = result_.mesh.points.begin() + rim.first;
-    return {first, first + rim.count};
+    Points points;
+    points.reserve(rim.ids.size());
+    for (const int id : rim.ids) {
+      points.push_back(result_.mesh.points[id]);
+    }
+    return points;
   }
 
   int add_surface(const ComplexSurface& surface) {
@@ -169,7 +184,7 @@ class StartBuilder {
         break;
       case FilmKind::Disk:
         require_curves(film, 1);
-        fill(rim_of(film.curves[0], film.name), label, VertexKind::Free);
+        fill({rim_of(film.curves[0], film.name)}, label, VertexKind::Free);
         break;
     }
   }
@@ -188,51 +203,61 @@ class StartBuilder {
     const Rim high = rim_of(film.curves[1], film.name);
     for (Triangle t : loft_band(points_of(low), points_of(high))) {
       for (int& v : t) {
-        v += v < low.count ? low.first : high.first - low.count;
+        v = v < low.count() ? low.ids[v] : high.ids[v - low.count()];
       }
       add_facet(t, label);
     }
   }
 
-  void fill(const Rim& rim, int label, VertexKind kind) {
-    SurfaceMesh disk;
-    try {
-      const Points points = points_of(rim);
-      disk = has_many_sides(system_.curves[rim.curve].shape)
-                 ? fill_disk(points, edge_, graded_edge(points, edge_))
-                 : fill_disk(points, edge_);
-    } catch (const MeshError& error) {
-      throw InvalidInput(fmt::format(
-          "curve '{}': {}", system_.curves[rim.curve].name, error.what()));
+  /// The first of the rims filled, the others left open.
+  void fill(const std::vector<Rim>& rims, int label, VertexKind kind) {
+    std::vector<Points> loops;
+    std::vector<int> ids;
+    bool graded = false;
+    for (const Rim& rim : rims) {
+      loops.push_back(points_of(rim));
+      ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
+      graded = graded || shared_.shares(rim.curve) ||
+               has_many_sides(system_.curves[rim.curve].shape);
     }
+    const SurfaceMesh disk =
+        fill_face(loops, edge_, graded, system_.curves[rims[0].curve].name);
+    const auto known = static_cast<int>(ids.size());
     const int first_inner = static_cast<int>(result_.mesh.points.size());
-    for (std::size_t i = rim.count; i < disk.points.size(); ++i) {
+    for (std::size_t i = ids.size(); i < disk.points.size(); ++i) {
       result_.mesh.points.push_back(disk.points[i]);
       result_.vertices.push_back({kind, -1, 0.0});
     }
     for (Triangle t : disk.facets) {
       for (int& v : t) {
-        v += v < rim.count ? rim.first : first_inner - rim.count;
+        v = v < known ? ids[v] : first_inner + v - known;
       }
       add_facet(t, label);
     }
   }
 
-  void add_cap(const CapSpec& cap) {
-    const Rim rim = rim_of(cap.curve, cap.name);
-    const Points points = points_of(rim);
-    const Vec3 normal = polygon_area_vector(points).normalized();
-    const double size = bounding_diagonal(points);
-    for (const Vec3& p : points) {
-      const double off = std::abs(normal.dot(p - points[0]));
-      if (!(off <= kFlatness * size)) {
-        throw InvalidInput(fmt::format(
-            "cap '{}': curve '{}' is not planar, ({:.6g}, {:.6g}, {:.6g}) is "
-            "{:.3g} off its plane; use a film of kind disk or a planar curve",
-            cap.name, cap.curve, p.x(), p.y(), p.z(), off));
+  /// All faces of one name, with the first of them.
+  void add_cap(const CapSpec& first) {
+    if (result_.mesh.label_of(first.name) >= 0) {
+      return;
+    }
+    const int label = add_surface({first.name, false, 0.0});
+    std::vector<Rim> rims;
+    std::vector<Points> loops;
+    for (const CapSpec& cap : system_.caps) {
+      if (cap.name == first.name) {
+        rims.push_back(rim_of(cap.curve, cap.name));
+        loops.push_back(points_of(rims.back()));
+        require_flat(loops.back(), cap.name, cap.curve);
       }
     }
-    fill(rim, add_surface({cap.name, false, 0.0}), VertexKind::InCap);
+    for (const std::vector<int>& face : faces_with_holes(loops)) {
+      std::vector<Rim> bounds;
+      for (const int k : face) {
+        bounds.push_back(rims[k]);
+      }
+      fill(bounds, label, VertexKind::InCap);
+    }
   }
 
   void add_branch(const FilmSpec& film, int label);
@@ -303,6 +328,7 @@ class StartBuilder {
   double edge_;
   FilmComplex result_;
   std::map<std::string, Rim> rims_;
+  SharedRims shared_;
 };
 
 void StartBuilder::add_branch(const FilmSpec& film, int label) {
@@ -328,9 +354,7 @@ void StartBuilder::add_branch(const FilmSpec& film, int label) {
   keep_hull_facets(film, rims, points, facets);
   std::vector<int> ids;
   for (const Rim& rim : rims) {
-    for (int i = 0; i < rim.count; ++i) {
-      ids.push_back(rim.first + i);
-    }
+    ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
   }
   for (const Triangle& t : facets) {
     add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
@@ -344,7 +368,8 @@ void StartBuilder::keep_hull_facets(const FilmSpec& film,
                                     std::vector<Triangle>& facets) {
   std::vector<int> rim_of_point;
   for (std::size_t r = 0; r < rims.size(); ++r) {
-    rim_of_point.insert(rim_of_point.end(), rims[r].count, static_cast<int>(r));
+    rim_of_point.insert(rim_of_point.end(), rims[r].ids.size(),
+                        static_cast<int>(r));
   }
   std::erase_if(facets, [&](const Triangle& t) {
     return rim_of_point[t[0]] == rim_of_point[t[1]] &&
@@ -354,7 +379,7 @@ void StartBuilder::keep_hull_facets(const FilmSpec& film,
   std::size_t border = 0;
   int first = 0;
   for (std::size_t r = 0; r < rims.size(); ++r) {
-    const int off = stitcher.stitch(first, rims[r].count);
+    const int off = stitcher.stitch(first, rims[r].count());
     if (off >= 0) {
       const Vec3& p = points[off];
       throw InvalidInput(fmt::format(
@@ -364,8 +389,8 @@ void StartBuilder::keep_hull_facets(const FilmSpec& film,
           "kind",
           film.name, film.curves[r], p.x(), p.y(), p.z()));
     }
-    border += rims[r].count;
-    first += rims[r].count;
+    border += rims[r].ids.size();
+    first += rims[r].count();
   }
   if (stitcher.open_edges() != border) {
     throw InvalidInput(fmt::format(

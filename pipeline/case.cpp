@@ -11,6 +11,7 @@
 #include "pipeline/case_curves.h"
 #include "pipeline/case_loads.h"
 #include "pipeline/case_responses.h"
+#include "pipeline/case_sides.h"
 #include "pipeline/case_values.h"
 
 namespace meniscus {
@@ -229,6 +230,7 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
   result.design = design;
   if (problems.size() == before) {
     check_meetings(input, result.film_system, values);
+    check_sides(input, result.film_system, values);
     check_places(input, result, values);
   }
   return result;

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "pipeline/case_loads.h"
+#include "pipeline/case_sides.h"
 
 namespace meniscus {
 
@@ -87,6 +88,9 @@ void check_closed(const Case& input, const BodyEntry& body,
     return;
   }
   for (const auto& [curve, surfaces] : surfaces_at_curves(input, body)) {
+    if (surfaces.size() == 1 && may_join_by_sides(input, curve)) {
+      continue;  // other faces may have its sides: check_sides() knows
+    }
     if (surfaces.size() != 2) {
       problems.add(
           body.enclosure_line,

@@ -84,27 +84,107 @@ void read_films(CaseContext& context, const toml::table& root, Case& result) {
   }
 }
 
+/// Notes keys that belong to another kind.
+void refuse_keys(CaseContext& context, const CaseTable& table,
+                 const std::vector<const char*>& keys, const char* kind) {
+  for (const char* key : keys) {
+    if (table.has(key)) {
+      context.problems.add(table.line(key),
+                           fmt::format("{}.{} belongs to kind \"{}\"; take it "
+                                       "out",
+                                       table.path(), key, kind));
+    }
+  }
+}
+
+void read_cap(CaseContext& context, const CaseTable& table,
+              const std::vector<std::string>& known, Case& result) {
+  refuse_keys(context, table, {"curves"}, "sides");
+  if (!table.has("curve")) {
+    context.problems.add(table.line(),
+                         fmt::format("{} is a cap and has no 'curve', which is "
+                                     "its rim; add it",
+                                     table.path()));
+  }
+  std::vector<std::string> curves = table.names("holes");
+  curves.insert(curves.begin(), table.text("curve").value_or(""));
+  std::set<std::string> seen;
+  for (const std::string& curve : curves) {
+    const SourceLine line = table.line(seen.empty() ? "curve" : "holes");
+    if (!curve.empty() && !contains(known, curve)) {
+      context.problems.unknown(line, "curve", curve, known);
+    } else if (!seen.insert(curve).second) {
+      context.problems.add(line, fmt::format("{} names curve '{}' twice; name "
+                                             "each once",
+                                             table.path(), curve));
+    }
+    result.caps.push_back({{table.name(), curve}, table.line()});
+  }
+}
+
+const CurveEntry* polygon_named(const Case& input, const std::string& name) {
+  for (const CurveEntry& curve : input.curves) {
+    if (curve.name == name) {
+      return curve.kind == CurveKind::Polygon && !curve.points.empty()
+                 ? &curve
+                 : nullptr;
+    }
+  }
+  return nullptr;
+}
+
+/// A polygon NAME/k between each two sides, and the cap across it.
+void read_sides(CaseContext& context, const CaseTable& table,
+                const std::vector<std::string>& known, Case& result) {
+  refuse_keys(context, table, {"curve", "holes"}, "cap");
+  const std::vector<std::string> curves = table.names("curves");
+  const SourceLine line =
+      table.has("curves") ? table.line("curves") : table.line();
+  for (const std::string& curve : curves) {
+    if (!contains(known, curve)) {
+      context.problems.unknown(line, "curve", curve, known);
+    }
+  }
+  const bool two = curves.size() == 2 && curves[0] != curves[1];
+  const CurveEntry* low = two ? polygon_named(result, curves[0]) : nullptr;
+  const CurveEntry* high = two ? polygon_named(result, curves[1]) : nullptr;
+  if (low == nullptr || high == nullptr ||
+      low->points.size() != high->points.size()) {
+    context.problems.add(
+        line, fmt::format("{}.curves: found [{}]; expected two curves of kind "
+                          "polygon with as many points, in the same order",
+                          table.path(), fmt::join(curves, ", ")));
+    return;
+  }
+  const std::vector<PathPoint> a = low->points;
+  const std::vector<PathPoint> b = high->points;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const std::size_t next = (k + 1) % a.size();
+    CurveEntry face{.name = fmt::format("{}/{}", table.name(), k + 1),
+                    .kind = CurveKind::Polygon,
+                    .line = table.line()};
+    face.points = {a[k], a[next], b[next], b[k]};
+    result.caps.push_back({{table.name(), face.name}, table.line()});
+    result.curves.push_back(std::move(face));
+  }
+}
+
 void read_solids(CaseContext& context, const toml::table& root, Case& result) {
   const std::vector<std::string> known = curve_names(result);
   for (const CaseTable& table : named_tables(context, root, "solids")) {
-    table.choice("kind");
-    CapEntry cap{.spec = {.name = table.name(), .curve = ""},
-                 .line = table.line()};
-    if (const auto curve = table.text("curve")) {
-      cap.spec.curve = *curve;
-      if (!contains(known, *curve)) {
-        context.problems.unknown(table.line("curve"), "curve", *curve, known);
-      }
-    }
     for (const FilmEntry& film : result.films) {
-      if (film.spec.name == cap.spec.name) {
+      if (film.spec.name == table.name()) {
         context.problems.add(
             table.line(), fmt::format("'{}' is both a film and a solid; rename "
                                       "one, or loads could not tell them apart",
-                                      cap.spec.name));
+                                      table.name()));
       }
     }
-    result.caps.push_back(std::move(cap));
+    if (table.choice("kind") == "sides") {
+      read_sides(context, table, known, result);
+    } else {
+      read_cap(context, table, known, result);
+    }
   }
 }
 
