@@ -23,10 +23,11 @@ struct RunArguments {
   CommonArguments common;
   bool resume = false;
   bool pictures = true;
-  bool frames = true;           // films of the design's history
-  bool frame_pictures = false;  // and a picture of each
-  bool report = true;           // report.html
-  int threads = 0;              // 0: OpenMP's own number
+  bool frames = true;                // films of the design's history
+  bool frame_pictures = false;       // and a picture of each
+  bool report = true;                // report.html
+  std::vector<std::string> exports;  // formats to write the part in besides
+  int threads = 0;                   // 0: OpenMP's own number
   int jobs = 1;  // independent designs, or members of a family, side by side
   double time_limit = 0.0;  // [s], 0: none
 };

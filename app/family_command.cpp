@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <filesystem>
-#include <mutex>
 #include <omp.h>
 
 #include <fmt/format.h>
@@ -78,7 +77,6 @@ int run_family_command(const Case& input,
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
   }
-  std::mutex drawing;  // one private display at a time
   const Timer timer;
   const auto late = [&] {
     return arguments.time_limit > 0.0 &&
@@ -101,7 +99,6 @@ int run_family_command(const Case& input,
                 .write_files =
                     [&](const Case& member, const EvaluationFields& fields,
                         const fs::path& place, RunResult& outcome) {
-                      const std::lock_guard<std::mutex> guard(drawing);
                       RunArguments chosen = arguments;
                       chosen.time_limit = 0.0;  // of all members, kept here
                       if (chosen.pictures && late()) {

@@ -123,6 +123,13 @@ int run_program(int argc, char** argv) {
   run->add_flag("--frame-pictures", run_arguments.frame_pictures,
                 "a picture of each of these films, from one fixed camera");
   run->add_flag("!--no-report", run_arguments.report, "leave report.html out");
+  run->add_option("--export", run_arguments.exports,
+                  "write the part, or each member's, in this format too; may "
+                  "be given again; " +
+                      formats_text())
+      ->type_name("FORMAT")
+      ->allow_extra_args(false)
+      ->check(no_export_format);
   run->add_option("--threads", run_arguments.threads,
                   "threads that a run may use; results do not depend on it")
       ->check(CLI::Range(1, 1024));

@@ -1,10 +1,15 @@
 #include "app/run_files.h"
 
+#include <mutex>
+
 #include <fmt/format.h>
 
 #include "app/draw.h"
 #include "app/exit_code.h"
+#include "app/versions.h"
+#include "core/error.h"
 #include "core/timer.h"
+#include "pipeline/export_part.h"
 #include "pipeline/film_frames.h"
 #include "pipeline/results.h"
 
@@ -16,6 +21,8 @@ void draw_all(const Case& input, const EvaluationFields& fields,
               const std::filesystem::path& folder,
               const RunArguments& arguments, Monitor& monitor,
               RunResult& result) {
+  static std::mutex drawing;  // one private display at a time
+  const std::lock_guard<std::mutex> guard(drawing);
   monitor.progress({.stage = "output", .detail = "drawing pictures"});
   std::vector<std::string> warnings = draw(input, fields, folder, monitor);
   if (arguments.frame_pictures && !fields.history.empty()) {
@@ -38,6 +45,31 @@ void draw_all(const Case& input, const EvaluationFields& fields,
   }
 }
 
+/// The answer in the formats asked for: as `meniscus export` writes it. What
+/// does not work out is a warning.
+void export_all(const std::filesystem::path& folder,
+                const RunArguments& arguments, Monitor& monitor,
+                RunResult& result) {
+  // OpenCASCADE keeps global state; members of a family come side by side.
+  static std::mutex one_at_a_time;
+  for (const std::string& format : arguments.exports) {
+    monitor.progress({.stage = "output", .detail = "writing " + format});
+    try {
+      const std::lock_guard<std::mutex> guard(one_at_a_time);
+      export_part(folder, {.format = format,
+                           .program_version = kProgramVersion,
+                           .monitor = &monitor});
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const IoError&) {
+      throw;
+    } catch (const Error& error) {
+      result.warnings.push_back(
+          fmt::format("not written as {}: {}", format, error.what()));
+    }
+  }
+}
+
 }  // namespace
 
 void write_run_files(const Case& input, const EvaluationFields& fields,
@@ -49,6 +81,7 @@ void write_run_files(const Case& input, const EvaluationFields& fields,
     monitor.progress({.stage = "output", .detail = "writing meshes"});
     write_meshes(input, fields, folder);
     write_frames(input, fields.history, folder);
+    export_all(folder, arguments, monitor, result);
     const bool late = arguments.time_limit > 0.0 &&
                       result.total_seconds >= arguments.time_limit;
     if (arguments.pictures && late) {
