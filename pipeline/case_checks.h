@@ -24,8 +24,10 @@ void check_bodies(const Case& input, CaseProblems& problems);
 /// ends of every design variable, and warnings of what serves nothing.
 void check_case(const Case& input, CaseProblems& problems);
 
-/// Films and solids.
+/// Films and solids, backs and rims of walls.
 std::vector<std::string> surface_names(const Case& input);
+/// Of walls, beside their films.
+std::vector<std::string> wall_surface_names(const Case& input);
 std::vector<std::string> film_names(const Case& input);
 std::vector<std::string> body_names(const Case& input);
 

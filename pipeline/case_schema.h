@@ -66,6 +66,9 @@ struct TableSpec {
 /// All tables, in the order of the reference.
 const std::vector<TableSpec>& case_tables();
 
+/// [walls.NAME] (case_schema_walls.cpp).
+TableSpec walls_table();
+
 /// Those of them that say what to do with the part (case_schema_study.cpp).
 std::vector<TableSpec> study_tables();
 
