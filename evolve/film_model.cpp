@@ -168,10 +168,10 @@ std::vector<Curve> FilmModel::Impl::curves_of_system(
   return result;
 }
 
-EdgeMiddles FilmModel::Impl::middles() const {
+EdgeMiddles FilmModel::Impl::middles(std::size_t count) const {
   EdgeMiddles result;
   const auto first = static_cast<int>(meshed.points.size());
-  for (std::size_t k = 0; k < parents.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     const auto [a, b] = parents[k];
     result[{std::min(a, b), std::max(a, b)}] = first + static_cast<int>(k);
   }
@@ -240,9 +240,11 @@ void FilmModel::Impl::find_reference_from(int halvings,
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
     Refinement finer = refine(complex);
     complex = std::move(finer.complex);
+    parents.insert(parents.end(), finer.parents.begin(), finer.parents.end());
     if (level < kMeshedLevels) {
-      parents.insert(parents.end(), finer.parents.begin(), finer.parents.end());
+      near_parents = parents.size();
     }
+    ++refinements;
     if (!reference.failure) {
       energy.emplace(complex);
       reference = settle_in_normals(*energy, complex, targets_of(complex),
@@ -315,8 +317,9 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   impl->regions = regions_of(initial.bodies);
   keep_solids(impl->complex, impl->regions, topology);
   drop_unused(topology, corner);
-  impl->nodes = surface_nodes(std::move(topology), std::move(corner),
-                              impl->middles(), impl->straight());
+  impl->nodes =
+      surface_nodes(std::move(topology), std::move(corner),
+                    impl->middles(impl->near_parents), impl->straight());
   if (impl->reference.failure || !impl->energy) {
     impl->energy.emplace(impl->complex);
   }
@@ -382,7 +385,8 @@ QuadraticSurface FilmModel::surface(const Points& points) const {
 }
 
 void FilmModel::split_facets(const std::vector<char>& marked) {
-  impl_->nodes = meniscus::split_facets(impl_->nodes, marked, impl_->middles(),
+  impl_->nodes = meniscus::split_facets(impl_->nodes, marked,
+                                        impl_->middles(impl_->near_parents),
                                         impl_->straight());
 }
 
@@ -403,6 +407,18 @@ SurfaceMesh FilmModel::boundary(const Points& points) const {
   drop_interfaces(mesh);
   return mesh;
 }
+
+SurfaceMesh FilmModel::meshed_facets() const {
+  SurfaceMesh mesh = impl_->meshed;
+  mesh.points.clear();
+  return mesh;
+}
+
+EdgeMiddles FilmModel::middles() const {
+  return impl_->middles(impl_->parents.size());
+}
+
+int FilmModel::refinements() const { return impl_->refinements; }
 
 std::vector<int> FilmModel::rim(const std::string& curve) const {
   std::vector<int> result;

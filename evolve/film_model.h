@@ -19,6 +19,7 @@
 
 #include "core/monitor.h"
 #include "core/surface_mesh.h"
+#include "core/surface_nodes.h"
 #include "evolve/film_gradient.h"
 #include "evolve/film_state.h"
 #include "evolve/film_system.h"
@@ -129,6 +130,15 @@ class FilmModel {
   /// transpose() does for the state, and as fe_text().
   std::string datafile(const FilmState& state, const FilmSystem& system,
                        const std::vector<std::string>& comments = {}) const;
+
+  /// Facets of the meshed level, caps and voids included: for what else is
+  /// made of the films. It has no points; corners are vertices of the film.
+  SurfaceMesh meshed_facets() const;
+
+  /// The film's vertices between others, of every refinement from the meshed
+  /// level to the fine one.
+  EdgeMiddles middles() const;
+  int refinements() const;
 
   /// Vertices of the fine mesh on a curve; none for a curve that the model has
   /// not.

@@ -13,9 +13,11 @@
 namespace meniscus {
 
 struct FilmModel::Impl {
-  FilmComplex complex;        // finest level, at the reference film
-  std::vector<Edge> parents;  // of the first refinements' new vertices
-  SurfaceMesh meshed;         // the meshed level at the reference film
+  FilmComplex complex;           // finest level, at the reference film
+  std::vector<Edge> parents;     // of the refinements' new vertices
+  std::size_t near_parents = 0;  // of the first two refinements
+  int refinements = 0;
+  SurfaceMesh meshed;  // the meshed level at the reference film
   std::optional<FilmEnergy> energy;
   std::optional<Carry> carry;
   FilmTargets targets;
@@ -43,7 +45,7 @@ struct FilmModel::Impl {
   void find_reference_from(int halvings, const FilmSystem& initial,
                            const FilmModelOptions& options,
                            const SettleOptions& settle);
-  EdgeMiddles middles() const;
+  EdgeMiddles middles(std::size_t count) const;
   std::vector<char> straight() const;
   /// A state that settle() gave for `system`. Throws InvalidInput for others.
   AtRest at_rest(const FilmState& state, const FilmSystem& system) const;

@@ -196,8 +196,17 @@ EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
   EvaluatedCase result;
   result.film_system = films_of(input, values);
   for (const WallEntry& wall : input.walls) {
-    result.walls.push_back(
-        {wall.name, wall.films, values.of_place(wall.thickness), wall.side});
+    WallSpec spec{.name = wall.name,
+                  .films = wall.films,
+                  .thickness = values.of_place(wall.thickness),
+                  .side = wall.side,
+                  .fillet = wall.fillet,
+                  .number = std::nullopt,
+                  .region = wall.region};
+    if (!wall.thickness.of_place) {
+      spec.number = values.at(wall.thickness.quantity);
+    }
+    result.walls.push_back(std::move(spec));
   }
   for (const BodyEntry& body : solid_bodies(input)) {
     result.materials.push_back(material_of(
@@ -229,6 +238,19 @@ std::vector<BodyEntry> solid_bodies(const Case& input) {
   std::copy_if(input.bodies.begin(), input.bodies.end(),
                std::back_inserter(solid),
                [](const BodyEntry& body) { return body.material != kVoid; });
+  if (!solid.empty()) {
+    return solid;
+  }
+  for (const WallEntry& wall : input.walls) {
+    if (wall.region == static_cast<int>(solid.size()) &&
+        wall.material != kVoid) {
+      solid.push_back({.name = wall.name,
+                       .enclosed_by = wall.films,
+                       .material = wall.material,
+                       .line = wall.line,
+                       .enclosure_line = wall.line});
+    }
+  }
   return solid;
 }
 

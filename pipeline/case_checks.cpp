@@ -114,6 +114,7 @@ void check_use(const Case& input, CaseProblems& problems) {
   }
   for (const WallEntry& wall : input.walls) {
     used_surfaces.insert(wall.films.begin(), wall.films.end());
+    used_materials.insert(wall.material);
   }
   for (const FilmEntry& film : input.films) {
     used_curves.insert(film.spec.curves.begin(), film.spec.curves.end());
@@ -339,6 +340,8 @@ std::vector<std::string> surface_names(const Case& input) {
   for (const FilmEntry& film : input.films) {
     names.push_back(film.spec.name);
   }
+  const std::vector<std::string> walls = wall_surface_names(input);
+  names.insert(names.end(), walls.begin(), walls.end());
   return names;
 }
 

@@ -141,7 +141,8 @@ void read_bodies(CaseContext& context, const toml::table& root, Case& result) {
     find_material(context, table, result, body);
     result.bodies.push_back(std::move(body));
   }
-  if (!result.bodies.empty() && solid_bodies(result).empty()) {
+  if (!result.bodies.empty() && solid_bodies(result).empty() &&
+      !root.contains("walls")) {
     context.problems.add(result.bodies.front().line,
                          "all bodies are void; one must have a material, or "
                          "there is no part");

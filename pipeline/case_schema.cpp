@@ -47,19 +47,7 @@ std::vector<TableSpec> make_tables() {
         {"material", K::Name, D::None, true,
          "what fills it; \"void\": nothing, and only its surfaces shape the "
          "part"}}},
-      {"walls",
-       true,
-       N::Optional,
-       "A film made solid by thickness. `meniscus evolve` reports the largest "
-       "safe thickness and writes the closed surface",
-       {{"films", K::Names, D::None, true,
-         "the film, or several that join smoothly or at a crease"},
-        {"thickness", K::Place, D::Length, true, "above 0"},
-        {"side", K::Choice, D::None, false,
-         "where the material lies: both sides of the film, all of it inside "
-         "(towards the middle of the film's curves) or outside; both when left "
-         "out",
-         "both|inside|outside"}}},
+      walls_table(),
       {"fields",
        true,
        N::Optional,

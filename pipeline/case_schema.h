@@ -70,6 +70,8 @@ const std::vector<TableSpec>& case_tables();
 
 /// Those of them that the liquid starts from (case_schema_shapes.cpp).
 std::vector<TableSpec> shape_tables();
+/// [walls.NAME] (case_schema_walls.cpp).
+TableSpec walls_table();
 
 /// Those of them that say what to do with the part (case_schema_study.cpp).
 std::vector<TableSpec> study_tables();
