@@ -92,7 +92,7 @@ VectorX ForwardModel::Impl::responses(const EvaluatedCase& inputs,
                                       const TetMesh& mesh,
                                       const ElasticSolution& solution) const {
   return respond(input, {inputs, mesh, solution, exclusion.element, &*film,
-                         &film_state, &pairs});
+                         &film_state, &pairs, &scans});
 }
 
 AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
@@ -184,6 +184,7 @@ ForwardModel::ForwardModel(const Case& input,
   refuse_walls(input);
   require_solver(input);
   impl_->input = input;
+  impl_->scans = read_scans(input);
   impl_->watcher = options.monitor;
   impl_->freeze(options);
 }
@@ -207,6 +208,8 @@ const std::optional<Failure>& ForwardModel::failure() const {
 const Evaluation& ForwardModel::frozen() const { return impl_->frozen; }
 
 const FilmModel& ForwardModel::film() const { return *impl_->film; }
+
+const Scans& ForwardModel::scans() const { return impl_->scans; }
 
 const ElasticModel& ForwardModel::elasticity() const {
   return *impl_->elasticity;

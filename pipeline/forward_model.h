@@ -15,6 +15,7 @@
 #include "pipeline/design_gradient.h"
 #include "pipeline/exclusion.h"
 #include "pipeline/part_stress.h"
+#include "pipeline/scans.h"
 #include "pipeline/stage_meter.h"
 
 namespace meniscus {
@@ -95,7 +96,7 @@ class ForwardModel {
   /// When that design cannot be evaluated, failure() says why and the model
   /// must not be used. Throws what its stages throw for wrong input
   /// (choose_exclusion too), for a case with walls, and what require_solver
-  /// throws.
+  /// and read_scans throw.
   explicit ForwardModel(const Case& input,
                         const ForwardModelOptions& options = {});
   ~ForwardModel();
@@ -115,6 +116,9 @@ class ForwardModel {
   /// The film that evaluate() settles first: alone, settle() of a design's
   /// film system costs a hundredth of an evaluation and has the same bits.
   const FilmModel& film() const;
+
+  /// What its responses compare films with.
+  const Scans& scans() const;
 
   /// The elasticity that evaluate() solves with.
   const ElasticModel& elasticity() const;
