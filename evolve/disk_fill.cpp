@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evolve/loft.h"
 #include "evolve/surface_editor.h"
 
 namespace meniscus {
@@ -106,6 +108,19 @@ double mean_piece(const Points& rim) {
   return sum / static_cast<double>(rim.size());
 }
 
+SurfaceMesh remeshed(const Points& points, std::vector<Triangle> facets,
+                     const EdgeTarget& target) {
+  FilmComplex disk;
+  disk.mesh.points = points;
+  disk.mesh.facets = std::move(facets);
+  disk.mesh.facet_label.assign(disk.mesh.facets.size(), 0);
+  disk.surfaces.resize(1);
+  disk.vertices.assign(points.size(), {.kind = VertexKind::Fixed});
+  SurfaceEditor editor(std::move(disk));
+  make_isotropic(editor, target, kPasses);
+  return std::move(editor).finish().mesh;
+}
+
 }  // namespace
 
 Vec3 polygon_area_vector(const Points& rim) {
@@ -118,18 +133,18 @@ Vec3 polygon_area_vector(const Points& rim) {
 
 SurfaceMesh fill_disk(const Points& rim, double edge,
                       const std::function<double(const Vec3&)>& edge_field) {
-  FilmComplex disk;
-  disk.mesh.points = rim;
-  disk.mesh.facets = EarClipper(rim).run();
-  disk.mesh.facet_label.assign(disk.mesh.facets.size(), 0);
-  disk.surfaces.resize(1);
-  disk.vertices.assign(rim.size(), {.kind = VertexKind::Fixed});
-  SurfaceEditor editor(std::move(disk));
   // Where the curve is cut finer than asked, the inside follows it.
-  make_isotropic(editor,
-                 {.edge = std::min(edge, mean_piece(rim)), .field = edge_field},
-                 kPasses);
-  return std::move(editor).finish().mesh;
+  return remeshed(
+      rim, EarClipper(rim).run(),
+      {.edge = std::min(edge, mean_piece(rim)), .field = edge_field});
+}
+
+SurfaceMesh fill_ring(const Points& outer, const Points& inner, double edge) {
+  Points rims = outer;
+  rims.insert(rims.end(), inner.begin(), inner.end());
+  return remeshed(
+      rims, loft_band(outer, inner),
+      {.edge = std::min({edge, mean_piece(outer), mean_piece(inner)})});
 }
 
 }  // namespace meniscus

@@ -92,6 +92,13 @@ class FilmModel {
       const FilmState& state, const FilmSystem& system,
       const std::vector<FilmCovector>& responses) const;
 
+  /// How fast the film's points move with design variables, `rates` of each as
+  /// rate() wants them: settle() differentiated forwards. Worth it where many
+  /// responses meet few variables; one factorisation, and a solve for each.
+  /// Throws as transpose() and rate().
+  std::vector<Points> tangents(const FilmState& state, const FilmSystem& system,
+                               const std::vector<FilmSystem>& rates) const;
+
   /// dJ along one design variable: `rates` is `system` with each number's
   /// derivative in its place (curves of the same kinds, tensions, volumes,
   /// pressures; fields and tension fields are the model's and not read). A
@@ -112,6 +119,11 @@ class FilmModel {
   /// Smallest radius of curvature of the films (evolve/film_radius.h) [length],
   /// with its derivatives.
   FilmResponse smallest_radius(const Points& points, int power = 16) const;
+
+  /// Least distance of two films (evolve/gap_between.h) [length], with its
+  /// derivatives.
+  FilmResponse gap(const Points& points, const std::string& film,
+                   const std::string& other, double smoothing) const;
 
   /// All facets at the film's own resolution (caps included), for files and
   /// pictures.

@@ -8,6 +8,7 @@
 #include "core/surface_nodes.h"
 #include "evolve/carry.h"
 #include "evolve/energy.h"
+#include "evolve/film_adjoint.h"
 #include "evolve/film_model.h"
 
 namespace meniscus {
@@ -51,6 +52,8 @@ struct FilmModel::Impl {
   AtRest at_rest(const FilmState& state, const FilmSystem& system) const;
   void check_response(const FilmCovector& response) const;
   std::vector<RimGradient> rim_gradients(const Points& by_base) const;
+  FilmAdjoint::Rates rates_of(const FilmSystem& system,
+                              const FilmSystem& rates) const;
   FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,
                             int parts, const SettleOptions& options) const;
 };

@@ -47,8 +47,7 @@ class StartBuilder {
       }
     }
     for (const CapSpec& cap : system_.caps) {
-      for (const std::string& name :
-           cap.start ? cap.rims : std::vector<std::string>{cap.curve}) {
+      for (const std::string& name : cap.curves()) {
         rim_of(name, cap.name);
       }
     }
@@ -100,9 +99,8 @@ class StartBuilder {
       add(film.name);
       if (!std::isfinite(film.tension) || film.tension <= 0.0) {
         throw InvalidInput(
-            fmt::format("film '{}': tension is {}, must be "
-                        "above 0",
-                        film.name, film.tension));
+            fmt::format("film '{}': tension is {}, must be above 0", film.name,
+                        film.tension));
       }
     }
     for (const CapSpec& cap : system_.caps) {
@@ -121,8 +119,7 @@ class StartBuilder {
                      [&](const Curve& c) { return c.name == curve_name; });
     if (found == system_.curves.end()) {
       throw InvalidInput(
-          fmt::format("surface '{}' names the curve '{}', which "
-                      "does not exist",
+          fmt::format("surface '{}' names the curve '{}', which does not exist",
                       user, curve_name));
     }
     Rim rim;
@@ -216,16 +213,25 @@ class StartBuilder {
       throw InvalidInput(fmt::format(
           "curve '{}': {}", system_.curves[rim.curve].name, error.what()));
     }
-    const int first_inner = static_cast<int>(result_.mesh.points.size());
-    for (std::size_t i = rim.count; i < disk.points.size(); ++i) {
+    add_filling(disk, {rim}, label, kind);
+  }
+
+  // `disk`: the points of the rims come first, in their order.
+  void add_filling(const SurfaceMesh& disk, const std::vector<Rim>& rims,
+                   int label, VertexKind kind) {
+    std::vector<int> ids;
+    for (const Rim& rim : rims) {
+      for (int i = 0; i < rim.count; ++i) {
+        ids.push_back(rim.first + i);
+      }
+    }
+    for (std::size_t i = ids.size(); i < disk.points.size(); ++i) {
+      ids.push_back(static_cast<int>(result_.mesh.points.size()));
       result_.mesh.points.push_back(disk.points[i]);
       result_.vertices.push_back({kind, -1, 0.0});
     }
-    for (Triangle t : disk.facets) {
-      for (int& v : t) {
-        v += v < rim.count ? rim.first : first_inner - rim.count;
-      }
-      add_facet(t, label);
+    for (const Triangle& t : disk.facets) {
+      add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
     }
   }
 
@@ -273,6 +279,12 @@ class StartBuilder {
     }
     const Rim rim = rim_of(cap.curve, cap.name);
     const Points points = points_of(rim);
+    if (!cap.inner.empty()) {
+      const Rim hole = rim_of(cap.inner, cap.name);
+      add_filling(fill_ring(points, points_of(hole), edge_), {rim, hole},
+                  add_surface({cap.name, false, 0.0}), VertexKind::InCap);
+      return;
+    }
     const Vec3 normal = polygon_area_vector(points).normalized();
     const double size = bounding_diagonal(points);
     for (const Vec3& p : points) {
@@ -292,10 +304,9 @@ class StartBuilder {
   void add_body(const BodySpec& body) {
     ComplexBody made{body.name, {}, body.volume, body.pressure};
     if (body.volume && body.pressure) {
-      throw InvalidInput(
-          fmt::format("body '{}' has both volume and pressure; "
-                      "give one of them",
-                      body.name));
+      throw InvalidInput(fmt::format(
+          "body '{}' has both volume and pressure; give one of them",
+          body.name));
     }
     if (body.volume && !(std::isfinite(*body.volume) && *body.volume > 0.0)) {
       throw InvalidInput(fmt::format("body '{}': volume is {}, must be above 0",
@@ -309,10 +320,9 @@ class StartBuilder {
     for (const std::string& name : body.enclosed_by) {
       const int surface = result_.mesh.label_of(name);
       if (surface < 0) {
-        throw InvalidInput(
-            fmt::format("body '{}' is enclosed by '{}', which "
-                        "is neither a film nor a cap",
-                        body.name, name));
+        throw InvalidInput(fmt::format(
+            "body '{}' is enclosed by '{}', which is neither a film nor a cap",
+            body.name, name));
       }
       const bool twice =
           std::any_of(made.sides.begin(), made.sides.end(),
@@ -343,10 +353,10 @@ class StartBuilder {
         return;
       }
     }
-    throw InvalidInput(
-        fmt::format("cap '{}' encloses nothing; add it to a "
-                    "body's enclosed_by or remove it",
-                    surface));
+    throw InvalidInput(fmt::format(
+        "cap '{}' encloses nothing; add it to a body's enclosed_by or remove "
+        "it",
+        surface));
   }
 
   const FilmSystem& system_;

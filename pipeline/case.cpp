@@ -339,6 +339,8 @@ Dimension dimension_of(ResponseKind kind) {
     case ResponseKind::Radius:
     case ResponseKind::Thickness:
     case ResponseKind::Distance:
+    case ResponseKind::Gap:
+    case ResponseKind::ScanDistance:
       return Dimension::Length;
     case ResponseKind::Mass:
       return Dimension::Mass;

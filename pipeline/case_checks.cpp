@@ -36,7 +36,11 @@ std::map<std::string, std::set<std::string>> surfaces_at_curves(
   }
   for (const CapEntry& cap : input.caps) {
     if (contains(body.enclosed_by, cap.spec.name)) {
-      at_curve[cap.spec.curve].insert(cap.spec.name);
+      CapSpec spec = cap.spec;
+      spec.start = nullptr;  // a file's surfaces may end anywhere
+      for (const std::string& curve : spec.curves()) {
+        at_curve[curve].insert(spec.name);
+      }
     }
   }
   return at_curve;
@@ -46,7 +50,8 @@ std::map<std::string, std::set<std::string>> surfaces_at_curves(
 std::string closing_advice(const Case& input, const BodyEntry& body,
                            const std::string& curve) {
   for (const CapEntry& cap : input.caps) {
-    if (cap.spec.curve == curve && !contains(body.enclosed_by, cap.spec.name)) {
+    if (contains(cap.spec.curves(), curve) &&
+        !contains(body.enclosed_by, cap.spec.name)) {
       return fmt::format("; add '{}' to enclosed_by", cap.spec.name);
     }
   }
@@ -57,9 +62,7 @@ std::string closing_advice(const Case& input, const BodyEntry& body,
     }
   }
   return fmt::format(
-      "; add a cap across it ([solids.NAME] with curve = "
-      "\"{}\")",
-      curve);
+      "; add a cap across it ([solids.NAME] with curve = \"{}\")", curve);
 }
 
 /// All names that the body's shape hangs on are known; else the reader has
@@ -125,8 +128,8 @@ void check_use(const Case& input, CaseProblems& problems) {
     }
   }
   for (const CapEntry& cap : input.caps) {
-    used_curves.insert(cap.spec.curve);
-    used_curves.insert(cap.spec.rims.begin(), cap.spec.rims.end());
+    const std::vector<std::string> curves = cap.spec.curves();
+    used_curves.insert(curves.begin(), curves.end());
     if (used_surfaces.count(cap.spec.name) == 0) {
       problems.add(cap.line,
                    fmt::format("solid '{}' encloses no body; add it to a "

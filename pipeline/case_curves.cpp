@@ -154,12 +154,11 @@ void check_meetings(const Case& input, const FilmSystem& system,
                       return std::find(film.curves.begin(), film.curves.end(),
                                        name) != film.curves.end();
                     }) ||
-        std::any_of(
-            system.caps.begin(), system.caps.end(), [&](const CapSpec& cap) {
-              return cap.curve == name ||
-                     std::find(cap.rims.begin(), cap.rims.end(), name) !=
-                         cap.rims.end();
-            });
+        std::any_of(system.caps.begin(), system.caps.end(),
+                    [&](const CapSpec& cap) {
+                      const std::vector<std::string> at = cap.curves();
+                      return std::find(at.begin(), at.end(), name) != at.end();
+                    });
     if (held) {
       rims.push_back(c);
       shapes.push_back(&system.curves[c].shape);

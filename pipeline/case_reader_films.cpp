@@ -43,6 +43,7 @@ const std::map<std::string, KindKeys>& film_kinds() {
 const std::map<std::string, KindKeys>& solid_kinds() {
   static const std::map<std::string, KindKeys> kinds = {
       {"cap", {{"curve"}, {}}},
+      {"ring", {{"curve", "inner"}, {}}},
       {"file", {{"file"}, {"curves", "surface", "scale", "within"}}}};
   return kinds;
 }
@@ -172,11 +173,20 @@ CapEntry read_solid(CaseContext& context, const CaseTable& table,
     cap.spec.within = read_within(context, table);
     return cap;
   }
-  if (const auto curve = table.text("curve")) {
-    cap.spec.curve = *curve;
-    if (std::find(known.begin(), known.end(), *curve) == known.end()) {
-      context.problems.unknown(table.line("curve"), "curve", *curve, known);
+  const auto read_curve = [&](const char* key) -> std::string {
+    const auto curve = table.text(key);
+    if (curve && std::find(known.begin(), known.end(), *curve) == known.end()) {
+      context.problems.unknown(table.line(key), "curve", *curve, known);
     }
+    return curve.value_or("");
+  };
+  cap.spec.curve = read_curve("curve");
+  cap.spec.inner = read_curve("inner");
+  if (!cap.spec.inner.empty() && cap.spec.inner == cap.spec.curve) {
+    context.problems.add(
+        table.line("inner"),
+        fmt::format("{} has the curve '{}' on both sides; a ring needs two",
+                    table.path(), cap.spec.curve));
   }
   return cap;
 }

@@ -102,10 +102,12 @@ std::vector<TableSpec> shape_tables() {
        N::Optional,
        "A solid surface, named so that loads find it",
        {{"kind", K::Choice, D::None, true,
-         "cap: flat disk across a planar curve; file: facets of an STL, OBJ or "
+         "cap: flat disk across a planar curve; ring: band between two curves, "
+         "flat where they lie in one plane; file: facets of an STL, OBJ or "
          "Surface Evolver file, which stay as they are",
-         "cap|file", "plate|pad|faces"},
-        {"curve", K::Name, D::None, false, "of cap: its rim"},
+         "cap|ring|file", "plate|pad|faces"},
+        {"curve", K::Name, D::None, false, "of cap, ring: its rim"},
+        {"inner", K::Name, D::None, false, "of ring: the rim of its hole"},
         {"curves", K::Names, D::None, false,
          "of file: those that its rims lie on"},
         {"file", K::Text, D::None, false, "of file: as of films"},

@@ -197,7 +197,7 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
                                       const std::vector<int>& wanted) const {
   const ResponseInput responses{
       fields.inputs, fields.mesh,   fields.solution, fields.exclusion.element,
-      &*impl_->film, &adjoint.film, &impl_->pairs};
+      &*impl_->film, &adjoint.film, &impl_->pairs,   &impl_->scans};
   try {
     return design_gradient({impl_->input, responses, evaluation.responses,
                             *impl_->elasticity, adjoint.elastic,

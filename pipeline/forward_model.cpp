@@ -116,7 +116,7 @@ VectorX ForwardModel::Impl::responses(const EvaluatedCase& inputs,
                                       const TetMesh& mesh,
                                       const ElasticSolution& solution) const {
   return respond(input, {inputs, mesh, solution, exclusion.element, &*film,
-                         &film_state, &pairs});
+                         &film_state, &pairs, &scans});
 }
 
 AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
@@ -213,6 +213,7 @@ ForwardModel::ForwardModel(const Case& input,
   refuse_walls(input);
   require_solver(input);
   impl_->input = input;
+  impl_->scans = read_scans(input);
   impl_->watcher = options.monitor;
   impl_->freeze(options);
 }
@@ -252,6 +253,8 @@ SurfaceMesh ForwardModel::boundary(const EvaluatedCase& inputs,
   return walls ? walls->fine(film_points, walls->thickness(inputs.walls))
                : impl_->film->boundary(film_points);
 }
+
+const Scans& ForwardModel::scans() const { return impl_->scans; }
 
 const ElasticModel& ForwardModel::elasticity() const {
   return *impl_->elasticity;

@@ -16,6 +16,7 @@
 #include "pipeline/design_gradient.h"
 #include "pipeline/exclusion.h"
 #include "pipeline/part_stress.h"
+#include "pipeline/scans.h"
 #include "pipeline/stage_meter.h"
 
 namespace meniscus {
@@ -96,7 +97,7 @@ class ForwardModel {
   /// When that design cannot be evaluated, failure() says why and the model
   /// must not be used. Throws what its stages throw for wrong input
   /// (choose_exclusion too), for walls that refuse_walls() refuses, and what
-  /// require_solver throws.
+  /// require_solver and read_scans throw.
   explicit ForwardModel(const Case& input,
                         const ForwardModelOptions& options = {});
   ~ForwardModel();
@@ -126,6 +127,9 @@ class ForwardModel {
                            const Points& film_points) const;
   SurfaceMesh boundary(const EvaluatedCase& inputs,
                        const Points& film_points) const;
+
+  /// What its responses compare films with.
+  const Scans& scans() const;
 
   /// The elasticity that evaluate() solves with.
   const ElasticModel& elasticity() const;

@@ -29,6 +29,7 @@ struct ForwardModel::Impl {
   std::optional<ElasticModel> elasticity;
   Exclusion exclusion;
   ThicknessPairs pairs;
+  Scans scans;
   std::optional<Adaptation> adaptation;
   Monitor* watcher = nullptr;  // of evaluations
 
