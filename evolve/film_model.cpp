@@ -203,6 +203,7 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   const FilmComplex coarse = complex;
   const SurfaceMesh coarse_mesh = meshed;
   const std::vector<Edge> coarse_parents = parents;
+  const std::size_t coarse_near = near_parents;
   const FilmState failed = reference;
   const double coarse_edge = start_edge;
   find_reference_from(0, initial, options, settle);
@@ -210,6 +211,7 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
     complex = coarse;
     meshed = coarse_mesh;
     parents = coarse_parents;
+    near_parents = coarse_near;
     reference = failed;
     start_edge = coarse_edge;
     energy.reset();
@@ -226,6 +228,8 @@ void FilmModel::Impl::find_reference_from(int halvings,
   start_edge = std::ldexp(options.edge, halvings);
   complex = build_start(initial, start_edge);
   parents.clear();
+  near_parents = 0;
+  refinements = 0;
   energy.reset();
   monitor.progress({"film", "settling the raw start", 0.1});
   FindOptions find{
