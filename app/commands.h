@@ -67,6 +67,14 @@ struct CheckGradientArguments {
   std::vector<std::string> at;  // "name=value" of design variables
 };
 
+struct CurvesArguments {
+  std::string scan;              // an STL or OBJ file
+  double angle = 25.0;           // [degrees]
+  std::optional<double> radius;  // [length]
+  std::optional<int> points;     // of each curve
+  std::string out;               // file; empty: standard output
+};
+
 struct WatchArguments {
   std::string folder;  // of a run or a family
   bool once = false;   // one look
@@ -81,6 +89,8 @@ int run_family_command(const Case& input,
                        const std::vector<std::string>& warnings,
                        const RunArguments& arguments);
 int evolve_command(const EvolveArguments& arguments);
+/// Proposes rims of a scan as curves of a case.
+int curves_command(const CurvesArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int report_command(const ReportArguments& arguments);

@@ -16,6 +16,7 @@
 #include "pipeline/imported_part.h"
 #include "pipeline/part_comparison.h"
 #include "pipeline/results.h"
+#include "pipeline/study_store.h"
 #include "pipeline/text_table.h"
 
 namespace meniscus {
@@ -78,9 +79,14 @@ std::vector<PartFigures> load_parts(const CompareArguments& arguments,
         "the first part must be a run: a file takes material, supports and "
         "loads from it");
   }
+  for (const std::string& part : arguments.parts) {
+    if (!is_part_file(part)) {
+      StudyStore::read(part);  // refused before the others are computed
+    }
+  }
+  make_folder(folder);
   RunPart first = load_run_part(arguments.parts.front(), &monitor);
   units = first.input.units;
-  make_folder(folder);
   parts.push_back(first.figures);
   keep_surface(first.input, first.fields, folder, parts);
   for (std::size_t k = 1; k < arguments.parts.size(); ++k) {

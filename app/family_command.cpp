@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <filesystem>
+#include <mutex>
 #include <omp.h>
 
 #include <fmt/format.h>
@@ -8,7 +9,6 @@
 #include "app/commands.h"
 #include "app/exit_code.h"
 #include "app/report_file.h"
-#include "app/run_files.h"
 #include "app/signals.h"
 #include "app/study_events.h"
 #include "app/versions.h"
@@ -17,7 +17,9 @@
 #include "pipeline/family.h"
 #include "pipeline/film_frames.h"
 #include "pipeline/forward_model.h"
+#include "pipeline/stored_case.h"
 #include "pipeline/walls.h"
+#include "report/run_output.h"
 
 namespace meniscus {
 
@@ -25,21 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The units of the table's responses, those that have one.
-std::string units_line(const Case& family) {
-  std::string text;
-  for (std::size_t k = 0; k < family.responses.size(); ++k) {
-    const std::string unit = response_unit(family, static_cast<int>(k));
-    if (!unit.empty()) {
-      text += fmt::format("{}{} [{}]", text.empty() ? "  units: " : ", ",
-                          family.responses[k].name, unit);
-    }
-  }
-  return text.empty() ? text : text + "\n";
-}
-
-void explain(const Case& family, const FamilyResult& result,
-             const fs::path& folder, bool quiet) {
+void explain(const FamilyResult& result, const fs::path& folder, bool quiet) {
   const bool good = result.status == RunStatus::Converged;
   if (!good || !quiet) {
     std::fprintf(good ? stdout : stderr, "%s: %s\n", name_of(result.status),
@@ -48,8 +36,9 @@ void explain(const Case& family, const FamilyResult& result,
   if (quiet) {
     return;
   }
-  std::fputs(family_table_text(family_csv(result.rows)).c_str(), stdout);
-  std::fputs(units_line(family).c_str(), stdout);
+  std::fputs(
+      family_table_text(family_csv(result.rows), stored_units(folder)).c_str(),
+      stdout);
   std::printf("  %zu members in %.1f s\n  results in %s\n", result.rows.size(),
               result.total_seconds, folder.string().c_str());
   std::fflush(stdout);
@@ -77,6 +66,7 @@ int run_family_command(const Case& input,
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
   }
+  std::mutex writing;  // one private display, one CAD kernel at a time
   const Timer timer;
   const auto late = [&] {
     return arguments.time_limit > 0.0 &&
@@ -99,16 +89,20 @@ int run_family_command(const Case& input,
                 .write_files =
                     [&](const Case& member, const EvaluationFields& fields,
                         const fs::path& place, RunResult& outcome) {
-                      RunArguments chosen = arguments;
-                      chosen.time_limit = 0.0;  // of all members, kept here
+                      const std::lock_guard<std::mutex> guard(writing);
+                      RunOutputOptions chosen{
+                          .pictures = arguments.pictures,
+                          .frame_pictures = arguments.frame_pictures,
+                          .exports = arguments.exports,
+                          .program_version = kProgramVersion,
+                          .monitor = &monitor};
                       if (chosen.pictures && late()) {
                         chosen.pictures = false;
                         outcome.warnings.emplace_back(
                             "the family's time limit left no time for "
                             "pictures");
                       }
-                      write_run_files(member, fields, place, chosen, monitor,
-                                      outcome);
+                      RunOutput(member, place, chosen).finish(fields, outcome);
                     }});
     result.warnings.insert(result.warnings.begin(), warnings.begin(),
                            warnings.end());
@@ -120,7 +114,7 @@ int run_family_command(const Case& input,
     report_aloud(folder, arguments, monitor);
     monitor.tell(
         end_event(result.status, result.message, result.total_seconds));
-    explain(input, result, folder, arguments.common.quiet);
+    explain(result, folder, arguments.common.quiet);
     return exit_code_of(result.status);
   } catch (const IoError& error) {
     std::fprintf(stderr, "error: %s\n", error.what());

@@ -239,6 +239,27 @@ int run_program(int argc, char** argv) {
     command = [&] { return meniscus::compare_command(compare_arguments); };
   });
 
+  meniscus::CurvesArguments curves_arguments;
+  CLI::App* curves = app.add_subcommand(
+      "curves", "propose curves: the lines along which a scan bends most");
+  curves->add_option("SCAN", curves_arguments.scan, "STL or OBJ file")
+      ->required();
+  curves->add_option("--angle", curves_arguments.angle,
+                     "least turn of the surface across a line, in degrees "
+                     "(default: 25)");
+  curves
+      ->add_option("--radius", curves_arguments.radius,
+                   "normals are averaged so far on each side of a line "
+                   "(default: 1/40 of the scan's size)")
+      ->check(positive());
+  curves->add_option("--points", curves_arguments.points,
+                     "points of each curve (default: as few as serve)");
+  curves->add_option("--out", curves_arguments.out,
+                     "write the curves into this file");
+  curves->callback([&] {
+    command = [&] { return meniscus::curves_command(curves_arguments); };
+  });
+
   meniscus::ReportArguments report_arguments;
   CLI::App* report = app.add_subcommand(
       "report", "make report.html and the pictures of a run again");

@@ -6,13 +6,13 @@
 
 #include "app/case_input.h"
 #include "app/commands.h"
-#include "app/draw.h"
 #include "app/exit_code.h"
 #include "app/signals.h"
 #include "app/versions.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
 #include "pipeline/datafile.h"
+#include "pipeline/evolved_film.h"
 #include "pipeline/family_table.h"
 #include "pipeline/film_frames.h"
 #include "pipeline/new_case.h"
@@ -20,6 +20,7 @@
 #include "pipeline/stored_case.h"
 #include "pipeline/study_table.h"
 #include "pipeline/walls.h"
+#include "report/run_pictures.h"
 
 namespace meniscus {
 
@@ -51,6 +52,9 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
     return kExitWrongInput;
   }
   const Case& input = *reading.input;
+  for (const std::string& remark : input.remarks) {
+    std::printf("%s\n", remark.c_str());
+  }
   std::printf(
       "%s: nothing wrong found: %zu curves, %zu films, %zu bodies, %zu design "
       "variables, %zu responses%s\n",
@@ -100,15 +104,10 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
   }
-  const std::string warning = write_datafile_result(result, folder);
+  const std::string title = path.filename().string();
+  const std::string warning = write_datafile_result(result, title, folder);
   if (arguments.pictures) {
-    std::vector<std::string> solids;
-    for (const ComplexSurface& surface : result.complex.surfaces) {
-      if (!surface.liquid) {
-        solids.push_back(surface.name);
-      }
-    }
-    warn(draw_film(path.filename().string(), solids, folder, monitor));
+    warn(draw_film(title, solids_of(result.complex), folder, monitor));
   }
   if (!common.quiet) {
     std::fputs(datafile_text(result).c_str(), stdout);
@@ -149,32 +148,40 @@ int write_walls(const Case& input, const std::vector<CaseWall>& walls,
   return code;
 }
 
-/// frames.pvd with the film's way to rest, and pictures where they are wanted;
-/// returns warnings.
-std::vector<std::string> write_settling(const Case& input,
-                                        const EvaluatedCase& numbers,
-                                        const FilmModel& model,
-                                        const fs::path& folder,
-                                        const EvolveArguments& arguments,
-                                        Monitor& monitor) {
-  const std::vector<FilmFrame> frames =
-      settling_frames(numbers, model, monitor);
-  write_frames(input, frames, folder);
-  if (!arguments.pictures) {
-    return {};
-  }
-  std::vector<std::string> captions;
-  captions.reserve(frames.size());
-  for (const FilmFrame& frame : frames) {
-    captions.push_back(frame.kept == "flowing"
-                           ? fmt::format("step {}", frame.evaluation)
-                           : frame.kept);
-  }
+/// film.vtp, film.json and, where they are wanted, the film's way to rest and
+/// pictures.
+void write_evolved(const Case& input, const EvaluatedCase& numbers,
+                   const FilmModel& model, const fs::path& folder,
+                   const EvolveArguments& arguments, Monitor& monitor) {
+  const FilmState& film = model.reference();
   std::vector<std::string> solids;
   for (const CapSpec& cap : numbers.film_system.caps) {
     solids.push_back(cap.name);
   }
-  return draw_frames(input.title, solids, frames, captions, folder, monitor);
+  write_film(input, model.fine_mesh(film.points), folder);
+  std::vector<FilmFrame> frames;
+  if (arguments.frames) {
+    frames = settling_frames(numbers, model, monitor);
+    write_frames(input, frames, folder);
+  }
+  write_evolved_film({.title = input.title,
+                      .units = input.units,
+                      .report = film.report,
+                      .failure = film.failure,
+                      .solids = solids,
+                      .areas = areas_of_films(input, model),
+                      .curves = pieces_of_curves(numbers.film_system.curves)},
+                     frames, folder);
+  if (!arguments.pictures) {
+    return;
+  }
+  warn(draw_film(input.title, solids, folder, monitor));
+  std::vector<std::string> captions;
+  captions.reserve(frames.size());
+  for (const FilmFrame& frame : frames) {
+    captions.push_back(settling_caption(frame));
+  }
+  warn(draw_frames(input.title, solids, frames, captions, folder, monitor));
 }
 
 }  // namespace
@@ -204,17 +211,7 @@ int evolve_command(const EvolveArguments& arguments) {
                             .refinements = input.resolution.refinements,
                             .monitor = &monitor});
   const FilmState& film = model.reference();
-  write_film(input, model.fine_mesh(film.points), folder);
-  if (arguments.pictures) {
-    std::vector<std::string> solids;
-    for (const CapSpec& cap : numbers.film_system.caps) {
-      solids.push_back(cap.name);
-    }
-    warn(draw_film(input.title, solids, folder, monitor));
-  }
-  if (arguments.frames) {
-    warn(write_settling(input, numbers, model, folder, arguments, monitor));
-  }
+  write_evolved(input, numbers, model, folder, arguments, monitor);
   if (!common.quiet) {
     std::fputs(film_text(input, film.report).c_str(), stdout);
   }
@@ -226,32 +223,14 @@ int evolve_command(const EvolveArguments& arguments) {
                      common);
 }
 
-namespace {
-
-/// Of the responses of a study, by name; none where its case cannot be read.
-std::map<std::string, std::string> units_of(const StudyStore& store) {
-  std::map<std::string, std::string> units;
-  try {
-    const Case input = restore_case(store.meta());
-    for (std::size_t k = 0; k < input.responses.size(); ++k) {
-      units[input.responses[k].name] =
-          response_unit(input, static_cast<int>(k));
-    }
-  } catch (const Error&) {
-    units.clear();  // of another version: the table goes without
-  }
-  return units;
-}
-
-}  // namespace
-
 int study_show_command(const std::string& folder, const std::string& csv) {
   try {
     const fs::path family = fs::path(folder) / "family.csv";
     if (fs::exists(family)) {
       const std::string table = read_file(family);
       if (csv.empty()) {
-        std::fputs(family_table_text(table).c_str(), stdout);
+        std::fputs(family_table_text(table, stored_units(folder)).c_str(),
+                   stdout);
       } else {
         write_file(csv, table);
       }
@@ -260,7 +239,8 @@ int study_show_command(const std::string& folder, const std::string& csv) {
     const StudyStore store = StudyStore::read(folder);
     const std::vector<EvaluationRecord> records = store.all();
     if (csv.empty()) {
-      std::fputs(study_table_text(records, units_of(store)).c_str(), stdout);
+      std::fputs(study_table_text(records, stored_units(folder)).c_str(),
+                 stdout);
     } else {
       write_file(csv, history_csv(records));
     }

@@ -2,7 +2,6 @@
 #include <filesystem>
 
 #include "app/commands.h"
-#include "app/draw.h"
 #include "app/exit_code.h"
 #include "app/signals.h"
 #include "app/terminal_monitor.h"
@@ -10,7 +9,9 @@
 #include "io/atomic_file.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/stored_case.h"
+#include "report/picture.h"
 #include "report/report_page.h"
+#include "report/run_pictures.h"
 
 namespace meniscus {
 
@@ -32,9 +33,10 @@ void draw_again(const fs::path& folder, Monitor& monitor) {
   }
   const StudyStore store = StudyStore::read(folder.string());
   const Case input = restore_case(store.meta());
-  EvaluationFields fields;
-  fields.inputs = evaluate(input, answer_of_run(input, store.all(), folder));
-  warn(draw(input, fields, folder, monitor));
+  const EvaluatedCase numbers =
+      evaluate(input, answer_of_run(input, store.all(), folder));
+  warn(render_pictures(stored_run_pictures(input, numbers, folder),
+                       {.monitor = &monitor}));
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include "app/commands.h"
 #include "app/exit_code.h"
 #include "app/report_file.h"
-#include "app/run_files.h"
 #include "app/signals.h"
 #include "app/study_events.h"
 #include "app/versions.h"
@@ -18,6 +17,7 @@
 #include "pipeline/results.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/walls.h"
+#include "report/run_output.h"
 
 namespace meniscus {
 
@@ -41,7 +41,14 @@ class Run {
         store_(store),
         arguments_(arguments),
         folder_(std::move(folder)),
-        monitor_(options_of(input, arguments.common)) {}
+        monitor_(options_of(input, arguments.common)),
+        output_(input, folder_,
+                {.pictures = arguments.pictures,
+                 .frame_pictures = arguments.frame_pictures,
+                 .exports = arguments.exports,
+                 .program_version = kProgramVersion,
+                 .time_limit = arguments.time_limit,
+                 .monitor = &monitor_}) {}
 
   int execute(const std::vector<std::string>& warnings);
 
@@ -55,12 +62,13 @@ class Run {
   const RunArguments& arguments_;
   fs::path folder_;
   TerminalMonitor monitor_;
+  RunOutput output_;
 };
 
 /// Meshes and pictures first, result.json last: it tells that all is there.
 void Run::write_all(RunResult& result, const EvaluationFields& fields) {
   const Timer timer;
-  write_run_files(input_, fields, folder_, arguments_, monitor_, result);
+  output_.finish(fields, result);
   result.output_seconds = timer.seconds();
   result.total_seconds += result.output_seconds;
   write_summary(input_, result, store_.all(), kProgramVersion, folder_);
@@ -100,17 +108,19 @@ void Run::explain(const RunResult& result) const {
 int Run::execute(const std::vector<std::string>& warnings) {
   try {
     EvaluationFields fields;
-    RunResult result =
-        run_study(input_, store_,
-                  {.time_limit = arguments_.time_limit,
-                   .frames = arguments_.frames ? kMostFrames : 0,
-                   .jobs = arguments_.jobs,
-                   .listener =
-                       [this](const StudyNews& news) {
-                         monitor_.tell(evaluation_event(input_, news));
-                       },
-                   .monitor = &monitor_},
-                  &fields);
+    RunResult result = run_study(
+        input_, store_,
+        {.time_limit = arguments_.time_limit,
+         .frames = arguments_.frames ? kMostFrames : 0,
+         .jobs = arguments_.jobs,
+         .listener =
+             [this](const StudyNews& news) {
+               monitor_.tell(evaluation_event(input_, news));
+             },
+         .answered =
+             [this](const EvaluationFields& answer) { output_.begin(answer); },
+         .monitor = &monitor_},
+        &fields);
     result.warnings.insert(result.warnings.begin(), warnings.begin(),
                            warnings.end());
     write_all(result, fields);

@@ -8,7 +8,6 @@
 
 #include "app/commands.h"
 #include "app/exit_code.h"
-#include "app/run_files.h"
 #include "app/terminal.h"
 #include "core/error.h"
 #include "pipeline/study_watch.h"

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cad/film_cells.h"
 #include "cad/film_tubes.h"
 #include "cad/harmonic.h"
 #include "core/error.h"
@@ -152,12 +153,18 @@ enum class SideKind { Rim, Seam, Line };
 struct Side {
   SideKind kind = SideKind::Rim;
   int rim = -1;
+  int other = -1;          // cell across a line
   std::vector<int> chain;  // in the facets' direction
 };
 
-/// The sides of a sector's outline, from the bottom on.
+bool alike(const Side& a, const Side& b) {
+  return a.kind == b.kind && a.rim == b.rim && a.other == b.other;
+}
+
+/// The sides of a sector's outline, from the one on a rim on.
 std::vector<Side> sides_of(const SplitFilm& split, int cell,
                            const std::vector<int>& facets) {
+  const bool tubes = split.rims->size() > 1;
   std::map<Edge, int> owner;
   for (std::size_t f = 0; f < split.film.mesh.facets.size(); ++f) {
     const Triangle& t = split.film.mesh.facets[f];
@@ -179,23 +186,21 @@ std::vector<Side> sides_of(const SplitFilm& split, int cell,
     if (other == owner.end()) {
       side.rim = split.film.rim_of[a];
     } else {
-      side.kind =
-          split.cell[other->second] == cell ? SideKind::Seam : SideKind::Line;
+      side.other = split.cell[other->second];
+      side.kind = side.other == cell ? SideKind::Seam : SideKind::Line;
     }
     return side;
   };
   std::vector<Side> sides;
   for (std::size_t k = 0; k < loop.size(); ++k) {
     Side side = kind_of(k);
-    if (sides.empty() || sides.back().kind != side.kind ||
-        sides.back().rim != side.rim) {
+    if (sides.empty() || !alike(sides.back(), side)) {
       side.chain = {loop[k]};
       sides.push_back(std::move(side));
     }
     sides.back().chain.push_back(loop[(k + 1) % loop.size()]);
   }
-  if (sides.size() > 1 && sides.front().kind == sides.back().kind &&
-      sides.front().rim == sides.back().rim) {
+  if (sides.size() > 1 && alike(sides.front(), sides.back())) {
     std::vector<int>& tail = sides.back().chain;
     tail.insert(tail.end(), sides.front().chain.begin() + 1,
                 sides.front().chain.end());
@@ -204,9 +209,11 @@ std::vector<Side> sides_of(const SplitFilm& split, int cell,
   }
   const auto bottom =
       std::find_if(sides.begin(), sides.end(), [&](const Side& side) {
-        return side.kind == SideKind::Rim && side.rim == cell;
+        return side.kind == SideKind::Rim && (!tubes || side.rim == cell);
       });
-  std::rotate(sides.begin(), bottom, sides.end());
+  if (bottom != sides.end()) {
+    std::rotate(sides.begin(), bottom, sides.end());
+  }
   return sides;
 }
 
@@ -232,20 +239,18 @@ FilmPatch patch_of(SplitFilm& split, int cell, int sector) {
     }
   }
   std::vector<Side> sides = sides_of(split, cell, patch.facets);
-  if (sides.size() != 4 || sides[1].kind != SideKind::Seam ||
-      sides[3].kind != SideKind::Seam) {
+  if (sides.size() != 4) {
     throw MeshError(fmt::format(
         "a film's patch has {} sides, not 4: the film is too coarse there",
         sides.size()));
   }
-  patch.bottom_rim = sides[0].rim;
-  patch.top_rim = sides[2].rim;
   for (int k = 0; k < 4; ++k) {
     if (k >= 2) {
       std::reverse(sides[k].chain.begin(), sides[k].chain.end());
     }
     patch.chains[k] = std::move(sides[k].chain);
-    if (k % 2 == 1 || (k == 2 && patch.top_rim < 0)) {
+    patch.rims[k] = sides[k].rim;
+    if (sides[k].rim < 0) {
       bool reversed = false;
       patch.lines[k] = line_of(split.film, patch.chains[k], reversed);
       patch.reversed[k] = reversed;
@@ -268,17 +273,8 @@ void set_bulges(SplitFilm& split) {
   }
 }
 
-}  // namespace
-
-CutFilm cut_film(FilmMesh mesh, const std::vector<FilmRim>& rims) {
-  if (rims.size() < 2) {
-    throw MeshError(
-        fmt::format("a film with {} rims is not cut into patches yet: at "
-                    "least 2 are needed",
-                    rims.size()));
-  }
-  const bool between_rims = rims.size() == 2;
-  Tubes tubes = film_tubes(std::move(mesh), rims);
+/// Cuts the tubes by seams; sectors, one count per tube.
+std::vector<int> cut_seams(Tubes& tubes, bool between_rims) {
   SplitFilm& split = tubes.split;
   std::vector<int> sectors;
   for (std::size_t k = 0; k < tubes.tubes.size(); ++k) {
@@ -304,6 +300,22 @@ CutFilm cut_film(FilmMesh mesh, const std::vector<FilmRim>& rims) {
     }
     set_sectors(split, cell, levels);
     sectors.push_back(static_cast<int>(levels.size()));
+  }
+  return sectors;
+}
+
+}  // namespace
+
+CutFilm cut_film(FilmMesh mesh, const std::vector<FilmRim>& rims) {
+  SplitFilm split;
+  std::vector<int> sectors;
+  if (rims.size() < 2) {
+    split = film_cells(std::move(mesh), rims);
+    sectors.assign(rims.empty() ? kClosedCells : kDiskCells, 1);
+  } else {
+    Tubes tubes = film_tubes(std::move(mesh), rims);
+    sectors = cut_seams(tubes, rims.size() == 2);
+    split = std::move(tubes.split);
   }
   for (std::size_t k = 0; k < sectors.size(); ++k) {
     for (int j = 0; j < sectors[k]; ++j) {

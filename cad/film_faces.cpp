@@ -5,21 +5,20 @@
 
 #include <Eigen/Geometry>
 
+#include "cad/direction_classes.h"
 #include "cad/patch_knots.h"
+#include "cad/rim_side.h"
 
 namespace meniscus {
 
 namespace {
 
 constexpr int kNormalRounds = 3;
+constexpr double kSamePlane = 0.9;  // cosine
 
-/// A side of a patch that lies on a rim.
-struct RimSide {
-  const RimEdges* rim = nullptr;
-  double from = 0.0;
-  double to = 0.0;
-  bool growing = true;
-};
+std::vector<double> turned(const std::vector<double>& knots, bool backwards) {
+  return backwards ? reversed(SplineCurve{knots, {}}).knots : knots;
+}
 
 class FaceBuilder {
  public:
@@ -34,13 +33,10 @@ class FaceBuilder {
   double length_of(const std::vector<int>& chain) const;
   std::vector<double> shares_of(const std::vector<int>& chain) const;
   RimSide rim_side(const FilmPatch& patch, int side) const;
-  SideDemand demand(const RimSide& side, bool backwards) const;
   void set_knots();
   int vertex_of(int v);
-  Vec3 normal_of(int v) const;
+  Vec3 normal_of(int v, bool& free) const;
   void fit_lines();
-  SplineCurve fit_rim(const RimSide& side,
-                      const std::vector<double>& knots) const;
   PatchSides sides_of(const FilmPatch& patch) const;
   void measure_gaps(const FilmPatch& patch, const PatchSides& sides);
   std::vector<BrepUse> outline(const FilmPatch& patch) const;
@@ -52,11 +48,12 @@ class FaceBuilder {
   const std::vector<RimEdges>& rims_;
   double span_;
   Brep& brep_;
-  std::vector<std::vector<double>> line_knots_;   // per line
-  std::vector<std::vector<double>> patch_knots_;  // along a, per patch
-  std::map<int, int> nodes_;                      // film vertex: brep vertex
+  std::vector<std::vector<double>> line_knots_;                  // per line
+  std::vector<std::array<std::vector<double>, 2>> patch_knots_;  // along a, b
+  std::map<int, int> nodes_;  // film vertex: brep vertex
   std::vector<int> line_edges_;
   std::vector<SplineCurve> line_normals_;
+  std::vector<std::array<bool, 2>> line_free_;  // at their ends
 };
 
 double FaceBuilder::length_of(const std::vector<int>& chain) const {
@@ -80,7 +77,7 @@ std::vector<double> FaceBuilder::shares_of(
 }
 
 RimSide FaceBuilder::rim_side(const FilmPatch& patch, int side) const {
-  const int rim = side == 0 ? patch.bottom_rim : patch.top_rim;
+  const int rim = patch.rims[side];
   const std::vector<int>& chain = patch.chains[side];
   const std::vector<double>& at = film_.cut.rim_position;
   RimSide result{&rims_[film_.rims[rim]], at[chain.front()], at[chain.back()]};
@@ -90,50 +87,51 @@ RimSide FaceBuilder::rim_side(const FilmPatch& patch, int side) const {
   return result;
 }
 
-SideDemand FaceBuilder::demand(const RimSide& side, bool backwards) const {
-  SideDemand result{side.rim->way(side.from, side.to, side.growing), side.rim,
-                    side.from, side.to, side.growing};
-  if (backwards) {
-    std::swap(result.from, result.to);
-    result.growing = !result.growing;
-  }
-  return result;
-}
-
-/// Patches on the two sides of a line share its knots; so do all seams of one
-/// tube.
+/// Opposite sides of a patch share their knots, and so do patches on the two
+/// sides of a line: a class of directions runs through the film.
 void FaceBuilder::set_knots() {
   const CutFilm& cut = film_.cut;
-  line_knots_.resize(cut.lines.size());
-  patch_knots_.resize(cut.patches.size());
-  std::map<int, std::vector<SideDemand>> seams;   // per tube
-  std::map<int, std::vector<SideDemand>> across;  // per line between tubes
-  for (const FilmPatch& patch : cut.patches) {
-    for (const int side : {1, 3}) {
-      seams[patch.bottom_rim].push_back({length_of(patch.chains[side])});
-    }
-    if (patch.top_rim < 0) {
-      std::vector<SideDemand>& demands = across[patch.lines[2]];
-      demands.push_back(demand(rim_side(patch, 0), patch.reversed[2]));
-      demands.push_back({length_of(patch.chains[2])});
+  DirectionClasses classes(static_cast<int>(cut.patches.size()));
+  std::vector<std::array<int, 2>> user(cut.lines.size(), {-1, -1});
+  for (std::size_t p = 0; p < cut.patches.size(); ++p) {
+    for (int side = 0; side < 4; ++side) {
+      const int line = cut.patches[p].lines[side];
+      if (line >= 0 && user[line][0] < 0) {
+        user[line] = {static_cast<int>(p), side};
+      } else if (line >= 0) {
+        const auto [q, other] = user[line];
+        classes.join(
+            static_cast<int>(p), side, q, other,
+            cut.patches[p].reversed[side] != cut.patches[q].reversed[other]);
+      }
     }
   }
-  for (const auto& [line, demands] : across) {
-    line_knots_[line] = common_knots(demands, span_);
-  }
+  std::map<int, std::vector<SideDemand>> demands;
   for (std::size_t p = 0; p < cut.patches.size(); ++p) {
     const FilmPatch& patch = cut.patches[p];
-    for (const int side : {1, 3}) {
-      line_knots_[patch.lines[side]] =
-          common_knots(seams[patch.bottom_rim], span_);
+    for (int side = 0; side < 4; ++side) {
+      const auto [root, flipped] = classes.of(static_cast<int>(p), side);
+      demands[root].push_back(
+          patch.rims[side] >= 0
+              ? demand(rim_side(patch, side), flipped)
+              : SideDemand{.length = length_of(patch.chains[side])});
     }
-    if (patch.top_rim >= 0) {
-      patch_knots_[p] = common_knots({demand(rim_side(patch, 0), false),
-                                      demand(rim_side(patch, 2), false)},
-                                     span_);
-    } else {
-      SplineCurve knots{line_knots_[patch.lines[2]], {}};
-      patch_knots_[p] = patch.reversed[2] ? reversed(knots).knots : knots.knots;
+  }
+  std::map<int, std::vector<double>> knots;
+  for (const auto& [root, sides] : demands) {
+    knots[root] = common_knots(sides, span_);
+  }
+  line_knots_.resize(cut.lines.size());
+  patch_knots_.resize(cut.patches.size());
+  for (std::size_t p = 0; p < cut.patches.size(); ++p) {
+    const FilmPatch& patch = cut.patches[p];
+    for (int side = 0; side < 4; ++side) {
+      const auto [root, flipped] = classes.of(static_cast<int>(p), side);
+      patch_knots_[p][side % 2] = turned(knots[root], flipped);
+      if (patch.lines[side] >= 0) {
+        line_knots_[patch.lines[side]] =
+            turned(knots[root], flipped != patch.reversed[side]);
+      }
     }
   }
 }
@@ -152,17 +150,27 @@ int FaceBuilder::vertex_of(int v) {
   return nodes_[v];
 }
 
-/// The film's normal, at right angles to the rim.
-Vec3 FaceBuilder::normal_of(int v) const {
-  Vec3 normal = mesh().normals[v];
+/// The film's normal, at right angles to the rim; at a rim's corner to both of
+/// its sides. Where that is not the film's at all, the film has no tangent
+/// plane there, and `free` becomes true.
+Vec3 FaceBuilder::normal_of(int v, bool& free) const {
+  const Vec3& normal = mesh().normals[v];
+  free = false;
   const int rim = film_.cut.rim_of[v];
-  if (rim >= 0) {
-    const RimEdges& edges = rims_[film_.rims[rim]];
-    const double place = edges.place(film_.cut.rim_position[v]);
-    const Vec3 tangent = edges.curve().tangent(place);
-    normal = (normal - normal.dot(tangent) * tangent).normalized();
+  if (rim < 0) {
+    return normal;
   }
-  return normal;
+  const RimEdges& edges = rims_[film_.rims[rim]];
+  const double place = edges.place(film_.cut.rim_position[v]);
+  const int corner = edges.curve().sharp_corner(place);
+  if (corner >= 0) {
+    Vec3 both = edges.curve().corner_normal(corner);
+    both *= both.dot(normal) < 0.0 ? -1.0 : 1.0;
+    free = both.dot(normal) < kSamePlane;
+    return free ? normal : both;
+  }
+  const Vec3 tangent = edges.curve().tangent(place);
+  return (normal - normal.dot(tangent) * tangent).normalized();
 }
 
 void FaceBuilder::fit_lines() {
@@ -177,8 +185,13 @@ void FaceBuilder::fit_lines() {
     }
     fit.start = end_of(chain.front());
     fit.end = end_of(chain.back());
-    fit.start_normal = normal_of(chain.front());
-    fit.end_normal = normal_of(chain.back());
+    const Vec3 none = Vec3::Zero();
+    std::array<bool, 2> free{};
+    const Vec3 start_normal = normal_of(chain.front(), free[0]);
+    const Vec3 end_normal = normal_of(chain.back(), free[1]);
+    line_free_.push_back(free);
+    fit.start_normal = free[0] ? none : start_normal;
+    fit.end_normal = free[1] ? none : end_normal;
     line_edges_.push_back(static_cast<int>(brep_.edges.size()));
     brep_.edges.push_back({vertex_of(chain.front()), vertex_of(chain.back()),
                            fit_curve(fit), 0.0, 1.0});
@@ -186,33 +199,11 @@ void FaceBuilder::fit_lines() {
     for (const int v : chain) {
       fit.points.push_back(mesh().normals[v]);
     }
-    fit.start = fit.start_normal;
-    fit.end = fit.end_normal;
+    fit.start = start_normal;
+    fit.end = end_normal;
     fit.start_normal = fit.end_normal = Vec3::Zero();
     line_normals_.push_back(fit_curve(fit));
   }
-}
-
-SplineCurve FaceBuilder::fit_rim(const RimSide& side,
-                                 const std::vector<double>& knots) const {
-  constexpr int kPerSpan = 6;
-  CurveFit fit;
-  fit.knots = knots;
-  const RimCurve& curve = side.rim->curve();
-  const double start = side.rim->place(side.from);
-  const double way = side.rim->way(side.from, side.to, side.growing);
-  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
-    for (int i = 0; i < kPerSpan && knots[k + 1] > knots[k]; ++i) {
-      const double share =
-          knots[k] + (knots[k + 1] - knots[k]) * (i + 0.5) / kPerSpan;
-      fit.at.push_back(share);
-      fit.points.push_back(curve.point(side.growing ? start + share * way
-                                                    : start - share * way));
-    }
-  }
-  fit.start = brep_.vertices[side.rim->vertex(side.from)];
-  fit.end = brep_.vertices[side.rim->vertex(side.to)];
-  return fit_curve(fit);
 }
 
 PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
@@ -222,7 +213,7 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
     const int line = patch.lines[side];
     if (line < 0) {
       const RimSide rim = rim_side(patch, side);
-      sides.curves[side] = fit_rim(rim, patch_knots_[p]);
+      sides.curves[side] = fit_rim(rim, patch_knots_[p][side % 2], brep_);
       const double start = rim.rim->place(rim.from);
       const double way = rim.rim->way(rim.from, rim.to, rim.growing);
       const double length = rim.rim->curve().length();
@@ -247,6 +238,10 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
     sides.curves[side] = back ? reversed(curve) : curve;
     sides.normals[side] =
         back ? reversed(line_normals_[line]) : line_normals_[line];
+    sides.free_end[side] = line_free_[line];
+    if (back) {
+      std::swap(sides.free_end[side][0], sides.free_end[side][1]);
+    }
     sides.at[side] = shares_of(patch.chains[side]);
   }
   return sides;
@@ -289,8 +284,8 @@ std::vector<BrepUse> FaceBuilder::outline(const FilmPatch& patch) const {
 void FaceBuilder::measure_gaps(const FilmPatch& patch,
                                const PatchSides& sides) {
   constexpr int kSamples = 500;
-  for (const int side : {0, 2}) {
-    if (patch.lines[side] >= 0) {
+  for (int side = 0; side < 4; ++side) {
+    if (patch.rims[side] < 0) {
       continue;
     }
     const RimSide rim = rim_side(patch, side);
@@ -368,11 +363,11 @@ FilmFaces FaceBuilder::build() {
 
 void want_corners(const FilmPiece& film, std::vector<RimEdges>& rims) {
   for (const FilmPatch& patch : film.cut.patches) {
-    for (const int side : {0, 2}) {
-      if (patch.lines[side] >= 0) {
+    for (int side = 0; side < 4; ++side) {
+      const int rim = patch.rims[side];
+      if (rim < 0) {
         continue;
       }
-      const int rim = side == 0 ? patch.bottom_rim : patch.top_rim;
       for (const int v :
            {patch.chains[side].front(), patch.chains[side].back()}) {
         rims[film.rims[rim]].want(film.cut.rim_position[v]);

@@ -11,6 +11,7 @@
 
 #include "cad/film_faces.h"
 #include "cad/measure_solid.h"
+#include "cad/turned_face.h"
 #include "core/error.h"
 #include "core/facet_tree.h"
 
@@ -79,19 +80,26 @@ class SolidBuilder {
     std::vector<int> facets;
     std::vector<std::vector<int>> loops;
     std::vector<int> rims;  // one per loop
+    PlaneSurface plane;
   };
 
   int rim_of(const std::vector<int>& loop);
   void add_film(const std::string& name, const std::vector<int>& facets);
+  bool add_simple(const std::string& name, const std::vector<int>& facets,
+                  const FilmMesh& mesh, const std::vector<FilmRim>& rims,
+                  const std::vector<int>& solid_rims);
   void add_cap(const std::string& name, const std::vector<int>& facets);
   BrepFace face_of(const Cap& cap, const std::vector<RimEdges>& rims) const;
+  std::vector<RimEdges> build_rims(Brep& brep) const;
 
   const FilmSolidInput& input_;
   const SurfaceMesh& mesh_;
   std::deque<RimCurve> curves_;  // addresses stay
   std::vector<std::set<int>> members_;
   std::vector<FilmPiece> films_;
+  std::vector<TurnedFilm> turned_;
   std::vector<Cap> caps_;
+  FilmSolidReport report_;
 };
 
 /// The curve that a loop lies on; a new one where there is none.
@@ -148,6 +156,9 @@ void SolidBuilder::add_film(const std::string& name,
     }
     rims.push_back(std::move(rim));
   }
+  if (add_simple(name, facets, mesh, rims, film.rims)) {
+    return;
+  }
   try {
     film.cut = cut_film(std::move(mesh), rims);
   } catch (const MeshError& error) {
@@ -158,9 +169,36 @@ void SolidBuilder::add_film(const std::string& name,
   films_.push_back(std::move(film));
 }
 
+/// True for a film that needs no patches.
+bool SolidBuilder::add_simple(const std::string& name,
+                              const std::vector<int>& facets,
+                              const FilmMesh& mesh,
+                              const std::vector<FilmRim>& rims,
+                              const std::vector<int>& solid_rims) {
+  const std::optional<SimpleFilm> shape = simple_film(mesh, rims, input_.edge);
+  if (!shape) {
+    return false;
+  }
+  report_.simple.push_back({name, name_of(*shape), shape->off});
+  if (const auto* plane = std::get_if<PlaneSurface>(&shape->surface)) {
+    std::vector<Triangle> corners;
+    for (const int f : facets) {
+      corners.push_back(mesh_.facets[f]);
+    }
+    report_.film_to_solid = std::max(report_.film_to_solid, shape->off);
+    caps_.push_back(
+        {name, facets, boundary_loops(corners), solid_rims, *plane});
+  } else {
+    const bool ball = std::holds_alternative<SphereSurface>(shape->surface);
+    (ball ? report_.spheres : report_.cylinders) += 1;
+    turned_.push_back({name, *shape, solid_rims, mesh});
+  }
+  return true;
+}
+
 void SolidBuilder::add_cap(const std::string& name,
                            const std::vector<int>& facets) {
-  Cap cap{name, facets, {}, {}};
+  Cap cap{name, facets, {}, {}, {}};
   std::vector<Triangle> corners;
   corners.reserve(facets.size());
   Vec3 normal = Vec3::Zero();
@@ -181,6 +219,7 @@ void SolidBuilder::add_cap(const std::string& name,
       }
     }
   }
+  cap.plane = {mesh_.points[corners[0][0]], normal};
   cap.loops = boundary_loops(corners);
   for (const std::vector<int>& loop : cap.loops) {
     cap.rims.push_back(rim_of(loop));
@@ -190,15 +229,8 @@ void SolidBuilder::add_cap(const std::string& name,
 
 BrepFace SolidBuilder::face_of(const Cap& cap,
                                const std::vector<RimEdges>& rims) const {
-  Vec3 normal = Vec3::Zero();
-  for (const int f : cap.facets) {
-    normal += area_vector2(mesh_, f);
-  }
-  normal.normalize();
-  BrepFace face{
-      cap.name,
-      PlaneSurface{mesh_.points[mesh_.facets[cap.facets[0]][0]], normal},
-      {}};
+  const Vec3& normal = cap.plane.normal;
+  BrepFace face{cap.name, cap.plane, {}};
   std::vector<std::pair<double, std::vector<BrepUse>>> loops;
   for (std::size_t k = 0; k < cap.loops.size(); ++k) {
     const std::vector<int>& loop = cap.loops[k];
@@ -226,6 +258,27 @@ BrepFace SolidBuilder::face_of(const Cap& cap,
   return face;
 }
 
+/// With the vertices that the films' faces want; only those that are used.
+std::vector<RimEdges> SolidBuilder::build_rims(Brep& brep) const {
+  std::vector<RimEdges> rims(curves_.begin(), curves_.end());
+  std::set<int> used;
+  for (const FilmPiece& film : films_) {
+    want_corners(film, rims);
+    used.insert(film.rims.begin(), film.rims.end());
+  }
+  for (const TurnedFilm& film : turned_) {
+    want_seam(film, rims);
+    used.insert(film.rims.begin(), film.rims.end());
+  }
+  for (const Cap& cap : caps_) {
+    used.insert(cap.rims.begin(), cap.rims.end());
+  }
+  for (const int r : used) {
+    rims[r].build(kMergeInEdges * input_.edge, brep);
+  }
+  return rims;
+}
+
 FilmSolid SolidBuilder::build() {
   for (const std::vector<int>& part : connected_parts(mesh_)) {
     const std::string& name = mesh_.labels[mesh_.facet_label[part[0]]];
@@ -236,30 +289,23 @@ FilmSolid SolidBuilder::build() {
     }
   }
   FilmSolid solid;
-  std::vector<RimEdges> rims(curves_.begin(), curves_.end());
-  std::vector<char> used(rims.size(), 0);
-  for (const FilmPiece& film : films_) {
-    want_corners(film, rims);
-    for (const int r : film.rims) {
-      used[r] = 1;
-    }
-  }
-  for (std::size_t r = 0; r < rims.size(); ++r) {
-    if (used[r] != 0) {
-      rims[r].build(kMergeInEdges * input_.edge, solid.brep);
-    }
-  }
+  const std::vector<RimEdges> rims = build_rims(solid.brep);
   for (const Cap& cap : caps_) {
     solid.brep.faces.push_back(face_of(cap, rims));
-    solid.report.planes += 1;
+  }
+  report_.planes = static_cast<int>(caps_.size());
+  for (const TurnedFilm& film : turned_) {
+    add_turned_face(film, rims, solid.brep);
+    measure_turned(film, report_);
   }
   for (const FilmPiece& film : films_) {
     const FilmFaces faces =
         add_faces(film, rims, kSpanInEdges * input_.edge, solid.brep);
-    solid.report.patches += static_cast<int>(faces.patches.size());
+    report_.patches += static_cast<int>(faces.patches.size());
     measure_film(film, faces, solid.brep, FacetTree(mesh_, film.facets),
-                 input_.edge, solid.report);
+                 input_.edge, report_);
   }
+  solid.report = std::move(report_);
   return solid;
 }
 

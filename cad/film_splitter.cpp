@@ -13,6 +13,8 @@ namespace {
 // no slivers arise.
 constexpr double kNearEnd = 0.03;
 constexpr double kOnLevel = 1e-9;
+constexpr int kMostRefinements = 3;
+constexpr std::size_t kEnoughFacets = 8000;  // for smooth cuts
 
 Edge sorted(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -48,6 +50,68 @@ int add_vertex(SplitFilm& split, int a, int b, double t) {
   film.rim_of.push_back(rim);
   film.rim_position.push_back(position);
   return v;
+}
+
+namespace {
+
+SplitFilm start(FilmMesh mesh, const std::vector<FilmRim>& rims) {
+  SplitFilm split;
+  split.rims = &rims;
+  split.film.rim_of.assign(mesh.points.size(), -1);
+  split.film.rim_position.assign(mesh.points.size(), 0.0);
+  for (std::size_t r = 0; r < rims.size(); ++r) {
+    const std::vector<int>& loop = rims[r].loop;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const int next = loop[(k + 1) % loop.size()];
+      split.film.rim_of[loop[k]] = static_cast<int>(r);
+      split.film.rim_position[loop[k]] = rims[r].positions[k];
+      split.rim_edges.insert(
+          {std::min(loop[k], next), std::max(loop[k], next)});
+    }
+  }
+  split.cell.assign(mesh.facets.size(), 0);
+  split.sector.assign(mesh.facets.size(), 0);
+  split.film.mesh = std::move(mesh);
+  return split;
+}
+
+/// Every facet in four.
+void refine(SplitFilm& split) {
+  FilmMesh& mesh = split.film.mesh;
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(mesh.facets, edges, facet_edges);
+  const int first = static_cast<int>(mesh.points.size());
+  for (const Edge& edge : edges) {
+    add_vertex(split, edge[0], edge[1], 0.5);
+  }
+  std::vector<Triangle> facets;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Triangle t = mesh.facets[f];
+    Triangle m = facet_edges[f];
+    for (int& v : m) {
+      v += first;
+    }
+    facets.insert(facets.end(),
+                  {Triangle{t[0], m[0], m[2]}, Triangle{m[0], t[1], m[1]},
+                   Triangle{m[2], m[1], t[2]}, m});
+  }
+  mesh.facets = std::move(facets);
+  set_normals(mesh);
+  split.cell.assign(mesh.facets.size(), 0);
+  split.sector.assign(mesh.facets.size(), 0);
+}
+
+}  // namespace
+
+SplitFilm refined_film(FilmMesh mesh, const std::vector<FilmRim>& rims) {
+  SplitFilm split = start(std::move(mesh), rims);
+  for (int round = 0; round < kMostRefinements &&
+                      split.film.mesh.facets.size() < kEnoughFacets;
+       ++round) {
+    refine(split);
+  }
+  return split;
 }
 
 namespace {

@@ -18,6 +18,10 @@ struct SplitFilm {
   std::vector<std::array<double, 3>> value;  // per facet corner
 };
 
+/// The film refined until its cuts can be smooth, however coarse it is: new
+/// vertices on the smooth film and on the rims' curves. One cell.
+SplitFilm refined_film(FilmMesh mesh, const std::vector<FilmRim>& rims);
+
 /// A vertex on the edge from a to b at share t; on a rim's edge it lies on the
 /// rim's curve. `facets` stay as they are.
 int add_vertex(SplitFilm& split, int a, int b, double t);

@@ -40,60 +40,9 @@ int count_in(const std::vector<int>& some, const std::vector<int>& all) {
 namespace {
 
 constexpr int kMostTries = 60;
-constexpr int kMostRefinements = 3;
-constexpr std::size_t kEnoughFacets = 8000;  // for smooth cuts
 constexpr double kGrow = 1.06;
 constexpr double kLongLine = 0.15;  // of a tube's end: long enough
 constexpr double kShrink = 0.85;    // of a tube's measure, from try to try
-
-SplitFilm start(FilmMesh mesh, const std::vector<FilmRim>& rims) {
-  SplitFilm split;
-  split.rims = &rims;
-  split.film.rim_of.assign(mesh.points.size(), -1);
-  split.film.rim_position.assign(mesh.points.size(), 0.0);
-  for (std::size_t r = 0; r < rims.size(); ++r) {
-    const std::vector<int>& loop = rims[r].loop;
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const int next = loop[(k + 1) % loop.size()];
-      split.film.rim_of[loop[k]] = static_cast<int>(r);
-      split.film.rim_position[loop[k]] = rims[r].positions[k];
-      split.rim_edges.insert(
-          {std::min(loop[k], next), std::max(loop[k], next)});
-    }
-  }
-  split.cell.assign(mesh.facets.size(), 0);
-  split.sector.assign(mesh.facets.size(), 0);
-  split.film.mesh = std::move(mesh);
-  return split;
-}
-
-/// Every facet in four, new vertices on the smooth film and on the rims'
-/// curves: cuts are then as smooth as the film, however coarse it is.
-void refine(SplitFilm& split) {
-  FilmMesh& mesh = split.film.mesh;
-  std::vector<Edge> edges;
-  std::vector<Triangle> facet_edges;
-  list_edges(mesh.facets, edges, facet_edges);
-  const int first = static_cast<int>(mesh.points.size());
-  for (const Edge& edge : edges) {
-    add_vertex(split, edge[0], edge[1], 0.5);
-  }
-  std::vector<Triangle> facets;
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    const Triangle t = mesh.facets[f];
-    Triangle m = facet_edges[f];
-    for (int& v : m) {
-      v += first;
-    }
-    facets.insert(facets.end(),
-                  {Triangle{t[0], m[0], m[2]}, Triangle{m[0], t[1], m[1]},
-                   Triangle{m[2], m[1], t[2]}, m});
-  }
-  mesh.facets = std::move(facets);
-  set_normals(mesh);
-  split.cell.assign(mesh.facets.size(), 0);
-  split.sector.assign(mesh.facets.size(), 0);
-}
 
 /// Loops of the refined film, in the rims' order.
 std::vector<std::vector<int>> loops_of_rims(const SplitFilm& split) {
@@ -230,12 +179,7 @@ Tubes cut_into_tubes(const SplitFilm& whole) {
 }  // namespace
 
 Tubes film_tubes(FilmMesh mesh, const std::vector<FilmRim>& rims) {
-  Tubes tubes{start(std::move(mesh), rims), {}, {}};
-  for (int round = 0; round < kMostRefinements &&
-                      tubes.split.film.mesh.facets.size() < kEnoughFacets;
-       ++round) {
-    refine(tubes.split);
-  }
+  Tubes tubes{refined_film(std::move(mesh), rims), {}, {}};
   if (rims.size() == 2) {
     const std::vector<std::vector<int>> loops = loops_of_rims(tubes.split);
     tubes.tubes.push_back({loops[0], loops[1]});

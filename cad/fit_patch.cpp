@@ -204,7 +204,13 @@ void add_third_differences(PoleSystem& system, int rows, int columns) {
 void add_normals(PoleSystem& system, const PatchSides& sides, int side,
                  int rows, int columns) {
   const SplineCurve& curve = sides.curves[side];
+  const double first = sides.free_end[side][0] ? curve.knots[4] : 0.0;
+  const double last =
+      sides.free_end[side][1] ? curve.knots[curve.knots.size() - 5] : 1.0;
   for (const double t : samples_of(curve.knots, kNormalsPerSpan)) {
+    if (t < first || t > last) {
+      continue;
+    }
     const Vec3 tangent = slope_of(curve, t).normalized();
     Vec3 normal = point_of(sides.normals[side], t);
     normal = (normal - normal.dot(tangent) * tangent).normalized();

@@ -15,6 +15,9 @@ struct PatchSides {
   std::array<SplineCurve, 4> curves;
   // The film's normal along the side, by its parameter; no poles: free.
   std::array<SplineCurve, 4> normals;
+  // First and last end of the side: the film has no tangent plane there, and
+  // the span is free.
+  std::array<std::array<bool, 2>, 4> free_end{};
   // Parameters of the chains' vertices.
   std::array<std::vector<double>, 4> at;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMostTurn = 0.12;  // of a rim in a span [rad]
 constexpr int kLeastSpans = 4;
-constexpr double kSamePlace = 1e-6;
+constexpr double kSameKnot = 1e-6;
 constexpr int kTurnSamples = 16;
 
 double place_at(const SideDemand& side, double share) {
@@ -30,7 +30,7 @@ void add_breaks(const SideDemand& side, std::vector<SplineBreak>& breaks) {
     const double d =
         side.growing ? curve.start_of(k) - start : start - curve.start_of(k);
     const double share = curve.wrapped(d) / way;
-    if (share > kSamePlace && share < 1.0 - kSamePlace) {
+    if (share > kSameKnot && share < 1.0 - kSameKnot) {
       breaks.push_back({share, curve.is_sharp(k) ? 3 : 2});
     }
   }
@@ -67,7 +67,7 @@ std::vector<double> common_knots(const std::vector<SideDemand>& sides,
             });
   breaks.erase(std::unique(breaks.begin(), breaks.end(),
                            [](const SplineBreak& a, const SplineBreak& b) {
-                             return b.at - a.at < kSamePlace;
+                             return b.at - a.at < kSameKnot;
                            }),
                breaks.end());
   std::vector<SplineBreak> inner;

@@ -14,8 +14,9 @@ namespace meniscus {
 
 namespace {
 
-constexpr double kSharp = 1e-3;  // [rad]
-constexpr int kSamples = 64;     // per piece, for lengths and first guesses
+constexpr double kSharp = 1e-3;      // [rad]
+constexpr double kSamePlace = 1e-6;  // of the length
+constexpr int kSamples = 64;         // per piece, for lengths and first guesses
 
 double length_of(const RimPiece& piece) {
   if (std::holds_alternative<StraightLine>(piece.curve)) {
@@ -129,6 +130,24 @@ bool RimCurve::is_sharp(int k) const {
   const RimPiece& before = pieces_[(k + piece_count() - 1) % piece_count()];
   return angle_between(slope_of(before.curve, before.last),
                        slope_of(pieces_[k].curve, pieces_[k].first)) > kSharp;
+}
+
+int RimCurve::sharp_corner(double s) const {
+  for (int k = 0; k < piece_count() && piece_count() > 1; ++k) {
+    const double d = s - starts_[k];
+    if (is_sharp(k) && std::abs(d - length() * std::round(d / length())) <
+                           kSamePlace * length()) {
+      return k;
+    }
+  }
+  return -1;
+}
+
+Vec3 RimCurve::corner_normal(int k) const {
+  const RimPiece& before = pieces_[(k + piece_count() - 1) % piece_count()];
+  return slope_of(before.curve, before.last)
+      .cross(slope_of(pieces_[k].curve, pieces_[k].first))
+      .normalized();
 }
 
 double RimCurve::turning(int k) const {

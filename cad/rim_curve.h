@@ -33,6 +33,10 @@ class RimCurve {
   double nearest(const Vec3& p) const;
   /// True where the piece and the one before meet with an angle.
   bool is_sharp(int k) const;
+  /// The sharp corner at s: the number of the piece that begins there, or -1.
+  int sharp_corner(double s) const;
+  /// Unit, at right angles to both sides of a sharp corner.
+  Vec3 corner_normal(int k) const;
   /// How far the tangent turns along a piece [rad].
   double turning(int k) const;
   double wrapped(double s) const;

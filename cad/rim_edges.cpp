@@ -7,6 +7,8 @@ namespace meniscus {
 
 namespace {
 
+constexpr double kSameRimPlace = 1e-9;  // of the rim's length
+
 double apart(double s, double t, double length) {
   const double d = s - t;
   return std::abs(d - length * std::round(d / length));
@@ -22,15 +24,19 @@ void RimEdges::build(double tolerance, Brep& brep) {
   for (int k = 0; k < curve_->piece_count() && !one_arc; ++k) {
     places_.push_back(curve_->start_of(k));
   }
-  std::sort(wanted_.begin(), wanted_.end());
-  for (const double s : wanted_) {
-    const bool there = std::any_of(
-        places_.begin(), places_.end(),
-        [&](double place) { return apart(s, place, length) < tolerance; });
-    if (!there) {
-      places_.push_back(curve_->wrapped(s));
+  const auto put = [&](std::vector<double>& wishes, double near) {
+    std::sort(wishes.begin(), wishes.end());
+    for (const double s : wishes) {
+      const bool there = std::any_of(
+          places_.begin(), places_.end(),
+          [&](double place) { return apart(s, place, length) < near; });
+      if (!there) {
+        places_.push_back(curve_->wrapped(s));
+      }
     }
-  }
+  };
+  put(exact_, kSameRimPlace * length);
+  put(wanted_, tolerance);
   if (places_.empty()) {
     places_.push_back(0.0);
   }

@@ -14,6 +14,8 @@ class RimEdges {
 
   /// Asks for a vertex at place s of the curve.
   void want(double s) { wanted_.push_back(s); }
+  /// The same; it becomes no other vertex.
+  void want_exactly(double s) { exact_.push_back(s); }
   /// Adds vertices and edges; wishes within `tolerance` [length] of each other
   /// or of where pieces meet become one vertex.
   void build(double tolerance, Brep& brep);
@@ -42,6 +44,7 @@ class RimEdges {
 
   const RimCurve* curve_;
   std::vector<double> wanted_;
+  std::vector<double> exact_;
   std::vector<double> places_;  // rising
   std::vector<int> vertices_;
   std::vector<int> edges_;  // from each place to the next

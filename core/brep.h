@@ -51,6 +51,24 @@ struct PlaneSurface {
   Vec3 normal = Vec3::UnitZ();  // unit, out of the solid
 };
 
+/// Around `axis` by the angle a from `zero`, and along it by b from `center`.
+struct CylinderSurface {
+  Vec3 center = Vec3::Zero();
+  Vec3 axis = Vec3::UnitZ();  // unit
+  Vec3 zero = Vec3::UnitX();  // unit, at right angles to the axis
+  double radius = 1.0;
+  bool inward = false;  // the solid is outside of it: a bore
+};
+
+/// By longitude a from `zero` around `axis`, and latitude b towards it.
+struct SphereSurface {
+  Vec3 center = Vec3::Zero();
+  Vec3 axis = Vec3::UnitZ();
+  Vec3 zero = Vec3::UnitX();
+  double radius = 1.0;
+  bool inward = false;
+};
+
 /// Bicubic tensor product over [0,1] x [0,1]; dS/da x dS/db points out of the
 /// solid.
 struct SplineSurface {
@@ -59,18 +77,23 @@ struct SplineSurface {
   Points poles;  // pole (i, j) at i * (knots_b.size() - 4) + j
 };
 
-/// An edge in a face's loop. The surface's parameters at the edge's own first
-/// and last, between which they run linearly; not used on planes.
+/// An edge in a face's loop. The surface's parameters (a, b) at the edge's own
+/// first and last, between which they run linearly; not used on planes. A face
+/// that closes upon itself uses its seam twice, once each way.
 struct BrepUse {
-  int edge = 0;
+  int edge = 0;  // kPole: no edge but the way across a sphere's pole, from
+                 // at_first to at_last, at the end of the use before
   bool forward = true;
   Vec2 at_first = Vec2::Zero();
   Vec2 at_last = Vec2::Zero();
 };
 
+constexpr int kPole = -1;
+
 struct BrepFace {
   std::string name;
-  std::variant<PlaneSurface, SplineSurface> surface;
+  std::variant<PlaneSurface, CylinderSurface, SphereSurface, SplineSurface>
+      surface;
   // Closed, counter-clockwise seen from outside, the outer one first.
   std::vector<std::vector<BrepUse>> loops;
 };

@@ -127,6 +127,7 @@ struct Launch {
   int report;  // errno goes here when the start fails
   pid_t parent;
   rlim_t memory;  // RLIM_INFINITY: no limit
+  int niceness;
 };
 
 [[noreturn]] void become_child(const Launch& launch) {
@@ -151,6 +152,9 @@ struct Launch {
   sigset_t all;
   ::sigemptyset(&all);
   ::sigprocmask(SIG_SETMASK, &all, nullptr);
+  if (launch.niceness > 0) {  // a wish: refused, it runs all the same
+    [[maybe_unused]] const int reached = ::nice(launch.niceness);
+  }
   good = good && (launch.folder == nullptr || ::chdir(launch.folder) == 0);
   if (good) {
     ::execve(launch.program, launch.argv, launch.environment);
@@ -204,6 +208,7 @@ void start(const ChildOptions& options, ErrorStream error_stream,
   launch.memory = options.memory_limit
                       ? static_cast<rlim_t>(*options.memory_limit)
                       : RLIM_INFINITY;
+  launch.niceness = options.niceness;
   started.process = ::fork();
   if (started.process < 0) {
     throw IoError(fmt::format("cannot start '{}': {}", program->string(),

@@ -29,7 +29,8 @@ struct ChildOptions {
   std::optional<double> time_limit;    // wall clock [s]; then it is killed
   std::optional<double> memory_limit;  // address space [byte]
   std::size_t error_tail = 4000;       // bytes kept of the end of stderr
-  Monitor* monitor = nullptr;          // polled for a stop every 50 ms
+  int niceness = 0;  // 0..19, how far it stands back behind the caller's work
+  Monitor* monitor = nullptr;  // polled for a stop every 50 ms
 };
 
 struct ChildResult {

@@ -1,15 +1,59 @@
 #include "evolve/carry.h"
 
+#include <numeric>
+
 #include "core/error.h"
 
 namespace meniscus {
+
+namespace {
+
+/// Vertices of a kind that facets link to a rim; others, of parts that float,
+/// stay where they are.
+std::vector<char> carried_vertices(const FilmComplex& reference,
+                                   VertexKind kind) {
+  const bool film = kind == VertexKind::Free;
+  std::vector<int> parent(reference.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int v) {
+    while (parent[v] != v) {
+      v = parent[v] = parent[parent[v]];
+    }
+    return v;
+  };
+  const SurfaceMesh& mesh = reference.mesh;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (reference.surfaces[mesh.facet_label[f]].liquid == film) {
+      const Triangle& t = mesh.facets[f];
+      parent[root(t[1])] = root(t[0]);
+      parent[root(t[2])] = root(t[0]);
+    }
+  }
+  std::vector<char> held(parent.size(), 0);
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    if (reference.vertices[v].kind != kind) {
+      held[root(static_cast<int>(v))] = 1;
+    }
+  }
+  std::vector<char> result(held.size(), 0);
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    result[v] = reference.vertices[v].kind == kind &&
+                        held[root(static_cast<int>(v))] != 0
+                    ? 1
+                    : 0;
+  }
+  return result;
+}
+
+}  // namespace
 
 Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind,
                                const std::vector<int>& order) {
   Extension extension;
   std::vector<int> unknown_of(reference.vertices.size(), -1);
+  const std::vector<char> carried = carried_vertices(reference, kind);
   for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
-    if (reference.vertices[v].kind == kind) {
+    if (carried[v] != 0) {
       unknown_of[v] = static_cast<int>(extension.vertices.size());
       extension.vertices.push_back(static_cast<int>(v));
     }
@@ -26,10 +70,6 @@ Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind,
   LaplaceSystem laplace =
       cotan_laplacian(reference.mesh, weight, unknown_of, count,
                       film ? CotanWeights::Clamped : CotanWeights::Exact);
-  if (laplace.outer.nonZeros() == 0) {
-    // No rim reaches these vertices: they stay.
-    laplace.inner.setIdentity();
-  }
   extension.outer.swap(laplace.outer);
   laplace.inner.makeCompressed();
   // Films with triple lines have more unknowns than vertices: no order then.
@@ -116,6 +156,13 @@ Points Carry::transpose(const Points& by_points) const {
       result[v].setZero();
     }
   }
+  return result;
+}
+
+Points Carry::rates(const Points& rim_rates) const {
+  Points result = rim_rates;
+  apply(films_, rim_rates, result);
+  apply(caps_, rim_rates, result);
   return result;
 }
 

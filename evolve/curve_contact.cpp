@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/surface_mesh.h"
+#include "evolve/curve_place.h"
 
 namespace meniscus {
 
@@ -192,6 +193,30 @@ std::vector<CurveMeeting> meetings_of(
     }
   }
   return result;
+}
+
+std::optional<double> lie_on_each_other(const CurveShape& a,
+                                        const CurveShape& b, double gap) {
+  constexpr int kPlaces = 64;
+  const auto places = [](const CurveShape& shape) {
+    return points_at(shape,
+                     sample_parameters(shape, length_of(shape), kPlaces));
+  };
+  const Points on_a = places(a);
+  const Points on_b = places(b);
+  const double near =
+      gap * std::min(bounding_diagonal(on_a), bounding_diagonal(on_b));
+  double most = 0.0;
+  for (const bool back : {false, true}) {
+    for (const CurvePlace& place :
+         nearest_places(back ? a : b, back ? on_b : on_a)) {
+      if (!(place.distance <= near)) {
+        return std::nullopt;
+      }
+      most = std::max(most, place.distance);
+    }
+  }
+  return most;
 }
 
 }  // namespace meniscus

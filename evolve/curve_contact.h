@@ -22,4 +22,10 @@ struct CurveMeeting {
 std::vector<CurveMeeting> meetings_of(
     const std::vector<const CurveShape*>& shapes, double gap = 1e-7);
 
+/// Do two valid closed curves lie on each other, either way around? The largest
+/// distance of at least 64 places and the corners of each from the other, where
+/// it is at most `gap` x the smaller one's size [length].
+std::optional<double> lie_on_each_other(const CurveShape& a,
+                                        const CurveShape& b, double gap = 1e-4);
+
 }  // namespace meniscus

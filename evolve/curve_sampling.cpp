@@ -16,7 +16,7 @@ namespace {
 
 using curve_shape::part_count;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 // Arclength of an ellipse from angle 0 at equal steps of the angle: 5-point
 // Gauss on each step, exact to rounding for any usual ratio of radii.
@@ -28,7 +28,7 @@ std::vector<double> ellipse_lengths(const Ellipse& e) {
   constexpr std::array<double, 5> kWeight = {
       0.236926885056189, 0.478628670499366, 0.568888888888889,
       0.478628670499366, 0.236926885056189};
-  const double h = 2.0 * kPi / kSteps;
+  const double h = 2.0 * kHalfTurn / kSteps;
   std::vector<double> lengths(kSteps + 1, 0.0);
   for (int i = 0; i < kSteps; ++i) {
     double sum = 0.0;
@@ -96,7 +96,7 @@ double part_length(const CurveShape& shape, int part) {
     return part_length(*p, part);
   }
   if (const auto* c = std::get_if<Circle>(&shape)) {
-    return 2.0 * kPi * c->radius;
+    return 2.0 * kHalfTurn * c->radius;
   }
   if (const auto* e = std::get_if<Ellipse>(&shape)) {
     return ellipse_lengths(*e).back();
@@ -104,7 +104,7 @@ double part_length(const CurveShape& shape, int part) {
   if (const auto* r = std::get_if<Rectangle>(&shape)) {
     const bool round = r->corner_radius > 0.0;
     if (round && part % 2 == 1) {
-      return 0.5 * kPi * r->corner_radius;
+      return 0.5 * kHalfTurn * r->corner_radius;
     }
     const int side = round ? part / 2 : part;
     return (side % 2 == 0 ? r->height : r->width) - 2.0 * r->corner_radius;

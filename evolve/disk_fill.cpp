@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evolve/loft.h"
 #include "evolve/surface_editor.h"
 
 namespace meniscus {
@@ -228,6 +229,19 @@ double mean_piece(const Points& rim) {
   return sum / static_cast<double>(rim.size());
 }
 
+SurfaceMesh remeshed(const Points& points, std::vector<Triangle> facets,
+                     const EdgeTarget& target) {
+  FilmComplex disk;
+  disk.mesh.points = points;
+  disk.mesh.facets = std::move(facets);
+  disk.mesh.facet_label.assign(disk.mesh.facets.size(), 0);
+  disk.surfaces.resize(1);
+  disk.vertices.assign(points.size(), {.kind = VertexKind::Fixed});
+  SurfaceEditor editor(std::move(disk));
+  make_isotropic(editor, target, kPasses);
+  return std::move(editor).finish().mesh;
+}
+
 }  // namespace
 
 Vec3 polygon_area_vector(const Points& rim) {
@@ -247,9 +261,7 @@ SurfaceMesh fill_disk(const Points& rim, const std::vector<Points>& holes,
                       double edge,
                       const std::function<double(const Vec3&)>& edge_field) {
   const Vec3 normal = polygon_area_vector(rim);
-  FilmComplex disk;
-  Points& points = disk.mesh.points;
-  points = rim;
+  Points points = rim;
   std::vector<int> ring(rim.size());
   std::iota(ring.begin(), ring.end(), 0);
   std::vector<std::vector<int>> loops;
@@ -265,15 +277,17 @@ SurfaceMesh fill_disk(const Points& rim, const std::vector<Points>& holes,
   }
   const std::vector<Vec2> flat = flattened(points, rim);
   ring = HoleBridges(flat, std::move(ring), std::move(loops)).run();
-  disk.mesh.facets = EarClipper(points, flat, std::move(ring)).run();
-  disk.mesh.facet_label.assign(disk.mesh.facets.size(), 0);
-  disk.surfaces.resize(1);
-  disk.vertices.assign(points.size(), {.kind = VertexKind::Fixed});
-  SurfaceEditor editor(std::move(disk));
   // Where the curve is cut finer than asked, the inside follows it.
-  make_isotropic(editor, {.edge = std::min(edge, piece), .field = edge_field},
-                 kPasses);
-  return std::move(editor).finish().mesh;
+  return remeshed(points, EarClipper(points, flat, std::move(ring)).run(),
+                  {.edge = std::min(edge, piece), .field = edge_field});
+}
+
+SurfaceMesh fill_ring(const Points& outer, const Points& inner, double edge) {
+  Points rims = outer;
+  rims.insert(rims.end(), inner.begin(), inner.end());
+  return remeshed(
+      rims, loft_band(outer, inner),
+      {.edge = std::min({edge, mean_piece(outer), mean_piece(inner)})});
 }
 
 }  // namespace meniscus

@@ -28,4 +28,10 @@ SurfaceMesh fill_disk(
     const Points& rim, const std::vector<Points>& holes, double edge,
     const std::function<double(const Vec3&)>& edge_field = {});
 
+/// Isotropic triangles of the band between two closed curves, neither of which
+/// need be planar: the points of `outer` come first, then those of `inner`, no
+/// other lies on them, and facets run along `outer` in its direction. Lofted
+/// (evolve/loft.h), then remeshed along itself.
+SurfaceMesh fill_ring(const Points& outer, const Points& inner, double edge);
+
 }  // namespace meniscus

@@ -7,11 +7,20 @@
 #include <Eigen/Dense>
 
 #include "core/error.h"
+#include "core/operation_count.h"
 #include "evolve/facet_terms.h"
 
 namespace meniscus {
 
 namespace {
+
+// Operations a facet (docs/theory.md, Counting work).
+constexpr double kAreaWork = 23.0;
+constexpr double kAreaSlopeWork = 56.0;
+constexpr double kConeWork = 24.0;
+constexpr double kConeSlopeWork = 55.0;
+constexpr double kLumpWork = 25.0;
+constexpr double kCosineWork = 48.0;
 
 std::array<Vec3, 3> corners_of(const Points& points, const Triangle& t) {
   return {points[t[0]], points[t[1]], points[t[2]]};
@@ -94,6 +103,7 @@ FilmEnergy::FilmEnergy(const FilmComplex& complex, FilmMotion motion)
 double FilmEnergy::value(const Points& points,
                          const FilmTargets& targets) const {
   double sum = 0.0;
+  count_operations(kAreaWork * static_cast<double>(facets_.size()));
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (plain_[label_[f]] != 0) {
       const Triangle& t = facets_[f];
@@ -136,6 +146,10 @@ Vec3 FilmEnergy::cone_origin(const Points& points) const {
 VectorX FilmEnergy::volumes(const Points& points) const {
   VectorX sum = volume_offset_;
   const Vec3 origin = cone_origin(points);
+  if (body_count_ > 0) {
+    count_operations((kConeWork + 2.0 * body_count_) *
+                     static_cast<double>(facets_.size()));
+  }
   for (std::size_t f = 0; f < facets_.size() && body_count_ > 0; ++f) {
     const Triangle& t = facets_[f];
     const Vec3 a = points[t[0]] - origin;
@@ -203,6 +217,7 @@ VectorX FilmEnergy::areas(const Points& points) const {
 Points FilmEnergy::area_gradient(const Points& points,
                                  const VectorX& weight) const {
   Points sum(points.size(), Vec3::Zero());
+  count_operations(kAreaSlopeWork * static_cast<double>(facets_.size()));
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const int label = label_[f];
     if (liquid_[label] == 0 || weight[label] == 0.0) {
@@ -248,6 +263,7 @@ Points FilmEnergy::functional_gradient(const Points& points,
   Points sum(points.size(), Vec3::Zero());
   const Vec3 origin = cone_origin(points);
   if (functional < body_count_ && cone_[functional] != 0) {
+    count_operations(kConeSlopeWork * static_cast<double>(facets_.size()));
     for (std::size_t f = 0; f < facets_.size(); ++f) {
       const int sign = side_[label_[f]][functional];
       if (sign == 0) {
@@ -269,6 +285,7 @@ Points FilmEnergy::functional_gradient(const Points& points,
 
 VectorX FilmEnergy::along(const Points& slope, const Points& directions) const {
   VectorX result(unknowns());
+  count_operations(5.0 * unknowns());
   for (int i = 0; i < unknowns(); ++i) {
     result[i] = slope[vertices()[i]].dot(directions[i]);
   }
@@ -277,6 +294,7 @@ VectorX FilmEnergy::along(const Points& slope, const Points& directions) const {
 
 VectorX FilmEnergy::lumped_area(const Points& points) const {
   std::vector<double> at(points.size(), 0.0);
+  count_operations(kLumpWork * static_cast<double>(facets_.size()));
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (liquid_[label_[f]] == 0) {
       continue;
@@ -298,6 +316,7 @@ VectorX FilmEnergy::lumped_area(const Points& points) const {
 double FilmEnergy::smallest_cosine(const Points& points, const Points& base,
                                    int* facet) const {
   double least = 1.0;
+  count_operations(kCosineWork * static_cast<double>(facets_.size()));
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (liquid_[label_[f]] == 0 || corner_start_[f] == corner_start_[f + 1]) {
       continue;

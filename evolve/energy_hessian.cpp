@@ -19,7 +19,7 @@ FacetFrame frame_of(const Points& points, const Triangle& t,
   return {points[t[0]] - origin, points[t[1]] - origin, points[t[2]] - origin};
 }
 
-std::array<Vec3, 3> corners_of(const Points& points, const Triangle& t) {
+std::array<Vec3, 3> facet_corners_of(const Points& points, const Triangle& t) {
   return {points[t[0]], points[t[1]], points[t[2]]};
 }
 
@@ -186,8 +186,8 @@ void FilmEnergy::add_terms(const Points& points, const VectorX& pressure,
       continue;
     }
     for (const FilmTerm::Element& e : term->elements()) {
-      const FacetJet jet =
-          term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Hessian);
+      const FacetJet jet = term->jet(
+          e, facet_corners_of(points, facets_[e.facet]), JetOrder::Hessian);
       for (int a = 0; a < 3; ++a) {
         for (int b = 0; b <= a; ++b) {
           add_block(e.facet, a, b,

@@ -24,7 +24,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
-char lower(char c) {
+char lower_case(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 // Ctrl-Z ends files from DOS.
@@ -197,7 +197,7 @@ bool FeLexer::from_macro(FeToken& token) {
         continue;
       }
       std::transform(next.text.begin(), next.text.end(), next.text.begin(),
-                     lower);
+                     lower_case);
     }
     token = std::move(next);
     return true;
@@ -248,9 +248,9 @@ FeToken FeLexer::raw() {
     }
     token.kind = FeToken::Kind::Name;
     token.text = spelling_;
-    token.upper = lower(spelling_.front()) != spelling_.front();
+    token.upper = lower_case(spelling_.front()) != spelling_.front();
     std::transform(token.text.begin(), token.text.end(), token.text.begin(),
-                   lower);
+                   lower_case);
   } else if (c == '"') {
     quoted(token);
   } else {
@@ -266,7 +266,7 @@ FeToken FeLexer::raw() {
 void FeLexer::directive(const FePlace& place) {
   const std::string what(word());
   std::string key = what;
-  std::transform(key.begin(), key.end(), key.begin(), lower);
+  std::transform(key.begin(), key.end(), key.begin(), lower_case);
   if (key != "define") {
     fail(place, fmt::format("'#{}' is not supported; only #define is. Paste "
                             "included files in",
@@ -299,10 +299,11 @@ void FeLexer::directive(const FePlace& place) {
 
 void FeLexer::number(FeToken& token) {
   const std::size_t start = at_;
-  const bool hexadecimal = at(0) == '0' && lower(at(1)) == 'x';
+  const bool hexadecimal = at(0) == '0' && lower_case(at(1)) == 'x';
   while (is_digit(at(0)) || is_letter(at(0)) || at(0) == '.' ||
          (!hexadecimal && (at(0) == '+' || at(0) == '-') &&
-          (lower(text_[at_ - 1]) == 'e' || lower(text_[at_ - 1]) == 'd') &&
+          (lower_case(text_[at_ - 1]) == 'e' ||
+           lower_case(text_[at_ - 1]) == 'd') &&
           is_digit(at(1)))) {
     ++at_;
   }
@@ -314,7 +315,7 @@ void FeLexer::number(FeToken& token) {
                                   "read",
                                   digits.size(), kLongestNumber));
   }
-  const bool binary = digits.size() > 1 && lower(digits.back()) == 'b' &&
+  const bool binary = digits.size() > 1 && lower_case(digits.back()) == 'b' &&
                       digits.find_first_not_of("01") == digits.size() - 1;
   bool good = false;
   if (hexadecimal || binary) {
@@ -327,7 +328,7 @@ void FeLexer::number(FeToken& token) {
     token.number = static_cast<double>(value);
   } else {
     for (char& c : digits) {
-      c = lower(c) == 'd' ? 'e' : c;
+      c = lower_case(c) == 'd' ? 'e' : c;
     }
     const char* last = digits.data() + digits.size();
     const auto [end, error] =

@@ -164,10 +164,10 @@ std::vector<Curve> FilmModel::Impl::curves_of_system(
   return result;
 }
 
-EdgeMiddles FilmModel::Impl::middles() const {
+EdgeMiddles FilmModel::Impl::middles(std::size_t count) const {
   EdgeMiddles result;
   const auto first = static_cast<int>(meshed.points.size());
-  for (std::size_t k = 0; k < parents.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     const auto [a, b] = parents[k];
     result[{std::min(a, b), std::max(a, b)}] = first + static_cast<int>(k);
   }
@@ -185,18 +185,60 @@ std::vector<char> FilmModel::Impl::straight() const {
 void FilmModel::Impl::find_reference(const FilmSystem& initial,
                                      const FilmModelOptions& options,
                                      const SettleOptions& settle) {
-  Monitor& monitor =
-      options.monitor != nullptr ? *options.monitor : silent_monitor();
-  monitor.progress({"film", "building the start", 0.0});
   if (initial.films.empty()) {
     build_rigid(initial, options);
     return;
   }
   const int halvings = start_halvings(initial, options.edge);
-  complex = build_start(initial, start_edge(initial, options.edge));
+  find_reference_from(halvings, initial, options, settle);
+  const auto tears = [this] {
+    return reference.failure &&
+           reference.failure->kind != FailureKind::FilmUnstable;
+  };
+  if (!tears() || halvings == 0 || initial.keep_facets) {
+    return;
+  }
+  // Coarse facets may fold where rims are not much larger than they: once more
+  // without them.
+  const FilmComplex coarse = complex;
+  const SurfaceMesh coarse_mesh = meshed;
+  const std::vector<Edge> coarse_parents = parents;
+  const std::size_t coarse_near = near_parents;
+  const FilmState failed = reference;
+  const double coarse_edge = start_edge;
+  find_reference_from(0, initial, options, settle);
+  if (tears()) {
+    complex = coarse;
+    meshed = coarse_mesh;
+    parents = coarse_parents;
+    near_parents = coarse_near;
+    reference = failed;
+    start_edge = coarse_edge;
+    energy.reset();
+  }
+}
+
+void FilmModel::Impl::find_reference_from(int halvings,
+                                          const FilmSystem& initial,
+                                          const FilmModelOptions& options,
+                                          const SettleOptions& settle) {
+  Monitor& monitor =
+      options.monitor != nullptr ? *options.monitor : silent_monitor();
+  monitor.progress({"film", "building the start", 0.0});
+  start_edge = std::ldexp(options.edge, halvings);
+  complex = build_start(initial, start_edge);
+  parents.clear();
+  near_parents = 0;
+  refinements = 0;
+  energy.reset();
   monitor.progress({"film", "settling the raw start", 0.1});
-  reference = find_equilibrium(
-      complex, {.edge = options.edge, .halvings = halvings, .settle = settle});
+  FindOptions find{
+      .edge = options.edge, .halvings = halvings, .settle = settle};
+  if (initial.keep_facets) {
+    find.edge.reset();
+    find.refinements = halvings;
+  }
+  reference = find_equilibrium(complex, find);
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
@@ -276,8 +318,9 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   impl->regions = regions_of(initial.bodies);
   keep_solids(impl->complex, impl->regions, topology);
   drop_unused(topology, corner);
-  impl->nodes = surface_nodes(std::move(topology), std::move(corner),
-                              impl->middles(), impl->straight());
+  impl->nodes =
+      surface_nodes(std::move(topology), std::move(corner),
+                    impl->middles(impl->near_parents), impl->straight());
   if (impl->reference.failure || !impl->energy) {
     impl->energy.emplace(impl->complex);
   }
@@ -299,6 +342,7 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
 }
 
 const FilmState& FilmModel::reference() const { return impl_->reference; }
+double FilmModel::start_edge() const { return impl_->start_edge; }
 
 FilmState FilmModel::settle(const FilmSystem& system,
                             const SettleOptions& options) const {
@@ -342,7 +386,8 @@ QuadraticSurface FilmModel::surface(const Points& points) const {
 }
 
 void FilmModel::split_facets(const std::vector<char>& marked) {
-  impl_->nodes = meniscus::split_facets(impl_->nodes, marked, impl_->middles(),
+  impl_->nodes = meniscus::split_facets(impl_->nodes, marked,
+                                        impl_->middles(impl_->near_parents),
                                         impl_->straight());
 }
 
@@ -363,6 +408,18 @@ SurfaceMesh FilmModel::boundary(const Points& points) const {
   drop_interfaces(mesh);
   return mesh;
 }
+
+SurfaceMesh FilmModel::meshed_facets() const {
+  SurfaceMesh mesh = impl_->meshed;
+  mesh.points.clear();
+  return mesh;
+}
+
+EdgeMiddles FilmModel::middles() const {
+  return impl_->middles(impl_->parents.size());
+}
+
+int FilmModel::refinements() const { return impl_->refinements; }
 
 std::vector<int> FilmModel::rim(const std::string& curve) const {
   std::vector<int> result;

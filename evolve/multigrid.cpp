@@ -19,6 +19,21 @@ constexpr std::array<std::array<std::array<int, 2>, 3>, 4> kChildren = {
      {{{2, 0}, {1, 2}, {2, 2}}},
      {{{0, 1}, {1, 2}, {2, 0}}}}};
 
+/// Of every child's weights (three in five are not zero), its rows by them, and
+/// the weights by those.
+double gather_work(const std::vector<int>& coarse,
+                   const std::vector<int>& fine) {
+  double work = 0.0;
+  for (std::size_t f = 0; f + 1 < coarse.size(); ++f) {
+    const double c = coarse[f + 1] - coarse[f];
+    for (std::size_t g = 4 * f; g < 4 * f + 4; ++g) {
+      const double n = fine[g + 1] - fine[g];
+      work += 6.6 * n * c + 2.0 * n * n * c + c * (c + 1.0) * (n + 0.5);
+    }
+  }
+  return work;
+}
+
 }  // namespace
 
 bool is_nested(const FilmEnergy& coarse, const FilmEnergy& fine,
@@ -222,6 +237,9 @@ void FilmMultigrid::transfer_weights(std::size_t fine) {
     }
     level.p_start.push_back(static_cast<int>(level.p_column.size()));
   }
+  // A mean takes two dot products with what stands before them.
+  count_operations(6.0 * static_cast<double>(level.p_value.size() - old) +
+                   2.0 * static_cast<double>(level.p_value.size()));
   below.metric = VectorX::Zero(coarse.unknowns());
   for (int i = 0; i < space.unknowns(); ++i) {
     for (int k = level.p_start[i]; k < level.p_start[i + 1]; ++k) {
@@ -241,6 +259,7 @@ void FilmMultigrid::gather(std::size_t fine,
   coarse_elements.assign(coarse.element_start().back(), 0.0);
   std::array<std::array<double, 9>, 9> p{};
   std::array<std::array<double, 9>, 9> kp{};
+  count_operations(gather_work(coarse.corner_start(), above.corner_start()));
   for (std::size_t f = 0; f < coarse.facets().size(); ++f) {
     const int c0 = coarse.corner_start()[f];
     const int nc = coarse.corner_start()[f + 1] - c0;
@@ -424,6 +443,7 @@ VectorX FilmMultigrid::precondition(const VectorX& right) const {
     level.right[i] = static_cast<float>(right[i] / size);
   }
   cycle(levels_.size() - 1);
+  count_operations(2.0 * n);
   VectorX result(n);
   for (int i = 0; i < n; ++i) {
     result[i] = size * level.x[i];

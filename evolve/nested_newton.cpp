@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "core/operation_count.h"
 #include "evolve/held_pressure.h"
 
 namespace meniscus {
@@ -142,6 +143,7 @@ bool NestedNewton::refresh() {
 VectorX NestedNewton::project(VectorX& right, VectorX& multipliers) const {
   VectorX z = multigrid_.precondition(right);
   if (constraints_.cols() > 0) {
+    count_operations(6.0 * static_cast<double>(constraints_.size()));
     const VectorX y = schur_inverse_ * (constraints_.transpose() * z);
     z -= inverse_constraints_ * y;
     right -= constraints_ * y;
@@ -165,6 +167,7 @@ NestedNewton::Step NestedNewton::solve(const VectorX& residual,
   double gz = g.dot(z);
   const double enough = factor * factor * gz;
   for (; step.iterations < kMostLinear && gz > enough; ++step.iterations) {
+    count_operations(10.0 * static_cast<double>(p.size()));
     const VectorX kp = multigrid_.multiply(p);
     const double curvature = p.dot(kp);
     if (!(curvature > 0.0)) {

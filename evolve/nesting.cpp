@@ -19,7 +19,7 @@ namespace {
 // Area samples of a film that are asked where they lie.
 constexpr int kSamples = 101;
 
-using Corners = std::array<Vec3, 3>;
+using FacetPoints = std::array<Vec3, 3>;
 
 void check_mesh(const SurfaceMesh& mesh, const std::vector<int>& films) {
   const auto labels = static_cast<int>(mesh.labels.size());
@@ -79,7 +79,7 @@ class Shell {
          {Vec3(0.5377, 0.1834, 0.8229), Vec3(-0.7139, 0.6612, -0.2306),
           Vec3(0.2731, -0.8967, 0.3484)}) {
       int crossed = 0;
-      for (const Corners& t : triangles_) {
+      for (const FacetPoints& t : triangles_) {
         crossed += meets(t, at, ray) ? 1 : 0;
       }
       votes += crossed % 2;
@@ -117,7 +117,7 @@ class Shell {
   }
 
   /// Moeller and Trumbore 1997.
-  static bool meets(const Corners& t, const Vec3& at, const Vec3& ray) {
+  static bool meets(const FacetPoints& t, const Vec3& at, const Vec3& ray) {
     const Vec3 ab = t[1] - t[0];
     const Vec3 ac = t[2] - t[0];
     const Vec3 p = ray.cross(ac);
@@ -132,7 +132,7 @@ class Shell {
     return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && ac.dot(q) / det > 0.0;
   }
 
-  std::vector<Corners> triangles_;
+  std::vector<FacetPoints> triangles_;
 };
 
 /// Share of the film's area, by samples, within the shell.

@@ -33,7 +33,7 @@ std::map<std::string, std::vector<Filling>> fillings_of(
       }
     }
     for (const CapSpec& cap : system.caps) {
-      if (cap.name == name) {
+      if (cap.name == name && !cap.start) {
         result[cap.curve].push_back({name, false});
       }
     }

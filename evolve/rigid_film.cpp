@@ -15,7 +15,8 @@ constexpr int kMeshedLevels = 2;
 
 void FilmModel::Impl::build_rigid(const FilmSystem& initial,
                                   const FilmModelOptions& options) {
-  complex = build_start(initial, options.edge);
+  start_edge = options.edge;
+  complex = build_start(initial, start_edge);
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     refine_once(level);
@@ -28,9 +29,11 @@ void FilmModel::Impl::build_rigid(const FilmSystem& initial,
 void FilmModel::Impl::refine_once(int level) {
   Refinement finer = refine(complex);
   complex = std::move(finer.complex);
+  parents.insert(parents.end(), finer.parents.begin(), finer.parents.end());
   if (level < kMeshedLevels) {
-    parents.insert(parents.end(), finer.parents.begin(), finer.parents.end());
+    near_parents = parents.size();
   }
+  ++refinements;
 }
 
 /// Of a part without liquid: nothing settles.

@@ -9,15 +9,15 @@
 
 #include "core/error.h"
 #include "evolve/body_sides.h"
+#include "evolve/branch_facets.h"
 #include "evolve/cap_faces.h"
 #include "evolve/disk_fill.h"
+#include "evolve/facet_start.h"
 #include "evolve/fields.h"
 #include "evolve/grooming.h"
-#include "evolve/hull.h"
 #include "evolve/loft.h"
 #include "evolve/raise_disks.h"
 #include "evolve/rim_grading.h"
-#include "evolve/rim_stitcher.h"
 #include "evolve/shared_sides.h"
 #include "evolve/tension_field.h"
 
@@ -40,13 +40,17 @@ class StartBuilder {
   FilmComplex build() {
     check_names();
     result_.curves = system_.curves;
+    facets_ = start_from_facets(system_, edge_, system_.keep_facets);
+    facet_points_.assign(facets_.points.size(), -1);
     for (const FilmSpec& film : system_.films) {
       for (const std::string& name : film.curves) {
         rim_of(name, film.name);
       }
     }
     for (const CapSpec& cap : system_.caps) {
-      rim_of(cap.curve, cap.name);
+      for (const std::string& name : cap.curves()) {
+        rim_of(name, cap.name);
+      }
     }
     shared_.mark_edges(result_);
     for (const FilmSpec& film : system_.films) {
@@ -97,17 +101,12 @@ class StartBuilder {
       add(film.name);
       if (!std::isfinite(film.tension) || film.tension <= 0.0) {
         throw InvalidInput(
-            fmt::format("film '{}': tension is {}, must be "
-                        "above 0",
-                        film.name, film.tension));
+            fmt::format("film '{}': tension is {}, must be above 0", film.name,
+                        film.tension));
       }
     }
-    std::string last;  // faces of one name follow each other
     for (const CapSpec& cap : system_.caps) {
-      if (cap.name != last) {
-        add(cap.name);
-      }
-      last = cap.name;
+      add(cap.name);
     }
   }
 
@@ -122,16 +121,25 @@ class StartBuilder {
                      [&](const Curve& c) { return c.name == curve_name; });
     if (found == system_.curves.end()) {
       throw InvalidInput(
-          fmt::format("surface '{}' names the curve '{}', which "
-                      "does not exist",
+          fmt::format("surface '{}' names the curve '{}', which does not exist",
                       user, curve_name));
     }
     Rim rim;
     rim.curve = static_cast<int>(found - system_.curves.begin());
-    const std::vector<double> t = sample_parameters(found->shape, edge_);
+    const auto cuts = facets_.cuts.find(rim.curve);
+    const bool is_cut = cuts != facets_.cuts.end();
+    const std::vector<double> t =
+        is_cut ? cuts->second : sample_parameters(found->shape, edge_);
     if (shared_.shares(rim.curve)) {
       rim.ids = shared_.rim(rim.curve, t, result_);
-      return rims_.emplace(curve_name, rim).first->second;
+      if (is_cut && rim.ids.size() != t.size()) {
+        throw InvalidInput(fmt::format(
+            "surface '{}': facets end at curve '{}', a side of which another "
+            "solid cuts otherwise; let the facets have that side's corners "
+            "only, or make them of kind cap",
+            user, curve_name));
+      }
+      return rims_.emplace(curve_name, std::move(rim)).first->second;
     }
     rim.ids.resize(t.size());
     std::iota(rim.ids.begin(), rim.ids.end(),
@@ -186,6 +194,9 @@ class StartBuilder {
         require_curves(film, 1);
         fill({rim_of(film.curves[0], film.name)}, label, VertexKind::Free);
         break;
+      case FilmKind::Facets:
+        add_sheet(film.name, label, VertexKind::Free);
+        break;
     }
   }
 
@@ -212,44 +223,89 @@ class StartBuilder {
   /// The first of the rims filled, the others left open.
   void fill(const std::vector<Rim>& rims, int label, VertexKind kind) {
     std::vector<Points> loops;
-    std::vector<int> ids;
     bool graded = false;
     for (const Rim& rim : rims) {
       loops.push_back(points_of(rim));
-      ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
       graded = graded || shared_.shares(rim.curve) ||
                has_many_sides(system_.curves[rim.curve].shape);
     }
-    const SurfaceMesh disk =
-        fill_face(loops, edge_, graded, system_.curves[rims[0].curve].name);
-    const auto known = static_cast<int>(ids.size());
-    const int first_inner = static_cast<int>(result_.mesh.points.size());
+    add_filling(
+        fill_face(loops, edge_, graded, system_.curves[rims[0].curve].name),
+        rims, label, kind);
+  }
+
+  // `disk`: the points of the rims come first, in their order.
+  void add_filling(const SurfaceMesh& disk, const std::vector<Rim>& rims,
+                   int label, VertexKind kind) {
+    std::vector<int> ids;
+    for (const Rim& rim : rims) {
+      ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
+    }
     for (std::size_t i = ids.size(); i < disk.points.size(); ++i) {
+      ids.push_back(static_cast<int>(result_.mesh.points.size()));
       result_.mesh.points.push_back(disk.points[i]);
       result_.vertices.push_back({kind, -1, 0.0});
     }
-    for (Triangle t : disk.facets) {
-      for (int& v : t) {
-        v = v < known ? ids[v] : first_inner + v - known;
+    for (const Triangle& t : disk.facets) {
+      add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
+    }
+  }
+
+  /// Facets of the system's own.
+  void add_sheet(const std::string& name, int label, VertexKind kind) {
+    const auto sheet =
+        std::find_if(facets_.sheets.begin(), facets_.sheets.end(),
+                     [&](const FacetSheet& s) { return s.name == name; });
+    if (sheet == facets_.sheets.end()) {
+      throw InvalidInput(fmt::format("'{}' has no facets", name));
+    }
+    for (const auto& corners : sheet->facets) {
+      Triangle t;
+      for (int k = 0; k < 3; ++k) {
+        const FacetCorner& corner = corners[k];
+        if (corner.point < 0) {
+          t[k] = rim_of(system_.curves[corner.curve].name, name)
+                     .ids[static_cast<std::size_t>(corner.cut)];
+          continue;
+        }
+        int& id = facet_points_[corner.point];
+        if (id < 0) {
+          id = static_cast<int>(result_.mesh.points.size());
+          result_.mesh.points.push_back(facets_.points[corner.point]);
+          result_.vertices.push_back({kind, -1, 0.0});
+        } else if (result_.vertices[id].kind != kind) {
+          const Vec3& p = facets_.points[corner.point];
+          throw InvalidInput(
+              fmt::format("solid '{}' meets a film at ({:.6g}, {:.6g}, {:.6g}) "
+                          "on no curve; "
+                          "films are held by curves: name one there for both",
+                          name, p.x(), p.y(), p.z()));
+        }
+        t[k] = id;
       }
       add_facet(t, label);
     }
   }
 
-  /// All faces of one name, with the first of them.
-  void add_cap(const CapSpec& first) {
-    if (result_.mesh.label_of(first.name) >= 0) {
+  void add_cap(const CapSpec& cap) {
+    const int label = add_surface({cap.name, false, 0.0});
+    if (cap.start) {
+      add_sheet(cap.name, label, VertexKind::InCap);
       return;
     }
-    const int label = add_surface({first.name, false, 0.0});
     std::vector<Rim> rims;
     std::vector<Points> loops;
-    for (const CapSpec& cap : system_.caps) {
-      if (cap.name == first.name) {
-        rims.push_back(rim_of(cap.curve, cap.name));
-        loops.push_back(points_of(rims.back()));
-        require_flat(loops.back(), cap.name, cap.curve);
-      }
+    for (const std::string& name : cap.curves()) {
+      rims.push_back(rim_of(name, cap.name));
+      loops.push_back(points_of(rims.back()));
+    }
+    if (!cap.inner.empty()) {
+      add_filling(fill_ring(loops[0], loops[1], edge_), rims, label,
+                  VertexKind::InCap);
+      return;
+    }
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+      require_flat(loops[k], cap.name, system_.curves[rims[k].curve].name);
     }
     for (const std::vector<int>& face : faces_with_holes(loops)) {
       std::vector<Rim> bounds;
@@ -261,16 +317,13 @@ class StartBuilder {
   }
 
   void add_branch(const FilmSpec& film, int label);
-  void keep_hull_facets(const FilmSpec& film, const std::vector<Rim>& rims,
-                        const Points& points, std::vector<Triangle>& facets);
 
   void add_body(const BodySpec& body) {
     ComplexBody made{body.name, {}, body.volume, body.pressure};
     if (body.volume && body.pressure) {
-      throw InvalidInput(
-          fmt::format("body '{}' has both volume and pressure; "
-                      "give one of them",
-                      body.name));
+      throw InvalidInput(fmt::format(
+          "body '{}' has both volume and pressure; give one of them",
+          body.name));
     }
     if (body.volume && !(std::isfinite(*body.volume) && *body.volume > 0.0)) {
       throw InvalidInput(fmt::format("body '{}': volume is {}, must be above 0",
@@ -284,10 +337,9 @@ class StartBuilder {
     for (const std::string& name : body.enclosed_by) {
       const int surface = result_.mesh.label_of(name);
       if (surface < 0) {
-        throw InvalidInput(
-            fmt::format("body '{}' is enclosed by '{}', which "
-                        "is neither a film nor a cap",
-                        body.name, name));
+        throw InvalidInput(fmt::format(
+            "body '{}' is enclosed by '{}', which is neither a film nor a cap",
+            body.name, name));
       }
       const bool twice =
           std::any_of(made.sides.begin(), made.sides.end(),
@@ -318,10 +370,10 @@ class StartBuilder {
         return;
       }
     }
-    throw InvalidInput(
-        fmt::format("cap '{}' encloses nothing; add it to a "
-                    "body's enclosed_by or remove it",
-                    surface));
+    throw InvalidInput(fmt::format(
+        "cap '{}' encloses nothing; add it to a body's enclosed_by or remove "
+        "it",
+        surface));
   }
 
   const FilmSystem& system_;
@@ -329,6 +381,8 @@ class StartBuilder {
   FilmComplex result_;
   std::map<std::string, Rim> rims_;
   SharedRims shared_;
+  FacetStart facets_;
+  std::vector<int> facet_points_;  // ids of its points; -1: not yet
 };
 
 void StartBuilder::add_branch(const FilmSpec& film, int label) {
@@ -338,65 +392,18 @@ void StartBuilder::add_branch(const FilmSpec& film, int label) {
                     "or more; use kind disk for one",
                     film.name, film.curves.size()));
   }
-  std::vector<Rim> rims;
+  std::vector<int> counts;
+  std::vector<int> ids;
   Points points;
   for (const std::string& name : film.curves) {
-    rims.push_back(rim_of(name, film.name));
-    const Points rim = points_of(rims.back());
-    points.insert(points.end(), rim.begin(), rim.end());
-  }
-  std::vector<Triangle> facets;
-  try {
-    facets = convex_hull(points);
-  } catch (const MeshError& error) {
-    throw InvalidInput(fmt::format("film '{}': {}", film.name, error.what()));
-  }
-  keep_hull_facets(film, rims, points, facets);
-  std::vector<int> ids;
-  for (const Rim& rim : rims) {
+    const Rim& rim = rim_of(name, film.name);
+    counts.push_back(rim.count());
     ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
+    const Points of_rim = points_of(rim);
+    points.insert(points.end(), of_rim.begin(), of_rim.end());
   }
-  for (const Triangle& t : facets) {
+  for (const Triangle& t : branch_facets(film, points, counts)) {
     add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
-  }
-}
-
-// Drops the caps and makes sure that what is left ends exactly at the curves.
-void StartBuilder::keep_hull_facets(const FilmSpec& film,
-                                    const std::vector<Rim>& rims,
-                                    const Points& points,
-                                    std::vector<Triangle>& facets) {
-  std::vector<int> rim_of_point;
-  for (std::size_t r = 0; r < rims.size(); ++r) {
-    rim_of_point.insert(rim_of_point.end(), rims[r].ids.size(),
-                        static_cast<int>(r));
-  }
-  std::erase_if(facets, [&](const Triangle& t) {
-    return rim_of_point[t[0]] == rim_of_point[t[1]] &&
-           rim_of_point[t[0]] == rim_of_point[t[2]];
-  });
-  RimStitcher stitcher(points, facets);
-  std::size_t border = 0;
-  int first = 0;
-  for (std::size_t r = 0; r < rims.size(); ++r) {
-    const int off = stitcher.stitch(first, rims[r].count());
-    if (off >= 0) {
-      const Vec3& p = points[off];
-      throw InvalidInput(fmt::format(
-          "film '{}': curve '{}' is off the convex hull of the film's curves "
-          "near ({:.6g}, {:.6g}, {:.6g}); a branch film starts from that hull: "
-          "move or turn the curve, make it convex, or use films of another "
-          "kind",
-          film.name, film.curves[r], p.x(), p.y(), p.z()));
-    }
-    border += rims[r].ids.size();
-    first += rims[r].count();
-  }
-  if (stitcher.open_edges() != border) {
-    throw InvalidInput(fmt::format(
-        "film '{}': its convex hull is open away from its curves; a curve is "
-        "not planar or not convex: use films of another kind",
-        film.name));
   }
 }
 

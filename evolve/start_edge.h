@@ -3,14 +3,20 @@
 
 #include <cmath>
 
+#include "evolve/facet_start.h"
 #include "evolve/film_system.h"
 #include "evolve/rim_grading.h"
 
 namespace meniscus {
 
 /// Halvings of the start's edges on the way to those of a film of `edge`
-/// [length]: one, unless the curves' sides are too short for that.
+/// [length]: one, unless the curves' sides are too short for that; of facets
+/// that are kept, so many that their mean edge comes nearest to it in ratio.
 inline int start_halvings(const FilmSystem& system, double edge) {
+  if (system.keep_facets) {
+    return std::max(0, static_cast<int>(std::lround(
+                           std::log2(mean_facet_edge(system) / edge))));
+  }
   return halving_is_too_fine(system, edge) ? 0 : 1;
 }
 

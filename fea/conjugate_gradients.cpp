@@ -20,7 +20,7 @@ template <int K>
 using Sums = std::array<double, K>;
 
 /// Nodes whose products are summed in one piece, whatever the threads.
-constexpr int kPiece = 1024;
+constexpr int kRowsPerPiece = 1024;
 /// Operations of a step on a node's vectors: two products, three sums.
 constexpr double kVectorWork = 5 * 2 * 3;
 
@@ -62,13 +62,13 @@ class Solver {
   /// work(node, sums) for all nodes, `sums` added in pieces of fixed length.
   template <class Work>
   Sums<K> over_nodes(const Work& work) {
-    const int pieces = (nodes_ + kPiece - 1) / kPiece;
+    const int pieces = (nodes_ + kRowsPerPiece - 1) / kRowsPerPiece;
     std::vector<Sums<K>> part(pieces);
 #pragma omp parallel for schedule(static) if (nodes_ >= kParallelRows)
     for (int p = 0; p < pieces; ++p) {
       Sums<K> sum{};
-      const int last = std::min(nodes_, (p + 1) * kPiece);
-      for (int i = p * kPiece; i < last; ++i) {
+      const int last = std::min(nodes_, (p + 1) * kRowsPerPiece);
+      for (int i = p * kRowsPerPiece; i < last; ++i) {
         work(i, sum);
       }
       part[p] = sum;

@@ -56,9 +56,9 @@ Basis orthonormal(const Eigen::MatrixXd& G) {
 }
 
 /// The blocks X, P and W stand side by side in S; KS = K S, AS = A S.
-class Solver {
+class EigenSearch {
  public:
-  Solver(const EigenProblem& problem, const EigenOptions& options)
+  EigenSearch(const EigenProblem& problem, const EigenOptions& options)
       : problem_(problem),
         options_(options),
         rows_(3L * problem.pattern.nodes),
@@ -103,7 +103,7 @@ class Solver {
   int iterations_ = 0;
 };
 
-Eigen::Index Solver::block_size(Eigen::Index given) const {
+Eigen::Index EigenSearch::block_size(Eigen::Index given) const {
   double free = static_cast<double>(rows_);
   for (const Mat3& P : problem_.freedom.projector) {
     free -= 3.0 - P.trace();
@@ -116,14 +116,14 @@ Eigen::Index Solver::block_size(Eigen::Index given) const {
   return std::min<Eigen::Index>(block, std::lround(free));
 }
 
-void Solver::apply_both(Eigen::Index first, Eigen::Index count) {
+void EigenSearch::apply_both(Eigen::Index first, Eigen::Index count) {
   products_.apply(problem_.K, S_.middleCols(first, count),
                   KS_.middleCols(first, count));
   products_.apply(problem_.A, S_.middleCols(first, count),
                   AS_.middleCols(first, count));
 }
 
-void Solver::begin(const Columns& start) {
+void EigenSearch::begin(const Columns& start) {
   m_ = block_size(start.cols());
   for (Columns* block : {&S_, &KS_, &AS_}) {
     block->resize(rows_, 3 * m_);
@@ -149,7 +149,7 @@ void Solver::begin(const Columns& start) {
 }
 
 /// Rayleigh-Ritz on the whole basis; `lead`: the columns of X in it.
-bool Solver::improve(Eigen::Index lead) {
+bool EigenSearch::improve(Eigen::Index lead) {
   const Eigen::Index k = lead + p_ + w_;
   const Eigen::MatrixXd GK = gram(S_.leftCols(k), KS_.leftCols(k));
   const Eigen::MatrixXd GA = gram(S_.leftCols(k), AS_.leftCols(k));
@@ -195,7 +195,7 @@ bool Solver::improve(Eigen::Index lead) {
 
 /// Residuals of all X; W becomes the preconditioned ones of those that have
 /// not settled.
-void Solver::measure() {
+void EigenSearch::measure() {
   const Eigen::Index at = m_ + p_;
   auto R = KS_.middleCols(at, m_);
   R = AS_.leftCols(m_) - KS_.leftCols(m_) * theta_.asDiagonal();
@@ -229,7 +229,7 @@ void Solver::measure() {
   }
 }
 
-bool Solver::all_settled() const {
+bool EigenSearch::all_settled() const {
   const Eigen::Index count = std::min<Eigen::Index>(options_.count, m_);
   for (Eigen::Index k = 0; k < count; ++k) {
     if (!settled(k)) {
@@ -240,14 +240,14 @@ bool Solver::all_settled() const {
 }
 
 /// W without its part along X and P, in the inner product of K.
-void Solver::add_search_directions() {
+void EigenSearch::add_search_directions() {
   const Eigen::Index at = m_ + p_;
   auto W = S_.middleCols(at, w_);
   subtract(S_.leftCols(at), gram(KS_.leftCols(at), W), W);
   apply_both(at, w_);
 }
 
-EigenPairs Solver::finish() {
+EigenPairs EigenSearch::finish() {
   EigenPairs pairs;
   pairs.iterations = iterations_;
   pairs.end = end_;
@@ -274,7 +274,7 @@ EigenPairs Solver::finish() {
   return pairs;
 }
 
-EigenPairs Solver::run(const Columns& start) {
+EigenPairs EigenSearch::run(const Columns& start) {
   Monitor& monitor =
       options_.monitor != nullptr ? *options_.monitor : silent_monitor();
   begin(start);
@@ -306,7 +306,7 @@ EigenPairs Solver::run(const Columns& start) {
 
 EigenPairs largest_eigenpairs(const EigenProblem& problem, const Columns& start,
                               const EigenOptions& options) {
-  return Solver(problem, options).run(start);
+  return EigenSearch(problem, options).run(start);
 }
 
 }  // namespace meniscus

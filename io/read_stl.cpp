@@ -19,9 +19,9 @@ namespace {
 constexpr std::size_t kHeadBytes = 84;   // of a binary file
 constexpr std::size_t kFacetBytes = 50;  // normal, corners, two bytes more
 
-class Reader {
+class StlReader {
  public:
-  Reader(const std::string& text, const std::string& path)
+  StlReader(const std::string& text, const std::string& path)
       : text_(text), path_(path) {}
 
   SurfaceMesh read();
@@ -50,7 +50,7 @@ class Reader {
   std::map<std::array<double, 3>, int> known_;
 };
 
-void Reader::skip_space(bool over_lines) {
+void StlReader::skip_space(bool over_lines) {
   while (at_ < text_.size()) {
     const char c = text_[at_];
     const bool space = c == ' ' || c == '\t' || c == '\r';
@@ -62,7 +62,7 @@ void Reader::skip_space(bool over_lines) {
   }
 }
 
-std::string Reader::word() {
+std::string StlReader::word() {
   skip_space(true);
   const std::size_t end =
       std::min(text_.find_first_of(" \t\r\n", at_), text_.size());
@@ -71,7 +71,7 @@ std::string Reader::word() {
   return found;
 }
 
-std::string Reader::rest_of_line() {
+std::string StlReader::rest_of_line() {
   skip_space(false);
   const std::size_t end = std::min(text_.find('\n', at_), text_.size());
   std::string found = text_.substr(at_, end - at_);
@@ -80,7 +80,7 @@ std::string Reader::rest_of_line() {
   return last == std::string::npos ? "" : found.substr(0, last + 1);
 }
 
-void Reader::expect(const char* wanted) {
+void StlReader::expect(const char* wanted) {
   const std::string found = word();
   if (found != wanted) {
     refuse(fmt::format("found '{}'; expected '{}' of an ASCII STL file",
@@ -88,7 +88,7 @@ void Reader::expect(const char* wanted) {
   }
 }
 
-double Reader::number() {
+double StlReader::number() {
   const std::string found = word();
   const char* begin = found.data() + (found.starts_with('+') ? 1 : 0);
   const char* end = found.data() + found.size();
@@ -101,7 +101,7 @@ double Reader::number() {
   return value + 0.0;  // -0 is 0
 }
 
-int Reader::point() {
+int StlReader::point() {
   expect("vertex");
   std::array<double, 3> x{};
   for (double& coordinate : x) {
@@ -110,7 +110,7 @@ int Reader::point() {
   return known(x);
 }
 
-int Reader::known(const std::array<double, 3>& x) {
+int StlReader::known(const std::array<double, 3>& x) {
   const auto [entry, is_new] =
       known_.emplace(x, static_cast<int>(mesh_.points.size()));
   if (is_new) {
@@ -120,7 +120,7 @@ int Reader::known(const std::array<double, 3>& x) {
 }
 
 /// After "facet".
-void Reader::facet() {
+void StlReader::facet() {
   expect("normal");
   for (int k = 0; k < 3; ++k) {
     word();  // some programs write nan
@@ -135,14 +135,14 @@ void Reader::facet() {
   add_facet(a, b, c);
 }
 
-void Reader::add_facet(int a, int b, int c) {
+void StlReader::add_facet(int a, int b, int c) {
   if (a != b && b != c && c != a) {
     mesh_.facets.push_back({a, b, c});
     mesh_.facet_label.push_back(static_cast<int>(mesh_.labels.size()) - 1);
   }
 }
 
-SurfaceMesh Reader::binary() {
+SurfaceMesh StlReader::binary() {
   mesh_.labels = {"unnamed"};
   for (std::size_t at = kHeadBytes; at < text_.size(); at += kFacetBytes) {
     std::array<float, 9> raw{};
@@ -177,7 +177,7 @@ std::size_t binary_size(const std::string& bytes) {
 }
 
 /// After "solid".
-void Reader::solid() {
+void StlReader::solid() {
   const std::string name = rest_of_line();
   if (name.empty()) {
     refuse("a solid without a name; write `solid NAME`, one for each face");
@@ -198,7 +198,7 @@ void Reader::solid() {
   rest_of_line();
 }
 
-SurfaceMesh Reader::read() {
+SurfaceMesh StlReader::read() {
   const std::size_t size = binary_size(text_);
   if (size > kHeadBytes && size == text_.size()) {
     return binary();
@@ -229,7 +229,7 @@ SurfaceMesh Reader::read() {
 }  // namespace
 
 SurfaceMesh read_stl_text(const std::string& text, const std::string& path) {
-  return Reader(text, path).read();
+  return StlReader(text, path).read();
 }
 
 SurfaceMesh read_stl(const std::filesystem::path& path) {

@@ -1,19 +1,9 @@
 #include "io/step_reader.h"
 
-#include <algorithm>
-#include <charconv>
-#include <fstream>
-#include <map>
-
-#include <BRepAdaptor_Curve.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
-#include <GCPnts_QuasiUniformDeflection.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
-#include <STEPControl_Reader.hxx>
-#include <StepRepr_RepresentationItem.hxx>
-#include <TCollection_HAsciiString.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
@@ -21,13 +11,10 @@
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Vertex.hxx>
-#include <XSControl_TransferReader.hxx>
-#include <XSControl_WorkSession.hxx>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "core/error.h"
-#include "io/atomic_file.h"
+#include "io/step_file.h"
 #include "io/step_session.h"
 
 namespace meniscus {
@@ -37,46 +24,14 @@ namespace {
 constexpr double kChordInEdges = 0.02;
 constexpr double kChordAngle = 0.35;  // between facets of a bend [rad]
 
-/// A file that has been read, in millimetres.
-struct StepFile {
-  std::filesystem::path path;
-  STEPControl_Reader reader;
-  TopoDS_Shape shape;
-  double millimetres = 1.0;
-  double chord = 0.1;  // [mm]
-
-  /// The name that the file gives to a face or an edge.
-  std::string name_of(const TopoDS_Shape& part) const {
-    const auto item = Handle(StepRepr_RepresentationItem)::DownCast(
-        reader.WS()->TransferReader()->EntityFromShapeResult(part, 1));
-    return item.IsNull() || item->Name().IsNull() ? ""
-                                                  : item->Name()->ToCString();
-  }
-};
-
 void open(StepFile& file, const std::filesystem::path& path,
           const ReadStepOptions& options) {
-  const StepUnit unit = step_unit(options.unit);
   if (!(options.edge > 0.0)) {
     throw InvalidInput(
         fmt::format("the edge length to read '{}' at is {:g}, not above 0",
                     path.string(), options.edge));
   }
-  // OpenCASCADE does not say why it cannot; this does.
-  if (read_file(path).substr(0, 13) != "ISO-10303-21;") {
-    throw InvalidInput(fmt::format(
-        "{}:1: found no 'ISO-10303-21;'; expected a STEP file", path.string()));
-  }
-  file.path = path;
-  file.millimetres = unit.millimetres;
-  file.chord = kChordInEdges * options.edge * unit.millimetres;
-  if (file.reader.ReadFile(path.c_str()) != IFSelect_RetDone ||
-      file.reader.TransferRoots() == 0) {
-    throw InvalidInput(
-        fmt::format("{}: OpenCASCADE finds no shape in it; is the file whole?",
-                    path.string()));
-  }
-  file.shape = file.reader.OneShape();
+  open_step(file, path, options.unit);
 }
 
 /// Points of a tessellated shape, those on edges and vertices once.
@@ -196,7 +151,9 @@ SurfaceMesh read_step_part(const std::filesystem::path& path,
   const StepSilence silence;
   StepFile file;
   open(file, path, options);
-  BRepMesh_IncrementalMesh(file.shape, file.chord, Standard_False, kChordAngle);
+  BRepMesh_IncrementalMesh(file.shape,
+                           kChordInEdges * options.edge * file.millimetres,
+                           Standard_False, kChordAngle);
   SurfaceMesh mesh;
   Tessellation tessellation(file, mesh);
   int number = 0;
@@ -217,53 +174,6 @@ SurfaceMesh read_step_part(const std::filesystem::path& path,
                                    path.string()));
   }
   return mesh;
-}
-
-Points read_step_curve(const std::filesystem::path& path,
-                       const std::string& edge,
-                       const ReadStepOptions& options) {
-  const StepSilence silence;
-  StepFile file;
-  open(file, path, options);
-  TopTools_IndexedMapOfShape edges;
-  TopExp::MapShapes(file.shape, TopAbs_EDGE, edges);
-  int number = 0;
-  const char* end = edge.data() + edge.size();
-  if (std::from_chars(edge.data(), end, number).ptr != end) {
-    number = 0;
-  }
-  std::vector<std::string> names;
-  for (int k = 1; k <= edges.Extent(); ++k) {
-    const std::string name = file.name_of(edges(k));
-    if (!name.empty()) {
-      names.push_back(name);
-    }
-    if (name == edge && number == 0) {
-      number = k;
-    }
-  }
-  if (number < 1 || number > edges.Extent()) {
-    throw InvalidInput(fmt::format(
-        "{}: has no edge '{}'; expected a number from 1 to {} or one of the "
-        "names [{}]",
-        path.string(), edge, edges.Extent(), fmt::join(names, ", ")));
-  }
-  const TopoDS_Edge& shape = TopoDS::Edge(edges(number));
-  const BRepAdaptor_Curve curve(shape);
-  const GCPnts_QuasiUniformDeflection samples(curve, file.chord);
-  Points points;
-  for (int k = 1; samples.IsDone() && k <= samples.NbPoints(); ++k) {
-    const gp_Pnt p = samples.Value(k);
-    points.emplace_back(Vec3(p.X(), p.Y(), p.Z()) / file.millimetres);
-  }
-  if (points.size() < 2) {
-    throw InvalidInput(
-        fmt::format("{}: edge '{}' has no length", path.string(), edge));
-  }
-  if (BRep_Tool::IsClosed(shape)) {
-    points.pop_back();
-  }
-  return points;
 }
 
 }  // namespace meniscus

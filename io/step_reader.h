@@ -1,4 +1,4 @@
-/// STEP in: conventional parts as named surfaces, and edges as curves.
+/// STEP in: conventional parts as named surfaces (edges: io/step_edges.h).
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace meniscus {
 struct ReadStepOptions {
   std::string unit = "mm";  // that lengths are wanted in: mm, m, in
   double edge = 0.0;        // size of what is of interest [length], > 0: curved
-                            // faces and edges are met within a fiftieth of it
+                            // faces are met within a fiftieth of it
 };
 
 /// The faces of all solids in the file, tessellated by OpenCASCADE, as one
@@ -23,13 +23,5 @@ struct ReadStepOptions {
 /// own.
 SurfaceMesh read_step_part(const std::filesystem::path& path,
                            const ReadStepOptions& options);
-
-/// Points along an edge, ends included, whose chords leave the edge by at most
-/// `options.edge` / 50; of a closed edge the first point is not repeated.
-/// `edge`: its name in the file or its number, from 1, in the order in which
-/// faces use edges. Throws as read_step_part(), and InvalidInput for an edge
-/// that is not there (names and the count are in the message).
-Points read_step_curve(const std::filesystem::path& path,
-                       const std::string& edge, const ReadStepOptions& options);
 
 }  // namespace meniscus

@@ -11,9 +11,11 @@
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Circle.hxx>
+#include <Geom_CylindricalSurface.hxx>
 #include <Geom_Ellipse.hxx>
 #include <Geom_Line.hxx>
 #include <Geom_Plane.hxx>
+#include <Geom_SphericalSurface.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Shell.hxx>
@@ -70,6 +72,10 @@ class ShapeBuilder {
   Handle(Geom_Curve)
       curve_of(const BrepEdge& edge, double& first, double& last) const;
   Handle(Geom_Surface) surface_of(const BrepFace& face) const;
+  void add_line(const BrepFace& face, const BrepUse& use,
+                const TopoDS_Face& shape);
+  TopoDS_Edge pole_edge(const BrepUse& use, int vertex,
+                        const TopoDS_Face& shape);
   TopoDS_Face face_of(const BrepFace& face);
   std::vector<int> shells_of_faces() const;
 
@@ -149,6 +155,16 @@ Handle(Geom_Surface) ShapeBuilder::surface_of(const BrepFace& face) const {
     return new Geom_Plane(to_point(scale_ * plane->point),
                           to_direction(plane->normal));
   }
+  const auto frame = [&](const auto& turned) {
+    return gp_Ax3(to_point(scale_ * turned.center), to_direction(turned.axis),
+                  to_direction(turned.zero));
+  };
+  if (const auto* tube = std::get_if<CylinderSurface>(&face.surface)) {
+    return new Geom_CylindricalSurface(frame(*tube), scale_ * tube->radius);
+  }
+  if (const auto* ball = std::get_if<SphereSurface>(&face.surface)) {
+    return new Geom_SphericalSurface(frame(*ball), scale_ * ball->radius);
+  }
   const auto& spline = std::get<SplineSurface>(face.surface);
   const int columns = static_cast<int>(spline.knots_b.size()) - 4;
   const int rows = static_cast<int>(spline.knots_a.size()) - 4;
@@ -166,11 +182,12 @@ Handle(Geom_Surface) ShapeBuilder::surface_of(const BrepFace& face) const {
 }
 
 /// A straight line in the surface's parameters, run from `first` to `last`.
-Handle(Geom2d_Curve)
-    parameter_line(const BrepUse& use, double first, double last) {
+/// `b_scale`: of the second parameter, where that is a length.
+Handle(Geom2d_Curve) parameter_line(const BrepUse& use, double first,
+                                    double last, double b_scale) {
   TColgp_Array1OfPnt2d poles(1, 2);
-  poles.SetValue(1, gp_Pnt2d(use.at_first[0], use.at_first[1]));
-  poles.SetValue(2, gp_Pnt2d(use.at_last[0], use.at_last[1]));
+  poles.SetValue(1, gp_Pnt2d(use.at_first[0], b_scale * use.at_first[1]));
+  poles.SetValue(2, gp_Pnt2d(use.at_last[0], b_scale * use.at_last[1]));
   TColStd_Array1OfReal knots(1, 2);
   knots.SetValue(1, first);
   knots.SetValue(2, last);
@@ -179,28 +196,85 @@ Handle(Geom2d_Curve)
   return new Geom2d_BSplineCurve(poles, knots, multiplicities, 1);
 }
 
+bool is_inward(const BrepFace& face) {
+  const auto* tube = std::get_if<CylinderSurface>(&face.surface);
+  const auto* ball = std::get_if<SphereSurface>(&face.surface);
+  return (tube != nullptr && tube->inward) || (ball != nullptr && ball->inward);
+}
+
+/// The use's edge with its line in the surface's parameters; of a seam, used
+/// both ways, with both.
+void ShapeBuilder::add_line(const BrepFace& face, const BrepUse& use,
+                            const TopoDS_Face& shape) {
+  const double b_scale =
+      std::holds_alternative<CylinderSurface>(face.surface) ? scale_ : 1.0;
+  double first = 0.0;
+  double last = 1.0;
+  curve_of(brep_.edges[use.edge], first, last);
+  const BrepUse* back = nullptr;
+  for (const std::vector<BrepUse>& loop : face.loops) {
+    for (const BrepUse& other : loop) {
+      if (other.edge == use.edge && other.forward != use.forward) {
+        back = &other;
+      }
+    }
+  }
+  const auto line = parameter_line(use, first, last, b_scale);
+  if (back == nullptr) {
+    builder_.UpdateEdge(edges_[use.edge], line, shape, kPrecision);
+  } else if (use.forward != is_inward(face)) {
+    builder_.UpdateEdge(edges_[use.edge], line,
+                        parameter_line(*back, first, last, b_scale), shape,
+                        kPrecision);
+  }
+}
+
+/// The edge without length at a sphere's pole.
+TopoDS_Edge ShapeBuilder::pole_edge(const BrepUse& use, int vertex,
+                                    const TopoDS_Face& shape) {
+  TopoDS_Edge edge;
+  builder_.MakeEdge(edge);
+  const double turn = (use.at_last - use.at_first).norm();
+  builder_.UpdateEdge(edge, parameter_line(use, 0.0, turn, 1.0), shape,
+                      kPrecision);
+  builder_.Add(edge, vertices_[vertex].Oriented(TopAbs_FORWARD));
+  builder_.Add(edge, vertices_[vertex].Oriented(TopAbs_REVERSED));
+  builder_.Range(edge, 0.0, turn);
+  builder_.Degenerated(edge, true);
+  return edge;
+}
+
 TopoDS_Face ShapeBuilder::face_of(const BrepFace& face) {
   TopoDS_Face shape;
   builder_.MakeFace(shape, surface_of(face), kPrecision);
+  // Wires lie about the surface's own normal; against it the whole face is
+  // turned.
+  const bool inward = is_inward(face);
   for (const std::vector<BrepUse>& loop : face.loops) {
     TopoDS_Wire wire;
     builder_.MakeWire(wire);
-    for (const BrepUse& use : loop) {
-      const TopoDS_Edge& edge = edges_[use.edge];
-      if (std::holds_alternative<SplineSurface>(face.surface)) {
-        double first = 0.0;
-        double last = 1.0;
-        curve_of(brep_.edges[use.edge], first, last);
-        builder_.UpdateEdge(edge, parameter_line(use, first, last), shape,
-                            kPrecision);
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const BrepUse& use = loop[k];
+      if (use.edge == kPole) {
+        const BrepUse& before = loop[(k + loop.size() - 1) % loop.size()];
+        const BrepEdge& end = brep_.edges[before.edge];
+        const int vertex = before.forward ? end.to : end.from;
+        builder_.Add(wire,
+                     pole_edge(use, vertex, shape)
+                         .Oriented(inward ? TopAbs_REVERSED : TopAbs_FORWARD));
+        continue;
       }
-      builder_.Add(
-          wire, edge.Oriented(use.forward ? TopAbs_FORWARD : TopAbs_REVERSED));
+      if (!std::holds_alternative<PlaneSurface>(face.surface)) {
+        add_line(face, use, shape);
+      }
+      builder_.Add(wire, edges_[use.edge].Oriented(use.forward != inward
+                                                       ? TopAbs_FORWARD
+                                                       : TopAbs_REVERSED));
     }
     wire.Closed(true);
     builder_.Add(shape, wire);
   }
-  return shape;
+  return inward ? TopoDS::Face(shape.Reversed()) : shape;
 }
 
 /// The shell of each face: faces that hang together by edges. Throws where an
@@ -210,7 +284,9 @@ std::vector<int> ShapeBuilder::shells_of_faces() const {
   for (std::size_t f = 0; f < brep_.faces.size(); ++f) {
     for (const auto& loop : brep_.faces[f].loops) {
       for (const BrepUse& use : loop) {
-        users[use.edge].emplace_back(static_cast<int>(f), use.forward);
+        if (use.edge != kPole) {
+          users[use.edge].emplace_back(static_cast<int>(f), use.forward);
+        }
       }
     }
   }

@@ -1,4 +1,5 @@
-/// STEP out: a solid of planes and B-spline faces with names (AP214).
+/// STEP out: a solid of planes, cylinders, spheres and B-spline faces with
+/// names (AP214).
 #pragma once
 
 #include <filesystem>

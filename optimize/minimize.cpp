@@ -21,7 +21,7 @@ constexpr const char* kStudy = "minimize";
 constexpr int kFirstProbe = 2;
 constexpr int kLastProbe = 4;
 
-void check_method(const std::string& name) {
+void check_minimize_method(const std::string& name) {
   if (find_minimize_method(name) != nullptr) {
     return;
   }
@@ -166,7 +166,7 @@ const MinimizeMethod* find_minimize_method(const std::string& name) {
 
 MinimizeReport minimize(const MinimizeProblem& problem,
                         const MinimizeOptions& options) {
-  check_method(options.method);
+  check_minimize_method(options.method);
   check_variables(problem.variables, kStudy);
   const FreeVariables free(problem.variables);
   if (free.all_held()) {

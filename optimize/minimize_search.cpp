@@ -48,7 +48,7 @@ constexpr double kFinerSteps = 1e-3;
 // box.
 constexpr std::array<double, 4> kLoose = {1e-2, 1e-3, 1e-5, 0.0};
 constexpr double kGainPart = 1.0;
-constexpr double kFirstRadius = 0.25;
+constexpr double kFirstStepSize = 0.25;
 constexpr int kMostTurns = 8;
 
 struct Tightening {
@@ -285,7 +285,7 @@ SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
   Tightening tightening;
   if (traits.style == ConstraintStyle::NativeInequalities) {
     choose_sides(evaluator, task);
-    task.radius = kFirstRadius;
+    task.radius = kFirstStepSize;
   }
   BoxEnd box;
   int idle = 0;

@@ -10,12 +10,12 @@ namespace {
 
 // A first step of a tenth of the range sees past rounding and stays well
 // inside the bounds (BOBYQA needs them two steps apart).
-constexpr double kFirstStep = 0.1;
+constexpr double kMatchFirstStep = 0.1;
 // Below these the proposals no longer differ in any figure that matters.
-constexpr double kStepTolerance = 1e-8;  // x range
-constexpr double kCostTolerance = 1e-10;
+constexpr double kMatchStepTolerance = 1e-8;  // x range
+constexpr double kMatchCostTolerance = 1e-10;
 // A restart that leaves more than this part of the cost was the last.
-constexpr double kGain = 0.99;
+constexpr double kMatchGain = 0.99;
 
 struct Method {
   std::string name;
@@ -88,9 +88,9 @@ BackendResult run_once(MatchEvaluator& evaluator, const VectorX& start,
   optimizer.set_min_objective(objective, &context);
   optimizer.set_lower_bounds(to_vector(evaluator.lower()));
   optimizer.set_upper_bounds(to_vector(evaluator.upper()));
-  optimizer.set_initial_step(to_vector(kFirstStep * evaluator.ranges()));
-  optimizer.set_xtol_abs(to_vector(kStepTolerance * evaluator.ranges()));
-  optimizer.set_ftol_rel(kCostTolerance);
+  optimizer.set_initial_step(to_vector(kMatchFirstStep * evaluator.ranges()));
+  optimizer.set_xtol_abs(to_vector(kMatchStepTolerance * evaluator.ranges()));
+  optimizer.set_ftol_rel(kMatchCostTolerance);
 
   BackendResult result;
   std::vector<double> x = to_vector(start);
@@ -129,7 +129,7 @@ BackendResult nlopt_match(MatchEvaluator& evaluator, const VectorX& start,
     const double before = cost_of(evaluator.best_answer());
     const BackendResult again = run_once(evaluator, evaluator.best(), method);
     result.iterations += again.iterations;
-    if (cost_of(evaluator.best_answer()) >= kGain * before) {
+    if (cost_of(evaluator.best_answer()) >= kMatchGain * before) {
       break;
     }
   }

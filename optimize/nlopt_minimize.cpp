@@ -63,7 +63,7 @@ VectorX units_of(const VectorX& ranges) {
   return units;
 }
 
-std::vector<double> to_vector(const VectorX& x) {
+std::vector<double> to_list(const VectorX& x) {
   return {x.data(), x.data() + x.size()};
 }
 
@@ -284,15 +284,15 @@ void Run::add_constraints() {
 
 void Run::set_up() {
   optimizer_.set_min_objective(objective, this);
-  optimizer_.set_lower_bounds(to_vector(low_.cwiseQuotient(units_)));
-  optimizer_.set_upper_bounds(to_vector(high_.cwiseQuotient(units_)));
+  optimizer_.set_lower_bounds(to_list(low_.cwiseQuotient(units_)));
+  optimizer_.set_upper_bounds(to_list(high_.cwiseQuotient(units_)));
   optimizer_.set_initial_step(
-      to_vector(task_.first_step * (high_ - low_).cwiseQuotient(units_)));
+      to_list(task_.first_step * (high_ - low_).cwiseQuotient(units_)));
   const bool gradients = traits_.method.gradients;
   const double step =
       gradients && lagrangian_.empty() ? kGradientStep : task_.step_tolerance;
   optimizer_.set_xtol_abs(
-      to_vector(step * evaluator_.ranges().cwiseQuotient(units_)));
+      to_list(step * evaluator_.ranges().cwiseQuotient(units_)));
   if (gradients) {
     optimizer_.set_ftol_rel(std::max(kGradientGain, task_.least_gain));
   }
@@ -303,7 +303,7 @@ void Run::set_up() {
 
 NloptResult Run::go() {
   NloptResult result;
-  std::vector<double> s = to_vector(task_.start.cwiseQuotient(units_));
+  std::vector<double> s = to_list(task_.start.cwiseQuotient(units_));
   double least = 0.0;
   try {
     nlopt::srand(evaluator_.options().seed);
@@ -318,7 +318,7 @@ NloptResult Run::go() {
   } catch (const nlopt::forced_stop&) {
     if (box_used_up_) {
       result.box_used_up = true;
-      s = to_vector(last_.cwiseQuotient(units_));
+      s = to_list(last_.cwiseQuotient(units_));
     }
     result.message = "only designs that cannot be evaluated lie ahead";
   } catch (const nlopt::roundoff_limited&) {

@@ -116,6 +116,16 @@ void add_field(const Case& input, const FieldEntry& field,
   system.fields.push_back(std::move(spec));
 }
 
+std::shared_ptr<const StartFacets> start_of(const FilmEntry& film,
+                                            const CaseValues& values) {
+  auto start = std::make_shared<StartFacets>();
+  start->facets = film.facets;
+  for (const QuantityVector& vertex : film.vertices) {
+    start->points.push_back(values.at(vertex));
+  }
+  return start;
+}
+
 FilmSystem films_of(const Case& input, const CaseValues& values) {
   FilmSystem system;
   system.curves = curves_of(input, values);
@@ -127,7 +137,11 @@ FilmSystem films_of(const Case& input, const CaseValues& values) {
     } else {
       spec.tension = values.positive(film.tension.quantity);
     }
+    if (!film.facets.empty() && !values.are_rates()) {
+      spec.start = start_of(film, values);
+    }
   }
+  system.keep_facets = input.resolution.keep_facets;
   for (const CapEntry& cap : input.caps) {
     system.caps.push_back(cap.spec);
   }
@@ -183,8 +197,17 @@ EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
   EvaluatedCase result;
   result.film_system = films_of(input, values);
   for (const WallEntry& wall : input.walls) {
-    result.walls.push_back(
-        {wall.name, wall.films, values.of_place(wall.thickness), wall.side});
+    WallSpec spec{.name = wall.name,
+                  .films = wall.films,
+                  .thickness = values.of_place(wall.thickness),
+                  .side = wall.side,
+                  .fillet = wall.fillet,
+                  .number = std::nullopt,
+                  .region = wall.region};
+    if (!wall.thickness.of_place) {
+      spec.number = values.at(wall.thickness.quantity);
+    }
+    result.walls.push_back(std::move(spec));
   }
   for (const BodyEntry& body : solid_bodies(input)) {
     result.materials.push_back(material_of(
@@ -216,6 +239,19 @@ std::vector<BodyEntry> solid_bodies(const Case& input) {
   std::copy_if(input.bodies.begin(), input.bodies.end(),
                std::back_inserter(solid),
                [](const BodyEntry& body) { return body.material != kVoid; });
+  if (!solid.empty()) {
+    return solid;
+  }
+  for (const WallEntry& wall : input.walls) {
+    if (wall.region == static_cast<int>(solid.size()) &&
+        wall.material != kVoid) {
+      solid.push_back({.name = wall.name,
+                       .enclosed_by = wall.films,
+                       .material = wall.material,
+                       .line = wall.line,
+                       .enclosure_line = wall.line});
+    }
+  }
   return solid;
 }
 
@@ -305,6 +341,8 @@ Dimension dimension_of(ResponseKind kind) {
     case ResponseKind::Radius:
     case ResponseKind::Thickness:
     case ResponseKind::Distance:
+    case ResponseKind::Gap:
+    case ResponseKind::ScanDistance:
       return Dimension::Length;
     case ResponseKind::Mass:
       return Dimension::Mass;

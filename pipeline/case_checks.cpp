@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/case_curves.h"
 #include "pipeline/case_loads.h"
 #include "pipeline/case_sides.h"
 
@@ -36,7 +37,11 @@ std::map<std::string, std::set<std::string>> surfaces_at_curves(
   }
   for (const CapEntry& cap : input.caps) {
     if (contains(body.enclosed_by, cap.spec.name)) {
-      at_curve[cap.spec.curve].insert(cap.spec.name);
+      CapSpec spec = cap.spec;
+      spec.start = nullptr;  // a file's surfaces may end anywhere
+      for (const std::string& curve : spec.curves()) {
+        at_curve[curve].insert(spec.name);
+      }
     }
   }
   return at_curve;
@@ -46,7 +51,8 @@ std::map<std::string, std::set<std::string>> surfaces_at_curves(
 std::string closing_advice(const Case& input, const BodyEntry& body,
                            const std::string& curve) {
   for (const CapEntry& cap : input.caps) {
-    if (cap.spec.curve == curve && !contains(body.enclosed_by, cap.spec.name)) {
+    if (contains(cap.spec.curves(), curve) &&
+        !contains(body.enclosed_by, cap.spec.name)) {
       return fmt::format("; add '{}' to enclosed_by", cap.spec.name);
     }
   }
@@ -57,9 +63,7 @@ std::string closing_advice(const Case& input, const BodyEntry& body,
     }
   }
   return fmt::format(
-      "; add a cap across it ([solids.NAME] with curve = "
-      "\"{}\")",
-      curve);
+      "; add a cap across it ([solids.NAME] with curve = \"{}\")", curve);
 }
 
 /// All names that the body's shape hangs on are known; else the reader has
@@ -70,7 +74,8 @@ bool names_are_known(const Case& input, const BodyEntry& body) {
       body.enclosed_by.begin(), body.enclosed_by.end(),
       [&](const std::string& name) { return contains(surfaces, name); });
   for (const FilmEntry& film : input.films) {
-    known = known && !film.spec.curves.empty();
+    known = known &&
+            (film.spec.kind == FilmKind::Facets || !film.spec.curves.empty());
   }
   const auto is_curve = [&](const std::string& name) {
     return std::any_of(input.curves.begin(), input.curves.end(),
@@ -84,8 +89,8 @@ bool names_are_known(const Case& input, const BodyEntry& body) {
 
 void check_closed(const Case& input, const BodyEntry& body,
                   CaseProblems& problems) {
-  if (!names_are_known(input, body)) {
-    return;
+  if (!names_are_known(input, body) || has_facets(input, body)) {
+    return;  // facets may join elsewhere than on curves: see check_start()
   }
   for (const auto& [curve, surfaces] : surfaces_at_curves(input, body)) {
     if (surfaces.size() == 1 && may_join_by_sides(input, curve)) {
@@ -116,6 +121,7 @@ void check_use(const Case& input, CaseProblems& problems) {
   }
   for (const WallEntry& wall : input.walls) {
     used_surfaces.insert(wall.films.begin(), wall.films.end());
+    used_materials.insert(wall.material);
   }
   for (const FilmEntry& film : input.films) {
     used_curves.insert(film.spec.curves.begin(), film.spec.curves.end());
@@ -126,13 +132,18 @@ void check_use(const Case& input, CaseProblems& problems) {
     }
   }
   for (const CapEntry& cap : input.caps) {
-    used_curves.insert(cap.spec.curve);
+    const std::vector<std::string> curves = cap.spec.curves();
+    used_curves.insert(curves.begin(), curves.end());
     if (used_surfaces.count(cap.spec.name) == 0) {
       problems.add(cap.line,
                    fmt::format("solid '{}' encloses no body; add it to a "
                                "body's enclosed_by or take it out",
                                cap.spec.name));
     }
+  }
+  for (const MergedCurves& pair : input.merged) {
+    used_curves.insert(
+        input.curves[static_cast<std::size_t>(pair.dropped)].name);
   }
   for (const CurveEntry& curve : input.curves) {
     if (curve.copy.of >= 0) {
@@ -255,6 +266,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
   if (!problems.empty()) {
     return;
   }
+  check_start(input, numbers, problems);
   check_loads(input, numbers, problems);
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     for (const double end : {input.design[k].lower, input.design[k].upper}) {
@@ -262,6 +274,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
       design[static_cast<Eigen::Index>(k)] = end;
       const EvaluatedCase there = at(design);
       if (problems.empty()) {
+        check_merged(input, numbers, there, problems);
         check_fixed_materials(input, numbers, there, problems);
       }
     }
@@ -334,6 +347,8 @@ std::vector<std::string> surface_names(const Case& input) {
   for (const FilmEntry& film : input.films) {
     names.push_back(film.spec.name);
   }
+  const std::vector<std::string> walls = wall_surface_names(input);
+  names.insert(names.end(), walls.begin(), walls.end());
   return names;
 }
 

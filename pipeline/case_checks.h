@@ -24,8 +24,19 @@ void check_bodies(const Case& input, CaseProblems& problems);
 /// ends of every design variable, and warnings of what serves nothing.
 void check_case(const Case& input, CaseProblems& problems);
 
-/// Films and solids.
+/// Films and solids that start from facets put onto their curves, at the
+/// initial design: rims that find no curve, bodies that stay open.
+void check_start(const Case& input, const EvaluatedCase& numbers,
+                 CaseProblems& problems);
+
+/// Some film or solid, or one of those that enclose a body, is of facets.
+bool has_facets(const Case& input);
+bool has_facets(const Case& input, const BodyEntry& body);
+
+/// Films and solids, backs and rims of walls.
 std::vector<std::string> surface_names(const Case& input);
+/// Of walls, beside their films.
+std::vector<std::string> wall_surface_names(const Case& input);
 std::vector<std::string> film_names(const Case& input);
 std::vector<std::string> body_names(const Case& input);
 

@@ -157,7 +157,10 @@ void check_meetings(const Case& input, const FilmSystem& system,
                                        name) != film.curves.end();
                     }) ||
         std::any_of(system.caps.begin(), system.caps.end(),
-                    [&](const CapSpec& cap) { return cap.curve == name; });
+                    [&](const CapSpec& cap) {
+                      const std::vector<std::string> at = cap.curves();
+                      return std::find(at.begin(), at.end(), name) != at.end();
+                    });
     if (held) {
       rims.push_back(c);
       shapes.push_back(&system.curves[c].shape);

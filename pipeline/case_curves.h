@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "evolve/film_system.h"
+#include "pipeline/case_problems.h"
 #include "pipeline/case_values.h"
 
 namespace meniscus {
@@ -15,5 +16,14 @@ std::vector<Curve> curves_of(const Case& input, const CaseValues& values);
 /// Tells of curves that hold films or caps and touch or cross each other.
 void check_meetings(const Case& input, const FilmSystem& system,
                     const CaseValues& values);
+
+/// Finds curves of films and solids that lie on each other at the initial
+/// design, and makes these name the first of them. Tells which were found in
+/// the case's remarks; notes a film that names both.
+void merge_curves(Case& input, CaseProblems& problems);
+
+/// Notes merged curves that part at another design.
+void check_merged(const Case& input, const EvaluatedCase& initial,
+                  const EvaluatedCase& other, CaseProblems& problems);
 
 }  // namespace meniscus

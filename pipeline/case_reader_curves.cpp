@@ -1,13 +1,9 @@
 #include <algorithm>
-#include <filesystem>
 #include <map>
 
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "io/atomic_file.h"
 #include "pipeline/case_reader_tables.h"
-#include "pipeline/curve_file.h"
 
 namespace meniscus {
 
@@ -15,24 +11,22 @@ namespace {
 
 const std::map<std::string, KindKeys>& curve_kinds() {
   static const std::map<std::string, KindKeys> kinds = {
-      {"circle", {{"center", "normal", "radius"}, {"repeat"}}},
-      {"ellipse",
-       {{"center", "normal", "axis", "radius_1", "radius_2"}, {"repeat"}}},
+      {"circle", {{"center", "normal", "radius"}, {}}},
+      {"ellipse", {{"center", "normal", "axis", "radius_1", "radius_2"}, {}}},
       {"rectangle",
-       {{"center", "normal", "axis", "width", "height"},
-        {"corner_radius", "repeat"}}},
-      {"polygon", {{"points"}, {"repeat"}}},
-      {"spline", {{"points"}, {"repeat"}}},
-      {"polyline", {{"points"}, {"repeat"}}},
-      {"file", {{"file"}, {"as"}}},
+       {{"center", "normal", "axis", "width", "height"}, {"corner_radius"}}},
+      {"polygon", {{"points"}, {}}},
+      {"spline", {{"points"}, {}}},
+      {"polyline", {{"points"}, {}}},
+      {"file", {{"file"}, {"as", "edge", "face"}}},
       {"copy",
        {{"of"},
         {"offset", "scale", "scales", "mirror", "rotate", "axis", "about",
-         "move", "repeat"}}}};
+         "move"}}}};
   return kinds;
 }
 
-CurveKind kind_of(const std::string& kind, const CaseTable& table) {
+CurveKind kind_of(const std::string& kind) {
   static const std::map<std::string, CurveKind> kinds = {
       {"circle", CurveKind::Circle},
       {"ellipse", CurveKind::Ellipse},
@@ -41,12 +35,7 @@ CurveKind kind_of(const std::string& kind, const CaseTable& table) {
       {"spline", CurveKind::Spline},
       {"polyline", CurveKind::Polyline},
       {"copy", CurveKind::Copy}};
-  if (kind == "file") {
-    return table.choice("as").value_or("spline") == "polygon"
-               ? CurveKind::Polygon
-               : CurveKind::Spline;
-  }
-  return kinds.at(kind);
+  return kind == "file" ? CurveKind::Spline : kinds.at(kind);
 }
 
 Quantity fixed(const CaseTable& table, const char* key, double value) {
@@ -75,61 +64,6 @@ void check_path(CaseContext& context, const CaseTable& table,
                       "the one after it; put {} before it",
                       table.path(), k, k == 0 ? "a corner" : "another corner"));
     }
-  }
-}
-
-/// The text of a file that the case names, from disk unless the case holds it.
-const std::string* text_of(CaseContext& context, const CaseTable& table,
-                           const std::string& path, Case& result) {
-  for (const CaseFile& file : result.files) {
-    if (file.path == path) {
-      return &file.text;
-    }
-  }
-  const std::filesystem::path place =
-      std::filesystem::path(result.path).parent_path() / path;
-  if (!std::filesystem::is_regular_file(place)) {
-    context.problems.add(
-        table.line("file"),
-        fmt::format("{}.file: there is no file '{}'; expected a csv file with "
-                    "columns x, y, z, its path relative to the case",
-                    table.path(), place.string()));
-    return nullptr;
-  }
-  try {
-    result.files.push_back({path, read_file(place)});
-  } catch (const IoError& error) {
-    context.problems.add(table.line("file"), error.what());
-    return nullptr;
-  }
-  return &result.files.back().text;
-}
-
-void read_file_points(CaseContext& context, const CaseTable& table,
-                      Case& result, CurveEntry& curve) {
-  const auto path = table.text("file");
-  if (!path) {
-    return;
-  }
-  std::string ending = std::filesystem::path(*path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) {
-    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  });
-  if (ending != ".csv") {
-    context.problems.add(
-        table.line("file"),
-        fmt::format("{}.file is '{}'; expected a file that ends in .csv",
-                    table.path(), *path));
-    return;
-  }
-  if (const std::string* text = text_of(context, table, *path, result)) {
-    const std::string place =
-        (std::filesystem::path(result.path).parent_path() / *path).string();
-    CurveFile file = read_curve_text(*text, place, context.units);
-    for (const std::string& problem : file.problems) {
-      context.problems.add_text(problem);
-    }
-    curve.fixed_points = std::move(file.points);
   }
 }
 
@@ -203,61 +137,6 @@ void read_copy(CaseContext& context, const CaseTable& table,
   copy.move = table.vector_or_zero("move");
 }
 
-constexpr std::size_t kMostRepeats = 4000;
-
-/// i, or i and j, or i, j and k of each repetition, the last running fastest;
-/// one without any where nothing is repeated.
-std::vector<std::vector<int>> places_of(CaseContext& context,
-                                        const CaseTable& table) {
-  std::vector<std::vector<int>> places = {{}};
-  const std::vector<int> counts = table.counts("repeat");
-  static const std::vector<std::string> letters = {"i", "j", "k"};
-  for (std::size_t axis = 0; axis < counts.size(); ++axis) {
-    if (std::find(context.names.begin(), context.names.end(), letters[axis]) !=
-        context.names.end()) {
-      context.problems.add(
-          table.line("repeat"),
-          fmt::format("{} counts with {}, which is also a parameter or design "
-                      "variable; give that another name",
-                      table.path(), letters[axis]));
-    }
-    std::vector<std::vector<int>> more;
-    for (const std::vector<int>& place : places) {
-      for (int index = 1; index <= counts[axis]; ++index) {
-        more.push_back(place);
-        more.back().push_back(index);
-      }
-    }
-    places = std::move(more);
-    if (places.size() > kMostRepeats) {
-      context.problems.add(
-          table.line("repeat"),
-          fmt::format("{} makes {} curves or more; at most {} are taken",
-                      table.path(), places.size(), kMostRepeats));
-      return {std::vector<int>(counts.size(), 1)};
-    }
-  }
-  return places;
-}
-
-/// What a pattern makes must not be there already.
-void check_new_name(CaseContext& context, const CaseTable& table,
-                    const toml::table& root, const Case& result,
-                    const CurveEntry& curve) {
-  if (curve.name == table.name()) {
-    return;
-  }
-  const bool above =
-      std::any_of(result.curves.begin(), result.curves.end(),
-                  [&](const CurveEntry& c) { return c.name == curve.name; });
-  if (above || root["curves"][curve.name].is_table()) {
-    context.problems.add(
-        table.line("repeat"),
-        fmt::format("{} makes '{}', which is there already; rename one",
-                    table.path(), curve.name));
-  }
-}
-
 CurveEntry read_curve(CaseContext& context, const CaseTable& table,
                       const toml::table& root, Case& result) {
   CurveEntry curve{.name = table.name(), .line = table.line()};
@@ -266,13 +145,13 @@ CurveEntry read_curve(CaseContext& context, const CaseTable& table,
     return curve;
   }
   table.check_kind(*kind, curve_kinds().at(*kind));
-  curve.kind = kind_of(*kind, table);
+  curve.kind = kind_of(*kind);
   if (*kind == "copy") {
     read_copy(context, table, root, result, curve);
     return curve;
   }
   if (*kind == "file") {
-    read_file_points(context, table, result, curve);
+    read_curve_file(context, table, result, curve);
     return curve;
   }
   curve.center = table.vector_or_zero("center");
@@ -293,16 +172,7 @@ CurveEntry read_curve(CaseContext& context, const CaseTable& table,
 
 void read_curves(CaseContext& context, const toml::table& root, Case& result) {
   for (const CaseTable& table : named_tables(context, root, "curves")) {
-    for (const std::vector<int>& place : places_of(context, table)) {
-      context.indices.assign(place.begin(), place.end());
-      CurveEntry curve = read_curve(context, table, root, result);
-      for (const int index : place) {
-        curve.name += fmt::format("_{}", index);
-      }
-      check_new_name(context, table, root, result, curve);
-      result.curves.push_back(std::move(curve));
-    }
-    context.indices.clear();
+    result.curves.push_back(read_curve(context, table, root, result));
   }
 }
 

@@ -94,7 +94,7 @@ void CaseTable::check_kind(const std::string& kind,
   };
   for (const auto& [node_key, node] : *table_) {
     const std::string key(node_key.str());
-    if (key != "kind" && find_key(*spec_, key) != nullptr &&
+    if (key != "kind" && key != "repeat" && find_key(*spec_, key) != nullptr &&
         !among(keys.needed, key) && !among(keys.optional, key)) {
       context_->problems.add(
           context_->line_of(node),
@@ -119,7 +119,7 @@ std::optional<std::string> CaseTable::text(const char* key) const {
     return std::nullopt;
   }
   if (const auto* value = node(key)->as_string()) {
-    return value->get();
+    return filled_text(*node(key), value->get(), indices_);
   }
   note(key, "text in quotes");
   return std::nullopt;
@@ -156,22 +156,29 @@ std::optional<std::string> CaseTable::choice(const char* key) const {
   return std::nullopt;
 }
 
-std::vector<std::string> CaseTable::names(const char* key) const {
+std::vector<std::string> CaseTable::names_or_numbers(const char* key) const {
   std::vector<std::string> result;
   if (!has(key)) {
     return result;
   }
+  const auto add = [&](const toml::node& item) {
+    if (const auto* name = item.as_string()) {
+      result.push_back(filled_text(item, name->get(), indices_));
+    } else if (const auto number = item.value_exact<std::int64_t>()) {
+      result.push_back(fmt::format("{}", *number));
+    }
+  };
   const toml::array* array = node(key)->as_array();
-  bool good = array != nullptr && !array->empty();
-  for (std::size_t k = 0; good && k < array->size(); ++k) {
-    const auto* name = array->get(k)->as_string();
-    good = name != nullptr;
-    if (good) {
-      result.push_back(name->get());
+  const std::size_t wanted = array == nullptr ? 1 : array->size();
+  if (array == nullptr) {
+    add(*node(key));
+  } else {
+    for (const toml::node& item : *array) {
+      add(item);
     }
   }
-  if (!good) {
-    note(key, "names: [\"a\", \"b\"]");
+  if (wanted == 0 || result.size() != wanted) {
+    note(key, "a name or a number, or several: 7, \"rim\", [3, 4]");
     result.clear();
   }
   return result;
@@ -217,6 +224,7 @@ std::optional<Quantity> CaseTable::quantity(const char* key) const {
   if (!has(key)) {
     return std::nullopt;
   }
+  const IndexScope scope(*context_, indices_);
   return read_quantity(*context_, *node(key), dimension(key),
                        fmt::format("{}.{}", path_, key));
 }
@@ -225,6 +233,7 @@ std::optional<PlaceQuantity> CaseTable::place_quantity(const char* key) const {
   if (!has(key)) {
     return std::nullopt;
   }
+  const IndexScope scope(*context_, indices_);
   return read_place_quantity(*context_, *node(key), dimension(key),
                              fmt::format("{}.{}", path_, key));
 }
@@ -233,6 +242,7 @@ std::optional<double> CaseTable::constant(const char* key) const {
   if (!has(key)) {
     return std::nullopt;
   }
+  const IndexScope scope(*context_, indices_);
   return read_constant(*context_, *node(key), dimension(key),
                        fmt::format("{}.{}", path_, key));
 }
@@ -248,6 +258,7 @@ std::vector<double> CaseTable::constants(const char* key) const {
     note(key, pair ? "two numbers: [least, largest]" : "numbers: [5.0, 2.0]");
     return result;
   }
+  const IndexScope scope(*context_, indices_);
   for (const toml::node& item : *array) {
     if (const auto value = read_constant(*context_, item, dimension(key),
                                          fmt::format("{}.{}", path_, key))) {
@@ -256,29 +267,6 @@ std::vector<double> CaseTable::constants(const char* key) const {
   }
   if (result.size() != array->size()) {
     result.clear();
-  }
-  return result;
-}
-
-std::vector<CaseTable> CaseTable::tables(const char* key,
-                                         const char* spec) const {
-  std::vector<CaseTable> result;
-  if (!has(key)) {
-    return result;
-  }
-  const toml::array* array = node(key)->as_array();
-  const bool good =
-      array != nullptr && !array->empty() &&
-      std::all_of(array->begin(), array->end(),
-                  [](const toml::node& n) { return n.is_table(); });
-  if (!good) {
-    note(key, fmt::format("tables, at least one: [{{ {} = \"...\", ... }}]",
-                          case_table(spec).keys.front().key));
-    return result;
-  }
-  for (const toml::node& item : *array) {
-    result.emplace_back(*context_, *item.as_table(), case_table(spec), "",
-                        fmt::format("{}.{}", path_, key));
   }
   return result;
 }

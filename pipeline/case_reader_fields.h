@@ -5,6 +5,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,8 @@
 #include "pipeline/case_schema.h"
 
 namespace meniscus {
+
+class StepEdges;
 
 /// Nodes that overrides put into the file: the override's number, from 1.
 using OverriddenNodes = std::map<const toml::node*, int>;
@@ -33,7 +36,8 @@ struct CaseContext {
   std::vector<std::optional<double>> constants;
   bool bodies_good = false;  // nothing was wrong with them
   // Of the copy of an entry with `repeat` that is being read: i, j, k.
-  std::vector<double> indices;
+  std::vector<int> indices;
+  std::map<std::string, std::shared_ptr<StepEdges>> step_files;  // by path
 
   SourceLine line_of(const toml::node& node) const;
 };
@@ -54,6 +58,11 @@ class CaseTable {
   CaseTable(CaseContext& context, const toml::table& table,
             const TableSpec& spec, std::string name, std::string path);
 
+  /// What `repeat` makes of the table, in order: itself without that, else
+  /// NAME_1, NAME_2, ... or NAME_1_1, ..., whose expressions and names know
+  /// their numbers as i, j, k.
+  std::vector<CaseTable> copies() const;
+
   const std::string& name() const { return name_; }
   const std::string& path() const { return path_; }
   SourceLine line() const { return context_->line_of(*table_); }
@@ -66,7 +75,10 @@ class CaseTable {
   // Absent or wrong values come back empty; wrong ones have been noted.
   std::optional<std::string> text(const char* key) const;
   std::optional<std::string> choice(const char* key) const;
+  /// Names, and { name = "x_{i}", repeat = n } for several.
   std::vector<std::string> names(const char* key) const;
+  /// One or several; numbers as text.
+  std::vector<std::string> names_or_numbers(const char* key) const;
   std::optional<bool> flag(const char* key) const;
   std::optional<int> positive_integer(const char* key) const;
   std::optional<int> integer_within(const char* key, int least, int most) const;
@@ -74,11 +86,13 @@ class CaseTable {
   std::optional<PlaceQuantity> place_quantity(const char* key) const;
   std::optional<double> constant(const char* key) const;
   std::vector<double> constants(const char* key) const;
-  /// One to three whole numbers above 0.
-  std::vector<int> counts(const char* key) const;
   std::optional<QuantityVector> vector(const char* key) const;
+  /// Points, and { at = [x, y, z], repeat = n } for several.
   std::vector<QuantityVector> vectors(const char* key) const;
-  /// The same, with points that arcs go through: { through = [x, y, z] }.
+  /// Three or more corners each, cut into triangles from the first; numbers
+  /// from 0 of so many vertices.
+  std::vector<Triangle> facets(const char* key, std::ptrdiff_t vertices) const;
+  /// As vectors(), with points that arcs go through: { through = [x, y, z] }.
   std::vector<PathPoint> path_points(const char* key) const;
   std::optional<Vec3> constant_vector(const char* key) const;
   std::optional<std::array<PlaceQuantity, 3>> place_vector(
@@ -99,6 +113,14 @@ class CaseTable {
   std::optional<Vec3> constants_of(const toml::node& node, const char* key,
                                    const std::string& path) const;
   void note(const char* key, const std::string& expected) const;
+  std::string filled_text(const toml::node& node, const std::string& text,
+                          const std::vector<int>& indices) const;
+  /// The numbers of the copies that an entry { ..., repeat = n } of an array
+  /// makes; the table's own for one without.
+  std::vector<std::vector<int>> copies_in(const char* key,
+                                          const toml::table& entry) const;
+  bool add_names(const char* key, const toml::node& item,
+                 std::vector<std::string>& result) const;
   std::optional<Dimension> dimension(const char* key) const;
 
   CaseContext* context_;
@@ -106,6 +128,22 @@ class CaseTable {
   const TableSpec* spec_;
   std::string name_;
   std::string path_;
+  std::vector<int> indices_;  // of this copy; none without repeat
+};
+
+/// While it lives, expressions know the numbers of one copy.
+class IndexScope {
+ public:
+  IndexScope(CaseContext& context, const std::vector<int>& indices)
+      : context_(context) {
+    context_.indices = indices;
+  }
+  ~IndexScope() { context_.indices.clear(); }
+  IndexScope(const IndexScope&) = delete;
+  IndexScope& operator=(const IndexScope&) = delete;
+
+ private:
+  CaseContext& context_;
 };
 
 /// A number, an expression or a value with a unit; nothing, and a note, when

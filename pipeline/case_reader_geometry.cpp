@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/case_checks.h"
+#include "pipeline/case_curves.h"
 #include "pipeline/case_reader_tables.h"
 
 namespace meniscus {
@@ -16,176 +17,6 @@ constexpr const char* kVoidName = "void";
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-std::vector<std::string> curve_names(const Case& result) {
-  std::vector<std::string> names;
-  for (const CurveEntry& curve : result.curves) {
-    names.push_back(curve.name);
-  }
-  return names;
-}
-
-struct FilmNeeds {
-  FilmKind kind;
-  std::size_t least;
-  std::size_t most;
-  const char* text;
-};
-
-void check_film_curves(CaseContext& context, const CaseTable& table,
-                       const std::vector<std::string>& known,
-                       const std::vector<std::string>& curves) {
-  std::set<std::string> seen;
-  for (const std::string& curve : curves) {
-    if (!contains(known, curve)) {
-      context.problems.unknown(table.line("curves"), "curve", curve, known);
-    } else if (!seen.insert(curve).second) {
-      context.problems.add(table.line("curves"),
-                           fmt::format("{} names curve '{}' twice; name each "
-                                       "once",
-                                       table.path(), curve));
-    }
-  }
-}
-
-void read_films(CaseContext& context, const toml::table& root, Case& result) {
-  static const std::map<std::string, FilmNeeds> kinds = {
-      {"branch",
-       {FilmKind::Branch, 2, std::size_t(-1), "a branch needs two or more"}},
-      {"loft", {FilmKind::Loft, 2, 2, "a loft needs two"}},
-      {"disk", {FilmKind::Disk, 1, 1, "a disk needs one"}}};
-  const std::vector<std::string> known = curve_names(result);
-  for (const CaseTable& table : named_tables(context, root, "films")) {
-    FilmEntry film{.line = table.line()};
-    film.spec.name = table.name();
-    film.spec.curves = table.names("curves");
-    const std::size_t count = film.spec.curves.size();
-    const auto kind = table.choice("kind");
-    if (kind && count > 0) {
-      const FilmNeeds& needs = kinds.at(*kind);
-      film.spec.kind = needs.kind;
-      if (count < needs.least || count > needs.most) {
-        context.problems.add(
-            table.line("curves"),
-            fmt::format("{} names {} curve{}; {}", table.path(), count,
-                        count == 1 ? "" : "s", needs.text));
-      }
-    }
-    check_film_curves(context, table, known, film.spec.curves);
-    film.tension = table.place_quantity("tension").value_or(
-        PlaceQuantity{{.expression = Expression(1.0),
-                       .line = table.line(),
-                       .key = table.path() + ".tension"}});
-    if (film.tension.of_place) {
-      require_frozen(context, film.tension.quantity, "a tension of x, y, z");
-    }
-    result.films.push_back(std::move(film));
-  }
-}
-
-/// Notes keys that belong to another kind.
-void refuse_keys(CaseContext& context, const CaseTable& table,
-                 const std::vector<const char*>& keys, const char* kind) {
-  for (const char* key : keys) {
-    if (table.has(key)) {
-      context.problems.add(table.line(key),
-                           fmt::format("{}.{} belongs to kind \"{}\"; take it "
-                                       "out",
-                                       table.path(), key, kind));
-    }
-  }
-}
-
-void read_cap(CaseContext& context, const CaseTable& table,
-              const std::vector<std::string>& known, Case& result) {
-  refuse_keys(context, table, {"curves"}, "sides");
-  if (!table.has("curve")) {
-    context.problems.add(table.line(),
-                         fmt::format("{} is a cap and has no 'curve', which is "
-                                     "its rim; add it",
-                                     table.path()));
-  }
-  std::vector<std::string> curves = table.names("holes");
-  curves.insert(curves.begin(), table.text("curve").value_or(""));
-  std::set<std::string> seen;
-  for (const std::string& curve : curves) {
-    const SourceLine line = table.line(seen.empty() ? "curve" : "holes");
-    if (!curve.empty() && !contains(known, curve)) {
-      context.problems.unknown(line, "curve", curve, known);
-    } else if (!seen.insert(curve).second) {
-      context.problems.add(line, fmt::format("{} names curve '{}' twice; name "
-                                             "each once",
-                                             table.path(), curve));
-    }
-    result.caps.push_back({{table.name(), curve}, table.line()});
-  }
-}
-
-const CurveEntry* polygon_named(const Case& input, const std::string& name) {
-  for (const CurveEntry& curve : input.curves) {
-    if (curve.name == name) {
-      return curve.kind == CurveKind::Polygon && !curve.points.empty()
-                 ? &curve
-                 : nullptr;
-    }
-  }
-  return nullptr;
-}
-
-/// A polygon NAME/k between each two sides, and the cap across it.
-void read_sides(CaseContext& context, const CaseTable& table,
-                const std::vector<std::string>& known, Case& result) {
-  refuse_keys(context, table, {"curve", "holes"}, "cap");
-  const std::vector<std::string> curves = table.names("curves");
-  const SourceLine line =
-      table.has("curves") ? table.line("curves") : table.line();
-  for (const std::string& curve : curves) {
-    if (!contains(known, curve)) {
-      context.problems.unknown(line, "curve", curve, known);
-    }
-  }
-  const bool two = curves.size() == 2 && curves[0] != curves[1];
-  const CurveEntry* low = two ? polygon_named(result, curves[0]) : nullptr;
-  const CurveEntry* high = two ? polygon_named(result, curves[1]) : nullptr;
-  if (low == nullptr || high == nullptr ||
-      low->points.size() != high->points.size()) {
-    context.problems.add(
-        line, fmt::format("{}.curves: found [{}]; expected two curves of kind "
-                          "polygon with as many points, in the same order",
-                          table.path(), fmt::join(curves, ", ")));
-    return;
-  }
-  const std::vector<PathPoint> a = low->points;
-  const std::vector<PathPoint> b = high->points;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    const std::size_t next = (k + 1) % a.size();
-    CurveEntry face{.name = fmt::format("{}/{}", table.name(), k + 1),
-                    .kind = CurveKind::Polygon,
-                    .line = table.line()};
-    face.points = {a[k], a[next], b[next], b[k]};
-    result.caps.push_back({{table.name(), face.name}, table.line()});
-    result.curves.push_back(std::move(face));
-  }
-}
-
-void read_solids(CaseContext& context, const toml::table& root, Case& result) {
-  const std::vector<std::string> known = curve_names(result);
-  for (const CaseTable& table : named_tables(context, root, "solids")) {
-    for (const FilmEntry& film : result.films) {
-      if (film.spec.name == table.name()) {
-        context.problems.add(
-            table.line(), fmt::format("'{}' is both a film and a solid; rename "
-                                      "one, or loads could not tell them apart",
-                                      table.name()));
-      }
-    }
-    if (table.choice("kind") == "sides") {
-      read_sides(context, table, known, result);
-    } else {
-      read_cap(context, table, known, result);
-    }
-  }
 }
 
 /// Notes keys of one kind of material that the other has or this one lacks.
@@ -310,7 +141,8 @@ void read_bodies(CaseContext& context, const toml::table& root, Case& result) {
     find_material(context, table, result, body);
     result.bodies.push_back(std::move(body));
   }
-  if (!result.bodies.empty() && solid_bodies(result).empty()) {
+  if (!result.bodies.empty() && solid_bodies(result).empty() &&
+      !root.contains("walls")) {
     context.problems.add(result.bodies.front().line,
                          "all bodies are void; one must have a material, or "
                          "there is no part");
@@ -324,6 +156,9 @@ void read_geometry(CaseContext& context, const toml::table& root,
   read_curves(context, root, result);
   read_films(context, root, result);
   read_solids(context, root, result);
+  if (context.problems.empty()) {
+    merge_curves(result, context.problems);
+  }
   read_materials(context, root, result);
   const std::size_t before = context.problems.size();
   read_bodies(context, root, result);

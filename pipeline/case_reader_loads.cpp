@@ -126,8 +126,8 @@ std::string load_key(CaseContext& context, const CaseTable& table,
   return "";
 }
 
-void check_keys(CaseContext& context, const CaseTable& table,
-                const std::string& key) {
+void check_load_keys(CaseContext& context, const CaseTable& table,
+                     const std::string& key) {
   const LoadKeys& keys = load_keys().at(key);
   if (keys.on_surface && !table.has("on")) {
     context.problems.add(table.line(),
@@ -169,7 +169,7 @@ void read_load(CaseContext& context, const CaseTable& table, const Case& result,
   if (key.empty()) {
     return;
   }
-  check_keys(context, table, key);
+  check_load_keys(context, table, key);
   load.kind = load_keys().at(key).kind;
   if (key == "force" && (table.has("at") || table.has("moment"))) {
     load.kind = LoadKind::Remote;
@@ -208,6 +208,11 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
         std::count(body.enclosed_by.begin(), body.enclosed_by.end(), surface));
     bodies += one;
     solid += body.material == kVoid ? 0 : one;
+  }
+  for (const WallEntry& wall : result.walls) {
+    for (const std::string& film : wall.films) {
+      solid += film == surface || surface.starts_with(film + "/") ? 1 : 0;
+    }
   }
   if (std::find(known.begin(), known.end(), surface) == known.end()) {
     context.problems.unknown(table.line(key), "surface", surface, known);

@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "pipeline/bound_text.h"
-#include "pipeline/case_reader_fields.h"
+#include "pipeline/case_reader_repeat.h"
 
 namespace meniscus {
 
@@ -31,14 +31,14 @@ std::optional<Quantity> read_expression(CaseContext& context,
                                                   described(node), kQuantity));
     return std::nullopt;
   }
-  static const std::vector<std::string> indices = {"i", "j", "k"};
-  const std::string bound =
-      context.indices.empty()
-          ? text->get()
-          : with_values(text->get(),
-                        {indices.begin(),
-                         indices.begin() + std::ssize(context.indices)},
-                        context.indices);
+  static const std::vector<std::string> letters = {"i", "j", "k"};
+  std::string bound = text->get();
+  if (!context.indices.empty()) {
+    bound = with_values(
+        filled(context, bound, context.indices, result.line, key),
+        {letters.begin(), letters.begin() + std::ssize(context.indices)},
+        std::vector<double>(context.indices.begin(), context.indices.end()));
+  }
   try {
     result.expression =
         looks_like_quantity(bound)

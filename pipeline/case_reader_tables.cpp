@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -203,6 +204,21 @@ void read_design(const std::vector<CaseTable>& tables, CaseContext& context,
   }
 }
 
+/// How far rims of facets may lie off their curves, where it is not said.
+void set_within(Case& result) {
+  constexpr double kUsual = 0.25;  // of resolution.fea
+  for (FilmEntry& film : result.films) {
+    if (!(film.spec.within > 0.0)) {
+      film.spec.within = kUsual * result.resolution.fea;
+    }
+  }
+  for (CapEntry& cap : result.caps) {
+    if (!(cap.spec.within > 0.0)) {
+      cap.spec.within = kUsual * result.resolution.fea;
+    }
+  }
+}
+
 void read_resolution(CaseContext& context, const toml::table& root,
                      Case& result) {
   const auto table = single_table(context, root, "resolution");
@@ -223,6 +239,12 @@ void read_resolution(CaseContext& context, const toml::table& root,
     }
     return edge;
   };
+  resolution.keep_facets = table->flag("keep_facets").value_or(false);
+  if (resolution.keep_facets && !has_facets(result)) {
+    context.problems.add(table->line("keep_facets"),
+                         "resolution.keep_facets: no film is of kind facets or "
+                         "file; take it out");
+  }
   const std::size_t before = context.problems.size();
   resolution.fea = length("fea", 0.0);
   resolution.film = length("film", resolution.fea / 2.0);
@@ -235,6 +257,7 @@ void read_resolution(CaseContext& context, const toml::table& root,
   if (context.problems.size() == before && table->has("fea")) {
     nest_film(resolution, table->line("film"), context.problems);
   }
+  set_within(result);
 }
 
 void warn_of_unused(CaseContext& context, const Case& result) {
@@ -268,12 +291,23 @@ std::vector<CaseTable> named_tables(CaseContext& context,
                                      table, described(*node), table));
     return found;
   }
+  std::set<std::string> made;
   for (const auto& [key, entry] : *all) {
     const std::string name(key.str());
     const std::string path = fmt::format("{}.{}", table, name);
     check_name(context, name, table, context.line_of(entry));
     if (const toml::table* inner = entry.as_table()) {
-      found.emplace_back(context, *inner, case_table(table), name, path);
+      const CaseTable whole(context, *inner, case_table(table), name, path);
+      for (CaseTable& copy : whole.copies()) {
+        if (!made.insert(copy.name()).second ||
+            (copy.name() != name && all->contains(copy.name()))) {
+          context.problems.add(whole.line("repeat"),
+                               fmt::format("{} makes '{}', which is there "
+                                           "already; rename one",
+                                           path, copy.name()));
+        }
+        found.push_back(std::move(copy));
+      }
     } else {
       context.problems.add(context.line_of(entry),
                            fmt::format("{} is {}; expected a table [{}]", path,

@@ -26,6 +26,24 @@ std::optional<CaseTable> single_table(CaseContext& context,
 /// Curves, of which some may come from files.
 void read_curves(CaseContext& context, const toml::table& root, Case& result);
 
+/// A curve of kind "file": its points, or the curve of STEP edges.
+void read_curve_file(CaseContext& context, const CaseTable& table, Case& result,
+                     CurveEntry& curve);
+
+/// The text of the file that the key `file` names, from disk unless the case
+/// holds it, which it does from then on. Null with a problem noted; `expected`
+/// is for that.
+const std::string* file_text(CaseContext& context, const CaseTable& table,
+                             const std::string& path, const char* expected,
+                             Case& result);
+
+/// The ending of a file's name in lower case: ".step".
+std::string ending_of(const std::string& path);
+
+/// After the curves; solids after the films.
+void read_films(CaseContext& context, const toml::table& root, Case& result);
+void read_solids(CaseContext& context, const toml::table& root, Case& result);
+
 /// Curves, films, solids, materials, bodies, in this order; sets bodies_good.
 void read_geometry(CaseContext& context, const toml::table& root, Case& result);
 

@@ -9,7 +9,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kMostDesigns = 100'000;
+constexpr int kMostDesignsLooked = 100'000;
 constexpr int kUsualPoints = 7;  // of a front
 constexpr int kMostPoints = 1000;
 
@@ -75,7 +75,7 @@ void read_tolerance(CaseContext& context, const CaseTable& table,
   }
   if (table.has("count")) {
     result.study.count =
-        table.integer_within("count", 2, kMostDesigns).value_or(2);
+        table.integer_within("count", 2, kMostDesignsLooked).value_or(2);
   }
   result.study.seed =
       table.positive_integer("seed").value_or(result.study.seed);

@@ -8,11 +8,28 @@ namespace meniscus {
 
 namespace {
 
-constexpr std::int64_t kMostCount = 1000;
-
 const toml::array* triple(const toml::node& node) {
   const toml::array* array = node.as_array();
   return array != nullptr && array->size() == 3 ? array : nullptr;
+}
+
+/// A point of a list: [x, y, z], { through = [x, y, z] } or
+/// { at = [x, y, z], repeat = n }; no `three` when it is none of them.
+struct PointNode {
+  const toml::array* three = nullptr;
+  bool repeated = false;
+};
+
+PointNode point_node(const toml::node& item) {
+  const toml::table* table = item.as_table();
+  if (table == nullptr) {
+    return {triple(item), false};
+  }
+  const bool repeated = table->size() == 2 && table->contains("repeat");
+  const toml::node* at = repeated             ? table->get("at")
+                         : table->size() == 1 ? table->get("through")
+                                              : nullptr;
+  return {at == nullptr ? nullptr : triple(*at), repeated};
 }
 
 /// read(item, path) of each component; all are read, so that all are reported.
@@ -48,6 +65,7 @@ std::optional<QuantityVector> CaseTable::vector(const char* key) const {
   if (array == nullptr) {
     return std::nullopt;
   }
+  const IndexScope scope(*context_, indices_);
   return components(*array, fmt::format("{}.{}", path_, key),
                     [&](const toml::node& item, const std::string& path) {
                       return read_quantity(*context_, item, dimension(key),
@@ -57,56 +75,51 @@ std::optional<QuantityVector> CaseTable::vector(const char* key) const {
 
 std::vector<QuantityVector> CaseTable::vectors(const char* key) const {
   std::vector<QuantityVector> result;
-  if (!has(key)) {
-    return result;
-  }
-  const toml::array* array = node(key)->as_array();
-  const bool points =
-      array != nullptr && !array->empty() &&
-      std::all_of(array->begin(), array->end(), [](const toml::node& item) {
-        return triple(item) != nullptr;
-      });
-  if (!points) {
-    note(key, "points: [[x, y, z], [x, y, z], ...]");
-    return result;
-  }
-  for (std::size_t p = 0; p < array->size(); ++p) {
-    result.push_back(
-        components(
-            *triple((*array)[p]), fmt::format("{}.{}[{}]", path_, key, p),
-            [&](const toml::node& item, const std::string& path) {
-              return read_quantity(*context_, item, dimension(key), path);
-            })
-            .value_or(QuantityVector{}));
+  for (PathPoint& point : path_points(key)) {
+    if (point.through) {
+      context_->problems.add(
+          point.at[0].line,
+          fmt::format("{}.{}: only a polyline knows 'through'; expected a "
+                      "point [x, y, z]",
+                      path_, key));
+    }
+    result.push_back(std::move(point.at));
   }
   return result;
 }
 
-std::vector<int> CaseTable::counts(const char* key) const {
-  std::vector<int> result;
+std::vector<Triangle> CaseTable::facets(const char* key,
+                                        std::ptrdiff_t vertices) const {
+  std::vector<Triangle> result;
   if (!has(key)) {
     return result;
   }
-  const auto add = [&](const toml::node& item) {
-    const auto value = item.value_exact<std::int64_t>();
-    if (value && *value >= 1 && *value <= kMostCount) {
-      result.push_back(static_cast<int>(*value));
-    }
-  };
   const toml::array* array = node(key)->as_array();
-  const std::size_t wanted = array == nullptr ? 1 : array->size();
-  if (array == nullptr) {
-    add(*node(key));
-  } else {
-    for (const toml::node& item : *array) {
-      add(item);
+  for (std::size_t f = 0; array != nullptr && f < array->size(); ++f) {
+    const toml::node& item = (*array)[f];
+    const toml::array* corners = item.as_array();
+    std::vector<int> found;
+    for (std::size_t k = 0; corners != nullptr && k < corners->size(); ++k) {
+      const auto v = (*corners)[k].value_exact<std::int64_t>();
+      if (v && *v >= 0 && *v < vertices) {
+        found.push_back(static_cast<int>(*v));
+      }
+    }
+    if (corners == nullptr || found.size() < 3 ||
+        found.size() != corners->size()) {
+      context_->problems.add(
+          context_->line_of(item),
+          fmt::format("{}.{}[{}]: expected three or more numbers of vertices, "
+                      "from 0 to {}: [0, 1, 2]",
+                      path_, key, f, vertices - 1));
+      continue;
+    }
+    for (std::size_t k = 2; k < found.size(); ++k) {
+      result.push_back({found[0], found[k - 1], found[k]});
     }
   }
-  if (result.size() != wanted || wanted < 1 || wanted > 3) {
-    note(key, fmt::format("a whole number from 1 to {}, or two or three: "
-                          "[8, 4]",
-                          kMostCount));
-    result.clear();
+  if (array == nullptr || array->empty()) {
+    note(key, "facets: [[0, 1, 2], [0, 2, 3], ...]");
   }
   return result;
 }
@@ -116,15 +129,6 @@ std::vector<PathPoint> CaseTable::path_points(const char* key) const {
   if (!has(key)) {
     return result;
   }
-  const auto coordinates = [](const toml::node& item) {
-    const toml::table* table = item.as_table();
-    const toml::node* through = table != nullptr && table->size() == 1
-                                    ? table->get("through")
-                                    : nullptr;
-    return table == nullptr     ? triple(item)
-           : through == nullptr ? nullptr
-                                : triple(*through);
-  };
   const toml::array* array = node(key)->as_array();
   if (array == nullptr || array->empty()) {
     note(key, "points: [[x, y, z], [x, y, z], ...]");
@@ -133,22 +137,31 @@ std::vector<PathPoint> CaseTable::path_points(const char* key) const {
   for (std::size_t p = 0; p < array->size(); ++p) {
     const toml::node& item = (*array)[p];
     const std::string path = fmt::format("{}.{}[{}]", path_, key, p);
-    const toml::array* three = coordinates(item);
-    if (three == nullptr) {
+    const PointNode point = point_node(item);
+    if (point.three == nullptr) {
       context_->problems.add(
           context_->line_of(item),
-          fmt::format("{} is {}; expected a point [x, y, z], or in a polyline "
-                      "{{ through = [x, y, z] }} for an arc",
-                      path, described(item)));
+          fmt::format(
+              "{} is {}; expected a point [x, y, z], {{ at = [x, y, z], "
+              "repeat = n }} for several, or in a polyline {{ through = "
+              "[x, y, z] }} for an arc",
+              path, described(item)));
       continue;
     }
-    auto at = components(
-        *three, path, [&](const toml::node& part, const std::string& name) {
-          return read_quantity(*context_, part, dimension(key), name);
-        });
-    result.push_back(
-        {std::move(at).value_or(QuantityVector{}), item.is_table()});
-    result.back().at[0].line = context_->line_of(item);
+    const std::vector<std::vector<int>> copies =
+        point.repeated ? copies_in(key, *item.as_table())
+                       : std::vector<std::vector<int>>{indices_};
+    for (const std::vector<int>& indices : copies) {
+      const IndexScope scope(*context_, indices);
+      auto at = components(
+          *point.three, path,
+          [&](const toml::node& part, const std::string& name) {
+            return read_quantity(*context_, part, dimension(key), name);
+          });
+      result.push_back({std::move(at).value_or(QuantityVector{}),
+                        item.is_table() && !point.repeated});
+      result.back().at[0].line = context_->line_of(item);
+    }
   }
   return result;
 }
@@ -171,6 +184,7 @@ std::optional<Vec3> CaseTable::constant_vector(const char* key) const {
   if (three(key, "three constants") == nullptr) {
     return std::nullopt;
   }
+  const IndexScope scope(*context_, indices_);
   return constants_of(*node(key), key, fmt::format("{}.{}", path_, key));
 }
 
@@ -180,6 +194,7 @@ std::optional<std::array<PlaceQuantity, 3>> CaseTable::place_vector(
   if (array == nullptr) {
     return std::nullopt;
   }
+  const IndexScope scope(*context_, indices_);
   return components(*array, fmt::format("{}.{}", path_, key),
                     [&](const toml::node& item, const std::string& path) {
                       return read_place_quantity(*context_, item,
@@ -193,6 +208,7 @@ std::optional<LocalAxes> CaseTable::axes(const char* key) const {
   }
   const toml::array* array = node(key)->as_array();
   LocalAxes axes;
+  const IndexScope scope(*context_, indices_);
   const std::size_t before = context_->problems.size();
   for (std::size_t k = 0; k < 2 && array != nullptr && array->size() == 2;
        ++k) {

@@ -35,83 +35,6 @@ std::vector<TableSpec> make_tables() {
        {{"initial", K::Constant, std::nullopt, true,
          "value at which the model freezes and the study starts"},
         {"bounds", K::Bounds, std::nullopt, true, "[least, largest]"}}},
-      {"curves",
-       true,
-       N::Always,
-       "A closed boundary curve, counter-clockwise seen from its normal's tip",
-       {{"kind", K::Choice, D::None, true,
-         "its shape: circle, ellipse, rectangle; polygon: straight sides; "
-         "spline: smooth through points; polyline: straight sides and circular "
-         "arcs; file: points from a file; copy: another curve offset, scaled, "
-         "mirrored, turned, moved",
-         "circle|ellipse|rectangle|polygon|spline|polyline|file|copy", "arc"},
-        {"center", K::Vector, D::Length, false,
-         "of circle, ellipse, rectangle"},
-        {"normal", K::Vector, D::None, false,
-         "of circle, ellipse, rectangle; any length but 0"},
-        {"axis", K::Vector, D::None, false,
-         "of ellipse, rectangle: direction of radius_1 or width; of copy: what "
-         "it is turned about"},
-        {"radius", K::Quantity, D::Length, false, "of circle"},
-        {"radius_1", K::Quantity, D::Length, false, "of ellipse, along axis"},
-        {"radius_2", K::Quantity, D::Length, false, "of ellipse, across axis"},
-        {"width", K::Quantity, D::Length, false, "of rectangle: along axis"},
-        {"height", K::Quantity, D::Length, false, "of rectangle: across it"},
-        {"corner_radius", K::Quantity, D::Length, false,
-         "of rectangle; 0 when left out"},
-        {"points", K::Path, D::Length, false,
-         "of polygon, spline, polyline, in order; they close by themselves. In "
-         "a polyline { through = [x, y, z] } makes the side between its "
-         "neighbours an arc"},
-        {"file", K::Text, D::None, false,
-         "of file: a csv file with a head row x,y,z, units if it likes (x "
-         "[in]); relative to the case file"},
-        {"as", K::Choice, D::None, false,
-         "of file: what the points make; spline when left out",
-         "spline|polygon"},
-        {"of", K::Name, D::None, false, "of copy: a curve that stands above"},
-        {"offset", K::Quantity, D::Length, false,
-         "of copy: outwards in the curve's plane, below 0 inwards; corners "
-         "stay sharp, arcs concentric. Not of a copy"},
-        {"scale", K::Quantity, D::None, false, "of copy: a factor above 0, or"},
-        {"scales", K::Vector, D::None, false,
-         "of copy: factors along x, y, z, above 0"},
-        {"mirror", K::Vector, D::None, false,
-         "of copy: normal of the mirror plane; any length but 0"},
-        {"rotate", K::Quantity, D::None, false,
-         "of copy: angle in radians, right-handed about axis"},
-        {"about", K::Vector, D::Length, false,
-         "of copy: the point that scaling, mirror plane and axis go through; "
-         "the origin when left out"},
-        {"move", K::Vector, D::Length, false, "of copy: added at the end"},
-        {"repeat", K::Counts, D::None, false,
-         "makes so many curves NAME_1, NAME_2, ..., whose expressions know the "
-         "number as i; [N, M] makes NAME_1_1, ... with i and j. Not of file"}}},
-      {"films",
-       true,
-       N::Optional,
-       "A liquid film between curves",
-       {{"kind", K::Choice, D::None, true,
-         "how the liquid starts: branch (convex hull of any number of curves "
-         "less their caps), loft (band between two), disk (across one)",
-         "branch|loft|disk", "facets|file"},
-        {"curves", K::Names, D::None, true, "the curves that hold it"},
-        {"tension", K::Place, D::Tension, false,
-         "energy per area of the film, above 0; 1 when left out. An expression "
-         "of x, y, z cannot depend on design variables"}}},
-      {"solids",
-       true,
-       N::Optional,
-       "A solid surface, named so that loads find it",
-       {{"kind", K::Choice, D::None, true,
-         "cap: flat disk across a planar curve; sides: the plane faces between "
-         "the sides of two polygons",
-         "cap|sides", "plate|pad|faces|file"},
-        {"curve", K::Name, D::None, false, "of cap: its rim"},
-        {"holes", K::Names, D::None, false,
-         "of cap: curves in its plane that it leaves open"},
-        {"curves", K::Names, D::None, false,
-         "of sides: two polygons of as many corners"}}},
       {"bodies",
        true,
        N::ForParts,
@@ -124,19 +47,7 @@ std::vector<TableSpec> make_tables() {
         {"material", K::Name, D::None, true,
          "what fills it; \"void\": nothing, and only its surfaces shape the "
          "part"}}},
-      {"walls",
-       true,
-       N::Optional,
-       "A film made solid by thickness. `meniscus evolve` reports the largest "
-       "safe thickness and writes the closed surface",
-       {{"films", K::Names, D::None, true,
-         "the film, or several that join smoothly or at a crease"},
-        {"thickness", K::Place, D::Length, true, "above 0"},
-        {"side", K::Choice, D::None, false,
-         "where the material lies: both sides of the film, all of it inside "
-         "(towards the middle of the film's curves) or outside; both when left "
-         "out",
-         "both|inside|outside"}}},
+      walls_table(),
       {"fields",
        true,
        N::Optional,
@@ -176,7 +87,11 @@ std::vector<TableSpec> make_tables() {
          "taken); fea / 2 when left out"},
         {"export", K::Constants, D::Length, false,
          "of the STL files, each settled again; the film's own when left "
-         "out"}}},
+         "out"},
+        {"keep_facets", K::Flag, D::None, false,
+         "films of kind facets and file keep their facets: each is cut in four "
+         "until they are about as small as fea, and never remeshed; false when "
+         "left out"}}},
       {"materials",
        true,
        N::ForParts,
@@ -292,67 +207,21 @@ std::vector<TableSpec> make_tables() {
          "of a box along x, y, z: the least coordinates"},
         {"high", K::ConstantVector, D::Length, false,
          "of a box: the largest; above low"}}},
-      {"responses",
-       true,
-       N::ForParts,
-       "A number that the solver reports",
-       {{"kind", K::Choice, D::None, true,
-         "mean_displacement: area-weighted over a surface along a direction; "
-         "displacement_norm: its p-norm, nearly the largest for a large power; "
-         "rotation: of a surface about an axis, in radians; compliance: work "
-         "of the loads, twice strain_energy where only forces act; "
-         "centre_of_mass: its place along a direction; max_von_mises: of "
-         "nodal stresses, without derivatives; von_mises_norm, von_mises_ks: "
-         "smooth ones by volume (p-norm, Kreisselmeier-Steinhauser); "
-         "uniformity, energy_uniformity: coefficients of variation of von "
-         "Mises stress and of strain energy density by volume; film_area, "
-         "film_energy: of the films; pressure: of a body; collapse_margin: a "
-         "smooth lower bound of the film's smallest eigenvalue, force per "
-         "length cubed; radius: the films' smallest one, smooth; thickness: "
-         "the solid's smallest one, smooth; distance: how far the solid "
-         "reaches into a region to keep out of, or out of one to keep in, "
-         "below 0 where it keeps clear, smooth; expression: of the responses "
-         "above it",
-         "mean_displacement|displacement_norm|rotation|compliance|"
-         "strain_energy|mass|volume|centre_of_mass|max_von_mises|"
-         "von_mises_norm|von_mises_ks|uniformity|energy_uniformity|film_area|"
-         "film_energy|pressure|collapse_margin|radius|thickness|distance|"
-         "expression"},
-        {"on", K::Name, D::None, false,
-         "of displacements and rotations: the surface"},
-        {"direction", K::Vector, D::None, false,
-         "of displacements and centre_of_mass; any length but 0"},
-        {"axis", K::Vector, D::None, false,
-         "of rotation, right-handed; any length but 0"},
-        {"load_case", K::Name, D::None, false,
-         "of what depends on loads; the first when left out"},
-        {"weight", K::Place, D::None, false,
-         "of mean_displacement: what each place counts, an expression of x, y, "
-         "z; the mean is still by area, so that a weight may change its sign"},
-        {"power", K::Constant, D::None, false,
-         "of norms, above 1, of displacements 2 or above, 8 when left out; of "
-         "radius, even, 16 when left out"},
-        {"sharpness", K::Constant, D::None, false,
-         "of von_mises_ks; above 0; 50 when left out"},
-        {"scale", K::Constant, D::Pressure, false,
-         "of von_mises_ks: the stress that its sharpness is measured by; the "
-         "least yield strength when left out"},
-        {"keep_out", K::Place, D::Length, false,
-         "of distance: an expression of x, y, z: how deep a place lies in the "
-         "region, below 0 outside; or"},
-        {"keep_in", K::Place, D::Length, false,
-         "of distance: the same of a region that the solid must stay within"},
-        {"smoothing", K::Constant, D::Length, false,
-         "of thickness, distance: all places within about as much of the "
-         "worst one count, and the value is on the safe side of it by no more "
-         "than this times the logarithm of their number; a tenth of "
-         "resolution.fea when left out"},
-        {"film", K::Name, D::None, false,
-         "of film_area: one film; all when left out"},
-        {"body", K::Name, D::None, false, "of pressure"},
-        {"value", K::Quantity, std::nullopt, false,
-         "of expression: over the case's names and the responses above"}}},
   };
+}
+
+bool can_repeat(const std::string& table) {
+  static const std::vector<std::string> tables = {
+      "curves",  "films",     "solids",  "bodies", "walls",     "fields",
+      "support", "responses", "exclude", "load",   "constraint"};
+  return std::find(tables.begin(), tables.end(), table) != tables.end();
+}
+
+KeySpec repeat_key() {
+  return {"repeat", K::Counts, D::None, false,
+          "makes so many: NAME_1, NAME_2, ..., which know their number as i in "
+          "expressions and as {i} in names; [N, M] makes NAME_1_1, ... with i "
+          "and j"};
 }
 
 }  // namespace
@@ -360,8 +229,21 @@ std::vector<TableSpec> make_tables() {
 const std::vector<TableSpec>& case_tables() {
   static const std::vector<TableSpec> tables = [] {
     std::vector<TableSpec> all = make_tables();
-    for (TableSpec& table : study_tables()) {
-      all.push_back(std::move(table));
+    const auto bodies =
+        std::find_if(all.begin(), all.end(), [](const TableSpec& table) {
+          return std::string(table.name) == "bodies";
+        });
+    const std::vector<TableSpec> shapes = shape_tables();
+    all.insert(bodies, shapes.begin(), shapes.end());
+    for (auto* const more : {&response_tables, &study_tables}) {
+      for (TableSpec& table : more()) {
+        all.push_back(std::move(table));
+      }
+    }
+    for (TableSpec& table : all) {
+      if (can_repeat(table.name)) {
+        table.keys.push_back(repeat_key());
+      }
     }
     return all;
   }();

@@ -13,9 +13,10 @@ namespace meniscus {
 
 enum class KeyType {
   Text,
-  Choice,  // one of `choices`
-  Name,    // of something defined elsewhere in the file
-  Names,   // array of names
+  Choice,          // one of `choices`
+  Name,            // of something defined elsewhere in the file
+  Names,           // array of names
+  NamesOrNumbers,  // one or an array of them, of things in a file
   Integer,
   Counts,          // one to three integers
   Flag,            // true or false
@@ -24,6 +25,7 @@ enum class KeyType {
   Place,           // a quantity, or an expression that also knows x, y, z
   Vector,          // array of three quantities
   Vectors,         // array of arrays of three quantities
+  Facets,          // array of arrays of three or more integers
   Path,            // the same, or { through = [x, y, z] } between two
   ConstantVector,  // array of three constants
   PlaceVector,     // array of three places
@@ -66,7 +68,14 @@ struct TableSpec {
 /// All tables, in the order of the reference.
 const std::vector<TableSpec>& case_tables();
 
-/// Those of them that say what to do with the part (case_schema_study.cpp).
+/// Those of them that the liquid starts from (case_schema_shapes.cpp).
+std::vector<TableSpec> shape_tables();
+/// [walls.NAME] (case_schema_walls.cpp).
+TableSpec walls_table();
+
+/// Those of them that say what is asked of the part
+/// (case_schema_responses.cpp), and what to do with it (case_schema_study.cpp).
+std::vector<TableSpec> response_tables();
 std::vector<TableSpec> study_tables();
 
 /// The table of that name; must exist.

@@ -21,6 +21,8 @@ const char* type_text(const KeySpec& key) {
       return "name";
     case K::Names:
       return "names";
+    case K::NamesOrNumbers:
+      return "names or numbers";
     case K::Integer:
       return "integer";
     case K::Counts:
@@ -38,6 +40,8 @@ const char* type_text(const KeySpec& key) {
     case K::Vectors:
     case K::Path:
       return "points";
+    case K::Facets:
+      return "facets";
     case K::ConstantVector:
       return "3 constants";
     case K::PlaceVector:
@@ -66,12 +70,14 @@ const char* type_text(const KeySpec& key) {
 }
 
 const char* dimension_text(const KeySpec& key) {
-  const bool quantity =
-      key.type != K::Text && key.type != K::Choice && key.type != K::Name &&
-      key.type != K::Names && key.type != K::Integer && key.type != K::Counts &&
-      key.type != K::Flag && key.type != K::IntegerMap &&
-      key.type != K::Supports && key.type != K::Loads && key.type != K::Zones &&
-      key.type != K::Constraints && key.type != K::Members;
+  const bool quantity = key.type != K::Text && key.type != K::Choice &&
+                        key.type != K::Name && key.type != K::Names &&
+                        key.type != K::NamesOrNumbers &&
+                        key.type != K::Integer && key.type != K::Counts &&
+                        key.type != K::Facets && key.type != K::Flag &&
+                        key.type != K::IntegerMap && key.type != K::Supports &&
+                        key.type != K::Loads && key.type != K::Zones &&
+                        key.type != K::Constraints && key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -124,6 +130,21 @@ Json object_schema(const TableSpec& table) {
   return schema;
 }
 
+Json counts_schema() {
+  const Json count = {{"type", {"integer", "string"}}};
+  const Json several = {
+      {"type", "array"}, {"items", count}, {"minItems", 1}, {"maxItems", 3}};
+  return {{"anyOf", {count, several}}};
+}
+
+/// { `key` = item, repeat = n } in a list.
+Json repeated(const char* key, const Json& item) {
+  return {{"type", "object"},
+          {"properties", {{key, item}, {"repeat", counts_schema()}}},
+          {"required", {key, "repeat"}},
+          {"additionalProperties", false}};
+}
+
 Json type_schema(const KeySpec& key) {
   Json quantity = {{"type", {"number", "string"}}};
   Json text = {{"type", "string"}};
@@ -144,13 +165,15 @@ Json type_schema(const KeySpec& key) {
     case K::Choice:
       return {{"enum", split_choices(key.choices)}};
     case K::Names:
-      return array(text, 1, 0);
+      return array({{"anyOf", {text, repeated("name", text)}}}, 1, 0);
+    case K::NamesOrNumbers: {
+      const Json one = {{"type", {"string", "integer"}}};
+      return {{"anyOf", {one, array(one, 1, 0)}}};
+    }
     case K::Integer:
       return {{"type", "integer"}};
-    case K::Counts: {
-      const Json count = {{"type", "integer"}, {"minimum", 1}};
-      return {{"anyOf", {count, array(count, 1, 3)}}};
-    }
+    case K::Counts:
+      return counts_schema();
     case K::Flag:
       return {{"type", "boolean"}};
     case K::Quantity:
@@ -163,15 +186,19 @@ Json type_schema(const KeySpec& key) {
       return array(quantity, 3, 3);
     case K::Axes:
       return array(array(quantity, 3, 3), 2, 2);
-    case K::Vectors:
-      return array(array(quantity, 3, 3), 3, 0);
+    case K::Vectors: {
+      const Json point = array(quantity, 3, 3);
+      return array({{"anyOf", {point, repeated("at", point)}}}, 1, 0);
+    }
+    case K::Facets:
+      return array(array({{"type", "integer"}, {"minimum", 0}}, 3, 0), 1, 0);
     case K::Path: {
       const Json point = array(quantity, 3, 3);
       const Json arc = {{"type", "object"},
                         {"properties", {{"through", point}}},
                         {"required", {"through"}},
                         {"additionalProperties", false}};
-      return array({{"anyOf", {point, arc}}}, 3, 0);
+      return array({{"anyOf", {point, arc, repeated("at", point)}}}, 1, 0);
     }
     case K::Bounds:
       return array(quantity, 2, 2);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "evolve/shared_sides.h"
+#include "pipeline/case_checks.h"
 
 namespace meniscus {
 
@@ -32,14 +33,10 @@ std::map<SideName, SideName> first_of(const std::vector<SharedSide>& shared) {
 
 std::vector<std::string> curves_of_surface(const FilmSystem& system,
                                            const std::string& name) {
-  std::vector<std::string> curves;
   for (const CapSpec& cap : system.caps) {
     if (cap.name == name) {
-      curves.push_back(cap.curve);
+      return cap.curves();
     }
-  }
-  if (!curves.empty()) {
-    return curves;
   }
   for (const FilmSpec& film : system.films) {
     if (film.name == name) {
@@ -78,12 +75,14 @@ std::map<SideName, std::vector<std::string>> surfaces_at_sides(
 bool may_join_by_sides(const Case& input, const std::string& curve) {
   std::set<std::string> polygons;  // across which there are caps
   for (const CapEntry& cap : input.caps) {
-    if (std::any_of(input.curves.begin(), input.curves.end(),
-                    [&](const CurveEntry& entry) {
-                      return entry.name == cap.spec.curve &&
-                             entry.kind == CurveKind::Polygon;
-                    })) {
-      polygons.insert(cap.spec.curve);
+    for (const std::string& name : cap.spec.curves()) {
+      if (std::any_of(input.curves.begin(), input.curves.end(),
+                      [&](const CurveEntry& entry) {
+                        return entry.name == name &&
+                               entry.kind == CurveKind::Polygon;
+                      })) {
+        polygons.insert(name);
+      }
     }
   }
   return polygons.count(curve) != 0 && polygons.size() > 2;
@@ -94,6 +93,9 @@ void check_sides(const Case& input, const FilmSystem& system,
   const std::map<SideName, SideName> first =
       first_of(shared_sides(system.curves));
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    if (has_facets(input, input.bodies[b])) {
+      continue;  // facets may join elsewhere than on curves: check_start()
+    }
     for (const auto& [side, surfaces] :
          surfaces_at_sides(system, system.bodies[b], first)) {
       if (surfaces.size() == 2) {

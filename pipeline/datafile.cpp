@@ -17,6 +17,7 @@
 #include "evolve/slide_vertices.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
+#include "pipeline/evolved_film.h"
 #include "pipeline/results.h"
 
 namespace meniscus {
@@ -204,15 +205,27 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
   return result;
 }
 
+std::vector<std::string> solids_of(const FilmComplex& complex) {
+  std::vector<std::string> solids;
+  for (const ComplexSurface& surface : complex.surfaces) {
+    if (!surface.liquid) {
+      solids.push_back(surface.name);
+    }
+  }
+  return solids;
+}
+
 std::string write_datafile_result(const DatafileResult& result,
+                                  const std::string& title,
                                   const std::filesystem::path& folder) {
   write_vtp(folder / "film.vtp", result.complex.mesh);
-  nlohmann::ordered_json json = film_json(result.report);
-  for (const auto& [name, value] : result.quantities) {
-    json["quantities"][name] = value;
-  }
-  json["seconds"] = result.report.seconds;
-  write_file(folder / "film.json", json.dump(2) + "\n");
+  EvolvedFilm film{.title = title,
+                   .report = result.report,
+                   .failure = result.failure,
+                   .solids = solids_of(result.complex),
+                   .curves = pieces_of_curves(result.complex),
+                   .quantities = result.quantities};
+  write_evolved_film(film, {}, folder);
   try {
     write_file(folder / "film.fe", fe_text(result.complex));
   } catch (const InvalidInput& error) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "evolve/descent.h"
 #include "evolve/fe_complex.h"
@@ -43,9 +44,14 @@ struct DatafileResult {
 DatafileResult evolve_datafile(const std::filesystem::path& path,
                                const DatafileOptions& options);
 
-/// film.vtp, film.fe and film.json in `folder`. Throws IoError. Returns a
-/// warning when the film cannot be said in a datafile, else nothing.
+/// Names of the surfaces that are no films.
+std::vector<std::string> solids_of(const FilmComplex& complex);
+
+/// film.vtp, film.fe and film.json in `folder`; `title`: one line for people.
+/// Throws IoError. Returns a warning when the film cannot be said in a
+/// datafile, else nothing.
 std::string write_datafile_result(const DatafileResult& result,
+                                  const std::string& title,
                                   const std::filesystem::path& folder);
 
 /// The result for people; a datafile has no units.

@@ -30,7 +30,18 @@ class DesignStages {
   bool solve(StagedDesign& staged, KeepStiffness keep) const;
   bool respond(StagedDesign& staged) const;
 
+  /// The first two of them for those who want the mesh alone, the same bits as
+  /// with a model: nothing is solved, but with analysis.adapt, where errors
+  /// choose the mesh. What failed is in `staged.evaluation`. Throws what
+  /// ForwardModel throws.
+  static bool mesh_of(const Case& input, const VectorX& design,
+                      Monitor* monitor, StagedDesign& staged);
+
  private:
+  static bool settle_on(const ForwardModel::Impl& model, const VectorX& design,
+                        StagedDesign& staged);
+  static bool place_on(const ForwardModel::Impl& model, StagedDesign& staged);
+
   const ForwardModel& model_;
 };
 

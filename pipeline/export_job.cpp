@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/design_stages.h"
 #include "pipeline/film_options.h"
 #include "pipeline/refreeze.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/study_store.h"
+#include "pipeline/walls.h"
 
 namespace meniscus {
 
@@ -62,7 +64,30 @@ const SettledFilm& ExportJob::film() {
 
 SurfaceMesh ExportJob::bodies_surface() {
   const SettledFilm& settled = film();
-  return settled.model.solids(settled.state.points);
+  return numbers_.walls.empty()
+             ? settled.model.solids(settled.state.points)
+             : boundary_of(numbers_, settled.model, settled.state.points);
+}
+
+namespace {
+
+MeshError no_part(const Case& input, const std::optional<Failure>& failure) {
+  return MeshError(fmt::format("no part at edge {:g}: {}", input.resolution.fea,
+                               failure->message));
+}
+
+}  // namespace
+
+const EvaluationFields& ExportJob::meshed() {
+  if (fields_ || meshed_) {
+    return fields_ ? *fields_ : *meshed_;
+  }
+  StagedDesign staged;
+  if (!DesignStages::mesh_of(input_, design_, options_.monitor, staged)) {
+    throw no_part(input_, staged.evaluation.failure);
+  }
+  meshed_ = std::move(staged.fields);
+  return *meshed_;
 }
 
 const EvaluationFields& ExportJob::fields() {
@@ -74,9 +99,7 @@ const EvaluationFields& ExportJob::fields() {
   const Evaluation evaluation =
       model.failure() ? model.frozen() : model.evaluate(design_, &*fields_);
   if (evaluation.failure) {
-    throw MeshError(fmt::format("no part at edge {:g}: {}",
-                                input_.resolution.fea,
-                                evaluation.failure->message));
+    throw no_part(input_, evaluation.failure);
   }
   fields_->stresses =
       part_stresses(fields_->mesh, fields_->inputs, fields_->solution);

@@ -1,5 +1,5 @@
 /// What the writers of a run's part share: its case and answer and, made when
-/// first asked for, its film and its mesh.
+/// first asked for, its film, its mesh and its solution.
 #pragma once
 
 #include <filesystem>
@@ -47,6 +47,10 @@ class ExportJob {
   /// film's own resolution.
   SurfaceMesh bodies_surface();
 
+  /// The mesh and the case's numbers there: nothing is solved for it. Throws
+  /// MeshError where the design has no mesh, what ForwardModel throws.
+  const EvaluationFields& meshed();
+
   /// Mesh, solution and stresses. Throws MeshError where the design cannot be
   /// evaluated, what ForwardModel throws.
   const EvaluationFields& fields();
@@ -63,6 +67,7 @@ class ExportJob {
   VectorX design_;
   EvaluatedCase numbers_;
   std::optional<SettledFilm> film_;
+  std::optional<EvaluationFields> meshed_;
   std::optional<EvaluationFields> fields_;
 };
 

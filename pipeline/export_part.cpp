@@ -4,17 +4,21 @@
 
 #include <fmt/format.h>
 
+#include "cad/film_solid.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/gmsh_msh.h"
 #include "io/nastran_bdf.h"
 #include "io/obj.h"
+#include "io/step_writer.h"
 #include "io/stl.h"
 #include "io/three_mf.h"
 #include "pipeline/calculix_export.h"
 #include "pipeline/export_job.h"
 #include "pipeline/export_step.h"
+#include "pipeline/ledger.h"
 #include "pipeline/results.h"
+#include "pipeline/walls.h"
 
 namespace meniscus {
 
@@ -24,7 +28,7 @@ namespace fs = std::filesystem;
 
 void stl(ExportJob& job, const fs::path& file) {
   const SettledFilm& film = job.film();
-  write_stl(file, film.model.boundary(film.state.points),
+  write_stl(file, boundary_of(job.numbers(), film.model, film.state.points),
             {.name = job.input().title,
              .unit = job.input().units.length,
              .program = job.notes().program});
@@ -52,7 +56,24 @@ void fe(ExportJob& job, const fs::path& file) {
                                        comments));
 }
 
+void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
+  if (!faceted) {
+    throw InvalidInput(
+        "step: walls have no B-spline faces in this version; take "
+        "--format step-faceted, or stl, 3mf, obj");
+  }
+  const SettledFilm& film = job.film();
+  write_step(
+      file,
+      faceted_solid(boundary_of(job.numbers(), film.model, film.state.points)),
+      {.name = job.input().title, .unit = job.input().units.length});
+}
+
 void step(ExportJob& job, const fs::path& file, bool faceted) {
+  if (!job.numbers().walls.empty()) {
+    wall_step(job, file, faceted);
+    return;
+  }
   export_step(file, job.numbers().film_system,
               {.title = job.input().title,
                .unit = job.input().units.length,
@@ -70,7 +91,7 @@ void faceted_step(ExportJob& job, const fs::path& file) {
 }
 
 CalculixDeck deck(ExportJob& job) {
-  const EvaluationFields& fields = job.fields();
+  const EvaluationFields& fields = job.meshed();
   CalculixDeck deck = calculix_deck_of(job.input(), fields.inputs, fields.mesh);
   const FileNotes notes = job.notes();
   deck.comments.insert(deck.comments.begin(), notes.program);
@@ -80,11 +101,11 @@ CalculixDeck deck(ExportJob& job) {
 }
 
 void inp(ExportJob& job, const fs::path& file) {
-  write_calculix_inp(file, job.fields().mesh, deck(job));
+  write_calculix_inp(file, job.meshed().mesh, deck(job));
 }
 
 void bdf(ExportJob& job, const fs::path& file) {
-  write_nastran_bdf(file, job.fields().mesh, deck(job));
+  write_nastran_bdf(file, job.meshed().mesh, deck(job));
 }
 
 void msh(ExportJob& job, const fs::path& file) {
@@ -166,6 +187,7 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
           ? folder / fmt::format("part_{:g}.{}", edge, format.extension)
           : options.out;
   format.write(job, file);
+  note_file(folder, file, fmt::format("part_{:g}.{}", edge, format.name));
   return file;
 }
 

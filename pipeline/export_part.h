@@ -37,9 +37,9 @@ struct ExportOptions {
 
 /// Settles and, where the format is of elements, meshes the answer of the study
 /// in `folder` again, which is the same bits when no edge is given, and writes
-/// it. Returns the file. Throws IoError (no study there, file), InvalidInput
-/// (unknown format, no finished evaluation), MeshError (no film or mesh at that
-/// edge).
+/// it; its bytes go into the ledger of the run's result.json. Returns the file.
+/// Throws IoError (no study there, file), InvalidInput (unknown format, no
+/// finished evaluation), MeshError (no film or mesh at that edge).
 std::filesystem::path export_part(const std::filesystem::path& folder,
                                   const ExportOptions& options);
 

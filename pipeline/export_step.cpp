@@ -145,9 +145,18 @@ void tell(const StepExport& options, const FilmSolidReport& film,
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   const std::string& unit = options.unit;
   monitor.log(Severity::Info,
-              fmt::format("{} B-spline faces, {} planes; valid closed solid of "
-                          "{:.6g} {}3",
-                          film.patches, film.planes, step.volume, unit));
+              fmt::format("{} B-spline faces, {} planes, {} cylinders, {} "
+                          "spheres; valid closed solid of {:.6g} {}3",
+                          film.patches, film.planes, film.cylinders,
+                          film.spheres, step.volume, unit));
+  for (const SimpleFace& face : film.simple) {
+    monitor.log(Severity::Info,
+                fmt::format("{} is a {}{}; the film leaves it by {:.2g} {} at "
+                            "most ({:.2g} of its edge)",
+                            face.film, face.shape,
+                            face.shape == "plane" ? "" : " " + unit, face.off,
+                            unit, face.off / options.edge));
+  }
   monitor.log(
       Severity::Info,
       fmt::format(

@@ -134,7 +134,8 @@ std::string family_csv(const std::vector<FamilyRow>& rows) {
   return csv_text(table);
 }
 
-std::string family_table_text(const std::string& csv) {
+std::string family_table_text(const std::string& csv,
+                              const std::map<std::string, std::string>& units) {
   std::vector<TextRow> table;
   std::string messages;
   for (const CsvRow& row : parse_csv(csv).rows) {
@@ -147,6 +148,9 @@ std::string family_table_text(const std::string& csv) {
       }
       std::transform(cells.begin() + 1, cells.end(), cells.begin() + 1,
                      shortened);
+    }
+    if (table.empty()) {
+      add_units(units, cells);
     }
     table.push_back(std::move(cells));
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,8 +49,11 @@ FamilyRow family_row(const Case& member, const nlohmann::ordered_json& result);
 std::string family_csv(const std::vector<FamilyRow>& rows);
 
 /// The text of family_csv() as columns with six digits; messages of members
-/// that were not sized below.
-std::string family_table_text(const std::string& csv);
+/// that were not sized below. `units`, by name of a response, go into the head
+/// line.
+std::string family_table_text(
+    const std::string& csv,
+    const std::map<std::string, std::string>& units = {});
 
 /// The family's result.json (docs/results.md).
 nlohmann::ordered_json family_json(const Case& family,

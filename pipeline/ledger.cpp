@@ -10,8 +10,8 @@
 #include "core/error.h"
 #include "evolve/grooming.h"
 #include "evolve/start_edge.h"
+#include "io/atomic_file.h"
 #include "pipeline/calculix_export.h"
-#include "pipeline/export_part.h"
 #include "pipeline/results.h"
 
 namespace meniscus {
@@ -116,10 +116,12 @@ SurfaceMesh start_surface(const EvaluationFields& fields) {
       .mesh;
 }
 
-/// The files of a run that hold the part, and the deck as it would be exported.
+/// The files of a run that hold the part, and the deck as it would be exported
+/// where it was not.
 std::vector<FileBytes> files_of(const Case& input,
                                 const EvaluationFields& fields,
-                                const fs::path& folder) {
+                                const fs::path& folder,
+                                const std::vector<fs::path>& exported) {
   std::vector<std::string> names = {"film.vtp", "part.vtu", "part_surface.vtp"};
   if (input.resolution.export_edges.empty()) {
     names.push_back(stl_name(input.resolution.film));
@@ -127,13 +129,10 @@ std::vector<FileBytes> files_of(const Case& input,
   for (const double edge : input.resolution.export_edges) {
     names.push_back(stl_name(edge));
   }
-  for (const ExportFormat& format : export_formats()) {
-    const std::string name = fmt::format(
-        "part_{:g}.{}",
-        format.of_film ? input.resolution.film : input.resolution.fea,
-        format.extension);
+  for (const fs::path& file : exported) {
+    const std::string name = file.filename().string();
     if (std::find(names.begin(), names.end(), name) == names.end()) {
-      names.push_back(name);  // where it was exported too
+      names.push_back(name);
     }
   }
   std::vector<FileBytes> files;
@@ -182,12 +181,13 @@ std::string size_text(double bytes) {
 }  // namespace
 
 Ledger make_ledger(const Case& input, const RunResult& result,
-                   const EvaluationFields& fields, const fs::path& folder) {
+                   const EvaluationFields& fields, const fs::path& folder,
+                   const std::vector<fs::path>& exported) {
   const Evaluation& best = *result.best;
   const Evaluation& frozen = result.frozen;
   Ledger ledger;
   ledger.input_bytes = static_cast<double>(input.text.size());
-  ledger.files = files_of(input, fields, folder);
+  ledger.files = files_of(input, fields, folder, exported);
   const LedgerAmount curves = {
       .elements = static_cast<double>(input.curves.size()),
       .area = {},
@@ -238,6 +238,39 @@ nlohmann::ordered_json ledger_json(const Ledger& ledger) {
   return {{"stages", stages},
           {"input_bytes", ledger.input_bytes},
           {"files", files}};
+}
+
+void note_file(const fs::path& folder, const fs::path& file,
+               const std::string& name) {
+  const fs::path result = folder / "result.json";
+  std::error_code code;
+  const auto bytes = static_cast<double>(fs::file_size(file, code));
+  if (code || !fs::exists(result, code)) {
+    return;
+  }
+  const bool inside = fs::equivalent(
+      file.parent_path().empty() ? fs::path(".") : file.parent_path(), folder,
+      code);
+  const Json entry = {{"name", inside ? file.filename().string() : name},
+                      {"bytes", bytes},
+                      {"written", inside}};
+  try {
+    Json json = Json::parse(read_file(result));
+    Json& files = json.at("ledger").at("files");
+    const auto same = std::find_if(
+        files.begin(), files.end(),
+        [&](auto& other) { return other.at("name") == entry["name"]; });
+    if (same != files.end()) {
+      *same = entry;
+    } else {
+      files.push_back(entry);
+    }
+    write_file(result, json.dump(2) + "\n");
+  } catch (const Json::exception&) {
+    return;  // of another version
+  } catch (const IoError&) {
+    return;  // of somebody else's
+  }
 }
 
 std::string ledger_text(const Ledger& ledger, const std::string& length_unit) {

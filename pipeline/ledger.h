@@ -31,7 +31,8 @@ struct LedgerStage {
 struct FileBytes {
   std::string name;
   double bytes = 0.0;
-  bool written = true;  // by the run; else as `meniscus export` would
+  bool written = true;  // in the run's folder; else as `meniscus export` would,
+                        // or did elsewhere
 };
 
 /// One evaluation of the best design, and what was done once before it.
@@ -43,11 +44,20 @@ struct Ledger {
 
 struct RunResult;
 
-/// Of a run whose best design was evaluated, after its files are in `folder`;
-/// `fields`: of that design. Operations: docs/theory.md, Counting work.
+/// Of a run whose best design was evaluated, after its files are in `folder`,
+/// those that export_part() wrote for it among them; `fields`: of that design.
+/// Operations: docs/theory.md, Counting work.
 Ledger make_ledger(const Case& input, const RunResult& result,
                    const EvaluationFields& fields,
-                   const std::filesystem::path& folder);
+                   const std::filesystem::path& folder,
+                   const std::vector<std::filesystem::path>& exported = {});
+
+/// Puts an exported file into the ledger of FOLDER/result.json, in the place of
+/// what stood there under its name: the file's own where it lies in the folder,
+/// else `name`. Nothing happens where there is no result with a ledger or it
+/// cannot be written: an export does not need one.
+void note_file(const std::filesystem::path& folder,
+               const std::filesystem::path& file, const std::string& name);
 
 /// The part `ledger` of result.json (docs/results.md).
 nlohmann::ordered_json ledger_json(const Ledger& ledger);

@@ -2,7 +2,6 @@
 
 #include "evolve/curvature_flow.h"
 #include "evolve/grooming.h"
-#include "evolve/start_edge.h"
 #include "pipeline/film_frames.h"
 
 namespace meniscus {
@@ -18,8 +17,7 @@ constexpr double kSmoothing = 0.5;  // edges in the first step
 std::vector<FilmFrame> settling_frames(const EvaluatedCase& numbers,
                                        const FilmModel& model, Monitor& monitor,
                                        int most) {
-  FilmComplex complex = build_start(
-      numbers.film_system, start_edge(numbers.film_system, numbers.fea_edge));
+  FilmComplex complex = build_start(numbers.film_system, model.start_edge());
   std::vector<FilmFrame> all;
   const auto keep = [&](const char* kept, SurfaceMesh surface) {
     all.push_back({.evaluation = static_cast<int>(all.size()),
@@ -36,10 +34,11 @@ std::vector<FilmFrame> settling_frames(const EvaluatedCase& numbers,
     return false;
   };
   // Long facets between the curves have nothing to flow with.
-  remesh_films(complex,
-               {.edge = start_edge(numbers.film_system, numbers.fea_edge)});
+  remesh_films(complex, {.edge = model.start_edge()});
   flow_to_rest(complex, flow);
-  complex = refine(complex).complex;
+  if (model.start_edge() > numbers.fea_edge) {
+    complex = refine(complex).complex;
+  }
   remesh_films(complex, {.edge = numbers.fea_edge});
   flow_to_rest(complex, flow);
   if (!model.reference().failure) {

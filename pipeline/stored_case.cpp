@@ -6,6 +6,7 @@
 
 #include "io/atomic_file.h"
 #include "pipeline/case_reader.h"
+#include "pipeline/export_part.h"
 #include "pipeline/incumbent.h"
 #include "pipeline/refreeze.h"
 
@@ -40,6 +41,22 @@ Case restore_case(const StudyMeta& meta) {
                   reading.problems.front());
   }
   return *std::move(reading.input);
+}
+
+std::map<std::string, std::string> stored_units(
+    const std::filesystem::path& folder) {
+  std::map<std::string, std::string> units;
+  try {
+    const Case input =
+        restore_case(StudyStore::read(runs_in(folder).front().string()).meta());
+    for (std::size_t k = 0; k < input.responses.size(); ++k) {
+      units[input.responses[k].name] =
+          response_unit(input, static_cast<int>(k));
+    }
+  } catch (const Error&) {
+    units.clear();  // of another version, or not begun: tables go without
+  }
+  return units;
 }
 
 const EvaluationRecord& best_record(

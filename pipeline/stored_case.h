@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,11 @@ std::string stored_case(const Case& input);
 
 /// The case back. Throws IoError when the study holds none that can be read.
 Case restore_case(const StudyMeta& meta);
+
+/// Units of the responses, by name, of the run in `folder` or of a family's
+/// first member there; none where that has no case that can be read.
+std::map<std::string, std::string> stored_units(
+    const std::filesystem::path& folder);
 
 /// The incumbent of a study: the evaluated design with the least mismatch; of a
 /// minimum the one that violates its bounds least, then with the least

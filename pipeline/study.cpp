@@ -239,6 +239,9 @@ bool StudyRun::finish_best() {
   for (std::string& warning : part_warnings(input_, fields_, result_.stress)) {
     result_.warnings.push_back(std::move(warning));
   }
+  for (std::string& warning : wall_warnings(stage_->evaluator().model())) {
+    result_.warnings.push_back(std::move(warning));
+  }
   return true;
 }
 
@@ -376,6 +379,9 @@ RunResult StudyRun::run() {
   if (begin()) {
     conduct_study();
     if (finish_best()) {
+      if (options_.answered) {
+        options_.answered(fields_);
+      }
       in_time_left("buckling and frequencies", [&] { solve_eigenproblems(); });
       if (options_.estimate_errors) {
         in_time_left("estimates of the errors", [&] { estimate_errors(); });

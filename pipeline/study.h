@@ -1,6 +1,7 @@
 /// Runs a case's study from the frozen model to the answer with its error.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -92,6 +93,10 @@ struct StudyOptions {
   std::optional<VectorX> start = {};
   StudyListener listener = {};  // hears of every evaluation that is computed;
                                 // then the monitor is not told of it
+  /// Called once with the answer's meshes, solution and stresses, before its
+  /// errors, buckling and the films of the history are computed: time for what
+  /// can be made of them meanwhile. Must not keep the reference.
+  std::function<void(const EvaluationFields&)> answered = {};
   Monitor* monitor = nullptr;
 };
 

@@ -10,9 +10,9 @@
 namespace meniscus {
 namespace {
 
-using Row = std::vector<std::string>;
+using Cells = std::vector<std::string>;
 
-void add_new(const std::vector<std::string>& names, Row& columns) {
+void add_new(const std::vector<std::string>& names, Cells& columns) {
   for (const std::string& name : names) {
     if (std::find(columns.begin(), columns.end(), name) == columns.end()) {
       columns.push_back(name);
@@ -29,10 +29,10 @@ std::optional<double> value_of(const std::string& name,
 
 // Head line and one line per record; `number` writes a double.
 template <typename Number>
-std::vector<Row> table(const std::vector<EvaluationRecord>& records,
-                       const Number& number) {
-  Row inputs;
-  Row responses;
+std::vector<Cells> table(const std::vector<EvaluationRecord>& records,
+                         const Number& number) {
+  Cells inputs;
+  Cells responses;
   for (const EvaluationRecord& record : records) {
     add_new(record.input_names, inputs);
     add_new(record.response_names, responses);
@@ -40,15 +40,15 @@ std::vector<Row> table(const std::vector<EvaluationRecord>& records,
   const auto cell = [&number](const std::optional<double>& value) {
     return value ? number(*value) : std::string();
   };
-  Row head = {"evaluation"};
+  Cells head = {"evaluation"};
   head.insert(head.end(), inputs.begin(), inputs.end());
   head.insert(head.end(), responses.begin(), responses.end());
   for (const char* name : {"mismatch", "status", "seconds", "phase"}) {
     head.emplace_back(name);
   }
-  std::vector<Row> rows = {head};
+  std::vector<Cells> rows = {head};
   for (const EvaluationRecord& record : records) {
-    Row row = {std::to_string(record.number)};
+    Cells row = {std::to_string(record.number)};
     for (const std::string& name : inputs) {
       row.push_back(cell(value_of(name, record.input_names, record.inputs)));
     }
@@ -71,7 +71,7 @@ std::vector<Row> table(const std::vector<EvaluationRecord>& records,
 }  // namespace
 
 std::string history_csv(const std::vector<EvaluationRecord>& records) {
-  std::vector<Row> rows =
+  std::vector<Cells> rows =
       table(records, [](double value) { return fmt::format("{}", value); });
   rows[0].emplace_back("message");
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -83,14 +83,9 @@ std::string history_csv(const std::vector<EvaluationRecord>& records) {
 
 std::string study_table_text(const std::vector<EvaluationRecord>& records,
                              const std::map<std::string, std::string>& units) {
-  std::vector<Row> rows =
+  std::vector<Cells> rows =
       table(records, [](double value) { return fmt::format("{:.6g}", value); });
-  for (std::string& name : rows.front()) {
-    const auto unit = units.find(name);
-    if (unit != units.end() && !unit->second.empty()) {
-      name += fmt::format(" [{}]", unit->second);
-    }
-  }
+  add_units(units, rows.front());
   std::string text = aligned_text(rows);
   for (const EvaluationRecord& record : records) {
     if (record.failure) {

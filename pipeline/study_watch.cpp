@@ -98,7 +98,7 @@ void StudyWatch::look_at_study(StudyGlance& glance) {
 void StudyWatch::look_at_family(StudyGlance& glance) {
   const std::string csv = read_file(folder_ / "family.csv");
   glance.family = true;
-  glance.text = family_table_text(csv);
+  glance.text = family_table_text(csv, stored_units(folder_));
   std::vector<std::string> rows;
   std::vector<std::string> names;
   for (const CsvRow& row : parse_csv(csv).rows) {

@@ -135,6 +135,16 @@ std::string aligned_text(const std::vector<TextRow>& rows) {
   return text;
 }
 
+void add_units(const std::map<std::string, std::string>& units,
+               TextRow& names) {
+  for (std::string& name : names) {
+    const auto unit = units.find(name);
+    if (unit != units.end() && !unit->second.empty()) {
+      name += " [" + unit->second + "]";
+    }
+  }
+}
+
 CsvRows parse_csv(const std::string& text) { return Cutter(text).cut(); }
 
 }  // namespace meniscus

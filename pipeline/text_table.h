@@ -1,6 +1,7 @@
 /// Tables as text: csv files, and columns for people.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ std::string csv_text(const std::vector<TextRow>& rows);
 /// Columns flush right, two spaces between, as wide as the widest cell in
 /// characters of UTF-8. Rows may be shorter than the first, not longer.
 std::string aligned_text(const std::vector<TextRow>& rows);
+
+/// "mass" becomes "mass [t]": `units` by the names that stand in the row.
+void add_units(const std::map<std::string, std::string>& units, TextRow& names);
 
 struct CsvRow {
   int line = 0;  // where it begins, from 1

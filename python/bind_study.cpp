@@ -152,18 +152,22 @@ void bind_study(py::module_& module) {
   module.def(
       "_run_study",
       [](const ReadCase& input, const std::string& folder, bool resume,
-         int jobs, double time_limit, bool estimate_errors,
-         const py::object& progress) {
+         int jobs, double time_limit, bool estimate_errors, bool pictures,
+         bool frames, bool report, const py::object& progress) {
         run_study_in(input,
                      {.folder = folder,
                       .resume = resume,
                       .jobs = jobs,
                       .time_limit = time_limit,
-                      .estimate_errors = estimate_errors},
+                      .estimate_errors = estimate_errors,
+                      .pictures = pictures,
+                      .frames = frames,
+                      .report = report},
                      progress);
       },
       py::arg("case"), py::arg("folder"), py::arg("resume"), py::arg("jobs"),
-      py::arg("time_limit"), py::arg("estimate_errors"), py::arg("progress"),
+      py::arg("time_limit"), py::arg("estimate_errors"), py::arg("pictures"),
+      py::arg("frames"), py::arg("report"), py::arg("progress"),
       "Runs the case's study into a folder.");
 }
 

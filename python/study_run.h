@@ -1,5 +1,4 @@
-/// A whole study into a folder, as the program's run leaves it, but for
-/// pictures.
+/// A whole study into a folder, as the program's run leaves it.
 #pragma once
 
 #include <string>
@@ -16,6 +15,9 @@ struct StudyRunOptions {
   int jobs = 1;
   double time_limit = 0.0;  // [s], 0: none
   bool estimate_errors = true;
+  bool pictures = true;               // where the helper program is found
+  bool frames = true;                 // films of the design's history
+  bool report = true;                 // report.html
   int threads = 1;                    // of all jobs together
   std::vector<std::string> warnings;  // of the case, for result.json
 };

@@ -188,33 +188,71 @@ std::vector<PageFrame> page_frames(const fs::path& folder) {
   return frames;
 }
 
+namespace {
+
+/// `count` of `all`, evenly, with the first and the last.
+std::vector<std::size_t> evenly(std::size_t count, std::size_t all) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t k = 0; k < count; ++k) {
+    chosen.push_back(count > 1 ? k * (all - 1) / (count - 1) : all - 1);
+  }
+  return chosen;
+}
+
+/// Of frames after each other as text, each with triangles of its own where
+/// the one before has others.
+double bytes_of(const std::vector<VtkInput>& frames,
+                const std::vector<std::size_t>& chosen) {
+  constexpr double kPerNode = 8.0;    // 3 x 2 bytes in base64
+  constexpr double kPerCorner = 5.4;  // 4 bytes
+  double bytes = 0.0;
+  const VtkInput* before = nullptr;
+  for (const std::size_t at : chosen) {
+    const VtkInput& frame = frames[at];
+    bytes += kPerNode * static_cast<double>(frame.points.size());
+    if (before == nullptr || before->cells != frame.cells) {
+      bytes += kPerCorner * static_cast<double>(frame.cells.size());
+    }
+    before = &frame;
+  }
+  return bytes;
+}
+
+}  // namespace
+
 Json frames_json(const fs::path& folder, const std::vector<PageFrame>& frames,
                  double bytes) {
   Json json;
   if (frames.empty()) {
     return json;
   }
-  const fs::path first_path = folder / frames.front().file;
-  const VtkInput first = read_vtk(first_path);
-  std::vector<std::string> names;
-  const std::vector<int> labels = labels_of(first, first_path, names);
-  json["surface"] = surface_json(first, labels, names);
-  constexpr double kBytesPerNode = 8.0;  // 3 x 2 in base64
-  const double each = kBytesPerNode * static_cast<double>(first.points.size());
-  const auto most = static_cast<std::size_t>(std::max(2.0, bytes / each));
-  const std::size_t count = std::min(most, frames.size());
+  std::vector<VtkInput> surfaces;
+  surfaces.reserve(frames.size());
+  for (const PageFrame& frame : frames) {
+    surfaces.push_back(read_vtk(folder / frame.file));
+  }
+  std::vector<std::size_t> chosen = evenly(frames.size(), frames.size());
+  while (chosen.size() > 2 && bytes_of(surfaces, chosen) > bytes) {
+    chosen = evenly(chosen.size() - 1, frames.size());
+  }
   json["stored"] = frames.size();
   json["frames"] = Json::array();
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t at =
-        count > 1 ? k * (frames.size() - 1) / (count - 1) : frames.size() - 1;
-    const VtkInput surface = read_vtk(folder / frames[at].file);
-    if (surface.cells == first.cells &&
-        surface.points.size() == first.points.size()) {
-      json["frames"].push_back(
-          {{"evaluation", frames[at].evaluation},
-           {"nodes", pack_reals(coordinates(surface.points), 3)}});
+  const VtkInput* before = nullptr;
+  for (const std::size_t at : chosen) {
+    const VtkInput& surface = surfaces[at];
+    Json frame = {{"evaluation", frames[at].evaluation},
+                  {"place", at},
+                  {"nodes", pack_reals(coordinates(surface.points), 3)}};
+    if (before == nullptr || before->cells != surface.cells ||
+        before->points.size() != surface.points.size()) {
+      std::vector<std::string> names;
+      const std::vector<int> labels =
+          labels_of(surface, folder / frames[at].file, names);
+      frame["surface"] = surface_json(surface, labels, names);
+      frame["surface"].erase("nodes");
     }
+    before = &surface;
+    json["frames"].push_back(std::move(frame));
   }
   return json;
 }

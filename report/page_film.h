@@ -37,9 +37,9 @@ struct PageFrame {
 /// InvalidInput for one that names files outside of the folder.
 std::vector<PageFrame> page_frames(const std::filesystem::path& folder);
 
-/// Nodes of each frame, for the triangles of the first; at most about `bytes`
-/// of text, evenly chosen with first and last among them. Frames of another
-/// topology are left out.
+/// Nodes of each frame with its `place` in the list, and a `surface`
+/// (triangles, labels, names) where it has not that of the frame before; at
+/// most about `bytes` of text, evenly chosen with first and last among them.
 nlohmann::ordered_json frames_json(const std::filesystem::path& folder,
                                    const std::vector<PageFrame>& frames,
                                    double bytes);

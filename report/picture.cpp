@@ -1,6 +1,7 @@
 #include "report/picture.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
@@ -22,6 +23,10 @@ namespace {
 constexpr const char* kHelper = "meniscus-render";
 constexpr const char* kHelperVariable = "MENISCUS_RENDER";
 constexpr double kDisplayStart = 15.0;  // [s], a busy machine included
+// Beside the caller's work: a third of its share of a processor that both
+// want, and time enough for that.
+constexpr int kNiceness = 5;
+constexpr double kTimeBeside = 600.0;  // [s]
 
 /// A display for the helper: a virtual one of our own, else the user's.
 struct Display {
@@ -30,16 +35,17 @@ struct Display {
   std::string problem;  // then why
 };
 
-Display open_display() {
+Display open_display(int niceness) {
   Display display;
   const char* own = std::getenv("DISPLAY");
   if (!find_program("Xvfb")) {
     display.problem = "Xvfb is not installed (Debian package xvfb)";
   } else {
     ChildOptions options;
+    options.niceness = niceness;
     // The server picks a free number and prints it when it is ready.
-    options.argv = {"Xvfb",         "-displayfd", "1",   "-screen", "0",
-                    "1280x1024x24", "-nolisten",  "tcp", "-noreset"};
+    options.argv = {"Xvfb",     "-displayfd", "1",   "-screen", "0",
+                    "64x64x24", "-nolisten",  "tcp", "-noreset"};
     try {
       display.server = std::make_unique<BackgroundChild>(options);
       const auto line = display.server->read_line(kDisplayStart);
@@ -105,18 +111,24 @@ std::string last_lines(const std::string& text) {
 std::string render_with(const std::string& helper, const Display& display,
                         const std::vector<PictureJob>& jobs,
                         const PictureOptions& options) {
-  const std::string input = to_json(jobs);
+  const std::string input = to_bytes(jobs);
   const ShaderFolder shaders;
   ChildOptions child;
   child.argv = {helper};
   child.input = input;
   child.time_limit = options.time_limit;
   child.error_tail = 1000;
+  child.niceness = options.niceness;
   child.monitor = options.monitor;
   child.environment = {{"DISPLAY", display.name},
                        // No home folder is needed, nothing is left in it; but
                        // what one picture compiled serves the next.
-                       shaders.variable()};
+                       shaders.variable(),
+                       // Pictures' memory is used again, not given back: a
+                       // tenth of the helper's time.
+                       {"MALLOC_MMAP_THRESHOLD_", "1000000000"},
+                       {"MALLOC_TRIM_THRESHOLD_", "1000000000"},
+                       {"MALLOC_TOP_PAD_", "67108864"}};
   if (display.server) {
     child.environment.emplace_back("LIBGL_ALWAYS_SOFTWARE", "1");
     child.environment.emplace_back("XAUTHORITY", std::nullopt);
@@ -155,7 +167,7 @@ std::vector<std::string> render_pictures(const std::vector<PictureJob>& jobs,
   }
   std::string warning;
   try {
-    const Display display = open_display();
+    const Display display = open_display(options.niceness);
     if (display.name.empty()) {
       return {fmt::format("no pictures: there is no display and {}",
                           display.problem)};
@@ -167,5 +179,35 @@ std::vector<std::string> render_pictures(const std::vector<PictureJob>& jobs,
   return warning.empty() ? std::vector<std::string>{}
                          : std::vector<std::string>{warning};
 }
+
+struct PicturesBeside::StopMonitor : Monitor {
+  explicit StopMonitor(Monitor* outer) : outer(outer) {}
+  bool stop_requested() const override {
+    return stop || (outer != nullptr && outer->stop_requested());
+  }
+  std::atomic<bool> stop = false;
+  Monitor* outer;
+};
+
+PicturesBeside::PicturesBeside(std::vector<PictureJob> jobs,
+                               const PictureOptions& options)
+    : monitor_(std::make_unique<StopMonitor>(options.monitor)) {
+  PictureOptions own = options;
+  own.monitor = monitor_.get();
+  own.niceness = kNiceness;
+  own.time_limit = kTimeBeside;
+  warnings_ = std::async(std::launch::async, [jobs = std::move(jobs), own] {
+    return render_pictures(jobs, own);
+  });
+}
+
+PicturesBeside::~PicturesBeside() {
+  monitor_->stop = true;
+  if (warnings_.valid()) {
+    warnings_.wait();
+  }
+}
+
+std::vector<std::string> PicturesBeside::wait() { return warnings_.get(); }
 
 }  // namespace meniscus

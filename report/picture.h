@@ -7,6 +7,8 @@
 /// warning: a run without pictures is still a run.
 #pragma once
 
+#include <future>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,7 @@ namespace meniscus {
 
 struct PictureOptions {
   double time_limit = 60.0;  // of all jobs together [s], wall clock
+  int niceness = 0;          // of the helper, as in ChildOptions
   Monitor* monitor = nullptr;
 };
 
@@ -26,5 +29,25 @@ struct PictureOptions {
 /// machine's faults; Interrupted when the monitor asks to stop.
 std::vector<std::string> render_pictures(const std::vector<PictureJob>& jobs,
                                          const PictureOptions& options = {});
+
+/// Pictures drawn while the caller computes on, by what its work leaves of the
+/// processor. The destructor ends what is not drawn by then.
+class PicturesBeside {
+ public:
+  /// The monitor of `options` is asked for a stop by another thread; the time
+  /// limit and the niceness are this class's own.
+  PicturesBeside(std::vector<PictureJob> jobs, const PictureOptions& options);
+  ~PicturesBeside();
+  PicturesBeside(const PicturesBeside&) = delete;
+  PicturesBeside& operator=(const PicturesBeside&) = delete;
+
+  /// Until all are drawn: what render_pictures() returns or throws.
+  std::vector<std::string> wait();
+
+ private:
+  struct StopMonitor;
+  std::unique_ptr<StopMonitor> monitor_;
+  std::future<std::vector<std::string>> warnings_;
+};
 
 }  // namespace meniscus

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <tuple>
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -20,6 +19,7 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -147,53 +147,97 @@ PictureTets load_tets(const std::string& path) {
   return tets;
 }
 
-SurfaceMesh cut_open(const PictureTets& tets, const Vec3& normal) {
-  Vec3 low = tets.nodes.front();
-  Vec3 high = low;
-  for (const Vec3& p : tets.nodes) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double level = normal.dot(0.5 * (low + high));
-  struct Side {
-    Triangle key;  // corners, sorted
-    Triangle corners;
-    bool kept;
-  };
-  constexpr std::array<Triangle, 4> kFaces = {
-      {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+namespace {
+
+/// A face of an element that is kept, by its corners in order of size.
+struct Side {
+  Triangle key;
+  Triangle corners;
+};
+
+constexpr std::array<Triangle, 4> kFaces = {
+    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+Side side_of(const std::array<int, 4>& tet, const Triangle& face) {
+  const Triangle ids = {tet[static_cast<std::size_t>(face[0])],
+                        tet[static_cast<std::size_t>(face[1])],
+                        tet[static_cast<std::size_t>(face[2])]};
+  Side side{ids, ids};
+  std::sort(side.key.begin(), side.key.end());
+  return side;
+}
+
+/// Faces of one kept element only, in order of their keys.
+std::vector<Side> bare_sides(const PictureTets& tets,
+                             const std::vector<char>& kept) {
   std::vector<Side> sides;
   sides.reserve(4 * tets.corners.size());
-  for (const auto& tet : tets.corners) {
-    Vec3 middle = Vec3::Zero();
-    for (const int id : tet) {
-      middle += 0.25 * tets.nodes[static_cast<std::size_t>(id)];
-    }
-    const bool kept = normal.dot(middle) <= level;
+  for (std::size_t t = 0; t < kept.size(); ++t) {
     for (const Triangle& face : kFaces) {
-      const Triangle ids = {tet[static_cast<std::size_t>(face[0])],
-                            tet[static_cast<std::size_t>(face[1])],
-                            tet[static_cast<std::size_t>(face[2])]};
-      Triangle key = ids;
-      std::sort(key.begin(), key.end());
-      sides.push_back({key, ids, kept});
+      if (kept[t] != 0) {
+        sides.push_back(side_of(tets.corners[t], face));
+      }
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.key, b.kept) < std::tie(b.key, a.kept);
-  });
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return a.key < b.key; });
+  std::vector<Side> bare;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (i + 1 < sides.size() && sides[i + 1].key == sides[i].key) {
+      ++i;
+    } else {
+      bare.push_back(sides[i]);
+    }
+  }
+  return bare;
+}
+
+}  // namespace
+
+SurfaceMesh cut_open(const PictureTets& tets, const Vec3& normal) {
+  std::vector<double> height(tets.nodes.size());
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    box.extend(tets.nodes[i]);
+    height[i] = normal.dot(tets.nodes[i]);
+  }
+  const double level = normal.dot(box.center());
+  std::vector<char> kept(tets.corners.size());
+  for (std::size_t t = 0; t < kept.size(); ++t) {
+    double sum = 0.0;
+    for (const int id : tets.corners[t]) {
+      sum += 0.25 * height[static_cast<std::size_t>(id)];
+    }
+    kept[t] = static_cast<char>(sum <= level);
+  }
+  const std::vector<Side> bare = bare_sides(tets, kept);
+  // Only elements with a bare face's three corners can be its other side.
+  std::vector<char> at_bare(tets.nodes.size(), 0);
+  for (const Side& side : bare) {
+    for (const int id : side.key) {
+      at_bare[static_cast<std::size_t>(id)] = 1;
+    }
+  }
+  std::vector<Triangle> gone;
+  for (std::size_t t = 0; t < kept.size(); ++t) {
+    int near = 0;
+    for (const int id : tets.corners[t]) {
+      near += at_bare[static_cast<std::size_t>(id)];
+    }
+    for (const Triangle& face : kFaces) {
+      if (kept[t] == 0 && near >= 3) {
+        gone.push_back(side_of(tets.corners[t], face).key);
+      }
+    }
+  }
+  std::sort(gone.begin(), gone.end());
   SurfaceMesh result;
   result.labels = {"outside", "inside"};
   result.points = tets.nodes;
-  // Of a face's two sides the kept one comes first.
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const bool two = i + 1 < sides.size() && sides[i + 1].key == sides[i].key;
-    const bool both_kept = two && sides[i].kept && sides[i + 1].kept;
-    if (sides[i].kept && !both_kept) {
-      result.facets.push_back(sides[i].corners);
-      result.facet_label.push_back(two ? 1 : 0);
-    }
-    i += two ? 1 : 0;
+  for (const Side& side : bare) {
+    result.facets.push_back(side.corners);
+    result.facet_label.push_back(
+        std::binary_search(gone.begin(), gone.end(), side.key) ? 1 : 0);
   }
   return result;
 }

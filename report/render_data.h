@@ -5,31 +5,28 @@
 #include <vector>
 
 #include "core/surface_mesh.h"
+#include "report/picture_job.h"
 
 namespace meniscus {
-
-/// A labelled surface and, for a part, what its nodes carry (else empty).
-struct PictureSurface {
-  SurfaceMesh mesh;
-  Points displacement;            // [length]
-  std::vector<double> von_mises;  // [pressure]
-  std::string length_unit;        // of the displacement; may be empty
-  std::string stress_unit;
-};
 
 /// Throws InvalidInput, naming the file, when it cannot be read or lacks the
 /// cell data `surface`.
 PictureSurface load_surface(const std::string& path);
 
-/// Corners of a .vtu's tetrahedra, four- or ten-node. Throws InvalidInput.
-struct PictureTets {
-  Points nodes;
-  std::vector<std::array<int, 4>> corners;
-};
+/// The tetrahedra of a .vtu. Throws InvalidInput.
 PictureTets load_tets(const std::string& path);
 
-/// The facets left of a mesh of which the half nearer to `eye` was taken away
-/// (whole elements): label 0 are outer faces, label 1 the faces laid open.
+/// What a job shows: what it holds, else what the file says.
+template <class Data, class Load>
+std::shared_ptr<const Data> shape_of(const PictureSource<Data>& source,
+                                     const Load& load) {
+  return source.data ? source.data
+                     : std::make_shared<const Data>(load(source.file));
+}
+
+/// The facets left of a mesh of which the half on the side of `normal` was
+/// taken away (whole elements): label 0 are outer faces, label 1 the faces laid
+/// open.
 SurfaceMesh cut_open(const PictureTets& tets, const Vec3& normal);
 
 /// Edges where two surfaces meet or a surface ends.

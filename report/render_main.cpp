@@ -1,6 +1,6 @@
-/// meniscus-render: draws the picture jobs that come as JSON on stdin. Needs a
-/// display; the program that starts it sees to that (report/picture.h). Exit
-/// code 0: all drawn; 1: stderr says what is missing; 2: no valid jobs.
+/// meniscus-render: draws the picture jobs that come on stdin (picture_job.h).
+/// Needs a display; the program that starts it sees to that (report/picture.h).
+/// Exit code 0: all drawn; 1: stderr says what is missing; 2: no valid jobs.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -44,15 +44,15 @@ void draw_one(const PictureJob& job) {
   layout.text = std::max(12, job.height / 42);
   std::string line;
   if (job.kind == PictureKind::Part) {
-    const PictureSurface part = load_surface(job.part_surface);
-    const PartFigures figures = draw_part(panel, job, part, layout);
+    const auto part = shape_of(job.part_surface, load_surface);
+    const PartFigures figures = draw_part(panel, job, *part, layout);
     line = fmt::format(
         "deflection drawn \u00d7 {:g} (largest {}), peak stress {}",
-        figures.factor, with_unit(figures.largest, part.length_unit),
-        with_unit(figures.peak, part.stress_unit));
+        figures.factor, with_unit(figures.largest, part->length_unit),
+        with_unit(figures.peak, part->stress_unit));
   } else {
     layout.model = {0.05, 0.05, 0.95, 0.87};
-    draw_film(panel, job, load_surface(job.film));
+    draw_film(panel, job, *shape_of(job.film, load_surface));
     line = job.caption;
   }
   panel.fit_camera(job.view, layout.model);
@@ -71,12 +71,12 @@ void draw_overview(const PictureJob& job) {
   Panel film({0, 0, 1.0 / 3, 1}, job.width, job.height);
   Panel mesh({1.0 / 3, 0, 2.0 / 3, 1}, job.width, job.height);
   Panel part({2.0 / 3, 0, 1, 1}, job.width, job.height);
-  const PictureSurface surface = load_surface(job.film);
-  const PictureTets tets = load_tets(job.part);
-  draw_film(film, job, surface);
-  draw_cut_mesh(mesh, job, tets);
+  const auto surface = shape_of(job.film, load_surface);
+  const auto tets = shape_of(job.part, load_tets);
+  draw_film(film, job, *surface);
+  draw_cut_mesh(mesh, job, *tets);
   const PartFigures figures =
-      draw_part(part, job, load_surface(job.part_surface), layout);
+      draw_part(part, job, *shape_of(job.part_surface, load_surface), layout);
   const auto caption = [&](Panel& panel, const std::string& title,
                            const std::string& line) {
     const double row = layout.text / static_cast<double>(job.height);
@@ -95,9 +95,9 @@ void draw_overview(const PictureJob& job) {
   };
   caption(
       film, "Liquid film",
-      fmt::format("{} facets at rest", grouped(surface.mesh.facets.size())));
+      fmt::format("{} facets at rest", grouped(surface->mesh.facets.size())));
   caption(mesh, "Solid, cut open",
-          fmt::format("{} tetrahedra", grouped(tets.corners.size())));
+          fmt::format("{} tetrahedra", grouped(tets->corners.size())));
   caption(part, "Stress under load",
           fmt::format("deflection \u00d7 {:g}", figures.factor));
   film.add_legend(layout.bar.bottom,
@@ -115,7 +115,7 @@ int run() {
   const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
   std::vector<PictureJob> jobs;
   try {
-    jobs = picture_jobs_from_json(text);
+    jobs = picture_jobs_from_bytes(text);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

@@ -140,25 +140,6 @@ void draw_supports(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
   }
 }
 
-/// A load's label grows away from its arrow, whichever way that points on the
-/// screen; `away`: from the arrow to the label.
-TextStyle beside_arrow(const Vec3& away, const Vec3& view, int text) {
-  constexpr double kSlanted = 0.35;
-  const Vec3 right = Vec3::UnitZ().cross(view).normalized();
-  const Vec3 up = view.cross(right).normalized();
-  const double x = away.dot(right);
-  const double y = away.dot(up);
-  return {.size = text,
-          .colour = kLoadColour,
-          .bold = true,
-          .justify = x > kSlanted    ? Justify::Left
-                     : x < -kSlanted ? Justify::Right
-                                     : Justify::Centre,
-          .stand = y > kSlanted    ? Stand::Above
-                   : y < -kSlanted ? Stand::Below
-                                   : Stand::Centred};
-}
-
 void draw_loads(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
                 double diagonal, int text) {
   double largest = 0.0;
@@ -183,12 +164,13 @@ void draw_loads(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
     const Vec3 tail = tip - length * along;
     panel.add_arrow(tail, tip, kLoadColour);
     if (!load.label.empty()) {
-      const Vec3 at =
-          presses ? Vec3(tail - 3 * gap * along) : Vec3(tip + 3 * gap * along);
-      panel.add_label(
-          at, load.label,
-          beside_arrow(presses ? Vec3(-along) : along, job.view, text));
+      const Vec3 away = presses ? Vec3(-along) : along;
+      const Vec3 end = presses ? tail : tip;
+      panel.add_label(end, away, load.label,
+                      {.size = text, .colour = kLoadColour, .bold = true});
+      // Room for it, wherever it finds its place.
       const Vec3 aside = Vec3::UnitZ().cross(job.view).normalized();
+      const Vec3 at = end + 3 * gap * away;
       const Vec3 half(0, 0, 0.03 * diagonal);
       panel.show({at + half, at - half, at + 0.05 * diagonal * aside,
                   at - 0.05 * diagonal * aside});
@@ -233,7 +215,6 @@ std::pair<double, std::string> readable_unit(double top,
 
 void draw_film(Panel& panel, const PictureJob& job,
                const PictureSurface& film) {
-  panel.sort_layers();
   const SurfaceMesh& mesh = film.mesh;
   const double diagonal = bounding_diagonal(mesh.points);
   const Vec3 eye = job.view.normalized();
@@ -248,7 +229,7 @@ void draw_film(Panel& panel, const PictureJob& job,
     // tint follow the angle to the eye (Schlick's curve, exaggerated).
     constexpr Colour kGrazing = {0.06, 0.27, 0.62};
     auto* normals = skin.data->GetPointData()->GetNormals();
-    std::vector<std::array<double, 4>> colours;
+    std::vector<Paint> colours;
     for (vtkIdType i = 0; i < skin.data->GetNumberOfPoints(); ++i) {
       Vec3 n;
       normals->GetTuple(i, n.data());
@@ -260,11 +241,11 @@ void draw_film(Panel& panel, const PictureJob& job,
       c[3] = 0.30 + 0.60 * g;
     }
     SurfaceStyle style;
-    style.specular = 0.7;
+    style.finish.specular = 0.7;
     style.edges = job.facet_edges;
     style.edge_colour = {0.10, 0.30, 0.55};
-    style.edge_width = 0.5;
-    panel.add_coloured(skin.data, colours, style);
+    style.edge_width = 0.7;
+    panel.add_surface(skin.data, style, colours);
   }
   SurfaceStyle cap;
   cap.colour = kCapColour;
@@ -288,10 +269,10 @@ void draw_cut_mesh(Panel& panel, const PictureJob& job,
   const SurfaceMesh mesh = cut_open(tets, normal);
   SurfaceStyle style;
   style.flat = true;
+  style.only_front = true;
   style.edges = true;
-  style.specular = 0.0;
-  style.ambient = 0.3;
-  style.edge_width = 0.6;
+  style.finish = {.specular = 0.0, .ambient = 0.3};
+  style.edge_width = 0.8;
   style.colour = kOutsideColour;
   style.edge_colour = {0.22, 0.33, 0.46};
   panel.add_surface(shade(mesh, {1, 0}).data, style);
@@ -305,9 +286,8 @@ PartFigures draw_part(Panel& panel, const PictureJob& job,
                       const PictureSurface& part, const ViewLayout& layout) {
   const SurfaceMesh& rest = part.mesh;
   if (part.displacement.empty() || part.von_mises.empty()) {
-    throw InvalidInput(
-        fmt::format("'{}' has no point data 'displacement' and 'von_mises'",
-                    job.part_surface));
+    throw InvalidInput(fmt::format(
+        "the part of '{}' has no 'displacement' and 'von_mises'", job.output));
   }
   const double diagonal = bounding_diagonal(rest.points);
   double largest = 0.0;
@@ -323,13 +303,16 @@ PartFigures draw_part(Panel& panel, const PictureJob& job,
   }
   const auto [top, step] = bar_range(part.von_mises);
   const ShadedSurface shaded = shade(moved, every_label(moved));
-  std::vector<std::array<double, 4>> colours;
+  std::vector<Paint> colours;
   for (const int id : shaded.source) {
     const Colour c =
         viridis(part.von_mises[static_cast<std::size_t>(id)] / top);
     colours.push_back({c[0], c[1], c[2], 1.0});
   }
-  panel.add_coloured(shaded.data, colours, {.specular = 0.15, .ambient = 0.4});
+  panel.add_surface(
+      shaded.data,
+      {.finish = {.specular = 0.15, .ambient = 0.4}, .only_front = true},
+      colours);
   panel.add_tubes(moved.points, rim_edges(moved), 0.0016 * diagonal, kInk);
   panel.add_surface(
       shade(rest, every_label(rest)).data,

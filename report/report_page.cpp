@@ -10,6 +10,7 @@
 #include "io/atomic_file.h"
 #include "pipeline/stored_case.h"
 #include "report/page_case.h"
+#include "report/page_evolved.h"
 #include "report/page_film.h"
 #include "report/page_mesh.h"
 #include "report/page_template.h"
@@ -252,6 +253,20 @@ void add_comparison(const fs::path& folder, const Room& room, Json& page) {
   }
 }
 
+/// What `meniscus evolve` left.
+void add_film_alone(const fs::path& folder, Room room, Json& page) {
+  const Json film = read_json(folder / "film.json");
+  add_evolved(film, page);
+  add_films(folder, film.at("solids").get<std::vector<std::string>>(), room,
+            page);
+  // Those of a run that was in the folder before are not its way to rest.
+  if (page.contains("frames") &&
+      page["frames"]["stored"].get<std::size_t>() != page["captions"].size()) {
+    page.erase("frames");
+  }
+  page["notes"] = Json::array();
+}
+
 /// All that the page shows (report/web/src/data.ts).
 Json page_data(const fs::path& folder, const ReportOptions& options) {
   Json page = {{"format", kPageVersion},
@@ -273,10 +288,13 @@ Json page_data(const fs::path& folder, const ReportOptions& options) {
     page["kind"] = "comparison";
     page["comparison"] = read_json(folder / "compare.json");
     add_comparison(folder, room, page);
+  } else if (has_file(folder / "film.json")) {
+    page["kind"] = "film";
+    add_film_alone(folder, room, page);
   } else {
     throw InvalidInput(fmt::format(
-        "'{}' holds no result.json and no compare.json: give the folder of a "
-        "finished run, family or comparison{}",
+        "'{}' holds no result.json, compare.json or film.json: give the folder "
+        "of a finished run, family, comparison or film{}",
         folder.string(),
         has_file(folder / "study.sqlite")
             ? "; the run in it has not ended, go on with --resume"

@@ -1,12 +1,14 @@
 #include "report/save_picture.h"
 
-#include <cstddef>
+#include <array>
+#include <cstdint>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
+#include <vtkPointData.h>
 #include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
 #include <vtkUnsignedCharArray.h>
-#include <vtkWindowToImageFilter.h>
 
 #include <fmt/format.h>
 
@@ -20,46 +22,68 @@ namespace {
 // Of 0 to 9: a tenth more bytes than 6, in a third of its time.
 constexpr int kCompression = 3;
 
+// Where each pixel is looked at: no two in a row or column (a rotated grid),
+// so that edges near an axis are as smooth as others. Plain passes cost less
+// than the renderer's own multisampling.
+constexpr std::array<std::array<double, 2>, 4> kSamples = {
+    {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}}};
+
+/// The shapes of all panels, the mean of the passes.
+void draw_shapes(const std::vector<Panel*>& panels, Canvas& canvas) {
+  vtkNew<vtkRenderWindow> window;
+  window->SetOffScreenRendering(1);
+  window->SetMultiSamples(0);
+  window->SwapBuffersOff();
+  window->SetSize(canvas.width(), canvas.height());
+  for (Panel* panel : panels) {
+    window->AddRenderer(panel->renderer());
+  }
+  std::vector<unsigned char>& bytes = canvas.bytes();
+  std::vector<std::uint16_t> sums(bytes.size(), kSamples.size() / 2);
+  vtkNew<vtkUnsignedCharArray> pixels;
+  for (const auto& [x, y] : kSamples) {
+    for (Panel* panel : panels) {
+      panel->shift(x, y);
+    }
+    window->Render();
+    // As the renderer has them, with their opacity: no conversion.
+    window->GetRGBACharPixelData(0, 0, canvas.width() - 1, canvas.height() - 1,
+                                 0, pixels);
+    if (static_cast<std::size_t>(pixels->GetNumberOfValues()) / 4 !=
+        sums.size() / 3) {
+      throw IoError("the renderer gave no picture");
+    }
+    const unsigned char* from = pixels->GetPointer(0);
+    for (std::size_t i = 0; i < sums.size(); i += 3, from += 4) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        sums[i + c] = static_cast<std::uint16_t>(sums[i + c] + from[c]);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    bytes[i] = static_cast<unsigned char>(sums[i] / kSamples.size());
+  }
+  for (Panel* panel : panels) {
+    window->RemoveRenderer(panel->renderer());
+  }
+}
+
 }  // namespace
 
 void save_picture(const std::vector<Panel*>& panels, int width, int height,
                   const std::string& path) {
-  vtkNew<vtkRenderWindow> window;
-  window->SetOffScreenRendering(1);
-  window->SetMultiSamples(0);  // they do not go with depth peeling
-  window->SetAlphaBitPlanes(1);
-  window->SetSize(width * kSupersampling, height * kSupersampling);
-  for (Panel* panel : panels) {
-    window->AddRenderer(panel->renderer());
+  Canvas canvas(width, height);
+  draw_shapes(panels, canvas);
+  for (const Panel* panel : panels) {
+    panel->finish(canvas);
   }
-  window->Render();
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(window);
-  grab->SetInputBufferTypeToRGB();
-  grab->ReadFrontBufferOff();
-  grab->ShouldRerenderOff();
-  grab->Update();
-  vtkImageData* large = grab->GetOutput();
+  vtkNew<vtkUnsignedCharArray> colours;
+  colours->SetNumberOfComponents(3);
+  colours->SetArray(canvas.bytes().data(),
+                    static_cast<vtkIdType>(canvas.bytes().size()), 1);
   vtkNew<vtkImageData> image;
   image->SetDimensions(width, height, 1);
-  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  const auto* from =
-      static_cast<const unsigned char*>(large->GetScalarPointer());
-  auto* to = static_cast<unsigned char*>(image->GetScalarPointer());
-  constexpr int s = kSupersampling;
-  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(width) * s * 3;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        int sum = s * s / 2;
-        for (int i = 0; i < s * s; ++i) {
-          const std::ptrdiff_t pixel = std::ptrdiff_t{s} * x + i % s;
-          sum += from[(std::ptrdiff_t{s} * y + i / s) * row + 3 * pixel + c];
-        }
-        *to++ = static_cast<unsigned char>(sum / (s * s));
-      }
-    }
-  }
+  image->GetPointData()->SetScalars(colours);
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputData(image);
   writer->WriteToMemoryOn();

@@ -1,6 +1,6 @@
 #include "report/shaded_surface.h"
 
-#include <map>
+#include <algorithm>
 #include <vtkCellArray.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
@@ -14,6 +14,22 @@ namespace {
 
 constexpr double kCreaseAngle = 50.0;  // sharper is drawn as a crease [deg]
 
+/// The facets of the labels in use, label after label.
+std::vector<std::size_t> by_label(const SurfaceMesh& mesh,
+                                  const std::vector<char>& use_label) {
+  std::vector<std::size_t> facets;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (use_label[static_cast<std::size_t>(mesh.facet_label[f])] != 0) {
+      facets.push_back(f);
+    }
+  }
+  std::stable_sort(facets.begin(), facets.end(),
+                   [&](std::size_t a, std::size_t b) {
+                     return mesh.facet_label[a] < mesh.facet_label[b];
+                   });
+  return facets;
+}
+
 }  // namespace
 
 ShadedSurface shade(const SurfaceMesh& mesh,
@@ -24,22 +40,23 @@ ShadedSurface shade(const SurfaceMesh& mesh,
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkDoubleArray> sources;  // survives the filter, which splits too
   sources->SetName("source");
-  std::map<std::array<int, 2>, vtkIdType> ids;  // (label, point)
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+  struct Copy {
+    int label = -1;
+    vtkIdType id = 0;
+  };
+  std::vector<Copy> copies(mesh.points.size());  // the last label's
+  for (const std::size_t f : by_label(mesh, use_label)) {
     const int label = mesh.facet_label[f];
-    if (use_label[static_cast<std::size_t>(label)] == 0) {
-      continue;
-    }
     cells->InsertNextCell(3);
     for (const int point : mesh.facets[f]) {
-      const auto [at, added] =
-          ids.emplace(std::array<int, 2>{label, point}, ids.size());
-      if (added) {
-        points->InsertNextPoint(
-            mesh.points[static_cast<std::size_t>(point)].data());
+      Copy& copy = copies[static_cast<std::size_t>(point)];
+      if (copy.label != label) {
+        copy = {label,
+                points->InsertNextPoint(
+                    mesh.points[static_cast<std::size_t>(point)].data())};
         sources->InsertNextValue(point);
       }
-      cells->InsertCellPoint(at->second);
+      cells->InsertCellPoint(copy.id);
     }
   }
   vtkNew<vtkPolyData> data;

@@ -20,6 +20,7 @@ test_packages=(
   libpetsc-real-dev openmpi-bin chromium python3-scipy
 )
 
+gallery_packages=(python3 python3-pil)
 fuzz_packages=(clang libclang-rt-14-dev)
 
 say() { printf '\n== %s\n' "$*"; }

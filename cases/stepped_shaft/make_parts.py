@@ -2,11 +2,13 @@
 """Writes the conventional stepped shafts that case.toml stands against:
 sharp.obj, sharp_fine.obj (the corner cut twice as finely), fillet_4.obj and
 fillet_10.obj, solids of revolution about z with a group for each face. Lengths
-in mm. Nothing of it is random: the files are the same on every machine."""
+in mm. Nothing of it is random: the files are the same on every machine.
+usage: make_parts.py [FOLDER]"""
 import math
 import pathlib
+import sys
 
-FOLDER = pathlib.Path(__file__).resolve().parent
+FOLDER = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
 BIG, SMALL = 30.0, 20.0        # radii
 LOW, HIGH = -50.0, 70.0        # ends; the shoulder is at z = 0
 COARSE = 5.0                   # edges far from the shoulder
@@ -145,6 +147,7 @@ def check(mesh):
 
 
 if __name__ == "__main__":
+    FOLDER.mkdir(parents=True, exist_ok=True)
     for name, fine, fillet in (("sharp.obj", 0.8, 0.0),
                                ("sharp_fine.obj", 0.4, 0.0),
                                ("fillet_4.obj", 0.5, 4.0),

@@ -110,15 +110,17 @@ def read_run(folder: "str | os.PathLike[str]") -> Run:
 def run_study(case: Case, folder: "str | os.PathLike[str]", *,
               resume: bool = False, jobs: int = 1,
               time_limit: Optional[float] = None,
-              estimate_errors: bool = True,
+              estimate_errors: bool = True, pictures: bool = True,
+              frames: bool = True, report: bool = True,
               progress: Optional[Progress] = None) -> Run:
-    """Runs the study of the case into a folder, as `meniscus run` does, but
-    for pictures, and reads it back (Run).
+    """Runs the study of the case into a folder, as `meniscus run` does, and
+    reads it back (Run).
 
     resume: goes on with the study that is there; jobs: designs (or members)
     side by side, the same bits for any number; time_limit: [s];
-    estimate_errors: one more, coarser model for the mesh error; progress:
-    called on this thread with stage, detail and fraction done (or None).
+    estimate_errors: one more, coarser model for the mesh error; pictures,
+    frames, report: False leaves out pictures, films of the design's history,
+    report.html; progress: called on this thread with stage, detail and fraction done (or None).
 
     Ctrl-C, or an exception of progress, stops the study and is raised once
     the folder tells of it; go on with resume=True. Raises InvalidInput,
@@ -128,5 +130,5 @@ def run_study(case: Case, folder: "str | os.PathLike[str]", *,
         raise InvalidInput(f"case: expected a meniscus.Case, found {case!r}")
     _meniscus._run_study(case, os.fspath(folder), resume, jobs,
                          0.0 if time_limit is None else float(time_limit),
-                         estimate_errors, progress)
+                         estimate_errors, pictures, frames, report, progress)
     return Run(folder)

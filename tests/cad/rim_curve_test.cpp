@@ -10,22 +10,22 @@
 namespace meniscus {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 
 /// Two straight sides and two half circles.
 RimCurve stadium() {
   return RimCurve(
       {{StraightLine{Vec3(-2, -1, 0), Vec3::UnitX()}, 0.0, 4.0},
        {EllipseCurve{Vec3(2, 0, 0), Vec3::UnitX(), Vec3::UnitY()},
-        -0.25 * kTurn, 0.25 * kTurn},
+        -0.25 * kWholeTurn, 0.25 * kWholeTurn},
        {StraightLine{Vec3(2, 1, 0), -Vec3::UnitX()}, 0.0, 4.0},
        {EllipseCurve{Vec3(-2, 0, 0), -Vec3::UnitX(), -Vec3::UnitY()},
-        -0.25 * kTurn, 0.25 * kTurn}});
+        -0.25 * kWholeTurn, 0.25 * kWholeTurn}});
 }
 
 TEST(RimCurve, KnowsLengthAndPlaces) {
   const RimCurve curve = stadium();
-  EXPECT_NEAR(curve.length(), 8.0 + kTurn, 1e-12);
+  EXPECT_NEAR(curve.length(), 8.0 + kWholeTurn, 1e-12);
   for (int k = 0; k < 40; ++k) {
     const double s = curve.length() * k / 40.0;
     EXPECT_NEAR(curve.nearest(curve.point(s)), s, 1e-9);
@@ -35,13 +35,13 @@ TEST(RimCurve, KnowsLengthAndPlaces) {
   for (int k = 0; k < 4; ++k) {
     EXPECT_FALSE(curve.is_sharp(k));
   }
-  EXPECT_NEAR(curve.turning(1), 0.5 * kTurn, 1e-9);
+  EXPECT_NEAR(curve.turning(1), 0.5 * kWholeTurn, 1e-9);
 }
 
 TEST(RimCurve, SplineThroughPointsClosesSmoothly) {
   Points points;
   for (int k = 0; k < 48; ++k) {
-    const double angle = kTurn * k / 48.0;
+    const double angle = kWholeTurn * k / 48.0;
     points.emplace_back(std::cos(angle), std::sin(angle),
                         0.2 * std::cos(2.0 * angle));
   }

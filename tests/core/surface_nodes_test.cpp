@@ -12,7 +12,7 @@
 namespace meniscus {
 namespace {
 
-constexpr double kRounding = 1e-14;
+constexpr double kNodeRounding = 1e-14;
 
 std::vector<char> marks(const SurfaceMesh& mesh, int every) {
   std::vector<char> marked(mesh.facets.size(), 0);
@@ -29,15 +29,16 @@ void expect_same_shape(const QuadraticSurface& split,
                        const SurfaceMesh& before) {
   EXPECT_TRUE(check_surface(split.base).empty());
   EXPECT_NEAR(enclosed_volume(split.base), enclosed_volume(before),
-              kRounding * 100.0);
+              kNodeRounding * 100.0);
   for (std::size_t l = 0; l < before.labels.size(); ++l) {
     EXPECT_NEAR(surface_area(split.base, static_cast<int>(l)),
-                surface_area(before, static_cast<int>(l)), kRounding * 100.0);
+                surface_area(before, static_cast<int>(l)),
+                kNodeRounding * 100.0);
   }
   for (std::size_t e = 0; e < split.edges.size(); ++e) {
     const Vec3 half = 0.5 * (split.base.points[split.edges[e][0]] +
                              split.base.points[split.edges[e][1]]);
-    EXPECT_NEAR((split.mid[e] - half).norm(), 0.0, kRounding);
+    EXPECT_NEAR((split.mid[e] - half).norm(), 0.0, kNodeRounding);
   }
   for (std::size_t p = 0; p < before.points.size(); ++p) {
     EXPECT_EQ(split.base.points[p], before.points[p]);
@@ -72,7 +73,7 @@ TEST(SplitFacets, PutsMidSidesOnTheFinestPoints) {
   }
   const QuadraticSurface split = nested.split(marks(shapes::sphere(1.0, 2), 3));
   for (const Vec3& m : split.mid) {
-    EXPECT_NEAR(m.norm(), 1.0, kRounding);
+    EXPECT_NEAR(m.norm(), 1.0, kNodeRounding);
   }
   nested.straight.assign(nested.points.size(), 1);
   const QuadraticSurface straight =
@@ -115,7 +116,7 @@ TEST(SurfaceNodes, AreTransposed) {
     const double there = flat(corners).dot(flat(surface.base.points)) +
                          flat(mid).dot(flat(surface.mid));
     EXPECT_NEAR(flat(back).dot(flat(nested.points)), there,
-                kRounding * static_cast<double>(nested.points.size()));
+                kNodeRounding * static_cast<double>(nested.points.size()));
     EXPECT_THROW(nodes.transpose(mid, mid, nested.points.size()), MeshError);
   }
 }

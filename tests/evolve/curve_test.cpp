@@ -16,8 +16,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kRounding = 1e-13;  // some operations on numbers near 1
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kCurveRounding = 1e-13;  // some operations on numbers near 1
 
 Rectangle rounded() {
   Rectangle r;
@@ -54,7 +54,7 @@ std::vector<CurveShape> all_shapes() {
       copy};
 }
 
-std::string refusal(const CurveShape& shape) {
+std::string refusal_of_shape(const CurveShape& shape) {
   try {
     validate({"rim", shape});
   } catch (const InvalidInput& error) {
@@ -69,13 +69,13 @@ TEST(Curve, CircleHasItsRadiusPlaneAndDirection) {
   for (int i = 0; i < 16; ++i) {
     const double t = i / 16.0;
     const Vec3 r = point_at(c, t) - c.center;
-    EXPECT_NEAR(r.norm(), 2.5, kRounding * 10);
-    EXPECT_NEAR(r.dot(n), 0.0, kRounding * 10);
+    EXPECT_NEAR(r.norm(), 2.5, kCurveRounding * 10);
+    EXPECT_NEAR(r.dot(n), 0.0, kCurveRounding * 10);
     const Vec3 next = point_at(c, t + 1.0 / 16) - c.center;
     EXPECT_GT(r.cross(next).dot(n), 0.0);
   }
-  EXPECT_LT((point_at(Circle{}, 0.0) - Vec3(1, 0, 0)).norm(), kRounding);
-  EXPECT_NEAR(length_of(c), 5.0 * kPi, kRounding * 100);
+  EXPECT_LT((point_at(Circle{}, 0.0) - Vec3(1, 0, 0)).norm(), kCurveRounding);
+  EXPECT_NEAR(length_of(c), 5.0 * kHalfTurn, kCurveRounding * 100);
 }
 
 TEST(Curve, CircleFrameMovesLittleWhereTheNormalMovesLittle) {
@@ -115,18 +115,19 @@ TEST(Curve, EveryShapeRunsRoundOnceWithItsOwnLength) {
       length += (points[i + 1] - points[i]).norm();
     }
     EXPECT_NEAR(length / length_of(shape), 1.0, kChord);
-    EXPECT_LT((point_at(shape, 1.0) - point_at(shape, 0.0)).norm(), kRounding);
+    EXPECT_LT((point_at(shape, 1.0) - point_at(shape, 0.0)).norm(),
+              kCurveRounding);
   }
 }
 
 TEST(Curve, EllipseLengthAgreesWithTheCircleAndRamanujan) {
   Ellipse e;
   e.radius_1 = e.radius_2 = 2.0;
-  EXPECT_NEAR(length_of(e), 4.0 * kPi, 1e-12);
+  EXPECT_NEAR(length_of(e), 4.0 * kHalfTurn, 1e-12);
   e.radius_1 = 3.0;
   const double h = 1.0 / 25.0;  // ((a - b) / (a + b))^2
   const double ramanujan =
-      kPi * 5.0 * (1.0 + 3.0 * h / (10.0 + std::sqrt(4.0 - 3.0 * h)));
+      kHalfTurn * 5.0 * (1.0 + 3.0 * h / (10.0 + std::sqrt(4.0 - 3.0 * h)));
   EXPECT_NEAR(length_of(e), ramanujan, 1e-8);  // the formula's own error
 }
 
@@ -144,7 +145,7 @@ TEST(Curve, RectangleHasItsSidesAndCorners) {
   }
   EXPECT_LT((high - Vec3(2, 1, 0)).norm() + (low + Vec3(2, 1, 0)).norm(),
             1e-12);
-  EXPECT_NEAR(length_of(r), 2 * 3 + 2 * 1 + kPi, 1e-12);
+  EXPECT_NEAR(length_of(r), 2 * 3 + 2 * 1 + kHalfTurn, 1e-12);
 }
 
 TEST(Curve, SamplesAreEvenEqualAndKeepCorners) {
@@ -167,7 +168,7 @@ TEST(Curve, SamplesAreEvenEqualAndKeepCorners) {
   for (const double corner : {0.25, 0.5, 0.75}) {
     EXPECT_NE(std::find(t.begin(), t.end(), corner), t.end());
   }
-  EXPECT_EQ(sample_parameters(Circle{}, 2.0 * kPi / 41.0).size(), 42U);
+  EXPECT_EQ(sample_parameters(Circle{}, 2.0 * kHalfTurn / 41.0).size(), 42U);
 }
 
 TEST(Curve, SamplesOfAnEllipseAreEqualInLength) {
@@ -202,27 +203,28 @@ TEST(Curve, PointsAreSmoothInTheNumbersAtFixedParameter) {
 TEST(Curve, RefusesWhatIsNoCurveAndSaysWhy) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(refusal(Circle{}), "");
+  EXPECT_EQ(refusal_of_shape(Circle{}), "");
   for (const double radius : {0.0, -1.0, nan, inf}) {
-    EXPECT_THAT(refusal(Circle{Vec3::Zero(), Vec3::UnitZ(), radius}),
+    EXPECT_THAT(refusal_of_shape(Circle{Vec3::Zero(), Vec3::UnitZ(), radius}),
                 HasSubstr("curve 'rim': radius is"));
   }
-  EXPECT_THAT(refusal(Circle{Vec3::Zero(), Vec3::Zero(), 1.0}),
+  EXPECT_THAT(refusal_of_shape(Circle{Vec3::Zero(), Vec3::Zero(), 1.0}),
               HasSubstr("normal is zero"));
-  EXPECT_THAT(refusal(Circle{Vec3(0, nan, 0), Vec3::UnitZ(), 1.0}),
+  EXPECT_THAT(refusal_of_shape(Circle{Vec3(0, nan, 0), Vec3::UnitZ(), 1.0}),
               HasSubstr("center is (0, nan, 0)"));
   Ellipse ellipse;
   ellipse.axis = Vec3(0, 0, -2);
-  EXPECT_THAT(refusal(ellipse), HasSubstr("parallel to normal"));
+  EXPECT_THAT(refusal_of_shape(ellipse), HasSubstr("parallel to normal"));
   Rectangle r = rounded();
   r.corner_radius = 1.0;
-  EXPECT_THAT(refusal(r), HasSubstr("corner_radius is 1"));
+  EXPECT_THAT(refusal_of_shape(r), HasSubstr("corner_radius is 1"));
   r.corner_radius = -0.1;
-  EXPECT_THAT(refusal(r), HasSubstr("corner_radius is -0.1"));
-  EXPECT_THAT(refusal(Polygon{{{0, 0, 0}, {1, 0, 0}}}),
+  EXPECT_THAT(refusal_of_shape(r), HasSubstr("corner_radius is -0.1"));
+  EXPECT_THAT(refusal_of_shape(Polygon{{{0, 0, 0}, {1, 0, 0}}}),
               HasSubstr("2 points, must have 3"));
-  EXPECT_THAT(refusal(Polygon{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}}}),
-              HasSubstr("points 3 and 0 are equal"));
+  EXPECT_THAT(
+      refusal_of_shape(Polygon{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}}}),
+      HasSubstr("points 3 and 0 are equal"));
   EXPECT_THROW(sample_parameters(Circle{}, 0.0), InvalidInput);
   EXPECT_THROW(sample_parameters(Circle{}, nan), InvalidInput);
 }

@@ -28,7 +28,7 @@ faces
 1 1 2 3
 )";
 
-std::string message_of(const std::string& text) {
+std::string message_of_text(const std::string& text) {
   try {
     complex_of(read_fe(text, "a.fe"));
   } catch (const InvalidInput& error) {
@@ -269,7 +269,7 @@ TEST(FeReader, SaysWhatIsWrongAndWhere) {
   for (const Wrong& wrong : cases) {
     std::string text = kTriangle;
     text.replace(text.find(wrong.find), wrong.find.size(), wrong.replace);
-    EXPECT_THAT(message_of(text), StartsWith(wrong.message)) << text;
+    EXPECT_THAT(message_of_text(text), StartsWith(wrong.message)) << text;
   }
 }
 
@@ -282,7 +282,7 @@ TEST(FeReader, SurvivesEveryTruncation) {
       kTriangle + "bodies\n1 1 volume 1 density 2\nread\ngogo\n";
   int whole = 0;
   for (std::size_t size = 0; size <= text.size(); ++size) {
-    const std::string message = message_of(text.substr(0, size));
+    const std::string message = message_of_text(text.substr(0, size));
     EXPECT_TRUE(message == "no error" || message.rfind("a.fe:", 0) == 0)
         << message;
     whole += message == "no error" ? 1 : 0;
@@ -292,8 +292,9 @@ TEST(FeReader, SurvivesEveryTruncation) {
 
 TEST(FeReader, RefusesBottomlessNesting) {
   const std::string deep(1000000, '(');
-  EXPECT_THAT(message_of("parameter aa = " + deep), HasSubstr("nested more"));
-  EXPECT_THAT(message_of("parameter aa = 1" + std::string(1000000, '^')),
+  EXPECT_THAT(message_of_text("parameter aa = " + deep),
+              HasSubstr("nested more"));
+  EXPECT_THAT(message_of_text("parameter aa = 1" + std::string(1000000, '^')),
               StartsWith("a.fe:1:"));
   std::string signs;
   std::string powers;
@@ -303,17 +304,17 @@ TEST(FeReader, RefusesBottomlessNesting) {
     powers += "2^-";
     choices += "1 ? 2 : ";
   }
-  EXPECT_THAT(message_of("parameter aa = " + signs + "1"),
+  EXPECT_THAT(message_of_text("parameter aa = " + signs + "1"),
               HasSubstr("nested more"));
-  EXPECT_THAT(message_of("parameter aa = " + powers + "1"),
+  EXPECT_THAT(message_of_text("parameter aa = " + powers + "1"),
               HasSubstr("nested more"));
-  EXPECT_THAT(message_of("parameter aa = " + choices + "1"),
+  EXPECT_THAT(message_of_text("parameter aa = " + choices + "1"),
               HasSubstr("nested more"));
   std::string sum = "parameter aa = 1";
   for (int k = 0; k < 100000; ++k) {
     sum += " + 1";
   }
-  EXPECT_THAT(message_of(sum), HasSubstr("more than 4000 parts"));
+  EXPECT_THAT(message_of_text(sum), HasSubstr("more than 4000 parts"));
 }
 
 TEST(FeReader, BoundsTheGrowthOfMacros) {
@@ -322,13 +323,14 @@ TEST(FeReader, BoundsTheGrowthOfMacros) {
     text += "#define M" + std::to_string(k) + " M" + std::to_string(k - 1) +
             " M" + std::to_string(k - 1) + "\n";
   }
-  EXPECT_THAT(message_of(text + "view_matrix M59\n"), StartsWith("a.fe:61:"));
+  EXPECT_THAT(message_of_text(text + "view_matrix M59\n"),
+              StartsWith("a.fe:61:"));
   std::string empty = "#define E0\n";
   for (int k = 1; k < 60; ++k) {
     empty += "#define E" + std::to_string(k) + " E" + std::to_string(k - 1) +
              " E" + std::to_string(k - 1) + "\n";
   }
-  EXPECT_THAT(message_of(empty + "view_matrix E59\n"),
+  EXPECT_THAT(message_of_text(empty + "view_matrix E59\n"),
               HasSubstr("macros expand to more"));
 }
 
@@ -343,7 +345,7 @@ TEST(FeReader, EndsOnLargeGarbageInBoundedTime) {
       text += text;
     }
     const auto start = std::chrono::steady_clock::now();
-    const std::string message = message_of(text);
+    const std::string message = message_of_text(text);
     const std::chrono::duration<double> taken =
         std::chrono::steady_clock::now() - start;
     EXPECT_THAT(message, StartsWith("a.fe:")) << pattern;

@@ -19,10 +19,10 @@ using Design = std::function<FilmSystem(double)>;
 /// Films are converged to rounding, so differences lose about half of their
 /// figures; 6e-9 is the worst found.
 constexpr double kAgree = 3e-8;
-constexpr double kRounding = 1e-13;
+constexpr double kGradientRounding = 1e-13;
 
 /// Weights of any kind, fixed.
-double wave(std::size_t i) { return std::sin(1.7 * static_cast<double>(i)); }
+double ripple(std::size_t i) { return std::sin(1.7 * static_cast<double>(i)); }
 
 /// A response that sees everything: the mean of weighted places, and all
 /// figures.
@@ -31,8 +31,9 @@ FilmCovector covector(const FilmModel& model) {
   FilmCovector by;
   const std::size_t count = film.points.size();
   for (std::size_t v = 0; v < count; ++v) {
-    by.points.emplace_back(Vec3(wave(3 * v), wave(3 * v + 1), wave(3 * v + 2)) /
-                           static_cast<double>(count));
+    by.points.emplace_back(
+        Vec3(ripple(3 * v), ripple(3 * v + 1), ripple(3 * v + 2)) /
+        static_cast<double>(count));
   }
   const auto bodies = static_cast<Eigen::Index>(film.report.bodies.size());
   by.pressures = VectorX::LinSpaced(bodies, 0.3, 0.7);
@@ -356,16 +357,16 @@ TEST(FilmGradient, OfTheMeshedSurfaceIsItsTranspose) {
     Points corners = surface.base.points;
     Points mid = surface.mid;
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      corners[i].setConstant(wave(i));
+      corners[i].setConstant(ripple(i));
     }
     for (std::size_t i = 0; i < mid.size(); ++i) {
-      mid[i].setConstant(wave(7 * i));
+      mid[i].setConstant(ripple(7 * i));
     }
     const double there = flat(corners).dot(flat(surface.base.points)) +
                          flat(mid).dot(flat(surface.mid));
     const double back =
         flat(x).dot(flat(model.transpose_surface(corners, mid)));
-    EXPECT_NEAR(back, there, kRounding * flat(x).cwiseAbs().sum());
+    EXPECT_NEAR(back, there, kGradientRounding * flat(x).cwiseAbs().sum());
   }
 }
 

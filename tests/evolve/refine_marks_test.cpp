@@ -11,8 +11,8 @@
 namespace meniscus {
 namespace {
 
-constexpr double kRounding = 1e-13;     // sums of a few terms of size 1
-constexpr double kGoldenSearch = 1e-7;  // sqrt of rounding, as searches end
+constexpr double kMarkRounding = 1e-13;  // sums of a few terms of size 1
+constexpr double kGoldenSearch = 1e-7;   // sqrt of rounding, as searches end
 
 const std::vector<std::string> kPlace = {"x", "y", "z"};
 
@@ -79,8 +79,9 @@ TEST(RefineMarks, MiddlesLieOnWallsAndCurves) {
   const int wall = index_of(fine, 4, {0, 1});
   EXPECT_EQ(fine.complex.vertices[wall].constraints, 0);
   EXPECT_TRUE(fine.complex.vertices[wall].held);
-  EXPECT_NEAR((p[wall] - Vec3(2, 0.5, 0)).norm(), std::sqrt(1.25), kRounding);
-  EXPECT_NEAR(p[wall].z(), 0.0, kRounding);
+  EXPECT_NEAR((p[wall] - Vec3(2, 0.5, 0)).norm(), std::sqrt(1.25),
+              kMarkRounding);
+  EXPECT_NEAR(p[wall].z(), 0.0, kMarkRounding);
   const int arc = index_of(fine, 4, {2, 3});
   EXPECT_EQ(fine.complex.vertices[arc].kind, VertexKind::OnCurve);
   EXPECT_NEAR((p[arc] - Vec3(0.5, 0.5 + std::sqrt(0.5), 0)).norm(), 0.0,
@@ -109,7 +110,7 @@ TEST(RefineMarks, OneSidedWallsHoldOnlyWhatTheyTouch) {
   const int touching = index_of(fine, 4, {0, 1});
   const int left = index_of(fine, 4, {2, 3});
   const Vec3& p = fine.complex.mesh.points[touching];
-  EXPECT_NEAR(p.z() - p.x() * (1 - p.x()), 0.0, kRounding);
+  EXPECT_NEAR(p.z() - p.x() * (1 - p.x()), 0.0, kMarkRounding);
   EXPECT_GT(p.z(), 0.1);
   EXPECT_FALSE(fine.complex.vertices[left].held);
   EXPECT_EQ(fine.complex.mesh.points[left], Vec3(0.5, 1.0, 0.0));
@@ -130,7 +131,7 @@ TEST(RefineMarks, WholeEdgesAndSurfacesStayAndTheRestConforms) {
     EXPECT_EQ(fine.parents.size(), 5U - bits);
     const std::size_t expected = (4U - bits) + ((whole & 4) != 0 ? 3U : 4U);
     EXPECT_EQ(fine.complex.mesh.facets.size(), expected);
-    EXPECT_NEAR(surface_area(fine.complex.mesh), 1.0, kRounding);
+    EXPECT_NEAR(surface_area(fine.complex.mesh), 1.0, kMarkRounding);
     // The border edges: four sides, halved or whole.
     EXPECT_EQ(nonmanifold::count_edges(fine.complex.mesh, 1),
               8 - (whole & 1) - (whole >> 1 & 1));
@@ -167,7 +168,7 @@ TEST(RefineMarks, NumbersChildrenAsMultigridNeeds) {
   EXPECT_EQ(nonmanifold::triple_lines(fine.complex.mesh).of_films,
             nonmanifold::triple_lines(coarse.mesh).of_films);
   EXPECT_NEAR(surface_area(fine.complex.mesh), surface_area(coarse.mesh),
-              10 * kRounding);
+              10 * kMarkRounding);
 }
 
 TEST(RefineMarks, AWireWithoutFilmsIsHalvedToo) {

@@ -16,7 +16,7 @@ using systems::Part;
 
 constexpr double kLeastAngle = 17.0;  // [deg] beside held rims and frames
 constexpr double kAreaChange = 0.2;   // coarse edges cut a cube's corners off
-constexpr double kRounding = 1e-12;
+constexpr double kLineRounding = 1e-12;
 
 struct Case {
   const char* name;
@@ -128,7 +128,7 @@ TEST(RemeshLines, StayOnTheirWallWithTheirIntegrals) {
     EXPECT_NEAR(wetted() / before, 1.0, 0.1);
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
       if (complex.vertices[v].constraints >= 0) {
-        EXPECT_NEAR(complex.mesh.points[v].z(), 0.0, kRounding);
+        EXPECT_NEAR(complex.mesh.points[v].z(), 0.0, kLineRounding);
       }
     }
   }
@@ -284,7 +284,7 @@ TEST(AverageLines, MovesVerticesAlongAStraightLineOnly) {
                 0.02);
     EXPECT_EQ(complex.mesh.points[i].head<2>(), Eigen::Vector2d::Zero());
   }
-  EXPECT_NEAR(surface_area(complex.mesh), area, kRounding * area);
+  EXPECT_NEAR(surface_area(complex.mesh), area, kLineRounding * area);
   const int flips = equiangulate(complex);
   EXPECT_GE(flips, 0);
   EXPECT_EQ(nonmanifold::count_edges(complex.mesh, 3), kLine - 1);

@@ -17,7 +17,7 @@ using systems::Part;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfCircle = std::numbers::pi;
 constexpr double kCapAngle = 28.0;  // [deg] asked of every cap
 
 std::string refusal(const FilmSystem& system, double edge = 0.4) {
@@ -76,10 +76,11 @@ TEST(StartComplex, CylinderHasItsVolumeAndArea) {
   expect_sound(complex);
   // Regular n-gons of 62 corners inscribed: 1 - 2 pi^2 / (3 n^2).
   constexpr double kInscribed = 2e-3;
-  EXPECT_NEAR(
-      enclosed_volume(body_surface(complex, complex.bodies[0])) / (3.0 * kPi),
-      1.0, kInscribed);
-  EXPECT_NEAR(surface_area(complex.mesh, 0) / (6.0 * kPi), 1.0, kInscribed);
+  EXPECT_NEAR(enclosed_volume(body_surface(complex, complex.bodies[0])) /
+                  (3.0 * kHalfCircle),
+              1.0, kInscribed);
+  EXPECT_NEAR(surface_area(complex.mesh, 0) / (6.0 * kHalfCircle), 1.0,
+              kInscribed);
 }
 
 TEST(StartComplex, LoftJoinsSquareAndCircleWithLittleTwist) {
@@ -178,10 +179,10 @@ TEST(FillDisk, IsIsotropicForManyCurvesAndSizes) {
   for (int n = 12; n <= 120; n += 6) {
     Points rim;
     for (int i = 0; i < n; ++i) {
-      const double a = 2.0 * kPi * i / n;
+      const double a = 2.0 * kHalfCircle * i / n;
       rim.emplace_back(std::cos(a), std::sin(a), 0.0);
     }
-    const SurfaceMesh disk = fill_disk(rim, 2.0 * kPi / n);
+    const SurfaceMesh disk = fill_disk(rim, 2.0 * kHalfCircle / n);
     EXPECT_EQ(systems::euler_characteristic(disk), 1) << n;
     EXPECT_EQ(systems::open_edges(disk), n);
     EXPECT_GT(systems::smallest_angle_deg(disk), kCapAngle) << n;

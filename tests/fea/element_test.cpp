@@ -7,7 +7,8 @@
 namespace meniscus {
 namespace {
 
-constexpr double kRounding = 1e-12;  // patch and rigid motions: double only
+constexpr double kElementRounding =
+    1e-12;  // patch and rigid motions: double only
 
 Eigen::MatrixXd dense(const ElementTable& table,
                       const BlockMatrix<double>& matrix) {
@@ -58,12 +59,12 @@ TEST_P(Element, StiffnessIsSymmetricWithSixZeroEigenvalues) {
   BlockMatrix<double> matrix;
   ASSERT_FALSE(assemble(table, mesh.nodes, {lame(parts::steel())}, matrix));
   const Eigen::MatrixXd K = dense(table, matrix);
-  EXPECT_LE((K - K.transpose()).norm(), kRounding * K.norm());
+  EXPECT_LE((K - K.transpose()).norm(), kElementRounding * K.norm());
   const VectorX values =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues();
   const double top = values[values.size() - 1];
   for (int k = 0; k < 6; ++k) {
-    EXPECT_LE(std::abs(values[k]), kRounding * top);
+    EXPECT_LE(std::abs(values[k]), kElementRounding * top);
   }
   EXPECT_GT(values[6], 1e-6 * top);
 }
@@ -74,7 +75,8 @@ TEST_P(Element, RigidMotionGivesNoForce) {
   const std::vector<ElasticLaw> laws = {lame(parts::steel())};
   const VectorX u = rigid_motion(mesh, {1.0, -2.0, 0.5}, {0.3, 0.2, -0.7});
   const VectorX f = internal_forces(table, mesh.nodes, laws, u);
-  EXPECT_LE(f.norm(), kRounding * parts::steel().youngs_modulus * u.norm());
+  EXPECT_LE(f.norm(),
+            kElementRounding * parts::steel().youngs_modulus * u.norm());
 }
 
 TEST_P(Element, InternalForcesAreTheStiffnessTimesTheDisplacement) {
@@ -104,11 +106,11 @@ TEST_P(Element, InternalForcesAreTheStiffnessTimesTheDisplacement) {
     EXPECT_LE((y.col(kColumns * n + 1).head<3>() -
                2.0 * y.col(kColumns * n).head<3>())
                   .norm(),
-              kRounding * expected.norm());
+              kElementRounding * expected.norm());
   }
-  EXPECT_LE((product - expected).norm(), kRounding * expected.norm());
+  EXPECT_LE((product - expected).norm(), kElementRounding * expected.norm());
   EXPECT_LE((internal_forces(table, mesh.nodes, laws, u) - expected).norm(),
-            kRounding * expected.norm());
+            kElementRounding * expected.norm());
 }
 
 /// Largest internal force at nodes off the boundary, over the largest of all.
@@ -140,7 +142,7 @@ TEST_P(Element, PatchOfAnyLinearFieldIsInEquilibrium) {
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     u.segment<3>(static_cast<Eigen::Index>(3 * i)) = H * mesh.nodes[i];
   }
-  EXPECT_LE(inner_force(mesh, u), kRounding);
+  EXPECT_LE(inner_force(mesh, u), kElementRounding);
 }
 
 TEST(BendingPatch, OfQuadraticElementsIsInEquilibriumWithExactStress) {
@@ -156,7 +158,7 @@ TEST(BendingPatch, OfQuadraticElementsIsInEquilibriumWithExactStress) {
              0.5 * k * (x.x() * x.x() + nu * (x.y() * x.y() - x.z() * x.z())),
              k * nu * x.y() * x.z());
   }
-  EXPECT_LE(inner_force(mesh, u), kRounding);
+  EXPECT_LE(inner_force(mesh, u), kElementRounding);
   const StressField stress = recover_stress(mesh, {parts::steel()}, u);
   const double E = parts::steel().youngs_modulus;
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {

@@ -9,11 +9,11 @@
 namespace meniscus {
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kLoadRounding = 1e-12;
 constexpr double kEndEffect = 1e-4;
 constexpr double kPi = 3.14159265358979323846;
 
-Vec3 total(const VectorX& f) {
+Vec3 total_force(const VectorX& f) {
   Vec3 sum = Vec3::Zero();
   for (Eigen::Index d = 0; d < f.size(); d += 3) {
     sum += f.segment<3>(d);
@@ -25,10 +25,10 @@ TEST(Loads, WeightsSumToTheAreaAndVanishAtCornersOfFlatQuadraticFaces) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({2.0, 3.0, 4.0}, 2, 3, 2));
   const SurfaceWeights w = surface_weights(mesh, "x1");
-  EXPECT_NEAR(w.weights.sum(), 12.0, kRounding * 12.0);
+  EXPECT_NEAR(w.weights.sum(), 12.0, kLoadRounding * 12.0);
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     if (w.nodes[k] < mesh.corner_count) {
-      EXPECT_NEAR(w.weights[static_cast<Eigen::Index>(k)], 0.0, kRounding);
+      EXPECT_NEAR(w.weights[static_cast<Eigen::Index>(k)], 0.0, kLoadRounding);
     }
   }
 }
@@ -38,7 +38,7 @@ TEST(Loads, ForceIsSpreadToItsTotal) {
       shapes::straight_quadratic(shapes::brick({2.0, 3.0, 4.0}, 2, 2, 2));
   const Vec3 force(3.0, -5.0, 7.0);
   const VectorX f = nodal_forces(mesh, parts::pulled(force));
-  EXPECT_LE((total(f) - force).norm(), kRounding * force.norm());
+  EXPECT_LE((total_force(f) - force).norm(), kLoadRounding * force.norm());
 }
 
 TEST(Loads, PressurePushesIntoTheSolidAndBalancesAllRound) {
@@ -46,13 +46,14 @@ TEST(Loads, PressurePushesIntoTheSolidAndBalancesAllRound) {
       shapes::straight_quadratic(shapes::brick({2.0, 3.0, 4.0}, 2, 2, 2));
   LoadCase one;
   one.pressures = {{"x1", 2.0}};
-  EXPECT_LE((total(nodal_forces(mesh, one)) - Vec3(-24.0, 0.0, 0.0)).norm(),
-            kRounding * 24.0);
+  EXPECT_LE(
+      (total_force(nodal_forces(mesh, one)) - Vec3(-24.0, 0.0, 0.0)).norm(),
+      kLoadRounding * 24.0);
   LoadCase all;
   for (const std::string& name : mesh.labels) {
     all.pressures.push_back({name, 2.0});
   }
-  EXPECT_LE(total(nodal_forces(mesh, all)).norm(), kRounding * 24.0);
+  EXPECT_LE(total_force(nodal_forces(mesh, all)).norm(), kLoadRounding * 24.0);
 }
 
 TEST(Loads, CurvedAreaAndVolumeConverge) {
@@ -79,7 +80,7 @@ TEST(Loads, MeanDisplacementOfALinearFieldIsItsValueAtTheCentre) {
         Vec3(x.x(), 2.0 * x.y() + x.z(), 0.0);
   }
   EXPECT_NEAR(mean_displacement(mesh, "x1", {0.0, 7.0, 0.0}, u), 5.0,
-              5.0 * kRounding);
+              5.0 * kLoadRounding);
 }
 
 TEST(Loads, MassUsesTheDensityOfEachRegion) {
@@ -91,7 +92,7 @@ TEST(Loads, MassUsesTheDensityOfEachRegion) {
   light.density = 2.0;
   Material heavy = light;
   heavy.density = 3.0;
-  EXPECT_NEAR(mesh_mass(mesh, {light, heavy}), 5.0, kRounding * 5.0);
+  EXPECT_NEAR(mesh_mass(mesh, {light, heavy}), 5.0, kLoadRounding * 5.0);
 }
 
 /// Sum of x times f over the nodes, about `point`.
@@ -114,10 +115,10 @@ TEST(Loads, TractionFieldHasItsForceAndMoment) {
   const VectorX f = nodal_forces(mesh, load_case);
   // Over y in [0, 3], z in [0, 4] at x = 2, by hand.
   const Vec3 force(18.0, 64.0, 36.0);
-  EXPECT_LE((total(f) - force).norm(), kRounding * force.norm());
+  EXPECT_LE((total_force(f) - force).norm(), kLoadRounding * force.norm());
   const Vec3 moment(72.0 - 192.0, 36.0 - 72.0, 128.0 - 36.0);
   EXPECT_LE((moment_about(mesh, f, Vec3::Zero()) - moment).norm(),
-            kRounding * moment.norm());
+            kLoadRounding * moment.norm());
 }
 
 TEST(Loads, FieldsOfOneValueActAsNumbers) {
@@ -131,7 +132,7 @@ TEST(Loads, FieldsOfOneValueActAsNumbers) {
   fields.tractions = {
       {"z1", Vec3::Zero(), [](const Vec3&) { return Vec3(1.0, 2.0, 3.0); }}};
   const VectorX f = nodal_forces(mesh, numbers);
-  EXPECT_LE((nodal_forces(mesh, fields) - f).norm(), kRounding * f.norm());
+  EXPECT_LE((nodal_forces(mesh, fields) - f).norm(), kLoadRounding * f.norm());
 }
 
 TEST(Loads, LiquidLiftsACurvedPartByTheWeightItDisplaces) {
@@ -142,8 +143,8 @@ TEST(Loads, LiquidLiftsACurvedPartByTheWeightItDisplaces) {
         {name, 0.0, [](const Vec3& x) { return 7.0 - 3.0 * x.z(); }});
   }
   const Vec3 lift(0.0, 0.0, 3.0 * mesh_volume(mesh));
-  EXPECT_LE((total(nodal_forces(mesh, load_case)) - lift).norm(),
-            kRounding * 100.0);
+  EXPECT_LE((total_force(nodal_forces(mesh, load_case)) - lift).norm(),
+            kLoadRounding * 100.0);
 }
 
 TEST(RemoteLoads, HaveTheForceAndTheMomentAndAreARigidPattern) {
@@ -154,9 +155,9 @@ TEST(RemoteLoads, HaveTheForceAndTheMomentAndAreARigidPattern) {
   const Vec3 moment(4.0, -1.0, 2.0);
   load_case.remote_loads = {{"z1", point, force, moment}};
   const VectorX f = nodal_forces(mesh, load_case);
-  EXPECT_LE((total(f) - force).norm(), kRounding * force.norm());
+  EXPECT_LE((total_force(f) - force).norm(), kLoadRounding * force.norm());
   EXPECT_LE((moment_about(mesh, f, point) - moment).norm(),
-            kRounding * 20.0 * force.norm());
+            kLoadRounding * 20.0 * force.norm());
   // Least in the weighted norm: force over weight is a rigid motion, which
   // takes six numbers.
   const SurfaceWeights w = surface_weights(mesh, "z1");

@@ -9,8 +9,8 @@
 namespace meniscus {
 namespace {
 
-constexpr double kRounding = 1e-12;
-constexpr double kSolver = 1e-10;  // displacements of the direct solver
+constexpr double kMaterialRounding = 1e-12;
+constexpr double kDirectSolver = 1e-10;  // displacements of the direct solver
 
 /// Spruce, MPa, along a direction that is no axis of the mesh.
 Material spruce() {
@@ -38,14 +38,14 @@ Material orthotropic_steel() {
 TEST(OrthotropicLaw, OfEqualConstantsIsTheIsotropicOneInAnyAxes) {
   const Mat6 D = elastic_law(orthotropic_steel()).stiffness;
   const Mat6 exact = elastic_law(parts::steel()).stiffness;
-  EXPECT_LE((D - exact).norm(), kRounding * exact.norm());
+  EXPECT_LE((D - exact).norm(), kMaterialRounding * exact.norm());
 }
 
 TEST(OrthotropicLaw, PullAlongAnAxisContractsByItsRatios) {
   const Material material = spruce();
   const Orthotropic& m = *material.orthotropic;
   const Mat3 R = unit_axes(m.axes);
-  EXPECT_LE((R.transpose() * R - Mat3::Identity()).norm(), kRounding);
+  EXPECT_LE((R.transpose() * R - Mat3::Identity()).norm(), kMaterialRounding);
   EXPECT_GT(R.determinant(), 0.0);
   // Unit stress along axis 1 and along the shear 23, in the mesh's axes.
   Mat3 strain = Vec3(1.0, -m.poisson_ratios[0], -m.poisson_ratios[1])
@@ -56,7 +56,7 @@ TEST(OrthotropicLaw, PullAlongAnAxisContractsByItsRatios) {
   own(0, 0) = 1.0;
   own(1, 2) = own(2, 1) = 1.0;
   const Mat3 stress = elastic_law(material).stress(R * strain * R.transpose());
-  EXPECT_LE((stress - R * own * R.transpose()).norm(), kRounding * 1e2);
+  EXPECT_LE((stress - R * own * R.transpose()).norm(), kMaterialRounding * 1e2);
 }
 
 class OrthotropicElement : public testing::TestWithParam<int> {};
@@ -73,10 +73,11 @@ TEST_P(OrthotropicElement, StiffnessOfEqualConstantsIsTheIsotropicOne) {
   assemble(table, mesh.nodes, elastic_laws({parts::steel()}), isotropic);
   const double size = parts::steel().youngs_modulus;
   for (std::size_t k = 0; k < general.lower.size(); ++k) {
-    EXPECT_NEAR(general.lower[k], isotropic.lower[k], kRounding * size);
+    EXPECT_NEAR(general.lower[k], isotropic.lower[k], kMaterialRounding * size);
   }
   for (std::size_t k = 0; k < general.diagonal.size(); ++k) {
-    EXPECT_NEAR(general.diagonal[k], isotropic.diagonal[k], kRounding * size);
+    EXPECT_NEAR(general.diagonal[k], isotropic.diagonal[k],
+                kMaterialRounding * size);
   }
 }
 
@@ -95,7 +96,7 @@ TEST_P(OrthotropicElement, InternalForcesAreTheStiffnessTimesDisplacement) {
   }
   const VectorX product = parts::product(table, matrix, u);
   EXPECT_LE((internal_forces(table, mesh.nodes, laws, u) - product).norm(),
-            kRounding * product.norm());
+            kMaterialRounding * product.norm());
 }
 
 TEST_P(OrthotropicElement, PulledBlockTakesTheUniformStrain) {
@@ -127,7 +128,7 @@ TEST_P(OrthotropicElement, PulledBlockTakesTheUniformStrain) {
         solution.displacements[0].segment<3>(static_cast<Eigen::Index>(3 * i));
     error = std::max(error, (u - strain.cwiseProduct(mesh.nodes[i])).norm());
   }
-  EXPECT_LE(error, kSolver * strain.norm());
+  EXPECT_LE(error, kDirectSolver * strain.norm());
   const StressField stress =
       recover_stress(mesh, {material}, solution.displacements[0]);
   EXPECT_NEAR(stress.max_von_mises, 1.0, 1e-9);
@@ -151,7 +152,7 @@ TEST(OrthotropicSolve, MultigridAgreesWithCholesky) {
 /// The element kernels see only the law, so its energy must be positive.
 TEST(OrthotropicLaw, StiffnessIsPositiveDefinite) {
   const Mat6 D = elastic_law(spruce()).stiffness;
-  EXPECT_LE((D - D.transpose()).norm(), kRounding * D.norm());
+  EXPECT_LE((D - D.transpose()).norm(), kMaterialRounding * D.norm());
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Mat6>(D).eigenvalues()[0], 0.0);
 }
 

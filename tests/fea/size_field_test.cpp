@@ -11,7 +11,7 @@
 namespace meniscus {
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kSizeRounding = 1e-9;
 
 TEST(NearestPoint, AgreesWithLookingAtAll) {
   std::mt19937 random(7);
@@ -97,7 +97,7 @@ TEST_P(Sizes, AreFineWhereTheErrorIsAndGrowGently) {
     for (const auto& [a, b] : kTetEdges) {
       const double step = (mesh.nodes[ids[a]] - mesh.nodes[ids[b]]).norm();
       EXPECT_LE(std::abs(field.length[ids[a]] - field.length[ids[b]]),
-                kGrowth * step + kRounding);
+                kGrowth * step + kSizeRounding);
     }
   }
   for (std::size_t i = 0; i < field.points.size(); ++i) {

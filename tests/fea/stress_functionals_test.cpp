@@ -15,7 +15,7 @@ namespace {
 
 using derivatives::expect_partials;
 
-constexpr double kRounding = 1e-12;
+constexpr double kFunctionalRounding = 1e-12;
 /// Von Mises stresses have kinks where they are 0: near them the differences'
 /// higher terms are large, and the extrapolation stops short.
 constexpr double kKinks = 1e-7;
@@ -110,9 +110,11 @@ TEST_P(StressFunctionals, VariationIsThatOfUniformity) {
                                      temperature_change(mesh_, load_case_)),
                         excluded_);
   EXPECT_NEAR(von_mises_variation_functional(input()).value,
-              uniformity.von_mises.coefficient_of_variation, kRounding);
+              uniformity.von_mises.coefficient_of_variation,
+              kFunctionalRounding);
   EXPECT_NEAR(energy_density_variation_functional(input()).value,
-              uniformity.energy_density.coefficient_of_variation, kRounding);
+              uniformity.energy_density.coefficient_of_variation,
+              kFunctionalRounding);
   expect_derivatives(von_mises_variation_functional);
   expect_derivatives(energy_density_variation_functional);
 }
@@ -125,7 +127,7 @@ TEST_P(StressFunctionals, NothingStressedHasNoDerivative) {
         von_mises_ks_functional(input(), {.sharpness = 5.0, .scale = 1.0}),
         von_mises_variation_functional(input()),
         energy_density_variation_functional(input())}) {
-    EXPECT_NEAR(f.value, 0.0, kRounding);
+    EXPECT_NEAR(f.value, 0.0, kFunctionalRounding);
     EXPECT_TRUE(flat(f.by_nodes).allFinite());
     EXPECT_TRUE(f.by_displacement.allFinite());
   }

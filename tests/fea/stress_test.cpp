@@ -10,7 +10,7 @@
 namespace meniscus {
 namespace {
 
-constexpr double kRounding = 1e-12;  // closed forms in double
+constexpr double kStressRounding = 1e-12;  // closed forms in double
 
 /// u = H x + shift at all nodes.
 VectorX linear_field(const TetMesh& mesh, const Mat3& H) {
@@ -45,7 +45,7 @@ TEST(FineRule, IsExactToDegreeFive) {
                  std::pow(L[2], c) * std::pow(L[3], d);
         }
         const double exact = exact_moment({a, b, c, d});
-        EXPECT_NEAR(sum, exact, kRounding * exact) << a << b << c << d;
+        EXPECT_NEAR(sum, exact, kStressRounding * exact) << a << b << c << d;
       }
     }
   }
@@ -56,16 +56,16 @@ TEST(Stress, PrincipalStressesAndFrameRebuildTheTensor) {
   const PrincipalFrame frame = principal_frame(s);
   EXPECT_GT(frame.stress[0], frame.stress[1]);
   EXPECT_GT(frame.stress[1], frame.stress[2]);
-  EXPECT_NEAR(frame.direction.determinant(), 1.0, kRounding);
+  EXPECT_NEAR(frame.direction.determinant(), 1.0, kStressRounding);
   const Mat3 t =
       frame.direction * frame.stress.asDiagonal() * frame.direction.transpose();
   const std::array<double, 6> back = {t(0, 0), t(1, 1), t(2, 2),
                                       t(0, 1), t(1, 2), t(2, 0)};
   for (int k = 0; k < 6; ++k) {
-    EXPECT_NEAR(back[k], s[k], kRounding * 3.0);
+    EXPECT_NEAR(back[k], s[k], kStressRounding * 3.0);
   }
   EXPECT_NEAR(principal_stresses({1.0, 2.0, 3.0, 0.0, 0.0, 0.0})[0], 3.0,
-              kRounding);
+              kStressRounding);
 }
 
 TEST(Stress, StrainAndEnergyInvertTheMaterialLaw) {
@@ -77,11 +77,11 @@ TEST(Stress, StrainAndEnergyInvertTheMaterialLaw) {
   const Strain strain = strain_of(stress_of_gradient(H, m), m);
   const Strain exact = {E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0)};
   for (int k = 0; k < 6; ++k) {
-    EXPECT_NEAR(strain[k], exact[k], kRounding * 1e-3);
+    EXPECT_NEAR(strain[k], exact[k], kStressRounding * 1e-3);
   }
   // A pulled bar: s^2 / 2 E.
   EXPECT_NEAR(strain_energy_density({50.0, 0, 0, 0, 0, 0}, m),
-              2500.0 / (2.0 * steel.youngs_modulus), kRounding);
+              2500.0 / (2.0 * steel.youngs_modulus), kStressRounding);
 }
 
 class PointStresses : public testing::TestWithParam<int> {};
@@ -105,7 +105,7 @@ TEST_P(PointStresses, AreExactForLinearFieldsAndCoverTheVolume) {
     volume += points.volume[q];
     moment += points.volume[q] * points.position[q];
   }
-  EXPECT_NEAR(volume, 3.0, kRounding * 3.0);
+  EXPECT_NEAR(volume, 3.0, kStressRounding * 3.0);
   EXPECT_LE((moment / volume - Vec3(0.5, 1.0, 0.75)).norm(), 1e-11);
 }
 
@@ -124,11 +124,11 @@ TEST_P(PointStresses, GradientsElsewhereAreThoseOfTheField) {
     u[a] = H * x[a];
   }
   if (GetParam() == 2) {
-    EXPECT_LE((gradient_at<10>(x, u, L).gradient - H).norm(), kRounding);
+    EXPECT_LE((gradient_at<10>(x, u, L).gradient - H).norm(), kStressRounding);
   } else {
     const std::array<Vec3, 4> x4 = {x[0], x[1], x[2], x[3]};
     const std::array<Vec3, 4> u4 = {u[0], u[1], u[2], u[3]};
-    EXPECT_LE((gradient_at<4>(x4, u4, L).gradient - H).norm(), kRounding);
+    EXPECT_LE((gradient_at<4>(x4, u4, L).gradient - H).norm(), kStressRounding);
   }
 }
 

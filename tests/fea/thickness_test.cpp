@@ -11,7 +11,7 @@
 namespace meniscus {
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kThicknessRounding = 1e-12;
 
 /// The bounds of a smooth minimum.
 void expect_least(const TetMesh& mesh, double exact, double error) {
@@ -32,7 +32,7 @@ class Thickness : public testing::TestWithParam<int> {
 
 TEST_P(Thickness, OfAPlateIsExact) {
   expect_least(of_order(shapes::brick({2.0, 1.0, 0.2}, 7, 3, 2)), 0.2,
-               kRounding);
+               kThicknessRounding);
 }
 
 /// A wall of thickness 1 between radii 1 and 2, as thick as its height is.

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/surface_mesh.h"
 #include "io/atomic_file.h"
+#include "io/step_edges.h"
 #include "io/step_reader.h"
 #include "tests/support/temp_folder.h"
 
@@ -93,18 +95,54 @@ TEST_F(StepWriter, WhatIsWrittenIsReadWithItsNames) {
   EXPECT_NEAR(enclosed_volume(metric), 6.0 * 25.4 * 25.4 * 25.4, 1e-8);
 }
 
-TEST_F(StepWriter, EdgesAreReadAsCurves) {
+/// Of a loop, closing side included.
+double perimeter(const StepLoop& loop) {
+  double length = 0.0;
+  for (const StepPiece& piece : loop.pieces) {
+    length += piece.length;
+    EXPECT_EQ(piece.kind, StepPiece::Kind::Line);
+  }
+  return length;
+}
+
+TEST_F(StepWriter, EdgesAndRimsAreReadAsLoops) {
+  const auto file = folder_.path() / "box.step";
+  write_step(file, box({1.0, 2.0, 3.0}), {.unit = "in"});
+  const StepEdges edges(file, "in");
+  // The first face uses the first four edges: about z = 0.
+  const StepLoop loop = edges.loop({"4", "2", "1", "3"});
+  EXPECT_FALSE(loop.whole);
+  ASSERT_EQ(loop.pieces.size(), 4U);
+  EXPECT_NEAR(perimeter(loop), 6.0, 1e-12);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_LT((loop.pieces[k].samples.back() -
+               loop.pieces[(k + 1) % 4].samples.front())
+                  .norm(),
+              1e-12);
+  }
+  EXPECT_NEAR(perimeter(StepEdges(file, "mm").rim("side_1")), 6.0 * 25.4,
+              1e-10);
+  EXPECT_THROW(edges.loop({"1"}), InvalidInput);
+  EXPECT_THROW(edges.loop({"1", "2", "3"}), InvalidInput);
+  EXPECT_THROW(edges.loop({"13"}), InvalidInput);
+  EXPECT_THROW(edges.loop({"rim"}), InvalidInput);
+  EXPECT_THROW(edges.rim("side_6"), InvalidInput);
+}
+
+/// Rims run counter-clockwise seen from outside.
+TEST_F(StepWriter, RimsOfPlanesRunAroundTheirOutwardNormal) {
   const auto file = folder_.path() / "box.step";
   write_step(file, box({1.0, 2.0, 3.0}));
-  double length = 0.0;
-  for (int k = 1; k <= 12; ++k) {
-    const Points points =
-        read_step_curve(file, std::to_string(k), {.edge = 0.1});
-    length += (points.back() - points.front()).norm();
+  const StepEdges edges(file, "mm");
+  const Vec3 middle(0.5, 1.0, 1.5);
+  for (int f = 0; f < 6; ++f) {
+    const StepLoop loop = edges.rim("side_" + std::to_string(f));
+    Vec3 area = Vec3::Zero();
+    for (const StepPiece& piece : loop.pieces) {
+      area += 0.5 * piece.samples.front().cross(piece.samples.back());
+    }
+    EXPECT_GT(area.dot(loop.pieces[0].samples.front() - middle), 0.0) << f;
   }
-  EXPECT_NEAR(length, 4.0 * (1.0 + 2.0 + 3.0), 1e-12);
-  EXPECT_THROW(read_step_curve(file, "13", {.edge = 0.1}), InvalidInput);
-  EXPECT_THROW(read_step_curve(file, "rim", {.edge = 0.1}), InvalidInput);
 }
 
 TEST_F(StepWriter, ReadersRefuseWhatIsNoStep) {

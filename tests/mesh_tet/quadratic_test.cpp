@@ -15,7 +15,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr double kRounding = 1e-13;
+constexpr double kQuadraticRounding = 1e-13;
 
 QuadraticSurface on_sphere(const SurfaceMesh& base, double radius) {
   QuadraticSurface surface;
@@ -61,7 +61,8 @@ TEST(Quadratic, StraightSidesHaveConstantJacobian) {
     EXPECT_EQ(jacobian_ratio(mesh, e), 1.0);
     volume += corner_volume(linear, e);
   }
-  EXPECT_NEAR(quadratic_volume(mesh), volume, kRounding * volume * 100);
+  EXPECT_NEAR(quadratic_volume(mesh), volume,
+              kQuadraticRounding * volume * 100);
   EXPECT_EQ(find_inverted(mesh), -1);
   EXPECT_EQ(find_inverted(linear), -1);
 }
@@ -152,8 +153,9 @@ TEST(Quadratic, TransposeMatchesTheMap) {
   const double forward = flat(weights).dot(flat(mesh.nodes));
   const double backward = flat(back.corners).dot(flat(corners)) +
                           flat(back.mid).dot(flat(moved.mid));
-  EXPECT_NEAR(forward, backward,
-              kRounding * flat(weights).norm() * flat(mesh.nodes).norm());
+  EXPECT_NEAR(
+      forward, backward,
+      kQuadraticRounding * flat(weights).norm() * flat(mesh.nodes).norm());
 }
 
 TEST(Jacobian, BoundAgreesWithDenseSampling) {

@@ -12,7 +12,7 @@ namespace meniscus {
 namespace {
 
 // Sums of up to 1e5 volumes in double precision.
-constexpr double kRounding = 1e-12;
+constexpr double kMesherRounding = 1e-12;
 
 double volume_of(const TetMesh& mesh) {
   double volume = 0.0;
@@ -49,7 +49,7 @@ void expect_fills(const Tetrahedralization& result,
     EXPECT_EQ(mesh.nodes[p], surface.points[p]);
   }
   const double volume = enclosed_volume(surface);
-  EXPECT_NEAR(volume_of(mesh), volume, kRounding * volume);
+  EXPECT_NEAR(volume_of(mesh), volume, kMesherRounding * volume);
   EXPECT_EQ(mesh.labels, surface.labels);
   EXPECT_EQ(mesh.face_label, surface.facet_label);
   ASSERT_EQ(mesh.face_count(), static_cast<int>(surface.facets.size()));
@@ -155,9 +155,9 @@ TEST(TetQuality, RegularTetrahedron) {
   const TetQuality quality = tet_quality(mesh);
   EXPECT_NEAR(quality.min_dihedral_deg, exact, 1e-12 * exact);
   EXPECT_NEAR(quality.max_dihedral_deg, exact, 1e-12 * exact);
-  EXPECT_NEAR(quality.max_radius_edge, std::sqrt(6.0) / 4.0, kRounding);
-  EXPECT_NEAR(quality.max_aspect, std::sqrt(1.5), kRounding);
-  EXPECT_NEAR(std::abs(quality.min_volume), 8.0 / 3.0, kRounding);
+  EXPECT_NEAR(quality.max_radius_edge, std::sqrt(6.0) / 4.0, kMesherRounding);
+  EXPECT_NEAR(quality.max_aspect, std::sqrt(1.5), kMesherRounding);
+  EXPECT_NEAR(std::abs(quality.min_volume), 8.0 / 3.0, kMesherRounding);
 }
 
 }  // namespace

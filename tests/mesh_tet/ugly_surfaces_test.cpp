@@ -13,7 +13,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr double kTimeLimit = 5.0;  // of one surface [s]
+constexpr double kTimeForUgly = 5.0;  // of one surface [s]
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Nothing but a mesh with the surface's volume, or a typed failure with a
@@ -23,8 +23,8 @@ bool survives(const SurfaceMesh& surface, const std::string& name,
   SCOPED_TRACE(name);
   const Timer timer;
   const auto result =
-      tetrahedralize(surface, {.edge = edge, .time_limit = kTimeLimit});
-  EXPECT_LT(timer.seconds(), kTimeLimit + 1.0);
+      tetrahedralize(surface, {.edge = edge, .time_limit = kTimeForUgly});
+  EXPECT_LT(timer.seconds(), kTimeForUgly + 1.0);
   if (result.failure) {
     EXPECT_TRUE(result.failure->kind == FailureKind::SurfaceInvalid ||
                 result.failure->kind == FailureKind::MeshingFailed);

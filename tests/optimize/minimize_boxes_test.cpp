@@ -11,7 +11,7 @@ namespace {
 
 using tests::vector_of;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 // Boxes solved to the end, each, took 124 evaluations here; left once they are
 // used up, 64.
 constexpr int kEvaluations = 90;
@@ -22,7 +22,8 @@ MinimizeProblem tunnel() {
   MinimizeProblem problem{
       .variables = {{"x", -2.0, -4.0, 6.0}, {"y", 4.0, -10.0, 20.0}},
       .objective = "mass",
-      .constraints = {{"floor", 0.0, kInf, 1.0}, {"lid", -kInf, 0.2, 1.0}}};
+      .constraints = {{"floor", 0.0, kUnbounded, 1.0},
+                      {"lid", -kUnbounded, 0.2, 1.0}}};
   problem.function = [](const VectorX& x) -> VectorAnswer {
     const double above = x[1] - x[0] * x[0];
     if (std::abs(above) > 0.3) {

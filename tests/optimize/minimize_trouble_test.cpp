@@ -16,10 +16,10 @@ using testing::HasSubstr;
 using testing::Not;
 using tests::vector_of;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-VectorAnswer pinched() {
+VectorAnswer pinched_answer() {
   return {.values = {},
           .failure = Failure{FailureKind::FilmPinched, "the neck closes"}};
 }
@@ -62,7 +62,7 @@ TEST_P(Trouble, ARegionThatFailsIsSteppedBackFrom) {
   // The first steps of most methods land beyond x + y = 11.
   MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX& x) {
-    return x.sum() > 11.0 ? pinched() : values(vector_of({bowl(x)}));
+    return x.sum() > 11.0 ? pinched_answer() : values(vector_of({bowl(x)}));
   };
   const MinimizeReport report = minimize(problem, options());
   EXPECT_EQ(report.termination, Termination::Converged) << report.message;
@@ -73,7 +73,7 @@ TEST_P(Trouble, AMinimumBesideAWallIsFoundAndTheWallNamed) {
   // Half of the space fails, and the bowl leans against it.
   MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX& x) {
-    return x[0] > 5.0 ? pinched() : values(vector_of({bowl(x)}));
+    return x[0] > 5.0 ? pinched_answer() : values(vector_of({bowl(x)}));
   };
   const double least = bowl(vector_of({5.0, 3.0 + 0.5 / 6.0}));
   const MinimizeReport report = minimize(problem, options());
@@ -89,7 +89,7 @@ TEST_P(Trouble, AMinimumBesideAWallIsFoundAndTheWallNamed) {
 TEST_P(Trouble, NaNIsAPointThatFails) {
   MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX& x) {
-    return values(vector_of({x.sum() > 11.0 ? kNaN : bowl(x)}));
+    return values(vector_of({x.sum() > 11.0 ? kNotANumber : bowl(x)}));
   };
   const MinimizeReport report = minimize(problem, options());
   EXPECT_EQ(report.termination, Termination::Converged) << report.message;
@@ -99,7 +99,7 @@ TEST_P(Trouble, NaNIsAPointThatFails) {
 TEST_P(Trouble, AFailingStartIsLeft) {
   MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX& x) {
-    return x[0] < 2.0 ? pinched() : values(vector_of({bowl(x)}));
+    return x[0] < 2.0 ? pinched_answer() : values(vector_of({bowl(x)}));
   };
   const MinimizeReport report = minimize(problem, options());
   EXPECT_EQ(report.termination, Termination::Converged) << report.message;
@@ -108,7 +108,7 @@ TEST_P(Trouble, AFailingStartIsLeft) {
 
 TEST_P(Trouble, EveryPointFailingSaysWhatToChange) {
   MinimizeProblem problem = bowl_problem();
-  problem.function = [](const VectorX&) { return pinched(); };
+  problem.function = [](const VectorX&) { return pinched_answer(); };
   const MinimizeReport report = minimize(problem, options());
   EXPECT_EQ(report.termination, Termination::NoFeasible);
   EXPECT_EQ(report.best.size(), 0);
@@ -120,7 +120,9 @@ TEST_P(Trouble, EveryPointFailingSaysWhatToChange) {
 
 TEST_P(Trouble, NaNEverywhereNamesTheExpression) {
   MinimizeProblem problem = bowl_problem();
-  problem.function = [](const VectorX&) { return values(vector_of({kNaN})); };
+  problem.function = [](const VectorX&) {
+    return values(vector_of({kNotANumber}));
+  };
   const MinimizeReport report = minimize(problem, options());
   EXPECT_EQ(report.termination, Termination::NoFeasible);
   EXPECT_THAT(report.message,
@@ -143,9 +145,9 @@ TEST_P(Trouble, AConstantObjectiveSaysSo) {
 TEST_P(Trouble, ConstraintsThatExcludeEachOtherAreNamed) {
   // a + b >= 8 and a + b <= 4, b <= 100.
   MinimizeProblem problem = bowl_problem();
-  problem.constraints = {{"stiffness", 8.0, kInf, {}},
-                         {"stress", -kInf, 4.0, {}},
-                         {"height", -kInf, 100.0, {}}};
+  problem.constraints = {{"stiffness", 8.0, kNoBound, {}},
+                         {"stress", -kNoBound, 4.0, {}},
+                         {"height", -kNoBound, 100.0, {}}};
   problem.function = [](const VectorX& x) {
     return values(vector_of({bowl(x), x.sum(), x.sum(), x[1]}));
   };
@@ -185,7 +187,7 @@ TEST_P(Trouble, HeldVariablesStay) {
 
 TEST_P(Trouble, AJumpDoesNotLoseTheBestPoint) {
   MinimizeProblem problem = bowl_problem();
-  double best = kInf;
+  double best = kNoBound;
   problem.function = [&best](const VectorX& x) {
     const double jump = std::floor(3.0 * x[0]) * 0.7 +
                         (std::sin(40.0 * x[1]) > 0.0 ? 1.0 : 0.0);
@@ -232,7 +234,7 @@ TEST_P(Trouble, StopsOnRequest) {
 
 TEST_P(Trouble, BudgetsHoldAndTheIncumbentIsKept) {
   for (const int budget : {1, 2, 3, 5}) {
-    double best = kInf;
+    double best = kNoBound;
     int calls = 0;
     MinimizeProblem problem = bowl_problem();
     problem.function = [&](const VectorX& x) {
@@ -284,7 +286,7 @@ TEST_P(Trouble, TheSequenceRepeatsBitForBitAndNoPointTwice) {
     if (fails) {
       const VectorFunction whole = problem.function;
       problem.function = [whole](const VectorX& x) {
-        return x[0] < 5.5 ? pinched() : whole(x);
+        return x[0] < 5.5 ? pinched_answer() : whole(x);
       };
       problem.variables[0].initial = 7.0;
     }

@@ -2,21 +2,30 @@
 
     STEP_FILES="a.step b.step" freecadcmd tests/peers/freecad_step.py
 
-Prints a line per file; the last says how many are not one valid closed solid.
+Prints what it finds as JSON, a line per file.
 """
+import collections
+import json
 import os
 
+import FreeCAD
 import Part  # FreeCAD's own
 
-BAD = 0
 for path in os.environ["STEP_FILES"].split():
     shape = Part.Shape()
     shape.read(path)
     solids = shape.Solids
-    good = len(solids) == 1 and shape.isValid() and solids[0].isClosed()
-    BAD += not good
-    center = solids[0].CenterOfMass if solids else (0, 0, 0)
-    print(f"{path}: {len(solids)} solids, {len(shape.Faces)} faces, valid "
-          f"{shape.isValid()}, volume {shape.Volume:.9g} mm3, mass centre "
-          f"({center[0]:.6g}, {center[1]:.6g}, {center[2]:.6g})")
-print(f"{BAD} files are not one valid closed solid")
+    kinds = collections.Counter(type(face.Surface).__name__
+                                for face in shape.Faces)
+    print()
+    print(json.dumps({
+        "file": path,
+        "solids": len(solids),
+        "faces": len(shape.Faces),
+        "kinds": dict(kinds),
+        "valid": shape.isValid(),
+        "closed": bool(solids) and solids[0].isClosed(),
+        "volume": shape.Volume,
+        "centre": list(solids[0].CenterOfMass) if solids else [0, 0, 0],
+        "version": ".".join(FreeCAD.Version()[:3]),
+    }))

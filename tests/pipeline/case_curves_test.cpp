@@ -22,7 +22,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 /// A wall of a disk over the curve `rim`, which `curves` defines; its first
 /// line is line 10.
@@ -130,8 +130,8 @@ TEST(CaseCurves, OfEveryKindFollowTheDesignWithExactRates) {
   }
   const Case slot = case_of(disk(kSlot));
   const EvaluatedCase numbers = evaluate(slot, initial_design(slot));
-  EXPECT_NEAR(length_of(numbers.film_system.curves[0].shape), 12.0 + 4.0 * kPi,
-              1e-12);
+  EXPECT_NEAR(length_of(numbers.film_system.curves[0].shape),
+              12.0 + 4.0 * kHalfTurn, 1e-12);
 }
 
 TEST(CaseCurves, RepeatCountsInExpressions) {

@@ -20,17 +20,17 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-struct Mistake {
+struct Trouble {
   const char* name;
   const char* from;  // in strut()
   const char* to;
   const char* message;  // must appear in the first problem, after "case.toml:"
 };
 
-class MistakeTest : public testing::TestWithParam<Mistake> {};
+class MistakeTest : public testing::TestWithParam<Trouble> {};
 
 TEST_P(MistakeTest, IsToldWithItsLine) {
-  const Mistake& mistake = GetParam();
+  const Trouble& mistake = GetParam();
   const std::vector<std::string> problems =
       problems_of(changed(strut(), mistake.from, mistake.to));
   ASSERT_EQ(problems.size(), 1U) << testing::PrintToString(problems);
@@ -38,7 +38,7 @@ TEST_P(MistakeTest, IsToldWithItsLine) {
               HasSubstr(std::string("case.toml:") + mistake.message));
 }
 
-const Mistake kMistakes[] = {
+const Trouble kMistakes[] = {
     {"MissingTitle", "title = \"A strut\"", "",
      "1: the file has no 'title' (one line for people); add it"},
     {"UnknownUnits", "mm-N-MPa", "mm-N",
@@ -74,9 +74,9 @@ const Mistake kMistakes[] = {
      "25: films.skin.kind is the text 'brunch'; did you mean 'branch'?"},
     {"EmptyKind", "kind = \"branch\"", "kind = \"\"",
      "25: films.skin.kind is the text ''; expected one of branch, loft, disk"},
-    {"LaterKind", "kind = \"branch\"", "kind = \"facets\"",
-     "25: films.skin.kind 'facets' is not available in this version; expected "
-     "one of branch, loft, disk"},
+    {"LaterKind", "kind = \"circle\"", "kind = \"arc\"",
+     "13: curves.base.kind 'arc' is not available in this version; expected "
+     "one of circle, ellipse"},
     {"UnknownName", "\"foot\"", "\"fot\"",
      "16: curves.base.radius: unknown name 'fot' (did you mean 'foot'?) in "
      "'fot' at character 1"},
@@ -347,9 +347,9 @@ TEST(CaseTrouble, IsToldUpToTwentyTimes) {
 
 TEST(CaseTrouble, MissingTablesAreNamed) {
   const std::vector<std::string> problems = problems_of("title = \"x\"\n");
-  for (const char* table : {"units", "[curves.NAME]", "[films.NAME]",
-                            "[bodies.NAME]", "[resolution]", "[materials.NAME]",
-                            "[load_cases.NAME]", "[responses.NAME]"}) {
+  for (const char* table :
+       {"units", "[films.NAME]", "[bodies.NAME]", "[resolution]",
+        "[materials.NAME]", "[load_cases.NAME]", "[responses.NAME]"}) {
     EXPECT_THAT(problems, Contains(HasSubstr(table)));
   }
 }

@@ -26,8 +26,11 @@ class Studies(PackageTest):
                     "response_errors", "evaluations", "program_version"):
             self.assertEqual(run.result[key], expected[key], key)
         for name in ("film.vtp", "part.vtu", "part_surface.vtp",
-                     "part_12.stl", "history.csv", "study.sqlite"):
+                     "part_12.stl", "history.csv", "study.sqlite",
+                     "frames.pvd", "part.png", "film.png", "overview.png",
+                     "report.html"):
             self.assertTrue((ours / name).exists(), name)
+        self.assertIn("ledger", run.result)
         # An evaluation in Python of the program's answer.
         read = meniscus.read_run(theirs)
         at = meniscus.Model(read.case).evaluate(read.answer)
@@ -52,12 +55,16 @@ class Studies(PackageTest):
 
         with self.assertRaisesRegex(KeyError, "enough"):
             meniscus.run_study(case, folder, progress=stop_late)
+        self.assertTrue((folder / "report.html").exists())
         cut = meniscus.read_run(folder)
         self.assertEqual(cut.status, "interrupted")
         kept = len(cut.evaluations)
         self.assertGreater(kept, 0)
-        run = meniscus.run_study(case, folder, resume=True)
+        run = meniscus.run_study(case, folder, resume=True, pictures=False,
+                                 frames=False, report=False)
         self.assertEqual(run.status, "converged")
+        for name in ("part.png", "frames.pvd", "report.html"):
+            self.assertFalse((folder / name).exists(), name)
         self.assertGreater(len(run.evaluations), kept)
         np.testing.assert_array_equal(run.evaluations.designs[:kept],
                                       cut.evaluations.designs)

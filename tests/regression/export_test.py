@@ -30,9 +30,11 @@ ENERGY = 1e-10
 
 
 def run_program(*command, folder=None, timeout=120):
-    """Output of a program that must end well."""
+    """Output of a program that must end well; admesh writes the header of a
+    binary file with what lies behind it."""
     done = subprocess.run([str(c) for c in command], capture_output=True,
-                          text=True, timeout=timeout, cwd=folder,
+                          text=True, errors="replace", timeout=timeout,
+                          cwd=folder,
                           env={**os.environ, "LC_ALL": "C"})
     assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
     return done.stdout + done.stderr
@@ -226,6 +228,22 @@ class Export(ProgramTest):
                                    delta=SOLIDS)
         finally:
             gmsh.close()
+
+    def test_vtk_reads_the_vtu(self):
+        said = run_program(program.PROGRAM.parent / "read_vtu",
+                           self.file("vtu")).splitlines()
+        rows = [line.split("|") for line in said]
+        tet = self.found["tet"]
+        self.assertIn(["points", str(tet["nodes"])], rows)
+        self.assertIn(["cells", str(tet["elements"])], rows)
+        self.assertEqual([row[1] for row in rows if row[0] == "type"],
+                         ["24"])  # VTK_QUADRATIC_TETRA
+        (field,) = [row for row in rows if row[0] == "point" and
+                    row[1].startswith("displacement") and row[3] == "3"][:1]
+        ours = nodal_field(self.text("msh"), "displacement")
+        self.assertEqual(int(field[2]), len(ours))
+        largest = max(sum(x * x for x in row) for row in ours) ** 0.5
+        self.assertAlmostEqual(float(field[5]) / largest, 1, delta=1e-6)
 
     def mesh_volume(self):
         """Of the ten-node elements, by the program."""

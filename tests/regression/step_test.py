@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """STEP files of the cases: true to the film, closed, and read by gmsh."""
+import ctypes
 import json
+import math
 import os
 import re
 import shutil
@@ -8,6 +10,7 @@ import subprocess
 import unittest
 
 import program
+from export_test import Array, Gmsh
 
 MOST_GAP = 0.01  # mm
 MOST_DEVIATION = 0.1  # of the film's edge
@@ -16,6 +19,26 @@ MOST_VOLUME_ERROR = 1e-3
 # Straight sides where the run has curved ones, edges of 20 mm.
 MOST_FACETED = 0.05
 NUMBER = r"([-+.\deE]+)"
+MOST_FLAT = 1e-3  # of flat facets of a twentieth of the radius
+CATENOID = """title = "Catenoid"
+units = "mm-N-MPa"
+[curves.low]
+kind = "file"
+file = "can.step"
+edge = {low}
+[curves.high]
+kind = "file"
+file = "can.step"
+edge = {high}
+[films.skin]
+kind = "loft"
+curves = ["low", "high"]
+[walls.web]
+films = ["skin"]
+thickness = 0.1
+[resolution]
+fea = 1.0
+"""
 
 
 def gmsh_volume(path):
@@ -31,6 +54,74 @@ Printf("found %g of %.15g", #v(), m(0));
                           check=False)
     found = re.search(rf"found (\d+) of {NUMBER}", done.stdout + done.stderr)
     return (int(found.group(1)), float(found.group(2))) if found else (0, 0.0)
+
+
+HEAD = """title = "Simple"
+units = "mm-N-MPa"
+[curves.foot]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = 20
+[solids.foot_pad]
+kind = "cap"
+curve = "foot"
+[resolution]
+fea = 8.0
+film = 4.0
+[materials.aluminium]
+youngs_modulus = "71.7 GPa"
+poisson_ratio = 0.33
+density = 2.8e-9
+[load_cases.weight]
+supports = [{ on = "foot_pad", fix = "xyz" }]
+loads = [{ gravity = [0, 0, -9810] }]
+[responses.mass]
+kind = "mass"
+[study]
+kind = "analyse"
+"""
+POST = """[curves.head]
+kind = "circle"
+center = [0, 0, 40]
+normal = [0, 0, 1]
+radius = 20
+[films.skin]
+kind = "loft"
+curves = ["foot", "head"]
+[solids.head_pad]
+kind = "cap"
+curve = "head"
+[bodies.part]
+enclosed_by = ["skin", "foot_pad", "head_pad"]
+material = "aluminium"
+volume = "40 * pi * 20^2%s"
+"""
+DROP = """[films.skin]
+kind = "disk"
+curves = ["foot"]
+[bodies.part]
+enclosed_by = ["skin", "foot_pad"]
+material = "aluminium"
+volume = "pi * 14 * (3 * 20^2 + 14^2) / 6"
+"""
+
+
+def surface_kinds(path):
+    """How many faces of which kind OpenCASCADE finds, as gmsh names them."""
+    gmsh = Gmsh(path)
+    try:
+        tags = Array(ctypes.c_int)
+        gmsh.call("ModelGetEntities", *tags.out(), 2)
+        kinds = {}
+        for tag in tags.values()[1::2]:
+            kind = ctypes.c_char_p()
+            gmsh.call("ModelGetType", 2, tag, ctypes.byref(kind))
+            name = kind.value.decode()
+            kinds[name] = kinds.get(name, 0) + 1
+        return kinds
+    finally:
+        gmsh.close()
 
 
 class Step(program.ProgramTest):
@@ -59,8 +150,8 @@ class Step(program.ProgramTest):
                             "--set", f"resolution.film={edge}")
         file, said = self.export(run)
         figures = [re.search(pattern, said) for pattern in (
-            rf"(\d+) B-spline faces, (\d+) planes; valid closed solid of "
-            rf"{NUMBER} mm3",
+            rf"(\d+) B-spline faces, (\d+) planes, 0 cylinders, 0 spheres; "
+            rf"valid closed solid of {NUMBER} mm3",
             rf"gap at edges {NUMBER} mm .*\({NUMBER} of its edge\)",
             rf"tangent breaks .* {NUMBER} degrees")]
         self.assertTrue(all(figures), said)
@@ -105,6 +196,135 @@ class Step(program.ProgramTest):
     def test_strut_from_rounded_square_to_circle(self):
         volume = 70 * (38 ** 2 + 3.141592653589793 * 14 ** 2) / 2
         self.check("struts", volume, (4, 2), 5)
+
+    def test_curves_from_a_file_of_gmsh(self):
+        """A catenoid between the rims of a can that gmsh has written."""
+        if not shutil.which("gmsh"):
+            if os.environ.get("MENISCUS_NO_SKIPS"):
+                self.fail("gmsh is not installed")
+            self.skipTest("gmsh is not installed")
+        script = self.folder / "can.geo"
+        can = self.folder / "can.step"
+        script.write_text(f"""SetFactory("OpenCASCADE");
+Cylinder(1) = {{0, 0, 0, 0, 0, 10, 10}};
+Save "{can}";
+""")
+        subprocess.run(["gmsh", script, "-", "-parse_and_exit"],
+                       capture_output=True, timeout=120, check=True)
+        case = self.folder / "rims.toml"
+
+        def check(low, high):
+            case.write_text(CATENOID.format(low=low, high=high))
+            return self.call("check", case)
+
+        there = check(99, 98).stderr
+        circles = sorted(set(
+            re.findall(rf"(\d+): circle of length {NUMBER} about", there)))
+        self.assertEqual(len(circles), 2, there)
+        self.assertIn("rims.toml:6: curves.low.edge", there)
+        for _, length in circles:
+            self.assertAlmostEqual(float(length), 62.832, places=3)
+        done = self.expect(check(*(number for number, _ in circles)), 0)
+        self.assertEqual(done.stdout.count("a circle of radius 10 mm, exact"),
+                         2)
+        out = self.folder / "film"
+        done = self.expect(self.call("evolve", case, "--out", out,
+                                     "--no-pictures"), 0)
+        area = float(re.search(rf"area {NUMBER}", done.stdout).group(1))
+        self.assertLess(abs(area / 599.179697580228 - 1.0), MOST_FLAT)
+
+    def simple(self, films):
+        """The exported part of a small case and what was said of it."""
+        path = self.folder / "simple.toml"
+        path.write_text(HEAD + films)
+        run = self.folder / "simple"
+        self.expect(self.call("run", path, "--out", run, "--no-pictures",
+                              "--quiet"), 0)
+        return self.export(run)
+
+    def test_post_is_a_cylinder(self):
+        file, said = self.simple(POST % "")
+        self.assertIn("0 B-spline faces, 2 planes, 1 cylinders, 0 spheres", said)
+        self.assertIn("skin is a cylinder of radius 20 mm", said)
+        self.assertEqual(surface_kinds(file), {"Plane": 2, "Cylinder": 1})
+        count, volume = gmsh_volume(file)
+        self.assertEqual(count, 1)
+        self.assertAlmostEqual(volume / (40 * math.pi * 20 ** 2), 1, delta=1e-7)
+
+    def test_post_that_bulges_is_none(self):
+        file, said = self.simple(POST % " * 1.02")
+        self.assertIn("4 B-spline faces, 2 planes, 0 cylinders", said)
+        self.assertEqual(surface_kinds(file), {"Plane": 2, "BSpline surface": 4})
+
+    def test_drop_is_a_sphere(self):
+        file, said = self.simple(DROP)
+        self.assertIn("0 B-spline faces, 1 planes, 0 cylinders, 1 spheres", said)
+        self.assertEqual(surface_kinds(file), {"Plane": 1, "Sphere": 1})
+        count, volume = gmsh_volume(file)
+        self.assertEqual(count, 1)
+        exact = math.pi * 14 * (3 * 20 ** 2 + 14 ** 2) / 6
+        self.assertAlmostEqual(volume / exact, 1, delta=MOST_VOLUME_ERROR)
+
+    def test_drop_on_an_ellipse_is_five_patches(self):
+        path = HEAD.replace('"circle"', '"ellipse"').replace(
+            "radius = 20", "axis = [1, 0, 0]\nradius_1 = 24\nradius_2 = 16")
+        drop = DROP.replace("volume = ", "volume = 9000 #")
+        self.assertNotEqual(path, HEAD)
+        file = self.folder / "oval.toml"
+        file.write_text(path + drop)
+        run = self.folder / "oval"
+        self.expect(self.call("run", file, "--out", run, "--no-pictures",
+                              "--quiet"), 0)
+        step, said = self.export(run)
+        self.assertIn("5 B-spline faces, 1 planes", said)
+        self.assertLess(float(re.search(rf"\({NUMBER} of its edge\)",
+                                        said)[1]), MOST_DEVIATION)
+        count, volume = gmsh_volume(step)
+        self.assertEqual(count, 1)
+        self.assertAlmostEqual(volume / 9000, 1, delta=MOST_VOLUME_ERROR)
+
+    def test_square_rims_corners(self):
+        corners = "[[-20, -20, %s], [20, -20, %s], [20, 20, %s], [-20, 20, %s]]"
+        square = 'kind = "polygon"\npoints = '
+        head = HEAD.replace(
+            'kind = "circle"\ncenter = [0, 0, 0]\nnormal = [0, 0, -1]\n'
+            "radius = 20", square + corners % ((0,) * 4))
+        post = (POST % "").replace(
+            'kind = "circle"\ncenter = [0, 0, 40]\nnormal = [0, 0, 1]\n'
+            "radius = 20", square + corners % ((40,) * 4)).replace(
+                "40 * pi * 20^2", "52000")
+        file = self.folder / "square.toml"
+        file.write_text(head + post)
+        run = self.folder / "square"
+        self.expect(self.call("run", file, "--out", run, "--no-pictures",
+                              "--quiet"), 0)
+        step, said = self.export(run)
+        self.assertIn("4 B-spline faces, 2 planes", said)
+        self.assertLess(float(re.search(rf"\({NUMBER} of its edge\)",
+                                        said)[1]), MOST_DEVIATION)
+        count, volume = gmsh_volume(step)
+        self.assertEqual(count, 1)
+        self.assertAlmostEqual(volume / 52000, 1, delta=MOST_VOLUME_ERROR)
+
+    def test_the_ledger_notes_what_was_exported(self):
+        run = self.analysed("strut_family", "--set", "resolution.fea=10",
+                            "--set", "resolution.film=10")
+        before = json.loads((run / "result.json").read_text())
+        self.expect(self.call("export", run, "--format", "step"), 0)
+        elsewhere = self.folder / "deck.inp"
+        self.expect(self.call("export", run, "--format", "inp", "--out",
+                              elsewhere), 0)
+        after = json.loads((run / "result.json").read_text())
+        files = {file["name"]: file for file in after["ledger"]["files"]}
+        step = files["part_10.step"]
+        self.assertTrue(step["written"])
+        self.assertEqual(step["bytes"], (run / "part_10.step").stat().st_size)
+        deck = files["part_10.inp"]
+        self.assertFalse(deck["written"])
+        self.assertEqual(deck["bytes"], elsewhere.stat().st_size)
+        self.assertEqual(len(files), len(before["ledger"]["files"]) + 1)
+        before["ledger"]["files"] = after["ledger"]["files"]
+        self.assertEqual(before, after)
 
     def test_faceted_is_asked_for_by_name(self):
         run = self.analysed("struts", "--set", "resolution.fea=10",

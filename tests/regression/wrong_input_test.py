@@ -3,6 +3,7 @@
 half-written file."""
 import os
 import re
+import shutil
 import subprocess
 import unittest
 
@@ -198,6 +199,64 @@ class UnusableFolder(ProgramTest):
                 capture_output=True, text=True, check=False)
         self.expect(done, 4, "(?i)space|full|too large")
         self.assert_no_half_files(disk)
+
+
+class NoResults(ProgramTest):
+    """Folders that are no results, or damaged ones: exit 2, the file named,
+    before anything is computed, and nothing written."""
+
+    def all_commands(self, folder, *patterns):
+        before = self.listing()
+        for command in (["report", folder], ["study", "show", folder],
+                        ["study", "watch", folder, "--once"],
+                        ["export", folder, "--format", "stl"],
+                        ["export", folder, "--format", "step"],
+                        ["compare", folder, "good", "--out", "compared"],
+                        ["compare", "good", folder, "--out", "compared"]):
+            done = self.expect(self.call(*command), 2, *patterns)
+            self.assertNotIn("tetrahedra", done.stderr, command)
+        self.assertEqual(self.listing(), before)
+
+    def listing(self):
+        return {path: path.stat().st_mtime_ns
+                for path in self.folder.rglob("*") if path.is_file()}
+
+    def test_told_at_once(self):
+        good = self.folder / "good"
+        self.expect(self.call("run", program.CASE, "--out", good,
+                              "--no-pictures", *COARSE), 0)
+        (self.folder / "empty").mkdir()
+        foreign = self.folder / "foreign"
+        foreign.mkdir()
+        (foreign / "result.json").write_text("{}")
+        self.all_commands("nowhere", "nowhere")
+        self.all_commands("empty", "empty")
+        self.all_commands("foreign", "foreign")
+        damaged = self.folder / "damaged"
+        shutil.copytree(good, damaged)
+        for data in (b"no database", (good / "study.sqlite").read_bytes()[:5000]):
+            (damaged / "study.sqlite").write_bytes(data)
+            self.all_commands("damaged", "damaged/study.sqlite")
+
+    def test_read_only_results(self):
+        good = self.folder / "good"
+        self.expect(self.call("run", program.CASE, "--out", good,
+                              "--no-pictures", *COARSE), 0)
+        before = self.listing()
+        for command in (["report", "good"],
+                        ["export", "good", "--format", "stl"],
+                        ["compare", "good", "good", "--out", "good/compared"],
+                        ["study", "show", "good", "--csv", "good/table.csv"]):
+            line = " ".join([str(program.PROGRAM), *command])
+            done = subprocess.run(
+                ["unshare", "-rm", "bash", "-c",
+                 f"mount --bind good good && mount -o remount,ro,bind good "
+                 f"|| exit 99; {line}"],
+                cwd=self.folder, capture_output=True, text=True, check=False)
+            if done.returncode == 99 or "unshare" in done.stderr:
+                self.skipTest("no mounts here: " + done.stderr)
+            self.expect(done, 2, "(?i)read-only")
+        self.assertEqual(self.listing(), before)
 
 
 class OddSurroundings(ProgramTest):

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/find_program.h"
+#include "core/timer.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
 #include "tests/support/environment_variable.h"
@@ -54,9 +55,9 @@ class PictureTest : public ::testing::Test {
     PictureJob job;
     job.kind = kind;
     job.output = (folder_ / name).string();
-    job.part = (folder_ / "part.vtu").string();
-    job.part_surface = (folder_ / "part_surface.vtp").string();
-    job.film = (folder_ / "film.vtp").string();
+    job.part.file = (folder_ / "part.vtu").string();
+    job.part_surface.file = (folder_ / "part_surface.vtp").string();
+    job.film.file = (folder_ / "film.vtp").string();
     job.title = "Träger";
     job.width = 400;
     job.height = 300;
@@ -113,7 +114,7 @@ TEST_F(PictureTest, OneBadJobDoesNotStopTheNext) {
   }
   std::vector<PictureJob> jobs = {job(PictureKind::Part, "a.png"),
                                   job(PictureKind::Film, "b.png")};
-  jobs[0].part_surface = (folder_ / "absent.vtp").string();
+  jobs[0].part_surface.file = (folder_ / "absent.vtp").string();
   EXPECT_THAT(
       render_pictures(jobs),
       ElementsAre(testing::AllOf(HasSubstr("a.png"), HasSubstr("absent.vtp"))));
@@ -167,24 +168,81 @@ TEST_F(PictureTest, StopsOnRequest) {
   }
 }
 
-TEST(PictureJobs, SurviveTheirJson) {
+TEST_F(PictureTest, ShapesInMemoryLookLikeThoseInFiles) {
+  if (!find_program("Xvfb")) {
+    MENISCUS_NOT_HERE("Xvfb is not installed");
+  }
+  const PictureJob from_file = job(PictureKind::Film, "file.png");
+  PictureJob from_memory = job(PictureKind::Film, "memory.png");
+  PictureSurface surface;
+  surface.mesh = boundary_surface(shapes::straight_quadratic(
+                                      shapes::brick(Vec3(20, 10, 60), 2, 1, 6)))
+                     .mesh;
+  from_memory.film = {std::make_shared<const PictureSurface>(surface), ""};
+  EXPECT_THAT(render_pictures({from_file, from_memory}), IsEmpty());
+  EXPECT_EQ(read_file(from_file.output), read_file(from_memory.output));
+}
+
+TEST_F(PictureTest, BesideTheCallersWork) {
+  if (!find_program("Xvfb")) {
+    MENISCUS_NOT_HERE("Xvfb is not installed");
+  }
+  PicturesBeside pictures({job(PictureKind::Part, "a.png")}, {});
+  EXPECT_THAT(pictures.wait(), IsEmpty());
+  expect_picture((folder_ / "a.png").string(), 400, 300);
+}
+
+TEST_F(PictureTest, GivenUpWithTheCallersWork) {
+  const fs::path hanging = folder_ / "hanging";
+  write_file(hanging, "#!/bin/sh\nsleep 60\n");
+  fs::permissions(hanging, fs::perms::owner_all);
+  ::setenv("MENISCUS_RENDER", hanging.c_str(), 1);
+  const Timer timer;
+  { const PicturesBeside given_up({job(PictureKind::Part, "a.png")}, {}); }
+  EXPECT_LT(timer.seconds(), 30.0);  // of the 60 that it would take
+  EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+}
+
+TEST(PictureJobs, SurviveTheirBytes) {
   PictureJob job;
   job.kind = PictureKind::Film;
-  job.output = "größe \"x\".png";
+  job.output = "größe \"x\" \xff.png";  // a path need not be UTF-8
   job.loads = {{"pad", Vec3(0.1, -2, 3), "5 N"}};
   job.view = Vec3(1, 2, 3);
   job.facet_edges = true;
-  const auto jobs = picture_jobs_from_json(to_json({job}));
-  ASSERT_EQ(jobs.size(), 1u);
+  job.part_surface.file = "part.vtp";
+  PictureSurface surface;
+  surface.mesh = shapes::box(Vec3(1, 2, 3), 2);
+  surface.von_mises.assign(surface.mesh.points.size(), 0.1);
+  job.film.data = std::make_shared<const PictureSurface>(surface);
+  const auto jobs = picture_jobs_from_bytes(to_bytes({job, job}));
+  ASSERT_EQ(jobs.size(), 2u);
   EXPECT_EQ(jobs[0].kind, job.kind);
   EXPECT_EQ(jobs[0].output, job.output);
   EXPECT_EQ(jobs[0].loads.at(0).direction, job.loads[0].direction);
   EXPECT_EQ(jobs[0].view, job.view);
   EXPECT_TRUE(jobs[0].facet_edges);
-  EXPECT_THROW(picture_jobs_from_json("{"), InvalidInput);
-  EXPECT_THROW(picture_jobs_from_json("[{\"kind\":\"cube\",\"output\":\"\"}]"),
+  EXPECT_EQ(jobs[0].part_surface.file, "part.vtp");
+  EXPECT_EQ(jobs[0].film.data, jobs[1].film.data);
+  EXPECT_EQ(jobs[0].film.data->mesh.points, surface.mesh.points);
+  EXPECT_EQ(jobs[0].film.data->mesh.facets, surface.mesh.facets);
+  EXPECT_EQ(jobs[0].film.data->von_mises, surface.von_mises);
+}
+
+TEST(PictureJobs, RefuseWhatDoesNotFit) {
+  EXPECT_THROW(picture_jobs_from_bytes("{"), InvalidInput);
+  PictureJob job;
+  job.width = 100;
+  EXPECT_THROW(picture_jobs_from_bytes(to_bytes({job})), InvalidInput);
+  job.width = 400;
+  PictureSurface surface;
+  surface.mesh = shapes::box(Vec3(1, 2, 3), 2);
+  surface.mesh.facets[0][1] = 10000;
+  job.film.data = std::make_shared<const PictureSurface>(surface);
+  EXPECT_THROW(picture_jobs_from_bytes(to_bytes({job})), InvalidInput);
+  const std::string bytes = to_bytes({job});
+  EXPECT_THROW(picture_jobs_from_bytes(bytes.substr(0, bytes.size() / 2)),
                InvalidInput);
-  EXPECT_THROW(picture_jobs_from_json("[{\"output\":\"\"}]"), InvalidInput);
 }
 
 }  // namespace

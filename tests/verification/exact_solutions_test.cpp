@@ -17,9 +17,9 @@ namespace {
 // fine.
 constexpr double kOrderSlack = 0.25;
 
-Support fix_x(const char* s) { return {s, true, false, false}; }
-Support fix_y(const char* s) { return {s, false, true, false}; }
-Support fix_z(const char* s) { return {s, false, false, true}; }
+Support held_x(const char* s) { return {s, true, false, false}; }
+Support held_y(const char* s) { return {s, false, true, false}; }
+Support held_z(const char* s) { return {s, false, false, true}; }
 
 VectorX solve(const TetMesh& mesh, const Material& material,
               LoadCase load_case) {
@@ -70,7 +70,7 @@ Orders observe(const char* name, const exact::Field& field,
 }
 
 /// 0 on the plane x = 0, which is held.
-exact::Field manufactured() {
+exact::Field smooth_field() {
   return {parts::steel(), [](const exact::DualVec& x) -> exact::DualVec {
             const exact::Dual g =
                 1e-3 * sin(2.0 * x[0]) * cos(1.5 * x[1]) * exp(0.5 * x[2]);
@@ -82,7 +82,7 @@ class Manufactured : public testing::TestWithParam<int> {};
 
 TEST_P(Manufactured, ErrorsFallAtTheirOrders) {
   const int p = GetParam();
-  const exact::Field field = manufactured();
+  const exact::Field field = smooth_field();
   const Orders orders = observe(
       p == 1 ? "manufactured, four-node" : "manufactured, ten-node", field,
       p == 1 ? std::vector<int>{4, 8, 16} : std::vector<int>{2, 4, 8},
@@ -114,7 +114,7 @@ TetMesh straightened(TetMesh mesh) {
 }
 
 LoadCase sphere_pressure(const TetMesh& /*mesh*/) {
-  return {.supports = {fix_x("x0"), fix_y("y0"), fix_z("z0")},
+  return {.supports = {held_x("x0"), held_y("y0"), held_z("z0")},
           .pressures = {{.surface = "inner", .pressure = 100.0}}};
 }
 
@@ -199,7 +199,7 @@ TEST(StressConcentration, OfAHoleInAPlateIsThree) {
                [](int n) {
                  return shapes::quarter_ring(1.0, 4.0, 1.0, 2 * n, 2 * n, n);
                },
-               {fix_x("x0"), fix_y("y0"), fix_z("z0"), fix_z("z1")},
+               {held_x("x0"), held_y("y0"), held_z("z0"), held_z("z1")},
                {0.0, 1.0, 0.0},
                0,
                3.0});
@@ -211,7 +211,7 @@ TEST(StressConcentration, OfASphericalCavityIsGoodiers) {
       {"spherical cavity",
        exact::spherical_cavity(parts::steel(), 1.0),
        [](int n) { return shapes::octant_shell(1.0, 4.0, 2 * n, 2 * n); },
-       {fix_x("x0"), fix_y("y0"), fix_z("z0")},
+       {held_x("x0"), held_y("y0"), held_z("z0")},
        {1.0, 0.0, 0.0},
        2,
        (27.0 - 15.0 * nu) / (2.0 * (7.0 - 5.0 * nu))});

@@ -44,12 +44,15 @@ export interface PartData {
 
 export interface Frame {
   evaluation: number;
+  /** In the list of all that were stored. */
+  place: number;
   nodes: PackedReals;
+  /** Triangles; none: those of the frame before. */
+  surface?: Omit<PackedSurface, "nodes">;
   curves?: PackedReals[];
 }
 
 export interface Frames {
-  surface: PackedSurface;
   stored: number;
   frames: Frame[];
 }
@@ -64,7 +67,9 @@ export interface Findings {
 
 export interface CurveData {
   name: string;
+  /** Around a closed curve; with `pieces` two ends of each piece. */
   points: PackedReals;
+  pieces?: boolean;
   motion: Record<string, PackedReals>;
 }
 
@@ -185,7 +190,7 @@ export interface Result {
   case: string;
   case_hash: string;
   program_version: string;
-  units: Units;
+  units?: Units;
   status: string;
   message: string;
   parameters?: Numbers;
@@ -208,6 +213,7 @@ export interface Result {
     min_eigenvalue: number | null;
     index: number;
     smallest_neck: number | null;
+    neck_position?: (number | null)[];
     verdict: string;
     bodies: Record<string, { volume: number; pressure: number }>;
   };
@@ -304,7 +310,7 @@ export interface Comparison {
 
 export interface PageData {
   format: number;
-  kind: "run" | "family" | "comparison";
+  kind: "run" | "family" | "comparison" | "film";
   folder: string;
   versions: string;
   parts: PartData[];
@@ -319,6 +325,9 @@ export interface PageData {
   loads?: LoadCase[];
   gradients?: Gradients | null;
   notes?: string[];
+  /** Of a film alone: what its frames show, and other figures. */
+  captions?: string[];
+  quantities?: Numbers;
 }
 
 function bytes(text: string): Uint8Array {

@@ -176,7 +176,7 @@ export function ledgerSection(data: PageData): HTMLElement | null {
   if (Array.isArray(ledger)) {
     children.push(rowsTable("Stages", named(ledger)));
   } else if (typeof ledger === "object" && ledger !== null) {
-    children.push(...ledgerTables(ledger as Record<string, unknown>, result.units.length));
+    children.push(...ledgerTables(ledger as Record<string, unknown>, result.units?.length ?? ""));
   }
   return children.length > 0
     ? section("cost", "What it cost", h("div", { class: "columns" }, ...children))

@@ -1,6 +1,7 @@
 import { convergenceSection } from "./convergence";
 import type { PageData } from "./data";
 import { h, section } from "./dom";
+import { filmSection } from "./film";
 import { ledgerSection } from "./ledger";
 import { comparisonSection, familySection } from "./members";
 import { caseSection, reproduceSection } from "./source";
@@ -9,6 +10,12 @@ import { frontSection, sensitivitySection, sweepSection, toleranceSection } from
 import { answerSection, checksSection, headline, keyFigures } from "./summary";
 import { view3d } from "./viewer/view";
 
+const VIEW_TITLES = {
+  run: "The part",
+  film: "The film",
+  family: "The parts, with one camera and one colour scale",
+  comparison: "The parts, with one camera and one colour scale",
+};
 const NO_UNITS = { system: "", length: "length", force: "force", pressure: "pressure", mass: "mass" };
 
 function notes(data: PageData): HTMLElement | null {
@@ -48,11 +55,12 @@ export function showPage(root: HTMLElement, data: PageData): void {
   const sections = [
     section(
       "view",
-      data.kind === "run" ? "The part" : "The parts, with one camera and one colour scale",
+      VIEW_TITLES[data.kind],
       view3d(data, units),
       faults(data),
       notes(data),
     ),
+    filmSection(data),
     comparisonSection(data),
     familySection(data),
     answerSection(data),
@@ -73,7 +81,7 @@ export function showPage(root: HTMLElement, data: PageData): void {
     { "aria-label": "Sections" },
     ...sections.map((s) => h("a", { href: `#${s.id}` }, s.querySelector("h2")!.textContent!)),
   );
-  menu.querySelectorAll("a")[0].textContent = data.kind === "run" ? "The part" : "The parts";
+  menu.querySelectorAll("a")[0].textContent = VIEW_TITLES[data.kind].split(",")[0];
   const head = headline(data);
   const figures = keyFigures(data);
   root.append(head, menu, ...(figures ? [figures] : []), ...sections);

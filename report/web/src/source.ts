@@ -22,7 +22,7 @@ function quoted(text: string): string {
 export function reproduceSection(data: PageData): HTMLElement {
   const commands: string[] = [];
   const input = data.case;
-  if (input && data.kind !== "comparison") {
+  if (input && (data.kind === "run" || data.kind === "family")) {
     const sets = data.kind === "run" ? input.overrides.map((o) => ` --set ${quoted(o)}`).join("") : "";
     commands.push(`meniscus run ${quoted(input.path)}${sets} --out ${quoted(data.folder)}`);
   }

@@ -33,7 +33,7 @@ function histogram(d: Distribution, what: string, unit: string): HTMLElement {
 /** How evenly the part is stressed, per load case. */
 export function stressSection(data: PageData): HTMLElement | null {
   const cases = Object.entries(data.result?.stress ?? {});
-  const units = data.result!.units;
+  const units = data.result!.units!;
   const children: HTMLElement[] = [];
   for (const [name, figures] of cases) {
     const von = figures.von_mises;

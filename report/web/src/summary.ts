@@ -43,6 +43,9 @@ function kindText(data: PageData): string {
   if (data.kind === "comparison") {
     return "parts side by side";
   }
+  if (data.kind === "film") {
+    return "a film alone";
+  }
   const kinds: Record<string, string> = {
     analyse: "analysis",
     match: "deflection matching",
@@ -74,7 +77,7 @@ export function keyFigures(data: PageData): HTMLElement | null {
   }
   const first = Object.values(result.stress ?? {})[0];
   if (first) {
-    cards.push(card(quantity(first.max_von_mises, result.units.pressure), "largest von Mises stress"));
+    cards.push(card(quantity(first.max_von_mises, result.units?.pressure ?? ""), "largest von Mises stress"));
     if (first.safety_factor?.smallest) {
       cards.push(card(number(first.safety_factor.smallest, 3), "safety against yield"));
     }
@@ -168,7 +171,7 @@ export function checksSection(data: PageData): HTMLElement | null {
     const f = result.film;
     rows.push(
       [mark(f.verdict === "stable"), "film at rest and stable", `${f.verdict}; smallest eigenvalue ${number(f.min_eigenvalue, 3)}`],
-      [mark(f.residual <= f.residual_bound), "film's forces in balance", `residual ${number(f.residual, 2)} ${result.units.force} (bound ${number(f.residual_bound, 2)})`],
+      [mark(f.residual <= f.residual_bound), "film's forces in balance", `residual ${quantity(f.residual, result.units?.force ?? "")} (bound ${number(f.residual_bound, 2)})`],
     );
   }
   if (result.tet && result.tet.elements > 0) {

@@ -21,11 +21,15 @@ export function historyControl(
     max: frames.length,
     step: 1,
     value: frames.length,
-    "aria-label": "design of the history",
+    "aria-label": data.kind === "film" ? "step of the film's way to rest" : "design of the history",
   });
   const describe = (index: number): string => {
     if (index === frames.length) {
-      return "the answer, with its stresses";
+      return data.kind === "film" ? "the film at rest" : "the answer, with its stresses";
+    }
+    const caption = data.captions?.[frames[index].place];
+    if (caption !== undefined) {
+      return caption;
     }
     const evaluation = frames[index].evaluation;
     const row = rows.find((r) => r.evaluation === evaluation);
@@ -50,7 +54,7 @@ export function historyControl(
   return h(
     "fieldset",
     {},
-    h("legend", {}, "Designs on the way"),
+    h("legend", {}, data.kind === "film" ? "The film's way to rest" : "Designs on the way"),
     h("div", { class: "row" }, slider),
     output,
   );

@@ -7,8 +7,8 @@ import {
 } from "../data";
 import { h } from "../dom";
 import { quantity } from "../format";
-import { centreOf, filmOf, meshOf, surfaceOf, type Surface } from "./mesh";
-import { arrow, curveLine, Pane, plainSurface, ShownMesh } from "./pane";
+import { centreOf, filmOf, meshOf, surfaceOf } from "./mesh";
+import { arrow, curveLine, curvePieces, Pane, plainSurface, ShownMesh } from "./pane";
 import { pushesOf, type Push } from "./pushes";
 import type { Shared } from "./shading";
 import type { Stage } from "./stage";
@@ -32,7 +32,6 @@ export class Model {
   readonly pushes: Push[];
   readonly deflections: number[] = [];
   private readonly frameGroup = new THREE.Group();
-  private readonly frameSurface: Surface | null;
 
   constructor(
     private readonly data: PageData,
@@ -50,7 +49,6 @@ export class Model {
       );
     }
     this.pushes = pushesOf(data);
-    this.frameSurface = data.frames ? surfaceOf(data.frames.surface) : null;
     this.addFindings();
     this.addFilm();
     this.addCurves();
@@ -112,7 +110,13 @@ export class Model {
   }
 
   private addCurves(): void {
-    this.setCurves((this.data.curves ?? []).map((c) => unpackReals(c.points)));
+    this.curves.clear();
+    for (const curve of this.data.curves ?? []) {
+      const points = unpackReals(curve.points);
+      this.curves.add(
+        curve.pieces ? curvePieces(points, CURVE) : curveLine(points, CURVE),
+      );
+    }
   }
 
   private setCurves(curves: Float32Array[]): void {
@@ -208,11 +212,15 @@ export class Model {
     this.frameGroup.clear();
     const frames = this.data.frames?.frames ?? [];
     const frame = index === null ? undefined : frames[index];
-    if (!frame || !this.frameSurface) {
+    const triangles = frames
+      .slice(0, (index ?? -1) + 1)
+      .reverse()
+      .find((f) => f.surface)?.surface;
+    if (!frame || !triangles) {
       this.addCurves();
       return;
     }
-    const surface = { ...this.frameSurface, nodes: unpackReals(frame.nodes) };
+    const surface = surfaceOf({ ...triangles, nodes: frame.nodes });
     this.frameGroup.add(plainSurface(surface, this.shared, FILM, 1, true));
     if (frame.curves) {
       this.setCurves(frame.curves.map(unpackReals));

@@ -212,6 +212,21 @@ export function curveLine(
   return line;
 }
 
+/** A curve from its pieces' ends. */
+export function curvePieces(
+  ends: Float32Array,
+  colour: string,
+): THREE.LineSegments {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(ends, 3));
+  const line = new THREE.LineSegments(
+    geometry,
+    new THREE.LineBasicMaterial({ color: colour }),
+  );
+  line.frustumCulled = false;
+  return line;
+}
+
 /** A solid arrow from `from` along `by`, head included. */
 export function arrow(
   from: THREE.Vector3,

@@ -1,0 +1,67 @@
+/// Checks of what films of facets start from.
+#include <algorithm>
+
+#include "core/error.h"
+#include "evolve/grooming.h"
+#include "evolve/start_edge.h"
+#include "pipeline/case_checks.h"
+
+namespace meniscus {
+
+bool has_facets(const Case& input) {
+  return std::any_of(input.films.begin(), input.films.end(),
+                     [](const FilmEntry& film) {
+                       return film.spec.kind == FilmKind::Facets;
+                     }) ||
+         std::any_of(input.caps.begin(), input.caps.end(),
+                     [](const CapEntry& cap) { return cap.is_file; });
+}
+
+bool has_facets(const Case& input, const BodyEntry& body) {
+  const auto encloses = [&](const std::string& name) {
+    return std::find(body.enclosed_by.begin(), body.enclosed_by.end(), name) !=
+           body.enclosed_by.end();
+  };
+  return std::any_of(input.films.begin(), input.films.end(),
+                     [&](const FilmEntry& film) {
+                       return film.spec.kind == FilmKind::Facets &&
+                              encloses(film.spec.name);
+                     }) ||
+         std::any_of(input.caps.begin(), input.caps.end(),
+                     [&](const CapEntry& cap) {
+                       return cap.is_file && encloses(cap.spec.name);
+                     });
+}
+
+void check_start(const Case& input, const EvaluatedCase& numbers,
+                 CaseProblems& problems) {
+  if (!has_facets(input)) {
+    return;
+  }
+  try {
+    build_start(numbers.film_system,
+                start_edge(numbers.film_system, numbers.fea_edge));
+  } catch (const Error& error) {
+    // The message names the film or solid first.
+    const std::string message = error.what();
+    SourceLine line = 0;
+    const auto look = [&](const std::string& name, SourceLine at) {
+      const std::size_t found = message.find("'" + name + "'");
+      line = line == 0 && found != std::string::npos ? at : line;
+    };
+    for (const FilmEntry& film : input.films) {
+      look(film.spec.name, film.line);
+    }
+    for (const CapEntry& cap : input.caps) {
+      look(cap.spec.name, cap.line);
+    }
+    for (const BodyEntry& body : input.bodies) {
+      if (message.find("body '" + body.name + "'") != std::string::npos) {
+        line = body.enclosure_line;
+      }
+    }
+    problems.add(line, message);
+  }
+}
+
+}  // namespace meniscus

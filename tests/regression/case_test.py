@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""One case at its quick size ends with the figures of its expected.json, and
+the wrong cases made from it end with the messages told there."""
+import os
+import sys
+import unittest
+
+import program
+from program import ProgramTest
+
+sys.path.insert(0, str(program.ROOT / "scripts"))
+import cases  # noqa: E402  (scripts/ is found only now)
+
+NAME = os.environ["MENISCUS_CASE"]
+# The case whose pictures are drawn, too: one will do, and each costs seconds.
+PICTURED = "two_arm"
+
+
+class Case(ProgramTest):
+    def test_at_its_quick_size(self):
+        folder = cases.CASES / NAME
+        spec = cases.read(folder)
+        outcomes, rates = cases.run_case(program.PROGRAM, folder, spec,
+                                         self.folder, quick=True,
+                                         pictures=NAME == PICTURED)
+        for name, outcome in outcomes.items():
+            with self.subTest(run=name):
+                self.assertEqual(outcome.problems, [])
+                if not outcome.run["command"].startswith("check-gradient"):
+                    self.assertGreater(len(outcome.rows), 0)
+                self.check_files(outcome)
+        for rate in rates:
+            with self.subTest(rate=rate.item["path"]):
+                self.assertEqual(rate.problems(), [])
+
+    def check_files(self, outcome):
+        out = outcome.folder
+        if outcome.run["command"].startswith("evolve"):
+            self.assertGreater((out / "film.vtp").stat().st_size, 300)
+        if not outcome.run["command"].startswith("run"):
+            return
+        members = outcome.result.get("members", [])
+        for part in [out / m["folder"] for m in members] or [out]:
+            self.assertTrue(list(part.glob("part_*.stl")), part)
+            for name in ("film.vtp", "part.vtu", "history.csv",
+                         "study.sqlite"):
+                self.assertGreater((part / name).stat().st_size, 100, name)
+        if NAME == PICTURED:
+            for name in ("part.png", "film.png", "overview.png"):
+                self.assertGreater((out / name).stat().st_size, 10000, name)
+
+    def test_wrong_cases_are_told(self):
+        folder = cases.CASES / NAME
+        for item in cases.read(folder).get("wrong", []):
+            with self.subTest(what=item["what"]):
+                self.assertEqual(
+                    cases.run_wrong(program.PROGRAM, folder, item), "")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
