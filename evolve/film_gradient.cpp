@@ -131,11 +131,17 @@ std::vector<Points> FilmModel::tangents(
     const FilmState& state, const FilmSystem& system,
     const std::vector<FilmSystem>& rates) const {
   const Impl::AtRest film = impl_->at_rest(state, system);
+  std::vector<Points> result;
+  result.reserve(rates.size());
+  if (impl_->energy->unknowns() == 0) {
+    for (const FilmSystem& moving : rates) {
+      result.push_back(impl_->rates_of(system, moving).base);
+    }
+    return result;
+  }
   const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
                             film.directions, state.points, state.heights,
                             film.pressure);
-  std::vector<Points> result;
-  result.reserve(rates.size());
   for (const FilmSystem& moving : rates) {
     result.push_back(adjoint.tangent(impl_->rates_of(system, moving)));
   }

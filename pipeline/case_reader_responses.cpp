@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -238,6 +239,21 @@ ScanMeasure measure_of(const CaseTable& table) {
   return measures.at(table.choice("measure").value_or("rms"));
 }
 
+/// What only liquid has; parts of plane faces may have none.
+void require_films(CaseContext& context, const CaseTable& table,
+                   const std::string& kind, const Case& result) {
+  static const std::set<std::string> of_films = {
+      "film_area", "film_energy",     "pressure",     "radius",
+      "gap",       "collapse_margin", "scan_distance"};
+  if (result.films.empty() && of_films.contains(kind)) {
+    context.problems.add(
+        table.line("kind"),
+        fmt::format("{} is a {}, and the case has no films; take it out, or "
+                    "add [films.NAME]",
+                    table.path(), kind));
+  }
+}
+
 ResponseEntry read_response(CaseContext& context, const CaseTable& table,
                             const std::string& kind, const Case& result) {
   ResponseEntry response;
@@ -245,6 +261,7 @@ ResponseEntry read_response(CaseContext& context, const CaseTable& table,
   response.line = table.line();
   response.kind = response_kinds().at(kind).kind;
   table.check_kind(kind, response_kinds().at(kind).keys);
+  require_films(context, table, kind, result);
   response.surface = surface_on(context, table, result);
   response.direction = table.vector_or_zero(
       response.kind == ResponseKind::Rotation ? "axis" : "direction");

@@ -51,6 +51,7 @@ class Cases(ProgramTest):
         figure = ("runs", 0, "expected", "film.area")
         for path, new, told in (
                 (("runs", 0, "comand"), "x", "unknown key 'comand'"),
+                (("prepare",), "nowhere.py", "prepare: no nowhere.py"),
                 (("runs", 0, "command"), "ls", "the command is none of"),
                 (("runs", 0, "expected_quick"), None, "'expected_quick'"),
                 (("runs", 0, "quick"), None, "no run has a quick size"),

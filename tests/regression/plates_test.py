@@ -166,9 +166,14 @@ curves = ["bore_low", "bore_high"]
                  r"case.toml:\d+: .*did you mean 'high'"),
                 ('curve = "low"\n', "", r"has no 'curve'"),
                 ('curve = "low"', 'curve = "low"\ncurves = ["low"]',
-                 r'solids.foot.curves belongs to kind "sides"'),
+                 r"solids.foot.curves does not belong to a cap"),
                 ('curve = "low"', 'curve = "low"\nholes = ["low"]',
-                 r"names curve 'low' twice")):
+                 r"names curve 'low' twice"),
+                ('material = "steel"', 'material = "steel"\nvolume = 9000',
+                 r"case.toml:\d+: bodies.part.volume: the case has no films"),
+                ('kind = "mass"', 'kind = "collapse_margin"',
+                 r"case.toml:\d+: responses.mass is a collapse_margin, and "
+                 r"the case has no films")):
             with self.subTest(new=new):
                 self.expect(self.call("check", self.block((old, new))), 2,
                             told)
