@@ -4,6 +4,7 @@ expected.json can fail."""
 import copy
 import json
 import re
+import subprocess
 import sys
 import unittest
 
@@ -83,6 +84,17 @@ class Cases(ProgramTest):
             self.read(spec)
         cases.read(self.folder, unfilled=True)
         self.assertEqual(json.loads(cases.text_of(spec)), spec)
+
+    def test_files_are_prepared(self):
+        script = self.folder / "make.py"
+        script.write_text("import pathlib, sys\n"
+                          "(pathlib.Path(sys.argv[1]) / 'made').touch()\n")
+        out = self.folder / "out"
+        cases.prepare(self.folder, {"prepare": "make.py"}, out)
+        self.assertTrue((out / "made").exists())
+        script.write_text("raise SystemExit(1)\n")
+        with self.assertRaises(subprocess.CalledProcessError):
+            cases.prepare(self.folder, {"prepare": "make.py"}, out)
 
     def row(self, figure, found):
         return cases.Row("x", figure, found).fine
