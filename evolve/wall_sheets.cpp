@@ -11,7 +11,7 @@ namespace meniscus {
 
 namespace {
 
-std::string text_of(const Vec3& p) {
+std::string text_of_point(const Vec3& p) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
 }
 
@@ -87,7 +87,7 @@ class Sheets {
             "wall: film \"{}\" has one side only (a Moebius band) near {}; it "
             "has no thickness",
             films_.mesh.labels[facet.label],
-            text_of(films_.mesh.points[facet.film[0]])));
+            text_of_point(films_.mesh.points[facet.film[0]])));
       }
     }
   }

@@ -163,6 +163,7 @@ bool DesignStages::respond(StagedDesign& staged) const {
     return false;
   }
   fields.exclusion = model.exclusion;
+  fields.start_edge = model.film->start_edge();
   return true;
 }
 

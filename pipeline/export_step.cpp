@@ -139,16 +139,22 @@ FilmModel settled(const FilmSystem& system, double edge) {
   return model;
 }
 
+std::string number_of(int count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 void tell(const StepExport& options, const FilmSolidReport& film,
           const StepReport& step) {
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   const std::string& unit = options.unit;
-  monitor.log(Severity::Info,
-              fmt::format("{} B-spline faces, {} planes, {} cylinders, {} "
-                          "spheres; valid closed solid of {:.6g} {}3",
-                          film.patches, film.planes, film.cylinders,
-                          film.spheres, step.volume, unit));
+  monitor.log(
+      Severity::Info,
+      fmt::format("{}, {}, {}, {}; valid closed solid of {:.6g} {}3",
+                  number_of(film.patches, "B-spline face"),
+                  number_of(film.planes, "plane"),
+                  number_of(film.cylinders, "cylinder"),
+                  number_of(film.spheres, "sphere"), step.volume, unit));
   for (const SimpleFace& face : film.simple) {
     monitor.log(Severity::Info,
                 fmt::format("{} is a {}{}; the film leaves it by {:.2g} {} at "

@@ -69,7 +69,8 @@ struct EvaluationFields {
   std::vector<ModeShape> modes;      // that the case asks for; the same
   std::vector<FilmFrame> history;    // of the study, by evaluation; the same
   EvaluatedCase inputs;
-  Exclusion exclusion;  // the model's
+  Exclusion exclusion;      // the model's
+  double start_edge = 0.0;  // of the start that the model's film was found from
 };
 
 /// What gradient() needs beside the fields; as large as a stiffness matrix.

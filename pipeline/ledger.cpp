@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "evolve/grooming.h"
-#include "evolve/start_edge.h"
 #include "io/atomic_file.h"
 #include "pipeline/calculix_export.h"
 #include "pipeline/results.h"
@@ -110,10 +109,7 @@ void add_surfaces(const SurfaceMesh& start, const SurfaceMesh& film,
 }
 
 SurfaceMesh start_surface(const EvaluationFields& fields) {
-  return build_start(
-             fields.inputs.film_system,
-             start_edge(fields.inputs.film_system, fields.inputs.fea_edge))
-      .mesh;
+  return build_start(fields.inputs.film_system, fields.start_edge).mesh;
 }
 
 /// The files of a run that hold the part, and the deck as it would be exported

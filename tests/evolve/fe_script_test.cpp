@@ -61,8 +61,9 @@ std::string output_of(const std::string& body) {
   return run("gogo := { " + body + " }").output;
 }
 
-std::string message_of(const std::string& commands,
-                       const FeScriptOptions& options = {.macro = "gogo"}) {
+std::string message_of_script(const std::string& commands,
+                              const FeScriptOptions& options = {
+                                  .macro = "gogo"}) {
   try {
     run(commands, options);
   } catch (const InvalidInput& error) {
@@ -87,9 +88,9 @@ TEST(FeScript, RunsLoopsConditionsAndAssignments) {
 TEST(FeScript, PrintsAsPrintfDoes) {
   EXPECT_EQ(output_of(R"(printf "%8.3f|%-5d|%g%%\n", 3.14159, 7, 1e-7)"),
             "   3.142|7    |1e-07%\n");
-  EXPECT_THAT(message_of("gogo := {\nprintf \"%s\", 1 }"),
+  EXPECT_THAT(message_of_script("gogo := {\nprintf \"%s\", 1 }"),
               StartsWith("a.fe:36:1: this format"));
-  EXPECT_THAT(message_of("gogo := { printf \"%g %g\", 1 }"),
+  EXPECT_THAT(message_of_script("gogo := { printf \"%g %g\", 1 }"),
               HasSubstr("this format"));
 }
 
@@ -141,37 +142,37 @@ TEST(FeScript, RunsTheMacroAskedFor) {
   FeScriptOptions options;
   options.macro = "two";
   EXPECT_EQ(run("two := { print 2 }", options).output, "2\n");
-  EXPECT_THAT(message_of("two := { g }"),
+  EXPECT_THAT(message_of_script("two := { g }"),
               HasSubstr("there is no macro 'gogo'; it has: two"));
 }
 
 TEST(FeScript, RefusesByNameAndLine) {
-  EXPECT_THAT(message_of("gogo := {\n g; lagrange 2 }"),
+  EXPECT_THAT(message_of_script("gogo := {\n g; lagrange 2 }"),
               StartsWith("a.fe:36:5: 'lagrange' is not supported"));
-  EXPECT_THAT(message_of("gogo := { autopop on }"),
+  EXPECT_THAT(message_of_script("gogo := { autopop on }"),
               HasSubstr("'autopop' is not supported"));
-  EXPECT_THAT(message_of("gogo := { print nix }"),
+  EXPECT_THAT(message_of_script("gogo := { print nix }"),
               HasSubstr("'nix' has no value"));
-  EXPECT_THAT(message_of("gogo := { print vertex[99].x }"),
+  EXPECT_THAT(message_of_script("gogo := { print vertex[99].x }"),
               HasSubstr("there is no vertex[99]"));
-  EXPECT_THAT(message_of("gogo := { body[1].colour := 3 }"),
+  EXPECT_THAT(message_of_script("gogo := { body[1].colour := 3 }"),
               HasSubstr("'colour' cannot be set"));
-  EXPECT_THAT(message_of("gogo := { xx := 1/0 }"), HasSubstr("inf"));
-  EXPECT_THAT(message_of("gogo := { m 0.5 }"),
+  EXPECT_THAT(message_of_script("gogo := { xx := 1/0 }"), HasSubstr("inf"));
+  EXPECT_THAT(message_of_script("gogo := { m 0.5 }"),
               HasSubstr("the command 'm' is not supported"));
 }
 
 TEST(FeScript, EndlessMacrosAreStopped) {
   FeScriptOptions few{.macro = "gogo"};
   few.most_steps = 1000;
-  EXPECT_THAT(message_of("gogo := { while 1 do nn := 1 }", few),
+  EXPECT_THAT(message_of_script("gogo := { while 1 do nn := 1 }", few),
               HasSubstr("does not end within 1000 commands"));
   FeScriptOptions little{.macro = "gogo"};
   little.most_work = 1e5;
-  EXPECT_THAT(message_of("gogo := { r 3; { nn := 1 } 100000 }", little),
+  EXPECT_THAT(message_of_script("gogo := { r 3; { nn := 1 } 100000 }", little),
               HasSubstr("more than 1e+05 facets times steps"));
-  EXPECT_THAT(message_of("gogo := { gogo }"), HasSubstr("without end"));
-  EXPECT_THAT(message_of("gogo := { r 40 }"), HasSubstr("facets"));
+  EXPECT_THAT(message_of_script("gogo := { gogo }"), HasSubstr("without end"));
+  EXPECT_THAT(message_of_script("gogo := { r 40 }"), HasSubstr("facets"));
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // Films that start from facets in the case or in a file.
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -218,6 +220,117 @@ TEST(CaseFacets, ComeFromFilesThatBelongToTheCase) {
   EXPECT_THAT(read_case_file(path).problems,
               Contains(AllOf(HasSubstr("films.skin: there is no file"),
                              HasSubstr("band.obj"))));
+}
+
+/// A band of twelve flat sides between two rings of radius 1, cut in triangles.
+std::vector<std::array<Vec3, 3>> twelve_sides() {
+  const auto corner = [](int k, double z) {
+    const double angle = k * std::numbers::pi / 6.0;
+    return Vec3(std::cos(angle), std::sin(angle), z);
+  };
+  std::vector<std::array<Vec3, 3>> facets;
+  for (int k = 0; k < 12; ++k) {
+    facets.push_back(
+        {corner(k, -0.5), corner(k + 1, -0.5), corner(k + 1, 0.5)});
+    facets.push_back({corner(k, -0.5), corner(k + 1, 0.5), corner(k, 0.5)});
+  }
+  return facets;
+}
+
+std::string as_stl(const std::vector<std::array<Vec3, 3>>& facets) {
+  std::string text = "solid side\n";
+  for (const auto& corners : facets) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const Vec3& x : corners) {
+      text += fmt::format("vertex {} {} {}\n", x.x(), x.y(), x.z());
+    }
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid side\n";
+}
+
+/// A Surface Evolver datafile: of each side a quadrilateral.
+std::string as_datafile() {
+  std::string vertices = "vertices\n";
+  std::string edges = "edges\n";
+  std::string faces = "faces\n";
+  for (int k = 0; k < 12; ++k) {
+    const double angle = k * std::numbers::pi / 6.0;
+    const int next = (k + 1) % 12;
+    for (const int top : {0, 1}) {
+      vertices += fmt::format("{} {} {} {}\n", 12 * top + k + 1,
+                              std::cos(angle), std::sin(angle), top - 0.5);
+      edges += fmt::format("{} {} {}\n", 12 * top + k + 1, 12 * top + k + 1,
+                           12 * top + next + 1);
+    }
+    edges += fmt::format("{} {} {}\n", 25 + k, k + 1, k + 13);
+    faces += fmt::format("{} {} {} -{} -{}\n", k + 1, k + 1, 25 + next, 13 + k,
+                         25 + k);
+  }
+  return vertices + edges + faces;
+}
+
+TEST(CaseFacets, StartFromStlAndDatafilesAsFromTheirOwn) {
+  const TempFolder folder;
+  const std::string path = (folder / "case.toml").string();
+  write_file(folder / "band.stl", as_stl(twelve_sides()));
+  write_file(folder / "band.fe", as_datafile());
+  for (const char* file : {"band.stl", "band.fe"}) {
+    const Case input =
+        good(rings(std::string("[films.skin]\nkind = \"file\"\nfile = \"") +
+                   file + "\"\ncurves = [\"low\", \"high\"]\n"),
+             path);
+    const FilmModel model = model_of(input);
+    ASSERT_FALSE(model.reference().failure) << file;
+    EXPECT_NEAR(model.reference().report.area / kCatenoid, 1.0, 1e-3) << file;
+    EXPECT_EQ(model.reference().report.index, 0) << file;
+  }
+}
+
+TEST(CaseFacets, OfSolidsFromFilesCloseABodyAndStay) {
+  // A cylinder's film between two rings whose ends are a plane cap and, from a
+  // file, a pyramid of twelve sides that stands 0.3 out of the ring.
+  const TempFolder folder;
+  const std::string path = (folder / "case.toml").string();
+  constexpr double kOut = 0.3;
+  std::string obj;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = k * std::numbers::pi / 6.0;
+    obj += fmt::format("v {} {} 0.5\n", std::cos(angle), std::sin(angle));
+  }
+  obj += fmt::format("v 0 0 {}\n", 0.5 + kOut);
+  for (int k = 0; k < 12; ++k) {
+    obj += fmt::format("f {} {} 13\n", k + 1, (k + 1) % 12 + 1);
+  }
+  write_file(folder / "end.obj", obj);
+  std::string text = rings(R"case([films.skin]
+kind = "loft"
+curves = ["low", "high"]
+[solids.foot]
+kind = "cap"
+curve = "low"
+[solids.end]
+kind = "file"
+file = "end.obj"
+curves = ["high"]
+[bodies.part]
+enclosed_by = ["skin", "foot", "end"]
+volume = 3.4
+material = "steel"
+)case");
+  text.erase(text.find("[walls.web]"),
+             text.find("[resolution]") - text.find("[walls.web]"));
+  const Case input = good(text + kEnd, path);
+  const FilmModel model = model_of(input);
+  const FilmState& film = model.reference();
+  ASSERT_FALSE(film.failure) << film.failure->message;
+  EXPECT_NEAR(film.report.bodies[0].volume, 3.4, 1e-9);
+  // The end's peak is where the file has it, and the rest of it nowhere higher.
+  double highest = 0.0;
+  for (const Vec3& x : film.points) {
+    highest = std::max(highest, x.z());
+  }
+  EXPECT_NEAR(highest, 0.5 + kOut, 1e-9);
 }
 
 std::vector<std::string> problems_of(std::string text, const std::string& from,

@@ -244,7 +244,7 @@ Save "{can}";
 
     def test_post_is_a_cylinder(self):
         file, said = self.simple(POST % "")
-        self.assertIn("0 B-spline faces, 2 planes, 1 cylinders, 0 spheres", said)
+        self.assertIn("0 B-spline faces, 2 planes, 1 cylinder, 0 spheres", said)
         self.assertIn("skin is a cylinder of radius 20 mm", said)
         self.assertEqual(surface_kinds(file), {"Plane": 2, "Cylinder": 1})
         count, volume = gmsh_volume(file)
@@ -258,7 +258,7 @@ Save "{can}";
 
     def test_drop_is_a_sphere(self):
         file, said = self.simple(DROP)
-        self.assertIn("0 B-spline faces, 1 planes, 0 cylinders, 1 spheres", said)
+        self.assertIn("0 B-spline faces, 1 plane, 0 cylinders, 1 sphere", said)
         self.assertEqual(surface_kinds(file), {"Plane": 1, "Sphere": 1})
         count, volume = gmsh_volume(file)
         self.assertEqual(count, 1)
@@ -276,7 +276,7 @@ Save "{can}";
         self.expect(self.call("run", file, "--out", run, "--no-pictures",
                               "--quiet"), 0)
         step, said = self.export(run)
-        self.assertIn("5 B-spline faces, 1 planes", said)
+        self.assertIn("5 B-spline faces, 1 plane", said)
         self.assertLess(float(re.search(rf"\({NUMBER} of its edge\)",
                                         said)[1]), MOST_DEVIATION)
         count, volume = gmsh_volume(step)

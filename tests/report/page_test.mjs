@@ -101,6 +101,20 @@ volume = 5.6e4
 material = "aluminium"
 `;
 
+// A neck far past where a film between its rims tears; and one that no height in
+// its bounds makes as stiff as asked.
+const TORN = STRUTS.replace("height = 60", "height = 160")
+  .replace('volume = "1500 * height"', 'volume = "300 * height"')
+  .replace(/\[study\][^]*/, "");
+const SOFT = STRUTS.replace("[parameters]\nheight = 60", "[design.height]\ninitial = 60\nbounds = [50, 70]").replace(
+  /\[study\][^]*/,
+  `[study]
+kind = "minimize"
+objective = "mass"
+constraints = [{ response = "sway", max = 1e-6 }]
+`,
+);
+
 function run(code, ...args) {
   const done = spawnSync(program, args, { cwd: output, encoding: "utf-8" });
   assert.equal(done.status, code, `${args.join(" ")}:\n${done.stdout}${done.stderr}`);
@@ -116,6 +130,10 @@ function makeRuns() {
   run(0, "run", "case.toml", ...COARSE, "--no-pictures", "--out", "even", "--set", "load_left=60000");
   fs.writeFileSync(path.join(output, "crossed.toml"), text + PEG);
   run(3, "run", "crossed.toml", "--set", "resolution.fea=8", "--set", "resolution.film=4", "--no-pictures", "--out", "crossed");
+  for (const [name, text] of Object.entries({ torn: TORN, soft: SOFT })) {
+    fs.writeFileSync(path.join(output, `${name}.toml`), text);
+    run(3, "run", `${name}.toml`, "--no-pictures", "--out", name);
+  }
   fs.writeFileSync(path.join(output, "struts.toml"), STRUTS);
   run(0, "run", "struts.toml", "--no-pictures", "--out", "struts");
   run(0, "compare", "arms", "even", "--out", "compared");
@@ -373,6 +391,18 @@ async function testOthers(browser) {
   assert.ok((await crossed.colours()) > 50);
   await crossed.shot("crossed");
   await crossed.leave();
+
+  for (const [name, ...why] of [["torn", /failed/, /pinch|unstable|neck|tear|no film/i], ["soft", /infeasible/, /sway/]]) {
+    const failed = await Visit.to(browser, name);
+    const message = JSON.parse(fs.readFileSync(path.join(output, name, "result.json"), "utf-8")).message;
+    const told = await failed.page.evaluate(() => document.querySelector("main").innerText);
+    for (const pattern of why) {
+      assert.match(told, pattern);
+    }
+    assert.ok(told.replace(/\s+/g, " ").includes(message.replace(/\s+/g, " ")), message);
+    await failed.shot(name);
+    await failed.leave();
+  }
 
   const struts = await Visit.to(browser, "struts");
   assert.equal(await struts.page.evaluate(() => document.querySelectorAll(".pane-title").length), 2);
