@@ -76,7 +76,7 @@ bool DesignStages::mesh_of(const Case& input, const VectorX& design,
   Monitor& told = monitor != nullptr ? *monitor : silent_monitor();
   const EvaluatedCase inputs = meniscus::evaluate(input, initial_design(input));
   if (!model.freeze_film(inputs, {.monitor = monitor}, told) ||
-      !model.freeze_mesh({.monitor = &told}, told)) {
+      !model.freeze_mesh(inputs, {.monitor = &told}, told)) {
     staged.evaluation.failure = model.frozen.failure;
     return false;
   }
