@@ -45,7 +45,8 @@ struct ReportArguments {
 };
 
 struct CompareArguments {
-  std::vector<std::string> parts;  // results folders, and STL files after one
+  std::vector<std::string> parts;  // results folders, and files after one
+  std::vector<std::string> faces;  // NAME=FACE, of the files
   std::string out = "results/compare";  // folder of compare.json, compare.csv
   bool quiet = false;
 };

@@ -69,10 +69,28 @@ void keep_surface(const Case& input, const EvaluationFields& fields,
   write_part_surface(folder / parts.back().surface, input, fields);
 }
 
+/// NAME=FACE as FACE and NAME.
+FaceNames face_names(const std::vector<std::string>& texts) {
+  FaceNames names;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 ||
+        equals + 1 == text.size()) {
+      throw InvalidInput(fmt::format(
+          "--face {}: NAME=FACE is expected, NAME of the run's, FACE of the "
+          "file's surfaces",
+          text));
+    }
+    names[text.substr(equals + 1)] = text.substr(0, equals);
+  }
+  return names;
+}
+
 /// All runs, then the files, which take the first run's loads.
 std::vector<PartFigures> load_parts(const CompareArguments& arguments,
                                     Monitor& monitor, UnitSystem& units) {
   const fs::path folder = arguments.out;
+  const FaceNames names = face_names(arguments.faces);
   std::vector<PartFigures> parts;
   if (is_part_file(arguments.parts.front())) {
     throw InvalidInput(
@@ -93,7 +111,8 @@ std::vector<PartFigures> load_parts(const CompareArguments& arguments,
     const fs::path path = arguments.parts[k];
     if (is_part_file(path)) {
       EvaluationFields fields;
-      parts.push_back(imported_part_figures(path, first, &monitor, &fields));
+      parts.push_back(
+          imported_part_figures(path, first, names, &monitor, &fields));
       keep_surface(first.input, fields, folder, parts);
       continue;
     }

@@ -229,9 +229,16 @@ int run_program(int argc, char** argv) {
   compare
       ->add_option("PART", compare_arguments.parts,
                    "results folders; after the first also files: ASCII STL "
-                   "with a solid for each named face, OBJ with a group")
+                   "with a solid for each named face, OBJ with a group, STEP, "
+                   "Surface Evolver datafiles (.fe)")
       ->required()
       ->expected(2, 100);
+  compare
+      ->add_option("--face", compare_arguments.faces,
+                   "what the run calls NAME is FACE in the files; repeatable")
+      ->type_name("NAME=FACE")
+      ->expected(1)
+      ->take_all();
   compare->add_option("--out", compare_arguments.out,
                       "folder of compare.json and compare.csv");
   compare->add_flag("--quiet", compare_arguments.quiet, "errors only");

@@ -21,13 +21,15 @@ struct SurfaceKey {
   double tension = 1.0;
   bool fixed = false;
   bool no_refine = false;
+  double color = 0.0;  // of fixed facets: what tells one solid from another
   int constraints = -1;
   std::vector<int> quantities;
   std::vector<std::array<int, 2>> sides;  // body, sign
 
   bool operator<(const SurfaceKey& other) const {
-    return std::tie(tension, fixed, no_refine, constraints, quantities, sides) <
-           std::tie(other.tension, other.fixed, other.no_refine,
+    return std::tie(tension, fixed, no_refine, color, constraints, quantities,
+                    sides) <
+           std::tie(other.tension, other.fixed, other.no_refine, other.color,
                     other.constraints, other.quantities, other.sides);
   }
 };
@@ -227,6 +229,7 @@ class ComplexBuilder {
     key.tension = face.tension ? number(*face.tension) : 1.0;
     key.fixed = face.marks.fixed;
     key.no_refine = face.marks.no_refine;
+    key.color = key.fixed && face.color ? number(*face.color) : 0.0;
     key.constraints = key.fixed ? -1 : constraint_set(face.marks);
     key.quantities = face.marks.quantities;
     std::sort(key.quantities.begin(), key.quantities.end());

@@ -108,6 +108,7 @@ struct FeFace {
   int id = 0;
   std::vector<int> edges;  // +(index + 1), or -(index + 1): head to tail
   std::optional<FeExpression> tension;
+  std::optional<FeExpression> color;
   FeMarks marks;
 };
 

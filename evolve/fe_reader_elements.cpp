@@ -171,6 +171,10 @@ void FeReader::face() {
     if (lexer_.peek().is_name("tension") || lexer_.peek().is_name("density")) {
       lexer_.take();
       made.tension = constant();
+    } else if (lexer_.peek().is_name("color")) {
+      lexer_.take();
+      on_line();
+      made.color = constant();
     } else if (!mark(FeElement::Facets, made.marks)) {
       unknown_mark("face");
     }

@@ -327,7 +327,7 @@ class FeWriter {
       add(" tension {}", tension);
     }
     if (!surface.liquid) {
-      add(" fixed");
+      add(" fixed color {}", label + 1);
     }
     if (!surface.refine) {
       add(" no_refine");

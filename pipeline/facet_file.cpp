@@ -26,11 +26,15 @@ constexpr std::size_t kMostFacets = 500000;
 SurfaceMesh read_datafile(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
   FilmComplex complex = complex_of(read_fe(read_file(path), name));
+  // A datafile has gravity unless it says none; without weight it does nothing.
+  const bool heavy = !complex.gravity.isZero() &&
+                     std::any_of(complex.bodies.begin(), complex.bodies.end(),
+                                 [](const auto& b) { return b.density != 0; });
   const char* more = !complex.level_sets.empty()   ? "constraints"
                      : !complex.integrals.empty()  ? "line integrals"
                      : !complex.quantities.empty() ? "quantities"
                      : !complex.curves.empty()     ? "boundaries"
-                     : !complex.gravity.isZero()   ? "gravity"
+                     : heavy                       ? "gravity"
                                                    : nullptr;
   if (more != nullptr) {
     throw InvalidInput(fmt::format(

@@ -8,6 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
+#include "evolve/fe_complex.h"
+#include "evolve/fe_file.h"
+#include "io/atomic_file.h"
 #include "io/obj.h"
 #include "io/read_stl.h"
 #include "mesh_tet/quadratic.h"
@@ -84,15 +88,30 @@ void check_names(const SurfaceMesh& surface, const EvaluatedCase& numbers,
           surface.labels.size() == 1 && surface.labels[0] == kNameless;
       throw InvalidInput(fmt::format(
           "{}: no face '{}', which the run's loads and supports name; {}; "
-          "write its facets as `solid {}` of an ASCII STL file or as group "
-          "`g {}` of an OBJ file",
+          "say which it is (--face {}=FACE), or write its facets as `solid {}` "
+          "of an ASCII STL file or as group `g {}` of an OBJ file",
           path, name,
           nameless
               ? "the file has no names (binary STL never has)"
               : fmt::format("there are {}", fmt::join(surface.labels, ", ")),
-          name, name));
+          name, name, name));
     }
   }
+}
+
+SurfaceMesh renamed(SurfaceMesh surface, const FaceNames& names,
+                    const std::string& path) {
+  for (const auto& [face, name] : names) {
+    const int label = surface.label_of(face);
+    if (label < 0) {
+      throw InvalidInput(
+          fmt::format("{}: no face '{}' (--face {}={}); there "
+                      "are {}",
+                      path, face, name, face, fmt::join(surface.labels, ", ")));
+    }
+    surface.labels[static_cast<std::size_t>(label)] = name;
+  }
+  return surface;
 }
 
 /// Ten-node elements with straight sides.
@@ -129,8 +148,15 @@ SurfaceMesh obj(const std::filesystem::path& path, const ReadStepOptions&) {
   return read_obj(path);
 }
 
-constexpr std::array<PartReader, 4> kReaders = {{{".stl", stl},
+/// All that bounds: films and fixed facets.
+SurfaceMesh datafile(const std::filesystem::path& path,
+                     const ReadStepOptions&) {
+  return complex_of(read_fe(read_file(path), path.filename().string())).mesh;
+}
+
+constexpr std::array<PartReader, 5> kReaders = {{{".stl", stl},
                                                  {".obj", obj},
+                                                 {".fe", datafile},
                                                  {".step", read_step_part},
                                                  {".stp", read_step_part}}};
 
@@ -155,9 +181,9 @@ SurfaceMesh read_part_file(const std::filesystem::path& path,
                            const ReadStepOptions& options) {
   const PartReader* reader = reader_of(path);
   if (reader == nullptr) {
-    throw InvalidInput(
-        fmt::format("{}: no file of a part; there are .stl, .obj and .step",
-                    path.string()));
+    throw InvalidInput(fmt::format(
+        "{}: no file of a part; there are .stl, .obj, .step and .fe",
+        path.string()));
   }
   return reader->read(path, options);
 }
@@ -202,8 +228,8 @@ SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
 }
 
 PartFigures imported_part_figures(const std::filesystem::path& path,
-                                  const RunPart& run, Monitor* monitor,
-                                  EvaluationFields* kept) {
+                                  const RunPart& run, const FaceNames& names,
+                                  Monitor* monitor, EvaluationFields* kept) {
   const std::vector<BodyEntry> bodies = solid_bodies(run.input);
   if (std::any_of(bodies.begin(), bodies.end(), [&](const BodyEntry& body) {
         return body.material != bodies.front().material;
@@ -215,7 +241,9 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
   }
   const double edge = run.input.resolution.fea;
   const SurfaceMesh surface = with_short_edges(
-      read_part_file(path, {.unit = run.input.units.length, .edge = edge}),
+      renamed(
+          read_part_file(path, {.unit = run.input.units.length, .edge = edge}),
+          names, path.string()),
       kLongestEdge * edge);
   check_names(surface, run.fields.inputs, path.string());
   EvaluationFields fields;

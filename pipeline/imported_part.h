@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "core/monitor.h"
@@ -16,7 +17,7 @@ namespace meniscus {
 SurfaceMesh with_short_edges(SurfaceMesh surface, double longest);
 
 /// A file's name ends as those of parts that can be read: .stl, .obj, .step,
-/// .stp, in any case.
+/// .stp, .fe, in any case.
 bool is_part_file(const std::filesystem::path& path);
 
 /// The closed surface of such a file, its faces by name; `options` say how
@@ -25,19 +26,25 @@ bool is_part_file(const std::filesystem::path& path);
 SurfaceMesh read_part_file(const std::filesystem::path& path,
                            const ReadStepOptions& options);
 
+/// A face's name in a file -> what the run calls it.
+using FaceNames = std::map<std::string, std::string>;
+
 /// The part that the file `path` encloses: ASCII STL with a `solid NAME` for
 /// each face, OBJ with a group for each, binary STL all of one face, STEP by
-/// the names of its faces, in the case's unit. Meshed at the run's
+/// the names of its faces, in the case's unit, a datafile's films and fixed
+/// facets (film_1, solid_1, ...: one for each colour); `names` before these.
+/// Meshed at the run's
 /// resolution.fea (shorter where the file's own facets are), of the run's
 /// material, held and loaded as the run's answer is by the names of its
 /// surfaces, and solved by the same solver. Sides are straight: the file knows
 /// no others.
-/// Throws InvalidInput (file, a surface that loads or supports name and the
-/// file does not have, a run of several materials), IoError, MeshError (no
-/// mesh), SolverError.
-/// `kept`, when given, receives the meshes and the solution.
+/// Throws InvalidInput (file, a name of a face that is not there, a surface
+/// that loads or supports name and the file does not have, a run of several
+/// materials), IoError, MeshError (no mesh), SolverError. `kept`, when given,
+/// receives the meshes and the solution.
 PartFigures imported_part_figures(const std::filesystem::path& path,
-                                  const RunPart& run, Monitor* monitor,
+                                  const RunPart& run, const FaceNames& names,
+                                  Monitor* monitor,
                                   EvaluationFields* kept = nullptr);
 
 }  // namespace meniscus

@@ -147,6 +147,7 @@ class Export(ProgramTest):
     """One coarse run of a case; each test opens one file of it."""
 
     case = program.CASE
+    chambers = 1
     title = b"Two-arm bracket"
     edges = COARSE
 
@@ -316,6 +317,34 @@ class Export(ProgramTest):
         rested = float(re.search(r"RESTED (\d\S+)", said).group(1))
         self.assertAlmostEqual(rested / film["energy"], 1, delta=1e-7)
 
+    def test_compare_takes_the_datafile_by_its_faces(self):
+        there = self.home / "from_datafile"
+        alone = ["compare", self.out, self.file("fe"), "--out", there]
+        said = self.refused(alone)
+        if self.chambers > 1:
+            self.assertIn("bodies with materials", said)
+            return
+        self.assertIn("there are film_1, solid_1, solid_2, solid_3", said)
+        self.assertIn("--face", said)
+        # Solids in the order of the case.
+        caps = re.findall(r"(?m)^\[solids\.(\w+)\]", self.case.read_text())
+        names = [f"--face={cap}=solid_{k + 1}" for k, cap in enumerate(caps)]
+        run_program(program.PROGRAM, *alone, *names)
+        own, read = json.loads((there / "compare.json").read_text())["parts"]
+        self.assertAlmostEqual(read["mass"] / own["mass"], 1, delta=0.01)
+        stiffness = [part["load_cases"]["service"]["stiffness"]
+                     for part in (own, read)]
+        self.assertAlmostEqual(stiffness[1] / stiffness[0], 1, delta=0.02)
+        self.assertIn("--face here=nowhere", self.refused(
+            [*alone, "--face=here=nowhere"]))
+        self.assertIn("NAME=FACE", self.refused([*alone, "--face=nothing"]))
+
+    def refused(self, arguments):
+        done = subprocess.run([str(program.PROGRAM), *map(str, arguments)],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        return done.stderr
+
     def solved(self, deck, name):
         """Displacements by CalculiX."""
         (self.home / f"{name}.inp").write_text(deck)
@@ -341,6 +370,7 @@ class ExportOfThreeBodies(Export):
     """Bodies that share facets, two load cases."""
 
     case = program.ROOT / "cases" / "two_arm_sized" / "case.toml"
+    chambers = 3
     title = b"Two-arm bracket, sized"
     edges = ["--set", "resolution.fea=22", "--set", "resolution.film=11"]
 

@@ -12,7 +12,7 @@
 namespace meniscus {
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kDataRounding = 1e-12;
 
 TEST(RenderData, RimsAreTheEdgesBetweenSurfaces) {
   const SurfaceMesh box = shapes::box(Vec3(1, 2, 3), 4);
@@ -32,8 +32,8 @@ TEST(RenderData, CuttingOpenLeavesAClosedHalf) {
   const PictureTets tets = load_tets((folder / "part.vtu").string());
   EXPECT_EQ(static_cast<int>(tets.corners.size()), mesh.element_count());
   const SurfaceMesh half = cut_open(tets, Vec3(0, -1, 0));
-  EXPECT_NEAR(enclosed_volume(half), 4.0, kRounding);
-  EXPECT_NEAR(surface_area(half, 1), 2.0, kRounding);
+  EXPECT_NEAR(enclosed_volume(half), 4.0, kDataRounding);
+  EXPECT_NEAR(surface_area(half, 1), 2.0, kDataRounding);
 }
 
 TEST(RenderData, ReadsWhatWasWritten) {
