@@ -300,7 +300,7 @@ std::vector<int> joined_films(const FilmEnergy& energy, std::size_t count) {
   for (std::size_t f = 0; f < energy.facets().size(); ++f) {
     const Triangle& t = energy.facets()[f];
     for (int k = 1; energy.is_liquid(static_cast<int>(f)) && k < 3; ++k) {
-      const auto [low, high] = std::minmax(root(t[0]), root(t[k]));
+      const auto [low, high] = std::minmax({root(t[0]), root(t[k])});
       up[high] = low;
     }
   }

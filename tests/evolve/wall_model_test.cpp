@@ -16,10 +16,11 @@
 namespace meniscus {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kPromised = 0.05;    // of the thickness away from junctions
-constexpr double kRounding = 1e-11;   // of sums over some thousand facets
-constexpr double kDifference = 1e-6;  // central differences, step 1e-6
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kPromisedThickness =
+    0.05;                                // of the thickness away from junctions
+constexpr double kWallRounding = 1e-11;  // of sums over some thousand facets
+constexpr double kDifference = 1e-6;     // central differences, step 1e-6
 
 /// Films that share points closer than 1e-9.
 SurfaceMesh welded(const std::vector<SurfaceMesh>& films) {
@@ -57,7 +58,7 @@ SurfaceMesh flat(const std::string& name, const Vec3& o, const Vec3& u,
 SurfaceMesh fan(const std::vector<double>& angles, int n = 8) {
   std::vector<SurfaceMesh> films;
   for (const double degree : angles) {
-    const double a = degree * kPi / 180.0;
+    const double a = degree * kHalfTurn / 180.0;
     films.push_back(flat("film" + std::to_string(films.size()), Vec3::Zero(),
                          {std::cos(a), 0, std::sin(a)}, {0, 2, 0}, n));
   }
@@ -204,7 +205,7 @@ TEST_P(WallsAtALine, AreClosedAndAsThickAsAsked) {
                               [&](const Vec3& p) {
                                 return std::hypot(p.x(), p.z()) > 2.0 * t;
                               }),
-              kPromised)
+              kPromisedThickness)
         << film;
   }
   const QuadraticSurface surface = made.model.surface(
@@ -278,7 +279,8 @@ TEST(WallModel, TurnsWithItsFilm) {
   const Points before = made.model.fine(made.films.mesh.points, t).points;
   const Points after = made.model.fine(turned, t).points;
   for (std::size_t p = 0; p < before.size(); ++p) {
-    EXPECT_LT((after[p] - turn * before[p] - Vec3(5, 6, 7)).norm(), kRounding);
+    EXPECT_LT((after[p] - turn * before[p] - Vec3(5, 6, 7)).norm(),
+              kWallRounding);
   }
 }
 
@@ -369,9 +371,9 @@ TEST(WallModel, OfACatenoidIsWhatThickenMakes) {
     const Made made = make(film, t, 0);
     const ThickWall& wall = made.model.walls().at(0);
     EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
-    EXPECT_NEAR(wall.volume, plain.volume, kRounding);
-    EXPECT_NEAR(wall.thinnest.value, plain.thinnest.value, kRounding);
-    EXPECT_NEAR(wall.safe.value, plain.safe.value, kRounding);
+    EXPECT_NEAR(wall.volume, plain.volume, kWallRounding);
+    EXPECT_NEAR(wall.thinnest.value, plain.thinnest.value, kWallRounding);
+    EXPECT_NEAR(wall.safe.value, plain.safe.value, kWallRounding);
   }
 }
 
