@@ -23,10 +23,11 @@ struct RunArguments {
   CommonArguments common;
   bool resume = false;
   bool pictures = true;
-  bool frames = true;           // films of the design's history
-  bool frame_pictures = false;  // and a picture of each
-  bool report = true;           // report.html
-  int threads = 0;              // 0: OpenMP's own number
+  bool frames = true;                // films of the design's history
+  bool frame_pictures = false;       // and a picture of each
+  bool report = true;                // report.html
+  std::vector<std::string> exports;  // formats to write the part in besides
+  int threads = 0;                   // 0: OpenMP's own number
   int jobs = 1;  // independent designs, or members of a family, side by side
   double time_limit = 0.0;  // [s], 0: none
 };
@@ -67,6 +68,14 @@ struct CheckGradientArguments {
   std::vector<std::string> at;  // "name=value" of design variables
 };
 
+struct CurvesArguments {
+  std::string scan;              // an STL or OBJ file
+  double angle = 25.0;           // [degrees]
+  std::optional<double> radius;  // [length]
+  std::optional<int> points;     // of each curve
+  std::string out;               // file; empty: standard output
+};
+
 struct WatchArguments {
   std::string folder;  // of a run or a family
   bool once = false;   // one look
@@ -81,6 +90,8 @@ int run_family_command(const Case& input,
                        const std::vector<std::string>& warnings,
                        const RunArguments& arguments);
 int evolve_command(const EvolveArguments& arguments);
+/// Proposes rims of a scan as curves of a case.
+int curves_command(const CurvesArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int report_command(const ReportArguments& arguments);

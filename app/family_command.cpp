@@ -66,7 +66,7 @@ int run_family_command(const Case& input,
     std::fprintf(stderr, "%s\n", error.what());
     return kExitWrongInput;
   }
-  std::mutex drawing;  // one private display at a time
+  std::mutex writing;  // one private display, one CAD kernel at a time
   const Timer timer;
   const auto late = [&] {
     return arguments.time_limit > 0.0 &&
@@ -89,10 +89,12 @@ int run_family_command(const Case& input,
                 .write_files =
                     [&](const Case& member, const EvaluationFields& fields,
                         const fs::path& place, RunResult& outcome) {
-                      const std::lock_guard<std::mutex> guard(drawing);
+                      const std::lock_guard<std::mutex> guard(writing);
                       RunOutputOptions chosen{
                           .pictures = arguments.pictures,
                           .frame_pictures = arguments.frame_pictures,
+                          .exports = arguments.exports,
+                          .program_version = kProgramVersion,
                           .monitor = &monitor};
                       if (chosen.pictures && late()) {
                         chosen.pictures = false;

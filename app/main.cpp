@@ -123,6 +123,13 @@ int run_program(int argc, char** argv) {
   run->add_flag("--frame-pictures", run_arguments.frame_pictures,
                 "a picture of each of these films, from one fixed camera");
   run->add_flag("!--no-report", run_arguments.report, "leave report.html out");
+  run->add_option("--export", run_arguments.exports,
+                  "write the part, or each member's, in this format too; may "
+                  "be given again; " +
+                      formats_text())
+      ->type_name("FORMAT")
+      ->allow_extra_args(false)
+      ->check(no_export_format);
   run->add_option("--threads", run_arguments.threads,
                   "threads that a run may use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
@@ -237,6 +244,27 @@ int run_program(int argc, char** argv) {
   compare->add_flag("--quiet", compare_arguments.quiet, "errors only");
   compare->callback([&] {
     command = [&] { return meniscus::compare_command(compare_arguments); };
+  });
+
+  meniscus::CurvesArguments curves_arguments;
+  CLI::App* curves = app.add_subcommand(
+      "curves", "propose curves: the lines along which a scan bends most");
+  curves->add_option("SCAN", curves_arguments.scan, "STL or OBJ file")
+      ->required();
+  curves->add_option("--angle", curves_arguments.angle,
+                     "least turn of the surface across a line, in degrees "
+                     "(default: 25)");
+  curves
+      ->add_option("--radius", curves_arguments.radius,
+                   "normals are averaged so far on each side of a line "
+                   "(default: 1/40 of the scan's size)")
+      ->check(positive());
+  curves->add_option("--points", curves_arguments.points,
+                     "points of each curve (default: as few as serve)");
+  curves->add_option("--out", curves_arguments.out,
+                     "write the curves into this file");
+  curves->callback([&] {
+    command = [&] { return meniscus::curves_command(curves_arguments); };
   });
 
   meniscus::ReportArguments report_arguments;

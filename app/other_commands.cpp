@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/exit_code.h"
 #include "app/signals.h"
+#include "app/terminal.h"
 #include "app/versions.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
@@ -67,12 +68,6 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
 }
 
 namespace {
-
-void warn(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) {
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  }
-}
 
 int evolve_datafile_command(const EvolveArguments& arguments) {
   const CommonArguments& common = arguments.common;

@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "app/exit_code.h"
 #include "app/signals.h"
+#include "app/terminal.h"
 #include "app/terminal_monitor.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
@@ -18,12 +19,6 @@ namespace meniscus {
 namespace {
 
 namespace fs = std::filesystem;
-
-void warn(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) {
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  }
-}
 
 /// The pictures again, of the answer whose meshes stand in the folder.
 void draw_again(const fs::path& folder, Monitor& monitor) {

@@ -45,6 +45,8 @@ class Run {
         output_(input, folder_,
                 {.pictures = arguments.pictures,
                  .frame_pictures = arguments.frame_pictures,
+                 .exports = arguments.exports,
+                 .program_version = kProgramVersion,
                  .time_limit = arguments.time_limit,
                  .monitor = &monitor_}) {}
 

@@ -41,4 +41,10 @@ std::string fitted(const std::string& text, int columns) {
   return line;
 }
 
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+}
+
 }  // namespace meniscus

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <string>
+#include <vector>
 
 namespace meniscus {
 
@@ -14,5 +15,8 @@ int columns_of(std::FILE* stream);
 
 /// At most `columns` characters of UTF-8 text, on one line.
 std::string fitted(const std::string& text, int columns);
+
+/// A line each, to stderr.
+void warn(const std::vector<std::string>& warnings);
 
 }  // namespace meniscus

@@ -34,7 +34,50 @@ double meet(const SurfaceMesh& mesh, int facet, const Vec3& origin,
   return at > 0.0 ? at : kNever;
 }
 
+NearestPoint weighted(const std::array<Vec3, 3>& t, const Vec3& place, double b,
+                      double c) {
+  NearestPoint result{.weights = {1.0 - b - c, b, c}};
+  result.point = t[0] + b * (t[1] - t[0]) + c * (t[2] - t[0]);
+  result.distance = (place - result.point).norm();
+  return result;
+}
+
 }  // namespace
+
+NearestPoint nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
+  const Vec3 ab = t[1] - t[0];
+  const Vec3 ac = t[2] - t[0];
+  const double d1 = ab.dot(p - t[0]);
+  const double d2 = ac.dot(p - t[0]);
+  if (d1 <= 0.0 && d2 <= 0.0) {
+    return weighted(t, p, 0.0, 0.0);
+  }
+  const double d3 = ab.dot(p - t[1]);
+  const double d4 = ac.dot(p - t[1]);
+  if (d3 >= 0.0 && d4 <= d3) {
+    return weighted(t, p, 1.0, 0.0);
+  }
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    return weighted(t, p, d1 / (d1 - d3), 0.0);
+  }
+  const double d5 = ab.dot(p - t[2]);
+  const double d6 = ac.dot(p - t[2]);
+  if (d6 >= 0.0 && d5 <= d6) {
+    return weighted(t, p, 0.0, 1.0);
+  }
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    return weighted(t, p, 0.0, d2 / (d2 - d6));
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return weighted(t, p, 1.0 - w, w);
+  }
+  const double sum = va + vb + vc;
+  return weighted(t, p, vb / sum, vc / sum);
+}
 
 FacetTree::FacetTree(const SurfaceMesh& mesh, std::vector<int> facets,
                      double tolerance)
@@ -135,6 +178,43 @@ std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
       if (at < best.distance ||
           (at == best.distance && at < kNever && f < best.facet)) {
         best = {f, at};
+      }
+    }
+  }
+  if (best.facet < 0) {
+    return std::nullopt;
+  }
+  return best;
+}
+
+std::optional<NearestPoint> FacetTree::nearest(const Vec3& place) const {
+  NearestPoint best{.distance = kNever};
+  std::vector<int> stack;
+  if (!nodes_.empty()) {
+    stack.push_back(0);
+  }
+  while (!stack.empty()) {
+    const int id = stack.back();
+    stack.pop_back();
+    const Node& node = nodes_[id];
+    if (node.box.to(place) > best.distance) {
+      continue;
+    }
+    if (node.second_child >= 0) {
+      const bool first = nodes_[id + 1].box.to(place) <=
+                         nodes_[node.second_child].box.to(place);
+      stack.push_back(first ? node.second_child : id + 1);
+      stack.push_back(first ? id + 1 : node.second_child);
+      continue;
+    }
+    for (int i = node.first; i < node.last; ++i) {
+      const Triangle& t = mesh_.facets[facets_[i]];
+      NearestPoint found = nearest_in(
+          {mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]}, place);
+      found.facet = facets_[i];
+      if (found.distance < best.distance ||
+          (found.distance == best.distance && found.facet < best.facet)) {
+        best = found;
       }
     }
   }

@@ -1,5 +1,5 @@
-/// Bounding boxes of facets in a tree: which facets are near each other, and
-/// what a ray meets first.
+/// Bounding boxes of facets in a tree: which facets are near each other, what a
+/// ray meets first, and what is nearest to a place.
 #pragma once
 
 #include <algorithm>
@@ -17,6 +17,18 @@ struct RayHit {
   int facet = -1;
   double distance = 0.0;  // in lengths of the ray's direction, above 0
 };
+
+/// The nearest point of a facet.
+struct NearestPoint {
+  int facet = -1;
+  std::array<double, 3> weights = {};  // of its corners, >= 0, sum 1
+  Vec3 point = Vec3::Zero();
+  double distance = 0.0;  // [length]
+};
+
+/// By the regions of corners and edges (Ericson, Real-Time Collision Detection,
+/// 2005, 5.1.5). `facet` of the result is -1.
+NearestPoint nearest_in(const std::array<Vec3, 3>& corners, const Vec3& place);
 
 /// Built in O(n log n); keeps a reference to the mesh.
 class FacetTree {
@@ -38,6 +50,10 @@ class FacetTree {
                                   const std::vector<int>& part_of,
                                   int part) const;
 
+  /// The point of all facets nearest to `place`, the lowest id of equals;
+  /// nothing for no facets.
+  std::optional<NearestPoint> nearest(const Vec3& place) const;
+
  private:
   struct Box {
     Vec3 low;
@@ -45,6 +61,9 @@ class FacetTree {
     bool meets(const Box& other) const {
       return (low.array() <= other.high.array()).all() &&
              (other.low.array() <= high.array()).all();
+    }
+    double to(const Vec3& place) const {
+      return (low - place).cwiseMax(place - high).cwiseMax(0.0).norm();
     }
   };
   // Facets first .. last - 1 of the tree's order; inner nodes have children,

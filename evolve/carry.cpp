@@ -159,6 +159,13 @@ Points Carry::transpose(const Points& by_points) const {
   return result;
 }
 
+Points Carry::rates(const Points& rim_rates) const {
+  Points result = rim_rates;
+  apply(films_, rim_rates, result);
+  apply(caps_, rim_rates, result);
+  return result;
+}
+
 Points Carry::at(const Points& rim_moves, double fraction) const {
   Points moves = rim_moves;
   for (Vec3& move : moves) {

@@ -28,6 +28,9 @@ class Carry {
   /// when all moves are zero.
   Points at(const Points& rim_moves, double fraction) const;
 
+  /// How fast at(., 1) moves with the rim vertices' own rates.
+  Points rates(const Points& rim_rates) const;
+
   /// at() transposed at fraction 1: a gradient by the moves of the rim
   /// vertices, zero at others, from one by all vertices.
   Points transpose(const Points& by_points) const;

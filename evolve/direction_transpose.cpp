@@ -1,4 +1,5 @@
-// The directions of a FilmSpace by the points that make them, backwards.
+// The directions of a FilmSpace by the points that make them, backwards and
+// forwards.
 #include "core/error.h"
 #include "evolve/facet_terms.h"
 #include "evolve/film_space.h"
@@ -32,6 +33,19 @@ Vec3 through_normals(const Vec3& way, const Vec3& by_first,
   return through_unit(way, n0.cross(by_second) + axis.cross(by_c));
 }
 
+/// How fast unit(v) turns when v changes at `rate`; zero where v is zero.
+Vec3 unit_rate(const Vec3& v, const Vec3& rate) {
+  return through_unit(v, rate);  // symmetric
+}
+
+void refuse_walls(const FilmSpace& space) {
+  if (space.has_walls()) {
+    throw InvalidInput(
+        "a film that slides on walls has no exact gradient: hold its rim on a "
+        "curve");
+  }
+}
+
 }  // namespace
 
 Vec3 line_axis(const Vec3& t) {
@@ -43,11 +57,7 @@ Vec3 line_axis(const Vec3& t) {
 void FilmSpace::transpose_directions(const Points& points,
                                      const Points& by_directions,
                                      Points& sum) const {
-  if (has_walls()) {
-    throw InvalidInput(
-        "a film that slides on walls has no exact gradient: hold its rim on a "
-        "curve");
-  }
+  refuse_walls(*this);
   Points normal2(points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (film_[f] != 0) {
@@ -85,6 +95,48 @@ void FilmSpace::transpose_directions(const Points& points,
       sum[t[i]] += by.cross(opposite);
     }
   }
+}
+
+Points FilmSpace::direction_rates(const Points& points,
+                                  const Points& motion) const {
+  refuse_walls(*this);
+  Points normal2(points.size(), Vec3::Zero());
+  Points rate2(points.size(), Vec3::Zero());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (film_[f] == 0) {
+      continue;
+    }
+    const Triangle& t = facets_[f];
+    const double turned = turn(static_cast<int>(f));
+    const Vec3 b = points[t[1]] - points[t[0]];
+    const Vec3 c = points[t[2]] - points[t[0]];
+    const Vec3 area2 = turned * b.cross(c);
+    const Vec3 rate = turned * ((motion[t[1]] - motion[t[0]]).cross(c) +
+                                b.cross(motion[t[2]] - motion[t[0]]));
+    for (const int v : t) {
+      normal2[v] += area2;
+      rate2[v] += rate;
+    }
+  }
+  Points result(vertex_.size(), Vec3::Zero());
+  for (int v = 0; v < vertex_count(); ++v) {
+    const int at = first_[v];
+    if (rank(v) == 1) {
+      result[at] = unit_rate(normal2[v], rate2[v]);
+    } else if (rank(v) == 2) {
+      const Edge& ends = line_ends(v);
+      const Vec3 way = points[ends[1]] - points[ends[0]];
+      if (!way.isZero(0.0)) {
+        const Vec3 t = way.normalized();
+        const Vec3 turned = unit_rate(way, motion[ends[1]] - motion[ends[0]]);
+        const Vec3 axis = line_axis(t);
+        const Vec3 c = t.cross(axis);
+        result[at] = unit_rate(c, turned.cross(axis));
+        result[at + 1] = turned.cross(c.normalized()) + t.cross(result[at]);
+      }
+    }
+  }
+  return result;
 }
 
 }  // namespace meniscus

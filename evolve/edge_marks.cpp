@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/QR>
@@ -52,12 +53,34 @@ double golden_section(double low, double high, const Distance& distance) {
   return 0.5 * (low + high);
 }
 
+/// In closed form: samples may miss the near one of two sides close together.
+double nearest_on(const Polygon& polygon, const Vec3& at) {
+  const auto sides = static_cast<double>(polygon.points.size());
+  double best = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < polygon.points.size(); ++k) {
+    const Vec3& from = polygon.points[k];
+    const Vec3 side = polygon.points[(k + 1) % polygon.points.size()] - from;
+    const double share =
+        std::clamp((at - from).dot(side) / side.squaredNorm(), 0.0, 1.0);
+    const double distance = (from + share * side - at).squaredNorm();
+    if (distance < least) {
+      least = distance;
+      best = (static_cast<double>(k) + share) / sides;
+    }
+  }
+  return best < 1.0 ? best : 0.0;
+}
+
 }  // namespace
 
 double nearest_parameter(const CurveShape& shape, const Vec3& at, double near) {
   const auto distance = [&](double t) {
     return (point_at(shape, t) - at).squaredNorm();
   };
+  if (const auto* polygon = std::get_if<Polygon>(&shape)) {
+    return nearest_on(*polygon, at);
+  }
   if (!std::holds_alternative<ParametricCurve>(shape)) {
     double best = 0.0;
     for (int i = 1; i < kCurveSamples; ++i) {

@@ -104,4 +104,41 @@ FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
   return result;
 }
 
+Points FilmAdjoint::tangent(const Rates& rates) const {
+  const Points turning = energy_.space().direction_rates(base_, rates.base);
+  Points motion = rates.base;  // at fixed heights
+  for (int i = 0; i < energy_.unknowns(); ++i) {
+    motion[energy_.vertices()[i]] += heights_[i] * turning[i];
+  }
+  Points slope_rate = products_.hessian_times(points_, motion);
+  VectorX tensions = rates.tensions;
+  for (Eigen::Index s = 0; s < tensions.size(); ++s) {
+    tensions[s] = energy_.has_tension(static_cast<int>(s)) ? tensions[s] : 0.0;
+  }
+  if (!tensions.isZero(0.0)) {
+    add(1.0, energy_.area_gradient(points_, tensions), slope_rate);
+  }
+  const std::vector<int>& held = saddle_.held();
+  VectorX missing = VectorX::Zero(saddle_.constraints().cols());
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    missing[static_cast<Eigen::Index>(k)] =
+        rates.volumes[held[k]] -
+        flat(saddle_.functional_slopes()[held[k]]).dot(flat(motion));
+  }
+  for (int b = 0; b < energy_.functionals(); ++b) {
+    if (!targets_.bodies[b].volume) {
+      add(-rates.pressures[b], saddle_.functional_slopes()[b], slope_rate);
+    }
+  }
+  VectorX residual = energy_.along(slope_rate, directions_);
+  for (int i = 0; i < energy_.unknowns(); ++i) {
+    residual[i] += turning[i].dot(slope_[energy_.vertices()[i]]);
+  }
+  const ConstrainedHessian::Step step = saddle_.solve(residual, missing);
+  for (int i = 0; i < energy_.unknowns(); ++i) {
+    motion[energy_.vertices()[i]] += step.dh[i] * directions_[i];
+  }
+  return motion;
+}
+
 }  // namespace meniscus

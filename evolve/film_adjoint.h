@@ -32,6 +32,17 @@ class FilmAdjoint {
   /// Lists of `response` that are not empty must fit.
   Result transpose(const FilmCovector& response) const;
 
+  /// How fast what the film rests on changes with a design variable.
+  struct Rates {
+    Points base;        // dX, one per vertex
+    VectorX tensions;   // one per surface; not read where a field is
+    VectorX volumes;    // one per functional; read where one is held
+    VectorX pressures;  // one per functional; read where none is held
+  };
+  /// dx, one per vertex: the other way through the same system, so that
+  /// transpose() of it is transpose().
+  Points tangent(const Rates& rates) const;
+
  private:
   Points direct(const FilmCovector& response) const;
 

@@ -6,48 +6,14 @@
 
 #include <Eigen/Geometry>
 
+#include "core/facet_tree.h"
+
 namespace meniscus {
 
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr int kLeafSize = 4;
-
-/// Nearest point of a triangle (Ericson 5.1.5, by the regions of its corners
-/// and edges).
-Vec3 nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
-  const Vec3 ab = t[1] - t[0];
-  const Vec3 ac = t[2] - t[0];
-  const double d1 = ab.dot(p - t[0]);
-  const double d2 = ac.dot(p - t[0]);
-  if (d1 <= 0.0 && d2 <= 0.0) {
-    return t[0];
-  }
-  const double d3 = ab.dot(p - t[1]);
-  const double d4 = ac.dot(p - t[1]);
-  if (d3 >= 0.0 && d4 <= d3) {
-    return t[1];
-  }
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
-    return t[0] + d1 / (d1 - d3) * ab;
-  }
-  const double d5 = ab.dot(p - t[2]);
-  const double d6 = ac.dot(p - t[2]);
-  if (d6 >= 0.0 && d5 <= d6) {
-    return t[2];
-  }
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
-    return t[0] + d2 / (d2 - d6) * ac;
-  }
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    return t[1] + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (t[2] - t[1]);
-  }
-  const double sum = va + vb + vc;
-  return t[0] + vb / sum * ab + vc / sum * ac;
-}
 
 void keep_shorter(ShortestLine& best, const Vec3& from, const Vec3& to) {
   const double length = (to - from).norm();
@@ -187,8 +153,8 @@ ShortestLine shortest_line(const std::array<Vec3, 3>& a,
                            const std::array<Vec3, 3>& b) {
   ShortestLine best{kFar, {}, {}};
   for (int i = 0; i < 3; ++i) {
-    keep_shorter(best, a[i], nearest_in(b, a[i]));
-    keep_shorter(best, nearest_in(a, b[i]), b[i]);
+    keep_shorter(best, a[i], nearest_in(b, a[i]).point);
+    keep_shorter(best, nearest_in(a, b[i]).point, b[i]);
     for (int j = 0; j < 3; ++j) {
       edge_to_edge(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3], best);
     }

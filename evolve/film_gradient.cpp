@@ -26,6 +26,11 @@ void check_size(const char* what, std::size_t found, std::size_t expected) {
   }
 }
 
+std::string no_curve(const std::string& name) {
+  return fmt::format(
+      "the design or its rates have no curve '{}', which the model has", name);
+}
+
 template <class Named>
 const Named* find_named(const std::vector<Named>& list,
                         const std::string& name) {
@@ -106,6 +111,9 @@ std::vector<FilmGradient> FilmModel::transpose(
   for (const FilmCovector& response : responses) {
     impl_->check_response(response);
   }
+  if (impl_->energy->unknowns() == 0) {
+    return impl_->rigid_gradients(responses);
+  }
   const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
                             film.directions, state.points, state.heights,
                             film.pressure);
@@ -119,6 +127,72 @@ std::vector<FilmGradient> FilmModel::transpose(
   return result;
 }
 
+std::vector<Points> FilmModel::tangents(
+    const FilmState& state, const FilmSystem& system,
+    const std::vector<FilmSystem>& rates) const {
+  const Impl::AtRest film = impl_->at_rest(state, system);
+  std::vector<Points> result;
+  result.reserve(rates.size());
+  if (impl_->energy->unknowns() == 0) {
+    for (const FilmSystem& moving : rates) {
+      result.push_back(impl_->rates_of(system, moving).base);
+    }
+    return result;
+  }
+  const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
+                            film.directions, state.points, state.heights,
+                            film.pressure);
+  for (const FilmSystem& moving : rates) {
+    result.push_back(adjoint.tangent(impl_->rates_of(system, moving)));
+  }
+  return result;
+}
+
+FilmAdjoint::Rates FilmModel::Impl::rates_of(const FilmSystem& system,
+                                             const FilmSystem& rates) const {
+  const auto bodies = static_cast<Eigen::Index>(complex.bodies.size());
+  FilmAdjoint::Rates result{
+      .base = Points(complex.vertices.size(), Vec3::Zero()),
+      .tensions =
+          VectorX::Zero(static_cast<Eigen::Index>(complex.surfaces.size())),
+      .volumes = VectorX::Zero(energy->functionals()),
+      .pressures = VectorX::Zero(energy->functionals())};
+  const Points still(complex.vertices.size(), Vec3::Zero());
+  for (const RimGradient& rim : rim_gradients(still)) {
+    const Curve* curve = find_named(system.curves, rim.curve);
+    const Curve* moving = find_named(rates.curves, rim.curve);
+    if (curve == nullptr || moving == nullptr) {
+      throw InvalidInput(no_curve(rim.curve));
+    }
+    const Points moves =
+        point_rates(curve->shape, moving->shape, rim.parameters);
+    std::size_t next = 0;
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+      const ComplexVertex& vertex = complex.vertices[v];
+      if (vertex.kind == VertexKind::OnCurve &&
+          complex.curves[vertex.curve].name == rim.curve) {
+        result.base[v] = moves[next++];
+      }
+    }
+  }
+  result.base = carry->rates(result.base);
+  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    const FilmSpec* film = find_named(rates.films, complex.surfaces[s].name);
+    if (film != nullptr && complex.surfaces[s].liquid) {
+      result.tensions[static_cast<Eigen::Index>(s)] = film->tension;
+    }
+  }
+  for (Eigen::Index b = 0; b < bodies; ++b) {
+    const BodySpec* body = find_named(
+        rates.bodies, complex.bodies[static_cast<std::size_t>(b)].name);
+    if (body != nullptr) {
+      result.volumes[b] = body->volume.value_or(0.0);
+      result.pressures[b] = body->pressure.value_or(0.0);
+    }
+  }
+  return result;
+}
+
 double FilmModel::rate(const FilmGradient& gradient, const FilmSystem& system,
                        const FilmSystem& rates) const {
   double sum = 0.0;
@@ -126,9 +200,7 @@ double FilmModel::rate(const FilmGradient& gradient, const FilmSystem& system,
     const Curve* curve = find_named(system.curves, rim.curve);
     const Curve* moving = find_named(rates.curves, rim.curve);
     if (curve == nullptr || moving == nullptr) {
-      throw InvalidInput(fmt::format(
-          "the design or its rates have no curve '{}', which the model has",
-          rim.curve));
+      throw InvalidInput(no_curve(rim.curve));
     }
     const Points moves =
         point_rates(curve->shape, moving->shape, rim.parameters);

@@ -21,10 +21,6 @@ namespace meniscus {
 
 namespace {
 
-/// Refinements whose vertices a meshed surface uses: a split facet's corners
-/// are of the first, its mid-sides of the second.
-constexpr int kMeshedLevels = 2;
-
 /// Steps from the reference to a design: first in one, then in parts, which
 /// are fixed so that the film depends on the design alone.
 constexpr std::array<int, 2> kParts = {1, 4};
@@ -168,10 +164,10 @@ std::vector<Curve> FilmModel::Impl::curves_of_system(
   return result;
 }
 
-EdgeMiddles FilmModel::Impl::middles() const {
+EdgeMiddles FilmModel::Impl::middles(std::size_t count) const {
   EdgeMiddles result;
   const auto first = static_cast<int>(meshed.points.size());
-  for (std::size_t k = 0; k < parents.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     const auto [a, b] = parents[k];
     result[{std::min(a, b), std::max(a, b)}] = first + static_cast<int>(k);
   }
@@ -189,6 +185,10 @@ std::vector<char> FilmModel::Impl::straight() const {
 void FilmModel::Impl::find_reference(const FilmSystem& initial,
                                      const FilmModelOptions& options,
                                      const SettleOptions& settle) {
+  if (initial.films.empty()) {
+    build_rigid(initial, options);
+    return;
+  }
   const int halvings = start_halvings(initial, options.edge);
   find_reference_from(halvings, initial, options, settle);
   const auto tears = [this] {
@@ -203,6 +203,7 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   const FilmComplex coarse = complex;
   const SurfaceMesh coarse_mesh = meshed;
   const std::vector<Edge> coarse_parents = parents;
+  const std::size_t coarse_near = near_parents;
   const FilmState failed = reference;
   const double coarse_edge = start_edge;
   find_reference_from(0, initial, options, settle);
@@ -210,6 +211,7 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
     complex = coarse;
     meshed = coarse_mesh;
     parents = coarse_parents;
+    near_parents = coarse_near;
     reference = failed;
     start_edge = coarse_edge;
     energy.reset();
@@ -226,6 +228,8 @@ void FilmModel::Impl::find_reference_from(int halvings,
   start_edge = std::ldexp(options.edge, halvings);
   complex = build_start(initial, start_edge);
   parents.clear();
+  near_parents = 0;
+  refinements = 0;
   energy.reset();
   monitor.progress({"film", "settling the raw start", 0.1});
   FindOptions find{
@@ -238,11 +242,7 @@ void FilmModel::Impl::find_reference_from(int halvings,
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
-    Refinement finer = refine(complex);
-    complex = std::move(finer.complex);
-    if (level < kMeshedLevels) {
-      parents.insert(parents.end(), finer.parents.begin(), finer.parents.end());
-    }
+    refine_once(level);
     if (!reference.failure) {
       energy.emplace(complex);
       reference = settle_in_normals(*energy, complex, targets_of(complex),
@@ -255,6 +255,9 @@ void FilmModel::Impl::find_reference_from(int halvings,
 FilmState FilmModel::Impl::settle_in_parts(const Points& moves,
                                            const FilmTargets& goal, int parts,
                                            const SettleOptions& options) const {
+  if (energy->unknowns() == 0) {
+    return rigid_state(carry->at(moves, 1.0), goal);
+  }
   FilmState state;
   int iterations = 0;
   try {
@@ -315,8 +318,9 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   impl->regions = regions_of(initial.bodies);
   keep_solids(impl->complex, impl->regions, topology);
   drop_unused(topology, corner);
-  impl->nodes = surface_nodes(std::move(topology), std::move(corner),
-                              impl->middles(), impl->straight());
+  impl->nodes =
+      surface_nodes(std::move(topology), std::move(corner),
+                    impl->middles(impl->near_parents), impl->straight());
   if (impl->reference.failure || !impl->energy) {
     impl->energy.emplace(impl->complex);
   }
@@ -382,7 +386,8 @@ QuadraticSurface FilmModel::surface(const Points& points) const {
 }
 
 void FilmModel::split_facets(const std::vector<char>& marked) {
-  impl_->nodes = meniscus::split_facets(impl_->nodes, marked, impl_->middles(),
+  impl_->nodes = meniscus::split_facets(impl_->nodes, marked,
+                                        impl_->middles(impl_->near_parents),
                                         impl_->straight());
 }
 
@@ -403,6 +408,18 @@ SurfaceMesh FilmModel::boundary(const Points& points) const {
   drop_interfaces(mesh);
   return mesh;
 }
+
+SurfaceMesh FilmModel::meshed_facets() const {
+  SurfaceMesh mesh = impl_->meshed;
+  mesh.points.clear();
+  return mesh;
+}
+
+EdgeMiddles FilmModel::middles() const {
+  return impl_->middles(impl_->parents.size());
+}
+
+int FilmModel::refinements() const { return impl_->refinements; }
 
 std::vector<int> FilmModel::rim(const std::string& curve) const {
   std::vector<int> result;

@@ -19,6 +19,7 @@
 
 #include "core/monitor.h"
 #include "core/surface_mesh.h"
+#include "core/surface_nodes.h"
 #include "evolve/film_gradient.h"
 #include "evolve/film_state.h"
 #include "evolve/film_system.h"
@@ -91,6 +92,13 @@ class FilmModel {
       const FilmState& state, const FilmSystem& system,
       const std::vector<FilmCovector>& responses) const;
 
+  /// How fast the film's points move with design variables, `rates` of each as
+  /// rate() wants them: settle() differentiated forwards. Worth it where many
+  /// responses meet few variables; one factorisation, and a solve for each.
+  /// Throws as transpose() and rate().
+  std::vector<Points> tangents(const FilmState& state, const FilmSystem& system,
+                               const std::vector<FilmSystem>& rates) const;
+
   /// dJ along one design variable: `rates` is `system` with each number's
   /// derivative in its place (curves of the same kinds, tensions, volumes,
   /// pressures; fields and tension fields are the model's and not read). A
@@ -112,6 +120,11 @@ class FilmModel {
   /// with its derivatives.
   FilmResponse smallest_radius(const Points& points, int power = 16) const;
 
+  /// Least distance of two films (evolve/gap_between.h) [length], with its
+  /// derivatives.
+  FilmResponse gap(const Points& points, const std::string& film,
+                   const std::string& other, double smoothing) const;
+
   /// All facets at the film's own resolution (caps included), for files and
   /// pictures.
   SurfaceMesh fine_mesh(const Points& points) const;
@@ -129,6 +142,15 @@ class FilmModel {
   /// transpose() does for the state, and as fe_text().
   std::string datafile(const FilmState& state, const FilmSystem& system,
                        const std::vector<std::string>& comments = {}) const;
+
+  /// Facets of the meshed level, caps and voids included: for what else is
+  /// made of the films. It has no points; corners are vertices of the film.
+  SurfaceMesh meshed_facets() const;
+
+  /// The film's vertices between others, of every refinement from the meshed
+  /// level to the fine one.
+  EdgeMiddles middles() const;
+  int refinements() const;
 
   /// Vertices of the fine mesh on a curve; none for a curve that the model has
   /// not.

@@ -8,14 +8,17 @@
 #include "core/surface_nodes.h"
 #include "evolve/carry.h"
 #include "evolve/energy.h"
+#include "evolve/film_adjoint.h"
 #include "evolve/film_model.h"
 
 namespace meniscus {
 
 struct FilmModel::Impl {
-  FilmComplex complex;        // finest level, at the reference film
-  std::vector<Edge> parents;  // of the first refinements' new vertices
-  SurfaceMesh meshed;         // the meshed level at the reference film
+  FilmComplex complex;           // finest level, at the reference film
+  std::vector<Edge> parents;     // of the refinements' new vertices
+  std::size_t near_parents = 0;  // of the first two refinements
+  int refinements = 0;
+  SurfaceMesh meshed;  // the meshed level at the reference film
   std::optional<FilmEnergy> energy;
   std::optional<Carry> carry;
   FilmTargets targets;
@@ -43,12 +46,20 @@ struct FilmModel::Impl {
   void find_reference_from(int halvings, const FilmSystem& initial,
                            const FilmModelOptions& options,
                            const SettleOptions& settle);
-  EdgeMiddles middles() const;
+  void build_rigid(const FilmSystem& initial, const FilmModelOptions& options);
+  /// One level finer; keeps the new vertices' parents.
+  void refine_once(int level);
+  FilmState rigid_state(const Points& points, const FilmTargets& goal) const;
+  EdgeMiddles middles(std::size_t count) const;
   std::vector<char> straight() const;
   /// A state that settle() gave for `system`. Throws InvalidInput for others.
   AtRest at_rest(const FilmState& state, const FilmSystem& system) const;
   void check_response(const FilmCovector& response) const;
   std::vector<RimGradient> rim_gradients(const Points& by_base) const;
+  std::vector<FilmGradient> rigid_gradients(
+      const std::vector<FilmCovector>& responses) const;
+  FilmAdjoint::Rates rates_of(const FilmSystem& system,
+                              const FilmSystem& rates) const;
   FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,
                             int parts, const SettleOptions& options) const;
 };

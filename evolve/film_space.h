@@ -53,6 +53,10 @@ class FilmSpace {
   void transpose_directions(const Points& points, const Points& by_directions,
                             Points& sum) const;
 
+  /// How fast directions() change when the points move, at fixed h. Throws as
+  /// transpose_directions().
+  Points direction_rates(const Points& points, const Points& motion) const;
+
   /// points + h d at every unknown's vertex, back on the walls.
   Points moved(const Points& points, const Points& directions,
                const VectorX& heights) const;

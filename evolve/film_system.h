@@ -39,14 +39,35 @@ struct FilmSpec {
   double within = 0.0;  // its rims may be so far off their curves [length]
 };
 
-/// Solid; carries no tension. A flat disk across a planar closed curve, or
-/// facets as they are, whose rims lie on curves.
+/// Solid; carries no tension. A flat disk across a planar closed curve, a ring
+/// between two closed curves, or facets as they are, whose rims lie on curves.
+/// Where polygons have the same side their disks are joined
+/// (evolve/shared_sides.h).
 struct CapSpec {
   std::string name;
-  std::string curve;  // of a disk
+  std::string curve;  // of a disk or ring
+  /// Of a ring the curve around its hole; empty: a disk. A ring between curves
+  /// of one plane is flat, others are ruled bands.
+  std::string inner = {};
   std::shared_ptr<const StartFacets> start = nullptr;
   std::vector<std::string> rims = {};  // of facets: their curves
   double within = 0.0;                 // as of films
+  /// Of a disk: planar curves that it ends at too. One that lies within
+  /// another's disk is a hole in it, others have disks of their own.
+  std::vector<std::string> more = {};
+
+  /// Those that it ends at.
+  std::vector<std::string> curves() const {
+    if (start) {
+      return rims;
+    }
+    std::vector<std::string> all = {curve};
+    if (!inner.empty()) {
+      all.push_back(inner);
+    }
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
 };
 
 struct BodySpec {

@@ -286,6 +286,30 @@ class Corners {
   std::vector<int> found_;
 };
 
+/// A number per point that is the same for points of films that hang together.
+std::vector<int> joined_films(const FilmEnergy& energy, std::size_t count) {
+  std::vector<int> up(count);
+  std::iota(up.begin(), up.end(), 0);
+  const auto root = [&](int v) {
+    while (up[v] != v) {
+      up[v] = up[up[v]];
+      v = up[v];
+    }
+    return v;
+  };
+  for (std::size_t f = 0; f < energy.facets().size(); ++f) {
+    const Triangle& t = energy.facets()[f];
+    for (int k = 1; energy.is_liquid(static_cast<int>(f)) && k < 3; ++k) {
+      const auto [low, high] = std::minmax({root(t[0]), root(t[k])});
+      up[high] = low;
+    }
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    up[v] = root(static_cast<int>(v));
+  }
+  return up;
+}
+
 }  // namespace
 
 Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
@@ -295,6 +319,7 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
   const Points normals = energy.space().directions(points);
   const std::vector<Outlook> looks = outlooks(energy, points.size());
   const std::vector<char> near = near_lines(energy, points.size());
+  const std::vector<int> film = joined_films(energy, points.size());
   Corners corners(facets, points.size());
   Neck neck;
   double least = std::numeric_limits<double>::infinity();
@@ -316,7 +341,7 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
                share_body(energy, f, looks[i].facet);
       };
       const int f = tree.first_hit(points[v], direction, length, accept);
-      if (f < 0 || !energy.is_liquid(f)) {
+      if (f < 0 || !energy.is_liquid(f) || film[facets[f][0]] != film[v]) {
         continue;
       }
       const Triangle& t = facets[f];

@@ -15,7 +15,9 @@ struct Neck {
 /// The shortest of the lines that start at a film vertex, run along the
 /// inward normal into the body (both ways for a film that encloses nothing)
 /// and end at a film of the same body that faces them. Lines that end at a
-/// solid cap do not count. O(n log n); deterministic.
+/// solid cap do not count, nor those from a film to another that it hangs
+/// together with nowhere: nested films have a gap (evolve/gap_between.h), and
+/// do not pinch. O(n log n); deterministic.
 Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
                     const std::vector<int>& facet_label);
 

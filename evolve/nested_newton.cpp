@@ -17,7 +17,7 @@ constexpr double kFirstReduction = 1e-3;  // of the linear residual
 constexpr double kServes = 0.3;           // a step's reduction of the residual
 constexpr double kMostReduction = 1e-7;   // that single precision gives
 constexpr double kAim = 0.1;              // of the bound, for the last solve
-constexpr double kFold = 0.15;            // cosine of a facet's turn in a step
+constexpr double kTurn = 0.15;            // cosine of a facet's turn in a step
 constexpr int kModeSteps = 30;
 constexpr double kModeAccuracy = 1e-4;  // of the lowest eigenvalue, relative
 
@@ -244,7 +244,7 @@ NestedResult NestedNewton::run(const Points& start, const VectorX& pressure,
       break;
     }
     Points next = energy_.space().moved(points_, directions_, step.heights);
-    if (energy_.smallest_cosine(next, points_) < kFold) {
+    if (energy_.smallest_cosine(next, points_) < kTurn) {
       result.reason = "a step folds the film";
       break;
     }

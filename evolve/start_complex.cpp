@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 #include "core/error.h"
 #include "evolve/body_sides.h"
 #include "evolve/branch_facets.h"
+#include "evolve/cap_faces.h"
 #include "evolve/disk_fill.h"
 #include "evolve/facet_start.h"
 #include "evolve/fields.h"
@@ -16,25 +18,24 @@
 #include "evolve/loft.h"
 #include "evolve/raise_disks.h"
 #include "evolve/rim_grading.h"
+#include "evolve/shared_sides.h"
 #include "evolve/tension_field.h"
 
 namespace meniscus {
 
 namespace {
 
-// A point of a cap may be this far off its plane [curve's size].
-constexpr double kFlatness = 1e-9;
-
 struct Rim {
   int curve = 0;
-  int first = 0;  // id of its first point; the others follow
-  int count = 0;
+  std::vector<int> ids;  // of its points, in order
+
+  int count() const { return static_cast<int>(ids.size()); }
 };
 
 class StartBuilder {
  public:
   StartBuilder(const FilmSystem& system, double edge)
-      : system_(system), edge_(edge) {}
+      : system_(system), edge_(edge), shared_(system.curves) {}
 
   FilmComplex build() {
     check_names();
@@ -47,11 +48,11 @@ class StartBuilder {
       }
     }
     for (const CapSpec& cap : system_.caps) {
-      for (const std::string& name :
-           cap.start ? cap.rims : std::vector<std::string>{cap.curve}) {
+      for (const std::string& name : cap.curves()) {
         rim_of(name, cap.name);
       }
     }
+    shared_.mark_edges(result_);
     for (const FilmSpec& film : system_.films) {
       add_film(film);
     }
@@ -100,9 +101,8 @@ class StartBuilder {
       add(film.name);
       if (!std::isfinite(film.tension) || film.tension <= 0.0) {
         throw InvalidInput(
-            fmt::format("film '{}': tension is {}, must be "
-                        "above 0",
-                        film.name, film.tension));
+            fmt::format("film '{}': tension is {}, must be above 0", film.name,
+                        film.tension));
       }
     }
     for (const CapSpec& cap : system_.caps) {
@@ -121,30 +121,45 @@ class StartBuilder {
                      [&](const Curve& c) { return c.name == curve_name; });
     if (found == system_.curves.end()) {
       throw InvalidInput(
-          fmt::format("surface '{}' names the curve '{}', which "
-                      "does not exist",
+          fmt::format("surface '{}' names the curve '{}', which does not exist",
                       user, curve_name));
     }
     Rim rim;
     rim.curve = static_cast<int>(found - system_.curves.begin());
-    rim.first = static_cast<int>(result_.mesh.points.size());
     const auto cuts = facets_.cuts.find(rim.curve);
-    const std::vector<double> t = cuts != facets_.cuts.end()
-                                      ? cuts->second
-                                      : sample_parameters(found->shape, edge_);
+    const bool is_cut = cuts != facets_.cuts.end();
+    const std::vector<double> t =
+        is_cut ? cuts->second : sample_parameters(found->shape, edge_);
+    if (shared_.shares(rim.curve)) {
+      rim.ids = shared_.rim(rim.curve, t, result_);
+      if (is_cut && rim.ids.size() != t.size()) {
+        throw InvalidInput(fmt::format(
+            "surface '{}': facets end at curve '{}', a side of which another "
+            "solid cuts otherwise; let the facets have that side's corners "
+            "only, or make them of kind cap",
+            user, curve_name));
+      }
+      return rims_.emplace(curve_name, std::move(rim)).first->second;
+    }
+    rim.ids.resize(t.size());
+    std::iota(rim.ids.begin(), rim.ids.end(),
+              static_cast<int>(result_.mesh.points.size()));
     const Points points = points_at(found->shape, t);
     result_.mesh.points.insert(result_.mesh.points.end(), points.begin(),
                                points.end());
     for (const double at : t) {
       result_.vertices.push_back({VertexKind::OnCurve, rim.curve, at});
-      ++rim.count;
     }
     return rims_.emplace(curve_name, rim).first->second;
   }
 
   Points points_of(const Rim& rim) const {
-    const auto first = result_.mesh.points.begin() + rim.first;
-    return {first, first + rim.count};
+    Points points;
+    points.reserve(rim.ids.size());
+    for (const int id : rim.ids) {
+      points.push_back(result_.mesh.points[id]);
+    }
+    return points;
   }
 
   int add_surface(const ComplexSurface& surface) {
@@ -177,7 +192,7 @@ class StartBuilder {
         break;
       case FilmKind::Disk:
         require_curves(film, 1);
-        fill(rim_of(film.curves[0], film.name), label, VertexKind::Free);
+        fill({rim_of(film.curves[0], film.name)}, label, VertexKind::Free);
         break;
       case FilmKind::Facets:
         add_sheet(film.name, label, VertexKind::Free);
@@ -199,33 +214,40 @@ class StartBuilder {
     const Rim high = rim_of(film.curves[1], film.name);
     for (Triangle t : loft_band(points_of(low), points_of(high))) {
       for (int& v : t) {
-        v += v < low.count ? low.first : high.first - low.count;
+        v = v < low.count() ? low.ids[v] : high.ids[v - low.count()];
       }
       add_facet(t, label);
     }
   }
 
-  void fill(const Rim& rim, int label, VertexKind kind) {
-    SurfaceMesh disk;
-    try {
-      const Points points = points_of(rim);
-      disk = has_many_sides(system_.curves[rim.curve].shape)
-                 ? fill_disk(points, edge_, graded_edge(points, edge_))
-                 : fill_disk(points, edge_);
-    } catch (const MeshError& error) {
-      throw InvalidInput(fmt::format(
-          "curve '{}': {}", system_.curves[rim.curve].name, error.what()));
+  /// The first of the rims filled, the others left open.
+  void fill(const std::vector<Rim>& rims, int label, VertexKind kind) {
+    std::vector<Points> loops;
+    bool graded = false;
+    for (const Rim& rim : rims) {
+      loops.push_back(points_of(rim));
+      graded = graded || shared_.shares(rim.curve) ||
+               has_many_sides(system_.curves[rim.curve].shape);
     }
-    const int first_inner = static_cast<int>(result_.mesh.points.size());
-    for (std::size_t i = rim.count; i < disk.points.size(); ++i) {
+    add_filling(
+        fill_face(loops, edge_, graded, system_.curves[rims[0].curve].name),
+        rims, label, kind);
+  }
+
+  // `disk`: the points of the rims come first, in their order.
+  void add_filling(const SurfaceMesh& disk, const std::vector<Rim>& rims,
+                   int label, VertexKind kind) {
+    std::vector<int> ids;
+    for (const Rim& rim : rims) {
+      ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
+    }
+    for (std::size_t i = ids.size(); i < disk.points.size(); ++i) {
+      ids.push_back(static_cast<int>(result_.mesh.points.size()));
       result_.mesh.points.push_back(disk.points[i]);
       result_.vertices.push_back({kind, -1, 0.0});
     }
-    for (Triangle t : disk.facets) {
-      for (int& v : t) {
-        v += v < rim.count ? rim.first : first_inner - rim.count;
-      }
-      add_facet(t, label);
+    for (const Triangle& t : disk.facets) {
+      add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
     }
   }
 
@@ -242,8 +264,8 @@ class StartBuilder {
       for (int k = 0; k < 3; ++k) {
         const FacetCorner& corner = corners[k];
         if (corner.point < 0) {
-          t[k] = rim_of(system_.curves[corner.curve].name, name).first +
-                 corner.cut;
+          t[k] = rim_of(system_.curves[corner.curve].name, name)
+                     .ids[static_cast<std::size_t>(corner.cut)];
           continue;
         }
         int& id = facet_points_[corner.point];
@@ -266,25 +288,32 @@ class StartBuilder {
   }
 
   void add_cap(const CapSpec& cap) {
+    const int label = add_surface({cap.name, false, 0.0});
     if (cap.start) {
-      add_sheet(cap.name, add_surface({cap.name, false, 0.0}),
-                VertexKind::InCap);
+      add_sheet(cap.name, label, VertexKind::InCap);
       return;
     }
-    const Rim rim = rim_of(cap.curve, cap.name);
-    const Points points = points_of(rim);
-    const Vec3 normal = polygon_area_vector(points).normalized();
-    const double size = bounding_diagonal(points);
-    for (const Vec3& p : points) {
-      const double off = std::abs(normal.dot(p - points[0]));
-      if (!(off <= kFlatness * size)) {
-        throw InvalidInput(fmt::format(
-            "cap '{}': curve '{}' is not planar, ({:.6g}, {:.6g}, {:.6g}) is "
-            "{:.3g} off its plane; use a film of kind disk or a planar curve",
-            cap.name, cap.curve, p.x(), p.y(), p.z(), off));
-      }
+    std::vector<Rim> rims;
+    std::vector<Points> loops;
+    for (const std::string& name : cap.curves()) {
+      rims.push_back(rim_of(name, cap.name));
+      loops.push_back(points_of(rims.back()));
     }
-    fill(rim, add_surface({cap.name, false, 0.0}), VertexKind::InCap);
+    if (!cap.inner.empty()) {
+      add_filling(fill_ring(loops[0], loops[1], edge_), rims, label,
+                  VertexKind::InCap);
+      return;
+    }
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+      require_flat(loops[k], cap.name, system_.curves[rims[k].curve].name);
+    }
+    for (const std::vector<int>& face : faces_with_holes(loops)) {
+      std::vector<Rim> bounds;
+      for (const int k : face) {
+        bounds.push_back(rims[k]);
+      }
+      fill(bounds, label, VertexKind::InCap);
+    }
   }
 
   void add_branch(const FilmSpec& film, int label);
@@ -292,10 +321,9 @@ class StartBuilder {
   void add_body(const BodySpec& body) {
     ComplexBody made{body.name, {}, body.volume, body.pressure};
     if (body.volume && body.pressure) {
-      throw InvalidInput(
-          fmt::format("body '{}' has both volume and pressure; "
-                      "give one of them",
-                      body.name));
+      throw InvalidInput(fmt::format(
+          "body '{}' has both volume and pressure; give one of them",
+          body.name));
     }
     if (body.volume && !(std::isfinite(*body.volume) && *body.volume > 0.0)) {
       throw InvalidInput(fmt::format("body '{}': volume is {}, must be above 0",
@@ -309,10 +337,9 @@ class StartBuilder {
     for (const std::string& name : body.enclosed_by) {
       const int surface = result_.mesh.label_of(name);
       if (surface < 0) {
-        throw InvalidInput(
-            fmt::format("body '{}' is enclosed by '{}', which "
-                        "is neither a film nor a cap",
-                        body.name, name));
+        throw InvalidInput(fmt::format(
+            "body '{}' is enclosed by '{}', which is neither a film nor a cap",
+            body.name, name));
       }
       const bool twice =
           std::any_of(made.sides.begin(), made.sides.end(),
@@ -343,16 +370,17 @@ class StartBuilder {
         return;
       }
     }
-    throw InvalidInput(
-        fmt::format("cap '{}' encloses nothing; add it to a "
-                    "body's enclosed_by or remove it",
-                    surface));
+    throw InvalidInput(fmt::format(
+        "cap '{}' encloses nothing; add it to a body's enclosed_by or remove "
+        "it",
+        surface));
   }
 
   const FilmSystem& system_;
   double edge_;
   FilmComplex result_;
   std::map<std::string, Rim> rims_;
+  SharedRims shared_;
   FacetStart facets_;
   std::vector<int> facet_points_;  // ids of its points; -1: not yet
 };
@@ -369,11 +397,10 @@ void StartBuilder::add_branch(const FilmSpec& film, int label) {
   Points points;
   for (const std::string& name : film.curves) {
     const Rim& rim = rim_of(name, film.name);
-    counts.push_back(rim.count);
-    for (int i = 0; i < rim.count; ++i) {
-      ids.push_back(rim.first + i);
-      points.push_back(result_.mesh.points[rim.first + i]);
-    }
+    counts.push_back(rim.count());
+    ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
+    const Points of_rim = points_of(rim);
+    points.insert(points.end(), of_rim.begin(), of_rim.end());
   }
   for (const Triangle& t : branch_facets(film, points, counts)) {
     add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);

@@ -35,9 +35,10 @@ struct Room {
 /// Limits of the thickness at single places of a sheet.
 class Limits {
  public:
-  Limits(const Sheet& sheet, WallSide side)
+  Limits(const Sheet& sheet, WallSide side, const SurfaceMesh* others)
       : part_(shares(side)),
-        probe_(sheet.film.points, sheet.film.facets),
+        all_(with(sheet.film, others)),
+        probe_(all_.points, all_.facets),
         far_(bounding_diagonal(sheet.film.points)) {}
 
   // Moving along the normal is limited by bends towards it, k < 0.
@@ -117,7 +118,21 @@ class Limits {
     return true;
   }
 
+  static SurfaceMesh with(const SurfaceMesh& film, const SurfaceMesh* others) {
+    SurfaceMesh all{.points = film.points, .facets = film.facets};
+    if (others != nullptr) {
+      const auto first = static_cast<int>(all.points.size());
+      all.points.insert(all.points.end(), others->points.begin(),
+                        others->points.end());
+      for (const Triangle& t : others->facets) {
+        all.facets.push_back({t[0] + first, t[1] + first, t[2] + first});
+      }
+    }
+    return all;
+  }
+
   WallShares part_;
+  SurfaceMesh all_;
   FacetProbe probe_;
   double far_;
 };
@@ -143,8 +158,19 @@ std::string describe(const SafeThickness& safe, const Sheet& sheet, int facet) {
 }  // namespace
 
 SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
-                             const std::vector<double>& asked, WallSide side) {
-  const Limits limits(sheet, side);
+                             const std::vector<double>& asked, WallSide side,
+                             const SafeOptions& options) {
+  const Limits limits(sheet, side, options.others);
+  const bool all = options.at_each != nullptr;
+  if (all) {
+    options.at_each->assign(jets.size(), kUnlimited);
+  }
+  const auto note = [&](int v, const Room& room) {
+    if (all) {
+      double& at = (*options.at_each)[v];
+      at = std::min(at, room.value);
+    }
+  };
   SafeThickness safe;
   double least = kUnlimited;
   int where = 0;
@@ -159,14 +185,17 @@ SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
   const auto count = static_cast<int>(jets.size());
   const Points& x = sheet.film.points;
   for (int v = 0; v < count; ++v) {
-    consider(limits.bend(jets[v]), x[v], asked[v], v,
-             sheet.facet_list[sheet.facet_start[v]]);
+    const Room room = limits.bend(jets[v]);
+    note(v, room);
+    consider(room, x[v], asked[v], v, sheet.facet_list[sheet.facet_start[v]]);
   }
   for (int v = 0; v < count; ++v) {
     if (sheet.on_crease[v] == 0) {
       const std::array<int, 1> own = {v};
-      consider(limits.gap(x[v], jets[v], own, least * asked[v]), x[v], asked[v],
-               v, sheet.facet_list[sheet.facet_start[v]]);
+      const Room room =
+          limits.gap(x[v], jets[v], own, all ? kUnlimited : least * asked[v]);
+      note(v, room);
+      consider(room, x[v], asked[v], v, sheet.facet_list[sheet.facet_start[v]]);
     }
   }
   // Beside creases facet centres stand for the vertices, which have no normal.
@@ -177,8 +206,12 @@ SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
       const Vec3 center = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.0;
       const double wanted = (asked[t[0]] + asked[t[1]] + asked[t[2]]) / 3.0;
       const Jet flat = {sheet.facet_normal[f], 0.0, 0.0};
-      consider(limits.gap(center, flat, {}, least * wanted), center, wanted,
-               t[0], f);
+      const Room room =
+          limits.gap(center, flat, {}, all ? kUnlimited : least * wanted);
+      for (const int v : t) {
+        note(v, room);
+      }
+      consider(room, center, wanted, t[0], f);
     }
   }
   safe.message = describe(safe, sheet, where);

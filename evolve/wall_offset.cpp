@@ -13,7 +13,6 @@ namespace meniscus {
 
 namespace {
 
-constexpr double kSpanned = 0.05;    // of the largest eigenvalue
 constexpr double kLongestMitre = 3;  // a sharper mitre is cut there
 constexpr double kFlatHold = 1e-6;   // of the tangential move, see header
 constexpr double kLargestFix = 1.5;  // of a correction, per pass
@@ -29,15 +28,7 @@ double corner_angle(const Sheet& sheet, int facet, int v) {
 }
 
 Vec3 mitre(const Mat3& matrix, const Vec3& right) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(matrix);
-  const double least = kSpanned * eigen.eigenvalues()[2];
-  Vec3 d = Vec3::Zero();
-  for (int i = 0; i < 3; ++i) {
-    if (eigen.eigenvalues()[i] > least) {
-      const Vec3 e = eigen.eigenvectors().col(i);
-      d += e * (e.dot(right) / eigen.eigenvalues()[i]);
-    }
-  }
+  const Vec3 d = mitre_inverse(matrix) * right;
   const double length = d.norm();
   return length > kLongestMitre ? Vec3(d * (kLongestMitre / length)) : d;
 }
@@ -130,6 +121,19 @@ Points moved(const Sheet& sheet, const std::vector<Vec3>& direction,
 }
 
 }  // namespace
+
+Mat3 mitre_inverse(const Mat3& matrix, double spanned) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(matrix);
+  const double least = spanned * eigen.eigenvalues()[2];
+  Mat3 inverse = Mat3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (eigen.eigenvalues()[i] > least) {
+      const Vec3 e = eigen.eigenvectors().col(i);
+      inverse += e * e.transpose() / eigen.eigenvalues()[i];
+    }
+  }
+  return inverse;
+}
 
 WallShares shares(WallSide side) {
   switch (side) {

@@ -16,6 +16,11 @@ struct WallShares {
 };
 WallShares shares(WallSide side);
 
+/// Inverse of sum w n n^T in the space that the normals n span clearly, with
+/// eigenvalues above `spanned` times the largest, 0 across it: of planes
+/// n . d = h the point d where they meet.
+Mat3 mitre_inverse(const Mat3& matrix, double spanned = 0.05);
+
 /// Per vertex the move for an offset by 1: the solution of n_f . d = 1 over
 /// its facets, by corner angle in the least-squares sense; on a crease in the
 /// space that the facets' normals span clearly, elsewhere with the part off the
@@ -40,8 +45,16 @@ OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
                          const std::vector<double>& asked,
                          const ThickenOptions& options);
 
+/// What else is in a wall's way, and whether all of it is wanted.
+struct SafeOptions {
+  const SurfaceMesh* others = nullptr;     // other films; may be null
+  std::vector<double>* at_each = nullptr;  // receives the largest safe
+                                           // thickness at every vertex; slower
+};
+
 /// See ThickWall::safe.
 SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
-                             const std::vector<double>& asked, WallSide side);
+                             const std::vector<double>& asked, WallSide side,
+                             const SafeOptions& options = {});
 
 }  // namespace meniscus

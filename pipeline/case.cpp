@@ -11,6 +11,7 @@
 #include "pipeline/case_curves.h"
 #include "pipeline/case_loads.h"
 #include "pipeline/case_responses.h"
+#include "pipeline/case_sides.h"
 #include "pipeline/case_values.h"
 
 namespace meniscus {
@@ -196,8 +197,17 @@ EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
   EvaluatedCase result;
   result.film_system = films_of(input, values);
   for (const WallEntry& wall : input.walls) {
-    result.walls.push_back(
-        {wall.name, wall.films, values.of_place(wall.thickness), wall.side});
+    WallSpec spec{.name = wall.name,
+                  .films = wall.films,
+                  .thickness = values.of_place(wall.thickness),
+                  .side = wall.side,
+                  .fillet = wall.fillet,
+                  .number = std::nullopt,
+                  .region = wall.region};
+    if (!wall.thickness.of_place) {
+      spec.number = values.at(wall.thickness.quantity);
+    }
+    result.walls.push_back(std::move(spec));
   }
   for (const BodyEntry& body : solid_bodies(input)) {
     result.materials.push_back(material_of(
@@ -229,6 +239,19 @@ std::vector<BodyEntry> solid_bodies(const Case& input) {
   std::copy_if(input.bodies.begin(), input.bodies.end(),
                std::back_inserter(solid),
                [](const BodyEntry& body) { return body.material != kVoid; });
+  if (!solid.empty()) {
+    return solid;
+  }
+  for (const WallEntry& wall : input.walls) {
+    if (wall.region == static_cast<int>(solid.size()) &&
+        wall.material != kVoid) {
+      solid.push_back({.name = wall.name,
+                       .enclosed_by = wall.films,
+                       .material = wall.material,
+                       .line = wall.line,
+                       .enclosure_line = wall.line});
+    }
+  }
   return solid;
 }
 
@@ -243,6 +266,7 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
   result.design = design;
   if (problems.size() == before) {
     check_meetings(input, result.film_system, values);
+    check_sides(input, result.film_system, values);
     check_places(input, result, values);
   }
   return result;
@@ -317,6 +341,8 @@ Dimension dimension_of(ResponseKind kind) {
     case ResponseKind::Radius:
     case ResponseKind::Thickness:
     case ResponseKind::Distance:
+    case ResponseKind::Gap:
+    case ResponseKind::ScanDistance:
       return Dimension::Length;
     case ResponseKind::Mass:
       return Dimension::Mass;

@@ -7,6 +7,7 @@
 
 #include "core/types.h"
 #include "core/units.h"
+#include "evolve/wall_spec.h"
 #include "pipeline/case_entries.h"
 
 namespace meniscus {
@@ -46,15 +47,9 @@ struct Case {
   std::vector<std::string> remarks;  // "PATH:LINE: ...": how it was read
 };
 
-/// A film made solid by thickness.
-struct WallSpec {
-  std::string name;
-  std::vector<std::string> films;
-  Expression thickness;  // over x, y, z [length]
-  WallSide side = WallSide::Both;
-};
-
-/// The bodies that are not void, in order: the regions of the mesh.
+/// The bodies that are not void, in order: the regions of the mesh. Without
+/// such bodies the walls that have a material, one for each set of walls that
+/// meet, named after its first.
 std::vector<BodyEntry> solid_bodies(const Case& input);
 
 /// What a response depends on beside fields.

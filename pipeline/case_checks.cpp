@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "pipeline/case_curves.h"
 #include "pipeline/case_loads.h"
+#include "pipeline/case_sides.h"
 
 namespace meniscus {
 
@@ -36,7 +37,11 @@ std::map<std::string, std::set<std::string>> surfaces_at_curves(
   }
   for (const CapEntry& cap : input.caps) {
     if (contains(body.enclosed_by, cap.spec.name)) {
-      at_curve[cap.spec.curve].insert(cap.spec.name);
+      CapSpec spec = cap.spec;
+      spec.start = nullptr;  // a file's surfaces may end anywhere
+      for (const std::string& curve : spec.curves()) {
+        at_curve[curve].insert(spec.name);
+      }
     }
   }
   return at_curve;
@@ -46,7 +51,8 @@ std::map<std::string, std::set<std::string>> surfaces_at_curves(
 std::string closing_advice(const Case& input, const BodyEntry& body,
                            const std::string& curve) {
   for (const CapEntry& cap : input.caps) {
-    if (cap.spec.curve == curve && !contains(body.enclosed_by, cap.spec.name)) {
+    if (contains(cap.spec.curves(), curve) &&
+        !contains(body.enclosed_by, cap.spec.name)) {
       return fmt::format("; add '{}' to enclosed_by", cap.spec.name);
     }
   }
@@ -57,9 +63,7 @@ std::string closing_advice(const Case& input, const BodyEntry& body,
     }
   }
   return fmt::format(
-      "; add a cap across it ([solids.NAME] with curve = "
-      "\"{}\")",
-      curve);
+      "; add a cap across it ([solids.NAME] with curve = \"{}\")", curve);
 }
 
 /// All names that the body's shape hangs on are known; else the reader has
@@ -89,6 +93,9 @@ void check_closed(const Case& input, const BodyEntry& body,
     return;  // facets may join elsewhere than on curves: see check_start()
   }
   for (const auto& [curve, surfaces] : surfaces_at_curves(input, body)) {
+    if (surfaces.size() == 1 && may_join_by_sides(input, curve)) {
+      continue;  // other faces may have its sides: check_sides() knows
+    }
     if (surfaces.size() != 2) {
       problems.add(
           body.enclosure_line,
@@ -114,6 +121,7 @@ void check_use(const Case& input, CaseProblems& problems) {
   }
   for (const WallEntry& wall : input.walls) {
     used_surfaces.insert(wall.films.begin(), wall.films.end());
+    used_materials.insert(wall.material);
   }
   for (const FilmEntry& film : input.films) {
     used_curves.insert(film.spec.curves.begin(), film.spec.curves.end());
@@ -124,8 +132,8 @@ void check_use(const Case& input, CaseProblems& problems) {
     }
   }
   for (const CapEntry& cap : input.caps) {
-    used_curves.insert(cap.spec.curve);
-    used_curves.insert(cap.spec.rims.begin(), cap.spec.rims.end());
+    const std::vector<std::string> curves = cap.spec.curves();
+    used_curves.insert(curves.begin(), curves.end());
     if (used_surfaces.count(cap.spec.name) == 0) {
       problems.add(cap.line,
                    fmt::format("solid '{}' encloses no body; add it to a "
@@ -339,6 +347,8 @@ std::vector<std::string> surface_names(const Case& input) {
   for (const FilmEntry& film : input.films) {
     names.push_back(film.spec.name);
   }
+  const std::vector<std::string> walls = wall_surface_names(input);
+  names.insert(names.end(), walls.begin(), walls.end());
   return names;
 }
 

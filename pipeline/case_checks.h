@@ -33,8 +33,10 @@ void check_start(const Case& input, const EvaluatedCase& numbers,
 bool has_facets(const Case& input);
 bool has_facets(const Case& input, const BodyEntry& body);
 
-/// Films and solids.
+/// Films and solids, backs and rims of walls.
 std::vector<std::string> surface_names(const Case& input);
+/// Of walls, beside their films.
+std::vector<std::string> wall_surface_names(const Case& input);
 std::vector<std::string> film_names(const Case& input);
 std::vector<std::string> body_names(const Case& input);
 

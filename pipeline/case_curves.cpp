@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "evolve/curve_contact.h"
+#include "evolve/shared_sides.h"
 
 namespace meniscus {
 
@@ -144,6 +145,7 @@ std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
 
 void check_meetings(const Case& input, const FilmSystem& system,
                     const CaseValues& values) {
+  const SharedRims shared(system.curves);
   std::vector<std::size_t> rims;  // what holds a film or a cap
   std::vector<const CurveShape*> shapes;
   for (std::size_t c = 0; c < system.curves.size(); ++c) {
@@ -154,12 +156,11 @@ void check_meetings(const Case& input, const FilmSystem& system,
                       return std::find(film.curves.begin(), film.curves.end(),
                                        name) != film.curves.end();
                     }) ||
-        std::any_of(
-            system.caps.begin(), system.caps.end(), [&](const CapSpec& cap) {
-              return cap.curve == name ||
-                     std::find(cap.rims.begin(), cap.rims.end(), name) !=
-                         cap.rims.end();
-            });
+        std::any_of(system.caps.begin(), system.caps.end(),
+                    [&](const CapSpec& cap) {
+                      const std::vector<std::string> at = cap.curves();
+                      return std::find(at.begin(), at.end(), name) != at.end();
+                    });
     if (held) {
       rims.push_back(c);
       shapes.push_back(&system.curves[c].shape);
@@ -168,6 +169,10 @@ void check_meetings(const Case& input, const FilmSystem& system,
   for (const CurveMeeting& meeting : meetings_of(shapes)) {
     const std::size_t a = rims[static_cast<std::size_t>(meeting.first)];
     const std::size_t b = rims[static_cast<std::size_t>(meeting.second)];
+    if (shared.shares(static_cast<int>(a)) &&
+        shared.shares(static_cast<int>(b))) {
+      continue;  // faces that join: check_sides() looks at them
+    }
     const Vec3& at = meeting.place;
     values.problems().push_back(fmt::format(
         "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; films "

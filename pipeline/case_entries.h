@@ -11,6 +11,7 @@
 
 #include "core/expression.h"
 #include "evolve/film_system.h"
+#include "evolve/scan.h"
 #include "evolve/thicken.h"
 #include "fea/elasticity.h"
 #include "fea/stress_uniformity.h"
@@ -124,6 +125,9 @@ struct WallEntry {
   std::vector<std::string> films;
   PlaceQuantity thickness;
   WallSide side = WallSide::Both;
+  std::optional<double> fillet;  // [length]
+  int material = kVoid;          // index into materials; kVoid: none given
+  int region = 0;  // walls whose films share a curve are of one
   SourceLine line = 0;
 };
 
@@ -222,6 +226,8 @@ enum class ResponseKind {
   Radius,
   Thickness,
   Distance,
+  Gap,
+  ScanDistance,
   Expression
 };
 
@@ -238,12 +244,15 @@ struct ResponseEntry {
   double power = 8.0;
   double sharpness = 50.0;
   std::optional<double> scale;  // [pressure]
-  /// Of thickness and distance [length].
+  /// Of thickness, distance and gap [length].
   std::optional<double> smoothing;
   std::optional<PlaceQuantity> region;  // above 0 in it
   RegionSide side = RegionSide::KeepOut;
-  std::string film;  // empty: all
-  int body = 0;      // index
+  std::string film;                // empty: all
+  std::vector<std::string> films;  // of gap two; of scan_distance
+  std::string scan;                // of scan_distance: its path
+  ScanMeasure measure = ScanMeasure::Rms;
+  int body = 0;  // index
   /// Of Expression: over the case's names, then the responses above it.
   Quantity value;
   SourceLine line = 0;
@@ -279,6 +288,9 @@ struct StudyEntry {
   std::vector<MemberEntry> members;     // of a family, in order; else empty
   std::vector<std::string> equal;
   std::vector<std::pair<std::string, double>> targets;
+  /// Of match instead of both: index of the scan_distance, whose distances are
+  /// made small; its tolerance is a length, 0: as small as they get.
+  std::optional<int> fit;
   std::optional<int> objective;  // index of a response
   std::optional<int> second;     // of a front: the other objective
   std::vector<ConstraintEntry> constraints;

@@ -47,8 +47,8 @@ std::set<std::string> held_curves(const Case& input) {
     held.insert(film.spec.curves.begin(), film.spec.curves.end());
   }
   for (const CapEntry& cap : input.caps) {
-    held.insert(cap.spec.curve);
-    held.insert(cap.spec.rims.begin(), cap.spec.rims.end());
+    const std::vector<std::string> curves = cap.spec.curves();
+    held.insert(curves.begin(), curves.end());
   }
   return held;
 }
@@ -168,10 +168,16 @@ void merge_curves(Case& input, CaseProblems& problems) {
            problems);
   }
   for (CapEntry& cap : input.caps) {
-    rename(kept, "solids." + cap.spec.name, cap.line, cap.spec.rims, problems);
-    if (const auto at = kept.find(cap.spec.curve); at != kept.end()) {
-      cap.spec.curve = at->second;
+    std::vector<std::string> names = cap.spec.curves();
+    rename(kept, "solids." + cap.spec.name, cap.line, names, problems);
+    if (cap.is_file) {
+      cap.spec.rims = std::move(names);
+      continue;
     }
+    const bool is_ring = !cap.spec.inner.empty();
+    cap.spec.curve = names[0];
+    cap.spec.inner = is_ring ? names[1] : "";
+    cap.spec.more.assign(names.begin() + (is_ring ? 2 : 1), names.end());
   }
 }
 

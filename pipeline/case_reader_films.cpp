@@ -4,6 +4,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "pipeline/case_checks.h"
@@ -42,7 +43,9 @@ const std::map<std::string, KindKeys>& film_kinds() {
 
 const std::map<std::string, KindKeys>& solid_kinds() {
   static const std::map<std::string, KindKeys> kinds = {
-      {"cap", {{"curve"}, {}}},
+      {"cap", {{"curve"}, {"holes"}}},
+      {"ring", {{"curve", "inner"}, {}}},
+      {"sides", {{"curves"}, {}}},
       {"file", {{"file"}, {"curves", "surface", "scale", "within"}}}};
   return kinds;
 }
@@ -155,6 +158,89 @@ FilmEntry read_film(CaseContext& context, const CaseTable& table,
   return film;
 }
 
+const CurveEntry* polygon_named(const Case& input, const std::string& name) {
+  for (const CurveEntry& curve : input.curves) {
+    if (curve.name == name) {
+      return curve.kind == CurveKind::Polygon && !curve.points.empty()
+                 ? &curve
+                 : nullptr;
+    }
+  }
+  return nullptr;
+}
+
+/// A polygon NAME/k between each two sides, across which the solid lies.
+void read_sides(CaseContext& context, const CaseTable& table,
+                const std::vector<std::string>& known, Case& result,
+                CapSpec& spec) {
+  const std::vector<std::string> curves = table.names("curves");
+  if (curves.empty()) {
+    return;  // told already
+  }
+  check_curves(context, table, known, curves);
+  const bool two = curves.size() == 2 && curves[0] != curves[1];
+  const CurveEntry* low = two ? polygon_named(result, curves[0]) : nullptr;
+  const CurveEntry* high = two ? polygon_named(result, curves[1]) : nullptr;
+  if (low == nullptr || high == nullptr ||
+      low->points.size() != high->points.size()) {
+    context.problems.add(
+        table.line("curves"),
+        fmt::format("{}.curves: found [{}]; expected two curves of kind "
+                    "polygon with as many points, in the same order",
+                    table.path(), fmt::join(curves, ", ")));
+    return;
+  }
+  const std::vector<PathPoint> a = low->points;
+  const std::vector<PathPoint> b = high->points;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const std::size_t next = (k + 1) % a.size();
+    CurveEntry face{.name = fmt::format("{}/{}", table.name(), k + 1),
+                    .kind = CurveKind::Polygon,
+                    .line = table.line()};
+    face.points = {a[k], a[next], b[next], b[k]};
+    spec.more.push_back(face.name);
+    result.curves.push_back(std::move(face));
+  }
+  spec.curve = spec.more.front();
+  spec.more.erase(spec.more.begin());
+}
+
+/// The curves of a cap or ring.
+void read_rims(CaseContext& context, const CaseTable& table,
+               const std::vector<std::string>& known, CapSpec& spec) {
+  const auto check = [&](const char* key, const std::string& curve) {
+    if (std::find(known.begin(), known.end(), curve) == known.end()) {
+      context.problems.unknown(table.line(key), "curve", curve, known);
+    }
+  };
+  const auto read_curve = [&](const char* key) -> std::string {
+    const auto curve = table.text(key);
+    if (curve) {
+      check(key, *curve);
+    }
+    return curve.value_or("");
+  };
+  spec.curve = read_curve("curve");
+  spec.inner = read_curve("inner");
+  if (!spec.inner.empty() && spec.inner == spec.curve) {
+    context.problems.add(
+        table.line("inner"),
+        fmt::format("{} has the curve '{}' on both sides; a ring needs two",
+                    table.path(), spec.curve));
+  }
+  spec.more = table.names("holes");
+  std::set<std::string> seen = {spec.curve};
+  for (const std::string& hole : spec.more) {
+    check("holes", hole);
+    if (!seen.insert(hole).second) {
+      context.problems.add(table.line("holes"),
+                           fmt::format("{} names curve '{}' twice; name each "
+                                       "once",
+                                       table.path(), hole));
+    }
+  }
+}
+
 CapEntry read_solid(CaseContext& context, const CaseTable& table,
                     const std::vector<std::string>& known, Case& result) {
   CapEntry cap{.spec = {.name = table.name(), .curve = ""},
@@ -170,13 +256,10 @@ CapEntry read_solid(CaseContext& context, const CaseTable& table,
     check_curves(context, table, known, cap.spec.rims);
     cap.spec.start = read_start(context, table, result);
     cap.spec.within = read_within(context, table);
-    return cap;
-  }
-  if (const auto curve = table.text("curve")) {
-    cap.spec.curve = *curve;
-    if (std::find(known.begin(), known.end(), *curve) == known.end()) {
-      context.problems.unknown(table.line("curve"), "curve", *curve, known);
-    }
+  } else if (*kind == "sides") {
+    read_sides(context, table, known, result, cap.spec);
+  } else {
+    read_rims(context, table, known, cap.spec);
   }
   return cap;
 }

@@ -138,10 +138,19 @@ void read_bodies(CaseContext& context, const toml::table& root, Case& result) {
           table.line("pressure"),
           table.path() + " has both a volume and a pressure; keep one");
     }
+    const char* held = table.has("volume") ? "volume" : "pressure";
+    if (result.films.empty() && table.has(held)) {
+      context.problems.add(
+          table.line(held),
+          fmt::format("{}.{}: the case has no films, and plane faces follow "
+                      "their curves alone; take it out",
+                      table.path(), held));
+    }
     find_material(context, table, result, body);
     result.bodies.push_back(std::move(body));
   }
-  if (!result.bodies.empty() && solid_bodies(result).empty()) {
+  if (!result.bodies.empty() && solid_bodies(result).empty() &&
+      !root.contains("walls")) {
     context.problems.add(result.bodies.front().line,
                          "all bodies are void; one must have a material, or "
                          "there is no part");

@@ -90,6 +90,7 @@ void check_keys(CaseContext& context, const CaseTable& table,
   static const std::map<std::string, std::vector<std::string>> owners = {
       {"equal", {"match"}},
       {"targets", {"match"}},
+      {"fit", {"match"}},
       {"tolerance", {"match", "minimize", "pareto"}},
       {"max_evaluations", {"match", "minimize", "pareto"}},
       {"coarse_first", {"match", "minimize"}},
@@ -125,10 +126,14 @@ void check_keys(CaseContext& context, const CaseTable& table,
                     waiting.size() == 1 ? "s" : "",
                     waiting.size() == 1 ? "s" : ""));
   }
-  if (kind == "match" && !table.has("equal") && !table.has("targets")) {
-    context.problems.add(table.line(),
-                         "a match needs study.equal = [\"a\", \"b\"] or "
-                         "study.targets = { a = value }");
+  const bool of_values = table.has("equal") || table.has("targets");
+  if (kind == "match" && of_values == table.has("fit")) {
+    context.problems.add(
+        table.line(),
+        of_values ? "study.fit matches a scan, study.equal and study.targets "
+                    "match values; take one out"
+                  : "a match needs study.equal = [\"a\", \"b\"], "
+                    "study.targets = { a = value } or study.fit = \"a\"");
   }
   if (kind == "minimize" && !table.has("objective")) {
     context.problems.add(table.line(),

@@ -209,6 +209,11 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
     bodies += one;
     solid += body.material == kVoid ? 0 : one;
   }
+  for (const WallEntry& wall : result.walls) {
+    for (const std::string& film : wall.films) {
+      solid += film == surface || surface.starts_with(film + "/") ? 1 : 0;
+    }
+  }
   if (std::find(known.begin(), known.end(), surface) == known.end()) {
     context.problems.unknown(table.line(key), "surface", surface, known);
   } else if (context.bodies_good && solid == 0) {

@@ -1,11 +1,17 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "io/atomic_file.h"
 #include "pipeline/case_checks.h"
 #include "pipeline/case_reader_tables.h"
+#include "pipeline/content_hash.h"
+#include "pipeline/scans.h"
 
 namespace meniscus {
 
@@ -44,6 +50,8 @@ const std::map<std::string, ResponseKeys>& response_kinds() {
       {"thickness", {Kind::Thickness, {{}, {"smoothing"}}}},
       {"distance",
        {Kind::Distance, {{}, {"keep_out", "keep_in", "smoothing"}}}},
+      {"gap", {Kind::Gap, {{"films"}, {"smoothing"}}}},
+      {"scan_distance", {Kind::ScanDistance, {{"scan"}, {"films", "measure"}}}},
       {"expression", {Kind::Expression, {{"value"}, {}}}}};
   return kinds;
 }
@@ -168,6 +176,84 @@ void read_place(CaseContext& context, const CaseTable& table,
       table.place_quantity(table.has("keep_in") ? "keep_in" : "keep_out");
 }
 
+/// Bytes of a scan belong to the case, by their fingerprint: scans are large.
+void keep_scan(CaseContext& context, const CaseTable& table,
+               const std::string& scan, Case& result) {
+  const auto known =
+      std::any_of(result.files.begin(), result.files.end(),
+                  [&](const CaseFile& file) { return file.path == scan; });
+  if (known) {
+    return;
+  }
+  const std::filesystem::path path = scan_path(result, scan);
+  const std::string ending = path.extension().string();
+  if (ending != ".stl" && ending != ".obj" && ending != ".STL") {
+    context.problems.add(
+        table.line("scan"),
+        fmt::format("{}.scan is '{}'; expected a file that ends in .stl or "
+                    ".obj",
+                    table.path(), scan));
+  } else if (!std::filesystem::is_regular_file(path)) {
+    context.problems.add(
+        table.line("scan"),
+        fmt::format("{}.scan: there is no file '{}'; expected an STL or OBJ "
+                    "file, its path relative to the case",
+                    table.path(), path.string()));
+  } else {
+    try {
+      result.files.push_back({scan, content_hash(read_file(path))});
+    } catch (const IoError& error) {
+      context.problems.add(table.line("scan"), error.what());
+    }
+  }
+}
+
+/// Films of a gap, or of a distance to a scan.
+void read_response_films(CaseContext& context, const CaseTable& table,
+                         const Case& result, ResponseEntry& response) {
+  const std::vector<std::string> known = film_names(result);
+  response.films = table.names("films");
+  for (const std::string& film : response.films) {
+    if (std::find(known.begin(), known.end(), film) == known.end()) {
+      context.problems.unknown(table.line("films"), "film", film, known);
+    }
+  }
+  if (response.kind == ResponseKind::Gap && table.has("films") &&
+      (response.films.size() != 2 || response.films[0] == response.films[1])) {
+    context.problems.add(
+        table.line("films"),
+        fmt::format("{}.films has [{}]; a gap is between two films",
+                    table.path(), fmt::join(response.films, ", ")));
+  }
+  if (response.kind == ResponseKind::ScanDistance && response.films.empty()) {
+    response.films = known;
+  }
+}
+
+ScanMeasure measure_of(const CaseTable& table) {
+  static const std::map<std::string, ScanMeasure> measures = {
+      {"rms", ScanMeasure::Rms},
+      {"mean", ScanMeasure::Mean},
+      {"p95", ScanMeasure::P95},
+      {"largest", ScanMeasure::Largest}};
+  return measures.at(table.choice("measure").value_or("rms"));
+}
+
+/// What only liquid has; parts of plane faces may have none.
+void require_films(CaseContext& context, const CaseTable& table,
+                   const std::string& kind, const Case& result) {
+  static const std::set<std::string> of_films = {
+      "film_area", "film_energy",     "pressure",     "radius",
+      "gap",       "collapse_margin", "scan_distance"};
+  if (result.films.empty() && of_films.contains(kind)) {
+    context.problems.add(
+        table.line("kind"),
+        fmt::format("{} is a {}, and the case has no films; take it out, or "
+                    "add [films.NAME]",
+                    table.path(), kind));
+  }
+}
+
 ResponseEntry read_response(CaseContext& context, const CaseTable& table,
                             const std::string& kind, const Case& result) {
   ResponseEntry response;
@@ -175,6 +261,7 @@ ResponseEntry read_response(CaseContext& context, const CaseTable& table,
   response.line = table.line();
   response.kind = response_kinds().at(kind).kind;
   table.check_kind(kind, response_kinds().at(kind).keys);
+  require_films(context, table, kind, result);
   response.surface = surface_on(context, table, result);
   response.direction = table.vector_or_zero(
       response.kind == ResponseKind::Rotation ? "axis" : "direction");
@@ -194,6 +281,9 @@ ResponseEntry read_response(CaseContext& context, const CaseTable& table,
     response.film = *film;
     index_among(context, table, "film", film_names(result));
   }
+  read_response_films(context, table, result, response);
+  response.measure = measure_of(table);
+  response.scan = table.text("scan").value_or("");
   response.body = index_among(context, table, "body", body_names(result));
   if (response.kind == ResponseKind::Expression) {
     response.value = read_value(context, table, result);
@@ -226,6 +316,10 @@ void read_responses(CaseContext& context, const toml::table& root,
   for (const CaseTable& table : named_tables(context, root, "responses")) {
     if (const auto kind = table.choice("kind")) {
       result.responses.push_back(read_response(context, table, *kind, result));
+      if (const std::string& scan = result.responses.back().scan;
+          !scan.empty()) {
+        keep_scan(context, table, scan, result);
+      }
     }
   }
 }

@@ -83,6 +83,38 @@ void read_targets(CaseContext& context, const CaseTable& table, Case& result) {
   }
 }
 
+/// The distance to a scan that a match makes small, and how small is enough.
+void read_fit(CaseContext& context, const CaseTable& table, Case& result) {
+  const auto name = table.text("fit");
+  if (!name) {
+    return;
+  }
+  const SourceLine line = table.line("fit");
+  result.study.fit = find_response(context, result, *name, line);
+  if (!result.study.fit) {
+    return;
+  }
+  const ResponseEntry& response =
+      result.responses[static_cast<std::size_t>(*result.study.fit)];
+  if (response.kind != ResponseKind::ScanDistance ||
+      response.measure != ScanMeasure::Rms) {
+    context.problems.add(
+        line, fmt::format("study.fit names '{}'; expected a response of kind = "
+                          "\"scan_distance\" and measure = \"rms\"",
+                          *name));
+  }
+  if (result.study.method != "ceres") {
+    context.problems.add(
+        table.line("method"),
+        fmt::format("study.fit is a match of many distances by method ceres; "
+                    "found \"{}\"",
+                    result.study.method));
+  }
+  if (!table.has("tolerance")) {
+    result.study.tolerance = 0.0;
+  }
+}
+
 StudyKind kind_of(const std::string& name) {
   static const std::map<std::string, StudyKind> kinds = {
       {"match", StudyKind::Match},
@@ -275,6 +307,7 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   }
   read_equal(context, *table, result);
   read_targets(context, *table, result);
+  read_fit(context, *table, result);
   if (sweeps) {
     read_sweep(context, *table, result);
   }

@@ -47,19 +47,7 @@ std::vector<TableSpec> make_tables() {
         {"material", K::Name, D::None, true,
          "what fills it; \"void\": nothing, and only its surfaces shape the "
          "part"}}},
-      {"walls",
-       true,
-       N::Optional,
-       "A film made solid by thickness. `meniscus evolve` reports the largest "
-       "safe thickness and writes the closed surface",
-       {{"films", K::Names, D::None, true,
-         "the film, or several that join smoothly or at a crease"},
-        {"thickness", K::Place, D::Length, true, "above 0"},
-        {"side", K::Choice, D::None, false,
-         "where the material lies: both sides of the film, all of it inside "
-         "(towards the middle of the film's curves) or outside; both when left "
-         "out",
-         "both|inside|outside"}}},
+      walls_table(),
       {"fields",
        true,
        N::Optional,
@@ -219,66 +207,6 @@ std::vector<TableSpec> make_tables() {
          "of a box along x, y, z: the least coordinates"},
         {"high", K::ConstantVector, D::Length, false,
          "of a box: the largest; above low"}}},
-      {"responses",
-       true,
-       N::ForParts,
-       "A number that the solver reports",
-       {{"kind", K::Choice, D::None, true,
-         "mean_displacement: area-weighted over a surface along a direction; "
-         "displacement_norm: its p-norm, nearly the largest for a large power; "
-         "rotation: of a surface about an axis, in radians; compliance: work "
-         "of the loads, twice strain_energy where only forces act; "
-         "centre_of_mass: its place along a direction; max_von_mises: of "
-         "nodal stresses, without derivatives; von_mises_norm, von_mises_ks: "
-         "smooth ones by volume (p-norm, Kreisselmeier-Steinhauser); "
-         "uniformity, energy_uniformity: coefficients of variation of von "
-         "Mises stress and of strain energy density by volume; film_area, "
-         "film_energy: of the films; pressure: of a body; collapse_margin: a "
-         "smooth lower bound of the film's smallest eigenvalue, force per "
-         "length cubed; radius: the films' smallest one, smooth; thickness: "
-         "the solid's smallest one, smooth; distance: how far the solid "
-         "reaches into a region to keep out of, or out of one to keep in, "
-         "below 0 where it keeps clear, smooth; expression: of the responses "
-         "above it",
-         "mean_displacement|displacement_norm|rotation|compliance|"
-         "strain_energy|mass|volume|centre_of_mass|max_von_mises|"
-         "von_mises_norm|von_mises_ks|uniformity|energy_uniformity|film_area|"
-         "film_energy|pressure|collapse_margin|radius|thickness|distance|"
-         "expression"},
-        {"on", K::Name, D::None, false,
-         "of displacements and rotations: the surface"},
-        {"direction", K::Vector, D::None, false,
-         "of displacements and centre_of_mass; any length but 0"},
-        {"axis", K::Vector, D::None, false,
-         "of rotation, right-handed; any length but 0"},
-        {"load_case", K::Name, D::None, false,
-         "of what depends on loads; the first when left out"},
-        {"weight", K::Place, D::None, false,
-         "of mean_displacement: what each place counts, an expression of x, y, "
-         "z; the mean is still by area, so that a weight may change its sign"},
-        {"power", K::Constant, D::None, false,
-         "of norms, above 1, of displacements 2 or above, 8 when left out; of "
-         "radius, even, 16 when left out"},
-        {"sharpness", K::Constant, D::None, false,
-         "of von_mises_ks; above 0; 50 when left out"},
-        {"scale", K::Constant, D::Pressure, false,
-         "of von_mises_ks: the stress that its sharpness is measured by; the "
-         "least yield strength when left out"},
-        {"keep_out", K::Place, D::Length, false,
-         "of distance: an expression of x, y, z: how deep a place lies in the "
-         "region, below 0 outside; or"},
-        {"keep_in", K::Place, D::Length, false,
-         "of distance: the same of a region that the solid must stay within"},
-        {"smoothing", K::Constant, D::Length, false,
-         "of thickness, distance: all places within about as much of the "
-         "worst one count, and the value is on the safe side of it by no more "
-         "than this times the logarithm of their number; a tenth of "
-         "resolution.fea when left out"},
-        {"film", K::Name, D::None, false,
-         "of film_area: one film; all when left out"},
-        {"body", K::Name, D::None, false, "of pressure"},
-        {"value", K::Quantity, std::nullopt, false,
-         "of expression: over the case's names and the responses above"}}},
   };
 }
 
@@ -307,8 +235,10 @@ const std::vector<TableSpec>& case_tables() {
         });
     const std::vector<TableSpec> shapes = shape_tables();
     all.insert(bodies, shapes.begin(), shapes.end());
-    for (TableSpec& table : study_tables()) {
-      all.push_back(std::move(table));
+    for (auto* const more : {&response_tables, &study_tables}) {
+      for (TableSpec& table : more()) {
+        all.push_back(std::move(table));
+      }
     }
     for (TableSpec& table : all) {
       if (can_repeat(table.name)) {

@@ -70,8 +70,12 @@ const std::vector<TableSpec>& case_tables();
 
 /// Those of them that the liquid starts from (case_schema_shapes.cpp).
 std::vector<TableSpec> shape_tables();
+/// [walls.NAME] (case_schema_walls.cpp).
+TableSpec walls_table();
 
-/// Those of them that say what to do with the part (case_schema_study.cpp).
+/// Those of them that say what is asked of the part
+/// (case_schema_responses.cpp), and what to do with it (case_schema_study.cpp).
+std::vector<TableSpec> response_tables();
 std::vector<TableSpec> study_tables();
 
 /// The table of that name; must exist.

@@ -69,7 +69,7 @@ std::vector<TableSpec> shape_tables() {
         {"move", K::Vector, D::Length, false, "of copy: added at the end"}}},
       {"films",
        true,
-       N::Always,
+       N::Optional,
        "A liquid film between curves",
        {{"kind", K::Choice, D::None, true,
          "how the liquid starts: branch (convex hull of any number of curves "
@@ -102,12 +102,18 @@ std::vector<TableSpec> shape_tables() {
        N::Optional,
        "A solid surface, named so that loads find it",
        {{"kind", K::Choice, D::None, true,
-         "cap: flat disk across a planar curve; file: facets of an STL, OBJ or "
-         "Surface Evolver file, which stay as they are",
-         "cap|file", "plate|pad|faces"},
-        {"curve", K::Name, D::None, false, "of cap: its rim"},
+         "cap: flat disk across a planar curve; ring: band between two curves, "
+         "flat where they lie in one plane; sides: the plane faces between the "
+         "sides of two polygons; file: facets of an STL, OBJ or Surface "
+         "Evolver file, which stay as they are",
+         "cap|ring|sides|file", "plate|pad|faces"},
+        {"curve", K::Name, D::None, false, "of cap, ring: its rim"},
+        {"inner", K::Name, D::None, false, "of ring: the rim of its hole"},
+        {"holes", K::Names, D::None, false,
+         "of cap: curves in its plane that it leaves open"},
         {"curves", K::Names, D::None, false,
-         "of file: those that its rims lie on"},
+         "of sides: two polygons of as many corners; of file: those that its "
+         "rims lie on"},
         {"file", K::Text, D::None, false, "of file: as of films"},
         {"surface", K::Name, D::None, false, "of file: as of films"},
         {"scale", K::Constant, D::None, false, "of file: as of films"},

@@ -32,6 +32,10 @@ std::vector<TableSpec> study_tables() {
         {"targets", K::ConstantMap, std::nullopt, false,
          "of match: response = value; mismatch |a-v| / |v|, for v = 0 relative "
          "to the initial response"},
+        {"fit", K::Name, D::None, false,
+         "of match, instead of equal and targets: a response of kind "
+         "scan_distance and measure rms; the films are brought as near to its "
+         "scan as the design variables can, in the sense of least squares"},
         {"objective", K::Name, D::None, false,
          "of minimize: the response to make small; of sweep: the one that "
          "makes a design the best, the initial one when left out"},
@@ -52,8 +56,9 @@ std::vector<TableSpec> study_tables() {
          "of latin_hypercube: another seed is another sample; 1 when left "
          "out"},
         {"tolerance", K::Constant, D::None, false,
-         "of match: largest mismatch accepted, 1e-3 when left out; of "
-         "minimize and pareto: first-order residual accepted, about the "
+         "of match: largest mismatch accepted, 1e-3 when left out, with fit "
+         "the distance that is near enough, as near as it gets when left out; "
+         "of minimize and pareto: first-order residual accepted, about the "
          "relative gain "
          "that is left, 1e-4 when left out"},
         {"method", K::Text, D::None, false,

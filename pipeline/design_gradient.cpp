@@ -23,6 +23,7 @@ struct Backward {
   std::vector<double> by_density;  // per region, of all stages
   std::vector<double> by_modulus;  // likewise; both empty: 0
   FilmGradient film;
+  VectorX by_thickness;  // of walls; empty: 0
 };
 
 class Adjoint {
@@ -188,7 +189,9 @@ void Adjoint::through_mesh(Backward& backward) const {
                              partials.by_temperature, *backward.loads);
   }
   if (!partials.by_nodes.empty()) {
-    partials.film.points = in_.to_film(partials.by_nodes);
+    SurfaceGradient by = in_.to_film(partials.by_nodes);
+    partials.film.points = std::move(by.film);
+    backward.by_thickness = std::move(by.thickness);
   }
 }
 
@@ -222,6 +225,10 @@ double Adjoint::rate(const Backward& backward,
   }
   for (std::size_t k = 0; k < backward.by_modulus.size(); ++k) {
     sum += backward.by_modulus[k] * rates.materials[k].youngs_modulus;
+  }
+  for (Eigen::Index w = 0; w < backward.by_thickness.size(); ++w) {
+    const WallSpec& wall = rates.walls[static_cast<std::size_t>(w)];
+    sum += backward.by_thickness[w] * wall.number.value_or(0.0);
   }
   return sum + place_rate(entry(backward),
                           in_.fields.numbers.responses[backward.response],

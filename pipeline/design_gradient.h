@@ -20,6 +20,12 @@ struct DesignGradient {
   std::optional<Failure> failure;  // an adjoint solve did not converge
 };
 
+/// Derivatives of a response by what makes the part's surface.
+struct SurfaceGradient {
+  Points film;        // by the film's vertices
+  VectorX thickness;  // by the walls' thickness; empty without walls
+};
+
 /// The evaluated design, on loan.
 struct GradientInput {
   const Case& input;
@@ -27,8 +33,9 @@ struct GradientInput {
   const VectorX& responses;  // their values
   const ElasticModel& elasticity;
   const ElasticState& elastic_state;
-  /// From a gradient by all nodes of the mesh to that by the film's vertices.
-  std::function<Points(const Points&)> to_film;
+  /// From a gradient by all nodes of the mesh to what the surface was made
+  /// from.
+  std::function<SurfaceGradient(const Points&)> to_film;
 };
 
 /// `wanted`: indices of responses, a row each. Costs one linear solve per

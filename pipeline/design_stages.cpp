@@ -34,11 +34,20 @@ TetFigures figures_of(const TetMesh& mesh, const TetQuality& quality) {
           .max_dihedral_deg = quality.max_dihedral_deg};
 }
 
-/// From a gradient by all nodes of the mesh to that by the film's vertices.
-Points ForwardModel::Impl::to_film(const TetMesh& mesh,
-                                   const Points& by_nodes) const {
+/// From a gradient by all nodes of the mesh to that by the film's vertices and
+/// the walls' thickness.
+SurfaceGradient ForwardModel::Impl::to_film(const EvaluatedCase& inputs,
+                                            const Points& film_points,
+                                            const TetMesh& mesh,
+                                            const Points& by_nodes) const {
   const QuadraticGradient by = transpose_quadratic(mesh, by_nodes, curve_edge);
-  return film->transpose_surface(motion->transpose(by.corners), by.mid);
+  const Points by_corners = motion->transpose(by.corners);
+  if (!walls) {
+    return {film->transpose_surface(by_corners, by.mid), VectorX()};
+  }
+  WallGradient gradient = walls->transpose(
+      film_points, walls->thickness(inputs.walls), by_corners, by.mid);
+  return {std::move(gradient.film), std::move(gradient.thickness)};
 }
 
 DesignStages::DesignStages(const ForwardModel& model) : model_(model) {}
@@ -67,7 +76,7 @@ bool DesignStages::mesh_of(const Case& input, const VectorX& design,
   Monitor& told = monitor != nullptr ? *monitor : silent_monitor();
   const EvaluatedCase inputs = meniscus::evaluate(input, initial_design(input));
   if (!model.freeze_film(inputs, {.monitor = monitor}, told) ||
-      !model.freeze_mesh({.monitor = &told}, told)) {
+      !model.freeze_mesh(inputs, {.monitor = &told}, told)) {
     staged.evaluation.failure = model.frozen.failure;
     return false;
   }
@@ -100,7 +109,12 @@ bool DesignStages::place_on(const ForwardModel::Impl& model,
   Evaluation& result = staged.evaluation;
   const StageMeter meter;
   QuadraticSurface& surface = staged.fields.surface;
-  surface = model.film->surface(staged.adjoint.film.points);
+  try {
+    surface = model.surface(staged.fields.inputs, staged.adjoint.film.points);
+  } catch (const InvalidInput& error) {  // a thickness that is not above 0
+    result.failure = Failure{FailureKind::NotANumber, error.what()};
+    return false;
+  }
   TetMesh& mesh = staged.fields.mesh;
   mesh = model.base_mesh;
   move_quadratic(mesh, model.motion->move(surface.base.points), surface,
@@ -169,7 +183,7 @@ Evaluation ForwardModel::evaluate(const VectorX& design,
   if (fields != nullptr) {
     const Points& points = staged.adjoint.film.points;
     staged.fields.film = impl_->film->fine_mesh(points);
-    staged.fields.boundary = impl_->film->boundary(points);
+    staged.fields.boundary = boundary(staged.fields.inputs, points);
     *fields = std::move(staged.fields);
   }
   if (adjoint != nullptr) {
@@ -184,12 +198,14 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
                                       const std::vector<int>& wanted) const {
   const ResponseInput responses{
       fields.inputs, fields.mesh,   fields.solution, fields.exclusion.element,
-      &*impl_->film, &adjoint.film, &impl_->pairs};
+      &*impl_->film, &adjoint.film, &impl_->pairs,   &impl_->scans};
   try {
     return design_gradient({impl_->input, responses, evaluation.responses,
                             *impl_->elasticity, adjoint.elastic,
                             [&](const Points& by_nodes) {
-                              return impl_->to_film(fields.mesh, by_nodes);
+                              return impl_->to_film(fields.inputs,
+                                                    adjoint.film.points,
+                                                    fields.mesh, by_nodes);
                             }},
                            wanted);
   } catch (const InvalidInput& error) {

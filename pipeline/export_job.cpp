@@ -11,6 +11,7 @@
 #include "pipeline/refreeze.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/study_store.h"
+#include "pipeline/walls.h"
 
 namespace meniscus {
 
@@ -63,7 +64,9 @@ const SettledFilm& ExportJob::film() {
 
 SurfaceMesh ExportJob::bodies_surface() {
   const SettledFilm& settled = film();
-  return settled.model.solids(settled.state.points);
+  return numbers_.walls.empty()
+             ? settled.model.solids(settled.state.points)
+             : boundary_of(numbers_, settled.model, settled.state.points);
 }
 
 namespace {

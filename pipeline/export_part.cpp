@@ -4,11 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "cad/film_solid.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "io/gmsh_msh.h"
 #include "io/nastran_bdf.h"
 #include "io/obj.h"
+#include "io/step_writer.h"
 #include "io/stl.h"
 #include "io/three_mf.h"
 #include "pipeline/calculix_export.h"
@@ -16,6 +18,7 @@
 #include "pipeline/export_step.h"
 #include "pipeline/ledger.h"
 #include "pipeline/results.h"
+#include "pipeline/walls.h"
 
 namespace meniscus {
 
@@ -25,7 +28,7 @@ namespace fs = std::filesystem;
 
 void stl(ExportJob& job, const fs::path& file) {
   const SettledFilm& film = job.film();
-  write_stl(file, film.model.boundary(film.state.points),
+  write_stl(file, boundary_of(job.numbers(), film.model, film.state.points),
             {.name = job.input().title,
              .unit = job.input().units.length,
              .program = job.notes().program});
@@ -53,7 +56,24 @@ void fe(ExportJob& job, const fs::path& file) {
                                        comments));
 }
 
+void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
+  if (!faceted) {
+    throw InvalidInput(
+        "step: walls have no B-spline faces in this version; take "
+        "--format step-faceted, or stl, 3mf, obj");
+  }
+  const SettledFilm& film = job.film();
+  write_step(
+      file,
+      faceted_solid(boundary_of(job.numbers(), film.model, film.state.points)),
+      {.name = job.input().title, .unit = job.input().units.length});
+}
+
 void step(ExportJob& job, const fs::path& file, bool faceted) {
+  if (!job.numbers().walls.empty()) {
+    wall_step(job, file, faceted);
+    return;
+  }
   export_step(file, job.numbers().film_system,
               {.title = job.input().title,
                .unit = job.input().units.length,

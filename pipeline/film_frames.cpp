@@ -196,7 +196,7 @@ std::vector<FilmFrame> film_frames(const Case& input, const ForwardModel& model,
                         .kept = design.why,
                         .design = record.inputs,
                         .responses = record.responses,
-                        .surface = model.film().surface(film.points).base});
+                        .surface = model.surface(numbers, film.points).base});
     }
   }
   return frames;

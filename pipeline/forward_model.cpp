@@ -19,6 +19,12 @@ namespace {
 // TetGen now and then leaves a flat element; another edge, and it does not.
 constexpr std::array<double, 3> kEdgeFactors = {1.0, 1.1, 0.9};
 
+const ThickWall& first_with_findings(const WallModel& walls) {
+  return *std::find_if(
+      walls.walls().begin(), walls.walls().end(),
+      [](const ThickWall& wall) { return !wall.findings.empty(); });
+}
+
 }  // namespace
 
 bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
@@ -32,15 +38,33 @@ bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
                                   .monitor = &monitor}));
   frozen.film = film->reference().report;
   frozen.failure = film->reference().failure;
+  if (!frozen.failure && !inputs.walls.empty()) {
+    monitor.progress({.stage = "film", .detail = "thickening the films"});
+    walls.emplace(wall_model(inputs, *film, film->reference().points));
+    frozen.failure = wall_failure(inputs, *walls);
+    if (frozen.failure) {
+      const ThickWall& wall = first_with_findings(*walls);
+      unfilled = wall.surface;
+      findings = wall.findings;
+    }
+  }
   meter.add_to(frozen.seconds.film, frozen.operations.film);
   return !frozen.failure;
 }
 
-bool ForwardModel::Impl::freeze_mesh(const TetrahedralizeOptions& options,
+QuadraticSurface ForwardModel::Impl::surface(const EvaluatedCase& inputs,
+                                             const Points& film_points) const {
+  return walls ? walls->surface(film_points, walls->thickness(inputs.walls))
+               : film->surface(film_points);
+}
+
+bool ForwardModel::Impl::freeze_mesh(const EvaluatedCase& inputs,
+                                     const TetrahedralizeOptions& options,
                                      Monitor& monitor) {
   const StageMeter meter;
   monitor.progress({.stage = "mesh", .detail = "filling the surface"});
-  const QuadraticSurface surface = film->surface(film->reference().points);
+  const QuadraticSurface surface =
+      this->surface(inputs, film->reference().points);
   Tetrahedralization filled = tetrahedralize(surface.base, options);
   if (filled.failure) {
     frozen.failure = filled.failure;
@@ -92,7 +116,7 @@ VectorX ForwardModel::Impl::responses(const EvaluatedCase& inputs,
                                       const TetMesh& mesh,
                                       const ElasticSolution& solution) const {
   return respond(input, {inputs, mesh, solution, exclusion.element, &*film,
-                         &film_state, &pairs});
+                         &film_state, &pairs, &scans});
 }
 
 AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
@@ -124,11 +148,16 @@ bool ForwardModel::Impl::adapt(const EvaluatedCase& inputs, Monitor& monitor) {
   const RefinementPlan plan =
       plan_refinement(base_mesh, round.before.errors.share);
   const double edge =
-      mean_edge_length(film->surface(film->reference().points).base);
-  film->split_facets(plan.split);
+      mean_edge_length(surface(inputs, film->reference().points).base);
+  if (walls) {
+    walls->split_facets(plan.split);
+  } else {
+    film->split_facets(plan.split);
+  }
   for (const double factor : kEdgeFactors) {
     frozen.failure.reset();
-    if (freeze_mesh({.edge = factor * edge,
+    if (freeze_mesh(inputs,
+                    {.edge = factor * edge,
                      .size = plan.size,
                      .radius_edge_ratio = kGradedRadiusEdge,
                      .min_dihedral_deg = kGradedDihedral,
@@ -160,7 +189,7 @@ void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
   frozen.design = initial_design(input);
   const EvaluatedCase inputs = meniscus::evaluate(input, frozen.design);
   if (!freeze_film(inputs, options, monitor) ||
-      !freeze_mesh({.monitor = &monitor}, monitor)) {
+      !freeze_mesh(inputs, {.monitor = &monitor}, monitor)) {
     return;
   }
   exclusion = choose_exclusion(
@@ -184,6 +213,7 @@ ForwardModel::ForwardModel(const Case& input,
   refuse_walls(input);
   require_solver(input);
   impl_->input = input;
+  impl_->scans = read_scans(input);
   impl_->watcher = options.monitor;
   impl_->freeze(options);
 }
@@ -207,6 +237,24 @@ const std::optional<Failure>& ForwardModel::failure() const {
 const Evaluation& ForwardModel::frozen() const { return impl_->frozen; }
 
 const FilmModel& ForwardModel::film() const { return *impl_->film; }
+
+const WallModel* ForwardModel::walls() const {
+  return impl_->walls ? &*impl_->walls : nullptr;
+}
+
+QuadraticSurface ForwardModel::surface(const EvaluatedCase& inputs,
+                                       const Points& film_points) const {
+  return impl_->surface(inputs, film_points);
+}
+
+SurfaceMesh ForwardModel::boundary(const EvaluatedCase& inputs,
+                                   const Points& film_points) const {
+  const auto& walls = impl_->walls;
+  return walls ? walls->fine(film_points, walls->thickness(inputs.walls))
+               : impl_->film->boundary(film_points);
+}
+
+const Scans& ForwardModel::scans() const { return impl_->scans; }
 
 const ElasticModel& ForwardModel::elasticity() const {
   return *impl_->elasticity;

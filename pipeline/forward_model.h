@@ -10,11 +10,13 @@
 #include "core/mesh_checks.h"
 #include "core/monitor.h"
 #include "evolve/film_model.h"
+#include "evolve/wall_model.h"
 #include "fea/elasticity.h"
 #include "pipeline/case.h"
 #include "pipeline/design_gradient.h"
 #include "pipeline/exclusion.h"
 #include "pipeline/part_stress.h"
+#include "pipeline/scans.h"
 #include "pipeline/stage_meter.h"
 
 namespace meniscus {
@@ -95,8 +97,8 @@ class ForwardModel {
   /// with analysis.adapt after one round of adaptive refinement there.
   /// When that design cannot be evaluated, failure() says why and the model
   /// must not be used. Throws what its stages throw for wrong input
-  /// (choose_exclusion too), for a case with walls, and what require_solver
-  /// throws.
+  /// (choose_exclusion too), for walls that refuse_walls() refuses, and what
+  /// require_solver and read_scans throw.
   explicit ForwardModel(const Case& input,
                         const ForwardModelOptions& options = {});
   ~ForwardModel();
@@ -116,6 +118,19 @@ class ForwardModel {
   /// The film that evaluate() settles first: alone, settle() of a design's
   /// film system costs a hundredth of an evaluation and has the same bits.
   const FilmModel& film() const;
+
+  /// Its walls; null for a case without.
+  const WallModel* walls() const;
+
+  /// What bounds the part on a settled film of the design that `inputs` are
+  /// of: as it is filled, and as closed surface at the film's own resolution.
+  QuadraticSurface surface(const EvaluatedCase& inputs,
+                           const Points& film_points) const;
+  SurfaceMesh boundary(const EvaluatedCase& inputs,
+                       const Points& film_points) const;
+
+  /// What its responses compare films with.
+  const Scans& scans() const;
 
   /// The elasticity that evaluate() solves with.
   const ElasticModel& elasticity() const;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "evolve/wall_model.h"
 #include "mesh_tet/mesh_motion.h"
 #include "mesh_tet/tet_quality.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -21,26 +22,33 @@ struct ForwardModel::Impl {
   SurfaceMesh unfilled;
   std::vector<Finding> findings;
   std::optional<FilmModel> film;
-  TetMesh base_mesh;  // ten-node, at the initial design
+  std::optional<WallModel> walls;  // of a case that has some
+  TetMesh base_mesh;               // ten-node, at the initial design
   std::vector<char> curve_edge;
   std::optional<MeshMotion> motion;
   std::optional<ElasticModel> elasticity;
   Exclusion exclusion;
   ThicknessPairs pairs;
+  Scans scans;
   std::optional<Adaptation> adaptation;
   Monitor* watcher = nullptr;  // of evaluations
 
   void freeze(const ForwardModelOptions& options);
   bool freeze_film(const EvaluatedCase& inputs,
                    const ForwardModelOptions& options, Monitor& monitor);
-  bool freeze_mesh(const TetrahedralizeOptions& options, Monitor& monitor);
+  bool freeze_mesh(const EvaluatedCase& inputs,
+                   const TetrahedralizeOptions& options, Monitor& monitor);
   bool freeze_elasticity(const EvaluatedCase& inputs, Monitor& monitor);
   bool freeze_pairs();
   bool adapt(const EvaluatedCase& inputs, Monitor& monitor);
   AdaptedState state(const EvaluatedCase& inputs) const;
   VectorX responses(const EvaluatedCase& inputs, const FilmState& film_state,
                     const TetMesh& mesh, const ElasticSolution& solution) const;
-  Points to_film(const TetMesh& mesh, const Points& by_nodes) const;
+  QuadraticSurface surface(const EvaluatedCase& inputs,
+                           const Points& film_points) const;
+  SurfaceGradient to_film(const EvaluatedCase& inputs,
+                          const Points& film_points, const TetMesh& mesh,
+                          const Points& by_nodes) const;
 };
 
 }  // namespace meniscus

@@ -230,11 +230,14 @@ SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
 PartFigures imported_part_figures(const std::filesystem::path& path,
                                   const RunPart& run, const FaceNames& names,
                                   Monitor* monitor, EvaluationFields* kept) {
-  if (run.fields.inputs.materials.size() != 1) {
+  const std::vector<BodyEntry> bodies = solid_bodies(run.input);
+  if (std::any_of(bodies.begin(), bodies.end(), [&](const BodyEntry& body) {
+        return body.material != bodies.front().material;
+      })) {
     throw InvalidInput(fmt::format(
-        "{}: the run has {} bodies with materials; a part from a file is of "
-        "one material, and which is not known",
-        path.string(), run.fields.inputs.materials.size()));
+        "{}: the run has {} bodies of several materials; a part from a file is "
+        "of one material, and which is not known",
+        path.string(), bodies.size()));
   }
   const double edge = run.input.resolution.fea;
   const SurfaceMesh surface = with_short_edges(
@@ -245,6 +248,7 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
   check_names(surface, run.fields.inputs, path.string());
   EvaluationFields fields;
   fields.inputs = run.fields.inputs;
+  fields.inputs.materials.resize(1);
   fields.mesh = filled(surface, edge, path.string(), monitor);
   fields.exclusion =
       choose_exclusion(run.input, fields.mesh, EmptyZones::Allowed);

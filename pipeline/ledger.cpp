@@ -75,20 +75,61 @@ std::optional<double> counted(double operations) {
   return operations > 0.0 ? std::optional(operations) : std::nullopt;
 }
 
+/// Of the facets with one label, and the points that they use.
+LedgerAmount amount_of(const SurfaceMesh& mesh, const std::string& label) {
+  SurfaceMesh part{.points = mesh.points,
+                   .facets = {},
+                   .facet_label = {},
+                   .labels = mesh.labels};
+  std::vector<char> used(mesh.points.size(), 0);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (mesh.labels[static_cast<std::size_t>(mesh.facet_label[f])] == label) {
+      part.facets.push_back(mesh.facets[f]);
+      for (const int v : mesh.facets[f]) {
+        used[static_cast<std::size_t>(v)] = 1;
+      }
+    }
+  }
+  LedgerAmount amount = amount_of(part);
+  amount.bytes -=
+      kPoint * static_cast<double>(std::count(used.begin(), used.end(), 0));
+  return amount;
+}
+
+/// The stages start and film of each film and face, which are not timed apart.
+void add_surfaces(const SurfaceMesh& start, const SurfaceMesh& film,
+                  std::vector<LedgerStage>& stages) {
+  for (const std::string& label : film.labels) {
+    stages.push_back({"film: " + label,
+                      amount_of(start, label),
+                      amount_of(film, label),
+                      {},
+                      {}});
+  }
+}
+
 SurfaceMesh start_surface(const EvaluationFields& fields) {
   return build_start(fields.inputs.film_system, fields.start_edge).mesh;
 }
 
-/// The files of a run that hold the part, and the deck as it would be exported.
+/// The files of a run that hold the part, and the deck as it would be exported
+/// where it was not.
 std::vector<FileBytes> files_of(const Case& input,
                                 const EvaluationFields& fields,
-                                const fs::path& folder) {
+                                const fs::path& folder,
+                                const std::vector<fs::path>& exported) {
   std::vector<std::string> names = {"film.vtp", "part.vtu", "part_surface.vtp"};
   if (input.resolution.export_edges.empty()) {
     names.push_back(stl_name(input.resolution.film));
   }
   for (const double edge : input.resolution.export_edges) {
     names.push_back(stl_name(edge));
+  }
+  for (const fs::path& file : exported) {
+    const std::string name = file.filename().string();
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      names.push_back(name);
+    }
   }
   std::vector<FileBytes> files;
   for (const std::string& name : names) {
@@ -98,11 +139,18 @@ std::vector<FileBytes> files_of(const Case& input,
       files.push_back({name, static_cast<double>(bytes), true});
     }
   }
+  const std::string deck_name =
+      fmt::format("part_{:g}.inp", input.resolution.fea);
+  if (std::any_of(files.begin(), files.end(), [&](const FileBytes& file) {
+        return file.name == deck_name;
+      })) {
+    return files;
+  }
   try {
     const CalculixDeck deck =
         calculix_deck_of(input, fields.inputs, fields.mesh);
     files.push_back(
-        {fmt::format("part_{:g}.inp", input.resolution.fea),
+        {deck_name,
          static_cast<double>(calculix_deck(fields.mesh, deck).size()), false});
   } catch (const InvalidInput&) {
     // A case that no deck can say has none.
@@ -129,17 +177,19 @@ std::string size_text(double bytes) {
 }  // namespace
 
 Ledger make_ledger(const Case& input, const RunResult& result,
-                   const EvaluationFields& fields, const fs::path& folder) {
+                   const EvaluationFields& fields, const fs::path& folder,
+                   const std::vector<fs::path>& exported) {
   const Evaluation& best = *result.best;
   const Evaluation& frozen = result.frozen;
   Ledger ledger;
   ledger.input_bytes = static_cast<double>(input.text.size());
-  ledger.files = files_of(input, fields, folder);
+  ledger.files = files_of(input, fields, folder, exported);
   const LedgerAmount curves = {
       .elements = static_cast<double>(input.curves.size()),
       .area = {},
       .bytes = ledger.input_bytes};
-  const LedgerAmount start = amount_of(start_surface(fields));
+  const SurfaceMesh raw = start_surface(fields);
+  const LedgerAmount start = amount_of(raw);
   const LedgerAmount film = amount_of(fields.film);
   const LedgerAmount surface = amount_of(fields.surface);
   const LedgerAmount mesh = amount_of(fields.mesh, surface.area);
@@ -161,6 +211,7 @@ Ledger make_ledger(const Case& input, const RunResult& result,
       {"elasticity", mesh, solved, counted(best.operations.fea),
        best.seconds.fea},
       {"files", solved, files, {}, result.output_seconds}};
+  add_surfaces(raw, fields.film, ledger.stages);
   return ledger;
 }
 

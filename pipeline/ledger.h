@@ -44,11 +44,13 @@ struct Ledger {
 
 struct RunResult;
 
-/// Of a run whose best design was evaluated, after its files are in `folder`;
-/// `fields`: of that design. Operations: docs/theory.md, Counting work.
+/// Of a run whose best design was evaluated, after its files are in `folder`,
+/// those that export_part() wrote for it among them; `fields`: of that design.
+/// Operations: docs/theory.md, Counting work.
 Ledger make_ledger(const Case& input, const RunResult& result,
                    const EvaluationFields& fields,
-                   const std::filesystem::path& folder);
+                   const std::filesystem::path& folder,
+                   const std::vector<std::filesystem::path>& exported = {});
 
 /// Puts an exported file into the ledger of FOLDER/result.json, in the place of
 /// what stood there under its name: the file's own where it lies in the folder,

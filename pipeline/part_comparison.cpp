@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -58,6 +59,23 @@ int piece_count(const TetMesh& mesh) {
   return pieces;
 }
 
+/// Of the nodes of elements that count.
+double largest_principal(const TetMesh& mesh, const std::vector<char>& excluded,
+                         const RecoveredStress& recovered) {
+  const StressField field = nodal_stress(mesh, recovered);
+  double largest = -std::numeric_limits<double>::infinity();
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!excluded.empty() && excluded[static_cast<std::size_t>(e)] != 0) {
+      continue;
+    }
+    for (const int n : mesh.element(e)) {
+      const Stress& stress = field.nodal[static_cast<std::size_t>(n)];
+      largest = std::max(largest, principal_stresses(stress)[0]);
+    }
+  }
+  return largest;
+}
+
 PartLoadFigures load_figures(const EvaluationFields& fields, std::size_t k,
                              const StressFigures& stress) {
   const LoadCase& load_case = fields.inputs.load_cases[k];
@@ -65,6 +83,8 @@ PartLoadFigures load_figures(const EvaluationFields& fields, std::size_t k,
       .load_case = load_case.name,
       .stiffness = std::nullopt,
       .max_von_mises = stress.max_von_mises,
+      .max_principal = largest_principal(fields.mesh, fields.exclusion.element,
+                                         fields.stresses[k].recovered),
       .coefficient_of_variation =
           stress.uniformity.von_mises.coefficient_of_variation,
       .gini = stress.uniformity.von_mises.gini};
@@ -150,6 +170,10 @@ void add_load_case(Table& table, const std::string& name,
             figure([](const auto& /*part*/, const auto& f) {
               return std::optional(f.max_von_mises);
             }));
+  table.add(name + ": peak principal", units.pressure,
+            figure([](const auto& /*part*/, const auto& f) {
+              return std::optional(f.max_principal);
+            }));
   table.add(name + ": coefficient of variation", "",
             figure([](const auto& /*part*/, const auto& f) {
               return std::optional(f.coefficient_of_variation);
@@ -185,6 +209,7 @@ Json part_json(const PartFigures& part) {
                   {"stiffness_per_mass", nullptr},
                   {"work", f.work},
                   {"max_von_mises", f.max_von_mises},
+                  {"max_principal", f.max_principal},
                   {"coefficient_of_variation", f.coefficient_of_variation},
                   {"gini", f.gini}};
     if (f.stiffness) {

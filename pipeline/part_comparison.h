@@ -23,6 +23,7 @@ struct PartLoadFigures {
   std::optional<double> stiffness;
   double work = 0.0;           // f . u [force length], twice the strain energy
   double max_von_mises = 0.0;  // of nodal stresses that count [pressure]
+  double max_principal = 0.0;  // the same of principal stresses
   /// Of von Mises over the volume that counts (fea/stress_uniformity.h).
   double coefficient_of_variation = 0.0;
   double gini = 0.0;

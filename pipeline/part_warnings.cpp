@@ -61,6 +61,20 @@ std::vector<std::string> part_warnings(
   return warnings;
 }
 
+std::vector<std::string> wall_warnings(const ForwardModel& model) {
+  std::vector<std::string> warnings;
+  if (model.walls() == nullptr) {
+    return warnings;
+  }
+  for (const ThickWall& wall : model.walls()->walls()) {
+    const SafeThickness& safe = wall.safe;
+    if (safe.limit != WallLimit::None && safe.asked >= safe.value) {
+      warnings.push_back(safe.message);
+    }
+  }
+  return warnings;
+}
+
 std::vector<std::string> buckling_warnings(const EigenFigures& figures) {
   std::vector<std::string> warnings;
   for (const BucklingFigures& b : figures.buckling) {

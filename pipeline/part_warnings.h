@@ -16,6 +16,9 @@ std::vector<std::string> part_warnings(
     const Case& input, const EvaluationFields& fields,
     const std::vector<StressFigures>& stress);
 
+/// Sentences for walls thicker than is safe at the design they are frozen at.
+std::vector<std::string> wall_warnings(const ForwardModel& model);
+
 /// Sentences for buckling factors below 1, and for eigenvalues that could not
 /// be found.
 std::vector<std::string> buckling_warnings(const EigenFigures& figures);

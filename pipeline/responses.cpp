@@ -160,6 +160,9 @@ ResponsePartials taken(FilmResponse film) {
   return result;
 }
 
+/// Films run beside each other over wide areas, and many vertices count.
+constexpr double kGapPartOfEdge = 0.02;
+
 ResponsePartials film_partials(const ResponseEntry& response,
                                const ResponseInput& fields) {
   const FilmState& state = *fields.film_state;
@@ -171,6 +174,15 @@ ResponsePartials film_partials(const ResponseEntry& response,
     case ResponseKind::Radius:
       return taken(fields.film->smallest_radius(
           state.points, static_cast<int>(response.power)));
+    case ResponseKind::Gap:
+      return taken(fields.film->gap(
+          state.points, response.films[0], response.films[1],
+          response.smoothing.value_or(kGapPartOfEdge *
+                                      fields.numbers.fea_edge)));
+    case ResponseKind::ScanDistance:
+      return taken(measure(
+          scan_distances(response, *fields.scans, *fields.film, state.points),
+          response.measure, state.points.size()));
     default:
       break;
   }
@@ -297,6 +309,8 @@ ResponsePartials partials_of(const ResponseEntry& response,
     case ResponseKind::Pressure:
     case ResponseKind::CollapseMargin:
     case ResponseKind::Radius:
+    case ResponseKind::Gap:
+    case ResponseKind::ScanDistance:
       return film_partials(response, fields);
     case ResponseKind::Thickness:
     case ResponseKind::Distance:

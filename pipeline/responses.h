@@ -8,6 +8,7 @@
 #include "fea/functional.h"
 #include "fea/thickness.h"
 #include "pipeline/case.h"
+#include "pipeline/scans.h"
 
 namespace meniscus {
 
@@ -21,6 +22,7 @@ struct ResponseInput {
   const FilmModel* film = nullptr;
   const FilmState* film_state = nullptr;
   const ThicknessPairs* pairs = nullptr;  // thickness_pairs_of() the model
+  const Scans* scans = nullptr;           // read_scans() of the case
 };
 
 /// One response's value and its partial derivatives, all else held. What is

@@ -11,6 +11,7 @@
 #include "pipeline/refreeze.h"
 #include "pipeline/stored_case.h"
 #include "pipeline/study_table.h"
+#include "pipeline/walls.h"
 
 namespace meniscus {
 
@@ -342,7 +343,7 @@ std::vector<std::string> write_meshes(const Case& input,
     write_part_stl(fields.boundary, input.resolution.film);
   }
   for (const double edge : input.resolution.export_edges) {
-    write_part_stl(settle_again(fields.inputs.film_system, edge), edge);
+    write_part_stl(settle_again(fields.inputs, edge), edge);
   }
   return names;
 }
@@ -366,14 +367,14 @@ std::vector<std::string> write_unfilled(const EvaluationFields& fields,
   return {"findings.vtp", "unfilled_surface.vtp"};
 }
 
-SurfaceMesh settle_again(const FilmSystem& system, double edge) {
+SurfaceMesh settle_again(const EvaluatedCase& numbers, double edge) {
   const FilmModel model =
-      FilmModel::freeze(system, {.edge = edge, .refinements = 0});
+      FilmModel::freeze(numbers.film_system, {.edge = edge, .refinements = 0});
   if (model.reference().failure) {
     throw MeshError(fmt::format("no film at edge {:g}: {}", edge,
                                 model.reference().failure->message));
   }
-  return model.boundary(model.reference().points);
+  return boundary_of(numbers, model, model.reference().points);
 }
 
 std::string stl_name(double edge) { return fmt::format("part_{:g}.stl", edge); }

@@ -72,7 +72,7 @@ std::vector<std::string> write_unfilled(const EvaluationFields& fields,
 
 /// The closed surface of a design, settled from its curves at another edge
 /// length. Throws MeshError where there is no stable film.
-SurfaceMesh settle_again(const FilmSystem& system, double edge);
+SurfaceMesh settle_again(const EvaluatedCase& numbers, double edge);
 
 /// "part_4.stl" for edge 4.
 std::string stl_name(double edge);

@@ -239,6 +239,9 @@ bool StudyRun::finish_best() {
   for (std::string& warning : part_warnings(input_, fields_, result_.stress)) {
     result_.warnings.push_back(std::move(warning));
   }
+  for (std::string& warning : wall_warnings(stage_->evaluator().model())) {
+    result_.warnings.push_back(std::move(warning));
+  }
   return true;
 }
 

@@ -105,7 +105,7 @@ StudyOutcome conduct(const StudyTask& task) {
   task.evaluator.limit_time(task.options.time_limit);
   switch (task.input.study.kind) {
     case StudyKind::Match:
-      return match(task);
+      return task.input.study.fit ? fit_scan(task) : match(task);
     case StudyKind::Minimize:
       return minimize(task);
     case StudyKind::Sweep:

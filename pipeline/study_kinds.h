@@ -39,6 +39,8 @@ struct StudyOutcome {
 /// What the case's study.kind says.
 StudyOutcome conduct(const StudyTask& task);
 
+/// A match of the films with a scan.
+StudyOutcome fit_scan(const StudyTask& task);
 StudyOutcome minimize(const StudyTask& task);
 /// Looks at every design of a grid or a sample.
 StudyOutcome sweep(const StudyTask& task);

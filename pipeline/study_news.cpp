@@ -108,7 +108,10 @@ StudyNews StudyTeller::news(const EvaluationRecord& record) const {
   news.record = &record;
   news.standing = standing_of(record);
   news.best = best_;
-  if (input_.study.kind == StudyKind::Match) {
+  if (const std::optional<int>& fit = input_.study.fit) {
+    news.objective_name = input_.responses[static_cast<std::size_t>(*fit)].name;
+    news.objective_unit = response_unit(input_, *fit);
+  } else if (input_.study.kind == StudyKind::Match) {
     news.objective_name = "mismatch";
   } else if (input_.study.objective) {
     const int response = *input_.study.objective;

@@ -42,7 +42,11 @@ StudyStage::StudyStage(const Case& input, StudyStore& store,
   failure_ = record.failure;
   start_ = to_evaluation(record);
   see(record);
-  if (!failure_ && input_.study.kind == StudyKind::Match) {
+  if (!failure_ && input_.study.fit) {
+    evaluator_.judge_by([fit = *input_.study.fit](const VectorX& responses) {
+      return responses[fit];
+    });
+  } else if (!failure_ && input_.study.kind == StudyKind::Match) {
     targets_.emplace(input_, model_.reference.value_or(record.responses));
     evaluator_.judge_by([this](const VectorX& responses) {
       return targets_->mismatch(responses).maxCoeff();

@@ -1,8 +1,9 @@
 #include "pipeline/walls.h"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "io/stl.h"
@@ -10,86 +11,36 @@
 
 namespace meniscus {
 
-namespace {
-
-constexpr double kFlat = 1e-6;  // of a cone's largest volume
-
-/// The facets of the films named; every point stays.
-SurfaceMesh films_of(const SurfaceMesh& all,
-                     const std::vector<std::string>& films) {
-  SurfaceMesh mesh;
-  mesh.points = all.points;
-  mesh.labels = films;
-  for (std::size_t f = 0; f < all.facets.size(); ++f) {
-    const int label = mesh.label_of(all.labels[all.facet_label[f]]);
-    if (label >= 0) {
-      mesh.facets.push_back(all.facets[f]);
-      mesh.facet_label.push_back(label);
-    }
-  }
-  return mesh;
+WallModel wall_model(const EvaluatedCase& numbers, const FilmModel& model,
+                     const Points& points) {
+  return WallModel::freeze(model, numbers.film_system, points, numbers.walls);
 }
 
-/// Turns a film whose normals face the middle of its rim: how a film starts
-/// must not decide where its inside is. A flat one stays as its curve runs.
-void turn_outward(SurfaceMesh& mesh, int label, const Vec3& middle) {
-  double volume = 0.0;  // six times that of the cones to the middle
-  double size = 0.0;
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    if (mesh.facet_label[f] == label) {
-      const Triangle& t = mesh.facets[f];
-      const Vec3 a = mesh.points[t[0]] - middle;
-      const Vec3 b = mesh.points[t[1]] - middle;
-      const Vec3 c = mesh.points[t[2]] - middle;
-      volume += a.dot(b.cross(c));
-      size += a.norm() * (b - a).cross(c - a).norm();
+std::vector<CaseWall> named_walls(const EvaluatedCase& numbers,
+                                  const WallModel& model) {
+  std::vector<CaseWall> walls;
+  for (const WallSpec& spec : numbers.walls) {
+    if (spec.region == static_cast<int>(walls.size())) {
+      walls.push_back({spec.name, model.walls()[walls.size()], {}});
     }
   }
-  if (volume < -kFlat * size) {
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-      if (mesh.facet_label[f] == label) {
-        std::swap(mesh.facets[f][1], mesh.facets[f][2]);
-      }
-    }
-  }
+  return walls;
 }
-
-Vec3 middle_of_rim(const FilmSystem& system, const std::string& film,
-                   const FilmModel& model, const Points& points) {
-  Vec3 sum = Vec3::Zero();
-  int count = 0;
-  for (const FilmSpec& spec : system.films) {
-    for (const std::string& curve : spec.curves) {
-      for (const int v :
-           spec.name == film ? model.rim(curve) : std::vector<int>()) {
-        sum += points[static_cast<std::size_t>(v)];
-        ++count;
-      }
-    }
-  }
-  return sum / count;
-}
-
-}  // namespace
 
 std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
                                  const FilmModel& model, const Points& points) {
-  const SurfaceMesh all = model.fine_mesh(points);
-  std::vector<CaseWall> walls;
-  for (const WallSpec& spec : numbers.walls) {
-    ThickenOptions options{.thickness = spec.thickness, .side = spec.side};
-    for (const Curve& curve : numbers.film_system.curves) {
-      options.rims.push_back({curve.name, model.rim(curve.name)});
-    }
-    SurfaceMesh film = films_of(all, spec.films);
-    for (const std::string& name : spec.films) {
-      turn_outward(film, film.label_of(name),
-                   middle_of_rim(numbers.film_system, name, model, points));
-    }
-    try {
-      walls.push_back({spec.name, thicken(film, options)});
-    } catch (const Error& error) {
-      throw InvalidInput(fmt::format("walls.{}: {}", spec.name, error.what()));
+  if (numbers.walls.empty()) {
+    return {};
+  }
+  const WallModel made =
+      WallModel::freeze(model, numbers.film_system, points, numbers.walls,
+                        SafePlaces::Everywhere);
+  std::vector<CaseWall> walls = named_walls(numbers, made);
+  for (CaseWall& wall : walls) {
+    for (const WallTrace& trace : wall.wall.trace) {
+      wall.safe.push_back(trace.vertex < 0
+                              ? std::numeric_limits<double>::infinity()
+                              : made.safe()[trace.vertex]);
     }
   }
   return walls;
@@ -120,20 +71,81 @@ void write_wall(const Case& input, const CaseWall& made,
   const std::string name = "wall_" + made.name;
   MeshFields fields;
   fields.notes = {{"title", input.title}, {"length_unit", input.units.length}};
+  if (!made.safe.empty()) {
+    // Viewers choke on infinity; nothing is thicker than the part is long.
+    Field safe{.name = "safe_thickness",
+               .unit = input.units.length,
+               .components = 1,
+               .values = made.safe};
+    const double most = bounding_diagonal(made.wall.surface.points);
+    for (double& value : safe.values) {
+      value = std::min(value, most);
+    }
+    fields.points.push_back(std::move(safe));
+  }
   write_vtp(folder / (name + ".vtp"), made.wall.surface, fields);
   write_stl(folder / (name + ".stl"), made.wall.surface,
             {.name = input.title, .unit = input.units.length});
 }
 
 void refuse_walls(const Case& input) {
-  if (!input.walls.empty()) {
-    const WallEntry& wall = input.walls.front();
-    throw InvalidInput(fmt::format(
-        "{}: walls.{} cannot be analysed in this version; `meniscus evolve` "
-        "settles the film and writes the closed wall (wall_{}.stl) for another "
-        "mesher, or take [walls] out to analyse the bodies alone",
-        place(input, wall.line), wall.name, wall.name));
+  if (input.walls.empty()) {
+    return;
   }
+  const WallEntry& first = input.walls.front();
+  for (const BodyEntry& body : input.bodies) {
+    if (body.material != kVoid) {
+      throw InvalidInput(fmt::format(
+          "{}: walls.{} stands beside bodies.{}, which is solid; a run "
+          "analyses walls or bodies: make the body's material \"void\", so "
+          "that it only shapes its films, or take [walls] out",
+          place(input, first.line), first.name, body.name));
+    }
+  }
+  for (const WallEntry& wall : input.walls) {
+    if (wall.material == kVoid) {
+      throw InvalidInput(fmt::format(
+          "{}: walls.{} has no material, which a run needs; add material = "
+          "\"NAME\" ({}), or look at the wall alone with `meniscus evolve`",
+          place(input, wall.line), wall.name,
+          input.materials.empty() ? "and a table [materials.NAME]"
+                                  : "of [materials.NAME]"));
+    }
+  }
+  if (input.load_cases.empty() || input.responses.empty()) {
+    const bool loads = input.load_cases.empty();
+    throw InvalidInput(fmt::format(
+        "{}: the case has no [{}.NAME], which a run needs; add one, or look at "
+        "the walls alone with `meniscus evolve`",
+        input.path, loads ? "load_cases" : "responses"));
+  }
+}
+
+SurfaceMesh boundary_of(const EvaluatedCase& numbers, const FilmModel& model,
+                        const Points& points) {
+  if (numbers.walls.empty()) {
+    return model.boundary(points);
+  }
+  const WallModel walls = wall_model(numbers, model, points);
+  return walls.fine(points, walls.thickness(numbers.walls));
+}
+
+std::optional<Failure> wall_failure(const EvaluatedCase& numbers,
+                                    const WallModel& model) {
+  for (const CaseWall& made : named_walls(numbers, model)) {
+    const ThickWall& wall = made.wall;
+    if (wall.findings.empty()) {
+      continue;
+    }
+    std::string message = fmt::format("walls.{} cannot be meshed: {}",
+                                      made.name, summary(wall.findings));
+    if (wall.safe.limit != WallLimit::None &&
+        wall.safe.asked >= wall.safe.value) {
+      message += "; " + wall.safe.message;
+    }
+    return Failure{FailureKind::SurfaceInvalid, std::move(message)};
+  }
+  return std::nullopt;
 }
 
 }  // namespace meniscus

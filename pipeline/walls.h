@@ -2,10 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "evolve/film_model.h"
+#include "evolve/wall_model.h"
 #include "pipeline/case.h"
 
 namespace meniscus {
@@ -13,15 +16,32 @@ namespace meniscus {
 struct CaseWall {
   std::string name;
   ThickWall wall;
+  std::vector<double> safe;  // largest safe thickness [length], per point;
+                             // empty where nobody asked
 };
 
-/// One per wall of the case, at the film's own resolution; rims are named
-/// after the curves. Inside is the side that faces the middle of the film's
-/// rim; of a flat film the side against its curve's normal. Throws
-/// InvalidInput for films that meet three at a line and a thickness that is not
-/// above 0 everywhere.
+/// The walls of a case that has some, on the film `points` of a state of
+/// `model`. Throws InvalidInput and MeshError as WallModel.
+WallModel wall_model(const EvaluatedCase& numbers, const FilmModel& model,
+                     const Points& points);
+
+/// Those of a model, one for each set of walls that meet, named after its
+/// first.
+std::vector<CaseWall> named_walls(const EvaluatedCase& numbers,
+                                  const WallModel& model);
+
+/// Both in one; none for a case without walls.
 std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
                                  const FilmModel& model, const Points& points);
+
+/// The closed surface of the part on the film `points` of a state of `model`:
+/// walls made anew there, or what bounds its bodies.
+SurfaceMesh boundary_of(const EvaluatedCase& numbers, const FilmModel& model,
+                        const Points& points);
+
+/// Why the walls cannot be meshed, with place and largest safe thickness.
+std::optional<Failure> wall_failure(const EvaluatedCase& numbers,
+                                    const WallModel& model);
 
 /// The wall for people: thickness, volume, the largest safe thickness.
 std::string wall_text(const Case& input, const CaseWall& wall);
@@ -30,8 +50,8 @@ std::string wall_text(const Case& input, const CaseWall& wall);
 void write_wall(const Case& input, const CaseWall& wall,
                 const std::filesystem::path& folder);
 
-/// Throws InvalidInput, with line and advice, for a case whose walls would
-/// have to be analysed: there are no elements of walls in this version.
+/// Throws InvalidInput, with line and advice, for walls that cannot be
+/// analysed: beside solid bodies, or without material, loads or responses.
 void refuse_walls(const Case& input);
 
 }  // namespace meniscus

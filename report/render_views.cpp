@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -25,6 +27,7 @@ constexpr double kShownDeflection = 0.06;  // x bounding-box diagonal, at most
 constexpr double kArrowLength = 0.17;      // x diagonal, of the largest load
 constexpr double kRobustPart = 0.998;      // of the nodes lie below the bar's
                                            // top: corners peak without limit
+constexpr double kThickestRim = 0.01;      // x length of the shortest rim
 constexpr Colour kLoadColour = {0.80, 0.18, 0.22};
 constexpr Colour kGroundColour = {0.42, 0.45, 0.50};
 constexpr Colour kInk = {0.13, 0.16, 0.20};
@@ -41,6 +44,30 @@ std::vector<char> labels_among(const SurfaceMesh& mesh,
         std::find(names.begin(), names.end(), mesh.labels[l]) != names.end());
   }
   return use;
+}
+
+/// Length of the shortest chain of `rims`; infinite where there is none.
+double shortest_rim(const Points& points, const std::vector<Edge>& rims) {
+  std::vector<int> chain(points.size());
+  std::iota(chain.begin(), chain.end(), 0);
+  const auto root = [&](int v) {
+    while (chain[v] != v) {
+      v = chain[v] = chain[chain[v]];
+    }
+    return v;
+  };
+  for (const Edge& e : rims) {
+    chain[root(e[0])] = root(e[1]);
+  }
+  std::vector<double> length(points.size(), 0.0);
+  for (const Edge& e : rims) {
+    length[root(e[0])] += (points[e[1]] - points[e[0]]).norm();
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const double one : length) {
+    least = one > 0.0 ? std::min(least, one) : least;
+  }
+  return least;
 }
 
 /// Middle and mean normal (unit) of one surface.
@@ -254,7 +281,10 @@ void draw_film(Panel& panel, const PictureJob& job,
   if (caps.data->GetNumberOfPoints() > 0) {
     panel.add_surface(caps.data, cap);
   }
-  panel.add_tubes(mesh.points, rim_edges(mesh), 0.0045 * diagonal, kRimColour);
+  const std::vector<Edge> rims = rim_edges(mesh);
+  const double thick = std::min(0.0045 * diagonal,
+                                kThickestRim * shortest_rim(mesh.points, rims));
+  panel.add_tubes(mesh.points, rims, thick, kRimColour);
   // The camera of a series must not depend on the film.
   panel.show(job.seen.empty() ? mesh.points : job.seen);
 }

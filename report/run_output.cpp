@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "core/timer.h"
+#include "pipeline/export_part.h"
 #include "pipeline/film_frames.h"
 #include "pipeline/results.h"
 #include "report/run_pictures.h"
@@ -28,21 +30,45 @@ void RunOutput::begin(const EvaluationFields& fields) {
 
 void RunOutput::finish(const EvaluationFields& fields, RunResult& result) {
   const Timer timer;
+  std::vector<fs::path> exported;
   if (!fields.mesh.nodes.empty()) {
     monitor_.progress({.stage = "output", .detail = "writing meshes"});
     write_meshes(input_, fields, folder_);
     write_frames(input_, fields.history, folder_);
+    exported = export_all(result);
     if (options_.pictures) {
       draw_rest(fields, result);
     }
   }
   if (result.best && !fields.mesh.nodes.empty()) {
     result.output_seconds = timer.seconds();
-    result.ledger = make_ledger(input_, result, fields, folder_);
+    result.ledger = make_ledger(input_, result, fields, folder_, exported);
   }
   for (const std::string& name : write_unfilled(fields, folder_)) {
     result.warnings.push_back("look at the surface in " + name);
   }
+}
+
+/// The answer in the formats asked for, as `meniscus export` writes it.
+std::vector<fs::path> RunOutput::export_all(RunResult& result) {
+  std::vector<fs::path> files;
+  for (const std::string& format : options_.exports) {
+    monitor_.progress({.stage = "output", .detail = "writing " + format});
+    try {
+      files.push_back(
+          export_part(folder_, {.format = format,
+                                .program_version = options_.program_version,
+                                .monitor = options_.monitor}));
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const IoError&) {
+      throw;
+    } catch (const Error& error) {
+      result.warnings.push_back(
+          fmt::format("not written as {}: {}", format, error.what()));
+    }
+  }
+  return files;
 }
 
 /// What was begun, and what needs the frames.

@@ -15,8 +15,11 @@ namespace meniscus {
 struct RunOutputOptions {
   bool pictures = true;
   bool frame_pictures = false;  // and one of each film of the history
-  double time_limit = 0.0;      // [s]: pictures are left out beyond; 0: none
-  Monitor* monitor = nullptr;   // not owned
+  /// Formats of export_formats() to write the part in besides.
+  std::vector<std::string> exports = {};
+  std::string program_version = {};  // for the heads of those files
+  double time_limit = 0.0;     // [s]: pictures are left out beyond; 0: none
+  Monitor* monitor = nullptr;  // not owned
 };
 
 /// The files of one run, from its best design on.
@@ -30,12 +33,14 @@ class RunOutput {
   /// still has to compute.
   void begin(const EvaluationFields& fields);
 
-  /// Meshes of the best design, films of the history, pictures and the
-  /// ledger, or the surface that could not be filled; warnings go to `result`.
+  /// Meshes of the best design, films of the history, exports, pictures and the
+  /// ledger, or the surface that could not be filled; warnings go to `result`,
+  /// also of an export that does not work out.
   /// Throws IoError, Interrupted.
   void finish(const EvaluationFields& fields, RunResult& result);
 
  private:
+  std::vector<std::filesystem::path> export_all(RunResult& result);
   void draw_rest(const EvaluationFields& fields, RunResult& result);
 
   const Case& input_;

@@ -11,6 +11,7 @@ import resource
 import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -23,7 +24,7 @@ RESULT = {"run": "result.json", "evolve": "film.json",
           "compare": "compare.json", "check-gradient": None}
 SECONDS = 180  # of one run at its default size on two cores
 KEYS = {
-    "case": {"runs", "convergence", "wrong"},
+    "case": {"prepare", "runs", "convergence", "wrong"},
     "run": {"name", "command", "quick", "seconds", "exit", "pictures",
             "expected", "expected_quick"},
     "figure": {"value", "kind", "relative", "absolute", "why", "label",
@@ -92,6 +93,9 @@ def read(folder, unfilled=False):
     except (OSError, json.JSONDecodeError) as error:
         raise BadFormat(f"{where}: {error}") from error
     check_keys("case", spec, where, ["runs"])
+    if "prepare" in spec:
+        check((folder / spec["prepare"]).is_file(), where,
+              f"prepare: no {spec['prepare']} in the folder")
     names = [run.get("name") for run in spec["runs"]]
     check(names and len(set(names)) == len(names), where,
           "runs need names of their own")
@@ -129,10 +133,21 @@ def text_of(spec):
     return text + "\n"
 
 
+def prepare(folder, spec, out):
+    """Files that a case's runs read and nobody wants to keep: its script
+    writes them into `out`."""
+    out.mkdir(parents=True, exist_ok=True)
+    if "prepare" in spec:
+        subprocess.run([sys.executable, str(folder / spec["prepare"]),
+                        str(out)], cwd=folder, check=True,
+                       stdout=subprocess.DEVNULL, timeout=600)
+
+
 def fill(program, folder, out):
     """Runs both sizes of a case and puts what comes out where expected.json
     has a value of null."""
     spec = read(folder, unfilled=True)
+    prepare(folder, spec, out)
     for run in spec["runs"]:
         for quick in (False, True):
             table = run.get("expected_quick" if quick else "expected", {})
@@ -320,6 +335,7 @@ class Rate:
 def run_case(program, folder, spec, out, quick=False, pictures=False):
     """All runs of a case, in order: outcomes by name, rates."""
     outcomes = {}
+    prepare(folder, spec, out)
     for run in spec["runs"]:
         if quick and "quick" not in run:
             continue

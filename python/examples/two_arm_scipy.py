@@ -88,8 +88,8 @@ print(f"\n{len(mesh.elements)} elements; largest displacement "
 # %% [markdown]
 # ## How light can a strut be?
 #
-# `cases/strut_family` sizes twelve struts. Its first one alone, with larger
-# elements: a case file is a dict, and a dict is a case.
+# `cases/strut_family` sizes thirty struts. The one in its case file alone, with
+# larger elements: a case file is a dict, and a dict is a case.
 
 # %%
 tree = tomllib.loads((CASES / "strut_family" / "case.toml").read_text())

@@ -31,6 +31,29 @@ inline FilmSystem two_arm(double support_x, double volume = 1.7e6,
   return system;
 }
 
+/// The strut of cases/strut_family: a square foot with rounded corners, a round
+/// end that stands off and leans. Lengths in mm.
+inline FilmSystem strut(double length = 70.0, double offset = 8.0,
+                        double tilt = 10.0) {
+  const double angle = tilt * std::numbers::pi / 180.0;
+  const double base = 38.0;
+  const double head = 14.0;
+  FilmSystem system;
+  system.curves = {
+      {"foot",
+       Rectangle{Vec3::Zero(), Vec3(0, 0, -1), Vec3::UnitX(), base, base, 5.0}},
+      {"eye", Circle{Vec3(offset, 0, length),
+                     Vec3(std::sin(angle), 0, std::cos(angle)), head}}};
+  system.films = {{"skin", FilmKind::Branch, {"foot", "eye"}, 1.0}};
+  system.caps = {{"foot_pad", "foot"}, {"eye_pad", "eye"}};
+  system.bodies = {
+      {"part",
+       {"skin", "foot_pad", "eye_pad"},
+       length * (base * base + std::numbers::pi * head * head) / 2.0,
+       std::nullopt}};
+  return system;
+}
+
 /// Film between two rings of radius 1, without a body.
 inline FilmSystem catenoid(double spacing) {
   FilmSystem system;

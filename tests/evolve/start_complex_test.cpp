@@ -1,5 +1,7 @@
+#include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -204,6 +206,41 @@ TEST(FillDisk, FillsAConcaveCurve) {
   for (std::size_t f = 0; f < disk.facets.size(); ++f) {
     EXPECT_GT(area_vector2(disk, static_cast<int>(f)).z(), 0.0);
   }
+}
+
+TEST(StartComplex, BranchesHaveRimsSideBySideInOnePlane) {
+  // Two ends of a hexagonal barrel, and three windows on each of its sides.
+  FilmSystem system;
+  const auto corner = [](int k, double z) {
+    return Vec3(10 * std::cos(k * kHalfCircle / 3),
+                10 * std::sin(k * kHalfCircle / 3), z);
+  };
+  FilmSpec film{"barrel", FilmKind::Branch, {"low", "high"}};
+  Polygon low;
+  Polygon high;
+  for (int k = 0; k < 6; ++k) {
+    low.points.push_back(corner(k, 0.0));
+    high.points.push_back(corner(k, 30.0));
+  }
+  system.curves = {{"low", low}, {"high", high}};
+  double windows = 0.0;
+  for (int k = 0; k < 6; ++k) {
+    const Vec3 middle = 0.5 * (corner(k, 0.0) + corner(k + 1, 0.0));
+    for (const double z : {6.0, 14.0, 23.0}) {
+      const std::string name = fmt::format("window_{}_{}", k, z);
+      const double radius = 0.12 * z + 1.0;
+      system.curves.push_back(
+          {name, Circle{middle + z * Vec3::UnitZ(), middle, radius}});
+      film.curves.push_back(name);
+      windows += kHalfCircle * radius * radius;
+    }
+  }
+  system.films = {film};
+  const FilmComplex start = build_start(system, 0.5);
+  // Flat sides less their windows, whose arcs are cut by chords.
+  const double area = 6 * 10 * 30 - windows;
+  EXPECT_NEAR(surface_area(start.mesh), area, 0.02 * windows);
+  EXPECT_GT(surface_area(start.mesh), area);
 }
 
 TEST(StartComplex, NamesTheCurveThatIsOffTheHull) {

@@ -8,7 +8,6 @@
 
 #include "case_text.h"
 #include "core/error.h"
-#include "pipeline/forward_model.h"
 #include "pipeline/walls.h"
 #include "tests/support/temp_folder.h"
 
@@ -128,9 +127,16 @@ TEST_P(CaseWallsOf, CloseOnTheSettledFilm) {
   const auto radius = [&](std::size_t p) {
     return wall.surface.points[p].head<2>().norm();
   };
-  const std::size_t n = model.reference().points.size();
-  for (std::size_t v = 0; v < n; ++v) {
-    EXPECT_LT(radius(n + v), radius(v) - 1.0);  // the back, towards the axis
+  std::vector<double> front(model.reference().points.size(), 0.0);
+  for (std::size_t p = 0; p < wall.trace.size(); ++p) {
+    if (wall.trace[p].vertex >= 0 && wall.trace[p].across == 1.0) {
+      front[wall.trace[p].vertex] = radius(p);
+    }
+  }
+  for (std::size_t p = 0; p < wall.trace.size(); ++p) {
+    if (wall.trace[p].vertex >= 0 && wall.trace[p].across == 0.0) {
+      EXPECT_LT(radius(p), front[wall.trace[p].vertex] - 1.0);  // to the axis
+    }
   }
   EXPECT_GT(wall.safe.value, 2.0);
   EXPECT_THAT(wall_text(input, walls[0]), HasSubstr("largest safe thickness"));
@@ -165,7 +171,7 @@ TEST(CaseWalls, OfAFlatFilmFollowTheCurve) {
               0.01 * walls[0].wall.volume);
 }
 
-TEST(CaseWalls, OfThreeFilmsAtALineAreRefused) {
+TEST(CaseWalls, OfThreeFilmsAtALineAreJoined) {
   const std::string text =
       changed(tube("films = [\"skin\", \"floor\", \"cup\"]\nthickness = 1\n"),
               "[walls.web]",
@@ -178,26 +184,16 @@ TEST(CaseWalls, OfThreeFilmsAtALineAreRefused) {
   const FilmModel model =
       FilmModel::freeze(numbers.film_system, {.edge = numbers.fea_edge});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
-  try {
-    make_walls(numbers, model, model.reference().points);
-    ADD_FAILURE() << "a junction became a wall";
-  } catch (const InvalidInput& error) {
-    EXPECT_THAT(error.what(), HasSubstr("walls.web: "));
-  }
-}
-
-TEST(CaseWalls, AreNotAnalysed) {
-  const Case input =
-      *read_case_text(with("[walls.web]\nfilms = [\"skin\"]\nthickness = 2\n"),
-                      "case.toml")
-           .input;
-  try {
-    const ForwardModel model(input);
-    ADD_FAILURE() << "walls were analysed";
-  } catch (const InvalidInput& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("case.toml:41: walls.web cannot be analysed"));
-  }
+  const auto walls = make_walls(numbers, model, model.reference().points);
+  ASSERT_EQ(walls.size(), 1U);
+  EXPECT_THAT(walls[0].wall.findings, IsEmpty())
+      << summary(walls[0].wall.findings);
+  EXPECT_THAT(
+      walls[0].wall.surface.labels,
+      UnorderedElementsAre("skin", "floor", "cup", "skin/back", "floor/back",
+                           "cup/back", "skin/rim:head", "cup/rim:bottom"));
+  EXPECT_NEAR(walls[0].wall.volume, model.reference().report.area,
+              0.03 * walls[0].wall.volume);
 }
 
 }  // namespace

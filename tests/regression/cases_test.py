@@ -4,6 +4,7 @@ expected.json can fail."""
 import copy
 import json
 import re
+import subprocess
 import sys
 import unittest
 
@@ -51,6 +52,7 @@ class Cases(ProgramTest):
         figure = ("runs", 0, "expected", "film.area")
         for path, new, told in (
                 (("runs", 0, "comand"), "x", "unknown key 'comand'"),
+                (("prepare",), "nowhere.py", "prepare: no nowhere.py"),
                 (("runs", 0, "command"), "ls", "the command is none of"),
                 (("runs", 0, "expected_quick"), None, "'expected_quick'"),
                 (("runs", 0, "quick"), None, "no run has a quick size"),
@@ -82,6 +84,17 @@ class Cases(ProgramTest):
             self.read(spec)
         cases.read(self.folder, unfilled=True)
         self.assertEqual(json.loads(cases.text_of(spec)), spec)
+
+    def test_files_are_prepared(self):
+        script = self.folder / "make.py"
+        script.write_text("import pathlib, sys\n"
+                          "(pathlib.Path(sys.argv[1]) / 'made').touch()\n")
+        out = self.folder / "out"
+        cases.prepare(self.folder, {"prepare": "make.py"}, out)
+        self.assertTrue((out / "made").exists())
+        script.write_text("raise SystemExit(1)\n")
+        with self.assertRaises(subprocess.CalledProcessError):
+            cases.prepare(self.folder, {"prepare": "make.py"}, out)
 
     def row(self, figure, found):
         return cases.Row("x", figure, found).fine

@@ -15,7 +15,7 @@ import unittest
 import program
 from program import ProgramTest
 
-STRUT = program.ROOT / "cases" / "strut_family" / "case.toml"
+STRUT = program.ROOT / "tests" / "support" / "struts.toml"
 # Stout enough for a mesh of some 500 elements.
 SMALL = ["--set", "resolution.fea=10", "--set", "resolution.film=5",
          "--set", "length=54", "--set", "load=5000"]

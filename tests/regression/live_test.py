@@ -141,7 +141,7 @@ class Watch(Live):
                     "no run in")
 
     def test_a_family(self):
-        case = program.ROOT / "cases" / "strut_family" / "case.toml"
+        case = program.ROOT / "tests" / "support" / "struts.toml"
         out = self.folder / "family"
         running = self.start(
             "run", case, *RUN, "--set", "resolution.fea=10", "--set",

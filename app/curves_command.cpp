@@ -1,0 +1,42 @@
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/exit_code.h"
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "pipeline/scan_curves.h"
+
+namespace meniscus {
+
+int curves_command(const CurvesArguments& arguments) {
+  std::string text;
+  try {
+    const ScanRimReport report =
+        rims_of_scan(arguments.scan, {.angle = arguments.angle,
+                                      .radius = arguments.radius,
+                                      .points = arguments.points});
+    if (report.rims.empty()) {
+      std::fprintf(stderr,
+                   "%s: no closed line turns by %g degrees within %.3g; try a "
+                   "smaller --angle, or another --radius\n",
+                   arguments.scan.c_str(), arguments.angle,
+                   2.0 * report.radius);
+      return kExitNoSolution;
+    }
+    text = curves_text(report, arguments.scan);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitWrongInput;
+  }
+  if (arguments.out.empty()) {
+    std::fputs(text.c_str(), stdout);
+    return kExitDone;
+  }
+  write_file(arguments.out, text);
+  std::printf("%s\n", arguments.out.c_str());
+  return kExitDone;
+}
+
+}  // namespace meniscus
