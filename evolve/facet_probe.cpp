@@ -196,7 +196,7 @@ void FacetProbe::shrink(int facet, const Vec3& p, const Vec3& normal,
 
 FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
                                           double limit,
-                                          std::span<const int> own) const {
+                                          const Home& home) const {
   Ball ball;
   if (nodes_.empty()) {
     return ball;
@@ -214,8 +214,9 @@ FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
     if (node.left < 0) {
       for (int k = node.first; k < node.last; ++k) {
         const Triangle& t = facets_[ids_[k]];
-        const bool at_home = std::find_first_of(t.begin(), t.end(), own.begin(),
-                                                own.end()) != t.end();
+        const bool at_home =
+            ids_[k] == home.facet ||
+            std::find(t.begin(), t.end(), home.vertex) != t.end();
         if (!at_home) {
           shrink(ids_[k], p, normal, limit, ball);
         }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "core/types.h"
@@ -31,14 +30,18 @@ class FacetProbe {
     Vec3 touch = Vec3::Zero();
     double radius = std::numeric_limits<double>::infinity();  // [length]
   };
+  struct Home {
+    int vertex = -1;  // with all facets there
+    int facet = -1;
+  };
   /// The largest ball of at most radius `limit` with its centre on the ray
   /// from `p` along the unit vector `normal`, touching `p`, that holds no
   /// point q of the facets seen from p within kCone of `normal`: the medial
   /// ball (Ma, Bae & Choi 2012) without the film's own neighbourhood. The
-  /// radius is within kSlack of the exact one, never below it. `own`: corners
-  /// of facets that are passed over, those p lies on.
+  /// radius is within kSlack of the exact one, never below it. `home`: where p
+  /// lies, which is passed over.
   Ball tangent_ball(const Vec3& p, const Vec3& normal, double limit,
-                    std::span<const int> own) const;
+                    const Home& home) const;
 
   static constexpr double kCone = 0.5;    // cosine: 60 degrees
   static constexpr double kSlack = 0.01;  // relative

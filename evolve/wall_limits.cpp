@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -51,11 +50,11 @@ class Limits {
 
   // Only below `most`. One-sided walls need both sides' gaps: another part may
   // have its own wall on the side that faces this one.
-  Room gap(const Vec3& p, const Jet& jet, std::span<const int> own,
+  Room gap(const Vec3& p, const Jet& jet, const FacetProbe::Home& home,
            double most) const {
     const double front =
-        gap_limit(p, jet.normal, -jet.k2, part_.front, own, most);
-    const double back = gap_limit(p, -jet.normal, jet.k1, part_.back, own,
+        gap_limit(p, jet.normal, -jet.k2, part_.front, home, most);
+    const double back = gap_limit(p, -jet.normal, jet.k1, part_.back, home,
                                   std::min(most, front));
     const double value = std::min(front, back);
     return {value, std::isfinite(value) ? WallLimit::Gap : WallLimit::None};
@@ -68,11 +67,13 @@ class Limits {
   }
 
   double gap_limit(const Vec3& p, const Vec3& towards, double curvature,
-                   double share, std::span<const int> own, double most) const {
+                   double share, const FacetProbe::Home& home,
+                   double most) const {
     const double osculating =
         curvature > 0.0 ? 1.0 / (kOwnBend * curvature) : far_;
     const double largest = std::min({far_, osculating, most});
-    const FacetProbe::Ball ball = probe_.tangent_ball(p, towards, largest, own);
+    const FacetProbe::Ball ball =
+        probe_.tangent_ball(p, towards, largest, home);
     if (ball.facet < 0) {
       return kUnlimited;
     }
@@ -191,9 +192,8 @@ SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
   }
   for (int v = 0; v < count; ++v) {
     if (sheet.on_crease[v] == 0) {
-      const std::array<int, 1> own = {v};
-      const Room room =
-          limits.gap(x[v], jets[v], own, all ? kUnlimited : least * asked[v]);
+      const Room room = limits.gap(x[v], jets[v], {.vertex = v},
+                                   all ? kUnlimited : least * asked[v]);
       note(v, room);
       consider(room, x[v], asked[v], v, sheet.facet_list[sheet.facet_start[v]]);
     }
@@ -206,8 +206,8 @@ SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
       const Vec3 center = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.0;
       const double wanted = (asked[t[0]] + asked[t[1]] + asked[t[2]]) / 3.0;
       const Jet flat = {sheet.facet_normal[f], 0.0, 0.0};
-      const Room room =
-          limits.gap(center, flat, {}, all ? kUnlimited : least * wanted);
+      const Room room = limits.gap(center, flat, {.facet = f},
+                                   all ? kUnlimited : least * wanted);
       for (const int v : t) {
         note(v, room);
       }

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -245,6 +246,22 @@ TEST(Thicken, CreasesAreMitred) {
               kRounding);
   EXPECT_NEAR(wall_of(film, 0.1, WallSide::Outside).volume,
               std::pow(1.2, 3) - 1.0, kRounding);
+}
+
+// The place that is asked lies within rounding of its own facet.
+TEST(Thicken, CreasesLimitAsMuchHoweverTheyLie) {
+  const SurfaceMesh film = shapes::box(Vec3(1, 1, 1), 3);
+  const double upright = wall_of(film, 0.1).safe.value;
+  EXPECT_GT(upright, 0.2);
+  for (int k = 1; k < 6; ++k) {
+    SurfaceMesh turned = film;
+    const Mat3 turn = Eigen::AngleAxisd(0.37 * k, Vec3(1, 2, k).normalized())
+                          .toRotationMatrix();
+    for (Vec3& p : turned.points) {
+      p = turn * p + Vec3(300, -70, 20);
+    }
+    EXPECT_NEAR(wall_of(turned, 0.1).safe.value, upright, 0.03 * upright);
+  }
 }
 
 TEST(Thicken, SameBitsAgain) {
