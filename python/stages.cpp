@@ -139,7 +139,8 @@ const QuadraticSurface& DesignWork::surface() {
   require(Stage::Film);
   const std::lock_guard lock(mutex_);
   if (!surface_) {
-    surface_ = model_->surface(staged_.fields.inputs, staged_.adjoint.film.points);
+    surface_ = model_->whole->surface(staged_.fields.inputs,
+                                      staged_.adjoint.film.points);
   }
   return *surface_;
 }

@@ -181,7 +181,7 @@ std::vector<std::string> render_pictures(const std::vector<PictureJob>& jobs,
 }
 
 struct PicturesBeside::StopMonitor : Monitor {
-  explicit StopMonitor(Monitor* outer) : outer(outer) {}
+  explicit StopMonitor(Monitor* watched) : outer(watched) {}
   bool stop_requested() const override {
     return stop || (outer != nullptr && outer->stop_requested());
   }

@@ -68,7 +68,7 @@ struct Speed {
   int elements = 0;
 };
 
-Speed measure(const Setting& setting, int designs) {
+Speed sweep_speed(const Setting& setting, int designs) {
   std::vector<MeasuredChild> children(
       static_cast<std::size_t>(setting.programs));
   std::vector<std::thread> threads;
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
       designs);
   int elements = 0;
   for (const meniscus::Setting& setting : meniscus::kSettings) {
-    const meniscus::Speed speed = meniscus::measure(setting, designs);
+    const meniscus::Speed speed = meniscus::sweep_speed(setting, designs);
     elements = speed.elements;
     std::printf("| %s | %.0f | %.0f |\n", setting.name,
                 speed.designs_per_minute, speed.peak_megabytes);

@@ -33,8 +33,8 @@ inline FilmSystem two_arm(double support_x, double volume = 1.7e6,
 
 /// The strut of cases/strut_family: a square foot with rounded corners, a round
 /// end that stands off and leans. Lengths in mm.
-inline FilmSystem strut(double length = 70.0, double offset = 8.0,
-                        double tilt = 10.0) {
+inline FilmSystem leaning_strut(double length = 70.0, double offset = 8.0,
+                                double tilt = 10.0) {
   const double angle = tilt * std::numbers::pi / 180.0;
   const double base = 38.0;
   const double head = 14.0;

@@ -15,10 +15,10 @@
 namespace meniscus {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kEdge = 0.15;
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kRingEdge = 0.15;
 /// Of flat facets and polygons of this edge on circles of radius 0.6 and 1.
-constexpr double kFacets = 0.01;
+constexpr double kRingFacets = 0.01;
 
 /// Two coaxial tubes, 0.8 long: the outer between circles of radius 1 (the
 /// upper one `grown` larger), the inner between circles of radius 0.6, rings
@@ -49,10 +49,11 @@ double area_of(const FilmModel& model, const Points& points,
 }
 
 TEST(Ring, BetweenCirclesOfOnePlaneIsFlatAndHasItsArea) {
-  const FilmModel model = FilmModel::freeze(tube(), {.edge = kEdge});
+  const FilmModel model = FilmModel::freeze(tube(), {.edge = kRingEdge});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   const Points& points = model.reference().points;
-  EXPECT_NEAR(area_of(model, points, "high"), kPi * (1.0 - 0.36), kFacets);
+  EXPECT_NEAR(area_of(model, points, "high"), kHalfTurn * (1.0 - 0.36),
+              kRingFacets);
   const SurfaceMesh mesh = model.fine_mesh(points);
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     if (mesh.facet_label[f] == mesh.label_of("high")) {
@@ -61,29 +62,30 @@ TEST(Ring, BetweenCirclesOfOnePlaneIsFlatAndHasItsArea) {
       }
     }
   }
-  check_complex(build_start(tube(), kEdge));
+  check_complex(build_start(tube(), kRingEdge));
 }
 
 TEST(Ring, BetweenPlanesIsAFrustum) {
   constexpr double kLift = 0.15;
-  const FilmModel model = FilmModel::freeze(tube(0.0, kLift), {.edge = kEdge});
+  const FilmModel model =
+      FilmModel::freeze(tube(0.0, kLift), {.edge = kRingEdge});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   const double slant = std::hypot(0.4, kLift);
   EXPECT_NEAR(area_of(model, model.reference().points, "low"),
-              kPi * 1.6 * slant, kFacets * kPi);
+              kHalfTurn * 1.6 * slant, kRingFacets * kHalfTurn);
 }
 
 TEST(Ring, StaysFlatWhereItsRimsGo) {
-  const FilmModel model = FilmModel::freeze(tube(), {.edge = kEdge});
+  const FilmModel model = FilmModel::freeze(tube(), {.edge = kRingEdge});
   const FilmState moved = model.settle(tube(0.2));
   ASSERT_FALSE(moved.failure) << moved.failure->message;
-  EXPECT_NEAR(area_of(model, moved.points, "high"), kPi * (1.44 - 0.36),
-              2.0 * kFacets);
+  EXPECT_NEAR(area_of(model, moved.points, "high"), kHalfTurn * (1.44 - 0.36),
+              2.0 * kRingFacets);
 }
 
 // The solid is what lies between the films; the void is left out, its lids too.
 TEST(Ring, ClosesASolidAroundAVoid) {
-  const FilmModel model = FilmModel::freeze(tube(), {.edge = kEdge});
+  const FilmModel model = FilmModel::freeze(tube(), {.edge = kRingEdge});
   const SurfaceMesh part = model.boundary(model.reference().points);
   EXPECT_TRUE(check_surface(part).empty());
   EXPECT_NEAR(enclosed_volume(part), 1.55, 1e-6);
@@ -98,7 +100,7 @@ TEST(Ring, ClosesASolidAroundAVoid) {
 TEST(Ring, ToACurveThatDoesNotExistIsRefused) {
   FilmSystem system = tube();
   system.caps[0].inner = "nowhere";
-  EXPECT_THROW(build_start(system, kEdge), InvalidInput);
+  EXPECT_THROW(build_start(system, kRingEdge), InvalidInput);
 }
 
 /// Two parallel squares of side 1, n x n x 2 facets each, `apart`; the upper

@@ -92,10 +92,23 @@ TEST(CaseFields, ActOnTheFilm) {
 
 TEST(CaseWalls, NeedNoBodies) {
   const EvaluatedCase numbers =
-      numbers_of(tube("films = [\"skin\"]\nthickness = \"1 + foot*z/1e3\"\n"));
+      numbers_of(tube("films = [\"skin\"]\n"
+                      "thickness = \"1 + length*z/1e3\"\n"));
   ASSERT_EQ(numbers.walls.size(), 1U);
   EXPECT_EQ(numbers.walls[0].side, WallSide::Both);
-  EXPECT_DOUBLE_EQ(at(numbers.walls[0].thickness, 0, 0, 4), 1.1);
+  EXPECT_DOUBLE_EQ(at(numbers.walls[0].thickness, 0, 0, 4), 1.24);
+}
+
+// Of places it is found once, on the frozen film.
+TEST(CaseWalls, OfPlacesDoNotFollowTheDesign) {
+  const CaseReading reading = read_case_text(
+      tube("films = [\"skin\"]\nthickness = \"1 + foot*z/1e3\"\n"),
+      "case.toml");
+  ASSERT_EQ(reading.problems.size(), 1U);
+  EXPECT_THAT(reading.problems[0],
+              HasSubstr("walls.web.thickness depends on "
+                        "'foot', which a design variable"));
+  EXPECT_THAT(reading.problems[0], HasSubstr("take 'foot' out of it"));
 }
 
 class CaseWallsOf : public testing::TestWithParam<const char*> {};

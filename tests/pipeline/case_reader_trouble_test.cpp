@@ -348,8 +348,8 @@ TEST(CaseTrouble, IsToldUpToTwentyTimes) {
 TEST(CaseTrouble, MissingTablesAreNamed) {
   const std::vector<std::string> problems = problems_of("title = \"x\"\n");
   for (const char* table :
-       {"units", "[films.NAME]", "[bodies.NAME]", "[resolution]",
-        "[materials.NAME]", "[load_cases.NAME]", "[responses.NAME]"}) {
+       {"units", "[bodies.NAME]", "[resolution]", "[materials.NAME]",
+        "[load_cases.NAME]", "[responses.NAME]"}) {
     EXPECT_THAT(problems, Contains(HasSubstr(table)));
   }
 }

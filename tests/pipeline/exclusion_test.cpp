@@ -120,9 +120,9 @@ TEST(ExclusionZones, TakeAClampsPeakOutOfAllFiguresAndTellIt) {
               ElementsAre(HasSubstr("stress above yield in an exclusion zone: "
                                     "load case 'pull'")));
 
-  const auto json = stress_json({counted})["pull"];
-  EXPECT_EQ(json["excluded"]["max_von_mises"], whole.max_von_mises);
-  EXPECT_TRUE(json["excluded"].contains("safety_factor"));
+  const auto told = stress_json({counted})["pull"];
+  EXPECT_EQ(told["excluded"]["max_von_mises"], whole.max_von_mises);
+  EXPECT_TRUE(told["excluded"].contains("safety_factor"));
 }
 
 TEST(ExclusionZones, AreStatedWithTheirShareOfTheVolume) {
@@ -133,9 +133,9 @@ TEST(ExclusionZones, AreStatedWithTheirShareOfTheVolume) {
   constexpr double kRounding = 1e-12;
   EXPECT_NEAR(chosen.all.volume_share, 0.25, kRounding);
   EXPECT_EQ(chosen.all.elements, mesh.element_count() / 4);
-  const auto json = exclusion_json(chosen);
-  EXPECT_EQ(json["zones"][0]["where"], "from (-1, -1, -1) to (1, 2, 2)");
-  EXPECT_NEAR(json["zones"][0]["volume_share"].get<double>(), 0.25, kRounding);
+  const auto told = exclusion_json(chosen);
+  EXPECT_EQ(told["zones"][0]["where"], "from (-1, -1, -1) to (1, 2, 2)");
+  EXPECT_NEAR(told["zones"][0]["volume_share"].get<double>(), 0.25, kRounding);
   input.analysis.exclude[0].zone.box.reset();
   input.analysis.exclude[0].zone.ball = {{0.0, 0.0, 0.0}, 1.0};
   EXPECT_NEAR(choose_exclusion(input, mesh).all.volume_share,
