@@ -16,6 +16,7 @@ namespace {
 constexpr double kShare = 0.95;  // of vertices, of P95
 /// A nearest place with a corner's weight below this lies on an edge.
 constexpr double kOnEdge = 1e-9;
+constexpr double kRounding = 1e-12;  // of the scan's diagonal
 
 std::vector<int> sound_facets(const SurfaceMesh& mesh) {
   if (mesh.facets.empty()) {
@@ -52,7 +53,9 @@ std::size_t of_rank(const VectorX& values, double share) {
 }  // namespace
 
 Scan::Scan(SurfaceMesh surface)
-    : surface_(std::move(surface)), tree_(surface_, sound_facets(surface_)) {
+    : surface_(std::move(surface)),
+      tree_(surface_, sound_facets(surface_)),
+      rounding_(kRounding * bounding_diagonal(surface_.points)) {
   normals_.assign(surface_.points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < surface_.facets.size(); ++f) {
     const Vec3 area2 = area_vector2(surface_, static_cast<int>(f));
@@ -78,7 +81,7 @@ ScanPlace Scan::nearest(const Vec3& place) const {
   const Vec3 way = place - found.point;
   const double sign = way.dot(normal) < 0.0 ? -1.0 : 1.0;
   ScanPlace result{.distance = sign * found.distance, .on_scan = found.point};
-  if (found.distance > 0.0) {
+  if (found.distance > rounding_) {
     result.direction = sign / found.distance * way;
   } else if (normal.squaredNorm() > 0.0) {
     result.direction = normal.normalized();

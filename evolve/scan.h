@@ -33,6 +33,7 @@ class Scan {
   SurfaceMesh surface_;
   Points normals_;  // per point, weighted by area, not of unit length
   FacetTree tree_;
+  double rounding_;  // what is nearer lies on the scan [length]
 };
 
 /// Distances of the vertices of films (rims included) to a scan.

@@ -127,7 +127,7 @@ struct WallEntry {
   WallSide side = WallSide::Both;
   std::optional<double> fillet;  // [length]
   int material = kVoid;          // index into materials; kVoid: none given
-  int region = 0;  // walls whose films share a curve are of one
+  int region = 0;                // walls whose films share a curve are of one
   SourceLine line = 0;
 };
 

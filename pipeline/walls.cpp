@@ -5,7 +5,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "io/atomic_file.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
 
@@ -66,6 +68,39 @@ std::string wall_text(const Case& input, const CaseWall& made) {
                         wall.safe.message));
 }
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json place_json(const Vec3& p) { return Json{p.x(), p.y(), p.z()}; }
+
+Json measured_json(const MeasuredThickness& t) {
+  return {
+      {"value", t.value}, {"asked", t.asked}, {"place", place_json(t.place)}};
+}
+
+Json wall_json(const Case& input, const CaseWall& made) {
+  const ThickWall& wall = made.wall;
+  Json json = {{"schema_version", 1},
+               {"title", input.title},
+               {"length_unit", input.units.length},
+               {"facets", wall.surface.facets.size()},
+               {"volume", wall.volume},
+               {"thinnest", measured_json(wall.thinnest)},
+               {"thickest", measured_json(wall.thickest)},
+               {"safe", nullptr},
+               {"findings", summary(wall.findings)}};
+  if (wall.safe.limit != WallLimit::None) {
+    json["safe"] = {{"value", wall.safe.value},
+                    {"asked", wall.safe.asked},
+                    {"place", place_json(wall.safe.place)},
+                    {"message", wall.safe.message}};
+  }
+  return json;
+}
+
+}  // namespace
+
 void write_wall(const Case& input, const CaseWall& made,
                 const std::filesystem::path& folder) {
   const std::string name = "wall_" + made.name;
@@ -86,6 +121,7 @@ void write_wall(const Case& input, const CaseWall& made,
   write_vtp(folder / (name + ".vtp"), made.wall.surface, fields);
   write_stl(folder / (name + ".stl"), made.wall.surface,
             {.name = input.title, .unit = input.units.length});
+  write_file(folder / (name + ".json"), wall_json(input, made).dump(1) + "\n");
 }
 
 void refuse_walls(const Case& input) {

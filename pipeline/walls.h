@@ -46,7 +46,7 @@ std::optional<Failure> wall_failure(const EvaluatedCase& numbers,
 /// The wall for people: thickness, volume, the largest safe thickness.
 std::string wall_text(const Case& input, const CaseWall& wall);
 
-/// wall_NAME.vtp and wall_NAME.stl in `folder`. Throws IoError.
+/// wall_NAME.vtp, wall_NAME.stl and wall_NAME.json in `folder`. Throws IoError.
 void write_wall(const Case& input, const CaseWall& wall,
                 const std::filesystem::path& folder);
 

@@ -139,8 +139,10 @@ const QuadraticSurface& DesignWork::surface() {
   require(Stage::Film);
   const std::lock_guard lock(mutex_);
   if (!surface_) {
-    surface_ = model_->whole->surface(staged_.fields.inputs,
-                                      staged_.adjoint.film.points);
+    const Points& points = staged_.adjoint.film.points;
+    surface_ = model_->whole
+                   ? model_->whole->surface(staged_.fields.inputs, points)
+                   : model_->film().surface(points);
   }
   return *surface_;
 }

@@ -109,12 +109,17 @@ TEST(RingCase, TellsWhatIsWrong) {
 }
 
 TEST(GapCase, OfFilmsThatCrossIsAFailureThatTellsThePlace) {
-  // A hollow as large as the part: its film bulges through the skin.
+  // A skin of given pressure, and a hollow too large for it bulges through it.
   const CaseReading reading = read_case_text(
-      changed(hollow_strut(), "volume = 3e4", "volume = 1.6e5"), "case.toml");
+      changed(changed(hollow_strut(), "volume = 3e4", "volume = 1.2e5"),
+              "volume = 6e4", "pressure = 0.045"),
+      "case.toml");
   ASSERT_THAT(reading.problems, IsEmpty());
   const ForwardModel model(*reading.input);
   ASSERT_TRUE(model.failure());
+  EXPECT_THAT(model.failure()->message, HasSubstr("cross"));
+  EXPECT_THAT(model.failure()->message, HasSubstr("lining"));
+  EXPECT_THAT(model.failure()->message, HasSubstr("("));
 }
 
 /// The strut's film in place of a part: three numbers to find.

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Walls from outside: a pipe with a bulkhead is run, differentiated, exported
 and refused where it must be."""
+import json
 import unittest
 
 from program import ProgramTest
@@ -115,6 +116,15 @@ class Walls(ProgramTest):
         self.expect(self.call("evolve", self.case(), "--out", out), 0,
                     "largest safe thickness")
         self.assertTrue((out / "wall_pipe.stl").exists())
+        wall = json.loads((out / "wall_pipe.json").read_text())
+        self.assertEqual(wall["length_unit"], "mm")
+        self.assertEqual(wall["findings"], "")
+        self.assertLess(abs(wall["thinnest"]["value"]
+                            / wall["thinnest"]["asked"] - 1), 0.05)
+        self.assertGreater(wall["safe"]["value"], wall["safe"]["asked"])
+        # Two cones of 3 x 12.65 about 28, a plate of 4 and radius 26: 21.8e3
+        self.assertGreater(wall["volume"], 20e3)
+        self.assertLess(wall["volume"], 24e3)
 
     def test_a_wall_thicker_than_its_gap_is_refused_with_the_place(self):
         case = self.case(PIPE.replace("initial = 3.0", "initial = 70.0")
