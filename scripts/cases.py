@@ -147,9 +147,10 @@ def fill(program, folder, out):
     """Runs both sizes of a case and puts what comes out where expected.json
     has a value of null."""
     spec = read(folder, unfilled=True)
-    prepare(folder, spec, out)
-    for run in spec["runs"]:
-        for quick in (False, True):
+    # Later runs read earlier ones of their own size.
+    for quick, place in ((False, out), (True, out / "quick")):
+        prepare(folder, spec, place)
+        for run in spec["runs"]:
             table = run.get("expected_quick" if quick else "expected", {})
             open_figures = {path: figure for path, figure in table.items()
                             if isinstance(figure, dict) and
@@ -158,7 +159,7 @@ def fill(program, folder, out):
                 continue
             result = execute(program, folder, {**run, "expected": {},
                                                "expected_quick": {}},
-                             out, quick).result
+                             place, quick).result
             for path, figure in open_figures.items():
                 found = find(result, path)
                 check(isinstance(found, (int, float)), folder.name,
@@ -257,7 +258,8 @@ def child_seconds():
 
 
 def arguments_of(run, out, quick, pictures):
-    words = shlex.split(run["command"].replace("{out}", str(out)))
+    words = [word.replace("{out}", str(out))  # which may hold spaces
+             for word in shlex.split(run["command"])]
     if quick:
         words += shlex.split(run["quick"])
     if RESULT[words[0]]:

@@ -85,6 +85,33 @@ class Cases(ProgramTest):
         cases.read(self.folder, unfilled=True)
         self.assertEqual(json.loads(cases.text_of(spec)), spec)
 
+    def test_later_runs_are_filled_from_earlier_ones_of_their_size(self):
+        spec = copy.deepcopy(GOOD)
+        spec["runs"][0]["expected"]["film.area"]["value"] = None
+        spec["runs"][0]["expected_quick"]["film.area"]["value"] = None
+        spec["runs"].append({
+            "name": "both", "command": "compare {out}/film",
+            "expected": {"film.area": {"value": None, "kind": "film"}}})
+        (self.folder / "expected.json").write_text(json.dumps(spec))
+        stub = self.folder / "stub.py"
+        stub.write_text(
+            f"#!{sys.executable}\n"
+            "import json, pathlib, sys\n"
+            "out = pathlib.Path(sys.argv[sys.argv.index('--out') + 1])\n"
+            "out.mkdir(parents=True)\n"
+            "area, name = 90 if '--set' in sys.argv else 100, 'film.json'\n"
+            "if sys.argv[1] == 'compare':\n"
+            "    earlier = pathlib.Path(sys.argv[2]) / name\n"
+            "    area = json.loads(earlier.read_text())['film']['area']\n"
+            "    name = 'compare.json'\n"
+            "(out / name).write_text(json.dumps({'film': {'area': area}}))\n")
+        stub.chmod(0o755)
+        cases.fill(stub, self.folder, self.folder / "out")
+        film, both = cases.read(self.folder)["runs"]
+        self.assertEqual(film["expected"]["film.area"]["value"], 100)
+        self.assertEqual(film["expected_quick"]["film.area"]["value"], 90)
+        self.assertEqual(both["expected"]["film.area"]["value"], 100)
+
     def test_files_are_prepared(self):
         script = self.folder / "make.py"
         script.write_text("import pathlib, sys\n"
