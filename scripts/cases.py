@@ -133,13 +133,13 @@ def text_of(spec):
     return text + "\n"
 
 
-def prepare(folder, spec, out):
+def prepare(program, folder, spec, out):
     """Files that a case's runs read and nobody wants to keep: its script
-    writes them into `out`."""
+    writes them into `out`, by the program where it needs it."""
     out.mkdir(parents=True, exist_ok=True)
     if "prepare" in spec:
         subprocess.run([sys.executable, str(folder / spec["prepare"]),
-                        str(out)], cwd=folder, check=True,
+                        str(out), str(program)], cwd=folder, check=True,
                        stdout=subprocess.DEVNULL, timeout=600)
 
 
@@ -147,7 +147,7 @@ def fill(program, folder, out):
     """Runs both sizes of a case and puts what comes out where expected.json
     has a value of null."""
     spec = read(folder, unfilled=True)
-    prepare(folder, spec, out)
+    prepare(program, folder, spec, out)
     for run in spec["runs"]:
         for quick in (False, True):
             table = run.get("expected_quick" if quick else "expected", {})
@@ -335,7 +335,7 @@ class Rate:
 def run_case(program, folder, spec, out, quick=False, pictures=False):
     """All runs of a case, in order: outcomes by name, rates."""
     outcomes = {}
-    prepare(folder, spec, out)
+    prepare(program, folder, spec, out)
     for run in spec["runs"]:
         if quick and "quick" not in run:
             continue
