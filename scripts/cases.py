@@ -133,13 +133,13 @@ def text_of(spec):
     return text + "\n"
 
 
-def prepare(folder, spec, out):
+def prepare(program, folder, spec, out):
     """Files that a case's runs read and nobody wants to keep: its script
-    writes them into `out`."""
+    writes them into `out`, by the program where it needs it."""
     out.mkdir(parents=True, exist_ok=True)
     if "prepare" in spec:
         subprocess.run([sys.executable, str(folder / spec["prepare"]),
-                        str(out)], cwd=folder, check=True,
+                        str(out), str(program)], cwd=folder, check=True,
                        stdout=subprocess.DEVNULL, timeout=600)
 
 
@@ -149,7 +149,7 @@ def fill(program, folder, out):
     spec = read(folder, unfilled=True)
     # Later runs read earlier ones of their own size.
     for quick, place in ((False, out), (True, out / "quick")):
-        prepare(folder, spec, place)
+        prepare(program, folder, spec, place)
         for run in spec["runs"]:
             table = run.get("expected_quick" if quick else "expected", {})
             open_figures = {path: figure for path, figure in table.items()
@@ -337,7 +337,7 @@ class Rate:
 def run_case(program, folder, spec, out, quick=False, pictures=False):
     """All runs of a case, in order: outcomes by name, rates."""
     outcomes = {}
-    prepare(folder, spec, out)
+    prepare(program, folder, spec, out)
     for run in spec["runs"]:
         if quick and "quick" not in run:
             continue

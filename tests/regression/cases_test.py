@@ -114,14 +114,15 @@ class Cases(ProgramTest):
 
     def test_files_are_prepared(self):
         script = self.folder / "make.py"
-        script.write_text("import pathlib, sys\n"
-                          "(pathlib.Path(sys.argv[1]) / 'made').touch()\n")
+        script.write_text(
+            "import pathlib, sys\n"
+            "(pathlib.Path(sys.argv[1]) / 'made').write_text(sys.argv[2])\n")
         out = self.folder / "out"
-        cases.prepare(self.folder, {"prepare": "make.py"}, out)
-        self.assertTrue((out / "made").exists())
+        cases.prepare("the program", self.folder, {"prepare": "make.py"}, out)
+        self.assertEqual((out / "made").read_text(), "the program")
         script.write_text("raise SystemExit(1)\n")
         with self.assertRaises(subprocess.CalledProcessError):
-            cases.prepare(self.folder, {"prepare": "make.py"}, out)
+            cases.prepare("", self.folder, {"prepare": "make.py"}, out)
 
     def row(self, figure, found):
         return cases.Row("x", figure, found).fine

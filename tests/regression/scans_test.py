@@ -1,59 +1,27 @@
 #!/usr/bin/env python3
 """Scans: rims proposed, and a femur's numbers found again in a noisy one."""
-import random
+import math
 import re
-import struct
+import sys
+import tomllib
 import unittest
 
 import program
 from program import ProgramTest
 
-FIT = program.ROOT / "cases" / "femur" / "fit.toml"
-TRUE = {"head_radius": 24.0, "head_offset": 41.0, "neck_shaft_degrees": 130.0,
-        "version_degrees": 13.0, "shaft_width": 15.2, "volume": 67000.0}
-NOISE = 0.5  # mm, standard deviation per coordinate
+sys.dont_write_bytecode = True  # cases/ is for cases
+sys.path.insert(0, str(program.ROOT / "cases" / "femur"))
+import make_scan  # noqa: E402  (the folder is found only now)
+from make_scan import FIT, NOISE, TRUE, noisy, read_stl, write_stl  # noqa: E402
+
 COARSE = ["--set", "resolution.fea=8", "--set", "resolution.film=4"]
-
-
-def read_stl(path):
-    """Corners of a binary STL's facets."""
-    data = path.read_bytes()
-    count = struct.unpack_from("<I", data, 80)[0]
-    return [struct.unpack_from("<9f", data, 84 + 50 * k + 12)
-            for k in range(count)]
-
-
-def write_stl(path, facets):
-    with open(path, "wb") as out:
-        out.write(b"scan".ljust(80) + struct.pack("<I", len(facets)))
-        for facet in facets:
-            out.write(struct.pack("<12fH", 0, 0, 0, *facet, 0))
-
-
-def noisy(facets, spread):
-    """The same surface, each of its points moved at random."""
-    chance = random.Random(5)
-    moved = {}
-    result = []
-    for facet in facets:
-        corners = []
-        for k in range(0, 9, 3):
-            corner = facet[k:k + 3]
-            if corner not in moved:
-                moved[corner] = [x + chance.gauss(0, spread) for x in corner]
-            corners += moved[corner]
-        result.append(corners)
-    return result
 
 
 class Scans(ProgramTest):
     def film_of(self, name, numbers):
         """The fit's own case at other numbers, as an STL file."""
-        text = FIT.read_text()
-        text = text[:text.index("[responses.off]")] + (
-            '[responses.mass]\nkind = "mass"\n\n[study]\nkind = "analyse"\n')
         case = self.folder / f"{name}.toml"
-        case.write_text(text)
+        case.write_text(make_scan.case_text())
         sets = [word for item in numbers.items()
                 for word in ("--set", "%s=%r" % item)]
         out = self.folder / name
@@ -81,12 +49,43 @@ class Scans(ProgramTest):
         self.assertLess(found["off_95"], 2.5 * NOISE)
         self.assertLess(found["off"], 0.4 * result["start"]["responses"]["off"])
 
-    def test_curves_proposes_the_rims_of_a_tube(self):
-        write_stl(self.folder / "scan.stl", noisy(self.film_of("true", {}), 0.1))
-        done = self.expect(self.call("curves", self.folder / "scan.stl"), 0)
-        rims = re.findall(r"\[curves\.rim_\d+\]", done.stdout)
-        self.assertGreaterEqual(len(rims), 2)
-        self.assertIn("points = [", done.stdout)
+    def rims_of(self, scan, *options):
+        """Of the curves proposed: centre, mean radius, points; the turn falls
+        from one to the next."""
+        text = self.expect(self.call("curves", scan, *options), 0).stdout
+        turns = [float(x) for x in re.findall(r"turns by (\d+) degrees", text)]
+        self.assertEqual(turns, sorted(turns, reverse=True))
+        centres = [[float(x) for x in item.split(",")]
+                   for item in re.findall(r"# center \[([^]]*)\]", text)]
+        radii = [float(x) for x in re.findall(r"mean radius ([\d.]+);", text)]
+        rims = tomllib.loads(text)["curves"].values()
+        self.assertEqual(len(rims), len(radii))
+        return list(zip(centres, radii, [rim["points"] for rim in rims]))
+
+    def assert_rim(self, rims, centre, radius, near):
+        """One of them is there, within `near` mm, and is a closed curve."""
+        for found, mean, points in rims:
+            if math.dist(found, centre) < near and abs(mean - radius) < near:
+                self.assertGreaterEqual(len(points), 6)
+                return
+        self.fail(f"no rim of {radius} mm about {centre} in {rims}")
+
+    def test_curves_proposes_where_a_femur_is_cut_off(self):
+        facets = self.film_of("true", {})
+        scan = self.folder / "scan.stl"
+        write_stl(scan, facets)
+        rims = self.rims_of(scan, "--angle", "15")
+        self.assert_rim(rims, [0, 0, -85], 15.5, 0.3)      # the shaft
+        self.assert_rim(rims, [-21, -3, -14], 11.4, 0.3)   # the trochanter
+        write_stl(scan, noisy(facets, 0.2))
+        self.assert_rim(self.rims_of(scan), [0, 0, -85], 15.5, 0.5)
+
+    def test_curves_finds_the_waist_of_the_neck_in_a_noisy_scan(self):
+        make_scan.main(self.folder, str(program.PROGRAM))
+        rims = self.rims_of(self.folder / "scan.stl", "--angle", "15",
+                            "--radius", "8")
+        # 24 mm below the head's centre on the neck's axis.
+        self.assert_rim(rims, [23.1, 5.3, -15.4], 14.5, 3.0)
 
     def test_wrong_scans_are_told(self):
         self.expect(self.call("curves", self.folder / "none.stl"), 2,
