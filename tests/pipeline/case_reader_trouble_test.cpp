@@ -134,7 +134,8 @@ const Trouble kMistakes[] = {
      "46: solid 'lid' encloses no body; add it to a body's enclosed_by"},
     {"WallWithoutThickness", "[resolution]",
      "[walls.web]\nfilms = [\"skin\"]\n[resolution]",
-     "41: walls.web has no 'thickness' (above 0; a number may follow the design"},
+     "41: walls.web has no 'thickness' (above 0; a number may follow the "
+     "design"},
     {"WallOfASolid", "[resolution]",
      "[walls.web]\nfilms = [\"foot_pad\"]\nthickness = 1\n[resolution]",
      "42: there is no film 'foot_pad'"},
