@@ -60,6 +60,7 @@ struct EvolveArguments {
   bool pop = false;                // datafiles: junctions of too many films
   bool frames = false;             // cases: how the film settles
   bool pictures = true;
+  std::vector<std::string> hidden;  // of the picture: surfaces left out
 };
 
 struct CheckGradientArguments {

@@ -195,6 +195,13 @@ int run_program(int argc, char** argv) {
                    "one fixed camera");
   evolve->add_flag("!--no-pictures", evolve_arguments.pictures,
                    "leave the picture out");
+  evolve
+      ->add_option("--hide", evolve_arguments.hidden,
+                   "leave this film or solid out of the picture; NAME* stands "
+                   "for all whose names begin so; may be given again")
+      ->type_name("NAME")
+      ->expected(1)
+      ->take_all();
   evolve->callback([&, script] {
     if (script->count() > 0 && evolve_arguments.macro.empty()) {
       evolve_arguments.macro = "gogo";

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -102,7 +103,8 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
   const std::string title = path.filename().string();
   const std::string warning = write_datafile_result(result, title, folder);
   if (arguments.pictures) {
-    warn(draw_film(title, solids_of(result.complex), folder, monitor));
+    warn(draw_film(title, solids_of(result.complex), arguments.hidden, folder,
+                   monitor));
   }
   if (!common.quiet) {
     std::fputs(datafile_text(result).c_str(), stdout);
@@ -143,6 +145,21 @@ int write_walls(const Case& input, const std::vector<CaseWall>& walls,
   return code;
 }
 
+/// What --hide names that is neither film nor solid of the case; or nothing.
+std::string not_there(const FilmSystem& system,
+                      const std::vector<std::string>& hidden) {
+  for (const std::string& name : hidden) {
+    const auto named = [&](const auto& surface) {
+      return is_hidden(surface.name, {name});
+    };
+    if (std::none_of(system.films.begin(), system.films.end(), named) &&
+        std::none_of(system.caps.begin(), system.caps.end(), named)) {
+      return name;
+    }
+  }
+  return "";
+}
+
 /// film.vtp, film.json and, where they are wanted, the film's way to rest and
 /// pictures.
 void write_evolved(const Case& input, const EvaluatedCase& numbers,
@@ -170,7 +187,7 @@ void write_evolved(const Case& input, const EvaluatedCase& numbers,
   if (!arguments.pictures) {
     return;
   }
-  warn(draw_film(input.title, solids, folder, monitor));
+  warn(draw_film(input.title, solids, arguments.hidden, folder, monitor));
   std::vector<std::string> captions;
   captions.reserve(frames.size());
   for (const FilmFrame& frame : frames) {
@@ -201,6 +218,14 @@ int evolve_command(const EvolveArguments& arguments) {
   catch_stop_signals();
   TerminalMonitor monitor(monitor_options(common));
   const EvaluatedCase numbers = evaluate(input, initial_design(input));
+  if (const std::string name = not_there(numbers.film_system, arguments.hidden);
+      !name.empty()) {
+    std::fprintf(stderr,
+                 "--hide %s: the case has no film and no solid of "
+                 "that name\n",
+                 name.c_str());
+    return kExitWrongInput;
+  }
   const FilmModel model = FilmModel::freeze(
       numbers.film_system, {.edge = numbers.fea_edge,
                             .refinements = input.resolution.refinements,

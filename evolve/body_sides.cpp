@@ -207,6 +207,52 @@ void turn_parts(const FilmComplex& complex, const ComplexBody& body,
 
 }  // namespace
 
+ComplexBody make_body(const BodySpec& body, const SurfaceMesh& mesh) {
+  ComplexBody made{body.name, {}, body.volume, body.pressure};
+  if (body.volume && body.pressure) {
+    throw InvalidInput(fmt::format(
+        "body '{}' has both volume and pressure; give one of them", body.name));
+  }
+  if (body.volume && !(std::isfinite(*body.volume) && *body.volume > 0.0)) {
+    throw InvalidInput(fmt::format("body '{}': volume is {}, must be above 0",
+                                   body.name, *body.volume));
+  }
+  if (body.enclosed_by.empty()) {
+    throw InvalidInput(
+        fmt::format("body '{}' is enclosed by nothing; list its films and caps",
+                    body.name));
+  }
+  for (const std::string& name : body.enclosed_by) {
+    const int surface = mesh.label_of(name);
+    if (surface < 0) {
+      throw InvalidInput(fmt::format(
+          "body '{}' is enclosed by '{}', which is neither a film nor a cap",
+          body.name, name));
+    }
+    const bool twice =
+        std::any_of(made.sides.begin(), made.sides.end(),
+                    [&](const BodySide& s) { return s.surface == surface; });
+    if (twice) {
+      throw InvalidInput(
+          fmt::format("body '{}' lists '{}' twice", body.name, name));
+    }
+    made.sides.push_back({surface, 1});
+  }
+  return made;
+}
+
+void require_body(const FilmSystem& system, const std::string& cap) {
+  for (const BodySpec& body : system.bodies) {
+    if (std::find(body.enclosed_by.begin(), body.enclosed_by.end(), cap) !=
+        body.enclosed_by.end()) {
+      return;
+    }
+  }
+  throw InvalidInput(fmt::format(
+      "cap '{}' encloses nothing; add it to a body's enclosed_by or remove it",
+      cap));
+}
+
 void orient_bodies(FilmComplex& complex) {
   std::vector<Edge> edges;
   std::vector<Triangle> facet_edges;

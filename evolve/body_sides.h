@@ -1,9 +1,18 @@
-/// Which side of its surfaces each body lies on.
+/// The bodies of a film system, and which side of its surfaces each lies on.
 #pragma once
 
 #include "evolve/film_complex.h"
+#include "evolve/film_system.h"
 
 namespace meniscus {
+
+/// A body of surfaces by their number among the mesh's labels, all signs 1.
+/// Throws InvalidInput that names what is wrong with its volume, its pressure
+/// or a surface that it lists.
+ComplexBody make_body(const BodySpec& body, const SurfaceMesh& mesh);
+
+/// Throws InvalidInput unless a cap encloses a body.
+void require_body(const FilmSystem& system, const std::string& cap);
 
 /// Turns facets and sets BodySide::sign so that facets run outward of the
 /// first body that lists their surface. Throws InvalidInput for a body that

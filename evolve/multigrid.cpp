@@ -9,7 +9,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kMostShifts = 24;
+constexpr int kShiftsTried = 24;
 constexpr double kShiftMargin = 2.0;
 
 /// Corners of the four children as pairs of the parent's corners.
@@ -329,7 +329,7 @@ bool FilmMultigrid::factor_coarsest(const SparseMatrix& matrix,
     return true;
   }
   const double trace = matrix.diagonal().cwiseAbs().sum();
-  for (int attempt = 0; attempt < kMostShifts; ++attempt) {
+  for (int attempt = 0; attempt < kShiftsTried; ++attempt) {
     shift_ = std::max(2.0 * shift_, 1e-4 * trace / metric.sum());
     if (works(shift_)) {
       // Finer levels reach lower eigenvalues: keep away from zero.

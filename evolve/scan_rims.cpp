@@ -96,7 +96,7 @@ ScanRimReport find_rims(const SurfaceMesh& scan,
   }
   std::stable_sort(
       report.rims.begin(), report.rims.end(),
-      [](const ScanRim& a, const ScanRim& b) { return a.length > b.length; });
+      [](const ScanRim& a, const ScanRim& b) { return a.turn > b.turn; });
   return report;
 }
 

@@ -35,7 +35,7 @@ struct ScanRim {
 };
 
 struct ScanRimReport {
-  std::vector<ScanRim> rims;  // the longest first
+  std::vector<ScanRim> rims;  // where the surface turns most, first
   int parts = 0;              // that the lines divide the scan into
   double radius = 0.0;        // that normals were averaged over [length]
 };

@@ -61,10 +61,10 @@ class StartBuilder {
     }
     raise_disks(system_, result_);
     for (const BodySpec& body : system_.bodies) {
-      add_body(body);
+      result_.bodies.push_back(make_body(body, result_.mesh));
     }
     for (const CapSpec& cap : system_.caps) {
-      require_body(cap.name);
+      require_body(system_, cap.name);
     }
     orient_bodies(result_);
     add_fields();
@@ -318,41 +318,6 @@ class StartBuilder {
 
   void add_branch(const FilmSpec& film, int label);
 
-  void add_body(const BodySpec& body) {
-    ComplexBody made{body.name, {}, body.volume, body.pressure};
-    if (body.volume && body.pressure) {
-      throw InvalidInput(fmt::format(
-          "body '{}' has both volume and pressure; give one of them",
-          body.name));
-    }
-    if (body.volume && !(std::isfinite(*body.volume) && *body.volume > 0.0)) {
-      throw InvalidInput(fmt::format("body '{}': volume is {}, must be above 0",
-                                     body.name, *body.volume));
-    }
-    if (body.enclosed_by.empty()) {
-      throw InvalidInput(fmt::format(
-          "body '{}' is enclosed by nothing; list its films and caps",
-          body.name));
-    }
-    for (const std::string& name : body.enclosed_by) {
-      const int surface = result_.mesh.label_of(name);
-      if (surface < 0) {
-        throw InvalidInput(fmt::format(
-            "body '{}' is enclosed by '{}', which is neither a film nor a cap",
-            body.name, name));
-      }
-      const bool twice =
-          std::any_of(made.sides.begin(), made.sides.end(),
-                      [&](const BodySide& s) { return s.surface == surface; });
-      if (twice) {
-        throw InvalidInput(
-            fmt::format("body '{}' lists '{}' twice", body.name, name));
-      }
-      made.sides.push_back({surface, 1});
-    }
-    result_.bodies.push_back(std::move(made));
-  }
-
   void add_fields() {
     for (const FieldSpec& field : system_.fields) {
       result_.quantities.push_back(field_quantity(result_, field));
@@ -361,19 +326,6 @@ class StartBuilder {
       result_.quantities.push_back(
           pressure_quantity(result_, spec.name, spec.body, spec.pressure));
     }
-  }
-
-  void require_body(const std::string& surface) const {
-    for (const BodySpec& body : system_.bodies) {
-      if (std::find(body.enclosed_by.begin(), body.enclosed_by.end(),
-                    surface) != body.enclosed_by.end()) {
-        return;
-      }
-    }
-    throw InvalidInput(fmt::format(
-        "cap '{}' encloses nothing; add it to a body's enclosed_by or remove "
-        "it",
-        surface));
   }
 
   const FilmSystem& system_;

@@ -41,6 +41,17 @@ Points outermost(const Points& points, const Vec3& right, const Vec3& up,
   return chosen;
 }
 
+/// z up, or y where the eye looks along z.
+EyeView upright(const Vec3& view) {
+  EyeView fitted;
+  fitted.back = view.normalized();
+  const Vec3 up_hint =
+      std::abs(fitted.back.z()) < 0.99 ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+  fitted.right = up_hint.cross(fitted.back).normalized();
+  fitted.up = fitted.back.cross(fitted.right);
+  return fitted;
+}
+
 }  // namespace
 
 Eigen::Vector2d EyeView::project(const Vec3& p) const {
@@ -55,14 +66,9 @@ double EyeView::pixel_at(const Vec3& p) const {
 
 EyeView fit_view(const Points& shown, const Vec3& view, const Box& box,
                  double width, double height) {
-  EyeView fitted;
+  EyeView fitted = upright(view);
   fitted.width = width;
   fitted.height = height;
-  fitted.back = view.normalized();
-  const Vec3 up_hint =
-      std::abs(fitted.back.z()) < 0.99 ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
-  fitted.right = up_hint.cross(fitted.back).normalized();
-  fitted.up = fitted.back.cross(fitted.right);
   if (shown.empty()) {
     fitted.eye = fitted.back;
     return fitted;
@@ -99,6 +105,18 @@ EyeView fit_view(const Points& shown, const Vec3& view, const Box& box,
   }
   fitted.eye = focus + distance * fitted.back;
   return fitted;
+}
+
+double seen_aspect(const Points& shown, const Vec3& view) {
+  const EyeView far = upright(view);
+  Eigen::Array2d low(1e300, 1e300), high(-1e300, -1e300);
+  for (const Vec3& p : shown) {
+    const Eigen::Array2d at(far.right.dot(p), far.up.dot(p));
+    low = low.min(at);
+    high = high.max(at);
+  }
+  const Eigen::Array2d size = high - low;
+  return size.x() > 0.0 ? size.y() / size.x() : 1.0;
 }
 
 }  // namespace meniscus

@@ -41,4 +41,8 @@ struct EyeView {
 EyeView fit_view(const Points& shown, const Vec3& view, const Box& box,
                  double width, double height);
 
+/// Height over width of what is seen from afar from `view`, z up; 1 without
+/// points or width.
+double seen_aspect(const Points& shown, const Vec3& view);
+
 }  // namespace meniscus

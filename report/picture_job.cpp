@@ -179,6 +179,7 @@ PictureJob to_job(const Cbor& json, StoredShapes& shapes) {
   }
   job.view = to_vector(json.at("view"));
   json.at("facet_edges").get_to(job.facet_edges);
+  json.at("hidden").get_to(job.hidden);
   job.seen = unpack<Vec3>(json.at("seen"));
   json.at("caption").get_to(job.caption);
   constexpr int kLeast = 200;
@@ -213,11 +214,23 @@ Cbor to_json(const PictureJob& job, Shapes& shapes) {
           {"loads", std::move(loads)},
           {"view", to_json(job.view)},
           {"facet_edges", job.facet_edges},
+          {"hidden", job.hidden},
           {"seen", pack(job.seen)},
           {"caption", job.caption}};
 }
 
 }  // namespace
+
+bool is_hidden(const std::string& surface,
+               const std::vector<std::string>& hidden) {
+  return std::any_of(
+      hidden.begin(), hidden.end(), [&](const std::string& name) {
+        if (name.ends_with('*')) {
+          return surface.starts_with(name.substr(0, name.size() - 1));
+        }
+        return surface == name;
+      });
+}
 
 std::string to_bytes(const std::vector<PictureJob>& jobs) {
   Shapes shapes;

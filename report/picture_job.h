@@ -47,10 +47,16 @@ struct PictureJob {
   std::vector<PictureLoad> loads;
   Vec3 view = Vec3(0.26, -1.0, 0.62);  // from the part to the eye; z is up
   bool facet_edges = false;            // Film: thin lines along facets
+  std::vector<std::string> hidden;     // Film: surfaces left out
   // Film, of a series seen by one fixed camera:
   Points seen;          // what must be in view; empty: the film
   std::string caption;  // a line below the title
 };
+
+/// Whether a surface is one of `hidden`; a * at the end of one of these stands
+/// for anything.
+bool is_hidden(const std::string& surface,
+               const std::vector<std::string>& hidden);
 
 /// Jobs with their shapes as bytes for the helper on this machine, and back;
 /// the latter throws InvalidInput.

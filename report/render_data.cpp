@@ -242,6 +242,34 @@ SurfaceMesh cut_open(const PictureTets& tets, const Vec3& normal) {
   return result;
 }
 
+SurfaceMesh without(const SurfaceMesh& mesh,
+                    const std::vector<std::string>& hidden) {
+  if (hidden.empty()) {
+    return mesh;
+  }
+  SurfaceMesh left;
+  left.labels = mesh.labels;
+  std::vector<int> number(mesh.points.size(), -1);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const int label = mesh.facet_label[f];
+    if (is_hidden(mesh.labels[static_cast<std::size_t>(label)], hidden)) {
+      continue;
+    }
+    Triangle facet = mesh.facets[f];
+    for (int& id : facet) {
+      const auto old = static_cast<std::size_t>(id);
+      if (number[old] < 0) {
+        number[old] = static_cast<int>(left.points.size());
+        left.points.push_back(mesh.points[old]);
+      }
+      id = number[old];
+    }
+    left.facets.push_back(facet);
+    left.facet_label.push_back(label);
+  }
+  return left;
+}
+
 std::vector<Edge> rim_edges(const SurfaceMesh& mesh) {
   std::vector<Edge> edges;
   std::vector<Triangle> facet_edges;

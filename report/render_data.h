@@ -29,6 +29,11 @@ std::shared_ptr<const Data> shape_of(const PictureSource<Data>& source,
 /// open.
 SurfaceMesh cut_open(const PictureTets& tets, const Vec3& normal);
 
+/// What is left of a mesh without the surfaces that are hidden
+/// (report/picture_job.h), and without the points that only they had.
+SurfaceMesh without(const SurfaceMesh& mesh,
+                    const std::vector<std::string>& hidden);
+
 /// Edges where two surfaces meet or a surface ends.
 std::vector<Edge> rim_edges(const SurfaceMesh& mesh);
 

@@ -52,7 +52,10 @@ void draw_one(const PictureJob& job) {
         with_unit(figures.peak, part->stress_unit));
   } else {
     layout.model = {0.05, 0.05, 0.95, 0.87};
-    draw_film(panel, job, *shape_of(job.film, load_surface));
+    const auto film = shape_of(job.film, load_surface);
+    PictureSurface shown;
+    shown.mesh = without(film->mesh, job.hidden);
+    draw_film(panel, job, shown);
     line = job.caption;
   }
   panel.fit_camera(job.view, layout.model);
@@ -63,15 +66,41 @@ void draw_one(const PictureJob& job) {
   save_picture({&panel}, job.width, job.height, job.output);
 }
 
+/// Where three panels of an overview have their things, and its height [pixel].
+struct OverviewLayout {
+  ViewLayout view;
+  int height = 0;
+};
+
+/// A part taller than a panel is wide gets a taller picture.
+OverviewLayout overview_layout(const PictureJob& job, const Points& film) {
+  constexpr double kHead = 0.14;    // x the height asked for: titles
+  constexpr double kFoot = 0.22;    // bar and legends
+  constexpr double kTallest = 1.9;  // x the height asked for
+  constexpr double kMargin = 0.02;  // x the panel's width
+  const double asked = job.height;
+  const double panel = job.width / 3.0;
+  const double tall =
+      seen_aspect(film, job.view) * (1.0 - 2.0 * kMargin) * panel +
+      (kHead + kFoot) * asked;
+  OverviewLayout layout;
+  layout.height = static_cast<int>(std::clamp(tall, asked, kTallest * asked));
+  const double part = asked / layout.height;
+  layout.view.text = std::max(11, job.height / 30);
+  layout.view.model = {kMargin, kFoot * part, 1.0 - kMargin,
+                       1.0 - kHead * part};
+  layout.view.bar = {0.15, 0.105 * part, 0.85, 0.13 * part};
+  return layout;
+}
+
 void draw_overview(const PictureJob& job) {
-  ViewLayout layout;
-  layout.text = std::max(11, job.height / 30);
-  layout.model = {0.02, 0.22, 0.98, 0.86};
-  layout.bar = {0.15, 0.105, 0.85, 0.13};
-  Panel film({0, 0, 1.0 / 3, 1}, job.width, job.height);
-  Panel mesh({1.0 / 3, 0, 2.0 / 3, 1}, job.width, job.height);
-  Panel part({2.0 / 3, 0, 1, 1}, job.width, job.height);
   const auto surface = shape_of(job.film, load_surface);
+  const OverviewLayout overview = overview_layout(job, surface->mesh.points);
+  const ViewLayout& layout = overview.view;
+  const int height = overview.height;
+  Panel film({0, 0, 1.0 / 3, 1}, job.width, height);
+  Panel mesh({1.0 / 3, 0, 2.0 / 3, 1}, job.width, height);
+  Panel part({2.0 / 3, 0, 1, 1}, job.width, height);
   const auto tets = shape_of(job.part, load_tets);
   draw_film(film, job, *surface);
   draw_cut_mesh(mesh, job, *tets);
@@ -79,7 +108,7 @@ void draw_overview(const PictureJob& job) {
       draw_part(part, job, *shape_of(job.part_surface, load_surface), layout);
   const auto caption = [&](Panel& panel, const std::string& title,
                            const std::string& line) {
-    const double row = layout.text / static_cast<double>(job.height);
+    const double row = layout.text / static_cast<double>(height);
     panel.add_text(0.5, 1.0 - 2.0 * row, title,
                    {.size = layout.text * 5 / 4,
                     .bold = true,
@@ -108,7 +137,7 @@ void draw_overview(const PictureJob& job) {
   mesh.add_legend(layout.bar.bottom,
                   {{kOutsideColour, "surface"}, {kInsideColour, "inside"}},
                   layout.text);
-  save_picture({&film, &mesh, &part}, job.width, job.height, job.output);
+  save_picture({&film, &mesh, &part}, job.width, height, job.output);
 }
 
 int run() {

@@ -15,8 +15,8 @@ namespace {
 
 std::string load_label(const Vec3& force, const std::string& unit) {
   const double size = force.norm();
-  return size >= 1e4 && unit == "N" ? fmt::format("{:g} kN", size / 1e3)
-                                    : fmt::format("{:g} {}", size, unit);
+  return size >= 1e4 && unit == "N" ? fmt::format("{:.4g} kN", size / 1e3)
+                                    : fmt::format("{:.4g} {}", size, unit);
 }
 
 // Print resolution: 200 mm at 300 dots an inch.
@@ -139,9 +139,11 @@ std::vector<PictureJob> stored_run_pictures(const Case& input,
 
 std::vector<std::string> draw_film(const std::string& title,
                                    const std::vector<std::string>& solids,
+                                   const std::vector<std::string>& hidden,
                                    const fs::path& folder, Monitor& monitor) {
   PictureJob job;
   job.kind = PictureKind::Film;
+  job.hidden = hidden;
   job.film.file = (folder / "film.vtp").string();
   job.output = (folder / "film.png").string();
   job.title = title;

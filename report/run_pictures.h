@@ -24,9 +24,11 @@ std::vector<PictureJob> stored_run_pictures(
     const std::filesystem::path& folder);
 
 /// film.png from the film.vtp in `folder`; `solids`: its surfaces that are no
-/// films. Returns warnings for what could not be drawn, as below.
+/// films; `hidden`: those left out (PictureJob::hidden). Returns warnings for
+/// what could not be drawn, as below.
 std::vector<std::string> draw_film(const std::string& title,
                                    const std::vector<std::string>& solids,
+                                   const std::vector<std::string>& hidden,
                                    const std::filesystem::path& folder,
                                    Monitor& monitor);
 

@@ -16,6 +16,7 @@
 #include "core/timer.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
+#include "report/eye_view.h"
 #include "tests/support/environment_variable.h"
 #include "tests/support/not_here.h"
 #include "tests/support/shapes.h"
@@ -105,7 +106,16 @@ TEST_F(PictureTest, DrawsAllKinds) {
   EXPECT_THAT(render_pictures(jobs), IsEmpty());
   expect_picture(jobs[0].output, 400, 300);
   expect_picture(jobs[1].output, 400, 300);
-  expect_picture(jobs[2].output, 900, 300);
+  // The bar is 60 high and 20 wide: as tall as an overview gets.
+  expect_picture(jobs[2].output, 900, 570);
+}
+
+TEST(EyeView, SeesHowTallThingsAre) {
+  const Points box = shapes::box(Vec3(2, 1, 6), 1).points;
+  EXPECT_NEAR(seen_aspect(box, Vec3(0, -1, 0)), 3.0, 1e-12);
+  EXPECT_NEAR(seen_aspect(box, Vec3(1, 0, 0)), 6.0, 1e-12);
+  EXPECT_NEAR(seen_aspect(box, Vec3(0, 0, 1)), 0.5, 1e-12);
+  EXPECT_EQ(seen_aspect({}, Vec3(0, 0, 1)), 1.0);
 }
 
 TEST_F(PictureTest, OneBadJobDoesNotStopTheNext) {
@@ -210,6 +220,7 @@ TEST(PictureJobs, SurviveTheirBytes) {
   job.loads = {{"pad", Vec3(0.1, -2, 3), "5 N"}};
   job.view = Vec3(1, 2, 3);
   job.facet_edges = true;
+  job.hidden = {"lid_*"};
   job.part_surface.file = "part.vtp";
   PictureSurface surface;
   surface.mesh = shapes::box(Vec3(1, 2, 3), 2);
@@ -222,6 +233,7 @@ TEST(PictureJobs, SurviveTheirBytes) {
   EXPECT_EQ(jobs[0].loads.at(0).direction, job.loads[0].direction);
   EXPECT_EQ(jobs[0].view, job.view);
   EXPECT_TRUE(jobs[0].facet_edges);
+  EXPECT_EQ(jobs[0].hidden, job.hidden);
   EXPECT_EQ(jobs[0].part_surface.file, "part.vtp");
   EXPECT_EQ(jobs[0].film.data, jobs[1].film.data);
   EXPECT_EQ(jobs[0].film.data->mesh.points, surface.mesh.points);

@@ -24,6 +24,19 @@ TEST(RenderData, RimsAreTheEdgesBetweenSurfaces) {
   EXPECT_EQ(rim_edges(open).size(), 3u);
 }
 
+TEST(RenderData, HiddenSurfacesAreGoneWithTheirPoints) {
+  const SurfaceMesh box = shapes::box(Vec3(1, 2, 3), 2);
+  EXPECT_EQ(without(box, {}).points, box.points);
+  const SurfaceMesh open = without(box, {"z1"});
+  EXPECT_EQ(open.facets.size(), box.facets.size() * 5 / 6);
+  EXPECT_EQ(open.points.size(), box.points.size() - 1);  // the lid's middle
+  EXPECT_NEAR(surface_area(open), surface_area(box) - 2.0, kDataRounding);
+  const SurfaceMesh tube = without(box, {"z*"});
+  EXPECT_NEAR(surface_area(tube), surface_area(box) - 4.0, kDataRounding);
+  EXPECT_EQ(rim_edges(tube).size(), 12u * 2u);
+  EXPECT_TRUE(without(box, {"*"}).points.empty());
+}
+
 TEST(RenderData, CuttingOpenLeavesAClosedHalf) {
   const TempFolder folder;
   const TetMesh mesh =
