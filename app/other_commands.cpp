@@ -11,12 +11,14 @@
 #include "app/signals.h"
 #include "app/terminal.h"
 #include "app/versions.h"
+#include "core/count_text.h"
 #include "io/atomic_file.h"
 #include "io/vtk_files.h"
 #include "pipeline/datafile.h"
 #include "pipeline/evolved_film.h"
 #include "pipeline/family_table.h"
 #include "pipeline/film_frames.h"
+#include "pipeline/film_start.h"
 #include "pipeline/new_case.h"
 #include "pipeline/results.h"
 #include "pipeline/stored_case.h"
@@ -57,14 +59,17 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
   for (const std::string& remark : input.remarks) {
     std::printf("%s\n", remark.c_str());
   }
-  std::printf(
-      "%s: nothing wrong found: %zu curves, %zu films, %zu bodies, %zu design "
-      "variables, %zu responses%s\n",
-      case_path.c_str(), input.curves.size(), input.films.size(),
-      input.bodies.size(), input.design.size(), input.responses.size(),
-      input.study.members.empty()
-          ? ""
-          : fmt::format(", {} members", input.study.members.size()).c_str());
+  std::string text =
+      fmt::format("{}: nothing wrong found: {}, {}, {}, {}, {}", case_path,
+                  count_text(input.curves.size(), "curve"),
+                  count_text(input.films.size(), "film"),
+                  count_text(input.bodies.size(), "body", "bodies"),
+                  count_text(input.design.size(), "design variable"),
+                  count_text(input.responses.size(), "response"));
+  if (!input.study.members.empty()) {
+    text += ", " + count_text(input.study.members.size(), "member");
+  }
+  std::printf("%s\n", text.c_str());
   return kExitDone;
 }
 
@@ -226,10 +231,11 @@ int evolve_command(const EvolveArguments& arguments) {
                  name.c_str());
     return kExitWrongInput;
   }
-  const FilmModel model = FilmModel::freeze(
-      numbers.film_system, {.edge = numbers.fea_edge,
-                            .refinements = input.resolution.refinements,
-                            .monitor = &monitor});
+  const FilmModel model =
+      freeze_films(input, numbers,
+                   {.edge = numbers.fea_edge,
+                    .refinements = input.resolution.refinements,
+                    .monitor = &monitor});
   const FilmState& film = model.reference();
   write_evolved(input, numbers, model, folder, arguments, monitor);
   if (!common.quiet) {

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/count_text.h"
+
 namespace meniscus {
 
 namespace {
@@ -50,8 +52,10 @@ Words words_of(FindingKind kind) {
               "turn the facets of that part"};
     case FindingKind::BodyMismatch:
       return {"body_mismatch",
-              "looks at another body than the next facet about their edge",
-              "say which bodies the surface parts, or add the one missing"};
+              "does not look at the same body as the next facet about their "
+              "edge",
+              "films cross or fold over there: move their curves apart or "
+              "change a volume; or a body between them is missing"};
     case FindingKind::BadNesting:
       return {"bad_nesting", "belongs to a closed part inside another body",
               "turn its facets round for a cavity, or leave one of them out"};
@@ -69,6 +73,11 @@ std::string surface_of(const SurfaceMesh& mesh, int facet) {
   const int label = mesh.facet_label[facet];
   const bool known = label >= 0 && label < static_cast<int>(mesh.labels.size());
   return known ? mesh.labels[label] : "?";
+}
+
+bool same_surfaces(const Finding& a, const Finding& b) {
+  return std::is_permutation(a.surfaces.begin(), a.surfaces.end(),
+                             b.surfaces.begin(), b.surfaces.end());
 }
 
 }  // namespace
@@ -98,15 +107,33 @@ void describe(const SurfaceMesh& mesh, Finding& finding) {
 }
 
 std::string summary(const std::vector<Finding>& findings, int most) {
-  std::string text;
-  const int shown = std::min(static_cast<int>(findings.size()), most);
-  for (int i = 0; i < shown; ++i) {
-    text += (i == 0 ? "" : ". ") + findings[i].message;
+  std::vector<std::pair<const Finding*, int>> groups;  // the first, how many
+  for (const Finding& finding : findings) {
+    const auto like =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+          return group.first->kind == finding.kind &&
+                 same_surfaces(*group.first, finding);
+        });
+    if (like == groups.end()) {
+      groups.emplace_back(&finding, 1);
+    } else {
+      ++like->second;
+    }
   }
-  const int left = static_cast<int>(findings.size()) - std::max(shown, 0);
+  std::string text;
+  int told = 0;
+  for (int i = 0; i < std::min(static_cast<int>(groups.size()), most); ++i) {
+    const auto& [first, count] = groups[static_cast<std::size_t>(i)];
+    text += (i == 0 ? "" : ". ") + first->message;
+    text += count > 1 ? fmt::format(" (and {} like it)",
+                                    count_text(count - 1, "place"))
+                      : "";
+    told += count;
+  }
+  const int left = static_cast<int>(findings.size()) - told;
   if (left > 0) {
-    text += fmt::format("{}{} findings{}", shown > 0 ? "; and " : "", left,
-                        shown > 0 ? " more" : "");
+    text += fmt::format("{}{}{}", told > 0 ? "; and " : "",
+                        count_text(left, "finding"), told > 0 ? " more" : "");
   }
   return text;
 }

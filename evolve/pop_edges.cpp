@@ -162,6 +162,9 @@ class EdgePopper {
         chain.closed = on == chain.sheets.front();
         return;
       }
+      if (std::count(chain.points.begin(), chain.points.end(), v) > 1) {
+        return;  // a loop that the line runs into, where films coincide
+      }
       chain.points.push_back(*next);
       chain.sheets.push_back(std::move(on));
     }

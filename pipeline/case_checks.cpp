@@ -20,97 +20,6 @@ namespace {
 constexpr double kNesting = 0.01;  // film may miss fea / 2^k by 1 %
 constexpr int kMostRefinements = 4;
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// The body's surfaces by the curve that bounds them.
-std::map<std::string, std::set<std::string>> surfaces_at_curves(
-    const Case& input, const BodyEntry& body) {
-  std::map<std::string, std::set<std::string>> at_curve;
-  for (const FilmEntry& film : input.films) {
-    if (contains(body.enclosed_by, film.spec.name)) {
-      for (const std::string& curve : film.spec.curves) {
-        at_curve[curve].insert(film.spec.name);
-      }
-    }
-  }
-  for (const CapEntry& cap : input.caps) {
-    if (contains(body.enclosed_by, cap.spec.name)) {
-      CapSpec spec = cap.spec;
-      spec.start = nullptr;  // a file's surfaces may end anywhere
-      for (const std::string& curve : spec.curves()) {
-        at_curve[curve].insert(spec.name);
-      }
-    }
-  }
-  return at_curve;
-}
-
-/// What would close the body at a curve where one surface ends.
-std::string closing_advice(const Case& input, const BodyEntry& body,
-                           const std::string& curve) {
-  for (const CapEntry& cap : input.caps) {
-    if (contains(cap.spec.curves(), curve) &&
-        !contains(body.enclosed_by, cap.spec.name)) {
-      return fmt::format("; add '{}' to enclosed_by", cap.spec.name);
-    }
-  }
-  for (const FilmEntry& film : input.films) {
-    if (contains(film.spec.curves, curve) &&
-        !contains(body.enclosed_by, film.spec.name)) {
-      return fmt::format("; add '{}' to enclosed_by", film.spec.name);
-    }
-  }
-  return fmt::format(
-      "; add a cap across it ([solids.NAME] with curve = \"{}\")", curve);
-}
-
-/// All names that the body's shape hangs on are known; else the reader has
-/// told so, and what follows from it is no news.
-bool names_are_known(const Case& input, const BodyEntry& body) {
-  const std::vector<std::string> surfaces = surface_names(input);
-  bool known = std::all_of(
-      body.enclosed_by.begin(), body.enclosed_by.end(),
-      [&](const std::string& name) { return contains(surfaces, name); });
-  for (const FilmEntry& film : input.films) {
-    known = known &&
-            (film.spec.kind == FilmKind::Facets || !film.spec.curves.empty());
-  }
-  const auto is_curve = [&](const std::string& name) {
-    return std::any_of(input.curves.begin(), input.curves.end(),
-                       [&](const CurveEntry& c) { return c.name == name; });
-  };
-  for (const auto& [curve, at] : surfaces_at_curves(input, body)) {
-    known = known && is_curve(curve);
-  }
-  return known;
-}
-
-void check_closed(const Case& input, const BodyEntry& body,
-                  CaseProblems& problems) {
-  if (!names_are_known(input, body) || has_facets(input, body)) {
-    return;  // facets may join elsewhere than on curves: see check_start()
-  }
-  for (const auto& [curve, surfaces] : surfaces_at_curves(input, body)) {
-    if (surfaces.size() == 1 && may_join_by_sides(input, curve)) {
-      continue;  // other faces may have its sides: check_sides() knows
-    }
-    if (surfaces.size() != 2) {
-      problems.add(
-          body.enclosure_line,
-          fmt::format("body '{}' is not closed at curve '{}': {} of its "
-                      "surfaces meet{} there ({}), two must{}",
-                      body.name, curve, surfaces.size(),
-                      surfaces.size() == 1 ? "s" : "",
-                      fmt::join(surfaces, ", "),
-                      surfaces.size() == 1
-                          ? closing_advice(input, body, curve)
-                          : std::string("; take one out of enclosed_by")));
-    }
-  }
-}
-
 void check_use(const Case& input, CaseProblems& problems) {
   std::set<std::string> used_curves;
   std::set<std::string> used_surfaces;
@@ -366,28 +275,6 @@ std::vector<std::string> body_names(const Case& input) {
     names.push_back(body.name);
   }
   return names;
-}
-
-void check_bodies(const Case& input, CaseProblems& problems) {
-  std::map<std::string, std::vector<std::string>> bodies_of;
-  for (const BodyEntry& body : input.bodies) {
-    check_closed(input, body, problems);
-    for (const std::string& surface : body.enclosed_by) {
-      bodies_of[surface].push_back(body.name);
-    }
-  }
-  for (const BodyEntry& body : input.bodies) {
-    for (const std::string& surface : body.enclosed_by) {
-      const std::vector<std::string>& bodies = bodies_of[surface];
-      if (bodies.size() > 2 && bodies.back() == body.name) {
-        problems.add(
-            body.enclosure_line,
-            fmt::format("'{}' encloses {} bodies ({}); it has two "
-                        "sides, so at most two can share it",
-                        surface, bodies.size(), fmt::join(bodies, ", ")));
-      }
-    }
-  }
 }
 
 void check_case(const Case& input, CaseProblems& problems) {

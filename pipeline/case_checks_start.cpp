@@ -5,6 +5,7 @@
 #include "evolve/grooming.h"
 #include "evolve/start_edge.h"
 #include "pipeline/case_checks.h"
+#include "pipeline/film_start.h"
 
 namespace meniscus {
 
@@ -42,25 +43,8 @@ void check_start(const Case& input, const EvaluatedCase& numbers,
     build_start(numbers.film_system,
                 start_edge(numbers.film_system, numbers.fea_edge));
   } catch (const Error& error) {
-    // The message names the film or solid first.
     const std::string message = error.what();
-    SourceLine line = 0;
-    const auto look = [&](const std::string& name, SourceLine at) {
-      const std::size_t found = message.find("'" + name + "'");
-      line = line == 0 && found != std::string::npos ? at : line;
-    };
-    for (const FilmEntry& film : input.films) {
-      look(film.spec.name, film.line);
-    }
-    for (const CapEntry& cap : input.caps) {
-      look(cap.spec.name, cap.line);
-    }
-    for (const BodyEntry& body : input.bodies) {
-      if (message.find("body '" + body.name + "'") != std::string::npos) {
-        line = body.enclosure_line;
-      }
-    }
-    problems.add(line, message);
+    problems.add(line_of_start(input, message), message);
   }
 }
 

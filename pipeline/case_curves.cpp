@@ -126,8 +126,16 @@ void check(const CurveEntry& entry, const Curve& curve) {
 std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
   std::vector<Curve> result;
   result.reserve(input.curves.size());
+  std::vector<char> bad;  // copies of those are no news
   for (const CurveEntry& entry : input.curves) {
     const std::size_t before = values.problems().size();
+    if (entry.kind == CurveKind::Copy &&
+        bad[static_cast<std::size_t>(entry.copy.of)] != 0) {
+      const auto of = static_cast<std::size_t>(entry.copy.of);
+      result.push_back({entry.name, result[of].shape});
+      bad.push_back(1);
+      continue;
+    }
     Curve curve{entry.name, shape_of(entry, result, values)};
     if (!values.are_rates() && values.problems().size() == before) {
       try {
@@ -138,6 +146,7 @@ std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
                         where(entry, values)));
       }
     }
+    bad.push_back(values.problems().size() > before ? 1 : 0);
     result.push_back(std::move(curve));
   }
   return result;

@@ -54,6 +54,9 @@ void read_points(CaseContext& context, const CaseTable& table,
     for (const std::string& problem : file.problems) {
       context.problems.add_text(problem);
     }
+    if (!file.warning.empty()) {
+      context.problems.warn(table.line("file"), file.warning);
+    }
     curve.fixed_points = std::move(file.points);
   }
 }

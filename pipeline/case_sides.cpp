@@ -46,11 +46,13 @@ std::vector<std::string> curves_of_surface(const FilmSystem& system,
   return {};
 }
 
+using SurfacesAtSides = std::map<SideName, std::vector<std::string>>;
+
 /// Surfaces of the body at each side of the polygons that bound them.
-std::map<SideName, std::vector<std::string>> surfaces_at_sides(
-    const FilmSystem& system, const BodySpec& body,
-    const std::map<SideName, SideName>& first) {
-  std::map<SideName, std::vector<std::string>> result;
+SurfacesAtSides surfaces_at_sides(const FilmSystem& system,
+                                  const BodySpec& body,
+                                  const std::map<SideName, SideName>& first) {
+  SurfacesAtSides result;
   for (const std::string& surface : body.enclosed_by) {
     for (const std::string& name : curves_of_surface(system, surface)) {
       for (int c = 0; c < static_cast<int>(system.curves.size()); ++c) {
@@ -68,6 +70,46 @@ std::map<SideName, std::vector<std::string>> surfaces_at_sides(
     }
   }
   return result;
+}
+
+/// The caps outside the body, by the sides that they end at.
+SurfacesAtSides caps_beside(const FilmSystem& system, const BodySpec& body,
+                            const std::map<SideName, SideName>& first) {
+  BodySpec others;
+  for (const CapSpec& cap : system.caps) {
+    if (std::find(body.enclosed_by.begin(), body.enclosed_by.end(), cap.name) ==
+        body.enclosed_by.end()) {
+      others.enclosed_by.push_back(cap.name);
+    }
+  }
+  return surfaces_at_sides(system, others, first);
+}
+
+/// "the side from A to B of curve 'c' ...": the first of one curve's sides that
+/// are open, with `surfaces` there, how many there are, and what to do.
+std::string open_sides_text(const FilmSystem& system,
+                            const std::vector<SideName>& sides,
+                            const std::vector<std::string>& surfaces,
+                            const SurfacesAtSides& beside) {
+  const Curve& curve =
+      system.curves[static_cast<std::size_t>(sides.front().first)];
+  const Points& corners = std::get<Polygon>(curve.shape).points;
+  const auto k = static_cast<std::size_t>(sides.front().second);
+  const std::string more =
+      sides.size() == 1
+          ? ""
+          : fmt::format(" and {} more of its sides", sides.size() - 1);
+  const auto face = beside.find(sides.front());
+  return fmt::format(
+      "the side from {} to {} of curve '{}'{}: {} of its surfaces meet{} there "
+      "({}), expected two; {}faces join where both polygons have the same two "
+      "corners next to each other: add a corner where a face ends amid a side",
+      text(corners[k]), text(corners[(k + 1) % corners.size()]), curve.name,
+      more, surfaces.size(), surfaces.size() == 1 ? "s" : "",
+      fmt::join(surfaces, ", "),
+      face == beside.end()
+          ? ""
+          : fmt::format("add '{}' to enclosed_by, or: ", face->second.front()));
 }
 
 }  // namespace
@@ -96,23 +138,19 @@ void check_sides(const Case& input, const FilmSystem& system,
     if (has_facets(input, input.bodies[b])) {
       continue;  // facets may join elsewhere than on curves: check_start()
     }
-    for (const auto& [side, surfaces] :
-         surfaces_at_sides(system, system.bodies[b], first)) {
-      if (surfaces.size() == 2) {
-        continue;
+    const auto at_sides = surfaces_at_sides(system, system.bodies[b], first);
+    std::map<int, std::vector<SideName>> open;  // by curve
+    for (const auto& [side, surfaces] : at_sides) {
+      if (surfaces.size() != 2) {
+        open[side.first].push_back(side);
       }
-      const Curve& curve = system.curves[static_cast<std::size_t>(side.first)];
-      const Points& corners = std::get<Polygon>(curve.shape).points;
-      const auto k = static_cast<std::size_t>(side.second);
+    }
+    for (const auto& [curve, sides] : open) {
       values.problems().push_back(fmt::format(
-          "{}: body '{}' is not closed at the side from {} to {} of curve "
-          "'{}': {} of its surfaces meet{} there ({}), expected two: faces "
-          "join where both polygons have the same two corners next to each "
-          "other; add a corner where a face ends amid a side",
+          "{}: body '{}' is not closed at {}",
           place(input, input.bodies[b].enclosure_line), system.bodies[b].name,
-          text(corners[k]), text(corners[(k + 1) % corners.size()]), curve.name,
-          surfaces.size(), surfaces.size() == 1 ? "s" : "",
-          fmt::join(surfaces, ", ")));
+          open_sides_text(system, sides, at_sides.at(sides.front()),
+                          caps_beside(system, system.bodies[b], first))));
     }
   }
 }

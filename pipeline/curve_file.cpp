@@ -18,6 +18,10 @@ namespace {
 
 constexpr std::size_t kMostProblems = 20;
 constexpr std::size_t kMostPoints = 20000;
+// From the last point to the first / the longest other step, of so many points
+// or more: fewer may be corners.
+constexpr double kGap = 3.0;
+constexpr std::size_t kGapPoints = 8;
 constexpr std::size_t kShown = 40;  // characters of a cell in a message
 
 std::string trimmed(std::string text) {
@@ -64,6 +68,7 @@ class Reader {
   bool read_head(const CsvRow& row);
   void read_row(const CsvRow& row);
   void close();
+  void warn_of_gap();
 
   const std::string& path_;
   const UnitSystem& units_;
@@ -149,6 +154,26 @@ void Reader::close() {
     add(lines_.empty() ? 1 : lines_.back(),
         fmt::format("{} point{}; a closed curve needs three or more",
                     file_.points.size(), file_.points.size() == 1 ? "" : "s"));
+  }
+  warn_of_gap();
+}
+
+void Reader::warn_of_gap() {
+  const Points& points = file_.points;
+  if (!file_.problems.empty() || points.size() < kGapPoints) {
+    return;
+  }
+  double longest = 0.0;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    longest = std::max(longest, (points[k] - points[k - 1]).norm());
+  }
+  const double gap = (points.front() - points.back()).norm();
+  if (gap > kGap * longest) {
+    file_.warning = fmt::format(
+        "{}:{}: the curve does not come back to its first point: {:.4g} {} are "
+        "left, and no other step is longer than {:.4g} {}; it is closed across "
+        "that gap; are points missing?",
+        path_, lines_.back(), gap, units_.length, longest, units_.length);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/timer.h"
 #include "evolve/equilibrium.h"
+#include "evolve/fe_bodies.h"
 #include "evolve/fe_script.h"
 #include "evolve/fe_write.h"
 #include "evolve/find_equilibrium.h"
@@ -174,6 +175,7 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
                                const DatafileOptions& options) {
   const Timer timer;
   const FeFile file = read_fe(read_file(path), path.filename().string());
+  check_fe_bodies(file);
   // Commands of the file that stand outside its macros are part of the film.
   FeScriptResult script =
       run_fe_script(file, options.parameters,

@@ -8,6 +8,7 @@
 #include "fea/petsc_child.h"
 #include "mesh_tet/quadratic.h"
 #include "pipeline/film_options.h"
+#include "pipeline/film_start.h"
 #include "pipeline/forward_model_impl.h"
 #include "pipeline/stage_meter.h"
 #include "pipeline/walls.h"
@@ -32,10 +33,10 @@ bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
                                      Monitor& monitor) {
   const StageMeter meter;
   monitor.progress({.stage = "film", .detail = "settling the start"});
-  film.emplace(FilmModel::freeze(inputs.film_system,
-                                 {.edge = inputs.fea_edge * options.edge_factor,
-                                  .refinements = film_refinements(input),
-                                  .monitor = &monitor}));
+  film.emplace(freeze_films(input, inputs,
+                            {.edge = inputs.fea_edge * options.edge_factor,
+                             .refinements = film_refinements(input),
+                             .monitor = &monitor}));
   frozen.film = film->reference().report;
   frozen.failure = film->reference().failure;
   if (!frozen.failure && !inputs.walls.empty()) {

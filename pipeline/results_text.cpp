@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/count_text.h"
 #include "pipeline/eigen_figures.h"
 #include "pipeline/results.h"
 
@@ -154,14 +155,16 @@ std::string result_text(const Case& input, const RunResult& result) {
       "eigenvalue {:.3g}\n"
       "  elements: {} ten-node tetrahedra, {} unknowns, dihedral angles {:.1f} "
       "to {:.1f} degrees\n"
-      "  {} evaluations and {} gradients in {:.1f} s (film {:.1f}, mesh "
+      "  {} and {} in {:.1f} s (film {:.1f}, mesh "
       "{:.1f}, elasticity {:.1f}, gradients {:.1f})\n",
       best.film.verdict, best.film.facets, best.film.residual,
       best.film.residual_bound, best.film.min_eigenvalue, best.tet.elements,
       best.fea.dofs, best.tet.min_dihedral_deg, best.tet.max_dihedral_deg,
-      result.evaluations, result.gradient_evaluations, result.total_seconds,
-      result.seconds.film, result.seconds.mesh, result.seconds.fea,
-      result.seconds.gradient);
+      count_text(static_cast<std::size_t>(result.evaluations), "evaluation"),
+      count_text(static_cast<std::size_t>(result.gradient_evaluations),
+                 "gradient"),
+      result.total_seconds, result.seconds.film, result.seconds.mesh,
+      result.seconds.fea, result.seconds.gradient);
   if (result.ledger) {
     text += ledger_text(*result.ledger, input.units.length);
   }

@@ -173,12 +173,12 @@ std::optional<Failure> wall_failure(const EvaluatedCase& numbers,
     if (wall.findings.empty()) {
       continue;
     }
-    std::string message = fmt::format("walls.{} cannot be meshed: {}",
-                                      made.name, summary(wall.findings));
+    std::string message = fmt::format("walls.{} cannot be meshed: ", made.name);
     if (wall.safe.limit != WallLimit::None &&
         wall.safe.asked >= wall.safe.value) {
-      message += "; " + wall.safe.message;
+      message += wall.safe.message + ". ";
     }
+    message += summary(wall.findings);
     return Failure{FailureKind::SurfaceInvalid, std::move(message)};
   }
   return std::nullopt;

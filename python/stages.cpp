@@ -5,6 +5,7 @@
 
 #include "fea/stress.h"
 #include "pipeline/adaptation.h"
+#include "pipeline/film_start.h"
 #include "python/call.h"
 #include "python/errors.h"
 
@@ -44,10 +45,11 @@ std::shared_ptr<const FrozenModel> freeze_film(
   auto model = std::make_shared<FrozenModel>();
   model->input = input;
   const EvaluatedCase numbers = evaluate(*input, initial_design(*input));
-  model->film_alone.emplace(FilmModel::freeze(
-      numbers.film_system, {.edge = numbers.fea_edge * edge_factor,
-                            .refinements = input->resolution.refinements,
-                            .monitor = &monitor}));
+  model->film_alone.emplace(
+      freeze_films(*input, numbers,
+                   {.edge = numbers.fea_edge * edge_factor,
+                    .refinements = input->resolution.refinements,
+                    .monitor = &monitor}));
   return model;
 }
 

@@ -238,7 +238,13 @@ class Ledger(Live):
         ledger = result["ledger"]
         self.assertEqual(ledger["input_bytes"], len(SIZED_STRUT.encode()))
         stages = ledger["stages"]
-        for one, two in zip(stages, stages[1:]):
+        # A line of its own for each film, part of the film's.
+        films = [one for one in stages if one["name"].startswith("film: ")]
+        self.assertEqual([one["name"] for one in films], ["film: skin"])
+        self.assertEqual(films[0]["after"]["elements"],
+                         result["film"]["facets"])
+        chain = [one for one in stages if one not in films]
+        for one, two in zip(chain, chain[1:]):
             self.assertEqual(one["after"], two["before"], two["name"])
         by_name = {stage["name"]: stage for stage in stages}
         self.assertEqual(by_name["film"]["after"]["elements"],

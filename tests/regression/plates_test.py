@@ -163,7 +163,7 @@ curves = ["bore_low", "bore_high"]
                  r"case.toml:\d+: solids.sides.curves: .*as many points"),
                 ('"sides", "top"]', '"sides"]', r"case.toml:\d+: .*top"),
                 ('curves = ["low", "high"]', 'curves = ["low", "hihg"]',
-                 r"case.toml:\d+: .*did you mean 'high'"),
+                 r"case.toml:\d+: there is no curve 'hihg'; there are low, high"),
                 ('curve = "low"\n', "", r"has no 'curve'"),
                 ('curve = "low"', 'curve = "low"\ncurves = ["low"]',
                  r"solids.foot.curves does not belong to a cap"),

@@ -1,0 +1,556 @@
+#!/usr/bin/env python3
+"""Wrong cases made from the parts of cases/: two curves swapped, a rim that does
+not close, films that cross, walls thicker than their gap, a member of a family
+that cannot be. Each ends with the message a user needs: where it is (file and
+line, or the films and the place), what is wrong, and what to try. Where a swap
+says the same thing, the case simply works."""
+import dataclasses
+import json
+import re
+import shlex
+import shutil
+import sys
+import unittest
+
+import program
+from program import ProgramTest
+
+sys.path.insert(0, str(program.ROOT / "scripts"))
+import cases  # noqa: E402  (scripts/ is found only now)
+
+FILM = 0.005  # areas of films at one resolution, on other triangles
+# Sizes at which the rest of a case is still sound, and quick.
+COARSE = {
+    "constant_mean_curvature": (8, 8), "casting": (24, 24), "talus": (4, 4),
+    "bracket_vs_solid": (10, 5), "stepped_shaft": (8, 8),
+    "strut_family": (10, 10), "femur": (8, 8), "two_arm": (20, 20),
+    "two_arm_sized": (24, 24), "h_beam_casting": (32, 32),
+    "fuselage": (200, 200),
+}
+# The mistakes that a case has no room for, and why.
+NO_ROOM = {
+    "cube_to_sphere": {"crossing": "a liquid that starts inside out turns",
+                       "thick": "no walls", "member": "a datafile"},
+    "constant_mean_curvature": {"thick": "no walls", "member": "no family"},
+    "casting": {"thick": "no walls", "member": "no family"},
+    "talus": {"member": "no family"},
+    "bracket_vs_solid": {"member": "no family"},
+    "stepped_shaft": {"thick": "no walls", "member": "no family"},
+    "strut_family": {"thick": "no walls"},
+    "femur": {"member": "no family"},
+    "fuselage": {"member": "no family"},
+    "two_arm": {"thick": "no walls"},
+    "two_arm_sized": {"thick": "no walls", "member": "no family"},
+    "h_beam_casting": {"member": "no family"},
+}
+KINDS = ("swapped", "open", "crossing", "thick", "member")
+
+
+@dataclasses.dataclass
+class Wrong:
+    """`replace`: text of the file by other text. `says`: patterns of what is
+    printed; {line} is the number of the first line that has `at` in it."""
+    kind: str
+    what: str
+    replace: dict
+    exit: int
+    says: tuple
+    at: str = ""
+    command: str = "check case.toml"
+    files: dict = dataclasses.field(default_factory=dict)
+
+
+@dataclasses.dataclass
+class Harmless:
+    """A swap that means the same: the films' area stays."""
+    what: str
+    replace: dict
+    file: str = "case.toml"
+
+
+def swapped(one, other):
+    """Two texts in each other's place."""
+    return {one: "\0", other: one, "\0": other}
+
+
+def moved(text, replace):
+    for old, new in replace.items():
+        if old not in text:
+            raise AssertionError(f"no {old!r} in the case")
+        text = text.replace(old, new, 1)
+    return text
+
+
+def not_closed(body, curve, advice):
+    return (r"case\.toml:{line}: body '%s' is not closed at curve '%s': .*%s"
+            % (body, curve, advice),)
+
+
+MEMBERS = "name,length,offset,tilt,load\n"
+UNSOUND = r"walls\.\w+ cannot be meshed: the wall may be [\d.]+ mm thick at " \
+          r"most near \(.*\) of '\w+', where .*; asked there: [\d.]+ mm; " \
+          r"make the wall thinner there"
+CROSS = r"(crosses or overlaps|films cross or fold over there)"
+
+WRONG = {
+    "cube_to_sphere": [
+        Wrong("swapped", "two edges of a face", {"1  1 2 3\n": "1  1 3 2\n"}, 2,
+              (r"cube\.fe:{line}:\d+: face 1 does not close: edge 1 ends at "
+               r"vertex 4, edge 3 starts at vertex 3",), "1  1 3 2",
+              "evolve cube.fe"),
+        Wrong("swapped", "the ends of an edge", {"4  3 2\n": "4  2 3\n"}, 2,
+              (r"cube\.fe:\d+:\d+: face 2 does not close: edge -3 ends at "
+               r"vertex 3, edge 4 starts at vertex 2",), "",
+              "evolve cube.fe"),
+        Wrong("swapped", "a face's two sides",
+              {"12  -18 -16 -1": "12  1 16 18"}, 2,
+              (r"cube\.fe:{line}:\d+: body 1: faces \d+ and 12 run along edge "
+               r"\d+ the same way, so one of them is inside out; give it the "
+               r"other sign",), "volume 1", "evolve cube.fe"),
+        Wrong("open", "a face that the body lacks",
+              {" 11 12  volume": " 11  volume"}, 2,
+              (r"cube\.fe:{line}:\d+: body 1 .*face", "edge"), "volume 1",
+              "evolve cube.fe"),
+        Wrong("open", "a face that is not there",
+              {"12  -18 -16 -1\n": "", " 11 12  volume": " 11  volume"}, 2,
+              (r"cube\.fe:{line}:\d+: body 1 is not closed: only face \d+ is at "
+               r"edge 1, and nothing holds the film there; add the missing "
+               r"face",), "volume 1", "evolve cube.fe"),
+        Harmless("two corners", swapped("1  0 0 0\n", "2  1 0 0\n"), "cube.fe"),
+    ],
+    "constant_mean_curvature": [
+        Harmless("a film's two curves",
+                 {'["girdle", "crown"]': '["crown", "girdle"]'}),
+        Wrong("swapped", "one end of a film",
+              {'["collar", "girdle"]': '["collar", "crown"]'}, 2,
+              not_closed("neck", "crown", "let film 'unduloid' end at 'girdle', "
+                                          "not at 'crown'"),
+              '"unduloid", "girdle_plate"'),
+        Wrong("swapped", "the curves of two caps",
+              {'curve = "collar"': 'curve = "\0"',
+               'curve = "girdle"': 'curve = "collar"',
+               'curve = "\0"': 'curve = "girdle"'}, 2,
+              not_closed("shaft", "girdle", r"\(collar_plate\)"),
+              '"cylinder", "collar_plate"'),
+        Wrong("open", "a chamber without its lid",
+              {'"nodoid", "crown_plate"]': '"nodoid"]'}, 2,
+              not_closed("bulge", "crown", "add 'crown_plate' to enclosed_by"),
+              '"girdle_plate", "nodoid"'),
+        Wrong("crossing", "the crown below the girdle",
+              {"+ neck_height + bulge_height": "+ bulge_height"}, 3,
+              (r"failed: .*'nodoid'.*'unduloid'.* at \(.*\): films cross or "
+               r"fold over there: move their curves apart", "places like it"),
+              command="run case.toml"),
+    ],
+    "casting": [
+        Wrong("swapped", "the roots of both arms",
+              {'["root_left", "left"]': '["root_right", "left"]',
+               '["root_right", "right"]': '["root_left", "right"]'}, 2,
+              not_closed("left_arm", "root_left", "let film 'left_skin' end at "
+                         "'root_left', not at 'root_right'"),
+              'enclosed_by = ["left_skin"'),
+        Wrong("swapped", "the ends of both arms, with their pads",
+              {'["root_left", "left"]': '["root_left", "right"]',
+               '["root_right", "right"]': '["root_right", "left"]',
+               'curve = "left"': 'curve = "\0"',
+               'curve = "right"': 'curve = "left"',
+               'curve = "\0"': 'curve = "right"'}, 3,
+              (r"neck of width [\d.]+ mm at \(.*\) between '(left|right)_skin'",
+               "shorter arms"), command="run case.toml"),
+        Wrong("open", "an arm without its pad",
+              {'"left_joint", "left_pad"]': '"left_joint"]'}, 2,
+              not_closed("left_arm", "left", "add 'left_pad'"),
+              'enclosed_by = ["left_skin"'),
+        Wrong("open", "a rim that the hub lacks",
+              {'"root_mast", "root_nose"]': '"root_nose"]'}, 2,
+              not_closed("hub", "root_mast", r"\(mast_joint\), two must"),
+              'enclosed_by = ["hub_skin"'),
+        Wrong("open", "a rim measured half way round",
+              {'kind = "circle"\ncenter = [-88, 0, 4]\nnormal = [-1, 0, 0]\n'
+               'radius = 52': 'kind = "file"\nfile = "rim.csv"'}, 0,
+              (r"case\.toml:{line}: warning: .*rim\.csv:12: the curve does not "
+               r"come back to its first point: 104 mm are left, .* longer than "
+               r"16\.\d+ mm; .*are points missing\?",), 'file = "rim.csv"',
+              files={"rim.csv": "x,y,z\n" + "".join(
+                  f"-88,{52 * c},{4 + 52 * s}\n" for c, s in (
+                      (1, 0), (.951, .309), (.809, .588), (.588, .809),
+                      (.309, .951), (0, 1), (-.309, .951), (-.588, .809),
+                      (-.809, .588), (-.951, .309), (-1, 0)))}),
+        Wrong("crossing", "the mast's end within the hub",
+              {"center = [30, 20, 210]": "center = [30, 20, 20]"}, 3,
+              (r"failed: .*'hub_skin'.*'mast_skin'.* at \(.*\): .*" + CROSS,),
+              command="run case.toml"),
+        Wrong("crossing", "an arm that turns back",
+              {"center = [-215, 0, 20]\nnormal = [-1, 0, 0]":
+               "center = [-60, 0, -160]\nnormal = [0, 0, -1]"}, 2,
+              (r"case\.toml:{line}: film 'left_skin': curve 'root_left' is off "
+               r"the convex hull .* near \(.*\).*move or turn the curve",),
+              "[films.left_skin]", "run case.toml"),
+    ],
+    "talus": [
+        Harmless("a ring's two curves",
+                 {'curve = "trochlea"\ninner = "trochlea_middle"':
+                  'curve = "trochlea_middle"\ninner = "trochlea"'}),
+        Wrong("swapped", "rims of two foliates",
+              {'["trochlea_middle", "head_middle",':
+               '["trochlea_middle", "head_inner",'}, 2,
+              not_closed("shell", "head_inner", "let film 'middle' end at "
+                         "'head_middle', not at 'head_inner'"),
+              '"outer", "middle", "trochlea_edge"'),
+        Wrong("swapped", "two points of a rim",
+              swapped("[5.5, 13.5, 15.5]", "[-6.0, 14.0, 15.5]"), 2,
+              (r"case\.toml:{line}: curve 'trochlea': crosses or touches itself "
+               r"near \(.*\).*points must follow each other",),
+              "[curves.trochlea]"),
+        Wrong("open", "the hollow without a lid",
+              {'"trochlea_lid", "head_lid", "calcaneal_lid"]':
+               '"trochlea_lid", "head_lid"]'}, 2,
+              not_closed("hollow", "calcaneal_inner", "add 'calcaneal_lid'"),
+              '"inner", "trochlea_lid"'),
+        Wrong("open", "a rim of two points",
+              {" [5.5, 13.5, 15.5], [-6.0, 14.0, 15.5], [-17.5, 9.6, 15.5],\n":
+               "\n", "[-20.6, 0, 15.5], [-17.5, -9.6, 15.5], "
+               "[-6.0, -14.0, 15.5], [5.5, -13.5, 15.5],":
+               "[-20.6, 0, 15.5],"}, 2,
+              (r"case\.toml:{line}: curve 'trochlea': spline has 2 points, must "
+               r"have 3 or more\n\Z",), "[curves.trochlea]"),
+        Wrong("crossing", "the inner rim of the head moved down",
+              {'of = "head"\nscale = "inner_scale"\nabout = ["cx", "cy", "cz"]':
+               'of = "head"\nscale = "inner_scale"\n'
+               'about = ["cx", "cy", "cz + 40"]'}, 2,
+              (r"case\.toml:\d+: curves 'head(_middle)?' and 'head_inner' meet "
+               r"near \(.*\)",)),
+        Wrong("thick", "foliates in the wrong order",
+              {"initial = 0.72\nbounds = [0.64, 0.78]":
+               "initial = 0.9\nbounds = [0.64, 0.95]"}, 2,
+              (r"case\.toml:{line}: bodies\.core\.volume is -[\d.]+ mm3 where "
+               r"inner_scale = 0\.9, .*middle_scale = 0\.86; it must be above "
+               r"0",), 'volume = "volume * (middle_scale^3 - inner_scale^3)"'),
+    ],
+    "bracket_vs_solid": [
+        Harmless("a cap's rim and hole",
+                 {'curve = "foot_rim"\nholes = ["cavity_rim"]':
+                  'curve = "cavity_rim"\nholes = ["foot_rim"]'}),
+        Wrong("swapped", "the lower rims of skin and lining",
+              {'["foot_rim", "pad_rim"]': '["cavity_rim", "pad_rim"]',
+               '["cavity_rim", "roof_rim"]': '["foot_rim", "roof_rim"]'}, 2,
+              not_closed("cavity", "cavity_rim", "let film 'lining' end at "
+                         "'cavity_rim', not at 'foot_rim'"),
+              'enclosed_by = ["lining", "roof", "mouth"]'),
+        Wrong("swapped", "two corners of the H",
+              swapped('["r1", "-rw", "base_plate"]',
+                      '["r2", "-rw", "base_plate"]'), 2,
+              (r"plates\.toml:{line}: curve 'root': crosses or touches itself "
+               r"near \(.*\)",), "[curves.root]", "check plates.toml"),
+        Wrong("open", "the cavity without its mouth",
+              {'["lining", "roof", "mouth"]': '["lining", "roof"]'}, 2,
+              not_closed("cavity", "cavity_rim", "add 'mouth' to"),
+              'enclosed_by = ["lining", "roof"]'),
+        Wrong("open", "the plates without the column",
+              {'"base_face", "column", ': '"base_face", '}, 2,
+              (r"plates\.toml:{line}: body 'part' is not closed at the side from "
+               r"\(.*\) to \(.*\) of curve 'root' and 11 more of its sides: 1 "
+               r"of its surfaces meets there \(base_face\), expected two; add "
+               r"'column' to enclosed_by",), 'enclosed_by = ["foot"',
+              "check plates.toml"),
+        Wrong("crossing", "a cavity wider than the skin", {}, 3,
+              (r"'skin'.*crosses or overlaps another with facet \d+ "
+               r"\('lining'\) at \(.*\): move the curves apart or give the body "
+               r"another volume",),
+              command="run case.toml --set study.kind=analyse --set hollow=2.2 "
+                      "--set design.hollow.bounds=[0.5,3]"),
+        Wrong("crossing", "a column wider than the top plate", {}, 3,
+              (r"'column'.*crosses or overlaps another with facet \d+ "
+               r"\('top_face'\)",),
+              command="run plates.toml --set study.kind=analyse "
+                      "--set head_width=50 "
+                      "--set design.head_width.bounds=[20,60]"),
+        Wrong("thick", "a wall that leaves no cavity", {}, 2,
+              (r"case\.toml:{line}: curve 'cavity_rim': height is -2, must be "
+               r"above 0 where .*foot_width = 60, wall = 31",),
+              "[curves.cavity_rim]",
+              "check case.toml --set wall=31 "
+              "--set design.wall.bounds=[3,40]"),
+        Wrong("thick", "flanges that meet each other", {}, 2,
+              (r"plates\.toml:{line}: curve 'root': crosses or touches itself "
+               r"near \(.*\).* where .*r2 = 12, r3 = 8",), "[curves.root]",
+              "check plates.toml --set flange=40 "
+              "--set design.flange.bounds=[3,50]"),
+    ],
+    "stepped_shaft": [
+        Harmless("a film's two curves",
+                 {'["shoulder", "neck"]': '["neck", "shoulder"]'}),
+        Wrong("swapped", "one end of the thick cylinder",
+              {'["big_rim", "shoulder"]': '["big_rim", "neck"]'}, 2,
+              not_closed("shaft", "neck", "let one of them end at 'shoulder'"),
+              'enclosed_by = ["big_side"'),
+        Wrong("open", "no cap at the small end",
+              {'"big_end", "small_end"]\npressure':
+               '"big_end"]\npressure'}, 2,
+              not_closed("shaft", "small_rim", "add 'small_end'"),
+              'enclosed_by = ["big_side"'),
+        Wrong("crossing", "the big end inside the shaft", {}, 3,
+              (r"'small_side'.*crosses or overlaps another with facet \d+ "
+               r"\('big_end'\) at \(.*\): move the curves apart",),
+              command="run case.toml --set study.kind=analyse --set low=20"),
+    ],
+    "strut_family": [
+        Harmless("both films' curves",
+                 {'["foot", "eye"]': '["eye", "foot"]',
+                  '["eye", "end"]': '["end", "eye"]'}),
+        Wrong("swapped", "the film's upper rim",
+              {'["foot", "eye"]': '["foot", "end"]'}, 2,
+              not_closed("part", "eye", "let film 'skin' end at 'eye', not at "
+                                        "'end'"),
+              'enclosed_by = ["skin"'),
+        Wrong("swapped", "an eye of another strut",
+              {'curves = ["foot_1", "eye_1"]': 'curves = ["foot_1", "eye_2"]'},
+              2, (r"variants\.toml:{line}: body 'strut_1' is not closed at curve "
+                  r"'eye_1'.*let film 'skin_1' end at 'eye_1', not at 'eye_2'",),
+              'enclosed_by = ["skin_1"', "check variants.toml"),
+        Wrong("open", "the end without its lid",
+              {'"joint", "eye_pad"]': '"joint"]'}, 2,
+              not_closed("boss", "end", "add 'eye_pad'"),
+              'enclosed_by = ["boss_side"'),
+        Wrong("crossing", "an end that leans back into the strut", {}, 3,
+              (r"('boss_side'.*'skin'|'skin'.*'boss_side').* at \(.*\): .*" +
+               CROSS,),
+              command="run case.toml --set study.kind=analyse --set tilt=170"),
+        Wrong("crossing", "three struts on one foot", {"gap = 0.01": "gap = 0"},
+              2, (r"variants\.toml:\d+: solids 'pad_1' and 'pad_2' lie on each "
+                  r"other, both across curve 'foot_1'; .*give the other a curve "
+                  r"of its own",), "", "check variants.toml"),
+        Wrong("member", "a length below 0", {'"members.csv"': '"m.csv"'}, 2,
+              (r"m\.csv:3: member 'b': .*case\.toml:{line}: bodies\.part\.volume "
+               r"is -67971\.8 mm3 where .*length = -60; it must be above 0",),
+              'volume = "fill * length', "run case.toml",
+              {"m.csv": MEMBERS + "a,70,8,10,2000\nb,-60,0,0,2000\n"}),
+        Wrong("member", "a sphere smaller than its rim",
+              {'"1.25 * head"': '"0.9 * head"'}, 2,
+              (r"ball\.toml:{line}: parameters\.rise: sqrt\(-37\.24\) is not a "
+               r"finite number .* where head = 14, ball = 12\.6",),
+              "rise =", "check ball.toml"),
+        Wrong("member", "an end turned away from the strut, and one too long",
+              {'"members.csv"': '"m.csv"', 'each = "minimize"':
+               'each = "analyse"', 'method = "slsqp"\n': "",
+               'objective = "mass"\n': "", 'constraints = [\n  { response = '
+               '"deflection", max = 0.1 }, # mm\n  { response = "margin", min = '
+               '2e-4 }, # N/mm3\n]\n': ""}, 3,
+              (r"leans: .*case\.toml:{line}: film 'skin': curve 'eye' is off the "
+               r"convex hull", r"long: .*neck of width [\d.]+ mm at \(.*\)",
+               r"1 of 3 members are sized; not leans \(failed\), long "
+               r"\(failed\)"), "[films.skin]", "run case.toml",
+              {"m.csv": MEMBERS + "good,70,8,10,2000\nleans,70,8,100,2000\n"
+                                  "long,300,0,0,2000\n"}),
+        Wrong("member", "a load that no design bears",
+              {'"members.csv"': '"m.csv"', 'method = "slsqp"':
+               'method = "slsqp"\nmax_evaluations = 6'}, 3,
+              (r"b: .*'deflection' is [\d.]+ mm and must be at most 0\.1 mm",
+               "[Ll]oosen one of these"), "", "run case.toml",
+              {"m.csv": MEMBERS + "b,70,8,10,400000\n"}),
+    ],
+    "femur": [
+        Harmless("a ring's two curves",
+                 {'curve = "shaft_3"\ninner = "shaft_3_in"':
+                  'curve = "shaft_3_in"\ninner = "shaft_3"'}, "check case.toml"),
+        Wrong("swapped", "two lengths of the shaft",
+              {'["shaft_1", "shaft_2"]': '["shaft_1", "shaft_3"]',
+               '["shaft_2", "shaft_3"]': '["shaft_2", "shaft_1"]'}, 2,
+              not_closed("wall2", "shaft_3", "let film 'shaft2' end at "
+                         "'shaft_2', not at 'shaft_3'"),
+              'enclosed_by = ["shaft2"'),
+        Wrong("open", "the tip without its ring",
+              {'"trochanter_lid", "trochanter_wall"]\nvolume = 2800':
+               '"trochanter_lid"]\nvolume = 2800'}, 2,
+              not_closed("tip_core", "trochanter", "add 'trochanter_wall'"),
+              'enclosed_by = ["tip"'),
+        Wrong("crossing", "condyles too near each other", {}, 2,
+              (r"case\.toml:{line}: curves 'inner_condyle' and 'outer_condyle' "
+               r"meet near \(.*\) where condyle_apart = 10",),
+              "[curves.outer_condyle]",
+              "check case.toml --set condyle_apart=10"),
+        Wrong("crossing", "the canal beside the shaft",
+              {'about = [0, "y3", "z0 - 3 * step"]':
+               'about = [0, "y3", "z0 - 3 * step"]\nmove = [10, 0, 0]'}, 2,
+              (r"case\.toml:{line}: curves 'shaft_3' and 'shaft_3_in' meet near "
+               r"\(.*\)",), "[curves.shaft_3_in]"),
+        Wrong("thick", "a canal wider than the shaft", {}, 2,
+              (r"case\.toml:{line}: bodies\.wall3\.volume is -[\d.]+ mm3 where "
+               r"canal = 1\.05, .*; it must be above 0",),
+              'volume = "pi * step * (2 * r2 * r2 + 2 * r3 * r3',
+              "check case.toml --set canal=1.05 "
+              "--set design.canal.bounds=[0.5,1.1]"),
+        Wrong("thick", "a head smaller than its rim", {}, 2,
+              (r"case\.toml:{line}: parameters\.d1: sqrt\(-50\.25\) is not a "
+               r"finite number .* where head_radius = 16, head_rim = 17\.5",),
+              "d1 = ", "check case.toml --set head_radius=16"),
+    ],
+    "fuselage": [
+        Wrong("swapped", "the far rim of the stiffeners around",
+              {'_{j}_4"]': '_{j}_5"]'}, 2,
+              not_closed("lattice", "rim_10_1_5", "let one of them end at 'rim_"),
+              '{ name = "seat_', "check case.toml --set bays_around=10 "
+                                 "--set bays_along=3"),
+        Wrong("open", "windows that the cabin lacks",
+              {'  { name = "pane_up_{i}_{j}", repeat = ["bays_around", '
+               '"bays_along"] },\n': ""}, 2,
+              not_closed("cabin", "up_1_1", "add 'pane_up_1_1'"), '"shell",\n',
+              "check case.toml --set bays_around=10 --set bays_along=3"),
+        Wrong("crossing", "stiffeners wider than their node", {}, 2,
+              (r"case\.toml:{line}: curves 'rim_\w+' and 'rim_\w+' meet near "
+               r"\(.*\) where .*films join where they name the same curve",),
+              "[curves.rim]", "check case.toml --set tube_share=0.2"),
+        Wrong("thick", "a tail that is narrower than nothing", {}, 2,
+              (r"case\.toml:{line}: curve 'rear': radius is -609\.6 mm, must be "
+               r"above 0",), "[curves.rear]", "check case.toml --set tail=1.2"),
+    ],
+    "two_arm": [
+        Harmless("the order of a film's curves",
+                 {'["support", "left", "right"]':
+                  '["left", "right", "support"]'}),
+        Wrong("swapped", "the curve of a pad", {'curve = "left"':
+                                                'curve = "right"'}, 2,
+              (r"case\.toml:{line}: solids 'left_pad' and 'right_pad' lie on "
+               r"each other, both across curve 'right'",), "[solids.right_pad]"),
+        Wrong("open", "an arm without its pad",
+              {'"left_pad", "right_pad"]': '"left_pad"]'}, 2,
+              not_closed("part", "right", "add 'right_pad'"),
+              "enclosed_by"),
+        Wrong("open", "half a circle for a rim",
+              {'kind = "circle"\ncenter = ["support_x", 0, 0]\n'
+               'normal = [0, 0, -1]\nradius = 35':
+               'kind = "polyline"\npoints = [["support_x - 35", 0, 0], '
+               '{ through = ["support_x", 35, 0] }]'}, 2,
+              (r"case\.toml:{line}: curve 'support': polyline has 2 points, must "
+               r"have 3 or more",), "[curves.support]"),
+        Wrong("crossing", "the arms' rims cross",
+              {"center = [-120, 0, 72]": "center = [-20, 0, 72]",
+               "center = [120, 0, 72]": "center = [20, 0, 72]"}, 2,
+              (r"case\.toml:{line}: curves 'left' and 'right' meet near "
+               r"\(.*\)",), "[curves.right]"),
+        Wrong("member", "a member whose arms cannot deflect alike",
+              {'kind = "match"\n': 'kind = "family"\neach = "match"\n'
+               'members = "m.csv"\n'}, 3,
+              (r"b: the best design found stands at a bound: .*support_x at its "
+               r"upper bound 40\. Widen the bounds or free another variable",
+               r"0 of 1 members? (is|are) sized; not b \(infeasible\)"), "",
+              "run case.toml",
+              {"m.csv": "name,load_left,load_right\nb,40000,4000000\n"}),
+    ],
+    "two_arm_sized": [
+        Wrong("swapped", "the roots of both arms",
+              {'["left_root", "left"]': '["right_root", "left"]',
+               '["right_root", "right"]': '["left_root", "right"]'}, 2,
+              not_closed("left_arm", "left_root", "let film 'left_skin' end at "
+                         "'left_root', not at 'right_root'"),
+              'enclosed_by = ["left_skin"'),
+        Wrong("open", "the hub without a bulkhead",
+              {'"left_bulkhead", "right_bulkhead"]': '"left_bulkhead"]'}, 2,
+              not_closed("hub", "right_root", "add 'right_bulkhead'"),
+              'enclosed_by = ["hub_skin"'),
+        Wrong("crossing", "roots that meet", {}, 2,
+              (r"case\.toml:{line}: curves 'left_root' and 'right_root' meet "
+               r"near \(.*\) where .*reach = 10",), "[curves.right_root]",
+              "check case.toml --set reach=10 "
+              "--set design.reach.bounds=[5,80]"),
+        Wrong("crossing", "roots on the wrong sides", {}, 2,
+              (r"case\.toml:{line}: film 'hub_skin': curve 'left_root' is off "
+               r"the convex hull",), "[films.hub_skin]",
+              "evolve case.toml --set reach=-20 "
+              "--set design.reach.bounds=[-30,80]"),
+    ],
+    "h_beam_casting": [
+        Wrong("swapped", "the rings of both blends",
+              {'["ring_a", "beam_a"]': '["ring_b", "beam_a"]',
+               '["ring_b", "beam_b"]': '["ring_a", "beam_b"]'}, 2,
+              not_closed("arm_a", "ring_a", "let film 'blend_a' end at "
+                         "'ring_a', not at 'ring_b'"),
+              'enclosed_by = ["blend_a"'),
+        Wrong("open", "the base without its floor",
+              {'"web_b", "floor"]': '"web_b"]'}, 2,
+              not_closed("base", "foot", "add 'floor'"),
+              'enclosed_by = ["shell"'),
+        Wrong("crossing", "rings that meet", {}, 2,
+              (r"case\.toml:{line}: curves 'ring_a' and 'ring_b' meet near "
+               r"\(.*\) where half_spacing = 60",), "[curves.ring_b]",
+              "check case.toml --set half_spacing=60"),
+        Wrong("thick", "walls thicker than the sockets", {}, 3, (UNSOUND,),
+              command="run case.toml --set skin=60"),
+    ],
+}
+
+
+class WrongCases(ProgramTest):
+    def copy(self, name):
+        folder = self.folder / name
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(cases.CASES / name, folder)
+        return folder
+
+    def command(self, name, text, folder):
+        words = shlex.split(text)
+        words[1] = str(folder / words[1])
+        if words[0] in ("run", "evolve"):
+            words += ["--no-pictures", "--out", str(folder / "out")]
+        if words[0] == "run":
+            words.append("--no-report")
+        if name in COARSE and words[0] != "check":
+            fea, film = COARSE[name]
+            words += ["--set", f"resolution.fea={fea}"]
+            words += ["--set", f"resolution.film={film}"]
+        return words
+
+    def wrong(self, name, item):
+        folder = self.copy(name)
+        path = folder / shlex.split(item.command)[1]
+        text = moved(path.read_text(encoding="utf-8"), item.replace)
+        path.write_text(text, encoding="utf-8")
+        for file, content in item.files.items():
+            (folder / file).write_text(content, encoding="utf-8")
+        line = self.line_of(path, re.escape(item.at)) if item.at else 0
+        done = self.call(*self.command(name, item.command, folder))
+        self.expect(done, item.exit, *(
+            says.replace("{line}", str(line)) for says in item.says))
+        if item.exit == 2:
+            self.assertFalse((folder / "out" / "result.json").exists())
+
+    def area(self, name, item, replace):
+        folder = self.copy(name)
+        path = folder / item.file
+        path.write_text(moved(path.read_text(encoding="utf-8"), replace),
+                        encoding="utf-8")
+        self.expect(self.call(*self.command(
+            name, f"evolve {item.file}", folder)), 0)
+        return json.loads((folder / "out" / "film.json").read_text())["area"]
+
+    def harmless(self, name, item):
+        before = self.area(name, item, {})
+        after = self.area(name, item, item.replace)
+        self.assertAlmostEqual(after / before, 1, delta=FILM)
+
+    def test_every_case_has_every_mistake(self):
+        for folder in cases.folders():
+            name = folder.name
+            self.assertIn(name, WRONG, "make wrong cases of this one too")
+            made = {item.kind for item in WRONG[name]
+                    if isinstance(item, Wrong)}
+            self.assertEqual(made | set(NO_ROOM[name]), set(KINDS), name)
+            self.assertFalse(made & set(NO_ROOM[name]), name)
+
+
+def add_test(name, items):
+    def test(self):
+        for item in items:
+            with self.subTest(what=item.what):
+                if isinstance(item, Harmless):
+                    self.harmless(name, item)
+                else:
+                    self.wrong(name, item)
+    setattr(WrongCases, "test_" + name, test)
+
+
+for case_name, case_items in WRONG.items():
+    add_test(case_name, case_items)
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
