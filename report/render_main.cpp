@@ -73,7 +73,7 @@ void draw_overview(const PictureJob& job) {
   Panel part({2.0 / 3, 0, 1, 1}, job.width, job.height);
   const auto surface = shape_of(job.film, load_surface);
   const auto tets = shape_of(job.part, load_tets);
-  draw_film(film, job, *surface);
+  const bool liquid = draw_film(film, job, *surface);
   draw_cut_mesh(mesh, job, *tets);
   const PartFigures figures =
       draw_part(part, job, *shape_of(job.part_surface, load_surface), layout);
@@ -93,18 +93,20 @@ void draw_overview(const PictureJob& job) {
     }
     panel.fit_camera(job.view, layout.model);
   };
-  caption(
-      film, "Liquid film",
-      fmt::format("{} facets at rest", grouped(surface->mesh.facets.size())));
+  caption(film, liquid ? "Liquid film" : "Plane faces",
+          fmt::format("{} facets{}", grouped(surface->mesh.facets.size()),
+                      liquid ? " at rest" : ""));
   caption(mesh, "Solid, cut open",
           fmt::format("{} tetrahedra", grouped(tets->corners.size())));
   caption(part, "Stress under load",
           fmt::format("deflection \u00d7 {:g}", figures.factor));
-  film.add_legend(layout.bar.bottom,
-                  {{kFilmColour, "film"},
-                   {kCapColour, "cap"},
-                   {kRimColour, "boundary curve"}},
-                  layout.text);
+  std::vector<Panel::Key> keys = {
+      {kCapColour, liquid ? "cap" : "face"},
+      {kRimColour, liquid ? "boundary curve" : "edge"}};
+  if (liquid) {
+    keys.insert(keys.begin(), {kFilmColour, "film"});
+  }
+  film.add_legend(layout.bar.bottom, keys, layout.text);
   mesh.add_legend(layout.bar.bottom,
                   {{kOutsideColour, "surface"}, {kInsideColour, "inside"}},
                   layout.text);

@@ -240,7 +240,7 @@ std::pair<double, std::string> readable_unit(double top,
 
 }  // namespace
 
-void draw_film(Panel& panel, const PictureJob& job,
+bool draw_film(Panel& panel, const PictureJob& job,
                const PictureSurface& film) {
   const SurfaceMesh& mesh = film.mesh;
   const double diagonal = bounding_diagonal(mesh.points);
@@ -251,7 +251,8 @@ void draw_film(Panel& panel, const PictureJob& job,
     liquid[l] = static_cast<char>(solid[l] == 0);
   }
   const ShadedSurface skin = shade(mesh, liquid);
-  if (skin.data->GetNumberOfPoints() > 0) {
+  const bool any = skin.data->GetNumberOfPoints() > 0;
+  if (any) {
     // Light passes a film best where it falls straight through: opacity and
     // tint follow the angle to the eye (Schlick's curve, exaggerated).
     constexpr Colour kGrazing = {0.06, 0.27, 0.62};
@@ -287,6 +288,7 @@ void draw_film(Panel& panel, const PictureJob& job,
   panel.add_tubes(mesh.points, rims, thick, kRimColour);
   // The camera of a series must not depend on the film.
   panel.show(job.seen.empty() ? mesh.points : job.seen);
+  return any;
 }
 
 void draw_cut_mesh(Panel& panel, const PictureJob& job,

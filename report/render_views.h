@@ -16,8 +16,9 @@ struct ViewLayout {
 };
 
 /// Films translucent, the more opaque the flatter the eye looks at them;
-/// solids opaque; rims as tubes.
-void draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film);
+/// solids opaque; rims as tubes. Returns whether there is any film: a part of
+/// plane faces alone has none.
+bool draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film);
 
 /// The near half taken away, element by element.
 void draw_cut_mesh(Panel& panel, const PictureJob& job,
