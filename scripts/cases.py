@@ -257,9 +257,10 @@ def child_seconds():
 
 
 def arguments_of(run, out, quick, pictures):
-    words = shlex.split(run["command"].replace("{out}", str(out)))
+    words = shlex.split(run["command"])
     if quick:
         words += shlex.split(run["quick"])
+    words = [word.replace("{out}", str(out)) for word in words]
     if RESULT[words[0]]:
         words += ["--out", str(out / run["name"])]
     words.append("--quiet")
