@@ -258,10 +258,11 @@ def child_seconds():
 
 
 def arguments_of(run, out, quick, pictures):
-    words = [word.replace("{out}", str(out))  # which may hold spaces
-             for word in shlex.split(run["command"])]
+    words = shlex.split(run["command"])
     if quick:
         words += shlex.split(run["quick"])
+    # The folder may hold spaces.
+    words = [word.replace("{out}", str(out)) for word in words]
     if RESULT[words[0]]:
         words += ["--out", str(out / run["name"])]
     words.append("--quiet")

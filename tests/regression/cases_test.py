@@ -3,6 +3,7 @@
 expected.json can fail."""
 import copy
 import json
+import pathlib
 import re
 import subprocess
 import sys
@@ -123,6 +124,15 @@ class Cases(ProgramTest):
         script.write_text("raise SystemExit(1)\n")
         with self.assertRaises(subprocess.CalledProcessError):
             cases.prepare("", self.folder, {"prepare": "make.py"}, out)
+
+    def test_folders_may_have_spaces(self):
+        run = {"name": "r", "command": "run a.toml --set x={out}/s.stl",
+               "quick": "--set 'y=1 mm'"}
+        out = pathlib.Path("/a place")
+        self.assertEqual(cases.arguments_of(run, out, True, False),
+                         ["run", "a.toml", "--set", "x=/a place/s.stl",
+                          "--set", "y=1 mm", "--out", "/a place/r", "--quiet",
+                          "--no-pictures"])
 
     def row(self, figure, found):
         return cases.Row("x", figure, found).fine

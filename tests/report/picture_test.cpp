@@ -146,24 +146,6 @@ TEST_F(PictureTest, APartOfPlaneFacesShowsNoFilm) {
   EXPECT_EQ(colours_of(jobs[1].output, 900, 300).count(kFilm), 0u);
 }
 
-// The legend's field in the colour of films, unshaded.
-TEST_F(PictureTest, APartOfPlaneFacesShowsNoFilm) {
-  if (!find_program("Xvfb")) {
-    MENISCUS_NOT_HERE("Xvfb is not installed");
-  }
-  std::vector<PictureJob> jobs = {job(PictureKind::Overview, "film.png"),
-                                  job(PictureKind::Overview, "faces.png")};
-  jobs[1].solids = {"x0", "x1", "y0", "y1", "z0", "z1"};
-  for (PictureJob& job : jobs) {
-    job.width = 900;
-  }
-  EXPECT_THAT(render_pictures(jobs), IsEmpty());
-  constexpr std::array<int, 3> kFilm = {92, 179, 237};
-  EXPECT_EQ(colours_of(jobs[0].output, 900, 300).count(kFilm), 1u);
-  expect_picture(jobs[1].output, 900, 300);
-  EXPECT_EQ(colours_of(jobs[1].output, 900, 300).count(kFilm), 0u);
-}
-
 TEST_F(PictureTest, OneBadJobDoesNotStopTheNext) {
   if (!find_program("Xvfb")) {
     MENISCUS_NOT_HERE("Xvfb is not installed");
