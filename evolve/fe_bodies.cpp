@@ -37,15 +37,9 @@ std::vector<std::vector<EdgeUse>> uses_of(const FeFile& file,
 }  // namespace
 
 void check_fe_bodies(const FeFile& file) {
-  std::vector<int> faces_at(file.edges.size(), 0);
   bool walls = false;  // constraints that all vertices are on
   for (const FeConstraint& constraint : file.constraints) {
     walls = walls || constraint.global;
-  }
-  for (const FeFace& face : file.faces) {
-    for (const int signed_edge : face.edges) {
-      ++faces_at[std::abs(signed_edge) - 1];
-    }
   }
   for (const FeBody& body : file.bodies) {
     const std::vector<std::vector<EdgeUse>> uses = uses_of(file, body);
@@ -61,14 +55,13 @@ void check_fe_bodies(const FeFile& file) {
                             body.id, file.faces[at[0].face].id,
                             file.faces[at[1].face].id, edge));
       }
-      if (at.size() == 1 && faces_at[e] == 1 && !walls &&
-          !is_held(file.edges[e].marks) &&
+      if (at.size() == 1 && !walls && !is_held(file.edges[e].marks) &&
           !is_held(file.faces[at[0].face].marks)) {
         fe_fail(file, body.place,
-                fmt::format("body {} is not closed: only face {} is at edge "
-                            "{}, and nothing holds the film there; add the "
-                            "missing face to the body, or make the edge fixed "
-                            "or put it on a constraint or boundary",
+                fmt::format("body {} is not closed: only its face {} is at "
+                            "edge {}, which nothing holds; add the face that "
+                            "is missing to the body, or make the edge fixed or "
+                            "put it on a constraint or boundary",
                             body.id, file.faces[at[0].face].id, edge));
       }
     }

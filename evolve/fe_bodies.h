@@ -7,9 +7,9 @@ namespace meniscus {
 
 /// Throws InvalidInput with the body's place where two of its faces run along
 /// their edge the same way, so that one is turned inside out, and where it ends
-/// at an edge of a single face that nothing holds: the film would shrink away
-/// from there and the volume mean nothing. Bodies may be open along edges that
-/// are fixed, on constraints or on boundaries, as by a wall or a mirror.
+/// at an edge that nothing holds: its volume would mean nothing and the film go
+/// astray. Bodies may be open along edges that are fixed, on constraints or on
+/// boundaries, as by a wall or a mirror.
 void check_fe_bodies(const FeFile& file);
 
 }  // namespace meniscus

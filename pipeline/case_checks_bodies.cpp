@@ -60,23 +60,32 @@ std::vector<std::pair<std::string, std::vector<std::string>>> outside_surfaces(
   return result;
 }
 
-/// "let film 'F' end at 'A', not at 'B'" where one end of a film of the body
-/// moved from `open` to another open curve, or from there to `open`, would
-/// leave one gap less; else empty.
-std::string moved_film(const Case& input, const SurfacesAtCurves& at_curve,
-                       const std::string& open) {
-  const std::string& here = *at_curve.at(open).begin();
+/// Curves at which one surface of the body ends.
+std::vector<std::string> open_curves(const SurfacesAtCurves& at_curve) {
+  std::vector<std::string> open;
   for (const auto& [curve, surfaces] : at_curve) {
-    if (curve == open || surfaces.size() != 1 || *surfaces.begin() == here) {
-      continue;
+    if (surfaces.size() == 1) {
+      open.push_back(curve);
     }
-    for (const FilmEntry& film : input.films) {
-      const std::string& name = film.spec.name;
-      if (name == here || name == *surfaces.begin()) {
-        return fmt::format("let film '{}' end at '{}', not at '{}'", name,
-                           name == here ? curve : open,
-                           name == here ? open : curve);
-      }
+  }
+  return open;
+}
+
+/// "let film 'F' end at 'A', not at 'B'" where just two curves are open and F
+/// ends at one of them; else empty.
+std::string moved_film(const Case& input, const SurfacesAtCurves& at_curve) {
+  const std::vector<std::string> open = open_curves(at_curve);
+  if (open.size() != 2) {
+    return "";
+  }
+  const std::string& first = *at_curve.at(open[0]).begin();
+  const std::string& second = *at_curve.at(open[1]).begin();
+  for (const FilmEntry& film : input.films) {
+    const std::string& name = film.spec.name;
+    if (first != second && (name == first || name == second)) {
+      return fmt::format("let film '{}' end at '{}', not at '{}'", name,
+                         name == first ? open[1] : open[0],
+                         name == first ? open[0] : open[1]);
     }
   }
   return "";
@@ -97,7 +106,7 @@ std::string closing_advice(const Case& input, const BodyEntry& body,
                                     at->second.size() == 1;
                            });
       });
-  const std::string moved = moved_film(input, at_curve, curve);
+  const std::string moved = moved_film(input, at_curve);
   std::string advice;
   if (fits != surfaces.end()) {
     advice = fmt::format("add '{}' to enclosed_by", fits->first);
@@ -112,19 +121,17 @@ std::string closing_advice(const Case& input, const BodyEntry& body,
 
 /// What to do where more than two surfaces meet.
 std::string parting_advice(const SurfacesAtCurves& at_curve) {
-  for (const auto& [curve, surfaces] : at_curve) {
-    if (surfaces.size() == 1) {
-      return fmt::format(
-          "take one out of enclosed_by, or let one of them end at '{}'", curve);
-    }
-  }
-  return "take one out of enclosed_by";
+  const std::vector<std::string> open = open_curves(at_curve);
+  return open.empty() ? "take one out of enclosed_by"
+                      : "take one out of enclosed_by, or let one of them end "
+                        "where one is missing, as at '" +
+                            open.front() + "'";
 }
 
 /// Two flat caps across one curve lie on each other.
 void check_caps(const Case& input, CaseProblems& problems) {
   const auto is_flat = [](const CapEntry& cap) {
-    return !cap.is_file && cap.spec.inner.empty() && !cap.spec.curve.empty();
+    return !cap.is_file && cap.spec.inner.empty() && cap.spec.more.empty();
   };
   std::map<std::string, std::string> across;
   for (const CapEntry& cap : input.caps) {
