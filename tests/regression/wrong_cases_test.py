@@ -254,7 +254,8 @@ WRONG = {
               {'"base_face", "column", ': '"base_face", '}, 2,
               (r"plates\.toml:{line}: body 'part' is not closed at the side "
                r"from \(.*\) to \(.*\) of curve 'root' and 11 more of its "
-               r"sides: 1 of its surfaces meets there \(base_face\), expected two; "
+               r"sides: 1 of its surfaces meets there \(base_face\), expected "
+               r"two; "
                r"add 'column' to enclosed_by",), 'enclosed_by = ["foot"',
               "check plates.toml"),
         Wrong("crossing", "a cavity wider than the skin", {}, 3,
