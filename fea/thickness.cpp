@@ -131,6 +131,27 @@ ThicknessPairs thickness_pairs(const TetMesh& base) {
   return pairs;
 }
 
+ThinPlace thinnest_place(const TetMesh& mesh, const ThicknessPairs& pairs,
+                         double limit) {
+  const FaceQuadrature plane(1, FaceRule::Seven);
+  ThinPlace result{.value = std::numeric_limits<double>::infinity()};
+  double area = 0.0;
+  double below = 0.0;
+  for (const auto& [f, g] : pairs.faces) {
+    const FacePoint a = plane.at(mesh, f, kCentre);
+    const FacePoint b = plane.at(mesh, g, kCentre);
+    const double value = distance_of(a, b).value;
+    area += a.normal.norm();
+    below += value < limit ? a.normal.norm() : 0.0;
+    if (value < result.value) {
+      result.value = value;
+      result.place = 0.5 * (a.position + b.position);
+    }
+  }
+  result.share = below / area;
+  return result;
+}
+
 Functional thickness_functional(const TetMesh& mesh,
                                 const ThicknessPairs& pairs, double sharpness,
                                 Derivatives derivatives) {

@@ -23,6 +23,17 @@ struct ThicknessPairs {
 /// other. Throws InvalidInput where no face has one across from it.
 ThicknessPairs thickness_pairs(const TetMesh& base);
 
+/// Where a part is thinnest.
+struct ThinPlace {
+  double value = 0.0;         // the least distance of a pair [length]
+  Vec3 place = Vec3::Zero();  // half way between the two
+  double share = 0.0;         // of the pairs' area, what is below the limit
+};
+
+/// `pairs` of `mesh`, not none; distances as in thickness_functional().
+ThinPlace thinnest_place(const TetMesh& mesh, const ThicknessPairs& pairs,
+                         double limit);
+
 /// -(1/k) ln sum exp(-k d) over the pairs [length], d = 2 e . n_b /
 /// (1 - n_a . n_b) being the diameter of the ball that touches the first face's
 /// plane at its centre and the second's plane, e from the first centre to the

@@ -41,6 +41,7 @@ struct Case {
   std::vector<LoadCaseEntry> load_cases;
   std::vector<ResponseEntry> responses;
   Resolution resolution;
+  ProcessEntry process;
   AnalysisEntry analysis;
   StudyEntry study;
   std::vector<MergedCurves> merged;  // films and solids name the kept ones

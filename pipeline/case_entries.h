@@ -266,6 +266,12 @@ struct Resolution {
   std::vector<double> export_edges;
 };
 
+/// How the part is made.
+struct ProcessEntry {
+  std::string name;               // for messages
+  double smallest_feature = 0.0;  // the thinnest it makes [length]; 0: not said
+};
+
 enum class StudyKind { Analyse, Match, Minimize, Sweep, Tolerance, Pareto };
 
 /// lower <= response <= upper.

@@ -110,8 +110,9 @@ std::string canonical_text(const toml::table& root) {
   for (const auto& [key, node] : root) {
     const std::string name(key.str());
     const toml::table* table = node.as_table();
-    if (name == "title" || (name == "analysis" && table != nullptr &&
-                            holds_only(*table, eigenvalues))) {
+    if (name == "title" || name == "process" ||
+        (name == "analysis" && table != nullptr &&
+         holds_only(*table, eigenvalues))) {
       continue;
     }
     write(name, text);

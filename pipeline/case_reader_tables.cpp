@@ -260,6 +260,22 @@ void read_resolution(CaseContext& context, const toml::table& root,
   set_within(result);
 }
 
+void read_process(CaseContext& context, const toml::table& root, Case& result) {
+  const auto table = single_table(context, root, "process");
+  if (!table) {
+    return;
+  }
+  result.process.name = table->text("name").value_or("");
+  const double least = table->constant("smallest_feature").value_or(0.0);
+  if (table->has("smallest_feature") && !(least > 0.0)) {
+    context.problems.add(
+        table->line("smallest_feature"),
+        fmt::format("process.smallest_feature is {:g}; it is a length above 0",
+                    least));
+  }
+  result.process.smallest_feature = least;
+}
+
 void warn_of_unused(CaseContext& context, const Case& result) {
   for (std::size_t k = 0; k < context.names.size(); ++k) {
     const bool is_design = k < result.design.size();
@@ -359,6 +375,7 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   read_walls(context, root, result);
   read_fields(context, root, result);
   read_resolution(context, root, result);
+  read_process(context, root, result);
   read_analysis(context, root, result);
   warn_of_unused(context, result);
 }

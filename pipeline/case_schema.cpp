@@ -92,6 +92,14 @@ std::vector<TableSpec> make_tables() {
          "films of kind facets and file keep their facets: each is cut in four "
          "until they are about as small as fea, and never remeshed; false when "
          "left out"}}},
+      {"process",
+       false,
+       N::Optional,
+       "How the part is made",
+       {{"name", K::Text, D::None, false, "for messages, as \"sand casting\""},
+        {"smallest_feature", K::Constant, D::Length, true,
+         "the thinnest material that it can make; thinner parts are warned "
+         "of, with the place"}}},
       {"materials",
        true,
        N::ForParts,
@@ -279,8 +287,7 @@ bool is_entry_table(const std::string& name) {
 }
 
 bool is_later_table(const std::string& name) {
-  constexpr std::array<const char*, 4> kLater = {"regions", "family", "sweep",
-                                                 "process"};
+  constexpr std::array<const char*, 3> kLater = {"regions", "family", "sweep"};
   return std::find(kLater.begin(), kLater.end(), name) != kLater.end();
 }
 

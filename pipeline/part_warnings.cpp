@@ -4,12 +4,17 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
+#include "fea/thickness.h"
+
 namespace meniscus {
 
 namespace {
 
 // Beyond this part of the part's size, rotations are no longer small.
 constexpr double kLargeDisplacement = 0.05;
+// Flat facets of a curved wall lie closer than it is thick.
+constexpr double kFlatFacets = 0.02;
 
 double largest_displacement(const VectorX& u) {
   double largest = 0.0;
@@ -73,6 +78,32 @@ std::vector<std::string> wall_warnings(const ForwardModel& model) {
     }
   }
   return warnings;
+}
+
+std::vector<std::string> process_warnings(const Case& input,
+                                          const TetMesh& mesh) {
+  const ProcessEntry& process = input.process;
+  if (!(process.smallest_feature > 0.0)) {
+    return {};
+  }
+  const double limit = (1.0 - kFlatFacets) * process.smallest_feature;
+  ThinPlace thin;
+  try {
+    thin = thinnest_place(mesh, thickness_pairs(mesh), limit);
+  } catch (const InvalidInput&) {  // no two faces across from each other
+    return {};
+  }
+  if (thin.value >= limit) {
+    return {};
+  }
+  return {fmt::format(
+      "too thin to be made: {:.3g} {} at ({:.4g}, {:.4g}, {:.4g}), and {} "
+      "makes nothing thinner than {:.4g} {}; so is {:.2g} % of the surface: "
+      "make the part thicker there (as a constraint: a response of kind "
+      "thickness), or take another process",
+      thin.value, input.units.length, thin.place.x(), thin.place.y(),
+      thin.place.z(), process.name.empty() ? "the process" : process.name,
+      process.smallest_feature, input.units.length, 100.0 * thin.share)};
 }
 
 std::vector<std::string> buckling_warnings(const EigenFigures& figures) {

@@ -1,4 +1,4 @@
-/// Does the linear analysis of a part still hold?
+/// Does the linear analysis of a part still hold, and can it be made?
 #pragma once
 
 #include <string>
@@ -18,6 +18,11 @@ std::vector<std::string> part_warnings(
 
 /// Sentences for walls thicker than is safe at the design they are frozen at.
 std::vector<std::string> wall_warnings(const ForwardModel& model);
+
+/// A sentence where the part is thinner than its [process] can make, by more
+/// than flat facets leave in doubt, with the place and how much of it is.
+std::vector<std::string> process_warnings(const Case& input,
+                                          const TetMesh& mesh);
 
 /// Sentences for buckling factors below 1, and for eigenvalues that could not
 /// be found.

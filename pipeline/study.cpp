@@ -242,6 +242,9 @@ bool StudyRun::finish_best() {
   for (std::string& warning : wall_warnings(stage_->evaluator().model())) {
     result_.warnings.push_back(std::move(warning));
   }
+  for (std::string& warning : process_warnings(input_, fields_.mesh)) {
+    result_.warnings.push_back(std::move(warning));
+  }
   return true;
 }
 

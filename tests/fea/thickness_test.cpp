@@ -35,6 +35,20 @@ TEST_P(Thickness, OfAPlateIsExact) {
                kThicknessRounding);
 }
 
+// A wedge from 0.1 to 0.3 thick along x from 0 to 2.
+TEST_P(Thickness, ThinnestPlaceOfAWedge) {
+  TetMesh wedge = shapes::brick({2.0, 1.0, 1.0}, 20, 3, 2);
+  for (Vec3& p : wedge.nodes) {
+    p.z() *= 0.1 + 0.1 * p.x();
+  }
+  wedge = of_order(wedge);
+  const ThinPlace thin = thinnest_place(wedge, thickness_pairs(wedge), 0.2);
+  EXPECT_NEAR(thin.value, 0.1, 0.01);
+  EXPECT_LT(thin.place.x(), 0.1);
+  EXPECT_NEAR(thin.share, 0.5, 0.06);  // x below 1, by facets of 0.1
+  EXPECT_EQ(thinnest_place(wedge, thickness_pairs(wedge), 0.05).share, 0.0);
+}
+
 /// A wall of thickness 1 between radii 1 and 2, as thick as its height is.
 TEST_P(Thickness, OfACurvedWallConvergesAtSecondOrder) {
   double before = 0.0;

@@ -136,6 +136,12 @@ const Trouble kMistakes[] = {
      "[walls.web]\nfilms = [\"skin\"]\n[resolution]",
      "41: walls.web has no 'thickness' (above 0; a number may follow the "
      "design"},
+    {"ProcessOfNothing", "[resolution]",
+     "[process]\nsmallest_feature = 0\n[resolution]",
+     "process.smallest_feature is 0; it is a length above 0"},
+    {"ProcessWithoutAFeature", "[resolution]",
+     "[process]\nname = \"casting\"\n[resolution]",
+     "process has no 'smallest_feature'"},
     {"WallOfASolid", "[resolution]",
      "[walls.web]\nfilms = [\"foot_pad\"]\nthickness = 1\n[resolution]",
      "42: there is no film 'foot_pad'"},

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "pipeline/forward_model.h"
 #include "pipeline/gradient_check.h"
+#include "pipeline/part_warnings.h"
 #include "pipeline/responses.h"
 #include "pipeline/walls.h"
 
@@ -196,6 +197,27 @@ TEST(WallRuns, NeedAMaterialAndNoSolidBodies) {
                  "walls.pipe has no material");
   expect_refused(changed(text, "material = \"void\"", "material = \"steel\""),
                  "walls.pipe stands beside bodies.gas");
+}
+
+TEST(WallRuns, WarnOfWhatTheirProcessCannotMake) {
+  const auto warnings = [](const char* least) {
+    const Case input =
+        read(changed(fixed_springs(cylinder()), "[resolution]",
+                     "[process]\nname = \"sand casting\"\nsmallest_feature = " +
+                         std::string(least) + "\n\n[resolution]"));
+    const ForwardModel model(input);
+    EvaluationFields fields;
+    model.evaluate(initial_design(input), &fields);
+    return process_warnings(input, fields.mesh);
+  };
+  // Of 6 mm; flat facets of 9 degrees between radii 27 and 33.
+  EXPECT_THAT(warnings("5.9"), IsEmpty());
+  const std::vector<std::string> thin = warnings("\"7 mm\"");
+  ASSERT_EQ(thin.size(), 1U);
+  EXPECT_THAT(thin[0], HasSubstr("too thin to be made: "));
+  EXPECT_THAT(thin[0], HasSubstr("sand casting makes nothing thinner than 7 "
+                                 "mm"));
+  EXPECT_THAT(thin[0], HasSubstr("100 % of the surface"));
 }
 
 /// A cylinder with a floor across its waist: three films at a circle.
