@@ -98,7 +98,7 @@ std::vector<std::string> process_warnings(const Case& input,
   }
   return {fmt::format(
       "too thin to be made: {:.3g} {} at ({:.4g}, {:.4g}, {:.4g}), and {} "
-      "makes nothing thinner than {:.4g} {}; so is {:.2g} % of the surface: "
+      "makes nothing thinner than {:.4g} {}; so is {:.3g} % of the surface: "
       "make the part thicker there (as a constraint: a response of kind "
       "thickness), or take another process",
       thin.value, input.units.length, thin.place.x(), thin.place.y(),
