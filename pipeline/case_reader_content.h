@@ -13,9 +13,9 @@ namespace meniscus {
 /// spacing, the order of tables and of keys, and 8 against 8.0 make no
 /// difference; the order of entries within a table does ([curves.a] before
 /// [curves.b]), because models follow it. Left out is what no evaluation
-/// depends on: title, [process], resolution.export, the eigenvalues of [analysis] and
-/// study.tolerance, study.method, study.max_evaluations and a family's table of
-/// members, which its members' evaluations do not depend on.
+/// depends on: title, [process], resolution.export, the eigenvalues of
+/// [analysis] and study.tolerance, study.method, study.max_evaluations and a
+/// family's table of members, which its members' evaluations do not depend on.
 std::string canonical_text(const toml::table& root);
 
 /// The first line with a dotted key of more than 30 parts, or 0. The TOML

@@ -5,6 +5,7 @@ import copy
 import json
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import unittest
@@ -43,6 +44,17 @@ class Cases(ProgramTest):
                     self.assertTrue((folder / path).exists(), path)
                 if (folder / "case.toml").exists():
                     self.expect(self.call("check", folder / "case.toml"), 0)
+
+    def test_gradients_are_checked_at_a_quick_size(self):
+        """By regression.case.NAME, wherever there are design variables."""
+        for folder in cases.folders():
+            checked = {shlex.split(run["command"])[1]
+                       for run in cases.read(folder)["runs"]
+                       if run["command"].startswith("check-gradient ")
+                       and "quick" in run}
+            for file in folder.glob("*.toml"):
+                if "[design." in file.read_text(encoding="utf-8"):
+                    self.assertIn(file.name, checked, folder.name)
 
     def read(self, spec):
         (self.folder / "expected.json").write_text(json.dumps(spec))
