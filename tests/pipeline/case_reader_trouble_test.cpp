@@ -200,9 +200,6 @@ const Trouble kMistakes[] = {
      "26: films.skin names curve 'base' twice"},
     {"DiskOfTwo", "kind = \"branch\"", "kind = \"disk\"",
      "26: films.skin names 2 curves; a disk needs one"},
-    {"FilmAndSolidAlike", "[solids.head_pad]\n",
-     "[solids.skin]\nkind = \"cap\"\ncurve = \"head\"\n[solids.head_pad]\n",
-     "32: 'skin' is both a film and a solid"},
     {"OpenBody", "[\"skin\", \"foot_pad\", \"head_pad\"]",
      "[\"skin\", \"foot_pad\"]",
      "37: body 'part' is not closed at curve 'head': 1 of its surfaces meets "
@@ -350,6 +347,16 @@ TEST(CaseTrouble, IsToldUpToTwentyTimes) {
   const std::vector<std::string> problems = problems_of(text);
   ASSERT_EQ(problems.size(), 21U);
   EXPECT_EQ(problems.back(), "... and 70 more problems");
+}
+
+// What else is wrong with a cap of that name is told too.
+TEST(CaseTrouble, FilmsAndSolidsHaveNamesOfTheirOwn) {
+  EXPECT_THAT(
+      problems_of(changed(strut(), "[solids.head_pad]\n",
+                          "[solids.skin]\nkind = \"cap\"\n"
+                          "curve = \"head\"\n[solids.head_pad]\n")),
+      ElementsAre(HasSubstr("32: 'skin' is both a film and a solid"),
+                  HasSubstr("'skin' and 'head_pad' lie on each other")));
 }
 
 TEST(CaseTrouble, MissingTablesAreNamed) {
