@@ -309,6 +309,7 @@ class StartBuilder {
     }
     for (const std::vector<int>& face : faces_with_holes(loops)) {
       std::vector<Rim> bounds;
+      bounds.reserve(face.size());
       for (const int k : face) {
         bounds.push_back(rims[k]);
       }

@@ -24,7 +24,7 @@ constexpr double kGap = 3.0;
 constexpr std::size_t kGapPoints = 8;
 constexpr std::size_t kShown = 40;  // characters of a cell in a message
 
-std::string trimmed(std::string text) {
+std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string::npos) {
     return "";
