@@ -4,13 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pipeline/place_json.h"
+
 namespace meniscus {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json place_json(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
 
 Json uniformity_json(const Uniformity& u) {
   return {{"mean", u.mean},

@@ -10,6 +10,7 @@
 #include "io/atomic_file.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
+#include "pipeline/place_json.h"
 
 namespace meniscus {
 
@@ -71,8 +72,6 @@ std::string wall_text(const Case& input, const CaseWall& made) {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json place_json(const Vec3& p) { return Json{p.x(), p.y(), p.z()}; }
 
 Json measured_json(const MeasuredThickness& t) {
   return {
