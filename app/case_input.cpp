@@ -7,7 +7,7 @@
 
 #include "app/signals.h"
 #include "core/error.h"
-#include "core/expression.h"
+#include "core/math/expression.h"
 
 namespace meniscus {
 

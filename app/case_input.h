@@ -7,7 +7,7 @@
 
 #include "app/commands.h"
 #include "app/terminal_monitor.h"
-#include "pipeline/case_reader.h"
+#include "pipeline/reader/case_reader.h"
 
 namespace meniscus {
 

@@ -9,7 +9,7 @@
 #include "app/signals.h"
 #include "core/error.h"
 #include "core/nearest_name.h"
-#include "pipeline/gradient_check.h"
+#include "pipeline/forward/gradient_check.h"
 
 namespace meniscus {
 

@@ -12,13 +12,14 @@
 #include "app/signals.h"
 #include "app/terminal_monitor.h"
 #include "app/versions.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "pipeline/imported_part.h"
-#include "pipeline/part_comparison.h"
-#include "pipeline/results.h"
-#include "pipeline/study_store.h"
-#include "pipeline/text_table.h"
+#include "pipeline/forward/part_file.h"
+#include "pipeline/results/imported_part.h"
+#include "pipeline/results/part_comparison.h"
+#include "pipeline/results/results.h"
+#include "pipeline/store/study_store.h"
+#include "pipeline/tables/text_table.h"
 
 namespace meniscus {
 

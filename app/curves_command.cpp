@@ -4,9 +4,9 @@
 
 #include "app/commands.h"
 #include "app/exit_code.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "pipeline/scan_curves.h"
+#include "pipeline/results/scan_curves.h"
 
 namespace meniscus {
 

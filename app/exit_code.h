@@ -1,7 +1,7 @@
 /// The program's exit codes, a contract with scripts that call it.
 #pragma once
 
-#include "pipeline/study.h"
+#include "pipeline/study/study.h"
 
 namespace meniscus {
 

@@ -10,7 +10,8 @@
 #include "app/terminal_monitor.h"
 #include "app/versions.h"
 #include "core/error.h"
-#include "pipeline/export_part.h"
+#include "pipeline/results/export_part.h"
+#include "pipeline/store/runs_in.h"
 
 namespace meniscus {
 

@@ -13,8 +13,8 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/thread_waits.h"
-#include "pipeline/export_part.h"
-#include "pipeline/ordered_jobs.h"
+#include "pipeline/results/export_part.h"
+#include "pipeline/study/ordered_jobs.h"
 
 namespace {
 

@@ -6,13 +6,13 @@
 #include "app/signals.h"
 #include "app/terminal.h"
 #include "app/terminal_monitor.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
-#include "pipeline/forward_model.h"
-#include "pipeline/stored_case.h"
-#include "report/picture.h"
-#include "report/report_page.h"
-#include "report/run_pictures.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/store/stored_case.h"
+#include "report/output/run_pictures.h"
+#include "report/page/report_page.h"
+#include "report/picture/picture.h"
 
 namespace meniscus {
 

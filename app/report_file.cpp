@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "core/error.h"
-#include "report/report_page.h"
+#include "report/page/report_page.h"
 
 namespace meniscus {
 

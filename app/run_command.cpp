@@ -10,14 +10,14 @@
 #include "app/signals.h"
 #include "app/study_events.h"
 #include "app/versions.h"
+#include "core/atomic_file.h"
 #include "core/timer.h"
-#include "io/atomic_file.h"
-#include "pipeline/film_frames.h"
-#include "pipeline/forward_model.h"
-#include "pipeline/results.h"
-#include "pipeline/run_folder.h"
-#include "pipeline/walls.h"
-#include "report/run_output.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/forward/walls.h"
+#include "pipeline/results/results.h"
+#include "pipeline/results/run_folder.h"
+#include "pipeline/study/film_frames.h"
+#include "report/output/run_output.h"
 
 namespace meniscus {
 

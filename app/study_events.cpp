@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/results.h"
+#include "pipeline/results/results.h"
+#include "pipeline/study/study_records.h"
 
 namespace meniscus {
 

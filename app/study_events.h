@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/terminal_monitor.h"
-#include "pipeline/study.h"
+#include "pipeline/study/study.h"
 
 namespace meniscus {
 

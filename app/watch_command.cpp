@@ -10,7 +10,7 @@
 #include "app/exit_code.h"
 #include "app/terminal.h"
 #include "core/error.h"
-#include "pipeline/study_watch.h"
+#include "pipeline/results/study_watch.h"
 
 namespace meniscus {
 

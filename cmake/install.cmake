@@ -4,12 +4,12 @@ include(CMakePackageConfigHelpers)
 set(MENISCUS_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/meniscus)
 set_target_properties(meniscus_options PROPERTIES EXPORT_NAME options)
 install(TARGETS meniscus_options EXPORT meniscusTargets)
+get_property(libraries GLOBAL PROPERTY MENISCUS_LIBRARIES)
+install(TARGETS ${libraries} EXPORT meniscusTargets)
 foreach(folder core evolve mesh_tet fea optimize cad io pipeline report)
-  set_target_properties(meniscus_${folder} PROPERTIES EXPORT_NAME ${folder})
-  install(TARGETS meniscus_${folder} EXPORT meniscusTargets)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/meniscus
-    FILES_MATCHING PATTERN "*.h")
+    FILES_MATCHING PATTERN "*.h" PATTERN web EXCLUDE)
 endforeach()
 install(EXPORT meniscusTargets NAMESPACE meniscus::
   DESTINATION ${MENISCUS_PACKAGE_FOLDER})

@@ -28,29 +28,70 @@ target_include_directories(meniscus_options INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/meniscus>)
 
-# meniscus_add_library(NAME SOURCES ... PUBLIC targets ... PRIVATE targets ...)
-# One static library per folder, with the alias meniscus::NAME.
-function(meniscus_add_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+# meniscus_add_room(FOLDER SOURCES ... [ROOMS folders ...] [PUBLIC targets ...]
+#                   [PRIVATE targets ...])
+# A folder of sources is a static library: core/math is meniscus::core_math.
+# ROOMS: the folders that its sources include from, all of them; what
+# tests/rules/include_rule reads.
+function(meniscus_add_room folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;ROOMS;PUBLIC;PRIVATE" ${ARGN})
+  string(REPLACE "/" "_" name ${folder})
+  list(TRANSFORM ARG_ROOMS REPLACE "/" "_")
+  list(TRANSFORM ARG_ROOMS PREPEND meniscus::)
   add_library(meniscus_${name} STATIC ${ARG_SOURCES})
   add_library(meniscus::${name} ALIAS meniscus_${name})
   target_link_libraries(meniscus_${name}
-    PUBLIC meniscus_options ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+    PUBLIC meniscus_options ${ARG_ROOMS} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  set_target_properties(meniscus_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY MENISCUS_LIBRARIES meniscus_${name})
   if(NOT name STREQUAL core)
     target_precompile_headers(meniscus_${name} REUSE_FROM meniscus_core)
   endif()
 endfunction()
 
-# meniscus_add_test(NAME SOURCES ... LINK targets ... [LABELS ...] [TIMEOUT s]
+# meniscus_add_column(NAME folder ...): all rooms of a column as one target.
+function(meniscus_add_column name)
+  list(TRANSFORM ARGN REPLACE "/" "_" OUTPUT_VARIABLE rooms)
+  list(TRANSFORM rooms PREPEND meniscus::)
+  add_library(meniscus_${name} INTERFACE)
+  add_library(meniscus::${name} ALIAS meniscus_${name})
+  target_link_libraries(meniscus_${name} INTERFACE ${rooms})
+  set_target_properties(meniscus_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY MENISCUS_LIBRARIES meniscus_${name})
+endfunction()
+
+# meniscus_starts_helper(TARGET program ...): a library that starts helper
+# programs knows where an installed one keeps them, should it have been moved.
+function(meniscus_starts_helper target)
+  target_compile_definitions(${target} PRIVATE
+    MENISCUS_HELPER_FOLDER="${CMAKE_INSTALL_FULL_LIBEXECDIR}/meniscus")
+  if(ARGN)
+    add_dependencies(${target} ${ARGN})
+  endif()
+endfunction()
+
+# meniscus_link_whole(TARGET): a test's program or library. Tests link one shared
+# library of all rooms and are compiled for a quick build, not for quick tests:
+# what they measure is in the library. It binds its own symbols, so no inline
+# function of a test stands in for one of ours (decision 0017).
+function(meniscus_link_whole target)
+  target_link_libraries(${target} PUBLIC meniscus_whole)
+  target_compile_options(${target} PRIVATE ${MENISCUS_TEST_OPTIONS})
+  target_compile_definitions(${target}
+    PRIVATE MENISCUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_precompile_headers(${target} REUSE_FROM meniscus_test_headers)
+endfunction()
+
+# meniscus_add_test(NAME SOURCES ... [LINK targets ...] [LABELS ...] [TIMEOUT s]
 #                   [ALONE])
 # One GoogleTest program, each of its cases a CTest test; ALONE: with no other
 # test beside it, for tests of speed.
 function(meniscus_add_test name)
   cmake_parse_arguments(ARG "ALONE" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  meniscus_link_whole(${name})
   target_link_libraries(${name}
-    PRIVATE ${ARG_LINK} GTest::gmock GTest::gtest_main)
-  target_precompile_headers(${name} REUSE_FROM meniscus_core)
+    PRIVATE meniscus_test_support ${ARG_LINK} GTest::gmock GTest::gtest_main)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()

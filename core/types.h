@@ -12,6 +12,7 @@ namespace meniscus {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
+using RowMat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using VectorX = Eigen::VectorXd;
 using Points = std::vector<Vec3>;  // [length]
 using Triangle = std::array<int, 3>;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/tet_mesh.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace meniscus {
 

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
 #include "io/calculix_material.h"
 #include "io/calculix_names.h"
 #include "io/calculix_springs.h"
@@ -16,8 +16,6 @@
 namespace meniscus {
 
 namespace {
-
-using Out = std::back_insert_iterator<fmt::memory_buffer>;
 
 void write_ids(Out out, const std::vector<int>& ids) {
   constexpr std::size_t kPerLine = 12;  // CalculiX reads at most 16

@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
+#include "io/calculix_names.h"
+
 namespace meniscus {
 
 namespace {
-
-using Out = std::back_insert_iterator<fmt::memory_buffer>;
 
 /// -d + g + sum c . u = 0: component 1 of the spring's node is what the spring
 /// feels, component 2 its ground.

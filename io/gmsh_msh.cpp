@@ -9,8 +9,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
 #include "io/body_surfaces.h"
 
 namespace meniscus {
@@ -39,9 +39,9 @@ struct VolumeEntity {
   std::vector<int> nodes;
 };
 
-class Writer {
+class MshWriter {
  public:
-  Writer(const TetMesh& mesh, const MshOptions& options)
+  MshWriter(const TetMesh& mesh, const MshOptions& options)
       : mesh_(mesh), options_(options) {}
 
   std::string text() {
@@ -273,7 +273,7 @@ class Writer {
 
 void write_msh(const std::filesystem::path& path, const TetMesh& mesh,
                const MshOptions& options) {
-  write_file(path, Writer(mesh, options).text());
+  write_file(path, MshWriter(mesh, options).text());
 }
 
 }  // namespace meniscus

@@ -5,16 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
 #include "io/nastran_fields.h"
 #include "io/nastran_material.h"
 
 namespace meniscus {
 
 namespace {
-
-using Fields = std::vector<std::string>;
 
 constexpr int kMostIds = 99'999'999;  // of 8 characters
 constexpr int kEquations = 1;         // MPC set

@@ -6,6 +6,9 @@
 
 namespace meniscus {
 
+/// What stands on a card after its name, a text each.
+using Fields = std::vector<std::string>;
+
 /// A card in long fields: four of 16 characters a line. Trailing empty fields
 /// are left out.
 std::string long_card(const std::string& name,

@@ -9,7 +9,6 @@ namespace meniscus {
 
 namespace {
 
-using Fields = std::vector<std::string>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// Zero is left out: the field's default.

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "io/atomic_file.h"
+#include "core/atomic_file.h"
 #include "io/body_surfaces.h"
 
 namespace meniscus {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/surface_mesh.h"
+#include "core/geometry/surface_mesh.h"
 #include "io/file_notes.h"
 
 namespace meniscus {

@@ -9,15 +9,15 @@
 
 #include <fmt/format.h>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
+#include "io/stl.h"
 
 namespace meniscus {
 
 namespace {
 
-constexpr std::size_t kHeadBytes = 84;   // of a binary file
-constexpr std::size_t kFacetBytes = 50;  // normal, corners, two bytes more
+constexpr std::size_t kHeadBytes = 84;  // of a binary file
 
 class StlReader {
  public:
@@ -144,7 +144,7 @@ void StlReader::add_facet(int a, int b, int c) {
 
 SurfaceMesh StlReader::binary() {
   mesh_.labels = {"unnamed"};
-  for (std::size_t at = kHeadBytes; at < text_.size(); at += kFacetBytes) {
+  for (std::size_t at = kHeadBytes; at < text_.size(); at += kStlFacetBytes) {
     std::array<float, 9> raw{};
     std::memcpy(raw.data(), text_.data() + at + 3 * sizeof(float), sizeof raw);
     std::array<int, 3> corner{};
@@ -156,7 +156,7 @@ SurfaceMesh StlReader::binary() {
           throw InvalidInput(fmt::format(
               "{}: facet {} of the binary STL file has a coordinate that is "
               "not finite",
-              path_, (at - kHeadBytes) / kFacetBytes));
+              path_, (at - kHeadBytes) / kStlFacetBytes));
         }
       }
       corner[k] = known(x);
@@ -173,7 +173,7 @@ std::size_t binary_size(const std::string& bytes) {
     return 0;
   }
   std::memcpy(&count, bytes.data() + kHeadBytes - sizeof count, sizeof count);
-  return kHeadBytes + kFacetBytes * count;
+  return kHeadBytes + kStlFacetBytes * count;
 }
 
 /// After "solid".

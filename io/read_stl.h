@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/surface_mesh.h"
+#include "core/geometry/surface_mesh.h"
 
 namespace meniscus {
 

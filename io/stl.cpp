@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "io/atomic_file.h"
+#include "core/atomic_file.h"
 #include "io/body_surfaces.h"
 
 namespace meniscus {
@@ -16,7 +16,6 @@ namespace meniscus {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 80;
-constexpr std::size_t kFacetBytes = 50;
 static_assert(std::endian::native == std::endian::little,
               "binary STL is little-endian");
 
@@ -58,7 +57,7 @@ void write_stl(const std::filesystem::path& path, const SurfaceMesh& mesh,
                const StlOptions& options) {
   check_for_file(mesh, path, std::numeric_limits<float>::max());
   std::string bytes = make_header(options);
-  bytes.reserve(kHeaderBytes + 4 + kFacetBytes * mesh.facets.size());
+  bytes.reserve(kHeaderBytes + 4 + kStlFacetBytes * mesh.facets.size());
   append(bytes, static_cast<std::uint32_t>(mesh.facets.size()));
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     append(bytes, area_vector2(mesh, static_cast<int>(f)).stableNormalized());

@@ -4,9 +4,12 @@
 #include <filesystem>
 #include <string>
 
-#include "core/surface_mesh.h"
+#include "core/geometry/surface_mesh.h"
 
 namespace meniscus {
+
+/// Of binary files, each: normal, corners, two bytes more.
+inline constexpr std::size_t kStlFacetBytes = 50;
 
 struct StlOptions {
   std::string name;  // goes, shortened, into the 80-byte header

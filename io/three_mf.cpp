@@ -7,8 +7,8 @@
 #include <Model/COM/NMR_DLLInterfaces.h>
 #include <fmt/format.h>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "io/atomic_file.h"
 #include "io/body_surfaces.h"
 
 namespace meniscus {
@@ -50,10 +50,10 @@ class Handle {
   NMR::PLib3MFBase* raw_ = nullptr;
 };
 
-class Writer {
+class ThreeMfWriter {
  public:
-  Writer(const SurfaceMesh& mesh, const ThreeMfOptions& options,
-         const std::filesystem::path& path)
+  ThreeMfWriter(const SurfaceMesh& mesh, const ThreeMfOptions& options,
+                const std::filesystem::path& path)
       : mesh_(mesh), options_(options), path_(path) {}
 
   std::string bytes() {
@@ -168,7 +168,7 @@ class Writer {
 void write_3mf(const std::filesystem::path& path, const SurfaceMesh& mesh,
                const ThreeMfOptions& options) {
   check_for_file(mesh, path, kLargest);
-  write_file(path, Writer(mesh, options, path).bytes());
+  write_file(path, ThreeMfWriter(mesh, options, path).bytes());
 }
 
 }  // namespace meniscus

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/mesh_checks.h"
-#include "core/surface_mesh.h"
-#include "core/tet_mesh.h"
+#include "core/geometry/mesh_checks.h"
+#include "core/geometry/surface_mesh.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace meniscus {
 

@@ -1,7 +1,7 @@
 /// The worst elements of a tetrahedral mesh made better, its surface kept.
 #pragma once
 
-#include "core/tet_mesh.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace meniscus {
 

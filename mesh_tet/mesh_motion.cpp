@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/linear_solve.h"
+#include "core/math/linear_solve.h"
 #include "mesh_tet/tet_quality.h"
 
 namespace meniscus {

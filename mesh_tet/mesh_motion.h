@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "core/tet_mesh.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace meniscus {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/error.h"
-#include "core/tet_mesh.h"
+#include "core/geometry/tet_mesh.h"
 #include "mesh_tet/tet_quality.h"
 
 namespace meniscus {

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/chambers.h"
+#include "core/geometry/chambers.h"
 
 namespace meniscus {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/surface_mesh.h"
+#include "core/geometry/surface_mesh.h"
 
 namespace meniscus {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/tet_mesh.h"
+#include "core/geometry/tet_mesh.h"
 #include "mesh_tet/tet_quality.h"
 
 namespace meniscus {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/tet_mesh.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace meniscus {
 

@@ -133,9 +133,10 @@ TetgenLimits limits_left(const TetrahedralizeOptions& options,
 
 /// The second pass sees sizes between the first's nodes; what is too large
 /// after it lies at the surface, which keeps its size.
-TetgenOutput split(TetgenOutput output, const SurfaceMesh& surface,
-                   const Frame& frame, const TetrahedralizeOptions& options,
-                   const Timer& timer) {
+TetgenOutput split_large(TetgenOutput output, const SurfaceMesh& surface,
+                         const Frame& frame,
+                         const TetrahedralizeOptions& options,
+                         const Timer& timer) {
   constexpr std::array<double, 2> kBearable = {0.0, 0.01};
   for (const double bearable : kBearable) {
     const Bounds bounds = find_bounds(output, frame, options);
@@ -217,7 +218,7 @@ TetgenOutput fill_surface(const SurfaceMesh& surface, const SurfaceFit& fit,
                   limits_left(options, timer));
   return output.failure
              ? output
-             : split(std::move(output), surface, frame, options, timer);
+             : split_large(std::move(output), surface, frame, options, timer);
 }
 
 TetgenOutput split_elements(const SurfaceMesh& surface, const Frame& frame,

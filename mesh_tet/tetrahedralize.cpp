@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/mesh_checks.h"
+#include "core/geometry/mesh_checks.h"
 #include "core/timer.h"
 #include "mesh_tet/improve_tets.h"
 #include "mesh_tet/surface_fit.h"

@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "core/error.h"
-#include "core/mesh_checks.h"
+#include "core/geometry/mesh_checks.h"
+#include "core/geometry/surface_mesh.h"
+#include "core/geometry/tet_mesh.h"
 #include "core/monitor.h"
-#include "core/surface_mesh.h"
-#include "core/tet_mesh.h"
 #include "mesh_tet/tet_quality.h"
 
 namespace meniscus {
@@ -23,13 +23,13 @@ inline constexpr double kVolumeFactor = 2.1;
 
 /// Target edge [length] at a place, positive and finite; asked at 15 places an
 /// element, so that a feature between them may be missed.
-using SizeField = std::function<double(const Vec3&)>;
+using EdgeAtPlace = std::function<double(const Vec3&)>;
 
 struct TetrahedralizeOptions {
   std::optional<double> edge =
       std::nullopt;                 // target edge inside [length], positive;
                                     // automatic: the surface's mean edge
-  SizeField size = {};              // target edge by place, at most `edge`; the
+  EdgeAtPlace size = {};            // target edge by place, at most `edge`; the
                                     // surface keeps its own
   double radius_edge_ratio = 1.4;   // TetGen's quality bound, at least 1
   double min_dihedral_deg = 15.0;   // TetGen's aim, 0 to 18; not reached

@@ -177,7 +177,7 @@ ceres::Solver::Options solver_options() {
   return options;
 }
 
-const char* words(ceres::TerminationType type) {
+const char* ceres_words(ceres::TerminationType type) {
   switch (type) {
     case ceres::CONVERGENCE:
     case ceres::USER_SUCCESS:
@@ -215,7 +215,7 @@ BackendResult ceres_match(MatchEvaluator& evaluator, const VectorX& start) {
     ceres::Solve(options, &problem, &summary);
     result.iterations += summary.num_successful_steps;
     result.jacobian = cost.last().jacobian;
-    result.message = words(summary.termination_type);
+    result.message = ceres_words(summary.termination_type);
     again = !evaluator.halted() && cost.last().secant;
     x = evaluator.best();
   }

@@ -10,7 +10,7 @@
 namespace meniscus {
 namespace {
 
-void check(const std::vector<VectorX>& members) {
+void check_members(const std::vector<VectorX>& members) {
   for (std::size_t i = 0; i < members.size(); ++i) {
     if (members[i].size() != members[0].size() || !members[i].allFinite()) {
       throw InvalidInput(fmt::format(
@@ -48,7 +48,7 @@ std::vector<FamilyStep> family_tree(const std::vector<VectorX>& members) {
   if (members.empty()) {
     return steps;
   }
-  check(members);
+  check_members(members);
   const std::vector<VectorX> points = normalised(members);
   const std::size_t count = members.size();
   constexpr double kFar = std::numeric_limits<double>::infinity();

@@ -24,7 +24,7 @@ struct Side {
   double sign = 0.0;  // +1 at an upper bound, -1 at a lower one
 };
 
-void check(const FirstOrderInput& input) {
+void check_sizes(const FirstOrderInput& input) {
   const Eigen::Index n = input.x.size();
   const Eigen::Index m = input.values.size() - 1;
   const bool fits =
@@ -160,7 +160,7 @@ VectorX nonnegative_least_squares(const Eigen::MatrixXd& A, const VectorX& b) {
 }
 
 FirstOrderReport first_order(const FirstOrderInput& input) {
-  check(input);
+  check_sizes(input);
   const VectorX ranges = input.upper - input.lower;
   const Eigen::Index n = ranges.size();
   const VectorX gradient =

@@ -25,7 +25,7 @@ void check_method(const std::string& method) {
   }
 }
 
-std::optional<VectorX> start_of(MatchEvaluator& evaluator) {
+std::optional<VectorX> match_start(MatchEvaluator& evaluator) {
   return find_start(
       evaluator,
       [&](const VectorX& x, EvaluationPhase phase) -> std::optional<bool> {
@@ -45,7 +45,7 @@ bool is_flat(const MatchEvaluator& evaluator, const BackendResult& backend) {
 }
 
 // What to change, before "allow more".
-std::string advice(const MatchEvaluator& evaluator, const VectorX& best) {
+std::string match_advice(const MatchEvaluator& evaluator, const VectorX& best) {
   const std::string bounds = evaluator.bounds_reached(best);
   if (!bounds.empty()) {
     return fmt::format("Widen the bounds ({}), or ", bounds);
@@ -112,14 +112,14 @@ void conclude(const MatchEvaluator& evaluator, const BackendResult& backend,
           "stopped at the limit of {} evaluations: {}. {}allow more "
           "evaluations",
           evaluator.options().max_evaluations, figures,
-          advice(evaluator, report.best));
+          match_advice(evaluator, report.best));
       break;
     case MatchEvaluator::Halt::Time:
       report.termination = Termination::LimitReached;
       report.message = fmt::format(
           "stopped at the time limit of {} s: {}. {}allow more time",
           evaluator.options().time_limit, figures,
-          advice(evaluator, report.best));
+          match_advice(evaluator, report.best));
       break;
     default:
       conclude_stalled(evaluator, figures, backend, report);
@@ -148,7 +148,7 @@ MatchReport match_all(const std::vector<Variable>& variables,
                       const MatchOptions& options) {
   MatchEvaluator evaluator(variables, function, options);
   BackendResult backend;
-  const std::optional<VectorX> start = start_of(evaluator);
+  const std::optional<VectorX> start = match_start(evaluator);
   if (start) {
     backend = options.method == kCeres
                   ? ceres_match(evaluator, *start)

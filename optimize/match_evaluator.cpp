@@ -8,7 +8,7 @@
 namespace meniscus {
 namespace {
 
-EvaluationLimits limits_of(const MatchOptions& options) {
+EvaluationLimits match_limits(const MatchOptions& options) {
   if (!(options.tolerance > 0.0)) {
     throw InvalidInput(fmt::format("match: tolerance is {}, must be positive",
                                    options.tolerance));
@@ -36,7 +36,7 @@ double worst_mismatch(const ResidualAnswer& answer) {
 MatchEvaluator::MatchEvaluator(std::vector<Variable> variables,
                                const ResidualFunction& function,
                                const MatchOptions& options)
-    : EvaluatorCore(std::move(variables), limits_of(options)),
+    : EvaluatorCore(std::move(variables), match_limits(options)),
       function_(function),
       options_(options) {}
 

@@ -34,7 +34,7 @@ void check_minimize_method(const std::string& name) {
                   fmt::join(names, ", ")));
 }
 
-std::optional<VectorX> start_of(MinimizeEvaluator& evaluator) {
+std::optional<VectorX> minimum_start(MinimizeEvaluator& evaluator) {
   return find_start(
       evaluator,
       [&](const VectorX& x, EvaluationPhase phase) -> std::optional<bool> {
@@ -77,7 +77,7 @@ MinimizeReport minimize_all(const MinimizeProblem& problem,
   MinimizeEvaluator evaluator(problem, options);
   SearchResult found;
   bool constant = false;
-  if (const std::optional<VectorX> start = start_of(evaluator)) {
+  if (const std::optional<VectorX> start = minimum_start(evaluator)) {
     found = search_from(evaluator, *start, method);
     if (!evaluator.halted() && !evaluator.objective_varies()) {
       constant = is_constant(evaluator);

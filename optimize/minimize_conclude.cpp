@@ -166,8 +166,8 @@ void conclude_ended(const MinimizeEvaluator& evaluator,
 }
 
 // What to change, before "allow more".
-std::string advice(const MinimizeEvaluator& evaluator,
-                   const MinimizeReport& report) {
+std::string minimum_advice(const MinimizeEvaluator& evaluator,
+                           const MinimizeReport& report) {
   if (!report.feasible) {
     return "No design found so far keeps every constraint: loosen one of "
            "these, widen the variables' bounds, or ";
@@ -187,7 +187,7 @@ void conclude_limit(const MinimizeEvaluator& evaluator,
       time ? fmt::format("time limit of {} s", evaluator.options().time_limit)
            : fmt::format("limit of {} evaluations",
                          evaluator.options().max_evaluations),
-      figures(evaluator, report), advice(evaluator, report),
+      figures(evaluator, report), minimum_advice(evaluator, report),
       time ? "time" : "evaluations");
 }
 

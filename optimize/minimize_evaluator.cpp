@@ -46,8 +46,8 @@ void check_constraint(const ResponseBounds& constraint) {
   }
 }
 
-EvaluationLimits limits_of(const MinimizeProblem& problem,
-                           const MinimizeOptions& options) {
+EvaluationLimits minimize_limits(const MinimizeProblem& problem,
+                                 const MinimizeOptions& options) {
   check_positive("optimality_tolerance", options.optimality_tolerance);
   check_positive("feasibility_tolerance", options.feasibility_tolerance);
   check_positive("step_tolerance", options.step_tolerance);
@@ -71,7 +71,7 @@ double finite_magnitude(double bound) {
 
 MinimizeEvaluator::MinimizeEvaluator(const MinimizeProblem& problem,
                                      const MinimizeOptions& options)
-    : EvaluatorCore(problem.variables, limits_of(problem, options)),
+    : EvaluatorCore(problem.variables, minimize_limits(problem, options)),
       problem_(problem),
       options_(options) {
   make_sides({}, nullptr);

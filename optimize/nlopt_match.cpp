@@ -65,7 +65,7 @@ double objective(unsigned n, const double* x, double* /*gradient*/,
   return answer->failure ? penalty : cost_of(*answer);
 }
 
-const char* words(nlopt::result result) {
+const char* nlopt_words(nlopt::result result) {
   switch (result) {
     case nlopt::FTOL_REACHED:
       return "the cost no longer changes";
@@ -94,11 +94,11 @@ BackendResult run_once(MatchEvaluator& evaluator, const VectorX& start,
   std::vector<double> x = to_vector(start);
   double cost = 0.0;
   try {
-    result.message = words(optimizer.optimize(x, cost));
+    result.message = nlopt_words(optimizer.optimize(x, cost));
   } catch (const nlopt::forced_stop&) {
     result.message = "stopped";
   } catch (const nlopt::roundoff_limited&) {
-    result.message = words(nlopt::ROUNDOFF_LIMITED);
+    result.message = nlopt_words(nlopt::ROUNDOFF_LIMITED);
   } catch (const std::exception& error) {
     result.message = fmt::format("NLopt gave up: {}", error.what());
   }

@@ -2,8 +2,9 @@
 #include <pybind11/stl.h>
 
 #include "core/error.h"
-#include "pipeline/case_reader.h"
-#include "pipeline/responses.h"
+#include "pipeline/case_data/response_entries.h"
+#include "pipeline/forward/responses.h"
+#include "pipeline/reader/case_reader.h"
 #include "python/array_view.h"
 #include "python/bindings.h"
 
@@ -126,7 +127,7 @@ void bind_names(py::class_<ReadCase>& type) {
           "Names of the load cases, in order.");
 }
 
-void bind_numbers(py::class_<ReadCase>& type) {
+void bind_case_numbers(py::class_<ReadCase>& type) {
   type.def_property_readonly(
           "design", [](const ReadCase& self) { return self.input->design; },
           "The design variables (DesignVariable), in the order of designs.")
@@ -175,7 +176,7 @@ void bind_case(py::module_& module) {
                             "A case that was read and checked; it does not "
                             "change.");
   bind_names(type);
-  bind_numbers(type);
+  bind_case_numbers(type);
   type.def("__repr__", [](const ReadCase& self) {
     return fmt::format("<meniscus.Case {}: {} design variables, {} responses>",
                        self.input->name, self.input->design.size(),

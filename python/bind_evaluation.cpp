@@ -2,7 +2,8 @@
 #include <pybind11/stl.h>
 
 #include "core/error.h"
-#include "pipeline/responses.h"
+#include "pipeline/case_data/response_entries.h"
+#include "pipeline/forward/responses.h"
 #include "python/array_view.h"
 #include "python/bindings.h"
 #include "python/call.h"
@@ -84,7 +85,7 @@ auto to_stage() {
   };
 }
 
-void bind_numbers(py::class_<EvaluationStage>& type) {
+void bind_evaluation_numbers(py::class_<EvaluationStage>& type) {
   type.def_property_readonly(
           "failure",
           [](const EvaluationStage& self) {
@@ -142,7 +143,7 @@ void bind_evaluation(py::module_& module) {
   py::class_<EvaluationStage> type(
       module, "Evaluation",
       "What one design came to: its responses, or why there are none.");
-  bind_numbers(type);
+  bind_evaluation_numbers(type);
   type.def_property_readonly("film", to_stage<FilmStage, Stage::Film>(),
                              "Its film (Film). Raises DesignFailed.")
       .def_property_readonly("mesh", to_stage<MeshStage, Stage::Mesh>(),

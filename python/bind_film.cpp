@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/surface_mesh.h"
+#include "core/geometry/surface_mesh.h"
 #include "python/call.h"
 #include "python/errors.h"
 #include "python/stage_properties.h"
@@ -79,7 +79,7 @@ void bind_film_arrays(py::class_<FilmStage>& type) {
 }
 
 template <class Number>
-auto of_report(Number FilmReport::*number) {
+auto film_figure(Number FilmReport::*number) {
   return [number](const FilmStage& self) {
     return self.work->staged().evaluation.film.*number;
   };
@@ -93,28 +93,28 @@ void bind_film(py::module_& module) {
                              "none; its figures are there in both cases.");
   bind_failure<FilmStage, Stage::Film>(type);
   bind_film_arrays(type);
-  type.def_property_readonly("verdict", of_report(&FilmReport::verdict),
+  type.def_property_readonly("verdict", film_figure(&FilmReport::verdict),
                              "'stable', 'unstable: ...' or 'pinching: ...'.")
-      .def_property_readonly("residual", of_report(&FilmReport::residual),
+      .def_property_readonly("residual", film_figure(&FilmReport::residual),
                              "Largest out-of-balance force at a free vertex "
                              "[force].")
       .def_property_readonly("residual_bound",
-                             of_report(&FilmReport::residual_bound),
+                             film_figure(&FilmReport::residual_bound),
                              "What the residual is held below [force].")
       .def_property_readonly(
-          "min_eigenvalue", of_report(&FilmReport::min_eigenvalue),
+          "min_eigenvalue", film_figure(&FilmReport::min_eigenvalue),
           "Smallest eigenvalue of the constrained Hessian in the metric of "
           "vertex areas [force/length^3]; above 0: stable.")
-      .def_property_readonly("index", of_report(&FilmReport::index),
+      .def_property_readonly("index", film_figure(&FilmReport::index),
                              "Number of negative eigenvalues.")
-      .def_property_readonly("iterations", of_report(&FilmReport::iterations),
+      .def_property_readonly("iterations", film_figure(&FilmReport::iterations),
                              "Of Newton's method.")
-      .def_property_readonly("energy", of_report(&FilmReport::energy),
+      .def_property_readonly("energy", film_figure(&FilmReport::energy),
                              "Tension times area, and fields [force length].")
-      .def_property_readonly("area", of_report(&FilmReport::area),
+      .def_property_readonly("area", film_figure(&FilmReport::area),
                              "Of films, caps not counted [length^2].")
       .def_property_readonly(
-          "smallest_neck", of_report(&FilmReport::smallest_neck),
+          "smallest_neck", film_figure(&FilmReport::smallest_neck),
           "Shortest way through the inside from film to film [length]; 0: "
           "none.")
       .def_property_readonly(

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "fea/stress.h"
+#include "fea/stress/stress.h"
 #include "python/call.h"
 #include "python/errors.h"
 #include "python/stage_properties.h"
@@ -23,7 +23,7 @@ py::array nodal_vectors(const py::object& self, const py::object& load_case,
 }
 
 template <class Number>
-auto of_report(Number ElasticReport::*number) {
+auto solution_figure(Number ElasticReport::*number) {
   return [number](const SolutionStage& self) {
     return self.work->staged().evaluation.fea.*number;
   };
@@ -118,21 +118,23 @@ void bind_solution(py::module_& module) {
                                  "cases, and what follows from them.");
   bind_failure<SolutionStage, Stage::Solution>(type);
   bind_solution_fields(type);
-  type.def_property_readonly("dofs", of_report(&ElasticReport::dofs),
+  type.def_property_readonly("dofs", solution_figure(&ElasticReport::dofs),
                              "Free unknowns of the first load case.")
-      .def_property_readonly("solver", of_report(&ElasticReport::solver),
+      .def_property_readonly("solver", solution_figure(&ElasticReport::solver),
                              "'p-multigrid', 'cholmod' or 'petsc'.")
       .def_property_readonly("iterations",
-                             of_report(&ElasticReport::iterations),
+                             solution_figure(&ElasticReport::iterations),
                              "Of the last load case.")
-      .def_property_readonly("residual", of_report(&ElasticReport::residual),
+      .def_property_readonly("residual",
+                             solution_figure(&ElasticReport::residual),
                              "Relative, the largest over load cases.")
       .def_property_readonly("strain_energy",
-                             of_report(&ElasticReport::strain_energy),
+                             solution_figure(&ElasticReport::strain_energy),
                              "Of the first load case [force length].")
-      .def_property_readonly("reaction_imbalance",
-                             of_report(&ElasticReport::reaction_imbalance),
-                             "|reactions + loads| / |loads|.")
+      .def_property_readonly(
+          "reaction_imbalance",
+          solution_figure(&ElasticReport::reaction_imbalance),
+          "|reactions + loads| / |loads|.")
       .def("__repr__", [](const SolutionStage& self) {
         const ElasticReport& fea = self.work->staged().evaluation.fea;
         return fmt::format("<meniscus.Solution {} unknowns, {}>", fea.dofs,

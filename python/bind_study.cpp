@@ -5,9 +5,9 @@
 #include <pybind11/stl.h>
 
 #include "core/error.h"
-#include "pipeline/ordered_jobs.h"
-#include "pipeline/stored_case.h"
-#include "pipeline/study_store.h"
+#include "pipeline/store/stored_case.h"
+#include "pipeline/store/study_store.h"
+#include "pipeline/study/ordered_jobs.h"
 #include "python/array_view.h"
 #include "python/bindings.h"
 #include "python/call.h"

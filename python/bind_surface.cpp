@@ -1,6 +1,6 @@
 #include <pybind11/stl.h>
 
-#include "core/surface_mesh.h"
+#include "core/geometry/surface_mesh.h"
 #include "python/array_view.h"
 #include "python/bindings.h"
 

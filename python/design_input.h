@@ -6,7 +6,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "pipeline/case.h"
+#include "pipeline/case_data/case.h"
 
 namespace meniscus::python {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "fea/stress.h"
-#include "pipeline/adaptation.h"
-#include "pipeline/film_start.h"
+#include "fea/stress/stress.h"
+#include "pipeline/case_data/film_start.h"
+#include "pipeline/forward/adaptation.h"
 #include "python/call.h"
 #include "python/errors.h"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/design_stages.h"
+#include "pipeline/forward/design_stages.h"
 
 namespace meniscus::python {
 

@@ -5,16 +5,16 @@
 
 #include <fmt/format.h>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/timer.h"
-#include "io/atomic_file.h"
-#include "pipeline/family.h"
-#include "pipeline/film_frames.h"
-#include "pipeline/results.h"
-#include "pipeline/run_folder.h"
-#include "pipeline/walls.h"
-#include "report/report_page.h"
-#include "report/run_output.h"
+#include "pipeline/forward/walls.h"
+#include "pipeline/results/family.h"
+#include "pipeline/results/results.h"
+#include "pipeline/results/run_folder.h"
+#include "pipeline/study/film_frames.h"
+#include "report/output/run_output.h"
+#include "report/page/report_page.h"
 
 namespace meniscus::python {
 

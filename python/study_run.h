@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/monitor.h"
-#include "pipeline/case.h"
+#include "pipeline/case_data/case.h"
 
 namespace meniscus::python {
 

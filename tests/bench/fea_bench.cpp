@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
-#include "fea/elasticity.h"
+#include "fea/elastic/elasticity.h"
 #include "tests/support/shapes.h"
 
 namespace meniscus {

@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "evolve/film_model.h"
+#include "evolve/frozen/film_model.h"
 
 namespace meniscus {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "fea/buckling.h"
-#include "fea/modes.h"
+#include "fea/modes/buckling.h"
+#include "fea/modes/modes.h"
 #include "tests/support/elastic_race.h"
 #include "tests/support/measured_child.h"
 

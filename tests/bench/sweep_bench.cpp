@@ -16,9 +16,9 @@
 #include "core/thread_waits.h"
 #include "core/timer.h"
 #include "optimize/sampling.h"
-#include "pipeline/case_reader.h"
-#include "pipeline/design_evaluator.h"
-#include "pipeline/study_kinds.h"
+#include "pipeline/reader/case_reader.h"
+#include "pipeline/study/design_evaluator.h"
+#include "pipeline/study/study_kinds.h"
 #include "tests/support/measured_child.h"
 #include "tests/support/temp_folder.h"
 

@@ -11,10 +11,10 @@
 
 #include "core/thread_waits.h"
 #include "core/timer.h"
-#include "fea/stress.h"
+#include "fea/stress/stress.h"
 #include "mesh_tet/tetrahedralize.h"
-#include "pipeline/case_reader.h"
-#include "pipeline/forward_model.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/reader/case_reader.h"
 
 namespace meniscus {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "core/error.h"
-#include "evolve/fe_commands.h"
-#include "evolve/fe_complex.h"
-#include "evolve/fe_write.h"
+#include "evolve/datafile/fe_commands.h"
+#include "evolve/datafile/fe_complex.h"
+#include "evolve/datafile/fe_write.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {

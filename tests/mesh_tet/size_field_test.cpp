@@ -29,7 +29,7 @@ double edge_of(const TetMesh& mesh, int e) {
 /// Sorted ratios of the edges of elements to the size asked for at their
 /// centroids, of the elements in `part`.
 template <class Part>
-std::vector<double> ratios(const TetMesh& mesh, const SizeField& size,
+std::vector<double> ratios(const TetMesh& mesh, const EdgeAtPlace& size,
                            Part part) {
   std::vector<double> result;
   for (int e = 0; e < mesh.element_count(); ++e) {

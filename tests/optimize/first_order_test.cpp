@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "optimize/sampling.h"
-#include "tests/optimize/standard_problems.h"
+#include "tests/support/standard_problems.h"
 
 namespace meniscus {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/optimize/standard_problems.h"
+#include "tests/support/standard_problems.h"
 
 namespace meniscus {
 namespace {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "optimize/minimize.h"
-#include "tests/optimize/standard_problems.h"
+#include "tests/support/standard_problems.h"
 
 namespace meniscus {
 namespace {

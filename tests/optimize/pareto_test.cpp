@@ -6,7 +6,7 @@
 
 #include "optimize/sampling.h"
 #include "optimize/spread.h"
-#include "tests/optimize/standard_problems.h"
+#include "tests/support/standard_problems.h"
 
 namespace meniscus {
 namespace {

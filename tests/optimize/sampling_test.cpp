@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/optimize/standard_problems.h"
+#include "tests/support/standard_problems.h"
 
 namespace meniscus {
 namespace {

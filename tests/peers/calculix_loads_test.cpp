@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "fea/body_loads.h"
-#include "fea/elasticity.h"
-#include "fea/point_stress.h"
-#include "pipeline/calculix_export.h"
+#include "fea/elastic/elasticity.h"
+#include "fea/element/point_stress.h"
+#include "fea/loads/body_loads.h"
+#include "pipeline/results/calculix_export.h"
 #include "tests/support/calculix.h"
 #include "tests/support/not_here.h"
 #include "tests/support/shapes.h"

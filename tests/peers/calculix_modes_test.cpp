@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "fea/buckling.h"
-#include "fea/modes.h"
-#include "pipeline/calculix_export.h"
+#include "fea/modes/buckling.h"
+#include "fea/modes/modes.h"
+#include "pipeline/results/calculix_export.h"
 #include "tests/support/calculix.h"
 #include "tests/support/not_here.h"
 #include "tests/support/shapes.h"

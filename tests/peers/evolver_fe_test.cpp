@@ -11,10 +11,10 @@
 
 #include "core/child_process.h"
 #include "core/find_program.h"
-#include "evolve/curve.h"
-#include "evolve/fe_complex.h"
-#include "evolve/fe_write.h"
-#include "tests/evolve/film_sums.h"
+#include "evolve/curves/curve.h"
+#include "evolve/datafile/fe_complex.h"
+#include "evolve/datafile/fe_write.h"
+#include "tests/support/film_sums.h"
 #include "tests/support/not_here.h"
 #include "tests/support/temp_folder.h"
 

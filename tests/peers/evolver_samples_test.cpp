@@ -14,9 +14,9 @@
 
 #include "core/child_process.h"
 #include "core/find_program.h"
-#include "evolve/fe_complex.h"
-#include "evolve/find_equilibrium.h"
-#include "pipeline/datafile.h"
+#include "evolve/datafile/fe_complex.h"
+#include "evolve/settle/find_equilibrium.h"
+#include "pipeline/results/datafile.h"
 #include "tests/support/not_here.h"
 #include "tests/support/temp_folder.h"
 

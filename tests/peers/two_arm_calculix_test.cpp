@@ -2,8 +2,8 @@
 /// its pads under CalculiX's own pressure.
 #include <gtest/gtest.h>
 
-#include "pipeline/calculix_export.h"
-#include "pipeline/case_reader.h"
+#include "pipeline/reader/case_reader.h"
+#include "pipeline/results/calculix_export.h"
 #include "tests/support/calculix.h"
 
 namespace meniscus {

@@ -10,7 +10,7 @@
 
 #include "core/memory.h"
 #include "core/timer.h"
-#include "fea/point_stress.h"
+#include "fea/element/point_stress.h"
 #include "io/calculix_inp.h"
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/calculix.h"

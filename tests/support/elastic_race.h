@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/tet_mesh.h"
-#include "fea/elasticity.h"
+#include "core/geometry/tet_mesh.h"
+#include "fea/elastic/elasticity.h"
 
 namespace meniscus {
 

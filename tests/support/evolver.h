@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evolve/film_complex.h"
+#include "evolve/films/film_complex.h"
 
 namespace meniscus {
 

@@ -4,8 +4,8 @@
 
 #include <Eigen/Dense>
 
-#include "fea/surface_faces.h"
-#include "fea/tet_shape.h"
+#include "fea/element/surface_faces.h"
+#include "fea/element/tet_shape.h"
 
 namespace meniscus::exact {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/dual.h"
-#include "core/tet_mesh.h"
-#include "fea/elastic_law.h"
-#include "fea/loads.h"
+#include "core/geometry/tet_mesh.h"
+#include "core/math/dual.h"
+#include "fea/element/elastic_law.h"
+#include "fea/loads/loads.h"
 
 namespace meniscus::exact {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "evolve/film_complex.h"
+#include "evolve/films/film_complex.h"
 
 namespace meniscus::films {
 

@@ -8,7 +8,7 @@
 #include <sys/resource.h>
 
 #include "core/memory.h"
-#include "evolve/find_equilibrium.h"
+#include "evolve/settle/find_equilibrium.h"
 #include "tests/support/film_complexes.h"
 #include "tests/support/measured_child.h"
 

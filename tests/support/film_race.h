@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "evolve/film_complex.h"
-#include "evolve/film_model.h"
+#include "evolve/films/film_complex.h"
+#include "evolve/frozen/film_model.h"
 #include "tests/support/evolver.h"
 
 namespace meniscus {

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "core/error.h"
-#include "evolve/thicken.h"
+#include "evolve/walls/thicken.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
 

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "core/surface_mesh.h"
-#include "core/tet_mesh.h"
+#include "core/geometry/surface_mesh.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace meniscus::films {
 
@@ -18,9 +18,9 @@ struct ShellSpec {
 
 /// Ten-node tetrahedra between the two offsets of a film, curved as the film
 /// is: corners and mid-sides are vertices of the refined film, moved by
-/// thicken() (evolve/thicken.h). Labels: "front", to which the film's normals
-/// point, "back", and those of the rims. Throws what thicken() throws, and
-/// MeshError where the wall cannot be filled.
+/// thicken() (evolve/walls/thicken.h). Labels: "front", to which the film's
+/// normals point, "back", and those of the rims. Throws what thicken() throws,
+/// and MeshError where the wall cannot be filled.
 TetMesh film_shell(const QuadraticSurface& surface, const ShellSpec& spec);
 
 }  // namespace meniscus::films

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "core/timer.h"
-#include "pipeline/case_reader.h"
-#include "pipeline/forward_model.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/reader/case_reader.h"
 
 namespace meniscus {
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "core/tet_mesh.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace meniscus::shapes {
 

@@ -1,7 +1,7 @@
 /// A triangulation with its nested refinements, as a film model holds one.
 #pragma once
 
-#include "core/surface_nodes.h"
+#include "core/geometry/surface_nodes.h"
 
 namespace meniscus {
 

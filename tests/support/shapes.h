@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "core/surface_mesh.h"
-#include "core/tet_mesh.h"
+#include "core/geometry/surface_mesh.h"
+#include "core/geometry/tet_mesh.h"
 
 namespace meniscus::shapes {
 

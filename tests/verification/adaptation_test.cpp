@@ -1,6 +1,6 @@
 /// One round of adaptive refinement against uniform meshes, on an angle with a
 /// re-entrant edge and clamped edges, where stresses are singular.
-#include "pipeline/adaptation.h"
+#include "pipeline/forward/adaptation.h"
 
 #include <cmath>
 #include <iostream>
@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "fea/loads.h"
+#include "fea/loads/loads.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
-#include "tests/fea/parts.h"
 #include "tests/support/nested_surface.h"
+#include "tests/support/parts.h"
 #include "tests/support/shapes.h"
 
 namespace meniscus {

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "evolve/film_model.h"
-#include "pipeline/case_reader.h"
+#include "evolve/frozen/film_model.h"
+#include "pipeline/reader/case_reader.h"
 #include "tests/support/delaunay_curves.h"
 #include "tests/verification/film_cases.h"
 

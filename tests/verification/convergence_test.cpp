@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/case_reader.h"
-#include "pipeline/study.h"
+#include "pipeline/reader/case_reader.h"
+#include "pipeline/study/study.h"
 #include "tests/support/temp_folder.h"
 
 namespace meniscus {

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "fea/buckling.h"
-#include "fea/modes.h"
-#include "tests/fea/parts.h"
+#include "fea/modes/buckling.h"
+#include "fea/modes/modes.h"
+#include "tests/support/parts.h"
 
 namespace meniscus {
 namespace {

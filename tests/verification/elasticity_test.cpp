@@ -1,7 +1,7 @@
 /// Closed forms of linear elasticity, with the rate at which they are reached.
 #include <gtest/gtest.h>
 
-#include "tests/fea/parts.h"
+#include "tests/support/parts.h"
 
 namespace meniscus {
 namespace {

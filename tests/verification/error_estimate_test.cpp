@@ -1,5 +1,5 @@
 /// Estimated errors against true ones on problems with exact solutions.
-#include "fea/error_estimate.h"
+#include "fea/stress/error_estimate.h"
 
 #include <array>
 #include <iostream>
@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/fea/parts.h"
 #include "tests/support/exact_elasticity.h"
 #include "tests/support/mapped_shapes.h"
+#include "tests/support/parts.h"
 
 namespace meniscus {
 namespace {

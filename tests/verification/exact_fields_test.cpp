@@ -2,8 +2,8 @@
 /// have the stress concentrations of the books.
 #include <gtest/gtest.h>
 
-#include "tests/fea/parts.h"
 #include "tests/support/exact_elasticity.h"
+#include "tests/support/parts.h"
 
 namespace meniscus {
 namespace {

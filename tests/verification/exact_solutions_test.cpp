@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "fea/patch_recovery.h"
-#include "tests/fea/parts.h"
+#include "fea/stress/patch_recovery.h"
 #include "tests/support/exact_elasticity.h"
 #include "tests/support/mapped_shapes.h"
+#include "tests/support/parts.h"
 
 namespace meniscus {
 namespace {

@@ -12,7 +12,7 @@
 #include <fmt/core.h>
 
 #include "core/thread_waits.h"
-#include "evolve/find_equilibrium.h"
+#include "evolve/settle/find_equilibrium.h"
 #include "tests/support/film_complexes.h"
 
 namespace meniscus {

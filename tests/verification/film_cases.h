@@ -10,8 +10,8 @@
 
 #include <fmt/core.h>
 
-#include "evolve/find_equilibrium.h"
-#include "evolve/grooming.h"
+#include "evolve/groom/refine.h"
+#include "evolve/settle/find_equilibrium.h"
 
 namespace meniscus::films {
 

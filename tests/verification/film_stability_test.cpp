@@ -5,13 +5,13 @@
 
 #include <gtest/gtest.h>
 
-#include "evolve/find_equilibrium.h"
-#include "evolve/grooming.h"
-#include "evolve/pop.h"
-#include "tests/evolve/film_systems.h"
+#include "evolve/groom/pop.h"
+#include "evolve/settle/find_equilibrium.h"
+#include "evolve/start/start_complex.h"
 #include "tests/support/delaunay_curves.h"
 #include "tests/support/film_complexes.h"
 #include "tests/support/film_race.h"
+#include "tests/support/film_systems.h"
 
 namespace meniscus {
 namespace {

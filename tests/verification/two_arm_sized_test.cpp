@@ -10,10 +10,10 @@
 
 #include "optimize/minimize.h"
 #include "optimize/sampling.h"
-#include "pipeline/case_reader.h"
-#include "pipeline/forward_model.h"
-#include "pipeline/studied_responses.h"
-#include "pipeline/study.h"
+#include "pipeline/case_data/studied_responses.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/reader/case_reader.h"
+#include "pipeline/study/study.h"
 
 namespace meniscus {
 namespace {

@@ -6,9 +6,9 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include "pipeline/case_reader.h"
-#include "pipeline/forward_model.h"
-#include "pipeline/study.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/reader/case_reader.h"
+#include "pipeline/study/study.h"
 #include "tests/support/temp_folder.h"
 
 namespace meniscus {

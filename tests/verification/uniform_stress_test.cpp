@@ -10,11 +10,11 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "evolve/film_model.h"
-#include "fea/elasticity.h"
-#include "fea/point_stress.h"
-#include "fea/stress_uniformity.h"
-#include "pipeline/case_reader.h"
+#include "evolve/frozen/film_model.h"
+#include "fea/elastic/elasticity.h"
+#include "fea/element/point_stress.h"
+#include "fea/stress/stress_uniformity.h"
+#include "pipeline/reader/case_reader.h"
 #include "tests/support/film_shell.h"
 
 namespace meniscus {

@@ -1,4 +1,4 @@
-/** What the program writes into the page (report/report_page.cpp). */
+/** What the program writes into the page (report/page/report_page.cpp). */
 
 /** Whole numbers from 0, little-endian in base64. */
 export interface PackedIds {

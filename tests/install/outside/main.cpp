@@ -1,5 +1,5 @@
 #include "mesh_tet/tetrahedralize.h"
-#include "pipeline/case_reader.h"
+#include "pipeline/reader/case_reader.h"
 
 int main(int, char** arguments) {
   const meniscus::Case input = meniscus::read_case(arguments[1]);

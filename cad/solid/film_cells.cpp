@@ -1,0 +1,236 @@
+#include "cad/solid/film_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "cad/solid/harmonic.h"
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kSquare = 0.45;  // half its side, in a disk of radius 1
+constexpr int kSeams = 4;
+constexpr double kTightTurn = 0.6;  // of an arc that is a corner [rad]
+constexpr double kEighth = std::numbers::pi / 4.0;
+
+/// Vertices less edges plus facets: 1 for a disk, 2 for a sphere.
+int characteristic(const FilmMesh& mesh) {
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(mesh.facets, edges, facet_edges);
+  return static_cast<int>(mesh.points.size()) - static_cast<int>(edges.size()) +
+         static_cast<int>(mesh.facets.size());
+}
+
+/// Shares of the loop's length at its vertices.
+std::vector<double> shares_of(const FilmMesh& mesh,
+                              const std::vector<int>& loop) {
+  std::vector<double> shares{0.0};
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const int next = loop[(k + 1) % loop.size()];
+    shares.push_back(shares.back() +
+                     (mesh.points[next] - mesh.points[loop[k]]).norm());
+  }
+  for (double& share : shares) {
+    share /= shares.back() > 0.0 ? shares.back() : 1.0;
+  }
+  return shares;
+}
+
+/// Places on the curve where a seam should end: corners, middles of tight arcs.
+std::vector<double> corner_places(const RimCurve& curve) {
+  std::vector<double> places;
+  for (int k = 0; k < curve.piece_count() && curve.piece_count() > 1; ++k) {
+    if (curve.is_sharp(k)) {
+      places.push_back(curve.start_of(k));
+    }
+    if (curve.turning(k) > kTightTurn) {
+      places.push_back(0.5 * (curve.start_of(k) + curve.start_of(k + 1)));
+    }
+  }
+  return places;
+}
+
+double around(double share) { return share - std::floor(share); }
+
+/// Of many places the four that are most nearly a quarter apart.
+std::vector<double> best_four(const std::vector<double>& places) {
+  std::vector<double> best;
+  double least = 0.0;
+  for (const double first : places) {
+    std::vector<double> four;
+    double off = 0.0;
+    for (int k = 0; k < kSeams; ++k) {
+      const double wanted = first + static_cast<double>(k) / kSeams;
+      const auto distance = [&](double s) {
+        return std::abs(s - wanted - std::round(s - wanted));
+      };
+      four.push_back(*std::min_element(
+          places.begin(), places.end(),
+          [&](double s, double t) { return distance(s) < distance(t); }));
+      off += distance(four.back());
+    }
+    std::sort(four.begin(), four.end());
+    const bool distinct =
+        std::adjacent_find(four.begin(), four.end()) == four.end();
+    if (distinct && (best.empty() || off < least)) {
+      best = four;
+      least = off;
+    }
+  }
+  return best.empty() ? std::vector<double>{places[0]} : best;
+}
+
+/// Shares of the loop where seams end, four, rising.
+std::vector<double> seam_shares(const SplitFilm& split,
+                                const std::vector<int>& loop,
+                                const std::vector<double>& shares) {
+  const RimCurve& curve = *(*split.rims)[0].curve;
+  const auto share_of = [&](double place) {
+    std::size_t nearest = 0;
+    double least = curve.length();
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const double d = split.film.rim_position[loop[k]] - place;
+      const double off =
+          std::abs(d - curve.length() * std::round(d / curve.length()));
+      if (off < least) {
+        least = off;
+        nearest = k;
+      }
+    }
+    return shares[nearest];
+  };
+  std::vector<double> seams;
+  for (const double place : corner_places(curve)) {
+    seams.push_back(share_of(place));
+  }
+  if (seams.empty()) {
+    seams.push_back(share_of(0.0));
+  }
+  std::sort(seams.begin(), seams.end());
+  seams.erase(std::unique(seams.begin(), seams.end()), seams.end());
+  if (seams.size() > kSeams) {
+    seams = best_four(seams);
+  }
+  while (seams.size() < kSeams) {  // halve the longest way between two
+    std::size_t longest = 0;
+    double most = -1.0;
+    for (std::size_t k = 0; k < seams.size(); ++k) {
+      const double gap = k + 1 < seams.size() ? seams[k + 1] - seams[k]
+                                              : seams[0] + 1.0 - seams[k];
+      if (gap > most + 1e-12) {
+        most = gap;
+        longest = k;
+      }
+    }
+    seams.push_back(around(seams[longest] + 0.5 * most));
+    std::sort(seams.begin(), seams.end());
+  }
+  return seams;
+}
+
+/// Columns: the square, and the four sides that the map's point may be nearest
+/// to.
+Eigen::MatrixXd disk_measures(const SplitFilm& split) {
+  const FilmMesh& mesh = split.film.mesh;
+  const auto count = static_cast<Eigen::Index>(mesh.points.size());
+  const std::vector<int> loop = boundary_loops(mesh.facets).at(0);
+  const std::vector<double> shares = shares_of(mesh, loop);
+  const std::vector<double> seams = seam_shares(split, loop, shares);
+  HarmonicProblem problem{mesh, {}, {}, {}};
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    problem.facets.push_back(static_cast<int>(f));
+  }
+  problem.fixed.assign(mesh.points.size(), 0);
+  problem.values = Eigen::MatrixXd::Zero(count, 2);
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    // Seams are an eighth, three eighths... of a turn; between them by length.
+    const auto after = std::upper_bound(seams.begin(), seams.end(), shares[k]);
+    const int last =
+        (static_cast<int>(after - seams.begin()) + kSeams - 1) % kSeams;
+    const double way = around(seams[(last + 1) % kSeams] - seams[last]);
+    const double angle =
+        kEighth * (1.0 + 2.0 * (last + around(shares[k] - seams[last]) / way));
+    problem.fixed[loop[k]] = 1;
+    problem.values.row(loop[k]) << std::cos(angle), std::sin(angle);
+  }
+  const Eigen::MatrixXd at = harmonic(problem);
+  Eigen::MatrixXd measures(count, kDiskCells);
+  measures.col(0).setConstant(kSquare);
+  measures.col(1) = at.col(0);
+  measures.col(2) = at.col(1);
+  measures.col(3) = -at.col(0);
+  measures.col(4) = -at.col(1);
+  return measures;
+}
+
+/// Columns: along the film's three long ways from its middle and against them.
+Eigen::MatrixXd cube_measures(const FilmMesh& mesh) {
+  Vec3 middle = Vec3::Zero();
+  double area = 0.0;
+  const auto area_of = [&](const Triangle& t) {
+    const Vec3 u = mesh.points[t[1]] - mesh.points[t[0]];
+    return u.cross(mesh.points[t[2]] - mesh.points[t[0]]).norm();
+  };
+  const auto center = [&](const Triangle& t) -> Vec3 {
+    return (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]]) / 3.0;
+  };
+  for (const Triangle& t : mesh.facets) {
+    middle += area_of(t) * center(t);
+    area += area_of(t);
+  }
+  middle /= area;
+  Mat3 spread = Mat3::Zero();
+  int positive = 0;
+  for (const Triangle& t : mesh.facets) {
+    const Vec3 d = center(t) - middle;
+    spread += area_of(t) / area * d * d.transpose();
+    const Vec3 a = mesh.points[t[0]] - middle;
+    const Vec3 b = mesh.points[t[1]] - middle;
+    const Vec3 c = mesh.points[t[2]] - middle;
+    positive += a.dot(b.cross(c)) > 0.0 ? 1 : 0;
+  }
+  if (positive != 0 && positive != static_cast<int>(mesh.facets.size())) {
+    throw MeshError(
+        "a closed film is cut only where its middle sees all of it");
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
+  Eigen::MatrixXd measures(static_cast<Eigen::Index>(mesh.points.size()),
+                           kClosedCells);
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 axis = axes.eigenvectors().col(k) /
+                      std::sqrt(std::max(axes.eigenvalues()[k], 1e-12 * area));
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+      const double along = axis.dot(mesh.points[v] - middle);
+      measures(static_cast<Eigen::Index>(v), 2 * k) = along;
+      measures(static_cast<Eigen::Index>(v), 2 * k + 1) = -along;
+    }
+  }
+  return measures;
+}
+
+}  // namespace
+
+SplitFilm film_cells(FilmMesh mesh, const std::vector<FilmRim>& rims) {
+  const int wanted = rims.empty() ? 2 : 1;
+  const int found = characteristic(mesh);
+  if (found != wanted) {
+    throw MeshError(fmt::format("a film with {} is not {}: it has a handle",
+                                rims.empty() ? "no rim" : "one rim",
+                                rims.empty() ? "a bubble" : "a disk"));
+  }
+  SplitFilm split = refined_film(std::move(mesh), rims);
+  split_by_greatest(split, rims.empty() ? cube_measures(split.film.mesh)
+                                        : disk_measures(split));
+  split.sector.assign(split.cell.size(), 0);
+  return split;
+}
+
+}  // namespace meniscus

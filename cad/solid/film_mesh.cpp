@@ -1,0 +1,172 @@
+#include "cad/solid/film_mesh.h"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+std::vector<std::vector<int>> neighbours(const FilmMesh& mesh) {
+  std::vector<std::vector<int>> rings(mesh.points.size());
+  for (const Triangle& t : mesh.facets) {
+    for (int k = 0; k < 3; ++k) {
+      rings[t[k]].push_back(t[(k + 1) % 3]);
+      rings[t[k]].push_back(t[(k + 2) % 3]);
+    }
+  }
+  for (std::vector<int>& ring : rings) {
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  }
+  return rings;
+}
+
+std::vector<int> two_rings(const std::vector<std::vector<int>>& rings, int v) {
+  std::vector<int> result = rings[v];
+  for (const int w : rings[v]) {
+    result.insert(result.end(), rings[w].begin(), rings[w].end());
+  }
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  result.erase(std::remove(result.begin(), result.end(), v), result.end());
+  return result;
+}
+
+/// z = a x + b y + c xx + d xy + e yy about `p` in a frame with z = `normal`;
+/// weights fall with distance.
+Vec3 fitted_normal(const FilmMesh& mesh, const Vec3& p, const Vec3& normal,
+                   const std::vector<int>& near) {
+  const Vec3 x = normal.unitOrthogonal();
+  const Vec3 y = normal.cross(x);
+  const int n = static_cast<int>(near.size());
+  if (n < 7) {
+    return normal;
+  }
+  double scale = 0.0;
+  for (const int v : near) {
+    scale = std::max(scale, (mesh.points[v] - p).norm());
+  }
+  Eigen::MatrixXd rows(n, 5);
+  VectorX heights(n);
+  for (int k = 0; k < n; ++k) {
+    const Vec3 d = (mesh.points[near[k]] - p) / scale;
+    const double a = d.dot(x);
+    const double b = d.dot(y);
+    const double weight = 1.0 / (0.1 + d.squaredNorm());
+    rows.row(k) << a, b, a * a, a * b, b * b;
+    rows.row(k) *= weight;
+    heights[k] = weight * d.dot(normal);
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(rows);
+  if (factor.rank() < 5) {
+    return normal;
+  }
+  const VectorX c = factor.solve(heights);
+  return (normal - c[0] * x - c[1] * y).normalized();
+}
+
+}  // namespace
+
+void set_normals(FilmMesh& mesh) {
+  Points flat_normals(mesh.points.size(), Vec3::Zero());
+  for (const Triangle& t : mesh.facets) {
+    const Vec3 area = (mesh.points[t[1]] - mesh.points[t[0]])
+                          .cross(mesh.points[t[2]] - mesh.points[t[0]]);
+    for (const int v : t) {
+      flat_normals[v] += area;
+    }
+  }
+  const std::vector<std::vector<int>> rings = neighbours(mesh);
+  mesh.normals.resize(mesh.points.size());
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    Vec3 normal = flat_normals[v].normalized();
+    const std::vector<int> near = two_rings(rings, static_cast<int>(v));
+    for (int round = 0; round < 2; ++round) {
+      normal = fitted_normal(mesh, mesh.points[v], normal, near);
+    }
+    mesh.normals[v] = normal;
+  }
+}
+
+Vec3 smooth_point(const FilmMesh& mesh, int facet, const Vec3& at) {
+  const Triangle& t = mesh.facets[facet];
+  Vec3 flat_point = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    flat_point += at[k] * mesh.points[t[k]];
+  }
+  Vec3 result = flat_point;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& n = mesh.normals[t[k]];
+    result += 0.5 * at[k] * n.dot(mesh.points[t[k]] - flat_point) * n;
+  }
+  if (!mesh.bulges.empty()) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k];
+      const int b = t[(k + 1) % 3];
+      const auto found = mesh.bulges.find({std::min(a, b), std::max(a, b)});
+      if (found != mesh.bulges.end()) {
+        result += 4.0 * at[k] * at[(k + 1) % 3] * found->second;
+      }
+    }
+  }
+  return result;
+}
+
+Vec3 smooth_edge_point(const FilmMesh& mesh, int a, int b, double t) {
+  const Vec3 flat_point = (1.0 - t) * mesh.points[a] + t * mesh.points[b];
+  const Vec3& na = mesh.normals[a];
+  const Vec3& nb = mesh.normals[b];
+  return flat_point +
+         0.5 * ((1.0 - t) * na.dot(mesh.points[a] - flat_point) * na +
+                t * nb.dot(mesh.points[b] - flat_point) * nb);
+}
+
+Vec3 mixed_normal(const FilmMesh& mesh, int a, int b, double t) {
+  return ((1.0 - t) * mesh.normals[a] + t * mesh.normals[b]).normalized();
+}
+
+std::vector<std::vector<int>> boundary_loops(
+    const std::vector<Triangle>& facets) {
+  std::map<Edge, bool> directed;  // true: without its opposite
+  for (const Triangle& t : facets) {
+    for (int k = 0; k < 3; ++k) {
+      const Edge edge{t[k], t[(k + 1) % 3]};
+      const auto other = directed.find({edge[1], edge[0]});
+      if (other != directed.end()) {
+        directed.erase(other);
+      } else if (!directed.emplace(edge, true).second) {
+        throw MeshError(fmt::format(
+            "more than two facets of one film meet at vertices {} and {}",
+            edge[0], edge[1]));
+      }
+    }
+  }
+  std::map<int, int> next;
+  for (const auto& [edge, open] : directed) {
+    if (!next.emplace(edge[0], edge[1]).second) {
+      throw MeshError(fmt::format(
+          "a film's boundary touches itself at vertex {}", edge[0]));
+    }
+  }
+  std::vector<std::vector<int>> loops;
+  while (!next.empty()) {
+    std::vector<int> loop;
+    auto at = next.begin();
+    while (at != next.end()) {
+      loop.push_back(at->first);
+      const int to = at->second;
+      next.erase(at);
+      at = next.find(to);
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,41 @@
+/// One film as a triangle mesh with unit normals at its vertices, and the
+/// smooth surface between them.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "core/geometry/surface_mesh.h"
+
+namespace meniscus {
+
+struct FilmMesh {
+  Points points;                 // [length]
+  Points normals;                // unit, one per vertex, out of the body
+  std::vector<Triangle> facets;  // counter-clockwise seen from outside
+  // Middles of edges on curved rims, less those of smooth_point() without
+  // them; lower vertex first.
+  std::map<Edge, Vec3> bulges;
+};
+
+/// Normals by a least-squares quadric through each vertex and its two rings of
+/// neighbours: second order, at rims too.
+void set_normals(FilmMesh& mesh);
+
+/// The point of a facet with corner weights `at` (sum 1), on the film: halfway
+/// from the flat facet to the weighted mean of its projections on the corners'
+/// tangent planes (Boubekeur, Alexa 2008), which is exact on quadrics' graphs
+/// to third order.
+Vec3 smooth_point(const FilmMesh& mesh, int facet, const Vec3& at);
+
+/// The same on the edge from a to b at share t, without bulge.
+Vec3 smooth_edge_point(const FilmMesh& mesh, int a, int b, double t);
+Vec3 mixed_normal(const FilmMesh& mesh, int a, int b, double t);
+
+/// Boundary loops of some of the facets: vertices in the facets' direction, so
+/// that the film is on the left. In order of their lowest vertex, which begins
+/// each. Throws MeshError where more than two boundary edges meet.
+std::vector<std::vector<int>> boundary_loops(
+    const std::vector<Triangle>& facets);
+
+}  // namespace meniscus

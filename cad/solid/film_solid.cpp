@@ -1,0 +1,345 @@
+#include "cad/solid/film_solid.h"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "cad/solid/film_faces.h"
+#include "cad/solid/measure_solid.h"
+#include "cad/solid/turned_face.h"
+#include "core/error.h"
+#include "core/geometry/facet_tree.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kSpanInEdges = 2.0;   // longest knot span
+constexpr double kMergeInEdges = 0.1;  // corners on a rim that become one
+constexpr double kPlanar = 1e-6;       // of the diagonal
+
+/// Facets of one label that hang together by edges, in order of the first.
+std::vector<std::vector<int>> connected_parts(const SurfaceMesh& mesh) {
+  std::map<Edge, std::vector<int>> at_edge;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = mesh.facets[f][k];
+      const int b = mesh.facets[f][(k + 1) % 3];
+      at_edge[{std::min(a, b), std::max(a, b)}].push_back(static_cast<int>(f));
+    }
+  }
+  std::vector<char> seen(mesh.facets.size(), 0);
+  std::vector<std::vector<int>> parts;
+  for (std::size_t first = 0; first < mesh.facets.size(); ++first) {
+    if (seen[first] != 0) {
+      continue;
+    }
+    seen[first] = 1;
+    std::vector<int> part;
+    std::deque<int> queue{static_cast<int>(first)};
+    while (!queue.empty()) {
+      const int f = queue.front();
+      queue.pop_front();
+      part.push_back(f);
+      for (int k = 0; k < 3; ++k) {
+        const int a = mesh.facets[f][k];
+        const int b = mesh.facets[f][(k + 1) % 3];
+        for (const int g : at_edge[{std::min(a, b), std::max(a, b)}]) {
+          if (seen[g] == 0 && mesh.facet_label[g] == mesh.facet_label[f]) {
+            seen[g] = 1;
+            queue.push_back(g);
+          }
+        }
+      }
+    }
+    std::sort(part.begin(), part.end());
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+class SolidBuilder {
+ public:
+  explicit SolidBuilder(const FilmSolidInput& input)
+      : input_(input), mesh_(input.mesh) {
+    for (const NamedRim& rim : input.rims) {
+      curves_.push_back(rim.curve);
+      members_.emplace_back(rim.vertices.begin(), rim.vertices.end());
+    }
+  }
+  FilmSolid build();
+
+ private:
+  struct Cap {
+    std::string name;
+    std::vector<int> facets;
+    std::vector<std::vector<int>> loops;
+    std::vector<int> rims;  // one per loop
+    PlaneSurface plane;
+  };
+
+  int rim_of(const std::vector<int>& loop);
+  void add_film(const std::string& name, const std::vector<int>& facets);
+  bool add_simple(const std::string& name, const std::vector<int>& facets,
+                  const FilmMesh& mesh, const std::vector<FilmRim>& rims,
+                  const std::vector<int>& solid_rims);
+  void add_cap(const std::string& name, const std::vector<int>& facets);
+  BrepFace face_of(const Cap& cap, const std::vector<RimEdges>& rims) const;
+  std::vector<RimEdges> build_rims(Brep& brep) const;
+
+  const FilmSolidInput& input_;
+  const SurfaceMesh& mesh_;
+  std::deque<RimCurve> curves_;  // addresses stay
+  std::vector<std::set<int>> members_;
+  std::vector<FilmPiece> films_;
+  std::vector<TurnedFilm> turned_;
+  std::vector<Cap> caps_;
+  FilmSolidReport report_;
+};
+
+/// The curve that a loop lies on; a new one where there is none.
+int SolidBuilder::rim_of(const std::vector<int>& loop) {
+  for (std::size_t r = 0; r < members_.size(); ++r) {
+    if (std::all_of(loop.begin(), loop.end(),
+                    [&](int v) { return members_[r].count(v) > 0; })) {
+      return static_cast<int>(r);
+    }
+  }
+  Points points;
+  points.reserve(loop.size());
+  for (const int v : loop) {
+    points.push_back(mesh_.points[v]);
+  }
+  curves_.push_back(rim_through(points));
+  members_.emplace_back(loop.begin(), loop.end());
+  return static_cast<int>(members_.size()) - 1;
+}
+
+void SolidBuilder::add_film(const std::string& name,
+                            const std::vector<int>& facets) {
+  FilmMesh mesh;
+  std::map<int, int> local;
+  std::vector<int> global;
+  for (const int f : facets) {
+    Triangle t{};
+    for (int k = 0; k < 3; ++k) {
+      const int v = mesh_.facets[f][k];
+      const auto [at, fresh] = local.emplace(v, static_cast<int>(local.size()));
+      if (fresh) {
+        mesh.points.push_back(mesh_.points[v]);
+        global.push_back(v);
+      }
+      t[k] = at->second;
+    }
+    mesh.facets.push_back(t);
+  }
+  set_normals(mesh);
+  FilmPiece film;
+  film.name = name;
+  film.facets = facets;
+  std::vector<FilmRim> rims;
+  for (std::vector<int>& loop : boundary_loops(mesh.facets)) {
+    std::vector<int> whole;
+    whole.reserve(loop.size());
+    for (const int v : loop) {
+      whole.push_back(global[v]);
+    }
+    film.rims.push_back(rim_of(whole));
+    FilmRim rim{&curves_[film.rims.back()], std::move(loop), {}};
+    for (const int v : whole) {
+      rim.positions.push_back(rim.curve->nearest(mesh_.points[v]));
+    }
+    rims.push_back(std::move(rim));
+  }
+  if (add_simple(name, facets, mesh, rims, film.rims)) {
+    return;
+  }
+  try {
+    film.cut = cut_film(std::move(mesh), rims);
+  } catch (const MeshError& error) {
+    throw MeshError(
+        fmt::format("film '{}': {}; a finer edge may help, or a faceted file",
+                    name, error.what()));
+  }
+  films_.push_back(std::move(film));
+}
+
+/// True for a film that needs no patches.
+bool SolidBuilder::add_simple(const std::string& name,
+                              const std::vector<int>& facets,
+                              const FilmMesh& mesh,
+                              const std::vector<FilmRim>& rims,
+                              const std::vector<int>& solid_rims) {
+  const std::optional<SimpleFilm> shape = simple_film(mesh, rims, input_.edge);
+  if (!shape) {
+    return false;
+  }
+  report_.simple.push_back({name, name_of(*shape), shape->off});
+  if (const auto* plane = std::get_if<PlaneSurface>(&shape->surface)) {
+    std::vector<Triangle> corners;
+    for (const int f : facets) {
+      corners.push_back(mesh_.facets[f]);
+    }
+    report_.film_to_solid = std::max(report_.film_to_solid, shape->off);
+    caps_.push_back(
+        {name, facets, boundary_loops(corners), solid_rims, *plane});
+  } else {
+    const bool ball = std::holds_alternative<SphereSurface>(shape->surface);
+    (ball ? report_.spheres : report_.cylinders) += 1;
+    turned_.push_back({name, *shape, solid_rims, mesh});
+  }
+  return true;
+}
+
+void SolidBuilder::add_cap(const std::string& name,
+                           const std::vector<int>& facets) {
+  Cap cap{name, facets, {}, {}, {}};
+  std::vector<Triangle> corners;
+  corners.reserve(facets.size());
+  Vec3 normal = Vec3::Zero();
+  for (const int f : facets) {
+    corners.push_back(mesh_.facets[f]);
+    normal += area_vector2(mesh_, f);
+  }
+  normal.normalize();
+  const double tolerance = kPlanar * bounding_diagonal(mesh_.points);
+  for (const Triangle& t : corners) {
+    for (const int v : t) {
+      const double off =
+          normal.dot(mesh_.points[v] - mesh_.points[corners[0][0]]);
+      if (std::abs(off) > tolerance) {
+        throw InvalidInput(
+            fmt::format("cap '{}' is not flat: vertex {} is {:g} off its plane",
+                        name, v, off));
+      }
+    }
+  }
+  cap.plane = {mesh_.points[corners[0][0]], normal};
+  cap.loops = boundary_loops(corners);
+  for (const std::vector<int>& loop : cap.loops) {
+    cap.rims.push_back(rim_of(loop));
+  }
+  caps_.push_back(std::move(cap));
+}
+
+BrepFace SolidBuilder::face_of(const Cap& cap,
+                               const std::vector<RimEdges>& rims) const {
+  const Vec3& normal = cap.plane.normal;
+  BrepFace face{cap.name, cap.plane, {}};
+  std::vector<std::pair<double, std::vector<BrepUse>>> loops;
+  for (std::size_t k = 0; k < cap.loops.size(); ++k) {
+    const std::vector<int>& loop = cap.loops[k];
+    const RimEdges& rim = rims[cap.rims[k]];
+    const Vec3& p = mesh_.points[loop[0]];
+    const double here = rim.curve().nearest(p);
+    const bool growing =
+        rim.curve().tangent(here).dot(mesh_.points[loop[1]] - p) > 0.0;
+    Vec3 area = Vec3::Zero();
+    for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+      area += (mesh_.points[loop[i]] - p).cross(mesh_.points[loop[i + 1]] - p);
+    }
+    std::vector<BrepUse> uses;
+    for (const RimEdges::Step& step : rim.between(0.0, 0.0, growing)) {
+      uses.push_back({step.edge, step.forward});
+    }
+    loops.emplace_back(-area.dot(normal), std::move(uses));
+  }
+  std::stable_sort(
+      loops.begin(), loops.end(),
+      [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& loop : loops) {
+    face.loops.push_back(std::move(loop.second));
+  }
+  return face;
+}
+
+/// With the vertices that the films' faces want; only those that are used.
+std::vector<RimEdges> SolidBuilder::build_rims(Brep& brep) const {
+  std::vector<RimEdges> rims(curves_.begin(), curves_.end());
+  std::set<int> used;
+  for (const FilmPiece& film : films_) {
+    want_corners(film, rims);
+    used.insert(film.rims.begin(), film.rims.end());
+  }
+  for (const TurnedFilm& film : turned_) {
+    want_seam(film, rims);
+    used.insert(film.rims.begin(), film.rims.end());
+  }
+  for (const Cap& cap : caps_) {
+    used.insert(cap.rims.begin(), cap.rims.end());
+  }
+  for (const int r : used) {
+    rims[r].build(kMergeInEdges * input_.edge, brep);
+  }
+  return rims;
+}
+
+FilmSolid SolidBuilder::build() {
+  for (const std::vector<int>& part : connected_parts(mesh_)) {
+    const std::string& name = mesh_.labels[mesh_.facet_label[part[0]]];
+    if (std::count(input_.caps.begin(), input_.caps.end(), name) > 0) {
+      add_cap(name, part);
+    } else {
+      add_film(name, part);
+    }
+  }
+  FilmSolid solid;
+  const std::vector<RimEdges> rims = build_rims(solid.brep);
+  for (const Cap& cap : caps_) {
+    solid.brep.faces.push_back(face_of(cap, rims));
+  }
+  report_.planes = static_cast<int>(caps_.size());
+  for (const TurnedFilm& film : turned_) {
+    add_turned_face(film, rims, solid.brep);
+    measure_turned(film, report_);
+  }
+  for (const FilmPiece& film : films_) {
+    const FilmFaces faces =
+        add_faces(film, rims, kSpanInEdges * input_.edge, solid.brep);
+    report_.patches += static_cast<int>(faces.patches.size());
+    measure_film(film, faces, solid.brep, FacetTree(mesh_, film.facets),
+                 input_.edge, report_);
+  }
+  solid.report = std::move(report_);
+  return solid;
+}
+
+}  // namespace
+
+FilmSolid film_solid(const FilmSolidInput& input) {
+  return SolidBuilder(input).build();
+}
+
+Brep faceted_solid(const SurfaceMesh& mesh) {
+  Brep brep;
+  brep.vertices = mesh.points;
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  list_edges(mesh.facets, edges, facet_edges);
+  for (const Edge& e : edges) {
+    const Vec3 way = mesh.points[e[1]] - mesh.points[e[0]];
+    brep.edges.push_back({e[0], e[1],
+                          StraightLine{mesh.points[e[0]], way.normalized()},
+                          0.0, way.norm()});
+  }
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Triangle& t = mesh.facets[f];
+    std::vector<BrepUse> loop;
+    loop.reserve(3);
+    for (int k = 0; k < 3; ++k) {
+      loop.push_back({facet_edges[f][k], edges[facet_edges[f][k]][0] == t[k]});
+    }
+    const Vec3 normal = area_vector2(mesh, static_cast<int>(f)).normalized();
+    brep.faces.push_back({mesh.labels[mesh.facet_label[f]],
+                          PlaneSurface{mesh.points[t[0]], normal},
+                          {std::move(loop)}});
+  }
+  return brep;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,215 @@
+#include "cad/solid/rim_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "cad/solid/spline.h"
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kSharp = 1e-3;      // [rad]
+constexpr double kSamePlace = 1e-6;  // of the length
+constexpr int kSamples = 64;         // per piece, for lengths and first guesses
+
+double length_of(const RimPiece& piece) {
+  if (std::holds_alternative<StraightLine>(piece.curve)) {
+    return piece.last - piece.first;
+  }
+  double length = 0.0;
+  for (int k = 0; k < kSamples; ++k) {
+    const double t =
+        piece.first + (piece.last - piece.first) * (k + 0.5) / kSamples;
+    length += slope_of(piece.curve, t).norm();
+  }
+  return length * (piece.last - piece.first) / kSamples;
+}
+
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// The piece's parameter nearest to p: the best sample, then Gauss-Newton.
+double nearest_on(const RimPiece& piece, const Vec3& p) {
+  double best = piece.first;
+  double distance = (point_of(piece.curve, best) - p).squaredNorm();
+  for (int k = 1; k <= kSamples; ++k) {
+    const double t = piece.first + (piece.last - piece.first) * k / kSamples;
+    const double d = (point_of(piece.curve, t) - p).squaredNorm();
+    if (d < distance) {
+      distance = d;
+      best = t;
+    }
+  }
+  for (int round = 0; round < 30; ++round) {
+    const Vec3 slope = slope_of(piece.curve, best);
+    const double step =
+        slope.dot(p - point_of(piece.curve, best)) / slope.squaredNorm();
+    best = std::clamp(best + step, piece.first, piece.last);
+  }
+  return best;
+}
+
+}  // namespace
+
+Vec3 point_of(const EdgeCurve& curve, double t) {
+  if (const auto* line = std::get_if<StraightLine>(&curve)) {
+    return line->start + t * line->direction;
+  }
+  if (const auto* arc = std::get_if<EllipseCurve>(&curve)) {
+    return arc->center + std::cos(t) * arc->u + std::sin(t) * arc->v;
+  }
+  return point_of(std::get<SplineCurve>(curve), t);
+}
+
+Vec3 slope_of(const EdgeCurve& curve, double t) {
+  if (const auto* line = std::get_if<StraightLine>(&curve)) {
+    return line->direction;
+  }
+  if (const auto* arc = std::get_if<EllipseCurve>(&curve)) {
+    return std::cos(t) * arc->v - std::sin(t) * arc->u;
+  }
+  return slope_of(std::get<SplineCurve>(curve), t);
+}
+
+RimCurve::RimCurve(std::vector<RimPiece> pieces)
+    : pieces_(std::move(pieces)), starts_{0.0} {
+  for (const RimPiece& piece : pieces_) {
+    starts_.push_back(starts_.back() + length_of(piece));
+  }
+}
+
+double RimCurve::wrapped(double s) const {
+  return s - length() * std::floor(s / length());
+}
+
+int RimCurve::piece_at(double s) const {
+  const auto after =
+      std::upper_bound(starts_.begin(), starts_.end() - 1, wrapped(s));
+  return std::max(0, static_cast<int>(after - starts_.begin()) - 1);
+}
+
+double RimCurve::parameter_at(int k, double s) const {
+  const double share = (s - starts_[k]) / (starts_[k + 1] - starts_[k]);
+  return pieces_[k].first + share * (pieces_[k].last - pieces_[k].first);
+}
+
+Vec3 RimCurve::point(double s) const {
+  const int k = piece_at(s);
+  return point_of(pieces_[k].curve, parameter_at(k, wrapped(s)));
+}
+
+Vec3 RimCurve::tangent(double s) const {
+  const int k = piece_at(s);
+  return slope_of(pieces_[k].curve, parameter_at(k, wrapped(s))).normalized();
+}
+
+double RimCurve::nearest(const Vec3& p) const {
+  double best = 0.0;
+  double distance = -1.0;
+  for (int k = 0; k < piece_count(); ++k) {
+    const RimPiece& piece = pieces_[k];
+    const double t = nearest_on(piece, p);
+    const double d = (point_of(piece.curve, t) - p).norm();
+    if (distance < 0.0 || d < distance) {
+      distance = d;
+      best = starts_[k] + (t - piece.first) / (piece.last - piece.first) *
+                              (starts_[k + 1] - starts_[k]);
+    }
+  }
+  return wrapped(best);
+}
+
+bool RimCurve::is_sharp(int k) const {
+  const RimPiece& before = pieces_[(k + piece_count() - 1) % piece_count()];
+  return angle_between(slope_of(before.curve, before.last),
+                       slope_of(pieces_[k].curve, pieces_[k].first)) > kSharp;
+}
+
+int RimCurve::sharp_corner(double s) const {
+  for (int k = 0; k < piece_count() && piece_count() > 1; ++k) {
+    const double d = s - starts_[k];
+    if (is_sharp(k) && std::abs(d - length() * std::round(d / length())) <
+                           kSamePlace * length()) {
+      return k;
+    }
+  }
+  return -1;
+}
+
+Vec3 RimCurve::corner_normal(int k) const {
+  const RimPiece& before = pieces_[(k + piece_count() - 1) % piece_count()];
+  return slope_of(before.curve, before.last)
+      .cross(slope_of(pieces_[k].curve, pieces_[k].first))
+      .normalized();
+}
+
+double RimCurve::turning(int k) const {
+  const RimPiece& piece = pieces_[k];
+  double angle = 0.0;
+  Vec3 before = slope_of(piece.curve, piece.first);
+  for (int i = 1; i <= kSamples; ++i) {
+    const Vec3 slope = slope_of(
+        piece.curve, piece.first + (piece.last - piece.first) * i / kSamples);
+    angle += angle_between(before, slope);
+    before = slope;
+  }
+  return angle;
+}
+
+RimCurve rim_through(const Points& points, double sharp) {
+  const int n = static_cast<int>(points.size());
+  if (n < 3) {
+    throw MeshError("a rim has fewer than three points");
+  }
+  std::vector<int> corners;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 in = points[i] - points[(i + n - 1) % n];
+    const Vec3 out = points[(i + 1) % n] - points[i];
+    if (angle_between(in, out) > sharp) {
+      corners.push_back(i);
+    }
+  }
+  const bool smooth = corners.empty();
+  if (smooth) {
+    corners.push_back(0);
+  }
+  std::vector<RimPiece> pieces;
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const int first = corners[c];
+    int count = (corners[(c + 1) % corners.size()] - first + n) % n;
+    count = count == 0 ? n : count;
+    CurveFit fit;
+    // A smooth closed curve runs on past its start, so that it has no corner.
+    const int beyond = smooth ? std::min(4, n / 2) : 0;
+    std::vector<double> chord{0.0};
+    for (int i = -beyond; i <= count + beyond; ++i) {
+      fit.points.push_back(points[((first + i) % n + n) % n]);
+      if (fit.points.size() > 1) {
+        chord.push_back(chord.back() +
+                        (fit.points.back() - fit.points.end()[-2]).norm());
+      }
+    }
+    std::vector<SplineBreak> inner;
+    for (std::size_t i = 0; i < chord.size(); ++i) {
+      fit.at.push_back(chord[i] / chord.back());
+      if (i > 0 && i + 1 < chord.size()) {
+        inner.push_back({fit.at[i], 1});
+      }
+    }
+    fit.knots = clamped_knots(inner);
+    fit.start = fit.points.front();
+    fit.end = fit.points.back();
+    pieces.push_back(
+        {fit_curve(fit), fit.at[beyond], fit.at[fit.at.size() - 1 - beyond]});
+  }
+  return RimCurve(std::move(pieces));
+}
+
+}  // namespace meniscus

@@ -1,0 +1,23 @@
+/// Internal to the STEP writer: a Brep as OpenCASCADE's shape.
+#pragma once
+
+#include <vector>
+
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shape.hxx>
+
+#include "cad/solid/brep.h"
+
+namespace meniscus {
+
+struct StepShape {
+  TopoDS_Shape solid;
+  std::vector<TopoDS_Face> faces;  // as the Brep's
+  int shells = 0;
+};
+
+/// Lengths are multiplied by `scale`. Throws MeshError for faces that are not
+/// closed or enclose nothing.
+StepShape step_shape(const Brep& brep, double scale);
+
+}  // namespace meniscus

@@ -1,0 +1,34 @@
+/// STEP out: a solid of planes, cylinders, spheres and B-spline faces with
+/// names (AP214).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cad/solid/brep.h"
+
+namespace meniscus {
+
+struct StepOptions {
+  std::string name;         // of the part
+  std::string unit = "mm";  // of the solid's lengths and the file: mm, m, in
+};
+
+/// What OpenCASCADE found of the solid that was written, in the solid's unit.
+struct StepReport {
+  int shells = 0;
+  double volume = 0.0;
+  Vec3 mass_center = Vec3::Zero();
+  double tolerance = 0.0;  // the largest of its edges and vertices
+};
+
+/// Writes the closed solid; the same bits for the same input (the header's time
+/// is 1970). Throws MeshError for faces that make no valid closed solid
+/// (BRepCheck_Analyzer's first finding is in the message), InvalidInput for an
+/// unknown unit, IoError. One call at a time: OpenCASCADE's settings are the
+/// process's own.
+StepReport write_step(const std::filesystem::path& path, const Brep& brep,
+                      const StepOptions& options = {});
+
+}  // namespace meniscus

@@ -1,0 +1,227 @@
+#include "core/geometry/facet_tree.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+namespace meniscus {
+
+namespace {
+
+constexpr int kLeafSize = 4;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Where the ray meets the facet, or kNever.
+double meet(const SurfaceMesh& mesh, int facet, const Vec3& origin,
+            const Vec3& direction) {
+  const Triangle& t = mesh.facets[facet];
+  const Vec3 a = mesh.points[t[0]] - origin;
+  const Vec3 b = mesh.points[t[1]] - origin;
+  const Vec3 c = mesh.points[t[2]] - origin;
+  const double u = direction.dot(b.cross(c));
+  const double v = direction.dot(c.cross(a));
+  const double w = direction.dot(a.cross(b));
+  const bool inside =
+      (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+  const double sum = u + v + w;
+  if (!inside || sum == 0.0) {
+    return kNever;
+  }
+  const double at =
+      (u * a + v * b + w * c).dot(direction) / sum / direction.squaredNorm();
+  return at > 0.0 ? at : kNever;
+}
+
+NearestPoint weighted(const std::array<Vec3, 3>& t, const Vec3& place, double b,
+                      double c) {
+  NearestPoint result{.weights = {1.0 - b - c, b, c}};
+  result.point = t[0] + b * (t[1] - t[0]) + c * (t[2] - t[0]);
+  result.distance = (place - result.point).norm();
+  return result;
+}
+
+}  // namespace
+
+NearestPoint nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
+  const Vec3 ab = t[1] - t[0];
+  const Vec3 ac = t[2] - t[0];
+  const double d1 = ab.dot(p - t[0]);
+  const double d2 = ac.dot(p - t[0]);
+  if (d1 <= 0.0 && d2 <= 0.0) {
+    return weighted(t, p, 0.0, 0.0);
+  }
+  const double d3 = ab.dot(p - t[1]);
+  const double d4 = ac.dot(p - t[1]);
+  if (d3 >= 0.0 && d4 <= d3) {
+    return weighted(t, p, 1.0, 0.0);
+  }
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    return weighted(t, p, d1 / (d1 - d3), 0.0);
+  }
+  const double d5 = ab.dot(p - t[2]);
+  const double d6 = ac.dot(p - t[2]);
+  if (d6 >= 0.0 && d5 <= d6) {
+    return weighted(t, p, 0.0, 1.0);
+  }
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    return weighted(t, p, 0.0, d2 / (d2 - d6));
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return weighted(t, p, 1.0 - w, w);
+  }
+  const double sum = va + vb + vc;
+  return weighted(t, p, vb / sum, vc / sum);
+}
+
+FacetTree::FacetTree(const SurfaceMesh& mesh, std::vector<int> facets,
+                     double tolerance)
+    : mesh_(mesh), facets_(std::move(facets)) {
+  boxes_.resize(mesh.facets.size());
+  const Vec3 margin = Vec3::Constant(0.5 * tolerance);
+  for (const int f : facets_) {
+    const Triangle& t = mesh.facets[f];
+    const Vec3& a = mesh.points[t[0]];
+    const Vec3& b = mesh.points[t[1]];
+    const Vec3& c = mesh.points[t[2]];
+    boxes_[f] = {a.cwiseMin(b).cwiseMin(c) - margin,
+                 a.cwiseMax(b).cwiseMax(c) + margin};
+  }
+  if (!facets_.empty()) {
+    nodes_.reserve(facets_.size());
+    build(0, static_cast<int>(facets_.size()));
+  }
+  std::vector<Box> ordered;
+  ordered.reserve(facets_.size());
+  for (const int f : facets_) {
+    ordered.push_back(boxes_[f]);
+  }
+  boxes_.swap(ordered);
+}
+
+int FacetTree::build(int first, int last) {
+  const int id = static_cast<int>(nodes_.size());
+  Node node{boxes_[facets_[first]], first, last, -1};
+  for (int i = first + 1; i < last; ++i) {
+    const Box& box = boxes_[facets_[i]];
+    node.box.low = node.box.low.cwiseMin(box.low);
+    node.box.high = node.box.high.cwiseMax(box.high);
+  }
+  nodes_.push_back(node);
+  if (last - first > kLeafSize) {
+    int axis = 0;
+    (node.box.high - node.box.low).maxCoeff(&axis);
+    const int middle = (first + last) / 2;
+    const auto key = [&](int f) {
+      return std::pair{boxes_[f].low[axis] + boxes_[f].high[axis], f};
+    };
+    std::nth_element(facets_.begin() + first, facets_.begin() + middle,
+                     facets_.begin() + last,
+                     [&](int f, int g) { return key(f) < key(g); });
+    build(first, middle);
+    nodes_[id].second_child = build(middle, last);
+  }
+  return id;
+}
+
+/// Where the ray enters the box; kNever when it misses it.
+double FacetTree::reach(const Box& box, const Vec3& origin,
+                        const Vec3& inverse) const {
+  double enter = 0.0;
+  double leave = kNever;
+  for (int k = 0; k < 3; ++k) {
+    const double low = (box.low[k] - origin[k]) * inverse[k];
+    const double high = (box.high[k] - origin[k]) * inverse[k];
+    enter = std::max(enter, std::min(low, high));
+    leave = std::min(leave, std::max(low, high));
+  }
+  // Rounding of the bounds must not lose a facet in a flat box.
+  return enter <= leave * (1.0 + 1e-12) ? enter * (1.0 - 1e-12) : kNever;
+}
+
+std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
+                                           const Vec3& direction,
+                                           const std::vector<int>& part_of,
+                                           int part) const {
+  RayHit best{-1, kNever};
+  const Vec3 inverse = direction.cwiseInverse();
+  std::vector<int> stack;
+  if (!nodes_.empty()) {
+    stack.push_back(0);
+  }
+  while (!stack.empty()) {
+    const int id = stack.back();
+    stack.pop_back();
+    const Node& node = nodes_[id];
+    const double enter = reach(node.box, origin, inverse);
+    if (enter == kNever || enter > best.distance) {
+      continue;
+    }
+    if (node.second_child >= 0) {
+      const double near = reach(nodes_[id + 1].box, origin, inverse);
+      const double far = reach(nodes_[node.second_child].box, origin, inverse);
+      stack.push_back(near <= far ? node.second_child : id + 1);
+      stack.push_back(near <= far ? id + 1 : node.second_child);
+      continue;
+    }
+    for (int i = node.first; i < node.last; ++i) {
+      const int f = facets_[i];
+      if (part_of[f] == part) {
+        continue;
+      }
+      const double at = meet(mesh_, f, origin, direction);
+      if (at < best.distance ||
+          (at == best.distance && at < kNever && f < best.facet)) {
+        best = {f, at};
+      }
+    }
+  }
+  if (best.facet < 0) {
+    return std::nullopt;
+  }
+  return best;
+}
+
+std::optional<NearestPoint> FacetTree::nearest(const Vec3& place) const {
+  NearestPoint best{.distance = kNever};
+  std::vector<int> stack;
+  if (!nodes_.empty()) {
+    stack.push_back(0);
+  }
+  while (!stack.empty()) {
+    const int id = stack.back();
+    stack.pop_back();
+    const Node& node = nodes_[id];
+    if (node.box.to(place) > best.distance) {
+      continue;
+    }
+    if (node.second_child >= 0) {
+      const bool first = nodes_[id + 1].box.to(place) <=
+                         nodes_[node.second_child].box.to(place);
+      stack.push_back(first ? node.second_child : id + 1);
+      stack.push_back(first ? id + 1 : node.second_child);
+      continue;
+    }
+    for (int i = node.first; i < node.last; ++i) {
+      const Triangle& t = mesh_.facets[facets_[i]];
+      NearestPoint found = nearest_in(
+          {mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]}, place);
+      found.facet = facets_[i];
+      if (found.distance < best.distance ||
+          (found.distance == best.distance && found.facet < best.facet)) {
+        best = found;
+      }
+    }
+  }
+  if (best.facet < 0) {
+    return std::nullopt;
+  }
+  return best;
+}
+
+}  // namespace meniscus

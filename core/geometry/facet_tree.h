@@ -1,0 +1,132 @@
+/// Bounding boxes of facets in a tree: which facets are near each other, what a
+/// ray meets first, and what is nearest to a place.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/surface_mesh.h"
+
+namespace meniscus {
+
+/// Where a ray meets a facet.
+struct RayHit {
+  int facet = -1;
+  double distance = 0.0;  // in lengths of the ray's direction, above 0
+};
+
+/// The nearest point of a facet.
+struct NearestPoint {
+  int facet = -1;
+  std::array<double, 3> weights = {};  // of its corners, >= 0, sum 1
+  Vec3 point = Vec3::Zero();
+  double distance = 0.0;  // [length]
+};
+
+/// By the regions of corners and edges (Ericson, Real-Time Collision Detection,
+/// 2005, 5.1.5). `facet` of the result is -1.
+NearestPoint nearest_in(const std::array<Vec3, 3>& corners, const Vec3& place);
+
+/// Built in O(n log n); keeps a reference to the mesh.
+class FacetTree {
+ public:
+  /// Of the given facets, which have finite, sound corners. Boxes grow by half
+  /// of `tolerance` [length], so that they meet when facets are within it.
+  FacetTree(const SurfaceMesh& mesh, std::vector<int> facets,
+            double tolerance = 0.0);
+
+  /// Calls visit(f, g), f < g, once for every pair of facets whose boxes meet,
+  /// in a fixed order, until it returns false or `most_steps` pairs of boxes
+  /// were compared. Returns false only for the latter.
+  template <class Visit>
+  bool visit_pairs(Visit visit, std::int64_t most_steps) const;
+
+  /// The nearest facet that `origin` + t `direction`, t > 0, meets, among
+  /// those whose number in `part_of` is not `part`; the lowest id of equals.
+  std::optional<RayHit> first_hit(const Vec3& origin, const Vec3& direction,
+                                  const std::vector<int>& part_of,
+                                  int part) const;
+
+  /// The point of all facets nearest to `place`, the lowest id of equals;
+  /// nothing for no facets.
+  std::optional<NearestPoint> nearest(const Vec3& place) const;
+
+ private:
+  struct Box {
+    Vec3 low;
+    Vec3 high;
+    bool meets(const Box& other) const {
+      return (low.array() <= other.high.array()).all() &&
+             (other.low.array() <= high.array()).all();
+    }
+    double to(const Vec3& place) const {
+      return (low - place).cwiseMax(place - high).cwiseMax(0.0).norm();
+    }
+  };
+  // Facets first .. last - 1 of the tree's order; inner nodes have children,
+  // the first of which follows them.
+  struct Node {
+    Box box;
+    int first = 0;
+    int last = 0;
+    int second_child = -1;
+  };
+
+  int build(int first, int last);
+  double reach(const Box& box, const Vec3& origin, const Vec3& inverse) const;
+
+  const SurfaceMesh& mesh_;
+  std::vector<int> facets_;
+  std::vector<Box> boxes_;  // in the tree's order
+  std::vector<Node> nodes_;
+};
+
+template <class Visit>
+bool FacetTree::visit_pairs(Visit visit, std::int64_t most_steps) const {
+  if (nodes_.empty()) {
+    return true;
+  }
+  std::int64_t steps = 0;
+  std::vector<std::array<int, 2>> stack = {{0, 0}};
+  while (!stack.empty()) {
+    const auto [i, j] = stack.back();
+    stack.pop_back();
+    const Node& a = nodes_[i];
+    const Node& b = nodes_[j];
+    if (++steps > most_steps) {
+      return false;
+    }
+    if (i != j && !a.box.meets(b.box)) {
+      continue;
+    }
+    const bool leaf_a = a.second_child < 0;
+    const bool leaf_b = b.second_child < 0;
+    if (leaf_a && leaf_b) {
+      for (int p = a.first; p < a.last; ++p) {
+        for (int q = i == j ? p + 1 : b.first; q < b.last; ++q) {
+          steps += 1;
+          const auto [f, g] = std::minmax(facets_[p], facets_[q]);
+          if (boxes_[p].meets(boxes_[q]) && !visit(f, g)) {
+            return true;
+          }
+        }
+      }
+    } else if (i == j) {
+      stack.push_back({i + 1, i + 1});
+      stack.push_back({a.second_child, a.second_child});
+      stack.push_back({i + 1, a.second_child});
+    } else if (leaf_b || (!leaf_a && a.last - a.first >= b.last - b.first)) {
+      stack.push_back({i + 1, j});
+      stack.push_back({a.second_child, j});
+    } else {
+      stack.push_back({i, j + 1});
+      stack.push_back({i, b.second_child});
+    }
+  }
+  return true;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,83 @@
+/// Arithmetic expressions over named values, as they stand in case files.
+/// Evaluated over numbers or over duals, so first and second derivatives are
+/// exact (docs/decisions/0001-expressions.md).
+///
+///   + - * / ^ (right associative)   comparisons < <= > >= == !=
+///   sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs
+///   min max pow sqr if(condition, then, else)
+///   pi  e  deg (= pi / 180; angles are radians)
+///
+/// -2^2 is -4; 2^-1 is 0.5. A comparison is 1 or 0. Of if() only the branch
+/// that holds is evaluated. abs, min, max, if and comparisons are not smooth
+/// where they switch; derivatives there are those of the side taken (abs at 0:
+/// of the right side).
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/math/dual.h"
+#include "core/nearest_name.h"
+
+namespace meniscus {
+
+/// What is wrong with an expression: message and column (from 1) in its text.
+class ExpressionError : public std::runtime_error {
+ public:
+  ExpressionError(const std::string& message, int column)
+      : std::runtime_error(message), column_(column) {}
+  int column() const { return column_; }
+
+ private:
+  int column_;
+};
+
+/// Compiled once, evaluated often; a value, safe to use from several threads.
+class Expression {
+ public:
+  /// The number 0.
+  Expression() : Expression(0.0) {}
+  explicit Expression(double constant);
+
+  /// `names`: the values that may appear, by position. Throws ExpressionError:
+  /// syntax, unknown name (with the nearest known one), more than 200 levels
+  /// of nesting, longer than 10,000 characters. The decimal sign is a point
+  /// whatever the locale.
+  static Expression parse(std::string_view text,
+                          const std::vector<std::string>& names);
+
+  /// `values`: one per name given to parse(). Throws ExpressionError, naming
+  /// operation and operands, when an operation has no finite result; over
+  /// duals also when it has no finite first or second derivative.
+  double evaluate(std::span<const double> values) const;
+  Dual evaluate(std::span<const Dual> values) const;
+  Dual3 evaluate(std::span<const Dual3> values) const;
+
+  const std::string& text() const { return text_; }
+  /// Positions of the names that appear, ascending.
+  std::vector<int> names_used() const;
+  bool is_constant() const;
+
+ private:
+  friend class ExpressionParser;
+  struct Instruction {
+    int operation = 0;    // expression_code::Operation
+    int index = -1;       // of a name: its position; of a jump: where to
+    double number = 0.0;  // of a number
+    int column = 0;
+  };
+  template <class Scalar>
+  Scalar run(std::span<const Scalar> values) const;
+
+  std::string text_;
+  std::vector<Instruction> code_;  // postfix
+};
+
+/// Constants, functions and the coordinates x, y, z, which expressions of a
+/// place know: no name of a case may be one.
+bool is_reserved_name(std::string_view name);
+
+}  // namespace meniscus

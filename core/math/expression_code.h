@@ -1,0 +1,61 @@
+/// Operations of compiled expressions: shared by the parser and the evaluator
+/// of core/math/expression.h, nothing else needs it.
+#pragma once
+
+#include <array>
+#include <numbers>
+
+namespace meniscus::expression_code {
+
+enum Operation : int {
+  Number,
+  Name,
+  JumpIfZero,  // takes the condition off the stack
+  Jump,
+  Negate,
+  Add,
+  Subtract,
+  Multiply,
+  Divide,
+  Power,
+  Less,
+  LessEqual,
+  Greater,
+  GreaterEqual,
+  Equal,
+  NotEqual,
+  FirstFunction
+};
+
+struct Function {
+  const char* name;
+  int arguments;
+};
+constexpr std::array<Function, 19> kFunctions = {{
+    {"sin", 1},   {"cos", 1},   {"tan", 1},  {"asin", 1}, {"acos", 1},
+    {"atan", 1},  {"sinh", 1},  {"cosh", 1}, {"tanh", 1}, {"exp", 1},
+    {"log", 1},   {"log10", 1}, {"sqrt", 1}, {"abs", 1},  {"sqr", 1},
+    {"atan2", 2}, {"min", 2},   {"max", 2},  {"pow", 2},
+}};
+
+/// if(condition, then, else) is no function: only one of its branches runs.
+constexpr const char* kConditional = "if";
+
+struct Constant {
+  const char* name;
+  double value;
+};
+constexpr std::array<Constant, 3> kConstants = {
+    {{"pi", std::numbers::pi},
+     {"e", std::numbers::e},
+     {"deg", std::numbers::pi / 180.0}}};
+
+constexpr int arity(int operation) {
+  if (operation >= FirstFunction) {
+    return kFunctions[static_cast<std::size_t>(operation - FirstFunction)]
+        .arguments;
+  }
+  return operation < Negate ? 0 : operation == Negate ? 1 : 2;
+}
+
+}  // namespace meniscus::expression_code

@@ -1,0 +1,316 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "core/math/expression.h"
+#include "core/math/expression_code.h"
+
+namespace meniscus {
+
+namespace {
+
+using namespace expression_code;
+
+constexpr int kDeepest = 200;
+constexpr std::size_t kLongest = 10000;
+constexpr std::size_t kShown = 80;  // characters of a text in a message
+
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::string suggestion(const std::string& word,
+                       const std::vector<std::string>& known) {
+  const std::string near = nearest_name(word, known);
+  return near.empty() ? "" : " (did you mean '" + near + "'?)";
+}
+
+}  // namespace
+
+/// Recursive descent into postfix code.
+class ExpressionParser {
+ public:
+  ExpressionParser(std::string_view text, const std::vector<std::string>& names)
+      : text_(text), names_(names) {}
+
+  Expression parse() {
+    if (text_.size() > kLongest) {
+      throw ExpressionError(
+          fmt::format("expression of {} characters; at most {} are read",
+                      text_.size(), kLongest),
+          1);
+    }
+    comparison();
+    skip_space();
+    if (at_ < text_.size()) {
+      fail(text_[at_] == ')' ? "')' without its '('"
+                             : fmt::format("unexpected '{}'", here()));
+    }
+    Expression result;
+    result.text_ = text_;
+    result.code_ = std::move(code_);
+    return result;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw ExpressionError(fmt::format("{} in '{}'", message, shown()),
+                          static_cast<int>(at_) + 1);
+  }
+  std::string shown() const {
+    return text_.size() <= kShown
+               ? std::string(text_)
+               : std::string(text_.substr(0, kShown - 3)) + "...";
+  }
+  // The character at hand, whole when it is UTF-8 of several bytes.
+  std::string here() const {
+    if (at_ >= text_.size()) {
+      return "end";
+    }
+    std::size_t size = 1;
+    while (at_ + size < text_.size() &&
+           (static_cast<unsigned char>(text_[at_ + size]) & 0xC0U) == 0x80U) {
+      ++size;
+    }
+    return std::string(text_.substr(at_, size));
+  }
+  void skip_space() {
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) {
+      ++at_;
+    }
+  }
+  bool take(std::string_view token) {
+    skip_space();
+    if (text_.substr(at_, token.size()) != token) {
+      return false;
+    }
+    at_ += token.size();
+    return true;
+  }
+  void emit(int operation, std::size_t column) {
+    code_.push_back(
+        {.operation = operation, .column = static_cast<int>(column) + 1});
+  }
+  void enter() {
+    if (++depth_ > kDeepest) {
+      fail(fmt::format("more than {} levels of nesting", kDeepest));
+    }
+  }
+
+  void comparison() {
+    enter();
+    sum();
+    struct Token {
+      const char* text;
+      int operation;
+    };
+    constexpr std::array<Token, 6> kTokens = {{{"<=", LessEqual},
+                                               {">=", GreaterEqual},
+                                               {"==", Equal},
+                                               {"!=", NotEqual},
+                                               {"<", Less},
+                                               {">", Greater}}};
+    for (const Token& token : kTokens) {
+      if (take(token.text)) {
+        const std::size_t column = at_ - 1;
+        sum();
+        emit(token.operation, column);
+        break;
+      }
+    }
+    --depth_;
+  }
+
+  void sum() {
+    product();
+    while (true) {
+      const int operation = take("+") ? Add : take("-") ? Subtract : Number;
+      if (operation == Number) {
+        return;
+      }
+      const std::size_t column = at_ - 1;
+      product();
+      emit(operation, column);
+    }
+  }
+
+  void product() {
+    unary();
+    while (true) {
+      const int operation = take("*") ? Multiply : take("/") ? Divide : Number;
+      if (operation == Number) {
+        return;
+      }
+      const std::size_t column = at_ - 1;
+      unary();
+      emit(operation, column);
+    }
+  }
+
+  void unary() {
+    bool negative = false;
+    std::size_t column = at_;
+    while (true) {
+      if (take("-")) {
+        column = at_ - 1;
+        negative = !negative;
+      } else if (!take("+")) {
+        break;
+      }
+    }
+    power();
+    if (negative) {
+      emit(Negate, column);
+    }
+  }
+
+  void power() {
+    primary();
+    if (take("^")) {
+      const std::size_t column = at_ - 1;
+      enter();
+      unary();  // right associative; 2^-3 is allowed
+      --depth_;
+      emit(Power, column);
+    }
+  }
+
+  void primary() {
+    skip_space();
+    if (at_ >= text_.size()) {
+      fail("a value is missing at the end");
+    }
+    const char c = text_[at_];
+    if (take("(")) {
+      comparison();
+      close();
+    } else if (is_digit(c) || c == '.') {
+      number();
+    } else if (is_letter(c)) {
+      name();
+    } else {
+      fail(fmt::format("a value is missing before '{}'", here()));
+    }
+  }
+
+  void close() {
+    if (!take(")")) {
+      fail(fmt::format("')' is missing before '{}'", here()));
+    }
+  }
+
+  void number() {
+    double value = 0.0;
+    const auto [end, error] =
+        std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    if (error == std::errc::result_out_of_range) {
+      fail("a number too large or too small to hold");
+    }
+    if (error != std::errc()) {
+      fail("a number that cannot be read");
+    }
+    emit(Number, at_);
+    code_.back().number = value;
+    at_ = static_cast<std::size_t>(end - text_.data());
+  }
+
+  void name() {
+    const std::size_t column = at_;
+    while (at_ < text_.size() &&
+           (is_letter(text_[at_]) || is_digit(text_[at_]))) {
+      ++at_;
+    }
+    const std::string word(text_.substr(column, at_ - column));
+    if (take("(")) {
+      call(word, column);
+      return;
+    }
+    const auto known = std::find(names_.begin(), names_.end(), word);
+    if (known != names_.end()) {
+      emit(Name, column);
+      code_.back().index = static_cast<int>(known - names_.begin());
+      return;
+    }
+    for (const Constant& constant : kConstants) {
+      if (word == constant.name) {
+        emit(Number, column);
+        code_.back().number = constant.value;
+        return;
+      }
+    }
+    at_ = column;
+    fail("unknown name '" + word + "'" + suggestion(word, names_));
+  }
+
+  void call(const std::string& word, std::size_t column) {
+    if (word == kConditional) {
+      conditional(column);
+      return;
+    }
+    const auto function =
+        std::find_if(kFunctions.begin(), kFunctions.end(),
+                     [&](const Function& f) { return word == f.name; });
+    if (function == kFunctions.end()) {
+      std::vector<std::string> known = {kConditional};
+      for (const Function& f : kFunctions) {
+        known.emplace_back(f.name);
+      }
+      at_ = column;
+      fail("unknown function '" + word + "'" + suggestion(word, known));
+    }
+    for (int k = 0; k < function->arguments; ++k) {
+      separate(k, word, function->arguments);
+      comparison();
+    }
+    finish(word, function->arguments);
+    emit(FirstFunction + static_cast<int>(function - kFunctions.begin()),
+         column);
+  }
+
+  // condition, jump if zero to A, then, jump to B, A: else, B:
+  void conditional(std::size_t column) {
+    constexpr int kArguments = 3;
+    comparison();
+    separate(1, kConditional, kArguments);
+    const std::size_t to_else = code_.size();
+    emit(JumpIfZero, column);
+    comparison();
+    separate(2, kConditional, kArguments);
+    const std::size_t to_end = code_.size();
+    emit(Jump, column);
+    code_[to_else].index = static_cast<int>(code_.size());
+    comparison();
+    code_[to_end].index = static_cast<int>(code_.size());
+    finish(kConditional, kArguments);
+  }
+
+  void separate(int argument, const std::string& word, int count) {
+    if (argument > 0 && !take(",")) {
+      fail(fmt::format("{} takes {} arguments, ',' is missing", word, count));
+    }
+  }
+
+  void finish(const std::string& word, int count) {
+    if (take(",")) {
+      fail(fmt::format("{} takes {} argument{}", word, count,
+                       count == 1 ? "" : "s"));
+    }
+    close();
+  }
+
+  std::string_view text_;
+  const std::vector<std::string>& names_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+  std::vector<Expression::Instruction> code_;
+};
+
+Expression Expression::parse(std::string_view text,
+                             const std::vector<std::string>& names) {
+  return ExpressionParser(text, names).parse();
+}
+
+}  // namespace meniscus

@@ -1,0 +1,70 @@
+#include "evolve/datafile/fe_integral_places.h"
+
+namespace meniscus {
+
+bool fe_is_boundary(const FilmComplex& complex, int curve) {
+  const CurveShape& shape = complex.curves[curve].shape;
+  return std::holds_alternative<Circle>(shape) ||
+         std::holds_alternative<Ellipse>(shape) ||
+         std::holds_alternative<ParametricCurve>(shape);
+}
+
+bool fe_on_boundary(const FilmComplex& complex, const ComplexEdge& edge) {
+  return (edge.kind == VertexKind::OnCurve ||
+          edge.kind == VertexKind::Slides) &&
+         fe_is_boundary(complex, edge.curve);
+}
+
+bool fe_has_levels(const ComplexEdge& edge) {
+  return edge.kind == VertexKind::Free && edge.constraints >= 0;
+}
+
+FeIntegralPlaces::FeIntegralPlaces(const FilmComplex& complex) {
+  constexpr int kNone = -1;
+  constexpr int kUnseen = -2;
+  of_curve.assign(complex.curves.size(), kUnseen);
+  of_level.assign(complex.level_sets.size(), kUnseen);
+  const auto see = [](int& of, int set) {
+    of = of == kUnseen || of == set ? set : kNone;
+  };
+  for (const ComplexEdge& edge : complex.edges) {
+    if (fe_on_boundary(complex, edge)) {
+      see(of_curve[edge.curve], edge.integrals);
+    } else if (fe_has_levels(edge)) {
+      const std::vector<int>& levels =
+          complex.constraint_sets[edge.constraints];
+      for (std::size_t k = 0; k < levels.size(); ++k) {
+        see(of_level[levels[k]], k == 0 ? edge.integrals : kNone);
+      }
+    }
+  }
+  int next = static_cast<int>(complex.level_sets.size()) + 1;
+  for (const ComplexEdge& edge : complex.edges) {
+    if (needs_carrier(complex, edge) &&
+        carriers.emplace(key_of(complex, edge), next).second) {
+      ++next;
+    }
+  }
+}
+
+bool FeIntegralPlaces::needs_carrier(const FilmComplex& complex,
+                                     const ComplexEdge& edge) const {
+  if (edge.integrals < 0) {
+    return false;
+  }
+  if (fe_on_boundary(complex, edge)) {
+    return of_curve[edge.curve] != edge.integrals;
+  }
+  return !fe_has_levels(edge) ||
+         of_level[complex.constraint_sets[edge.constraints][0]] !=
+             edge.integrals;
+}
+
+std::array<int, 2> FeIntegralPlaces::key_of(const FilmComplex& complex,
+                                            const ComplexEdge& edge) {
+  return {
+      fe_has_levels(edge) ? complex.constraint_sets[edge.constraints][0] : -1,
+      edge.integrals};
+}
+
+}  // namespace meniscus

@@ -1,0 +1,142 @@
+// The directions of a FilmSpace by the points that make them, backwards and
+// forwards.
+#include "core/error.h"
+#include "evolve/energy/facet_terms.h"
+#include "evolve/energy/film_space.h"
+
+namespace meniscus {
+
+namespace {
+
+/// From a gradient by unit(v) that by v; none where v is zero.
+Vec3 through_unit(const Vec3& v, const Vec3& by_unit) {
+  const double length = v.norm();
+  if (!(length > 0.0)) {
+    return Vec3::Zero();
+  }
+  const Vec3 unit = v / length;
+  return (by_unit - unit.dot(by_unit) * unit) / length;
+}
+
+/// From gradients by the two normals of a line to that by the way along it:
+///   t = unit(way), n0 = unit(t x e), n1 = t x n0, e an axis.
+Vec3 through_normals(const Vec3& way, const Vec3& by_first,
+                     const Vec3& by_second) {
+  if (way.isZero(0.0)) {
+    return Vec3::Zero();
+  }
+  const Vec3 t = way.normalized();
+  const Vec3 axis = line_axis(t);
+  const Vec3 c = t.cross(axis);
+  const Vec3 n0 = c.normalized();
+  const Vec3 by_c = through_unit(c, by_first + by_second.cross(t));
+  return through_unit(way, n0.cross(by_second) + axis.cross(by_c));
+}
+
+/// How fast unit(v) turns when v changes at `rate`; zero where v is zero.
+Vec3 unit_rate(const Vec3& v, const Vec3& rate) {
+  return through_unit(v, rate);  // symmetric
+}
+
+void refuse_walls(const FilmSpace& space) {
+  if (space.has_walls()) {
+    throw InvalidInput(
+        "a film that slides on walls has no exact gradient: hold its rim on a "
+        "curve");
+  }
+}
+
+}  // namespace
+
+Vec3 line_axis(const Vec3& t) {
+  Eigen::Index least = 0;
+  t.cwiseAbs().minCoeff(&least);
+  return Vec3::Unit(least);
+}
+
+void FilmSpace::transpose_directions(const Points& points,
+                                     const Points& by_directions,
+                                     Points& sum) const {
+  refuse_walls(*this);
+  Points normal2(points.size(), Vec3::Zero());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (film_[f] != 0) {
+      const Triangle& t = facets_[f];
+      const FacetFrame frame(points[t[0]], points[t[1]], points[t[2]]);
+      for (const int v : t) {
+        normal2[v] += turn(static_cast<int>(f)) * frame.area2 * frame.normal;
+      }
+    }
+  }
+  Points by_normal2(points.size(), Vec3::Zero());
+  for (int v = 0; v < vertex_count(); ++v) {
+    const int at = first_[v];
+    if (rank(v) == 1) {
+      by_normal2[v] = through_unit(normal2[v], by_directions[at]);
+    } else if (rank(v) == 2) {
+      const Edge& ends = line_ends(v);
+      const Vec3 by_way =
+          through_normals(points[ends[1]] - points[ends[0]], by_directions[at],
+                          by_directions[at + 1]);
+      sum[ends[1]] += by_way;
+      sum[ends[0]] -= by_way;
+    }
+  }
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (film_[f] == 0) {
+      continue;
+    }
+    const Triangle& t = facets_[f];
+    const Vec3 by = turn(static_cast<int>(f)) *
+                    (by_normal2[t[0]] + by_normal2[t[1]] + by_normal2[t[2]]);
+    for (int i = 0; i < 3; ++i) {
+      // dN = e_i x dx_i
+      const Vec3 opposite = points[t[(i + 2) % 3]] - points[t[(i + 1) % 3]];
+      sum[t[i]] += by.cross(opposite);
+    }
+  }
+}
+
+Points FilmSpace::direction_rates(const Points& points,
+                                  const Points& motion) const {
+  refuse_walls(*this);
+  Points normal2(points.size(), Vec3::Zero());
+  Points rate2(points.size(), Vec3::Zero());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (film_[f] == 0) {
+      continue;
+    }
+    const Triangle& t = facets_[f];
+    const double turned = turn(static_cast<int>(f));
+    const Vec3 b = points[t[1]] - points[t[0]];
+    const Vec3 c = points[t[2]] - points[t[0]];
+    const Vec3 area2 = turned * b.cross(c);
+    const Vec3 rate = turned * ((motion[t[1]] - motion[t[0]]).cross(c) +
+                                b.cross(motion[t[2]] - motion[t[0]]));
+    for (const int v : t) {
+      normal2[v] += area2;
+      rate2[v] += rate;
+    }
+  }
+  Points result(vertex_.size(), Vec3::Zero());
+  for (int v = 0; v < vertex_count(); ++v) {
+    const int at = first_[v];
+    if (rank(v) == 1) {
+      result[at] = unit_rate(normal2[v], rate2[v]);
+    } else if (rank(v) == 2) {
+      const Edge& ends = line_ends(v);
+      const Vec3 way = points[ends[1]] - points[ends[0]];
+      if (!way.isZero(0.0)) {
+        const Vec3 t = way.normalized();
+        const Vec3 turned = unit_rate(way, motion[ends[1]] - motion[ends[0]]);
+        const Vec3 axis = line_axis(t);
+        const Vec3 c = t.cross(axis);
+        result[at] = unit_rate(c, turned.cross(axis));
+        result[at + 1] = turned.cross(c.normalized()) + t.cross(result[at]);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace meniscus

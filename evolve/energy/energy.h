@@ -1,0 +1,147 @@
+/// The energy of a film complex and the functionals it holds (volumes of
+/// bodies, held quantities): values, gradients, and Hessians along given
+/// directions on a pattern that is built once. Sums run in facet order: same
+/// input, same bits.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/math/linear_solve.h"
+#include "evolve/energy/film_space.h"
+#include "evolve/energy/film_terms.h"
+#include "evolve/films/film_complex.h"
+#include "evolve/films/film_targets.h"
+
+namespace meniscus {
+
+class FilmEnergy {
+ public:
+  /// Takes the topology of `complex` (facets, kinds, sides of bodies), its
+  /// walls and its terms, no positions. Throws MeshError for a facet corner
+  /// out of range.
+  explicit FilmEnergy(const FilmComplex& complex,
+                      FilmMotion motion = FilmMotion::NormalSpace);
+  ~FilmEnergy();
+  FilmEnergy(FilmEnergy&&) noexcept;
+  FilmEnergy& operator=(FilmEnergy&&) noexcept;
+
+  const FilmSpace& space() const { return space_; }
+  int unknowns() const { return space_.unknowns(); }
+  const std::vector<int>& vertices() const { return space_.vertices(); }
+  /// Bodies, then held quantities.
+  int functionals() const { return functional_count_; }
+  int bodies() const { return body_count_; }
+  const std::vector<Triangle>& facets() const { return facets_; }
+  bool is_liquid(int facet) const { return liquid_[label_[facet]] != 0; }
+  /// Sign of a facet in a body: +1 normal out of it, -1 into it, 0 elsewhere.
+  int side(int facet, int body) const {
+    return body < body_count_ ? side_[label_[facet]][body] : 0;
+  }
+
+  /// Energy: tension x area and every other term [force length].
+  double value(const Points& points, const FilmTargets& targets) const;
+  /// Area of the films [length^2].
+  double area(const Points& points) const;
+  /// Signed volumes of the bodies [length^3], then the held quantities.
+  VectorX volumes(const Points& points) const;
+  /// Value of every quantity of the complex.
+  VectorX quantities(const Points& points) const;
+
+  /// dE/dx, one per vertex [force]; boundary vertices included.
+  Points gradient(const Points& points, const FilmTargets& targets) const;
+  /// dF/dx of one functional, one per vertex.
+  Points functional_gradient(const Points& points, int functional) const;
+
+  /// Per surface its area, 0 of caps [length^2]; gradient of sum weight x area.
+  VectorX areas(const Points& points) const;
+  Points area_gradient(const Points& points, const VectorX& weight) const;
+  /// False: caps, and films whose tension is a field.
+  bool has_tension(int surface) const { return plain_[surface] != 0; }
+
+  /// What of a gradient (one per vertex) runs along each unknown's direction.
+  VectorX along(const Points& slope, const Points& directions) const;
+
+  /// Elements of the Hessian of E - sum pressure F along `directions`, packed:
+  /// per facet the lower triangle over its corners' unknowns. `gradient`: of
+  /// that Lagrangian, for the walls' bending.
+  void elements(const Points& points, const Points& directions,
+                const FilmTargets& targets, const VectorX& pressure,
+                const Points& gradient, std::vector<double>& out) const;
+  /// Scatters elements into `out`, which must come from pattern().
+  void assemble(const std::vector<double>& elements, SparseMatrix& out) const;
+  /// Lower triangle of the Hessian [force/length].
+  void hessian(const Points& points, const Points& directions,
+               const FilmTargets& targets, const VectorX& pressure,
+               SparseMatrix& out) const;
+  const SparseMatrix& pattern() const { return pattern_; }
+  /// Fill-reducing order of pattern(), found at the first call.
+  const std::vector<int>& order() const;
+
+  struct Corner {
+    int corner;
+    int unknown;
+  };
+  const std::vector<int>& corner_start() const { return corner_start_; }
+  const std::vector<Corner>& corners() const { return corners_; }
+  const std::vector<int>& element_start() const { return element_start_; }
+
+  /// A third of the area of the films' facets around each unknown's vertex.
+  VectorX lumped_area(const Points& points) const;
+  /// Smallest cosine between a film facet's normals at `points` and at `base`;
+  /// `facet` receives where. Negative: folded.
+  double smallest_cosine(const Points& points, const Points& base,
+                         int* facet = nullptr) const;
+  /// Mean length of the films' edges [length].
+  double mean_edge(const Points& points) const;
+
+  /// Motions of floating parts that change nothing, along `directions`, each
+  /// weighted by `metric`: columns that span them (none: no columns).
+  Eigen::MatrixXd rigid_motions(const Points& points, const Points& directions,
+                                const VectorX& metric) const;
+
+ private:
+  friend class FilmProducts;  // motions x derivatives
+  Vec3 cone_origin(const Points& points) const;
+  std::vector<double> pressure_jumps(const VectorX& pressure) const;
+  void add_term_gradients(const Points& points, int functional,
+                          Points& sum) const;
+  void find_floating(const FilmComplex& complex);
+  void build_pattern();
+  void add_terms(const Points& points, const VectorX& pressure,
+                 const Points& directions, std::vector<double>& out) const;
+  void add_wall_curvature(const Points& points, const Points& directions,
+                          const Points& gradient,
+                          std::vector<double>& out) const;
+  void add_block(int facet, int corner_a, int corner_b,
+                 const Eigen::Matrix3d& block, const Points& directions,
+                 std::vector<double>& out) const;
+
+  FilmSpace space_;
+  std::vector<Triangle> facets_;
+  std::vector<int> label_;
+  std::vector<char> liquid_;            // per surface
+  std::vector<char> plain_;             // per surface: tension is a number
+  std::vector<std::vector<int>> side_;  // per surface, per body
+  std::vector<char> cone_;              // per body: cones measure it
+  bool open_cones_ = false;             // of a body that facets do not close
+  VectorX volume_offset_;
+  std::vector<std::unique_ptr<FilmTerm>> terms_;
+  int body_count_ = 0;
+  int functional_count_ = 0;
+  int quantity_count_ = 0;
+  std::vector<double> modulus_;  // per quantity: what its terms carry
+  std::vector<int> floating_;    // per unknown: floating part, or -1
+  int floating_count_ = 0;
+  bool resisted_ = false;          // by fields in space: nothing floats
+  Vec3 gravity_ = Vec3::Zero();    // zero where nothing has weight
+  std::vector<int> corner_start_;  // per facet: into corners_
+  std::vector<Corner> corners_;
+  std::vector<int> element_start_;  // per facet: into elements
+  std::vector<int> slots_;          // element entry -> pattern
+  SparseMatrix pattern_;
+  mutable std::vector<int> order_;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,244 @@
+#include "evolve/energy/film_products.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "evolve/energy/facet_terms.h"
+
+namespace meniscus {
+
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+/// Slope at 0 from four places, to fourth order: times the step, weight. The
+/// step, of a mean edge, is small against any field's length.
+constexpr std::array<std::array<double, 2>, 4> kSlope = {{{1.0, 2.0 / 3.0},
+                                                          {-1.0, -2.0 / 3.0},
+                                                          {2.0, -1.0 / 12.0},
+                                                          {-2.0, 1.0 / 12.0}}};
+constexpr double kTermStep = 1e-3;
+
+/// What a motion of its corners does to a facet.
+struct FacetMotion {
+  std::array<Vec3, 3> opposite;  // of e_i
+  Vec3 normal2 = Vec3::Zero();   // of N
+  Vec3 normal = Vec3::Zero();    // of n; zero for a facet without area
+
+  FacetMotion(const FacetFrame& frame, const Corners& d)
+      : opposite{d[2] - d[1], d[0] - d[2], d[1] - d[0]} {
+    for (int i = 0; i < 3; ++i) {
+      normal2 += frame.opposite[i].cross(d[i]);
+    }
+    if (frame.area2 > 0.0) {
+      normal =
+          (normal2 - frame.normal.dot(normal2) * frame.normal) / frame.area2;
+    }
+  }
+};
+
+}  // namespace
+
+FilmProducts::FilmProducts(const FilmEnergy& energy, const FilmTargets& targets,
+                           VectorX pressure)
+    : energy_(energy),
+      tension_(VectorX::Zero(static_cast<Eigen::Index>(energy.plain_.size()))),
+      energies_(1.0),
+      pressure_(std::move(pressure)) {
+  for (std::size_t s = 0; s < energy.plain_.size(); ++s) {
+    if (energy.plain_[s] != 0) {
+      tension_[static_cast<Eigen::Index>(s)] = targets.tension[s];
+    }
+  }
+}
+
+FilmProducts::FilmProducts(const FilmEnergy& energy, VectorX pressure)
+    : energy_(energy),
+      tension_(VectorX::Zero(static_cast<Eigen::Index>(energy.plain_.size()))),
+      energies_(0.0),
+      pressure_(std::move(pressure)) {}
+
+template <class OfFacet>
+VectorX FilmProducts::over_films(const Points& points, const Points& motion,
+                                 const OfFacet& of_facet) const {
+  const FilmEnergy& e = energy_;
+  VectorX sum = VectorX::Zero(static_cast<Eigen::Index>(e.liquid_.size()));
+  for (std::size_t f = 0; f < e.facets_.size(); ++f) {
+    if (e.liquid_[e.label_[f]] != 0) {
+      const Corners c = corners_of(points, e.facets_[f]);
+      const Corners d = corners_of(motion, e.facets_[f]);
+      const FacetFrame frame(c[0], c[1], c[2]);
+      sum[e.label_[f]] += of_facet(frame, FacetMotion(frame, d), d);
+    }
+  }
+  return sum;
+}
+
+VectorX FilmProducts::area_rates(const Points& points,
+                                 const Points& motion) const {
+  return over_films(points, motion,
+                    [](const FacetFrame& frame, const FacetMotion& moved,
+                       const Corners& /*d*/) {
+                      return 0.5 * frame.normal.dot(moved.normal2);
+                    });
+}
+
+void FilmProducts::add_facets(const Points& points, const Points& motion,
+                              Points& sum) const {
+  const FilmEnergy& e = energy_;
+  const Vec3 origin = e.cone_origin(points);
+  const std::vector<double> jump = e.pressure_jumps(pressure_);
+  for (std::size_t f = 0; f < e.facets_.size(); ++f) {
+    const Triangle& at = e.facets_[f];
+    const int label = e.label_[f];
+    const double t = tension_[label];
+    const double p = jump[label];
+    if (t == 0.0 && p == 0.0) {
+      continue;
+    }
+    const Corners d = corners_of(motion, at);
+    const FacetFrame frame(points[at[0]] - origin, points[at[1]] - origin,
+                           points[at[2]] - origin);
+    const FacetMotion moved(frame, d);
+    const double half = frame.area2 > 0.0 ? 0.5 * t : 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const int k = (i + 2) % 3;
+      // d (n x e_i) / 2 of the area, d (x_j x x_k) / 6 of the cone.
+      const Vec3 of_area = moved.normal.cross(frame.opposite[i]) +
+                           frame.normal.cross(moved.opposite[i]);
+      const Vec3 of_cone =
+          d[j].cross(frame.corner[k]) + frame.corner[j].cross(d[k]);
+      sum[at[i]] += half * of_area - p / 6.0 * of_cone;
+    }
+  }
+}
+
+/// What term `functional` counts in L.
+double FilmProducts::weight_of(int functional) const {
+  return functional == -1  ? energies_
+         : functional >= 0 ? -pressure_[functional]
+                           : 0.0;
+}
+
+void FilmProducts::add_terms(const Points& points, const Points& motion,
+                             double scale, Points& sum) const {
+  for (const auto& term : energy_.terms_) {
+    const double factor = scale * weight_of(term->functional());
+    if (factor == 0.0) {
+      continue;
+    }
+    for (const FilmTerm::Element& e : term->elements()) {
+      const Triangle& at = energy_.facets_[e.facet];
+      Eigen::Matrix<double, 9, 1> d;
+      d << motion[at[0]], motion[at[1]], motion[at[2]];
+      if (d.isZero(0.0)) {
+        continue;
+      }
+      const FacetJet jet =
+          term->jet(e, corners_of(points, at), JetOrder::Hessian);
+      const Eigen::Matrix<double, 9, 1> product = factor * (jet.hessian * d);
+      for (int i = 0; i < 3; ++i) {
+        sum[at[i]] += product.segment<3>(3 * i);
+      }
+    }
+  }
+}
+
+Points FilmProducts::hessian_times(const Points& points,
+                                   const Points& motion) const {
+  Points sum(points.size(), Vec3::Zero());
+  add_facets(points, motion, sum);
+  add_terms(points, motion, 1.0, sum);
+  return sum;
+}
+
+VectorX FilmProducts::area_curvatures(const Points& points,
+                                      const Points& motion) const {
+  return over_films(
+      points, motion,
+      [](const FacetFrame& frame, const FacetMotion& moved, const Corners& d) {
+        const Vec3 bend = (d[1] - d[0]).cross(d[2] - d[0]);
+        return 0.5 * moved.normal.dot(moved.normal2) + frame.normal.dot(bend);
+      });
+}
+
+/// With N(x + s d) = N + s N1 + s^2 N2, m = N1 - (n.N1) n and a the area,
+///   a'' = (m.N1 / |N| + 2 n.N2) / 2,
+///   da''/dN1 = m / |N|,
+///   da''/dN = (P N2 - ((n.N1) m + m.m n / 2) / |N|) / |N|, P across n;
+/// of the cone, v'' = sum x_i . (d_j x d_k) / 3.
+Points FilmProducts::third_times(const Points& points,
+                                 const Points& motion) const {
+  const FilmEnergy& e = energy_;
+  Points sum(points.size(), Vec3::Zero());
+  const std::vector<double> jump = e.pressure_jumps(pressure_);
+  for (std::size_t f = 0; f < e.facets_.size(); ++f) {
+    const Triangle& at = e.facets_[f];
+    const Corners c = corners_of(points, at);
+    const Corners d = corners_of(motion, at);
+    const FacetFrame frame(c[0], c[1], c[2]);
+    const FacetMotion moved(frame, d);
+    const double t = frame.area2 > 0.0 ? tension_[e.label_[f]] : 0.0;
+    const double p = jump[e.label_[f]];
+    const Vec3& n = frame.normal;
+    Vec3 by_first = Vec3::Zero();
+    Vec3 by_normal = Vec3::Zero();
+    if (t != 0.0) {
+      const Vec3 bend = (d[1] - d[0]).cross(d[2] - d[0]);
+      const Vec3 m = moved.normal;  // over |N| already
+      by_first = t * m;
+      by_normal = t * ((bend - n.dot(bend) * n) / frame.area2 -
+                       n.dot(moved.normal2) / frame.area2 * m -
+                       0.5 * m.squaredNorm() * n);
+    }
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 of_cone = d[(i + 1) % 3].cross(d[(i + 2) % 3]);
+      sum[at[i]] += by_normal.cross(frame.opposite[i]) +
+                    by_first.cross(moved.opposite[i]) - p / 3.0 * of_cone;
+    }
+  }
+  if (has_terms()) {
+    double most = 0.0;
+    for (const Vec3& d : motion) {
+      most = std::max(most, d.norm());
+    }
+    const double step =
+        kTermStep * e.mean_edge(points) / std::max(most, 1e-300);
+    for (const auto& [times, weight] : kSlope) {
+      Points moved = points;
+      flat(moved) += times * step * flat(motion);
+      add_terms(moved, motion, weight / step, sum);
+    }
+  }
+  return sum;
+}
+
+bool FilmProducts::has_terms() const {
+  return std::any_of(
+      energy_.terms_.begin(), energy_.terms_.end(),
+      [&](const auto& term) { return weight_of(term->functional()) != 0.0; });
+}
+
+Points FilmProducts::metric_gradient(const Points& points,
+                                     const VectorX& weight) const {
+  const FilmEnergy& e = energy_;
+  Points sum(points.size(), Vec3::Zero());
+  for (std::size_t f = 0; f < e.facets_.size(); ++f) {
+    if (e.liquid_[e.label_[f]] == 0) {
+      continue;
+    }
+    double of_facet = 0.0;
+    for (int i = e.corner_start_[f]; i < e.corner_start_[f + 1]; ++i) {
+      of_facet += weight[e.corners_[i].unknown] / 3.0;
+    }
+    const Corners c = corners_of(points, e.facets_[f]);
+    const FacetFrame frame(c[0], c[1], c[2]);
+    for (int i = 0; i < 3; ++i) {
+      sum[e.facets_[f][i]] += of_facet * frame.area_gradient(i);
+    }
+  }
+  return sum;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,52 @@
+/// Products of the derivatives of L = E - sum pressure F with motions of all
+/// vertices of a film, rims and caps included; without the bending of walls.
+#pragma once
+
+#include "evolve/energy/energy.h"
+
+namespace meniscus {
+
+class FilmProducts {
+ public:
+  /// `pressure`: one per functional. `energy` must outlive this.
+  FilmProducts(const FilmEnergy& energy, const FilmTargets& targets,
+               VectorX pressure);
+  /// Of - sum pressure F alone.
+  FilmProducts(const FilmEnergy& energy, VectorX pressure);
+
+  /// Second derivative x motion, one vector per vertex.
+  Points hessian_times(const Points& points, const Points& motion) const;
+
+  /// Gradient by all vertices of motion . (second derivative x motion), at
+  /// the same motion. Exact for tension x area and volumes; of other terms
+  /// differences along the motion, good to ten figures.
+  Points third_times(const Points& points, const Points& motion) const;
+
+  /// How fast each surface's area grows in the motion; 0 of caps.
+  VectorX area_rates(const Points& points, const Points& motion) const;
+  /// And how fast that rate grows: motion . (d2 area x motion).
+  VectorX area_curvatures(const Points& points, const Points& motion) const;
+
+  /// Gradient by all vertices of sum weight x lumped area, one weight per
+  /// unknown.
+  Points metric_gradient(const Points& points, const VectorX& weight) const;
+
+ private:
+  /// Per surface: the sum of `of_facet`(frame, its motion, corners' motion).
+  template <class OfFacet>
+  VectorX over_films(const Points& points, const Points& motion,
+                     const OfFacet& of_facet) const;
+  void add_facets(const Points& points, const Points& motion,
+                  Points& sum) const;
+  void add_terms(const Points& points, const Points& motion, double factor,
+                 Points& sum) const;
+  double weight_of(int functional) const;
+  bool has_terms() const;
+
+  const FilmEnergy& energy_;
+  VectorX tension_;  // one per surface
+  double energies_;  // factor of E's other terms
+  VectorX pressure_;
+};
+
+}  // namespace meniscus

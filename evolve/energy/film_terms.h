@@ -1,0 +1,61 @@
+/// Energies and held functionals of a complex beside tension x area and cone
+/// volumes: tension that varies, weight, line integrals on walls, named
+/// quantities. Each is a sum over small elements (a facet, or an edge of one)
+/// with value, gradient and Hessian in the corners' coordinates.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "evolve/films/film_complex.h"
+
+namespace meniscus {
+
+/// Derivatives of one element, the nine coordinates of its facet's corners.
+struct FacetJet {
+  double value = 0.0;
+  Eigen::Matrix<double, 9, 1> gradient = Eigen::Matrix<double, 9, 1>::Zero();
+  Eigen::Matrix<double, 9, 9> hessian = Eigen::Matrix<double, 9, 9>::Zero();
+};
+
+enum class JetOrder { Value = 0, Gradient = 1, Hessian = 2 };
+
+class FilmTerm {
+ public:
+  virtual ~FilmTerm() = default;
+
+  struct Element {
+    int facet;    // whose corners it depends on
+    double sign;  // factor
+    int first;    // corner where its edge starts (edges only)
+  };
+  const std::vector<Element>& elements() const { return elements_; }
+  /// -1: energy, else the held functional (bodies, then held quantities) that
+  /// it belongs to; -2: only reported.
+  int functional() const { return functional_; }
+  int quantity() const { return quantity_; }  // index, or -1
+
+  /// One element's share, sign included. Throws ExpressionError.
+  virtual FacetJet jet(const Element& element,
+                       const std::array<Vec3, 3>& corner,
+                       JetOrder order) const = 0;
+
+ protected:
+  std::vector<Element> elements_;
+  int functional_ = -1;
+  int quantity_ = -1;
+  friend class FilmTermBuilder;
+};
+
+/// The terms of a complex, in a fixed order. Throws InvalidInput for a held
+/// functional over nothing.
+std::vector<std::unique_ptr<FilmTerm>> film_terms(const FilmComplex& complex);
+
+/// True where the body's facets close it, so that cones measure its volume
+/// whatever the rule.
+bool closed_by_facets(const FilmComplex& complex, int body);
+
+/// Quantities that are held, in order: functional bodies + k.
+std::vector<int> held_quantities(const FilmComplex& complex);
+
+}  // namespace meniscus

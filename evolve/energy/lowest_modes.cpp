@@ -1,0 +1,114 @@
+// Several of the lowest modes of a constrained Hessian.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/energy/constrained_hessian.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr int kMostBlocks = 40;
+constexpr int kMoreColumns = 2;       // than modes wanted, in a block
+constexpr double kResidual = 1e-10;   // of an eigenvalue of the inverse
+constexpr double kDependent = 1e-10;  // a column's part that is new
+
+/// Fixed columns with parts in every mode, whatever the film's symmetry.
+Eigen::MatrixXd start_block(Eigen::Index n, Eigen::Index columns) {
+  Eigen::MatrixXd block(n, columns);
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double phase = 0.6180339887498949 * static_cast<double>(i + 1) *
+                           std::sqrt(static_cast<double>(2 * j + 1));
+      block(i, j) = phase - std::floor(phase) - 0.5;
+    }
+  }
+  return block;
+}
+
+/// Adds the block's columns to an orthonormal basis of `built` columns, less
+/// those that depend on it; returns how many it has then.
+Eigen::Index extend_basis(const Eigen::MatrixXd& block, Eigen::Index built,
+                          Eigen::MatrixXd& basis) {
+  for (Eigen::Index j = 0; j < block.cols() && built < basis.cols(); ++j) {
+    VectorX v = block.col(j);
+    const double before = v.norm();
+    for (int pass = 0; pass < 2; ++pass) {
+      v -= basis.leftCols(built) * (basis.leftCols(built).transpose() * v);
+    }
+    const double length = v.norm();
+    if (length > kDependent * before) {
+      basis.col(built++) = v / length;
+    }
+  }
+  return built;
+}
+
+}  // namespace
+
+LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
+                                             int count) const {
+  const Eigen::Index n = metric.size();
+  const Eigen::Index room = std::max<Eigen::Index>(0, n - constraints_.cols());
+  const auto wanted = std::min<Eigen::Index>(count, room);
+  const VectorX root = metric.cwiseMax(1e-300).cwiseSqrt();
+  const auto apply = [&](const Eigen::MatrixXd& v) -> Eigen::MatrixXd {
+    Eigen::MatrixXd result = factor_.solve(root.asDiagonal() * v);
+    if (constraints_.cols() > 0) {
+      result -= inverse_constraints_ *
+                (schur_inverse_ * (constraints_.transpose() * result));
+    }
+    return root.asDiagonal() * result;
+  };
+  const Eigen::Index width =
+      std::min<Eigen::Index>(wanted + kMoreColumns, room);
+  const Eigen::Index most = std::min<Eigen::Index>(width * kMostBlocks, room);
+  LowestModes result;
+  if (wanted == 0) {
+    return result;
+  }
+  Eigen::MatrixXd basis(n, most);
+  Eigen::MatrixXd image(n, most);
+  Eigen::MatrixXd small(most, most);  // upper triangle
+  Eigen::MatrixXd block = apply(start_block(n, width));
+  Eigen::Index built = 0;
+  for (;;) {
+    const Eigen::Index before = built;
+    built = extend_basis(block, built, basis);
+    const Eigen::Index added = built - before;
+    image.middleCols(before, added) = apply(basis.middleCols(before, added));
+    block = image.middleCols(before, added);
+    small.topRows(built).middleCols(before, added) =
+        basis.leftCols(built).transpose() * block;
+    const Eigen::MatrixXd upper = small.topLeftCorner(built, built);
+    const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(full);
+    const Eigen::Index found = std::min(wanted, built);
+    const Eigen::MatrixXd y =
+        ritz.eigenvectors().rightCols(found).rowwise().reverse();
+    const VectorX theta = ritz.eigenvalues().tail(found).reverse();
+    const Eigen::MatrixXd modes = basis.leftCols(built) * y;
+    const Eigen::MatrixXd left =
+        image.leftCols(built) * y - modes * theta.asDiagonal();
+    const bool done =
+        found == wanted &&
+        (left.colwise().norm().transpose().array() <= kResidual * theta.array())
+            .all();
+    if (done || added == 0 || built == most) {
+      if (!done && built < room) {
+        throw SolverError(fmt::format(
+            "the {} lowest eigenvalues of a film were not found in {} steps",
+            wanted, built));
+      }
+      result.eigenvalues = theta.cwiseInverse();
+      result.modes = root.cwiseInverse().asDiagonal() * modes;
+      return result;
+    }
+  }
+}
+
+}  // namespace meniscus

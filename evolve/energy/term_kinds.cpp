@@ -1,0 +1,340 @@
+#include "evolve/energy/term_kinds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "evolve/energy/film_space.h"
+
+namespace meniscus {
+
+namespace {
+
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+
+struct QuadraturePoint {
+  std::array<double, 3> weight_of;  // barycentric
+  double weight;                    // of the facet's area
+};
+
+/// Degree 5 on a triangle, seven points (Radon 1948).
+const std::array<QuadraturePoint, 7>& facet_rule() {
+  static const std::array<QuadraturePoint, 7> kRule = [] {
+    const double root = std::sqrt(15.0);
+    const double a = (6.0 - root) / 21.0;
+    const double b = (6.0 + root) / 21.0;
+    const double wa = (155.0 - root) / 1200.0;
+    const double wb = (155.0 + root) / 1200.0;
+    const double third = 1.0 / 3.0;
+    return std::array<QuadraturePoint, 7>{{{{third, third, third}, 9.0 / 40.0},
+                                           {{1 - 2 * a, a, a}, wa},
+                                           {{a, 1 - 2 * a, a}, wa},
+                                           {{a, a, 1 - 2 * a}, wa},
+                                           {{1 - 2 * b, b, b}, wb},
+                                           {{b, 1 - 2 * b, b}, wb},
+                                           {{b, b, 1 - 2 * b}, wb}}};
+  }();
+  return kRule;
+}
+
+/// Gauss points on [0, 1], 1 to 8 of them: place, weight.
+std::vector<std::array<double, 2>> edge_rule(int points) {
+  const int n = std::clamp(points, 1, 8);
+  // Golub, Welsch 1969: eigenvalues of the Jacobi matrix of Legendre's
+  // polynomials.
+  Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(n, n);
+  for (int k = 1; k < n; ++k) {
+    jacobi(k, k - 1) = jacobi(k - 1, k) = k / std::sqrt(4.0 * k * k - 1.0);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobi);
+  std::vector<std::array<double, 2>> rule;
+  for (int k = 0; k < n; ++k) {
+    const double first = eigen.eigenvectors()(0, k);
+    rule.push_back({0.5 * (1.0 + eigen.eigenvalues()[k]), first * first});
+  }
+  return rule;
+}
+
+Eigen::Matrix3d cross_matrix(const Vec3& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/// N = (b - a) x (c - a), its derivative and its constant second derivative:
+/// dN/dx_i v = e_i x v.
+struct NormalJet {
+  Vec3 normal;
+  std::array<Eigen::Matrix3d, 3> slope;  // [e_i]x
+
+  explicit NormalJet(const std::array<Vec3, 3>& c) {
+    normal = (c[1] - c[0]).cross(c[2] - c[0]);
+    for (int i = 0; i < 3; ++i) {
+      slope[i] = cross_matrix(c[(i + 2) % 3] - c[(i + 1) % 3]);
+    }
+  }
+  /// Second derivative of f . N by x_i, x_j.
+  static Eigen::Matrix3d bend(const Vec3& f, int i, int j) {
+    if (i == j) {
+      return Eigen::Matrix3d::Zero();
+    }
+    // d2N(v_i, w_j) = +- w x v, + for j = i + 2; f.(w x v) = v.(f x w).
+    const Eigen::Matrix3d m = cross_matrix(f);
+    return j == (i + 2) % 3 ? m : Eigen::Matrix3d(-m);
+  }
+};
+
+/// Integral of F . n over facets.
+class FluxTerm : public FilmTerm {
+ public:
+  explicit FluxTerm(FieldFunction field) : field_(std::move(field)) {}
+
+  FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
+               JetOrder order) const override {
+    const NormalJet n(c);
+    FacetJet sum;
+    for (const QuadraturePoint& q : facet_rule()) {
+      const auto& l = q.weight_of;
+      const FieldJet f = field_(l[0] * c[0] + l[1] * c[1] + l[2] * c[2], order);
+      const double w = 0.5 * element.sign * q.weight;
+      sum.value += w * f.value.dot(n.normal);
+      if (order == JetOrder::Value) {
+        continue;
+      }
+      const Vec3 pull = f.slope.transpose() * n.normal;
+      for (int i = 0; i < 3; ++i) {
+        sum.gradient.segment<3>(3 * i) +=
+            w * (l[i] * pull + n.slope[i].transpose() * f.value);
+      }
+      if (order == JetOrder::Hessian) {
+        add_hessian(f, n, l, w, sum.hessian);
+      }
+    }
+    return sum;
+  }
+
+ private:
+  static void add_hessian(const FieldJet& f, const NormalJet& n,
+                          const std::array<double, 3>& l, double w,
+                          Matrix9& sum) {
+    Eigen::Matrix3d bend = Eigen::Matrix3d::Zero();
+    for (int m = 0; m < 3; ++m) {
+      bend += n.normal[m] * f.bend[m];
+    }
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        sum.block<3, 3>(3 * i, 3 * j) +=
+            w * (l[i] * l[j] * bend + l[i] * f.slope.transpose() * n.slope[j] +
+                 l[j] * n.slope[i].transpose() * f.slope +
+                 NormalJet::bend(f.value, i, j));
+      }
+    }
+  }
+  FieldFunction field_;
+};
+
+/// Integral of a scalar over facets.
+class ScalarTerm : public FilmTerm {
+ public:
+  explicit ScalarTerm(Expression scalar) : scalar_(std::move(scalar)) {}
+
+  FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
+               JetOrder order) const override {
+    const NormalJet n(c);
+    const double size = n.normal.norm();
+    FacetJet sum;
+    if (!(size > 0.0)) {
+      return sum;
+    }
+    const Vec3 unit = n.normal / size;
+    Vector9 grow;  // d|N|
+    for (int i = 0; i < 3; ++i) {
+      grow.segment<3>(3 * i) = n.slope[i].transpose() * unit;
+    }
+    double mean = 0.0;
+    for (const QuadraturePoint& q : facet_rule()) {
+      const auto& l = q.weight_of;
+      const Vec3 at = l[0] * c[0] + l[1] * c[1] + l[2] * c[2];
+      PlaceJet f;
+      if (order == JetOrder::Value) {  // duals cost several times as much
+        f.value = scalar_.evaluate(std::span<const double>(at.data(), 3));
+      } else {
+        f = jet_at(scalar_, at);
+      }
+      const double w = 0.5 * element.sign * q.weight;
+      mean += w * f.value;
+      if (order == JetOrder::Value) {
+        continue;
+      }
+      Vector9 pull;
+      for (int i = 0; i < 3; ++i) {
+        pull.segment<3>(3 * i) = l[i] * f.gradient;
+      }
+      sum.gradient += w * size * pull;
+      if (order == JetOrder::Hessian) {
+        sum.hessian += w * (pull * grow.transpose() + grow * pull.transpose());
+        for (int i = 0; i < 3; ++i) {
+          for (int j = 0; j < 3; ++j) {
+            sum.hessian.block<3, 3>(3 * i, 3 * j) +=
+                w * size * l[i] * l[j] * f.hessian;
+          }
+        }
+      }
+    }
+    sum.value = mean * size;
+    sum.gradient += mean * grow;
+    if (order == JetOrder::Hessian) {
+      const Eigen::Matrix3d across =
+          (Eigen::Matrix3d::Identity() - unit * unit.transpose()) / size;
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          sum.hessian.block<3, 3>(3 * i, 3 * j) +=
+              mean * (n.slope[i].transpose() * across * n.slope[j] +
+                      NormalJet::bend(unit, i, j));
+        }
+      }
+    }
+    return sum;
+  }
+
+ private:
+  Expression scalar_;
+};
+
+/// Integral of F . dl along an edge of the facet.
+class LineTerm : public FilmTerm {
+ public:
+  LineTerm(FieldFunction field, int points)
+      : field_(std::move(field)), rule_(edge_rule(points)) {}
+
+  FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
+               JetOrder order) const override {
+    const int a = element.first;
+    const int b = (a + 1) % 3;
+    const Vec3 way = c[b] - c[a];
+    FacetJet sum;
+    for (const auto& [s, weight] : rule_) {
+      const FieldJet f = field_(c[a] + s * way, order);
+      const double w = element.sign * weight;
+      sum.value += w * f.value.dot(way);
+      if (order == JetOrder::Value) {
+        continue;
+      }
+      const std::array<int, 2> corner = {a, b};
+      const std::array<double, 2> l = {1.0 - s, s};
+      const std::array<double, 2> d = {-1.0, 1.0};
+      const Vec3 pull = f.slope.transpose() * way;
+      Eigen::Matrix3d bend = Eigen::Matrix3d::Zero();
+      for (int m = 0; m < 3; ++m) {
+        bend += way[m] * f.bend[m];
+      }
+      for (int i = 0; i < 2; ++i) {
+        sum.gradient.segment<3>(3 * corner[i]) +=
+            w * (l[i] * pull + d[i] * f.value);
+        for (int j = 0; j < 2 && order == JetOrder::Hessian; ++j) {
+          sum.hessian.block<3, 3>(3 * corner[i], 3 * corner[j]) +=
+              w * (l[i] * l[j] * bend + l[i] * d[j] * f.slope.transpose() +
+                   l[j] * d[i] * f.slope);
+        }
+      }
+    }
+    return sum;
+  }
+
+ private:
+  FieldFunction field_;
+  std::vector<std::array<double, 2>> rule_;
+};
+
+/// Area between edges and the convex wall that they are chords of:
+/// k |S| (|S . n_a| + |S . n_b|) / 12 (Surface Evolver manual 2.70, "convex
+/// constraints"). The Hessian is that of differences of the exact gradient.
+class GapTerm : public FilmTerm {
+ public:
+  GapTerm(Expression formula, double constant)
+      : formula_(std::move(formula)), constant_(constant) {}
+
+  FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
+               JetOrder order) const override {
+    FacetJet sum = first_order(element, c);
+    if (order == JetOrder::Hessian) {
+      const double step = 1e-5 * (c[1] - c[0]).norm();
+      for (int i = 0; i < 9; ++i) {
+        std::array<Vec3, 3> up = c;
+        std::array<Vec3, 3> down = c;
+        up[i / 3][i % 3] += step;
+        down[i / 3][i % 3] -= step;
+        sum.hessian.col(i) = (first_order(element, up).gradient -
+                              first_order(element, down).gradient) /
+                             (2.0 * step);
+      }
+      sum.hessian = 0.5 * (sum.hessian + sum.hessian.transpose()).eval();
+    }
+    return sum;
+  }
+
+ private:
+  FacetJet first_order(const Element& element,
+                       const std::array<Vec3, 3>& c) const {
+    const int a = element.first;
+    const int b = (a + 1) % 3;
+    const Vec3 s = c[b] - c[a];
+    const double length = s.norm();
+    const double w = element.sign * constant_ / 12.0;
+    FacetJet sum;
+    if (!(length > 0.0)) {
+      return sum;
+    }
+    double rise = 0.0;
+    Vec3 by_s = Vec3::Zero();
+    for (const int end : {a, b}) {
+      const PlaceJet f = jet_at(formula_, c[end]);
+      const double size = f.gradient.norm();
+      if (!(size > 0.0)) {
+        continue;
+      }
+      const Vec3 n = f.gradient / size;
+      const double dot = s.dot(n);
+      const double sign = dot < 0.0 ? -1.0 : 1.0;
+      rise += std::abs(dot);
+      by_s += sign * n;
+      // dn = (I - n n^T) H dx / |grad|.
+      const Vec3 across = s - dot * n;
+      sum.gradient.segment<3>(3 * end) +=
+          w * length * sign / size * (f.hessian * across);
+    }
+    sum.value = w * length * rise;
+    const Vec3 pull = w * (rise / length * s + length * by_s);
+    sum.gradient.segment<3>(3 * b) += pull;
+    sum.gradient.segment<3>(3 * a) -= pull;
+    return sum;
+  }
+
+  Expression formula_;
+  double constant_;
+};
+
+}  // namespace
+
+std::unique_ptr<FilmTerm> flux_term(FieldFunction field) {
+  return std::make_unique<FluxTerm>(std::move(field));
+}
+
+std::unique_ptr<FilmTerm> scalar_term(Expression scalar) {
+  return std::make_unique<ScalarTerm>(std::move(scalar));
+}
+
+std::unique_ptr<FilmTerm> line_term(FieldFunction field, int points) {
+  return std::make_unique<LineTerm>(std::move(field), points);
+}
+
+std::unique_ptr<FilmTerm> gap_term(Expression formula, double constant) {
+  return std::make_unique<GapTerm>(std::move(formula), constant);
+}
+
+}  // namespace meniscus

@@ -1,0 +1,147 @@
+/// Films, walls and solid regions as one triangle complex, manifold or not,
+/// before it is frozen into a model: what start, files, grooming, refinement
+/// and equilibrium hand to each other.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/surface_mesh.h"
+#include "core/math/expression.h"
+#include "evolve/films/film_system.h"
+
+namespace meniscus {
+
+enum class VertexKind {
+  Free,     // liquid: moves with its films, within its constraints
+  OnCurve,  // held at point_at(curves[curve], t)
+  Slides,   // liquid: moves along curves[curve], t is unknown
+  InCap,    // inside a solid cap: a fixed linear map of the cap's rim
+  Fixed     // solid
+};
+
+struct ComplexVertex {
+  VertexKind kind = VertexKind::Free;
+  int curve = -1;        // OnCurve, Slides: index into curves
+  double t = 0.0;        // OnCurve, Slides: curve parameter
+  int constraints = -1;  // Free: index into constraint_sets; -1: none
+  bool held = true;      // by them now; false: a one-sided wall was left
+};
+
+/// Marked edges: those that refinement and grooming must know of. Every other
+/// edge is an ordinary edge of its films. Kept once per pair of vertices; line
+/// integrals run from a to b.
+struct ComplexEdge {
+  int a = -1;
+  int b = -1;
+  VertexKind kind = VertexKind::Free;  // of the vertices born on it
+  int curve = -1;                      // OnCurve, Slides
+  int constraints = -1;                // index into constraint_sets
+  bool refine = true;                  // false: stays one edge
+  int integrals = -1;                  // index into integral_sets; -1: none
+};
+
+using VectorField = std::array<Expression, 3>;  // over x, y, z
+
+/// Level set f(x, y, z) = 0 [any unit] that vertices are held to, or may not
+/// cross. AtLeast: f >= 0; a vertex on such a wall leaves it where its film
+/// pulls it away.
+struct LevelSet {
+  enum class Side { On, AtLeast, AtMost };
+  std::string name;
+  Expression formula;  // over x, y, z
+  Side side = Side::On;
+  bool convex = false;  // free marked edges on it carry gap energy
+};
+
+/// Line integral of a vector field along marked edges: energy of walls that
+/// are not meshed (contact angle) [force length], or volume that the facets
+/// leave out (content), added to the bodies beside the edge, with the sign
+/// with which the body's facets run through it.
+struct LineIntegral {
+  enum class Role { Energy, Content };
+  std::string name;
+  Role role = Role::Energy;
+  VectorField field;
+};
+
+struct ComplexSurface {
+  std::string name;
+  bool liquid = true;    // false: solid, its facets carry no tension
+  double tension = 0.0;  // [force/length]; 0 on caps
+  std::optional<Expression> tension_field;  // over x, y, z; replaces tension
+  bool refine = true;                       // false: facets stay as they are
+  int constraints = -1;  // of the vertices born inside it (obstacles)
+};
+
+/// One surface's part in a body: sign +1 where the surface's facet normals
+/// point out of the body, -1 where they point in.
+struct BodySide {
+  int surface = 0;
+  int sign = 1;
+};
+
+struct ComplexBody {
+  std::string name;
+  std::vector<BodySide> sides;
+  std::optional<double> volume;    // [length^3]
+  std::optional<double> pressure;  // [force/length^2]
+  double density = 0.0;            // [mass/length^3]; weight under gravity
+  double volume_offset = 0.0;      // added to the measured volume [length^3]
+};
+
+/// A named functional of the films: minimised with the energy (times modulus),
+/// held at a target like a volume, or only reported.
+struct FilmQuantity {
+  enum class Role { Energy, Held, Info };
+  enum class Kind {
+    VectorIntegral,  // integral of field . normal over facets
+    Area,            // plain area of facets
+    ScalarIntegral,  // integral of scalar over facets
+    BodyVolume,      // volume of `body`, or of all when -1
+    // Integral of scalar over `body`, or over all when -1, which facets close:
+    // where they do not, cones to `origin` do.
+    BodyScalarIntegral
+  };
+  std::string name;
+  Role role = Role::Info;
+  Kind kind = Kind::VectorIntegral;
+  VectorField field;           // VectorIntegral
+  Expression scalar;           // ScalarIntegral, BodyScalarIntegral
+  Vec3 origin = Vec3::Zero();  // BodyScalarIntegral: the scalar's pole if any
+  double modulus = 1.0;        // Energy
+  double target = 0.0;         // Held
+  std::vector<int> surfaces;   // empty: every facet
+  int body = -1;
+};
+
+/// How facets add up to volumes where a body is not closed by facets alone.
+enum class VolumeRule {
+  Cone,   // cones to a point: x . n / 3
+  Column  // columns down to z = 0: z n_z
+};
+
+struct FilmComplex {
+  SurfaceMesh mesh;                      // labels = surface names
+  std::vector<ComplexVertex> vertices;   // one per point
+  std::vector<ComplexEdge> edges;        // marked ones only
+  std::vector<ComplexSurface> surfaces;  // one per label
+  std::vector<ComplexBody> bodies;
+  std::vector<Curve> curves;
+  std::vector<LevelSet> level_sets;
+  std::vector<std::vector<int>> constraint_sets;  // of indices of level_sets
+  std::vector<LineIntegral> integrals;
+  std::vector<std::vector<int>> integral_sets;  // of indices of integrals
+  std::vector<FilmQuantity> quantities;
+  Vec3 gravity = Vec3::Zero();  // acceleration [length/time^2]
+  VolumeRule volume_rule = VolumeRule::Cone;
+  int line_points = 5;  // Gauss points of line integrals, per edge
+  // Energy of free marked edges S on convex level sets, for the area between
+  // edge and wall: gap_constant |S| (|S . n_a| + |S . n_b|) / 12 with the unit
+  // normals of the level set at the edge's ends [force/length].
+  double gap_constant = 0.0;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,95 @@
+/// What a design asks of the liquid at one set of parameters: curves, the
+/// films between them, the solid caps and the bodies that they enclose.
+/// Numbers only. For one model the names, kinds and order never change; the
+/// numbers do.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/math/expression.h"
+#include "evolve/curves/curve.h"
+#include "evolve/films/field_spec.h"
+
+namespace meniscus {
+
+enum class FilmKind {
+  Branch,  // convex hull of any number of closed curves, less their caps
+  Loft,    // band between two closed curves
+  Disk,    // flat start across one closed curve
+  Facets   // given, its rims on any number of curves
+};
+
+/// Facets that a film starts from; only freezing a model looks at them.
+struct StartFacets {
+  Points points;                 // [length]
+  std::vector<Triangle> facets;  // of points
+};
+
+struct FilmSpec {
+  std::string name;
+  FilmKind kind = FilmKind::Branch;
+  std::vector<std::string> curves;
+  double tension = 1.0;  // energy per area of the whole film [force/length]
+  // Over x, y, z; replaces tension, the same for every design of a model.
+  std::optional<Expression> tension_field;
+  std::shared_ptr<const StartFacets> start;  // of Facets
+  double within = 0.0;  // its rims may be so far off their curves [length]
+};
+
+/// Solid; carries no tension. A flat disk across a planar closed curve, a ring
+/// between two closed curves, or facets as they are, whose rims lie on curves.
+/// Where polygons have the same side their disks are joined
+/// (evolve/films/shared_sides.h).
+struct CapSpec {
+  std::string name;
+  std::string curve;  // of a disk or ring
+  /// Of a ring the curve around its hole; empty: a disk. A ring between curves
+  /// of one plane is flat, others are ruled bands.
+  std::string inner = {};
+  std::shared_ptr<const StartFacets> start = nullptr;
+  std::vector<std::string> rims = {};  // of facets: their curves
+  double within = 0.0;                 // as of films
+  /// Of a disk: planar curves that it ends at too. One that lies within
+  /// another's disk is a hole in it, others have disks of their own.
+  std::vector<std::string> more = {};
+
+  /// Those that it ends at.
+  std::vector<std::string> curves() const {
+    if (start) {
+      return rims;
+    }
+    std::vector<std::string> all = {curve};
+    if (!inner.empty()) {
+      all.push_back(inner);
+    }
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+struct BodySpec {
+  std::string name;
+  std::vector<std::string> enclosed_by;  // films and caps
+  // At most one of the two; none means pressure 0.
+  std::optional<double> volume;    // [length^3]
+  std::optional<double> pressure;  // inside minus outside [force/length^2]
+  bool is_void = false;            // of no material: not part of what is meshed
+};
+
+struct FilmSystem {
+  std::vector<Curve> curves;
+  std::vector<FilmSpec> films;
+  std::vector<CapSpec> caps;
+  std::vector<BodySpec> bodies;
+  // Field energies; like tension fields, the same for every design of a model.
+  std::vector<FieldSpec> fields;
+  std::vector<PressureSpec> pressures;
+  /// Facets that are given are the film's own: halved until they are as small
+  /// as its edge, never remeshed.
+  bool keep_facets = false;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,185 @@
+#include "evolve/frozen/carry.h"
+
+#include <numeric>
+
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+/// Vertices of a kind that facets link to a rim; others, of parts that float,
+/// stay where they are.
+std::vector<char> carried_vertices(const FilmComplex& reference,
+                                   VertexKind kind) {
+  const bool film = kind == VertexKind::Free;
+  std::vector<int> parent(reference.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int v) {
+    while (parent[v] != v) {
+      v = parent[v] = parent[parent[v]];
+    }
+    return v;
+  };
+  const SurfaceMesh& mesh = reference.mesh;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (reference.surfaces[mesh.facet_label[f]].liquid == film) {
+      const Triangle& t = mesh.facets[f];
+      parent[root(t[1])] = root(t[0]);
+      parent[root(t[2])] = root(t[0]);
+    }
+  }
+  std::vector<char> held(parent.size(), 0);
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    if (reference.vertices[v].kind != kind) {
+      held[root(static_cast<int>(v))] = 1;
+    }
+  }
+  std::vector<char> result(held.size(), 0);
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    result[v] = reference.vertices[v].kind == kind &&
+                        held[root(static_cast<int>(v))] != 0
+                    ? 1
+                    : 0;
+  }
+  return result;
+}
+
+}  // namespace
+
+Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind,
+                               const std::vector<int>& order) {
+  Extension extension;
+  std::vector<int> unknown_of(reference.vertices.size(), -1);
+  const std::vector<char> carried = carried_vertices(reference, kind);
+  for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
+    if (carried[v] != 0) {
+      unknown_of[v] = static_cast<int>(extension.vertices.size());
+      extension.vertices.push_back(static_cast<int>(v));
+    }
+  }
+  if (extension.vertices.empty()) {
+    return extension;
+  }
+  const bool film = kind == VertexKind::Free;
+  std::vector<double> weight;
+  for (const int label : reference.mesh.facet_label) {
+    weight.push_back(reference.surfaces[label].liquid == film ? 1.0 : 0.0);
+  }
+  const auto count = static_cast<int>(extension.vertices.size());
+  LaplaceSystem laplace =
+      cotan_laplacian(reference.mesh, weight, unknown_of, count,
+                      film ? CotanWeights::Clamped : CotanWeights::Exact);
+  extension.outer.swap(laplace.outer);
+  laplace.inner.makeCompressed();
+  // Films with triple lines have more unknowns than vertices: no order then.
+  const bool fits = order.size() == extension.vertices.size();
+  extension.factor.emplace(laplace.inner, FactorKind::Cholesky,
+                           fits ? order : std::vector<int>{});
+  if (!extension.factor->factorize(laplace.inner)) {
+    throw MeshError(
+        "the reference film cannot be carried: its Laplacian is singular at "
+        "vertex " +
+        std::to_string(extension.vertices[extension.factor->failed_column()]));
+  }
+  return extension;
+}
+
+Carry::Carry(const FilmComplex& reference, const std::vector<int>& film_order)
+    : reference_(reference.mesh.points),
+      kinds_(reference.vertices),
+      films_(extend(reference, VertexKind::Free, film_order)),
+      caps_(extend(reference, VertexKind::InCap, {})) {}
+
+Points Carry::rim_moves(const std::vector<Curve>& curves) const {
+  Points moves(reference_.size(), Vec3::Zero());
+  std::vector<std::vector<std::size_t>> rims(curves.size());
+  std::vector<std::vector<double>> parameters(curves.size());
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    if (kinds_[v].kind == VertexKind::OnCurve) {
+      const auto c = static_cast<std::size_t>(kinds_[v].curve);
+      rims[c].push_back(v);
+      parameters[c].push_back(kinds_[v].t);
+    }
+  }
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const Points places = points_at(curves[c].shape, parameters[c]);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      moves[rims[c][k]] = places[k] - reference_[rims[c][k]];
+    }
+  }
+  return moves;
+}
+
+void Carry::apply(const Extension& extension, const Points& moves,
+                  Points& result) {
+  if (extension.vertices.empty()) {
+    return;
+  }
+  const Eigen::Map<const Eigen::Matrix3Xd> all(
+      moves.front().data(), 3, static_cast<Eigen::Index>(moves.size()));
+  const Eigen::MatrixXd right = extension.outer * all.transpose();
+  if (right.isZero(0.0)) {
+    return;
+  }
+  const Eigen::MatrixXd found = extension.factor->solve(right);
+  for (std::size_t i = 0; i < extension.vertices.size(); ++i) {
+    result[extension.vertices[i]] +=
+        found.row(static_cast<Eigen::Index>(i)).transpose();
+  }
+}
+
+void Carry::add_transposed(const Extension& extension, const Points& by_points,
+                           Points& result) {
+  if (extension.vertices.empty()) {
+    return;
+  }
+  Eigen::MatrixXd right(static_cast<Eigen::Index>(extension.vertices.size()),
+                        3);
+  for (std::size_t i = 0; i < extension.vertices.size(); ++i) {
+    right.row(static_cast<Eigen::Index>(i)) =
+        by_points[extension.vertices[i]].transpose();
+  }
+  const Eigen::MatrixXd sum =
+      extension.outer.transpose() * extension.factor->solve(right);
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    result[v] += sum.row(static_cast<Eigen::Index>(v)).transpose();
+  }
+}
+
+Points Carry::transpose(const Points& by_points) const {
+  Points result = by_points;
+  add_transposed(films_, by_points, result);
+  add_transposed(caps_, by_points, result);
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    if (kinds_[v].kind != VertexKind::OnCurve) {
+      result[v].setZero();
+    }
+  }
+  return result;
+}
+
+Points Carry::rates(const Points& rim_rates) const {
+  Points result = rim_rates;
+  apply(films_, rim_rates, result);
+  apply(caps_, rim_rates, result);
+  return result;
+}
+
+Points Carry::at(const Points& rim_moves, double fraction) const {
+  Points moves = rim_moves;
+  for (Vec3& move : moves) {
+    move *= fraction;
+  }
+  Points result = reference_;
+  for (std::size_t v = 0; v < kinds_.size(); ++v) {
+    if (kinds_[v].kind == VertexKind::OnCurve) {
+      result[v] += moves[v];
+    }
+  }
+  apply(films_, moves, result);
+  apply(caps_, moves, result);
+  return result;
+}
+
+}  // namespace meniscus

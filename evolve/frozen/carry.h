@@ -1,0 +1,57 @@
+/// How the boundary curves carry the reference film to another design.
+#pragma once
+
+#include <optional>
+
+#include "evolve/energy/energy.h"
+#include "evolve/energy/laplacian.h"
+
+namespace meniscus {
+
+/// X(p) = X(p0) + C (r(p) - r(p0)): every vertex moves by a fixed mean of the
+/// moves of the rim vertices, with rows of C that sum to one. On films C is
+/// harmonic with positive weights (monotone: no vertex moves further than the
+/// rims do); on a flat cap it is harmonic with exact cotangents, which
+/// reproduces linear maps, so that the cap stays flat where its rim does.
+/// Immutable after construction; at() may run in several threads.
+class Carry {
+ public:
+  /// `film_order`: elimination order of the free vertices, as FilmEnergy has
+  /// found it. Throws MeshError for a film whose Laplacian is singular.
+  Carry(const FilmComplex& reference, const std::vector<int>& film_order);
+
+  /// Moves of the rim vertices from the reference to `curves` (same order as
+  /// the complex's curves); zero at all other vertices.
+  Points rim_moves(const std::vector<Curve>& curves) const;
+
+  /// X for `fraction` of the rim moves. The reference itself, bit for bit,
+  /// when all moves are zero.
+  Points at(const Points& rim_moves, double fraction) const;
+
+  /// How fast at(., 1) moves with the rim vertices' own rates.
+  Points rates(const Points& rim_rates) const;
+
+  /// at() transposed at fraction 1: a gradient by the moves of the rim
+  /// vertices, zero at others, from one by all vertices.
+  Points transpose(const Points& by_points) const;
+
+ private:
+  struct Extension {
+    std::vector<int> vertices;
+    SparseMatrix outer;
+    std::optional<SymmetricFactor> factor;
+  };
+  static Extension extend(const FilmComplex& reference, VertexKind kind,
+                          const std::vector<int>& order);
+  static void apply(const Extension& extension, const Points& moves,
+                    Points& result);
+  static void add_transposed(const Extension& extension,
+                             const Points& by_points, Points& result);
+
+  Points reference_;
+  std::vector<ComplexVertex> kinds_;
+  Extension films_;
+  Extension caps_;
+};
+
+}  // namespace meniscus

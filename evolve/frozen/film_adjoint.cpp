@@ -1,0 +1,144 @@
+#include "evolve/frozen/film_adjoint.h"
+
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+void add(double factor, const Points& more, Points& sum) {
+  if (factor != 0.0) {
+    flat(sum) += factor * flat(more);
+  }
+}
+
+double entry(const VectorX& values, Eigen::Index at) {
+  return values.size() > 0 ? values[at] : 0.0;
+}
+
+}  // namespace
+
+FilmAdjoint::FilmAdjoint(const FilmEnergy& energy, const FilmTargets& targets,
+                         const Points& base, const Points& directions,
+                         const Points& points, const VectorX& heights,
+                         const VectorX& pressure)
+    : energy_(energy),
+      targets_(targets),
+      base_(base),
+      directions_(directions),
+      points_(points),
+      heights_(heights),
+      pressure_(pressure),
+      products_(energy, targets, pressure),
+      saddle_(energy, targets, points, directions, pressure),
+      energy_slope_(energy.gradient(points, targets)),
+      slope_(energy_slope_) {
+  if (!saddle_.factored()) {
+    throw SolverError(
+        "the film's Hessian is not finite: it has no gradient by its design");
+  }
+  for (int b = 0; b < energy.functionals(); ++b) {
+    add(-pressure[b], saddle_.functional_slopes()[b], slope_);
+  }
+}
+
+/// dJ/dx at fixed pressures and directions.
+Points FilmAdjoint::direct(const FilmCovector& response) const {
+  Points sum = response.points;
+  sum.resize(points_.size(), Vec3::Zero());
+  add(response.energy, energy_slope_, sum);
+  for (Eigen::Index b = 0; b < response.volumes.size(); ++b) {
+    add(response.volumes[b], saddle_.functional_slopes()[b], sum);
+  }
+  if (response.areas.size() > 0) {
+    add(1.0, energy_.area_gradient(points_, response.areas), sum);
+  }
+  return sum;
+}
+
+FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
+  Result result;
+  result.base = direct(response);
+  const std::vector<int>& held = saddle_.held();
+  VectorX by_pressure = VectorX::Zero(saddle_.constraints().cols());
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    by_pressure[static_cast<Eigen::Index>(k)] =
+        entry(response.pressures, held[k]);
+  }
+  const ConstrainedHessian::Step step =
+      saddle_.solve(energy_.along(result.base, directions_), by_pressure);
+  const VectorX& mu = step.dh;
+  Points motion(points_.size(), Vec3::Zero());  // sum mu n
+  for (int i = 0; i < energy_.unknowns(); ++i) {
+    motion[energy_.vertices()[i]] += mu[i] * directions_[i];
+  }
+  add(1.0, products_.hessian_times(points_, motion), result.base);
+  result.volumes = VectorX::Zero(energy_.functionals());
+  result.pressures = VectorX::Zero(energy_.functionals());
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    const double nu = -step.dp[static_cast<Eigen::Index>(k)];
+    result.volumes[held[k]] = -nu;
+    add(nu, saddle_.functional_slopes()[held[k]], result.base);
+  }
+  for (int b = 0; b < energy_.functionals(); ++b) {
+    if (!targets_.bodies[b].volume) {
+      result.pressures[b] =
+          entry(response.pressures, b) -
+          flat(saddle_.functional_slopes()[b]).dot(flat(motion));
+    }
+  }
+  result.tensions = products_.area_rates(points_, motion) +
+                    response.energy * energy_.areas(points_);
+  for (Eigen::Index s = 0; s < result.tensions.size(); ++s) {
+    result.tensions[s] = energy_.has_tension(static_cast<int>(s))
+                             ? result.tensions[s] + entry(response.tensions, s)
+                             : 0.0;
+  }
+  Points by_directions = response.directions;
+  by_directions.resize(directions_.size(), Vec3::Zero());
+  for (int i = 0; i < energy_.unknowns(); ++i) {
+    const int v = energy_.vertices()[i];
+    by_directions[i] += heights_[i] * result.base[v] + mu[i] * slope_[v];
+  }
+  energy_.space().transpose_directions(base_, by_directions, result.base);
+  return result;
+}
+
+Points FilmAdjoint::tangent(const Rates& rates) const {
+  const Points turning = energy_.space().direction_rates(base_, rates.base);
+  Points motion = rates.base;  // at fixed heights
+  for (int i = 0; i < energy_.unknowns(); ++i) {
+    motion[energy_.vertices()[i]] += heights_[i] * turning[i];
+  }
+  Points slope_rate = products_.hessian_times(points_, motion);
+  VectorX tensions = rates.tensions;
+  for (Eigen::Index s = 0; s < tensions.size(); ++s) {
+    tensions[s] = energy_.has_tension(static_cast<int>(s)) ? tensions[s] : 0.0;
+  }
+  if (!tensions.isZero(0.0)) {
+    add(1.0, energy_.area_gradient(points_, tensions), slope_rate);
+  }
+  const std::vector<int>& held = saddle_.held();
+  VectorX missing = VectorX::Zero(saddle_.constraints().cols());
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    missing[static_cast<Eigen::Index>(k)] =
+        rates.volumes[held[k]] -
+        flat(saddle_.functional_slopes()[held[k]]).dot(flat(motion));
+  }
+  for (int b = 0; b < energy_.functionals(); ++b) {
+    if (!targets_.bodies[b].volume) {
+      add(-rates.pressures[b], saddle_.functional_slopes()[b], slope_rate);
+    }
+  }
+  VectorX residual = energy_.along(slope_rate, directions_);
+  for (int i = 0; i < energy_.unknowns(); ++i) {
+    residual[i] += turning[i].dot(slope_[energy_.vertices()[i]]);
+  }
+  const ConstrainedHessian::Step step = saddle_.solve(residual, missing);
+  for (int i = 0; i < energy_.unknowns(); ++i) {
+    motion[energy_.vertices()[i]] += step.dh[i] * directions_[i];
+  }
+  return motion;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,256 @@
+// Gradients of a FilmModel by its design.
+#include "evolve/frozen/film_gradient.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "evolve/frozen/film_adjoint.h"
+#include "evolve/frozen/film_margin.h"
+#include "evolve/frozen/film_model_impl.h"
+#include "evolve/frozen/film_radius.h"
+
+namespace meniscus {
+
+namespace {
+
+/// A state's heights must put its points where they are.
+constexpr double kSamePlace = 1e-9;  // of the film's size
+
+void check_size(const char* what, std::size_t found, std::size_t expected) {
+  if (found != 0 && found != expected) {
+    throw InvalidInput(fmt::format(
+        "a film response has {} derivatives by {}, expected {} or none", found,
+        what, expected));
+  }
+}
+
+std::string no_curve(const std::string& name) {
+  return fmt::format(
+      "the design or its rates have no curve '{}', which the model has", name);
+}
+
+template <class Named>
+const Named* find_named(const std::vector<Named>& list,
+                        const std::string& name) {
+  const auto found =
+      std::find_if(list.begin(), list.end(),
+                   [&](const Named& item) { return item.name == name; });
+  return found == list.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+void FilmModel::Impl::check_response(const FilmCovector& response) const {
+  const auto size = [](const VectorX& v) {
+    return static_cast<std::size_t>(v.size());
+  };
+  check_size("points", response.points.size(), complex.vertices.size());
+  check_size("pressures", size(response.pressures), complex.bodies.size());
+  check_size("volumes", size(response.volumes), complex.bodies.size());
+  check_size("areas", size(response.areas), complex.surfaces.size());
+  check_size("tensions", size(response.tensions), complex.surfaces.size());
+  check_size("directions", response.directions.size(),
+             static_cast<std::size_t>(energy->unknowns()));
+}
+
+FilmModel::Impl::AtRest FilmModel::Impl::at_rest(
+    const FilmState& state, const FilmSystem& system) const {
+  if (!carry || state.failure) {
+    throw InvalidInput("a film that was not found has no gradient: " +
+                       state.report.verdict);
+  }
+  if (state.points.size() != complex.vertices.size() ||
+      state.heights.size() != energy->unknowns() ||
+      state.report.bodies.size() != complex.bodies.size()) {
+    throw InvalidInput("the film's state is not of this model");
+  }
+  AtRest film;
+  film.targets = targets_of_system(system);
+  film.base = carry->at(carry->rim_moves(curves_of_system(system)), 1.0);
+  film.directions = energy->space().directions(film.base);
+  film.pressure.resize(energy->functionals());
+  for (int b = 0; b < energy->functionals(); ++b) {
+    film.pressure[b] =
+        state.report.bodies[static_cast<std::size_t>(b)].pressure;
+  }
+  const Points there =
+      energy->space().moved(film.base, film.directions, state.heights);
+  const double off = (flat(there) - flat(state.points)).cwiseAbs().maxCoeff();
+  if (!(off <= kSamePlace * bounding_diagonal(state.points))) {
+    throw InvalidInput(fmt::format(
+        "the film's state is not of this design: its points are {:.3g} away "
+        "from where its curves and heights put them",
+        off));
+  }
+  return film;
+}
+
+std::vector<RimGradient> FilmModel::Impl::rim_gradients(
+    const Points& by_base) const {
+  const Points by_rim = carry->transpose(by_base);
+  std::vector<RimGradient> result(complex.curves.size());
+  for (std::size_t c = 0; c < result.size(); ++c) {
+    result[c].curve = complex.curves[c].name;
+  }
+  for (std::size_t v = 0; v < by_rim.size(); ++v) {
+    const ComplexVertex& vertex = complex.vertices[v];
+    if (vertex.kind == VertexKind::OnCurve) {
+      result[vertex.curve].parameters.push_back(vertex.t);
+      result[vertex.curve].by_points.push_back(by_rim[v]);
+    }
+  }
+  return result;
+}
+
+std::vector<FilmGradient> FilmModel::transpose(
+    const FilmState& state, const FilmSystem& system,
+    const std::vector<FilmCovector>& responses) const {
+  const Impl::AtRest film = impl_->at_rest(state, system);
+  for (const FilmCovector& response : responses) {
+    impl_->check_response(response);
+  }
+  if (impl_->energy->unknowns() == 0) {
+    return impl_->rigid_gradients(responses);
+  }
+  const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
+                            film.directions, state.points, state.heights,
+                            film.pressure);
+  std::vector<FilmGradient> result;
+  result.reserve(responses.size());
+  for (const FilmCovector& response : responses) {
+    const FilmAdjoint::Result found = adjoint.transpose(response);
+    result.push_back({impl_->rim_gradients(found.base), found.tensions,
+                      found.volumes, found.pressures});
+  }
+  return result;
+}
+
+std::vector<Points> FilmModel::tangents(
+    const FilmState& state, const FilmSystem& system,
+    const std::vector<FilmSystem>& rates) const {
+  const Impl::AtRest film = impl_->at_rest(state, system);
+  std::vector<Points> result;
+  result.reserve(rates.size());
+  if (impl_->energy->unknowns() == 0) {
+    for (const FilmSystem& moving : rates) {
+      result.push_back(impl_->rates_of(system, moving).base);
+    }
+    return result;
+  }
+  const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
+                            film.directions, state.points, state.heights,
+                            film.pressure);
+  for (const FilmSystem& moving : rates) {
+    result.push_back(adjoint.tangent(impl_->rates_of(system, moving)));
+  }
+  return result;
+}
+
+FilmAdjoint::Rates FilmModel::Impl::rates_of(const FilmSystem& system,
+                                             const FilmSystem& rates) const {
+  const auto bodies = static_cast<Eigen::Index>(complex.bodies.size());
+  FilmAdjoint::Rates result{
+      .base = Points(complex.vertices.size(), Vec3::Zero()),
+      .tensions =
+          VectorX::Zero(static_cast<Eigen::Index>(complex.surfaces.size())),
+      .volumes = VectorX::Zero(energy->functionals()),
+      .pressures = VectorX::Zero(energy->functionals())};
+  const Points still(complex.vertices.size(), Vec3::Zero());
+  for (const RimGradient& rim : rim_gradients(still)) {
+    const Curve* curve = find_named(system.curves, rim.curve);
+    const Curve* moving = find_named(rates.curves, rim.curve);
+    if (curve == nullptr || moving == nullptr) {
+      throw InvalidInput(no_curve(rim.curve));
+    }
+    const Points moves =
+        point_rates(curve->shape, moving->shape, rim.parameters);
+    std::size_t next = 0;
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+      const ComplexVertex& vertex = complex.vertices[v];
+      if (vertex.kind == VertexKind::OnCurve &&
+          complex.curves[vertex.curve].name == rim.curve) {
+        result.base[v] = moves[next++];
+      }
+    }
+  }
+  result.base = carry->rates(result.base);
+  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    const FilmSpec* film = find_named(rates.films, complex.surfaces[s].name);
+    if (film != nullptr && complex.surfaces[s].liquid) {
+      result.tensions[static_cast<Eigen::Index>(s)] = film->tension;
+    }
+  }
+  for (Eigen::Index b = 0; b < bodies; ++b) {
+    const BodySpec* body = find_named(
+        rates.bodies, complex.bodies[static_cast<std::size_t>(b)].name);
+    if (body != nullptr) {
+      result.volumes[b] = body->volume.value_or(0.0);
+      result.pressures[b] = body->pressure.value_or(0.0);
+    }
+  }
+  return result;
+}
+
+double FilmModel::rate(const FilmGradient& gradient, const FilmSystem& system,
+                       const FilmSystem& rates) const {
+  double sum = 0.0;
+  for (const RimGradient& rim : gradient.rims) {
+    const Curve* curve = find_named(system.curves, rim.curve);
+    const Curve* moving = find_named(rates.curves, rim.curve);
+    if (curve == nullptr || moving == nullptr) {
+      throw InvalidInput(no_curve(rim.curve));
+    }
+    const Points moves =
+        point_rates(curve->shape, moving->shape, rim.parameters);
+    sum += flat(moves).dot(flat(rim.by_points));
+  }
+  for (std::size_t s = 0; s < impl_->complex.surfaces.size(); ++s) {
+    const FilmSpec* film =
+        find_named(rates.films, impl_->complex.surfaces[s].name);
+    if (film != nullptr && impl_->complex.surfaces[s].liquid) {
+      sum += gradient.tensions[static_cast<Eigen::Index>(s)] * film->tension;
+    }
+  }
+  for (std::size_t b = 0; b < impl_->complex.bodies.size(); ++b) {
+    const BodySpec* body =
+        find_named(rates.bodies, impl_->complex.bodies[b].name);
+    if (body != nullptr) {
+      const auto at = static_cast<Eigen::Index>(b);
+      sum += gradient.volumes[at] * body->volume.value_or(0.0) +
+             gradient.pressures[at] * body->pressure.value_or(0.0);
+    }
+  }
+  return sum;
+}
+
+FilmResponse FilmModel::margin(const FilmState& state, const FilmSystem& system,
+                               const MarginOptions& options) const {
+  const Impl::AtRest film = impl_->at_rest(state, system);
+  const SaddleSystem saddle(*impl_->energy, film.targets, state.points,
+                            film.directions, film.pressure);
+  return film_margin(*impl_->energy, film.targets, state.points,
+                     film.directions, film.pressure, saddle,
+                     std::abs(impl_->reference.report.min_eigenvalue), options);
+}
+
+FilmResponse FilmModel::smallest_radius(const Points& points, int power) const {
+  return film_radius(*impl_->energy, points, power);
+}
+
+VectorX FilmModel::areas(const Points& points) const {
+  return impl_->energy->areas(points);
+}
+
+const std::vector<std::string>& FilmModel::labels() const {
+  return impl_->complex.mesh.labels;
+}
+
+Points FilmModel::transpose_surface(const Points& by_corners,
+                                    const Points& by_mid_sides) const {
+  return impl_->nodes.transpose(by_corners, by_mid_sides,
+                                impl_->complex.vertices.size());
+}
+
+}  // namespace meniscus

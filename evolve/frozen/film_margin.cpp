@@ -1,0 +1,124 @@
+#include "evolve/frozen/film_margin.h"
+
+#include <cmath>
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/energy/film_products.h"
+
+namespace meniscus {
+
+namespace {
+
+/// Modes that count less are below the others' rounding.
+constexpr double kNoWeight = 1e-14;
+
+/// Derivatives of one eigenvalue,
+///   d lambda = v' (dH - lambda dM) v - 2 kappa' dB' v,
+/// with H v = lambda M v + B kappa, v' M v = 1.
+class EigenvalueSlope {
+ public:
+  EigenvalueSlope(const FilmEnergy& energy, const FilmTargets& targets,
+                  const Points& points, const Points& directions,
+                  const VectorX& pressure, const SaddleSystem& saddle)
+      : energy_(energy),
+        points_(points),
+        directions_(directions),
+        saddle_(saddle),
+        products_(energy, targets, pressure) {}
+
+  /// Adds `weight` of them to `by`, whose lists have their sizes.
+  void add(double lambda, const VectorX& v, double weight,
+           FilmCovector& by) const {
+    Points motion(points_.size(), Vec3::Zero());
+    for (int i = 0; i < energy_.unknowns(); ++i) {
+      motion[energy_.vertices()[i]] += v[i] * directions_[i];
+    }
+    const VectorX kappa = multipliers(lambda, v);
+    // H v less what holds the volumes, in all directions.
+    Points pull = products_.hessian_times(points_, motion);
+    const FilmProducts holding(energy_, -kappa);
+    flat(by.points) +=
+        weight *
+        (flat(products_.third_times(points_, motion)) -
+         lambda * flat(products_.metric_gradient(points_, v.cwiseProduct(v))) -
+         2.0 * flat(holding.hessian_times(points_, motion)));
+    for (int b = 0; b < energy_.functionals(); ++b) {
+      flat(pull) -= kappa[b] * flat(saddle_.functional_slopes()[b]);
+      const FilmProducts one(energy_, VectorX::Unit(energy_.functionals(), b));
+      // L = E - p V: by the pressure, minus the volume's bend.
+      by.pressures[b] +=
+          weight * flat(one.hessian_times(points_, motion)).dot(flat(motion));
+    }
+    for (int i = 0; i < energy_.unknowns(); ++i) {
+      by.directions[i] += 2.0 * weight * v[i] * pull[energy_.vertices()[i]];
+    }
+    by.tensions += weight * products_.area_curvatures(points_, motion);
+  }
+
+ private:
+  /// kappa, one per functional: 0 where none is held.
+  VectorX multipliers(double lambda, const VectorX& v) const {
+    VectorX result = VectorX::Zero(energy_.functionals());
+    const Eigen::MatrixXd& b = saddle_.constraints();
+    if (b.cols() == 0) {
+      return result;
+    }
+    const VectorX left = saddle_.hessian().selfadjointView<Eigen::Lower>() * v -
+                         lambda * saddle_.metric().cwiseProduct(v);
+    const VectorX found = b.colPivHouseholderQr().solve(left);
+    for (std::size_t k = 0; k < saddle_.held().size(); ++k) {
+      result[saddle_.held()[k]] = found[static_cast<Eigen::Index>(k)];
+    }
+    return result;
+  }
+
+  const FilmEnergy& energy_;
+  const Points& points_;
+  const Points& directions_;
+  const SaddleSystem& saddle_;
+  FilmProducts products_;
+};
+
+}  // namespace
+
+FilmResponse film_margin(const FilmEnergy& energy, const FilmTargets& targets,
+                         const Points& points, const Points& directions,
+                         const VectorX& pressure, const SaddleSystem& saddle,
+                         double scale, const MarginOptions& options) {
+  if (options.modes < 1 || !(options.sharpness > 0.0) || !(scale > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "a film's margin needs modes, sharpness and scale above 0, found {}, "
+        "{} and {}",
+        options.modes, options.sharpness, scale));
+  }
+  if (!saddle.factored() || saddle.system().index() != 0) {
+    throw SolverError("the margin of an unstable film is not defined");
+  }
+  const LowestModes lowest =
+      saddle.system().lowest_modes(saddle.metric(), options.modes);
+  const VectorX& lambda = lowest.eigenvalues;
+  if (lambda.size() == 0) {
+    throw InvalidInput("a film without free vertices has no margin");
+  }
+  const double s = options.sharpness / scale;
+  VectorX weight = (-s * (lambda.array() - lambda[0])).exp();
+  FilmResponse result;
+  result.value = lambda[0] - std::log(weight.sum()) / s;
+  weight /= weight.sum();
+  result.by.points.assign(points.size(), Vec3::Zero());
+  result.by.directions.assign(directions.size(), Vec3::Zero());
+  result.by.pressures = VectorX::Zero(energy.functionals());
+  result.by.tensions =
+      VectorX::Zero(static_cast<Eigen::Index>(targets.tension.size()));
+  const EigenvalueSlope slope(energy, targets, points, directions, pressure,
+                              saddle);
+  for (Eigen::Index j = 0; j < lambda.size() && weight[j] > kNoWeight; ++j) {
+    slope.add(lambda[j], lowest.modes.col(j), weight[j], result.by);
+  }
+  return result;
+}
+
+}  // namespace meniscus

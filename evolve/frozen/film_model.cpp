@@ -1,0 +1,436 @@
+#include "evolve/frozen/film_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "evolve/energy/fields.h"
+#include "evolve/energy/tension_field.h"
+#include "evolve/films/rim_grading.h"
+#include "evolve/films/solid_facets.h"
+#include "evolve/frozen/film_model_impl.h"
+#include "evolve/settle/equilibrium.h"
+#include "evolve/settle/find_equilibrium.h"
+#include "evolve/start/start_complex.h"
+#include "evolve/start/start_edge.h"
+
+namespace meniscus {
+
+namespace {
+
+/// Steps from the reference to a design: first in one, then in parts, which
+/// are fixed so that the film depends on the design alone.
+constexpr std::array<int, 2> kParts = {1, 4};
+/// One step that needs more iterations than this is checked against parts:
+/// the film may have slid to another equilibrium.
+constexpr int kManyIterations = 15;
+
+FilmTargets blend(const FilmTargets& from, const FilmTargets& to, double t) {
+  FilmTargets result = to;
+  const auto mix = [t](double a, double b) { return a + t * (b - a); };
+  for (std::size_t s = 0; s < to.tension.size(); ++s) {
+    result.tension[s] = mix(from.tension[s], to.tension[s]);
+  }
+  for (std::size_t b = 0; b < to.bodies.size(); ++b) {
+    if (to.bodies[b].volume && from.bodies[b].volume) {
+      result.bodies[b].volume =
+          mix(*from.bodies[b].volume, *to.bodies[b].volume);
+    }
+    if (to.bodies[b].pressure || from.bodies[b].pressure) {
+      result.bodies[b].pressure = mix(from.bodies[b].pressure.value_or(0.0),
+                                      to.bodies[b].pressure.value_or(0.0));
+    }
+  }
+  return result;
+}
+
+/// Throws InvalidInput for numbers that no liquid can follow.
+void check_numbers(const FilmSystem& system) {
+  for (const FilmSpec& film : system.films) {
+    if (!(film.tension > 0.0) || !std::isfinite(film.tension)) {
+      throw InvalidInput(
+          fmt::format("the tension of film '{}' must be above 0, found {}",
+                      film.name, film.tension));
+    }
+  }
+  for (const BodySpec& body : system.bodies) {
+    const double volume = body.volume.value_or(1.0);
+    if (!(volume > 0.0) || !std::isfinite(volume)) {
+      throw InvalidInput(
+          fmt::format("the volume of body '{}' must be above 0, found {}",
+                      body.name, volume));
+    }
+    if (!std::isfinite(body.pressure.value_or(0.0))) {
+      throw InvalidInput(
+          fmt::format("the pressure of body '{}' must be finite, found {}",
+                      body.name, *body.pressure));
+    }
+  }
+}
+
+std::string no_value(const ExpressionError& error) {
+  return fmt::format(
+      "a field, or a tension (it must be above 0), has no value where the film "
+      "went: {}",
+      error.what());
+}
+
+}  // namespace
+
+FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
+  FilmTargets result = targets;
+  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    if (!complex.surfaces[s].liquid) {
+      continue;
+    }
+    const auto film = std::find_if(
+        system.films.begin(), system.films.end(),
+        [&](const FilmSpec& f) { return f.name == complex.surfaces[s].name; });
+    if (film == system.films.end()) {
+      throw InvalidInput(
+          fmt::format("the design has no film '{}', which its model has",
+                      complex.surfaces[s].name));
+    }
+    const std::optional<Expression>& field = complex.surfaces[s].tension_field;
+    if (film->tension_field.has_value() != field.has_value() ||
+        (field &&
+         positive_only(*film->tension_field).text() != field->text())) {
+      throw InvalidInput(fmt::format(
+          "the design changes the tension field of film '{}'; it belongs to "
+          "the frozen model: freeze another one",
+          film->name));
+    }
+    if (!field) {
+      result.tension[s] = film->tension;
+    }
+  }
+  check_fields(system);
+  for (ComplexBody& body : result.bodies) {
+    const auto spec =
+        std::find_if(system.bodies.begin(), system.bodies.end(),
+                     [&](const BodySpec& b) { return b.name == body.name; });
+    if (spec == system.bodies.end() ||
+        spec->volume.has_value() != body.volume.has_value()) {
+      throw InvalidInput(
+          fmt::format("the design must give body '{}' a {}, as its model does",
+                      body.name, body.volume ? "volume" : "pressure"));
+    }
+    body.volume = spec->volume;
+    body.pressure = spec->pressure;
+  }
+  return result;
+}
+
+/// The fields of the design are those that were frozen.
+void FilmModel::Impl::check_fields(const FilmSystem& system) const {
+  std::vector<std::string> formulas;
+  for (const FieldSpec& field : system.fields) {
+    formulas.push_back(field_expression(field).text());
+  }
+  for (const PressureSpec& spec : system.pressures) {
+    formulas.push_back(spec.pressure.text());
+  }
+  const bool same =
+      std::equal(formulas.begin(), formulas.end(), complex.quantities.begin(),
+                 complex.quantities.end(),
+                 [](const std::string& formula, const FilmQuantity& quantity) {
+                   return formula == quantity.scalar.text();
+                 });
+  if (!same) {
+    throw InvalidInput(
+        "the design changes the field energies; they belong to the frozen "
+        "model: freeze another one");
+  }
+}
+
+std::vector<Curve> FilmModel::Impl::curves_of_system(
+    const FilmSystem& system) const {
+  std::vector<Curve> result;
+  for (const Curve& curve : complex.curves) {
+    const auto same =
+        std::find_if(system.curves.begin(), system.curves.end(),
+                     [&](const Curve& c) { return c.name == curve.name; });
+    if (same == system.curves.end() ||
+        same->shape.index() != curve.shape.index()) {
+      throw InvalidInput(fmt::format(
+          "the design has no curve '{}' of its model's kind", curve.name));
+    }
+    validate(*same);
+    result.push_back(*same);
+  }
+  return result;
+}
+
+EdgeMiddles FilmModel::Impl::middles(std::size_t count) const {
+  EdgeMiddles result;
+  const auto first = static_cast<int>(meshed.points.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto [a, b] = parents[k];
+    result[{std::min(a, b), std::max(a, b)}] = first + static_cast<int>(k);
+  }
+  return result;
+}
+
+std::vector<char> FilmModel::Impl::straight() const {
+  std::vector<char> result;
+  for (const ComplexVertex& vertex : complex.vertices) {
+    result.push_back(vertex.kind == VertexKind::InCap ? 1 : 0);
+  }
+  return result;
+}
+
+void FilmModel::Impl::find_reference(const FilmSystem& initial,
+                                     const FilmModelOptions& options,
+                                     const SettleOptions& settle) {
+  if (initial.films.empty()) {
+    build_rigid(initial, options);
+    return;
+  }
+  const int halvings = start_halvings(initial, options.edge);
+  find_reference_from(halvings, initial, options, settle);
+  const auto tears = [this] {
+    return reference.failure &&
+           reference.failure->kind != FailureKind::FilmUnstable;
+  };
+  if (!tears() || halvings == 0 || initial.keep_facets) {
+    return;
+  }
+  // Coarse facets may fold where rims are not much larger than they: once more
+  // without them.
+  const FilmComplex coarse = complex;
+  const SurfaceMesh coarse_mesh = meshed;
+  const std::vector<Edge> coarse_parents = parents;
+  const std::size_t coarse_near = near_parents;
+  const FilmState failed = reference;
+  const double coarse_edge = start_edge;
+  find_reference_from(0, initial, options, settle);
+  if (tears()) {
+    complex = coarse;
+    meshed = coarse_mesh;
+    parents = coarse_parents;
+    near_parents = coarse_near;
+    reference = failed;
+    start_edge = coarse_edge;
+    energy.reset();
+  }
+}
+
+void FilmModel::Impl::find_reference_from(int halvings,
+                                          const FilmSystem& initial,
+                                          const FilmModelOptions& options,
+                                          const SettleOptions& settle) {
+  Monitor& monitor =
+      options.monitor != nullptr ? *options.monitor : silent_monitor();
+  monitor.progress({"film", "building the start", 0.0});
+  start_edge = std::ldexp(options.edge, halvings);
+  complex = build_start(initial, start_edge);
+  parents.clear();
+  near_parents = 0;
+  refinements = 0;
+  energy.reset();
+  monitor.progress({"film", "settling the raw start", 0.1});
+  FindOptions find{
+      .edge = options.edge, .halvings = halvings, .settle = settle};
+  if (initial.keep_facets) {
+    find.edge.reset();
+    find.refinements = halvings;
+  }
+  reference = find_equilibrium(complex, find);
+  meshed = complex.mesh;
+  for (int level = 0; level < options.refinements; ++level) {
+    monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
+    refine_once(level);
+    if (!reference.failure) {
+      energy.emplace(complex);
+      reference = settle_in_normals(*energy, complex, targets_of(complex),
+                                    complex.mesh.points, settle);
+      complex.mesh.points = reference.points;
+    }
+  }
+}
+
+FilmState FilmModel::Impl::settle_in_parts(const Points& moves,
+                                           const FilmTargets& goal, int parts,
+                                           const SettleOptions& options) const {
+  if (energy->unknowns() == 0) {
+    return rigid_state(carry->at(moves, 1.0), goal);
+  }
+  FilmState state;
+  int iterations = 0;
+  try {
+    for (int part = 1; part <= parts && !state.failure; ++part) {
+      const double t = static_cast<double>(part) / parts;
+      const Points base = carry->at(moves, t);
+      state = settle_along(*energy, complex,
+                           part == parts ? goal : blend(targets, goal, t), base,
+                           energy->space().directions(base), state.heights,
+                           usual_neck, options);
+      iterations += state.report.iterations;
+    }
+    if (!state.failure) {
+      tensions_at(complex, state.points);  // throws where one is not above 0
+    }
+  } catch (const ExpressionError& error) {
+    state = reference;
+    state.failure = Failure{FailureKind::NotANumber, no_value(error)};
+  } catch (const InvalidInput& error) {
+    state.failure = Failure{FailureKind::NotANumber, error.what()};
+  }
+  if (state.failure) {
+    state.report.verdict = state.failure->message;
+  }
+  state.report.iterations = iterations;
+  return state;
+}
+
+FilmModel::FilmModel(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FilmModel::FilmModel(FilmModel&&) noexcept = default;
+FilmModel& FilmModel::operator=(FilmModel&&) noexcept = default;
+FilmModel::~FilmModel() = default;
+
+FilmModel FilmModel::freeze(const FilmSystem& initial,
+                            const FilmModelOptions& options) {
+  if (!(options.edge > 0.0) || !std::isfinite(options.edge)) {
+    throw InvalidInput(fmt::format(
+        "the film's edge length must be above 0, found {}", options.edge));
+  }
+  if (options.refinements < 0 || options.refinements > 6) {
+    throw InvalidInput(
+        fmt::format("the film's refinements must be 0 to 6, found {}",
+                    options.refinements));
+  }
+  check_numbers(initial);
+  const Timer timer;
+  auto impl = std::make_unique<Impl>();
+  SettleOptions settle{.monitor = options.monitor};
+  try {
+    impl->find_reference(initial, options, settle);
+  } catch (const ExpressionError& error) {
+    throw InvalidInput(no_value(error));
+  }
+  std::vector<int> corner(impl->meshed.points.size());
+  std::iota(corner.begin(), corner.end(), 0);
+  SurfaceMesh topology = impl->meshed;
+  topology.points.clear();
+  impl->regions = regions_of(initial.bodies);
+  keep_solids(impl->complex, impl->regions, topology);
+  drop_unused(topology, corner);
+  impl->nodes =
+      surface_nodes(std::move(topology), std::move(corner),
+                    impl->middles(impl->near_parents), impl->straight());
+  if (impl->reference.failure || !impl->energy) {
+    impl->energy.emplace(impl->complex);
+  }
+  impl->targets = targets_of(impl->complex);
+  FilmModel model(std::move(impl));
+  if (!model.impl_->reference.failure) {
+    model.impl_->carry.emplace(model.impl_->complex,
+                               model.impl_->energy->order());
+    model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
+    model.impl_->reference = model.settle(initial, settle);
+  } else if (model.impl_->reference.points.size() !=
+             model.impl_->complex.mesh.points.size()) {
+    model.impl_->reference.points = model.impl_->complex.mesh.points;
+    model.impl_->reference.heights =
+        VectorX::Zero(model.impl_->energy->unknowns());
+  }
+  model.impl_->reference.report.seconds = timer.seconds();
+  return model;
+}
+
+const FilmState& FilmModel::reference() const { return impl_->reference; }
+double FilmModel::start_edge() const { return impl_->start_edge; }
+
+FilmState FilmModel::settle(const FilmSystem& system,
+                            const SettleOptions& options) const {
+  const Timer timer;
+  check_numbers(system);
+  if (!impl_->carry) {
+    throw InvalidInput(
+        "this film model cannot be used: no film was found at its initial "
+        "design (" +
+        impl_->reference.report.verdict + ")");
+  }
+  const FilmTargets goal = impl_->targets_of_system(system);
+  const Points moves = impl_->carry->rim_moves(impl_->curves_of_system(system));
+  FilmState state;
+  int iterations = 0;
+  for (const int parts : kParts) {
+    FilmState found = impl_->settle_in_parts(moves, goal, parts, options);
+    iterations += found.report.iterations;
+    if (parts == kParts.front() || !found.failure) {
+      state = std::move(found);
+    }
+    if (!state.failure && iterations <= kManyIterations) {
+      break;
+    }
+  }
+  const bool moved = std::any_of(moves.begin(), moves.end(),
+                                 [](const Vec3& m) { return !m.isZero(0.0); });
+  if (moved && state.failure &&
+      state.failure->kind == FailureKind::FilmNotFound) {
+    state.failure->message +=
+        "; a model frozen nearer to this design may reach further";
+    state.report.verdict = state.failure->message;
+  }
+  state.report.iterations = iterations;
+  state.report.seconds = timer.seconds();
+  return state;
+}
+
+QuadraticSurface FilmModel::surface(const Points& points) const {
+  return impl_->nodes.at(points);
+}
+
+void FilmModel::split_facets(const std::vector<char>& marked) {
+  impl_->nodes = meniscus::split_facets(impl_->nodes, marked,
+                                        impl_->middles(impl_->near_parents),
+                                        impl_->straight());
+}
+
+SurfaceMesh FilmModel::fine_mesh(const Points& points) const {
+  SurfaceMesh mesh = impl_->complex.mesh;
+  mesh.points = points;
+  return mesh;
+}
+
+SurfaceMesh FilmModel::solids(const Points& points) const {
+  SurfaceMesh mesh = fine_mesh(points);
+  keep_solids(impl_->complex, impl_->regions, mesh);
+  return mesh;
+}
+
+SurfaceMesh FilmModel::boundary(const Points& points) const {
+  SurfaceMesh mesh = solids(points);
+  drop_interfaces(mesh);
+  return mesh;
+}
+
+SurfaceMesh FilmModel::meshed_facets() const {
+  SurfaceMesh mesh = impl_->meshed;
+  mesh.points.clear();
+  return mesh;
+}
+
+EdgeMiddles FilmModel::middles() const {
+  return impl_->middles(impl_->parents.size());
+}
+
+int FilmModel::refinements() const { return impl_->refinements; }
+
+std::vector<int> FilmModel::rim(const std::string& curve) const {
+  std::vector<int> result;
+  for (std::size_t v = 0; v < impl_->complex.vertices.size(); ++v) {
+    const ComplexVertex& vertex = impl_->complex.vertices[v];
+    if (vertex.kind == VertexKind::OnCurve &&
+        impl_->complex.curves[vertex.curve].name == curve) {
+      result.push_back(static_cast<int>(v));
+    }
+  }
+  return result;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,201 @@
+#include "evolve/groom/refine.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "evolve/films/edge_marks.h"
+
+namespace meniscus {
+
+namespace {
+
+// Per edge: its mark (index into EdgeMarks::all or -1), whether it is halved,
+// and the vertex in its middle.
+struct EdgePlan {
+  std::vector<Edge> edges;
+  std::vector<Triangle> facet_edges;
+  std::vector<int> mark;
+  std::vector<int> middle;  // -1: stays whole
+  std::vector<char> in_film;
+  std::vector<int> obstacle;  // constraint set of its films, or -1
+};
+
+EdgePlan plan_edges(const FilmComplex& complex, const EdgeMarks& marks) {
+  EdgePlan plan;
+  list_edges(complex.mesh.facets, plan.edges, plan.facet_edges);
+  plan.in_film.assign(plan.edges.size(), 0);
+  plan.obstacle.assign(plan.edges.size(), -1);
+  std::vector<char> whole(plan.edges.size(), 0);
+  for (std::size_t f = 0; f < plan.facet_edges.size(); ++f) {
+    const ComplexSurface& surface =
+        complex.surfaces[complex.mesh.facet_label[f]];
+    for (const int e : plan.facet_edges[f]) {
+      plan.in_film[e] |= surface.liquid ? 1 : 0;
+      whole[e] |= surface.refine ? 0 : 1;
+      plan.obstacle[e] = std::max(plan.obstacle[e], surface.constraints);
+    }
+  }
+  std::vector<char> seen(marks.all().size(), 0);
+  plan.mark.resize(plan.edges.size());
+  for (std::size_t e = 0; e < plan.edges.size(); ++e) {
+    plan.mark[e] = marks.find(plan.edges[e][0], plan.edges[e][1]);
+    if (plan.mark[e] >= 0) {
+      seen[plan.mark[e]] = 1;
+    }
+  }
+  // Wires: marked edges that no facet has.
+  for (std::size_t m = 0; m < complex.edges.size(); ++m) {
+    if (seen[m] == 0) {
+      const ComplexEdge& wire = complex.edges[m];
+      plan.edges.push_back(
+          {std::min(wire.a, wire.b), std::max(wire.a, wire.b)});
+      plan.mark.push_back(static_cast<int>(m));
+      plan.in_film.push_back(0);
+      plan.obstacle.push_back(-1);
+      whole.push_back(0);
+    }
+  }
+  plan.middle.assign(plan.edges.size(), -1);
+  int next = static_cast<int>(complex.mesh.points.size());
+  for (std::size_t e = 0; e < plan.edges.size(); ++e) {
+    const int m = plan.mark[e];
+    if (whole[e] == 0 && (m < 0 || marks.all()[m].refine)) {
+      plan.middle[e] = next++;
+    }
+  }
+  return plan;
+}
+
+PlacedVertex middle_of(const FilmComplex& complex, const EdgeMarks& marks,
+                       const EdgePlan& plan, std::size_t e) {
+  const auto [a, b] = plan.edges[e];
+  const ComplexVertex& va = complex.vertices[a];
+  const ComplexVertex& vb = complex.vertices[b];
+  const Vec3& pa = complex.mesh.points[a];
+  const Vec3& pb = complex.mesh.points[b];
+  if (plan.mark[e] >= 0) {
+    return born_on(complex, marks.all()[plan.mark[e]], {va, pa}, {vb, pb});
+  }
+  PlacedVertex made;
+  made.place = 0.5 * (pa + pb);
+  if (plan.in_film[e] != 0 && plan.obstacle[e] >= 0) {
+    const auto touches = [](const ComplexVertex& v) {
+      return v.constraints < 0 || v.held;
+    };
+    made.vertex.constraints = plan.obstacle[e];
+    made.vertex.held = touches(va) && touches(vb);
+    made.place =
+        onto_walls(complex, plan.obstacle[e], made.vertex.held, made.place);
+  }
+  if (plan.in_film[e] == 0) {
+    const bool solid =
+        va.kind == VertexKind::Fixed && vb.kind == VertexKind::Fixed;
+    made.vertex.kind = solid ? VertexKind::Fixed : VertexKind::InCap;
+  }
+  return made;
+}
+
+// The children of a facet beside edges that stay whole; `m` are the middles
+// of its edges (01), (12), (20), or -1.
+void add_partial(const Points& points, const Triangle& t, const Triangle& m,
+                 std::vector<Triangle>& children) {
+  const auto halved =
+      std::count_if(m.begin(), m.end(), [](int v) { return v >= 0; });
+  if (halved == 0) {
+    children.push_back(t);
+    return;
+  }
+  // Turned so that edge (01) is the one halved, or (20) the one whole.
+  int k = 0;
+  while (halved == 1 ? m[k] < 0 : m[(k + 2) % 3] >= 0) {
+    ++k;
+  }
+  const int a = t[k];
+  const int b = t[(k + 1) % 3];
+  const int c = t[(k + 2) % 3];
+  const int ab = m[k];
+  if (halved == 1) {
+    children.push_back({a, ab, c});
+    children.push_back({ab, b, c});
+    return;
+  }
+  const int bc = m[(k + 1) % 3];
+  children.push_back({ab, b, bc});
+  if ((points[a] - points[bc]).squaredNorm() <=
+      (points[c] - points[ab]).squaredNorm()) {
+    children.push_back({a, ab, bc});
+    children.push_back({a, bc, c});
+  } else {
+    children.push_back({a, ab, c});
+    children.push_back({ab, bc, c});
+  }
+}
+
+void refine_marks(const FilmComplex& complex, const EdgePlan& plan,
+                  FilmComplex& fine) {
+  std::vector<int> middle(complex.edges.size(), -1);
+  for (std::size_t e = 0; e < plan.edges.size(); ++e) {
+    const int m = plan.mark[e];
+    if (m >= 0 && m < static_cast<int>(middle.size())) {
+      middle[m] = plan.middle[e];
+    }
+  }
+  fine.edges.clear();
+  fine.edges.reserve(2 * complex.edges.size());
+  for (std::size_t m = 0; m < complex.edges.size(); ++m) {
+    ComplexEdge half = complex.edges[m];
+    if (middle[m] >= 0) {
+      half.b = middle[m];
+      fine.edges.push_back(half);
+      half.a = middle[m];
+      half.b = complex.edges[m].b;
+    }
+    fine.edges.push_back(half);
+  }
+}
+
+}  // namespace
+
+Refinement refine(const FilmComplex& complex) {
+  const EdgeMarks marks(complex);
+  const EdgePlan plan = plan_edges(complex, marks);
+  Refinement result;
+  FilmComplex& fine = result.complex;
+  fine = complex;
+  const std::size_t points = complex.mesh.points.size();
+  fine.mesh.points.reserve(points + plan.edges.size());
+  fine.vertices.reserve(points + plan.edges.size());
+  result.parents.reserve(plan.edges.size());
+  for (std::size_t e = 0; e < plan.edges.size(); ++e) {
+    if (plan.middle[e] >= 0) {
+      const PlacedVertex made = middle_of(complex, marks, plan, e);
+      fine.mesh.points.push_back(made.place);
+      fine.vertices.push_back(made.vertex);
+      result.parents.push_back(plan.edges[e]);
+    }
+  }
+  std::vector<Triangle>& children = fine.mesh.facets;
+  children.clear();
+  children.reserve(4 * plan.facet_edges.size());
+  fine.mesh.facet_label.clear();
+  fine.mesh.facet_label.reserve(4 * plan.facet_edges.size());
+  for (std::size_t f = 0; f < plan.facet_edges.size(); ++f) {
+    const Triangle& t = complex.mesh.facets[f];
+    const int ab = plan.middle[plan.facet_edges[f][0]];
+    const int bc = plan.middle[plan.facet_edges[f][1]];
+    const int ca = plan.middle[plan.facet_edges[f][2]];
+    if (ab >= 0 && bc >= 0 && ca >= 0) {
+      children.push_back({t[0], ab, ca});
+      children.push_back({ab, t[1], bc});
+      children.push_back({ca, bc, t[2]});
+      children.push_back({ab, bc, ca});
+    } else {
+      add_partial(fine.mesh.points, t, {ab, bc, ca}, children);
+    }
+    fine.mesh.facet_label.resize(children.size(), complex.mesh.facet_label[f]);
+  }
+  refine_marks(complex, plan, fine);
+  return result;
+}
+
+}  // namespace meniscus

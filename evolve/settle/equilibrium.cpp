@@ -1,0 +1,202 @@
+#include "evolve/settle/equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "evolve/energy/saddle_system.h"
+#include "evolve/settle/newton.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kNearRest = 1e-3;   // of the residual / (tension x edge)
+constexpr double kUnresolved = 2.0;  // neck below this many edges: pinching
+constexpr double kThinned = 0.2;     // a settled film's neck / the usual one
+constexpr double kThinning = 0.5;    // the same where no equilibrium was found
+
+std::string place(const Vec3& p) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
+}
+
+constexpr const char* kAdvice =
+    "a larger volume, shorter arms or larger rims would help";
+
+/// Normals that turn at every step make Newton's steps shrink by a factor only,
+/// and on a coarse film that may be near 1. From near rest it goes on along the
+/// normals as they are, where it converges quadratically.
+NewtonResult along_its_normals(const FilmEnergy& energy,
+                               const FilmTargets& targets,
+                               NewtonOptions options, NewtonResult near) {
+  options.rule = DirectionRule::Fixed;
+  NewtonResult found =
+      FilmNewton(energy, targets, options)
+          .run(near.points, energy.space().directions(near.points), {});
+  if (!found.converged) {
+    return near;
+  }
+  found.iterations += near.iterations;
+  return found;
+}
+
+FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
+                 const FilmTargets& targets, const Points& base,
+                 const Points& directions, const VectorX& start,
+                 double usual_neck, const SettleOptions& options,
+                 DirectionRule rule) {
+  const Timer timer;
+  const double tension =
+      *std::max_element(targets.tension.begin(), targets.tension.end());
+  NewtonOptions newton{.rule = rule,
+                       .aim = NewtonAim::Minimum,
+                       .residual_bound = options.residual_factor * tension *
+                                         energy.mean_edge(base),
+                       .volume_tolerance = options.volume_tolerance,
+                       .max_iterations = options.max_iterations,
+                       .monitor = options.monitor};
+  NewtonResult found =
+      FilmNewton(energy, targets, newton).run(base, directions, start);
+  if (!found.converged && rule == DirectionRule::CurrentNormals &&
+      found.residual <= kNearRest * tension * energy.mean_edge(base)) {
+    found = along_its_normals(energy, targets, newton, std::move(found));
+  }
+  if (!found.converged) {
+    newton.aim = NewtonAim::Equilibrium;
+    newton.max_iterations = std::min(20, options.max_iterations);
+    NewtonResult saddle =
+        FilmNewton(energy, targets, newton).run(base, directions, start);
+    saddle.iterations += found.iterations;
+    if (saddle.converged) {
+      found = std::move(saddle);
+    }
+  }
+  FilmState state;
+  state.report = figures_of(energy, targets, found.points, found.pressure);
+  state.report.residual = found.residual;
+  state.report.residual_bound = newton.residual_bound;
+  state.report.min_eigenvalue = found.min_eigenvalue;
+  state.report.index = found.index;
+  state.report.iterations = found.iterations;
+  state.points = std::move(found.points);
+  state.heights = std::move(found.heights);
+  judge(energy, complex,
+        {found.converged ? "" : found.reason,
+         found.mode_position,
+         usual_neck,
+         {}},
+        state);
+  state.report.seconds = timer.seconds();
+  return state;
+}
+
+}  // namespace
+
+FilmReport figures_of(const FilmEnergy& energy, const FilmTargets& targets,
+                      const Points& points, const VectorX& pressure) {
+  FilmReport report;
+  report.vertices = static_cast<int>(points.size());
+  report.facets = static_cast<int>(energy.facets().size());
+  report.energy = energy.value(points, targets);
+  report.area = energy.area(points);
+  const VectorX volumes = energy.volumes(points);
+  for (int b = 0; b < energy.functionals(); ++b) {
+    const ComplexBody& body = targets.bodies[b];
+    report.bodies.push_back(
+        {body.name, volumes[b], body.volume.value_or(volumes[b]), pressure[b]});
+  }
+  return report;
+}
+
+void judge(const FilmEnergy& energy, const FilmComplex& complex,
+           const Judgement& judgement, FilmState& state) {
+  const std::string& reason = judgement.reason;
+  FilmReport& report = state.report;
+  const bool finite = std::all_of(state.points.begin(), state.points.end(),
+                                  [](const Vec3& p) { return p.allFinite(); });
+  const Neck neck =
+      judgement.neck ? *judgement.neck
+      : finite ? narrowest_neck(energy, state.points, complex.mesh.facet_label)
+               : Neck{};
+  report.smallest_neck = neck.width;
+  report.neck_position = neck.position;
+  const double edge = finite ? energy.mean_edge(state.points) : 0.0;
+  const double least =
+      std::max(kUnresolved * edge,
+               judgement.usual_neck * (reason.empty() ? kThinned : kThinning));
+  const bool thin = neck.surface >= 0 && neck.width < least;
+  const auto name = [&](int s) { return complex.surfaces[s].name; };
+  const std::string where =
+      neck.surface < 0
+          ? std::string("no neck could be measured")
+          : fmt::format("neck of width {:.4g} at {} between '{}' and '{}'",
+                        neck.width, place(neck.position), name(neck.surface),
+                        name(neck.opposite));
+  const auto fail = [&](FailureKind kind, const std::string& verdict) {
+    report.verdict = verdict;
+    state.failure = Failure{kind, verdict};
+  };
+  state.failure.reset();
+  if (!reason.empty() && thin) {
+    fail(FailureKind::FilmPinched,
+         fmt::format("pinching: {}; {} (after {} steps, {})", where, kAdvice,
+                     report.iterations, reason));
+  } else if (!reason.empty()) {
+    fail(FailureKind::FilmNotFound,
+         fmt::format("no equilibrium of this topology found after {} steps "
+                     "({}; residual {:.3g}, bound {:.3g}); {}; {}",
+                     report.iterations, reason, report.residual,
+                     report.residual_bound, where, kAdvice));
+  } else if (report.index > 0) {
+    fail(FailureKind::FilmUnstable,
+         fmt::format("unstable: index {}, lowest eigenvalue {:.4g}, its mode "
+                     "is largest at {}; {}; {}",
+                     report.index, report.min_eigenvalue,
+                     place(judgement.mode_position), where, kAdvice));
+  } else if (thin) {
+    fail(FailureKind::FilmPinched,
+         fmt::format("pinching: {}, below the {:.4g} that this film needs (two "
+                     "edges, or a fifth of its neck at the start); {}, shorter "
+                     "edges where the part is meant to be this thin",
+                     where, least, kAdvice));
+  } else {
+    report.verdict = "stable";
+  }
+}
+
+LowestMode lowest_mode_of(const FilmEnergy& energy, const FilmTargets& targets,
+                          const Points& points, const VectorX& pressure) {
+  const Points own(points.begin(),
+                   points.begin() + energy.space().vertex_count());
+  const Points directions = energy.space().directions(own);
+  const SaddleSystem saddle(energy, targets, own, directions, pressure);
+  LowestMode result;
+  result.mode = VectorX::Ones(energy.unknowns());
+  if (saddle.factored()) {
+    result = saddle.system().lowest_mode(saddle.metric());
+  }
+  return result;
+}
+
+FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,
+                       const FilmTargets& targets, const Points& base,
+                       const Points& directions, const VectorX& start,
+                       double usual_neck, const SettleOptions& options) {
+  return settle(energy, complex, targets, base, directions, start, usual_neck,
+                options, DirectionRule::Fixed);
+}
+
+FilmState settle_in_normals(const FilmEnergy& energy,
+                            const FilmComplex& complex,
+                            const FilmTargets& targets, const Points& start,
+                            const SettleOptions& options, double usual_neck) {
+  FilmState state =
+      settle(energy, complex, targets, start, energy.space().directions(start),
+             {}, usual_neck, options, DirectionRule::CurrentNormals);
+  state.heights = VectorX::Zero(energy.unknowns());
+  return state;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,60 @@
+/// Newton's method to film equilibrium at the bodies' volumes and pressures,
+/// with the verdict on what was found.
+#pragma once
+
+#include "evolve/energy/constrained_hessian.h"
+#include "evolve/energy/energy.h"
+#include "evolve/settle/film_state.h"
+#include "evolve/settle/neck.h"
+
+namespace meniscus {
+
+/// Equilibrium over heights h, each free vertex at base + h d. A pure function
+/// of its arguments. The film is a minimum wherever one is found from `start`
+/// (empty: h = 0); where descent finds none, a saddle near the start is looked
+/// for, so that the failure can name it. After the stop criterion one more
+/// full step is taken: the result is converged to rounding, so that it is a
+/// smooth function of `base` and `targets`. `usual_neck`: the smallest neck of
+/// a film that is known to be sound, against which necks are judged; 0 for
+/// none. state.failure: FilmUnstable, FilmPinched or FilmNotFound. Throws
+/// Interrupted only.
+FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,
+                       const FilmTargets& targets, const Points& base,
+                       const Points& directions, const VectorX& start,
+                       double usual_neck, const SettleOptions& options);
+
+/// The same along the current vertex normals, which are taken anew at every
+/// step; `start` is the whole film. heights of the result are zero.
+FilmState settle_in_normals(const FilmEnergy& energy,
+                            const FilmComplex& complex,
+                            const FilmTargets& targets, const Points& start,
+                            const SettleOptions& options,
+                            double usual_neck = 0.0);
+
+/// Lowest mode of a film at `points` (more may follow its vertices: only the
+/// first are read) under the given pressures, by a factorisation.
+LowestMode lowest_mode_of(const FilmEnergy& energy, const FilmTargets& targets,
+                          const Points& points, const VectorX& pressure);
+
+/// What can be read from a film at `points`: counts, energy, area, and per
+/// functional its value and `pressure`. The rest is left at its defaults.
+FilmReport figures_of(const FilmEnergy& energy, const FilmTargets& targets,
+                      const Points& points, const VectorX& pressure);
+
+struct Judgement {
+  std::string reason;  // why no equilibrium was reached; empty: it was
+  Vec3 mode_position = Vec3::Zero();  // where the lowest mode is largest
+  double usual_neck = 0.0;            // [length]; 0: not known
+  std::optional<Neck> neck;           // where it has been measured already
+};
+
+/// Measures the narrowest neck and says in words what was found, from the
+/// residual and the index in state.report: sets report.smallest_neck,
+/// neck_position and verdict, and state.failure. A film that settled is still
+/// called pinching when its neck is under two edges, or under a fifth of the
+/// usual one: such a film can end at a perfect residual and a positive
+/// definite Hessian.
+void judge(const FilmEnergy& energy, const FilmComplex& complex,
+           const Judgement& judgement, FilmState& state);
+
+}  // namespace meniscus

@@ -1,0 +1,369 @@
+#include "evolve/settle/find_equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/timer.h"
+#include "evolve/films/rim_grading.h"
+#include "evolve/groom/bend_midpoints.h"
+#include "evolve/groom/flip_average.h"
+#include "evolve/groom/junctions.h"
+#include "evolve/groom/refine.h"
+#include "evolve/groom/remesh.h"
+#include "evolve/settle/bring_near.h"
+#include "evolve/settle/contacts.h"
+#include "evolve/settle/neck.h"
+#include "evolve/settle/nested_newton.h"
+
+namespace meniscus {
+
+namespace {
+
+// Where Newton finds no film, flow goes on so long, to tell a film that tears
+// from one that rests.
+constexpr int kLongRounds = 30;
+constexpr double kLongChange = 1e-8;
+constexpr double kLongMotion = 0.25;  // x edge, per step
+constexpr int kPolishRounds = 2;      // of averaging and Newton at the end
+// Facets up to which a film is groomed, and factored directly, before nested
+// refinement goes on.
+constexpr std::size_t kGroomed = 1500;
+constexpr std::size_t kDirect = 6000;
+constexpr int kContactRounds = 40;
+constexpr double kLooseReduction = 1e-2;  // on levels that are refined further
+
+bool has_free_vertex(const FilmComplex& complex) {
+  return std::any_of(complex.vertices.begin(), complex.vertices.end(),
+                     [](const ComplexVertex& vertex) {
+                       return vertex.kind == VertexKind::Free;
+                     });
+}
+
+FilmState given_up(const FilmComplex& complex, const std::string& reason,
+                   int steps) {
+  const FilmEnergy energy(complex);
+  FilmState state;
+  state.points = complex.mesh.points;
+  state.heights = VectorX::Zero(energy.unknowns());
+  const FilmTargets targets = targets_of(complex);
+  VectorX pressure(energy.functionals());
+  for (int b = 0; b < energy.functionals(); ++b) {
+    pressure[b] = targets.bodies[b].pressure.value_or(0.0);
+  }
+  state.report = figures_of(energy, targets, state.points, pressure);
+  state.report.iterations = steps;
+  Judgement judgement{.reason = reason};
+  if (reason == kFilmGrows) {
+    judgement.neck = Neck{};  // whatever comes near is no neck
+  }
+  judge(energy, complex, judgement, state);
+  return state;
+}
+
+/// Coarse to fine over the edges edge x 2^k, k = levels..0. Empty when the
+/// film came near rest; else why not.
+std::string bring_near_by_levels(FilmComplex& complex,
+                                 const FindOptions& options, int levels,
+                                 int& steps) {
+  for (int level = levels; level >= 0; --level) {
+    std::optional<double> edge;
+    if (options.edge) {
+      edge = *options.edge * std::exp2(level);
+      if (level < levels) {
+        complex = refine(complex).complex;
+      }
+      remesh_films(complex,
+                   {.edge = *edge, .edge_field = graded_edge(complex, *edge)});
+    }
+    std::string reason = bring_near(complex, edge, options.max_rounds, steps,
+                                    {.monitor = options.settle.monitor});
+    if (!reason.empty()) {
+      return reason;
+    }
+  }
+  return "";
+}
+
+/// Settled, though its neck may need shorter edges.
+bool is_settled(const FilmState& state) {
+  return !state.failure ||
+         (state.failure->kind == FailureKind::FilmPinched &&
+          state.report.index == 0 &&
+          state.report.residual <= state.report.residual_bound &&
+          state.report.residual_bound > 0.0);
+}
+
+/// Newton, and again with other contacts while one-sided walls ask for it.
+FilmState settle_with_contacts(FilmComplex& complex, double usual_neck,
+                               const SettleOptions& options, int& steps) {
+  for (int round = 0;; ++round) {
+    const FilmEnergy energy(complex);
+    FilmState state =
+        settle_in_normals(energy, complex, targets_of(complex),
+                          complex.mesh.points, options, usual_neck);
+    steps += state.report.iterations;
+    complex.mesh.points = state.points;
+    if (!has_contacts(complex) || round == kContactRounds) {
+      return state;
+    }
+    VectorX pressure(energy.functionals());
+    for (int b = 0; b < energy.functionals(); ++b) {
+      pressure[b] = state.report.bodies[b].pressure;
+    }
+    if (update_contacts(complex, energy, pressure) == 0) {
+      return state;
+    }
+  }
+}
+
+/// The same; where it finds no film, flow tells whether one is there.
+FilmState settle_or_follow(FilmComplex& complex, double usual_neck,
+                           const SettleOptions& options, int& steps) {
+  const Points before = complex.mesh.points;
+  FilmState state = settle_with_contacts(complex, usual_neck, options, steps);
+  if (!state.failure || state.failure->kind != FailureKind::FilmNotFound ||
+      complex.mesh.facets.size() > kDirect) {
+    return state;
+  }
+  complex.mesh.points = before;
+  const std::string reason =
+      bring_near(complex, {}, kLongRounds, steps,
+                 {.energy_change = kLongChange,
+                  .most_motion = kLongMotion * mean_edge_length(complex.mesh),
+                  .monitor = options.monitor});
+  return reason.empty()
+             ? settle_with_contacts(complex, usual_neck, options, steps)
+             : given_up(complex, reason, steps);
+}
+
+/// Newton, and vertex averaging so that facets are good where the film is.
+FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
+                            int& steps) {
+  if (!has_free_vertex(complex)) {
+    throw InvalidInput(fmt::format(
+        "the film has no vertex between its curves at a mean edge of {:.4g}; "
+        "use a shorter edge",
+        mean_edge_length(complex.mesh)));
+  }
+  FilmState state;
+  for (int round = 0; round <= kPolishRounds; ++round) {
+    if (round > 0) {
+      equiangulate(complex);
+      average_vertices(complex);
+    }
+    state = settle_or_follow(complex, 0.0, options.settle, steps);
+    if (!is_settled(state) || (!options.edge && options.refinements == 0)) {
+      break;
+    }
+  }
+  return state;
+}
+
+/// The chain of nested levels; the coarsest was groomed and settled.
+struct Chain {
+  std::vector<std::unique_ptr<FilmEnergy>> energies;
+  std::vector<FilmLevel> levels;
+  Neck neck;  // of the finest level that was factored
+
+  void add(const FilmComplex& complex, std::vector<Edge> parents) {
+    energies.push_back(std::make_unique<FilmEnergy>(complex));
+    if (!levels.empty() &&
+        !is_nested(*levels.back().energy, *energies.back(), parents)) {
+      // Parts that stay unrefined break the chain: start anew from here.
+      levels.clear();
+      parents.clear();
+    }
+    levels.push_back({energies.back().get(), std::move(parents)});
+  }
+
+  void measure_neck(const FilmComplex& complex) {
+    neck = narrowest_neck(*energies.back(), complex.mesh.points,
+                          complex.mesh.facet_label);
+  }
+};
+
+/// One level finer. `last`: to the stop criterion, with the verdict.
+FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
+                       const FindOptions& options, bool last, int& steps) {
+  const FilmEnergy& coarse = *chain.energies.back();
+  Refinement finer = refine(complex);
+  bend_midpoints(coarse.space(), complex.mesh.points, finer);
+  complex = std::move(finer.complex);
+  chain.add(complex, std::move(finer.parents));
+  const FilmEnergy& energy = *chain.energies.back();
+  const FilmTargets targets = targets_of(complex);
+  const bool direct =
+      complex.mesh.facets.size() <= kDirect || chain.levels.size() < 2;
+  const auto settle_directly = [&] {
+    FilmState found = settle_or_follow(complex, state.report.smallest_neck,
+                                       options.settle, steps);
+    if (has_contacts(complex)) {
+      chain = Chain();  // ranks may have changed
+      chain.add(complex, {});
+    }
+    chain.measure_neck(complex);
+    return found;
+  };
+  if (direct || has_contacts(complex)) {
+    return settle_directly();
+  }
+  const double tension =
+      *std::max_element(targets.tension.begin(), targets.tension.end());
+  NestedNewton newton(chain.levels, targets);
+  NestedOptions nested{.residual_bound = options.settle.residual_factor *
+                                         tension *
+                                         energy.mean_edge(complex.mesh.points),
+                       .volume_tolerance = options.settle.volume_tolerance,
+                       .reduction = last ? 0.0 : kLooseReduction,
+                       .monitor = options.settle.monitor};
+  VectorX pressure(energy.functionals());
+  for (int b = 0; b < energy.functionals(); ++b) {
+    pressure[b] = state.report.bodies[b].pressure;
+  }
+  const NestedResult found = newton.run(complex.mesh.points, pressure, nested);
+  steps += found.iterations;
+  if (!found.converged) {
+    return settle_directly();
+  }
+  complex.mesh.points = found.points;
+  const FilmReport before = std::move(state.report);
+  state.report = figures_of(energy, targets, found.points, found.pressure);
+  state.report.residual = found.residual;
+  state.report.residual_bound = nested.residual_bound;
+  if (!last) {
+    state.report.smallest_neck = before.smallest_neck;
+    state.report.neck_position = before.neck_position;
+    state.report.index = before.index;
+    state.failure.reset();  // a thin neck is judged at the end
+    return state;
+  }
+  const LowestMode guess = lowest_mode_of(*chain.levels.front().energy, targets,
+                                          complex.mesh.points, found.pressure);
+  const NestedModes modes = newton.lowest_modes(guess.mode);
+  state.report.min_eigenvalue = modes.eigenvalues[0];
+  state.report.index = modes.eigenvalues[0] < 0.0 ? 1 : 0;
+  state.points = found.points;
+  state.heights = VectorX::Zero(energy.unknowns());
+  Judgement judgement;
+  judgement.mode_position = modes.position;
+  judgement.neck = chain.neck;
+  judge(energy, complex, judgement, state);
+  return state;
+}
+
+/// Flow on the start and its refinements until the film is near rest at
+/// kGroomed facets, each level groomed; `blind` of them without flow, for films
+/// that the coarse levels tear. What stays undone is left in `left`.
+std::string bring_near_nested(FilmComplex& complex, const FindOptions& options,
+                              int blind, int& left, int& steps) {
+  const auto flow = [&] {
+    return bring_near(complex, {}, options.max_rounds, steps,
+                      {.monitor = options.settle.monitor});
+  };
+  std::string reason = blind > 0 ? "" : flow();
+  while (reason.empty() && left > 0 &&
+         4 * complex.mesh.facets.size() <= kGroomed) {
+    complex = refine(complex).complex;
+    --left;
+    if (--blind <= 0) {
+      equiangulate(complex);
+      average_vertices(complex);
+      reason = flow();
+    }
+  }
+  return reason;
+}
+
+/// A film with a junction that no film keeps is no minimum, however well it
+/// settled.
+void judge_junctions(const std::optional<UnstableJunction>& junction,
+                     FilmState& state) {
+  if (!junction || state.failure) {
+    return;
+  }
+  const Vec3& at = junction->place;
+  state.report.verdict = fmt::format(
+      "unstable: {} at ({:.4g}, {:.4g}, {:.4g}); popping it splits it and "
+      "lowers the energy",
+      junction->line ? "more than three films meet along the line"
+                     : "films meet otherwise than in four lines",
+      at.x(), at.y(), at.z());
+  state.failure = Failure{FailureKind::FilmUnstable, state.report.verdict};
+}
+
+/// Nested refinements of a start: groomed and settled while it is coarse.
+FilmState find_nested(FilmComplex& complex, const FindOptions& options,
+                      int& steps) {
+  const FilmComplex raw = complex;
+  FilmState state;
+  int left = 0;
+  for (const int blind : {0, 1, 2, 3}) {
+    if (blind > options.refinements ||
+        (blind > 1 && raw.mesh.facets.size() << (2 * blind) > kGroomed)) {
+      break;
+    }
+    FilmComplex attempt = raw;
+    int rest = options.refinements;
+    const std::string reason =
+        bring_near_nested(attempt, options, blind, rest, steps);
+    FilmState found = reason.empty()
+                          ? settle_and_polish(attempt, options, steps)
+                          : given_up(attempt, reason, steps);
+    if (blind == 0 || is_settled(found)) {
+      state = std::move(found);
+      complex = std::move(attempt);
+      left = rest;
+    }
+    if (is_settled(state) || state.failure->kind == FailureKind::FilmUnstable) {
+      break;
+    }
+  }
+  // Refinement keeps junctions: looked for while they are few.
+  const auto junction = unstable_junction(complex);
+  Chain chain;
+  chain.add(complex, {});
+  if (left > 0) {
+    chain.measure_neck(complex);
+  }
+  for (; left > 0 && is_settled(state); --left) {
+    state = settle_finer(chain, complex, std::move(state), options, left == 1,
+                         steps);
+  }
+  judge_junctions(junction, state);
+  return state;
+}
+
+}  // namespace
+
+FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options) {
+  const Timer timer;
+  int steps = 0;
+  if (!options.edge && options.refinements > 0) {
+    FilmState state = find_nested(complex, options, steps);
+    state.report.iterations = steps;
+    state.report.seconds = timer.seconds();
+    return state;
+  }
+  const int levels = options.edge ? options.halvings : 0;
+  FilmComplex raw = complex;
+  std::string reason = bring_near_by_levels(complex, options, levels, steps);
+  if (!reason.empty() && levels > 0) {
+    // A coarse film pinches earlier: the same without the coarse levels.
+    for (int level = 0; level < levels; ++level) {
+      raw = refine(raw).complex;
+    }
+    complex = std::move(raw);
+    reason = bring_near_by_levels(complex, options, 0, steps);
+  }
+  FilmState state = reason.empty() ? settle_and_polish(complex, options, steps)
+                                   : given_up(complex, reason, steps);
+  judge_junctions(unstable_junction(complex), state);
+  state.report.iterations = steps;
+  state.report.seconds = timer.seconds();
+  return state;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,363 @@
+#include "evolve/settle/neck.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <Eigen/Geometry>
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kFacing = 0.7;  // cosine between line and facet normal
+constexpr int kLeaf = 4;
+constexpr int kNearLine = 2;  // edges from a line, rim or junction
+constexpr int kCorner = 3;    // edges along the films
+
+/// Bounding volume tree over facets, split at the median of the longest axis.
+class FacetTree {
+ public:
+  FacetTree(const std::vector<Triangle>& facets, const Points& points)
+      : facets_(facets), points_(points) {
+    ids_.resize(facets.size());
+    centers_.resize(facets.size());
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      ids_[f] = static_cast<int>(f);
+      const Triangle& t = facets[f];
+      centers_[f] = (points[t[0]] + points[t[1]] + points[t[2]]) / 3.0;
+    }
+    if (!ids_.empty()) {
+      build(0, static_cast<int>(ids_.size()));
+    }
+  }
+
+  /// Nearest hit of origin + t direction with 0 < t < limit on a facet that
+  /// accept(facet) admits; returns the facet or -1, and t in `limit`.
+  template <typename Accept>
+  int first_hit(const Vec3& origin, const Vec3& direction, double& limit,
+                const Accept& accept) const {
+    int best = -1;
+    if (nodes_.empty()) {
+      return best;
+    }
+    // No infinity, so that a line in a box's own plane gives 0 and not NaN.
+    const Vec3 inverse = direction.unaryExpr([](double d) {
+      return 1.0 / (std::abs(d) > 1e-200 ? d : std::copysign(1e-200, d));
+    });
+    std::array<int, 64> stack{};
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+      const Node& node = nodes_[stack[--top]];
+      if (!node.box_hit(origin, inverse, limit)) {
+        continue;
+      }
+      if (node.left < 0) {
+        for (int k = node.first; k < node.last; ++k) {
+          const double t = hit(ids_[k], origin, direction);
+          if (t > 0.0 && t < limit && accept(ids_[k])) {
+            limit = t;
+            best = ids_[k];
+          }
+        }
+      } else {
+        // The near half last, so that it comes off the stack first.
+        const bool forward = direction[node.axis] > 0.0;
+        stack[top++] = forward ? node.right : node.left;
+        stack[top++] = forward ? node.left : node.right;
+      }
+    }
+    return best;
+  }
+
+ private:
+  struct Node {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+    Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
+    int first = 0;
+    int last = 0;
+    int left = -1;
+    int right = -1;
+    int axis = 0;
+
+    bool box_hit(const Vec3& origin, const Vec3& inverse, double limit) const {
+      double enter = 0.0;
+      double leave = limit;
+      for (int k = 0; k < 3; ++k) {
+        const double a = (low[k] - origin[k]) * inverse[k];
+        const double b = (high[k] - origin[k]) * inverse[k];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+      }
+      return enter <= leave * (1.0 + 1e-12);
+    }
+  };
+
+  int build(int first, int last) {
+    const int at = static_cast<int>(nodes_.size());
+    nodes_.emplace_back();
+    Node node;
+    node.first = first;
+    node.last = last;
+    for (int k = first; k < last; ++k) {
+      for (const int v : facets_[ids_[k]]) {
+        node.low = node.low.cwiseMin(points_[v]);
+        node.high = node.high.cwiseMax(points_[v]);
+      }
+    }
+    if (last - first > kLeaf) {
+      Eigen::Index axis = 0;
+      (node.high - node.low).maxCoeff(&axis);
+      const int middle = (first + last) / 2;
+      std::nth_element(ids_.begin() + first, ids_.begin() + middle,
+                       ids_.begin() + last, [&](int a, int b) {
+                         const double x = centers_[a][axis];
+                         const double y = centers_[b][axis];
+                         return x < y || (x == y && a < b);
+                       });
+      node.axis = static_cast<int>(axis);
+      node.left = build(first, middle);
+      node.right = build(middle, last);
+    }
+    nodes_[at] = node;
+    return at;
+  }
+
+  /// Moeller and Trumbore (1997); negative for a miss.
+  double hit(int facet, const Vec3& origin, const Vec3& direction) const {
+    const Triangle& t = facets_[facet];
+    const Vec3& a = points_[t[0]];
+    const Vec3 e1 = points_[t[1]] - a;
+    const Vec3 e2 = points_[t[2]] - a;
+    const Vec3 p = direction.cross(e2);
+    const double det = e1.dot(p);
+    if (det == 0.0) {
+      return -1.0;
+    }
+    constexpr double kEdge = 1e-9;  // so that no line slips between facets
+    const Vec3 s = origin - a;
+    const double u = s.dot(p) / det;
+    const Vec3 q = s.cross(e1);
+    const double v = direction.dot(q) / det;
+    if (!(u >= -kEdge && v >= -kEdge && u + v <= 1.0 + kEdge)) {
+      return -1.0;
+    }
+    return e2.dot(q) / det;
+  }
+
+  const std::vector<Triangle>& facets_;
+  const Points& points_;
+  std::vector<int> ids_;
+  Points centers_;
+  std::vector<Node> nodes_;
+};
+
+/// Do two facets look into one chamber? Films without a body share the outside.
+bool share_body(const FilmEnergy& energy, int f, int g) {
+  bool any = false;
+  for (int b = 0; b < energy.bodies(); ++b) {
+    const bool of_f = energy.side(f, b) != 0;
+    const bool of_g = energy.side(g, b) != 0;
+    if (of_f && of_g) {
+      return true;
+    }
+    any = any || of_f || of_g;
+  }
+  return !any;
+}
+
+/// Where an unknown's vertex looks from: along which sides of its normal a
+/// body lies (bit 1 against the normal, bit 2 along it; both for a film
+/// without a body), and one of its film's facets.
+struct Outlook {
+  int sides = 0;
+  int facet = -1;
+};
+
+std::vector<Outlook> outlooks(const FilmEnergy& energy,
+                              std::size_t point_count) {
+  std::vector<Outlook> of_vertex(point_count);
+  for (int f = 0; f < static_cast<int>(energy.facets().size()); ++f) {
+    if (!energy.is_liquid(f)) {
+      continue;
+    }
+    int sides = 0;
+    for (int b = 0; b < energy.bodies(); ++b) {
+      const double side = energy.side(f, b) * energy.space().turn(f);
+      sides |= side > 0 ? 1 : (side < 0 ? 2 : 0);
+    }
+    for (const int v : energy.facets()[f]) {
+      of_vertex[v].sides |= sides != 0 ? sides : 3;
+      of_vertex[v].facet = f;
+    }
+  }
+  std::vector<Outlook> result;
+  for (const int v : energy.vertices()) {
+    result.push_back(of_vertex[v]);
+  }
+  return result;
+}
+
+/// Vertices near a line, rim or junction: films that meet there come near to
+/// each other without being a neck.
+std::vector<char> near_lines(const FilmEnergy& energy, std::size_t count) {
+  std::vector<char> near(count, 0);
+  for (std::size_t f = 0; f < energy.facets().size(); ++f) {
+    for (const int v : energy.facets()[f]) {
+      if (energy.is_liquid(static_cast<int>(f)) &&
+          (energy.space().rank(v) != 1 ||
+           energy.space().line_ends(v)[0] >= 0)) {
+        near[v] = 1;
+      }
+    }
+  }
+  for (int ring = 0; ring < kNearLine; ++ring) {
+    std::vector<char> next = near;
+    for (const Triangle& t : energy.facets()) {
+      if (near[t[0]] + near[t[1]] + near[t[2]] > 0) {
+        next[t[0]] = next[t[1]] = next[t[2]] = 1;
+      }
+    }
+    near = std::move(next);
+  }
+  return near;
+}
+
+/// Which facets are a few edges away from a vertex: across a corner, not
+/// across a neck.
+class Corners {
+ public:
+  Corners(const std::vector<Triangle>& facets, std::size_t points)
+      : facets_(facets), start_(points + 1, 0), mark_(points, -1) {
+    for (const Triangle& t : facets) {
+      for (const int v : t) {
+        ++start_[v + 1];
+      }
+    }
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    around_.resize(3 * facets.size());
+    std::vector<int> next(start_.begin(), start_.end() - 1);
+    for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+      for (const int v : facets[f]) {
+        around_[next[v]++] = f;
+      }
+    }
+  }
+
+  bool has(int v, int facet) {
+    if (v != centre_) {
+      gather(v);
+    }
+    const Triangle& t = facets_[facet];
+    return mark_[t[0]] == v || mark_[t[1]] == v || mark_[t[2]] == v;
+  }
+
+ private:
+  // Ring by ring; `mark_` is the centre that a vertex was last found from.
+  void gather(int v) {
+    centre_ = v;
+    mark_[v] = v;
+    found_ = {v};
+    std::size_t first = 0;
+    for (int ring = 0; ring < kCorner; ++ring) {
+      const std::size_t last = found_.size();
+      for (; first < last; ++first) {
+        for (int k = start_[found_[first]]; k < start_[found_[first] + 1];
+             ++k) {
+          for (const int u : facets_[around_[k]]) {
+            if (mark_[u] != v) {
+              mark_[u] = v;
+              found_.push_back(u);
+            }
+          }
+        }
+      }
+    }
+  }
+
+  const std::vector<Triangle>& facets_;
+  std::vector<int> start_;
+  std::vector<int> around_;
+  std::vector<int> mark_;
+  int centre_ = -1;
+  std::vector<int> found_;
+};
+
+/// A number per point that is the same for points of films that hang together.
+std::vector<int> joined_films(const FilmEnergy& energy, std::size_t count) {
+  std::vector<int> up(count);
+  std::iota(up.begin(), up.end(), 0);
+  const auto root = [&](int v) {
+    while (up[v] != v) {
+      up[v] = up[up[v]];
+      v = up[v];
+    }
+    return v;
+  };
+  for (std::size_t f = 0; f < energy.facets().size(); ++f) {
+    const Triangle& t = energy.facets()[f];
+    for (int k = 1; energy.is_liquid(static_cast<int>(f)) && k < 3; ++k) {
+      const auto [low, high] = std::minmax({root(t[0]), root(t[k])});
+      up[high] = low;
+    }
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    up[v] = root(static_cast<int>(v));
+  }
+  return up;
+}
+
+}  // namespace
+
+Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
+                    const std::vector<int>& facet_label) {
+  const std::vector<Triangle>& facets = energy.facets();
+  const FacetTree tree(facets, points);
+  const Points normals = energy.space().directions(points);
+  const std::vector<Outlook> looks = outlooks(energy, points.size());
+  const std::vector<char> near = near_lines(energy, points.size());
+  const std::vector<int> film = joined_films(energy, points.size());
+  Corners corners(facets, points.size());
+  Neck neck;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < energy.unknowns(); ++i) {
+    const int v = energy.vertices()[i];
+    for (const int bit : {1, 2}) {
+      if ((looks[i].sides & bit) == 0 || normals[i].isZero() ||
+          energy.space().rank(v) != 1) {
+        continue;
+      }
+      const Vec3 direction = bit == 1 ? Vec3(-normals[i]) : normals[i];
+      double length = least;
+      const auto accept = [&](int f) {
+        const Triangle& t = facets[f];
+        const bool corner = near[v] != 0 &&
+                            near[t[0]] + near[t[1]] + near[t[2]] > 0 &&
+                            corners.has(v, f);
+        return t[0] != v && t[1] != v && t[2] != v && !corner &&
+               share_body(energy, f, looks[i].facet);
+      };
+      const int f = tree.first_hit(points[v], direction, length, accept);
+      if (f < 0 || !energy.is_liquid(f) || film[facets[f][0]] != film[v]) {
+        continue;
+      }
+      const Triangle& t = facets[f];
+      const Vec3 normal = (points[t[1]] - points[t[0]])
+                              .cross(points[t[2]] - points[t[0]])
+                              .normalized();
+      if (std::abs(normal.dot(direction)) > kFacing) {
+        least = length;
+        neck.width = length;
+        neck.position = points[v] + 0.5 * length * direction;
+        neck.surface = facet_label[looks[i].facet];
+        neck.opposite = facet_label[f];
+      }
+    }
+  }
+  return neck;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,155 @@
+#include "evolve/start/raise_disks.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+
+#include <Eigen/Geometry>
+
+#include "evolve/start/disk_fill.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kUsualHeight = 0.25;  // x the largest distance from the rim
+constexpr double kMostHeight = 2.0;    // the same
+
+/// The surfaces of one body that fill one curve, in the body's order.
+struct Filling {
+  std::string name;
+  bool film = false;
+};
+
+std::map<std::string, std::vector<Filling>> fillings_of(
+    const FilmSystem& system, const BodySpec& body) {
+  std::map<std::string, std::vector<Filling>> result;
+  for (const std::string& name : body.enclosed_by) {
+    for (const FilmSpec& film : system.films) {
+      if (film.name == name && film.kind == FilmKind::Disk &&
+          film.curves.size() == 1) {
+        result[film.curves[0]].push_back({name, true});
+      }
+    }
+    for (const CapSpec& cap : system.caps) {
+      if (cap.name == name && !cap.start) {
+        result[cap.curve].push_back({name, false});
+      }
+    }
+  }
+  return result;
+}
+
+/// A disk's own vertices, and how high each is for a height of 1: round at the
+/// middle, with a slope at the rim.
+class Bulge {
+ public:
+  Bulge(const FilmComplex& complex, int label) : complex_(complex) {
+    std::set<int> inner;
+    Points rim;
+    for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+      if (complex.mesh.facet_label[f] != label) {
+        continue;
+      }
+      facets_.push_back(complex.mesh.facets[f]);
+      for (const int v : facets_.back()) {
+        if (complex.vertices[v].kind == VertexKind::Free) {
+          inner.insert(v);
+        } else {
+          rim.push_back(complex.mesh.points[v]);
+        }
+      }
+    }
+    for (const int v : inner) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Vec3& p : rim) {
+        nearest = std::min(nearest, (p - complex.mesh.points[v]).norm());
+      }
+      height_[v] = nearest;
+      width_ = std::max(width_, nearest);
+    }
+    for (auto& [v, height] : height_) {
+      const double in = 1.0 - height / width_;
+      height = 1.0 - in * in;
+    }
+  }
+
+  bool empty() const { return height_.empty(); }
+  double width() const { return width_; }
+
+  /// Volume under it per height, as seen along `normal`.
+  double volume(const Vec3& normal) const {
+    double sum = 0.0;
+    for (const Triangle& t : facets_) {
+      const Points& p = complex_.mesh.points;
+      const double area =
+          0.5 *
+          std::abs((p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).dot(normal));
+      for (const int v : t) {
+        const auto found = height_.find(v);
+        sum += found == height_.end() ? 0.0 : area * found->second / 3.0;
+      }
+    }
+    return sum;
+  }
+
+  void raise(const Vec3& by, FilmComplex& complex) const {
+    for (const auto& [v, height] : height_) {
+      complex.mesh.points[v] += height * by;
+    }
+  }
+
+ private:
+  const FilmComplex& complex_;
+  std::vector<Triangle> facets_;
+  std::map<int, double> height_;
+  double width_ = 0.0;
+};
+
+Points rim_of(const FilmComplex& complex, const std::string& curve) {
+  Points rim;
+  for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+    const ComplexVertex& vertex = complex.vertices[v];
+    if (vertex.kind == VertexKind::OnCurve &&
+        complex.curves[vertex.curve].name == curve) {
+      rim.push_back(complex.mesh.points[v]);
+    }
+  }
+  return rim;
+}
+
+}  // namespace
+
+void raise_disks(const FilmSystem& system, FilmComplex& complex) {
+  std::set<std::string> raised;
+  for (const BodySpec& body : system.bodies) {
+    for (const auto& [curve, fillings] : fillings_of(system, body)) {
+      if (fillings.size() != 2) {
+        continue;
+      }
+      const Vec3 normal =
+          polygon_area_vector(rim_of(complex, curve)).normalized();
+      const int films = (fillings[0].film ? 1 : 0) + (fillings[1].film ? 1 : 0);
+      double side = 1.0;
+      for (const Filling& filling : fillings) {
+        if (!filling.film || !raised.insert(filling.name).second) {
+          continue;
+        }
+        const Bulge bulge(complex, complex.mesh.label_of(filling.name));
+        if (bulge.empty()) {
+          continue;
+        }
+        double height = kUsualHeight * bulge.width();
+        if (body.volume) {
+          height = std::min(*body.volume / films / bulge.volume(normal),
+                            kMostHeight * bulge.width());
+        }
+        bulge.raise(side * height * normal, complex);
+        side = -side;
+      }
+    }
+  }
+}
+
+}  // namespace meniscus

@@ -1,0 +1,373 @@
+#include "evolve/start/start_complex.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/energy/fields.h"
+#include "evolve/energy/tension_field.h"
+#include "evolve/films/body_sides.h"
+#include "evolve/films/rim_grading.h"
+#include "evolve/films/shared_sides.h"
+#include "evolve/start/branch_facets.h"
+#include "evolve/start/cap_faces.h"
+#include "evolve/start/disk_fill.h"
+#include "evolve/start/facet_start.h"
+#include "evolve/start/loft.h"
+#include "evolve/start/raise_disks.h"
+
+namespace meniscus {
+
+namespace {
+
+struct Rim {
+  int curve = 0;
+  std::vector<int> ids;  // of its points, in order
+
+  int count() const { return static_cast<int>(ids.size()); }
+};
+
+class StartBuilder {
+ public:
+  StartBuilder(const FilmSystem& system, double edge)
+      : system_(system), edge_(edge), shared_(system.curves) {}
+
+  FilmComplex build() {
+    check_names();
+    result_.curves = system_.curves;
+    facets_ = start_from_facets(system_, edge_, system_.keep_facets);
+    facet_points_.assign(facets_.points.size(), -1);
+    for (const FilmSpec& film : system_.films) {
+      for (const std::string& name : film.curves) {
+        rim_of(name, film.name);
+      }
+    }
+    for (const CapSpec& cap : system_.caps) {
+      for (const std::string& name : cap.curves()) {
+        rim_of(name, cap.name);
+      }
+    }
+    shared_.mark_edges(result_);
+    for (const FilmSpec& film : system_.films) {
+      add_film(film);
+    }
+    for (const CapSpec& cap : system_.caps) {
+      add_cap(cap);
+    }
+    raise_disks(system_, result_);
+    for (const BodySpec& body : system_.bodies) {
+      result_.bodies.push_back(make_body(body, result_.mesh));
+    }
+    for (const CapSpec& cap : system_.caps) {
+      require_body(system_, cap.name);
+    }
+    orient_bodies(result_);
+    add_fields();
+    const std::vector<double> tensions =
+        tensions_at(result_, result_.mesh.points);
+    for (std::size_t s = 0; s < tensions.size(); ++s) {
+      ComplexSurface& surface = result_.surfaces[s];
+      surface.tension = tensions[s];
+      if (surface.tension_field) {
+        surface.tension_field = positive_only(*surface.tension_field);
+      }
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void check_names() const {
+    std::set<std::string> names;
+    for (const Curve& curve : system_.curves) {
+      validate(curve);
+      if (!names.insert(curve.name).second) {
+        throw InvalidInput(
+            fmt::format("two curves are named '{}'; rename one", curve.name));
+      }
+    }
+    names.clear();
+    const auto add = [&](const std::string& name) {
+      if (!names.insert(name).second) {
+        throw InvalidInput(
+            fmt::format("two surfaces are named '{}'; rename one", name));
+      }
+    };
+    for (const FilmSpec& film : system_.films) {
+      add(film.name);
+      if (!std::isfinite(film.tension) || film.tension <= 0.0) {
+        throw InvalidInput(
+            fmt::format("film '{}': tension is {}, must be above 0", film.name,
+                        film.tension));
+      }
+    }
+    for (const CapSpec& cap : system_.caps) {
+      add(cap.name);
+    }
+  }
+
+  // The rim of a curve, its points made at first use.
+  const Rim& rim_of(const std::string& curve_name, const std::string& user) {
+    const auto known = rims_.find(curve_name);
+    if (known != rims_.end()) {
+      return known->second;
+    }
+    const auto found =
+        std::find_if(system_.curves.begin(), system_.curves.end(),
+                     [&](const Curve& c) { return c.name == curve_name; });
+    if (found == system_.curves.end()) {
+      throw InvalidInput(
+          fmt::format("surface '{}' names the curve '{}', which does not exist",
+                      user, curve_name));
+    }
+    Rim rim;
+    rim.curve = static_cast<int>(found - system_.curves.begin());
+    const auto cuts = facets_.cuts.find(rim.curve);
+    const bool is_cut = cuts != facets_.cuts.end();
+    const std::vector<double> t =
+        is_cut ? cuts->second : sample_parameters(found->shape, edge_);
+    if (shared_.shares(rim.curve)) {
+      rim.ids = shared_.rim(rim.curve, t, result_);
+      if (is_cut && rim.ids.size() != t.size()) {
+        throw InvalidInput(fmt::format(
+            "surface '{}': facets end at curve '{}', a side of which another "
+            "solid cuts otherwise; let the facets have that side's corners "
+            "only, or make them of kind cap",
+            user, curve_name));
+      }
+      return rims_.emplace(curve_name, std::move(rim)).first->second;
+    }
+    rim.ids.resize(t.size());
+    std::iota(rim.ids.begin(), rim.ids.end(),
+              static_cast<int>(result_.mesh.points.size()));
+    const Points points = points_at(found->shape, t);
+    result_.mesh.points.insert(result_.mesh.points.end(), points.begin(),
+                               points.end());
+    for (const double at : t) {
+      result_.vertices.push_back({VertexKind::OnCurve, rim.curve, at});
+    }
+    return rims_.emplace(curve_name, rim).first->second;
+  }
+
+  Points points_of(const Rim& rim) const {
+    Points points;
+    points.reserve(rim.ids.size());
+    for (const int id : rim.ids) {
+      points.push_back(result_.mesh.points[id]);
+    }
+    return points;
+  }
+
+  int add_surface(const ComplexSurface& surface) {
+    result_.surfaces.push_back(surface);
+    result_.mesh.labels.push_back(surface.name);
+    return static_cast<int>(result_.surfaces.size()) - 1;
+  }
+
+  void add_facet(const Triangle& corners, int label) {
+    result_.mesh.facets.push_back(corners);
+    result_.mesh.facet_label.push_back(label);
+  }
+
+  void add_film(const FilmSpec& film) {
+    const int label =
+        add_surface({film.name, true, film.tension, film.tension_field});
+    std::set<std::string> used;
+    for (const std::string& name : film.curves) {
+      if (!used.insert(name).second) {
+        throw InvalidInput(fmt::format("film '{}' names the curve '{}' twice",
+                                       film.name, name));
+      }
+    }
+    switch (film.kind) {
+      case FilmKind::Branch:
+        add_branch(film, label);
+        break;
+      case FilmKind::Loft:
+        add_loft(film, label);
+        break;
+      case FilmKind::Disk:
+        require_curves(film, 1);
+        fill({rim_of(film.curves[0], film.name)}, label, VertexKind::Free);
+        break;
+      case FilmKind::Facets:
+        add_sheet(film.name, label, VertexKind::Free);
+        break;
+    }
+  }
+
+  static void require_curves(const FilmSpec& film, std::size_t count) {
+    if (film.curves.size() != count) {
+      throw InvalidInput(
+          fmt::format("film '{}' has {} curves, its kind needs {}", film.name,
+                      film.curves.size(), count));
+    }
+  }
+
+  void add_loft(const FilmSpec& film, int label) {
+    require_curves(film, 2);
+    const Rim low = rim_of(film.curves[0], film.name);
+    const Rim high = rim_of(film.curves[1], film.name);
+    for (Triangle t : loft_band(points_of(low), points_of(high))) {
+      for (int& v : t) {
+        v = v < low.count() ? low.ids[v] : high.ids[v - low.count()];
+      }
+      add_facet(t, label);
+    }
+  }
+
+  /// The first of the rims filled, the others left open.
+  void fill(const std::vector<Rim>& rims, int label, VertexKind kind) {
+    std::vector<Points> loops;
+    bool graded = false;
+    for (const Rim& rim : rims) {
+      loops.push_back(points_of(rim));
+      graded = graded || shared_.shares(rim.curve) ||
+               has_many_sides(system_.curves[rim.curve].shape);
+    }
+    add_filling(
+        fill_face(loops, edge_, graded, system_.curves[rims[0].curve].name),
+        rims, label, kind);
+  }
+
+  // `disk`: the points of the rims come first, in their order.
+  void add_filling(const SurfaceMesh& disk, const std::vector<Rim>& rims,
+                   int label, VertexKind kind) {
+    std::vector<int> ids;
+    for (const Rim& rim : rims) {
+      ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
+    }
+    for (std::size_t i = ids.size(); i < disk.points.size(); ++i) {
+      ids.push_back(static_cast<int>(result_.mesh.points.size()));
+      result_.mesh.points.push_back(disk.points[i]);
+      result_.vertices.push_back({kind, -1, 0.0});
+    }
+    for (const Triangle& t : disk.facets) {
+      add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
+    }
+  }
+
+  /// Facets of the system's own.
+  void add_sheet(const std::string& name, int label, VertexKind kind) {
+    const auto sheet =
+        std::find_if(facets_.sheets.begin(), facets_.sheets.end(),
+                     [&](const FacetSheet& s) { return s.name == name; });
+    if (sheet == facets_.sheets.end()) {
+      throw InvalidInput(fmt::format("'{}' has no facets", name));
+    }
+    for (const auto& corners : sheet->facets) {
+      Triangle t;
+      for (int k = 0; k < 3; ++k) {
+        const FacetCorner& corner = corners[k];
+        if (corner.point < 0) {
+          t[k] = rim_of(system_.curves[corner.curve].name, name)
+                     .ids[static_cast<std::size_t>(corner.cut)];
+          continue;
+        }
+        int& id = facet_points_[corner.point];
+        if (id < 0) {
+          id = static_cast<int>(result_.mesh.points.size());
+          result_.mesh.points.push_back(facets_.points[corner.point]);
+          result_.vertices.push_back({kind, -1, 0.0});
+        } else if (result_.vertices[id].kind != kind) {
+          const Vec3& p = facets_.points[corner.point];
+          throw InvalidInput(
+              fmt::format("solid '{}' meets a film at ({:.6g}, {:.6g}, {:.6g}) "
+                          "on no curve; "
+                          "films are held by curves: name one there for both",
+                          name, p.x(), p.y(), p.z()));
+        }
+        t[k] = id;
+      }
+      add_facet(t, label);
+    }
+  }
+
+  void add_cap(const CapSpec& cap) {
+    const int label = add_surface({cap.name, false, 0.0});
+    if (cap.start) {
+      add_sheet(cap.name, label, VertexKind::InCap);
+      return;
+    }
+    std::vector<Rim> rims;
+    std::vector<Points> loops;
+    for (const std::string& name : cap.curves()) {
+      rims.push_back(rim_of(name, cap.name));
+      loops.push_back(points_of(rims.back()));
+    }
+    if (!cap.inner.empty()) {
+      add_filling(fill_ring(loops[0], loops[1], edge_), rims, label,
+                  VertexKind::InCap);
+      return;
+    }
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+      require_flat(loops[k], cap.name, system_.curves[rims[k].curve].name);
+    }
+    for (const std::vector<int>& face : faces_with_holes(loops)) {
+      std::vector<Rim> bounds;
+      bounds.reserve(face.size());
+      for (const int k : face) {
+        bounds.push_back(rims[k]);
+      }
+      fill(bounds, label, VertexKind::InCap);
+    }
+  }
+
+  void add_branch(const FilmSpec& film, int label);
+
+  void add_fields() {
+    for (const FieldSpec& field : system_.fields) {
+      result_.quantities.push_back(field_quantity(result_, field));
+    }
+    for (const PressureSpec& spec : system_.pressures) {
+      result_.quantities.push_back(
+          pressure_quantity(result_, spec.name, spec.body, spec.pressure));
+    }
+  }
+
+  const FilmSystem& system_;
+  double edge_;
+  FilmComplex result_;
+  std::map<std::string, Rim> rims_;
+  SharedRims shared_;
+  FacetStart facets_;
+  std::vector<int> facet_points_;  // ids of its points; -1: not yet
+};
+
+void StartBuilder::add_branch(const FilmSpec& film, int label) {
+  if (film.curves.size() < 2) {
+    throw InvalidInput(
+        fmt::format("film '{}' has {} curves, a branch needs 2 "
+                    "or more; use kind disk for one",
+                    film.name, film.curves.size()));
+  }
+  std::vector<int> counts;
+  std::vector<int> ids;
+  Points points;
+  for (const std::string& name : film.curves) {
+    const Rim& rim = rim_of(name, film.name);
+    counts.push_back(rim.count());
+    ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
+    const Points of_rim = points_of(rim);
+    points.insert(points.end(), of_rim.begin(), of_rim.end());
+  }
+  for (const Triangle& t : branch_facets(film, points, counts)) {
+    add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
+  }
+}
+
+}  // namespace
+
+FilmComplex build_start(const FilmSystem& system, double edge) {
+  if (!std::isfinite(edge) || edge <= 0.0) {
+    throw InvalidInput(fmt::format("edge length is {}, must be above 0", edge));
+  }
+  return StartBuilder(system, edge).build();
+}
+
+}  // namespace meniscus

@@ -1,0 +1,89 @@
+#include "evolve/walls/wall_films.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kFlat = 1e-6;  // of a cone's largest volume
+
+void turn_outward(SurfaceMesh& mesh, int label, const Vec3& middle) {
+  double volume = 0.0;  // six times that of the cones to the middle
+  double size = 0.0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (mesh.facet_label[f] == label) {
+      const Triangle& t = mesh.facets[f];
+      const Vec3 a = mesh.points[t[0]] - middle;
+      const Vec3 b = mesh.points[t[1]] - middle;
+      const Vec3 c = mesh.points[t[2]] - middle;
+      volume += a.dot(b.cross(c));
+      size += a.norm() * (b - a).cross(c - a).norm();
+    }
+  }
+  if (volume < -kFlat * size) {
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+      if (mesh.facet_label[f] == label) {
+        std::swap(mesh.facets[f][1], mesh.facets[f][2]);
+      }
+    }
+  }
+}
+
+Vec3 middle_of_rim(const FilmSystem& system, const std::string& film,
+                   const FilmModel& model, const Points& points) {
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (const FilmSpec& spec : system.films) {
+    for (const std::string& curve : spec.curves) {
+      for (const int v :
+           spec.name == film ? model.rim(curve) : std::vector<int>()) {
+        sum += points[static_cast<std::size_t>(v)];
+        ++count;
+      }
+    }
+  }
+  return sum / count;
+}
+
+}  // namespace
+
+WallFilms wall_films(const FilmModel& model, const FilmSystem& system,
+                     const Points& points, const std::vector<WallSpec>& walls) {
+  const SurfaceMesh all = model.meshed_facets();
+  WallFilms films;
+  films.middles = model.middles();
+  films.levels = model.refinements();
+  SurfaceMesh& mesh = films.mesh;
+  mesh.points = points;
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    for (const std::string& film : walls[w].films) {
+      mesh.labels.push_back(film);
+      films.wall.push_back(static_cast<int>(w));
+    }
+    films.region.push_back(walls[w].region);
+    const Vec3& p = points.front();
+    films.asked.push_back(walls[w].number.value_or(walls[w].thickness.evaluate(
+        std::array<double, 3>{p.x(), p.y(), p.z()})));
+  }
+  for (std::size_t f = 0; f < all.facets.size(); ++f) {
+    const int label = mesh.label_of(all.labels[all.facet_label[f]]);
+    if (label >= 0) {
+      mesh.facets.push_back(all.facets[f]);
+      mesh.facet_label.push_back(label);
+    }
+  }
+  for (std::size_t label = 0; label < mesh.labels.size(); ++label) {
+    turn_outward(mesh, static_cast<int>(label),
+                 middle_of_rim(system, mesh.labels[label], model, points));
+  }
+  for (const Curve& curve : system.curves) {
+    films.rims.push_back({curve.name, model.rim(curve.name)});
+  }
+  return films;
+}
+
+}  // namespace meniscus

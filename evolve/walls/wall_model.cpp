@@ -1,0 +1,317 @@
+#include "evolve/walls/wall_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/walls/wall_films.h"
+#include "evolve/walls/wall_offset.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kSpannedByEdges = 1e-4;  // of the largest eigenvalue
+
+}  // namespace
+
+WallModel WallModel::freeze(const FilmModel& film, const FilmSystem& system,
+                            const Points& points,
+                            const std::vector<WallSpec>& walls,
+                            SafePlaces places) {
+  return {wall_films(film, system, points, walls), walls, places};
+}
+
+WallModel::WallModel(WallFilms films, std::vector<WallSpec> walls,
+                     SafePlaces places)
+    : specs_(std::move(walls)),
+      reference_film_(films.mesh.points),
+      topology_(wall_topology(films)),
+      reference_(wall_reference(topology_, films, specs_, places)) {
+  freeze_moves();
+  std::vector<int> corner;
+  SurfaceMesh coarse = topology_.coarse;
+  // Corners are numbered as the coarse facets name them.
+  std::vector<int> id(topology_.points.size(), -1);
+  for (Triangle& t : coarse.facets) {
+    for (int& v : t) {
+      if (id[v] < 0) {
+        id[v] = static_cast<int>(corner.size());
+        corner.push_back(v);
+      }
+      v = id[v];
+    }
+  }
+  nodes_ =
+      surface_nodes(std::move(coarse), std::move(corner), topology_.middles,
+                    std::vector<char>(topology_.points.size(), 0));
+  report();
+}
+
+/// Every offset as a combination of the normals and edges at its vertex.
+void WallModel::freeze_moves() {
+  std::vector<Around> around(topology_.points.size());
+  const Points& x = reference_film_;
+  for (std::size_t f = 0; f < topology_.facets.size(); ++f) {
+    const WallFacet& facet = topology_.facets[f];
+    for (int k = 0; k < 3; ++k) {
+      const int next = facet.film[(k + 1) % 3];
+      const int last = facet.film[(k + 2) % 3];
+      const Vec3 a = x[next] - x[facet.film[k]];
+      const Vec3 b = x[last] - x[facet.film[k]];
+      const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+      for (const int point : {facet.front[k], facet.back[k]}) {
+        around[point].facets.emplace_back(static_cast<int>(f), angle);
+        around[point].neighbours.insert({next, last});
+      }
+    }
+  }
+  const Points normals = unit_normals(x);
+  follow_.resize(topology_.points.size());
+  for (std::size_t p = 0; p < follow_.size(); ++p) {
+    const int v = topology_.points[p].vertex;
+    if (v >= 0) {
+      follow_[p] = follow(around[p], v, normals, reference_.moves[p]);
+    }
+  }
+}
+
+WallModel::Follow WallModel::follow(const Around& around, int vertex,
+                                    const Points& normals,
+                                    const std::vector<WallMove>& moves) const {
+  const Points& x = reference_film_;
+  Mat3 by_normals = Mat3::Zero();
+  for (const auto& [f, angle] : around.facets) {
+    by_normals += angle * normals[f] * normals[f].transpose();
+  }
+  Mat3 by_edges = Mat3::Zero();
+  for (const int v : around.neighbours) {
+    const Vec3 edge = x[v] - x[vertex];
+    by_edges += edge * edge.transpose();
+  }
+  const Mat3 normal_inverse = mitre_inverse(by_normals);
+  const Mat3 edge_inverse = mitre_inverse(by_edges, kSpannedByEdges);
+  Follow result;
+  for (const WallMove& move : moves) {
+    Vec3 rest = move.by;
+    const Vec3 y = normal_inverse * move.by;
+    for (const auto& [f, angle] : around.facets) {
+      const double weight = angle * normals[f].dot(y);
+      result.normals.push_back({f, move.wall, weight});
+      rest -= weight * normals[f];
+    }
+    const Vec3 z = edge_inverse * rest;
+    for (const int v : around.neighbours) {
+      const double weight = (x[v] - x[vertex]).dot(z);
+      result.edges.push_back({v, move.wall, weight});
+      rest -= weight * (x[v] - x[vertex]);
+    }
+    result.rest.push_back({move.wall, rest});
+  }
+  return result;
+}
+
+Points WallModel::unit_normals(const Points& film) const {
+  Points normals;
+  normals.reserve(topology_.facets.size());
+  for (const WallFacet& facet : topology_.facets) {
+    const auto& [a, b, c] = facet.film;
+    normals.push_back(
+        (film[b] - film[a]).cross(film[c] - film[a]).normalized());
+  }
+  return normals;
+}
+
+VectorX WallModel::thickness(const std::vector<WallSpec>& walls) const {
+  VectorX result(static_cast<Eigen::Index>(specs_.size()));
+  for (std::size_t w = 0; w < specs_.size(); ++w) {
+    if (walls.size() != specs_.size() ||
+        walls[w].number.has_value() != specs_[w].number.has_value() ||
+        walls[w].name != specs_[w].name) {
+      throw InvalidInput("the design's walls are not those of its model");
+    }
+    const double number = walls[w].number.value_or(1.0);
+    if (!(number > 0.0) || !std::isfinite(number)) {
+      throw InvalidInput(
+          fmt::format("walls.{}: the thickness must be above 0, found {}",
+                      walls[w].name, number));
+    }
+    result[static_cast<Eigen::Index>(w)] = number;
+  }
+  return result;
+}
+
+VectorX WallModel::ratios(const VectorX& thickness) const {
+  VectorX ratio = VectorX::Ones(thickness.size());
+  for (std::size_t w = 0; w < specs_.size(); ++w) {
+    if (specs_[w].number) {
+      const auto k = static_cast<Eigen::Index>(w);
+      ratio[k] = thickness[k] / *specs_[w].number;
+    }
+  }
+  return ratio;
+}
+
+Points WallModel::points_of(const Points& film,
+                            const VectorX& thickness) const {
+  if (film.size() != reference_film_.size()) {
+    throw InvalidInput(
+        fmt::format("walls: a film of {} points is not that of "
+                    "the model, which has {}",
+                    film.size(), reference_film_.size()));
+  }
+  const VectorX ratio = ratios(thickness);
+  const Points normals = unit_normals(film);
+  Points result(topology_.points.size(), Vec3::Zero());
+  for (std::size_t p = 0; p < result.size(); ++p) {
+    const int v = topology_.points[p].vertex;
+    if (v < 0) {
+      continue;
+    }
+    Vec3 by = Vec3::Zero();
+    for (const Share& share : follow_[p].normals) {
+      by += ratio[share.wall] * share.weight * normals[share.at];
+    }
+    for (const Share& share : follow_[p].edges) {
+      by += ratio[share.wall] * share.weight * (film[share.at] - film[v]);
+    }
+    for (const WallMove& rest : follow_[p].rest) {
+      by += ratio[rest.wall] * rest.by;
+    }
+    result[p] = film[v] + by;
+  }
+  for (std::size_t p = 0; p < result.size(); ++p) {
+    for (const auto& [q, weight] : topology_.points[p].of) {
+      result[p] += weight * result[q];
+    }
+  }
+  return result;
+}
+
+QuadraticSurface WallModel::surface(const Points& film,
+                                    const VectorX& thickness) const {
+  return nodes_.at(points_of(film, thickness));
+}
+
+SurfaceMesh WallModel::fine(const Points& film,
+                            const VectorX& thickness) const {
+  SurfaceMesh mesh = topology_.fine;
+  mesh.points = points_of(film, thickness);
+  return mesh;
+}
+
+void WallModel::split_facets(const std::vector<char>& marked) {
+  nodes_ =
+      meniscus::split_facets(nodes_, marked, topology_.middles,
+                             std::vector<char>(topology_.points.size(), 0));
+}
+
+WallGradient WallModel::transpose(const Points& film, const VectorX& thickness,
+                                  const Points& by_corners,
+                                  const Points& by_mid_sides) const {
+  Points by =
+      nodes_.transpose(by_corners, by_mid_sides, topology_.points.size());
+  for (std::size_t p = 0; p < by.size(); ++p) {
+    for (const auto& [q, weight] : topology_.points[p].of) {
+      by[q] += weight * by[p];
+    }
+  }
+  const VectorX ratio = ratios(thickness);
+  const Points normals = unit_normals(film);
+  Points by_normals(normals.size(), Vec3::Zero());
+  WallGradient result{.film = Points(film.size(), Vec3::Zero()),
+                      .thickness = VectorX::Zero(thickness.size())};
+  for (std::size_t p = 0; p < by.size(); ++p) {
+    const int v = topology_.points[p].vertex;
+    if (v < 0) {
+      continue;
+    }
+    result.film[v] += by[p];
+    for (const Share& share : follow_[p].normals) {
+      by_normals[share.at] += ratio[share.wall] * share.weight * by[p];
+      result.thickness[share.wall] +=
+          share.weight * normals[share.at].dot(by[p]);
+    }
+    for (const Share& share : follow_[p].edges) {
+      const Vec3 part = ratio[share.wall] * share.weight * by[p];
+      result.film[share.at] += part;
+      result.film[v] -= part;
+      result.thickness[share.wall] +=
+          share.weight * (film[share.at] - film[v]).dot(by[p]);
+    }
+    for (const WallMove& rest : follow_[p].rest) {
+      result.thickness[rest.wall] += rest.by.dot(by[p]);
+    }
+  }
+  for (std::size_t w = 0; w < specs_.size(); ++w) {
+    double& rate = result.thickness[static_cast<Eigen::Index>(w)];
+    rate = specs_[w].number ? rate / *specs_[w].number : 0.0;
+  }
+  through_normals(film, normals, by_normals, result.film);
+  return result;
+}
+
+// n = a / |a|, a = (x1 - x0) x (x2 - x0).
+void WallModel::through_normals(const Points& film, const Points& normals,
+                                const Points& by_normals,
+                                Points& by_film) const {
+  for (std::size_t f = 0; f < normals.size(); ++f) {
+    const auto& [a, b, c] = topology_.facets[f].film;
+    const Vec3 u = film[b] - film[a];
+    const Vec3 w = film[c] - film[a];
+    const Vec3& n = normals[f];
+    const Vec3 by_area =
+        (by_normals[f] - n * n.dot(by_normals[f])) / u.cross(w).norm();
+    const Vec3 by_u = w.cross(by_area);
+    const Vec3 by_w = by_area.cross(u);
+    by_film[b] += by_u;
+    by_film[c] += by_w;
+    by_film[a] -= by_u + by_w;
+  }
+}
+
+/// One closed wall per region, measured and checked.
+void WallModel::report() {
+  const SurfaceMesh all = fine(reference_film_, thickness(specs_));
+  std::vector<char> in_front(topology_.points.size(), 0);
+  for (const WallFacet& facet : topology_.facets) {
+    for (const int p : facet.front) {
+      in_front[p] = 1;
+    }
+  }
+  for (std::size_t r = 0; r < reference_.safe.size(); ++r) {
+    ThickWall wall;
+    std::vector<int> id(all.points.size(), -1);
+    wall.surface.labels = all.labels;
+    for (std::size_t f = 0; f < all.facets.size(); ++f) {
+      if (!all.facet_bodies.empty() &&
+          all.facet_bodies[f].behind != static_cast<int>(r)) {
+        continue;
+      }
+      Triangle t = all.facets[f];
+      for (int& v : t) {
+        if (id[v] < 0) {
+          id[v] = static_cast<int>(wall.surface.points.size());
+          wall.surface.points.push_back(all.points[v]);
+          wall.trace.push_back(
+              {topology_.points[v].vertex, in_front[v] != 0 ? 1.0 : 0.0});
+        }
+        v = id[v];
+      }
+      wall.surface.facets.push_back(t);
+      wall.surface.facet_label.push_back(all.facet_label[f]);
+    }
+    wall.volume = enclosed_volume(wall.surface);
+    wall.thinnest = reference_.thinnest[r];
+    wall.thickest = reference_.thickest[r];
+    wall.safe = reference_.safe[r];
+    wall.corrections = reference_.corrections[r];
+    wall.findings = check_surface(wall.surface);
+    walls_.push_back(std::move(wall));
+  }
+}
+
+}  // namespace meniscus

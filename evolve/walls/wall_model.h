@@ -1,0 +1,111 @@
+/// Walls frozen on a film: thickness, corrections and the order of films about
+/// junctions are found once, and the walls of every other design follow their
+/// film smoothly.
+///
+///   y_k(p) = x_v(p) + sum_w t_w(p) / t_w(0) *
+///            ( sum_f c_kf n_f(p) + sum_j b_kj (x_j(p) - x_v(p)) + e_k )
+///
+/// y_k: a point of a wall over film vertex v; w: the walls that meet there, t_w
+/// their thickness where it is a number; n_f: unit normals of the facets about
+/// v that look into its sector (wall_topology.h), x_j the vertices next to v.
+/// c, b and the tiny rest e, one set per w, are constants that give the offset
+/// found at the reference film exactly, so that the wall turns with its film.
+#pragma once
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/surface_mesh.h"
+#include "core/geometry/surface_nodes.h"
+#include "evolve/frozen/film_model.h"
+#include "evolve/walls/wall_reference.h"
+#include "evolve/walls/wall_spec.h"
+#include "evolve/walls/wall_topology.h"
+
+namespace meniscus {
+
+/// A response's derivatives by what walls are made of.
+struct WallGradient {
+  Points film;        // by the film's points
+  VectorX thickness;  // by each wall's number; 0 where it has none
+};
+
+class WallModel {
+ public:
+  /// On the film `points` of a state of `film`; `system`: its own. A film's
+  /// normals point away from the middle of its rim (of a flat film along its
+  /// curve's normal). Throws InvalidInput and MeshError as wall_reference().
+  static WallModel freeze(const FilmModel& film, const FilmSystem& system,
+                          const Points& points,
+                          const std::vector<WallSpec>& walls,
+                          SafePlaces places = SafePlaces::Worst);
+
+  WallModel(WallFilms films, std::vector<WallSpec> walls,
+            SafePlaces places = SafePlaces::Worst);
+
+  /// The walls at the reference film, one per region: the closed surface at the
+  /// film's own resolution and what was measured of it.
+  const std::vector<ThickWall>& walls() const { return walls_; }
+
+  /// The largest safe thickness at every film vertex that has a wall [length];
+  /// infinite where nothing limits it and elsewhere. Empty unless asked for
+  /// Everywhere.
+  const std::vector<double>& safe() const { return reference_.safe_at; }
+
+  /// Thickness numbers of `walls`, this model's at another design.
+  VectorX thickness(const std::vector<WallSpec>& walls) const;
+
+  /// The closed walls for meshing: corners at the meshed resolution, mid-sides
+  /// from the finer film. `thickness`: one per wall, see above.
+  QuadraticSurface surface(const Points& film, const VectorX& thickness) const;
+
+  /// The same at the film's own resolution.
+  SurfaceMesh fine(const Points& film, const VectorX& thickness) const;
+
+  /// As FilmModel::split_facets().
+  void split_facets(const std::vector<char>& marked);
+
+  /// surface() transposed at `film` and `thickness`.
+  WallGradient transpose(const Points& film, const VectorX& thickness,
+                         const Points& by_corners,
+                         const Points& by_mid_sides) const;
+
+ private:
+  struct Share {  // of a unit normal (of topology_.facets), or of an edge
+    int at = 0;
+    int wall = 0;
+    double weight = 0.0;
+  };
+  struct Follow {  // how one wall point follows its film
+    std::vector<Share> normals;
+    std::vector<Share> edges;  // `at`: the other end
+    std::vector<WallMove> rest;
+  };
+
+  struct Around {  // a wall point: facets of its sector, by corner angle
+    std::vector<std::pair<int, double>> facets;
+    std::set<int> neighbours;  // film vertices
+  };
+
+  void freeze_moves();
+  Follow follow(const Around& around, int vertex, const Points& normals,
+                const std::vector<WallMove>& moves) const;
+  void through_normals(const Points& film, const Points& normals,
+                       const Points& by_normals, Points& by_film) const;
+  void report();
+  VectorX ratios(const VectorX& thickness) const;
+  Points points_of(const Points& film, const VectorX& thickness) const;
+  Points unit_normals(const Points& film) const;
+
+  std::vector<WallSpec> specs_;
+  Points reference_film_;
+  WallTopology topology_;
+  WallReference reference_;
+  std::vector<Follow> follow_;  // per wall point
+  SurfaceNodes nodes_;
+  std::vector<ThickWall> walls_;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,213 @@
+#include "evolve/walls/wall_offset.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "evolve/walls/facet_probe.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kLongestMitre = 3;  // a sharper mitre is cut there
+constexpr double kFlatHold = 1e-6;   // of the tangential move, see header
+constexpr double kLargestFix = 1.5;  // of a correction, per pass
+constexpr double kSlow = 0.95;       // a pass that gains less is the last
+constexpr double kTotalFix = 4.0;    // of all corrections together
+
+double corner_angle(const Sheet& sheet, int facet, int v) {
+  const Triangle& t = sheet.film.facets[facet];
+  const int at = t[0] == v ? 0 : (t[1] == v ? 1 : 2);
+  const Vec3 a = sheet.film.points[t[(at + 1) % 3]] - sheet.film.points[v];
+  const Vec3 b = sheet.film.points[t[(at + 2) % 3]] - sheet.film.points[v];
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+Vec3 mitre(const Mat3& matrix, const Vec3& right) {
+  const Vec3 d = mitre_inverse(matrix) * right;
+  const double length = d.norm();
+  return length > kLongestMitre ? Vec3(d * (kLongestMitre / length)) : d;
+}
+
+/// Measures a wall; per vertex the range of measured / asked around it.
+class Gauge {
+ public:
+  Gauge(const Sheet& sheet, const std::vector<double>& asked)
+      : sheet_(sheet), asked_(asked) {}
+
+  void measure(const Points& front, const Points& back) {
+    low_.assign(asked_.size(), std::numeric_limits<double>::infinity());
+    high_.assign(asked_.size(), 0.0);
+    least_ = std::numeric_limits<double>::infinity();
+    most_ = 0.0;
+    side(front, back);
+    side(back, front);
+  }
+
+  double worst() const { return std::max(1.0 - least_, most_ - 1.0); }
+  const MeasuredThickness& thinnest() const { return thinnest_; }
+  const MeasuredThickness& thickest() const { return thickest_; }
+  /// Middle of measured / asked over the samples that vertex v moves.
+  double middle(int v) const { return 0.5 * (low_[v] + high_[v]); }
+
+ private:
+  template <typename Corners>
+  void sample(const Points& side, const Points& other, const FacetProbe& probe,
+              const Corners& corners) {
+    Vec3 p = Vec3::Zero();
+    Vec3 across = Vec3::Zero();
+    double asked = 0.0;
+    for (const int v : corners) {
+      p += side[v];
+      across += other[v];
+      asked += asked_[v];
+    }
+    const auto count = static_cast<double>(corners.size());
+    p /= count;
+    asked /= count;
+    // The same place on the other side is near the nearest.
+    const double bound = (across / count - p).norm();
+    const double value = probe.nearest(p, bound).distance;
+    const double ratio = value / asked;
+    if (ratio < least_) {
+      least_ = ratio;
+      thinnest_ = {value, asked, p};
+    }
+    if (ratio > most_) {
+      most_ = ratio;
+      thickest_ = {value, asked, p};
+    }
+    for (const int v : corners) {
+      low_[v] = std::min(low_[v], ratio);
+      high_[v] = std::max(high_[v], ratio);
+    }
+  }
+
+  void side(const Points& points, const Points& other) {
+    const FacetProbe probe(other, sheet_.film.facets);
+    for (int v = 0; v < static_cast<int>(points.size()); ++v) {
+      sample(points, other, probe, std::array<int, 1>{v});
+    }
+    for (const Edge& e : sheet_.edges) {
+      sample(points, other, probe, e);
+    }
+    for (const Triangle& t : sheet_.film.facets) {
+      sample(points, other, probe, t);
+    }
+  }
+
+  const Sheet& sheet_;
+  const std::vector<double>& asked_;
+  std::vector<double> low_;
+  std::vector<double> high_;
+  double least_ = 0.0;
+  double most_ = 0.0;
+  MeasuredThickness thinnest_;
+  MeasuredThickness thickest_;
+};
+
+// A side that does not move keeps the film's coordinates bit for bit.
+Points moved(const Sheet& sheet, const std::vector<Vec3>& direction,
+             const std::vector<double>& distance, double share) {
+  Points points = sheet.film.points;
+  for (std::size_t v = 0; share != 0.0 && v < points.size(); ++v) {
+    points[v] += share * distance[v] * direction[v];
+  }
+  return points;
+}
+
+}  // namespace
+
+Mat3 mitre_inverse(const Mat3& matrix, double spanned) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(matrix);
+  const double least = spanned * eigen.eigenvalues()[2];
+  Mat3 inverse = Mat3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (eigen.eigenvalues()[i] > least) {
+      const Vec3 e = eigen.eigenvectors().col(i);
+      inverse += e * e.transpose() / eigen.eigenvalues()[i];
+    }
+  }
+  return inverse;
+}
+
+WallShares shares(WallSide side) {
+  switch (side) {
+    case WallSide::Inside:
+      return {0.0, 1.0};
+    case WallSide::Outside:
+      return {1.0, 0.0};
+    case WallSide::Both:
+      break;
+  }
+  return {0.5, 0.5};
+}
+
+std::vector<Vec3> offset_directions(const Sheet& sheet,
+                                    const std::vector<Jet>& jets,
+                                    const std::vector<double>& asked) {
+  std::vector<Vec3> directions;
+  directions.reserve(jets.size());
+  for (int v = 0; v < static_cast<int>(jets.size()); ++v) {
+    Mat3 matrix = Mat3::Zero();
+    Vec3 right = Vec3::Zero();
+    for (int k = sheet.facet_start[v]; k < sheet.facet_start[v + 1]; ++k) {
+      const int f = sheet.facet_list[k];
+      const Vec3& n = sheet.facet_normal[f];
+      const double weight = corner_angle(sheet, f, v);
+      matrix += weight * n * n.transpose();
+      right += weight * n;
+    }
+    if (sheet.on_crease[v] != 0) {
+      directions.push_back(mitre(matrix, right));
+      continue;
+    }
+    const Vec3& n = jets[v].normal;
+    const double bend =
+        asked[v] * std::max(std::abs(jets[v].k1), std::abs(jets[v].k2));
+    const double hold = matrix.trace() * (kFlatHold + bend * bend);
+    matrix += hold * (Mat3::Identity() - n * n.transpose());
+    directions.push_back(matrix.ldlt().solve(right));
+  }
+  return directions;
+}
+
+OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
+                         const std::vector<double>& asked,
+                         const ThickenOptions& options) {
+  const WallShares part = shares(options.side);
+  std::vector<double> distance = asked;
+  Gauge gauge(sheet, asked);
+  OffsetSides best;
+  double best_error = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass <= options.max_corrections; ++pass) {
+    Points front = moved(sheet, direction, distance, part.front);
+    Points back = moved(sheet, direction, distance, -part.back);
+    gauge.measure(front, back);
+    const bool slow = gauge.worst() > kSlow * best_error;
+    if (gauge.worst() < best_error) {
+      best_error = gauge.worst();
+      best = {std::move(front), std::move(back), gauge.thinnest(),
+              gauge.thickest(), pass};
+    }
+    if (slow || gauge.worst() <= options.accuracy) {
+      break;
+    }
+    for (std::size_t v = 0; v < distance.size(); ++v) {
+      // On a crease the mitre is the answer: its tip is further away.
+      if (sheet.on_crease[v] == 0) {
+        const double fix = std::clamp(1.0 / gauge.middle(static_cast<int>(v)),
+                                      1.0 / kLargestFix, kLargestFix);
+        distance[v] = std::clamp(distance[v] * fix, asked[v] / kTotalFix,
+                                 asked[v] * kTotalFix);
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace meniscus

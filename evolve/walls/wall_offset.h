@@ -1,0 +1,60 @@
+/// How far and where a sheet's vertices go to become a wall's two sides.
+#pragma once
+
+#include <vector>
+
+#include "evolve/walls/jet_fit.h"
+#include "evolve/walls/sheet.h"
+#include "evolve/walls/thicken.h"
+
+namespace meniscus {
+
+/// Parts of the thickness that lie in front of the film and behind it.
+struct WallShares {
+  double front = 0.5;
+  double back = 0.5;
+};
+WallShares shares(WallSide side);
+
+/// Inverse of sum w n n^T in the space that the normals n span clearly, with
+/// eigenvalues above `spanned` times the largest, 0 across it: of planes
+/// n . d = h the point d where they meet.
+Mat3 mitre_inverse(const Mat3& matrix, double spanned = 0.05);
+
+/// Per vertex the move for an offset by 1: the solution of n_f . d = 1 over
+/// its facets, by corner angle in the least-squares sense; on a crease in the
+/// space that the facets' normals span clearly, elsewhere with the part off the
+/// jet's normal held back by weight (k t)^2: with t far below the edges the
+/// facets' planes alone count, and a thick wall keeps to the normal, without
+/// which its compressed side folds.
+std::vector<Vec3> offset_directions(const Sheet& sheet,
+                                    const std::vector<Jet>& jets,
+                                    const std::vector<double>& asked);
+
+struct OffsetSides {
+  Points front;
+  Points back;
+  MeasuredThickness thinnest;
+  MeasuredThickness thickest;
+  int corrections = 0;
+};
+
+/// Moves the sheet by `asked` (per vertex, [length]) and corrects the moves by
+/// the thickness measured; the best state met is returned.
+OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
+                         const std::vector<double>& asked,
+                         const ThickenOptions& options);
+
+/// What else is in a wall's way, and whether all of it is wanted.
+struct SafeOptions {
+  const SurfaceMesh* others = nullptr;     // other films; may be null
+  std::vector<double>* at_each = nullptr;  // receives the largest safe
+                                           // thickness at every vertex; slower
+};
+
+/// See ThickWall::safe.
+SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
+                             const std::vector<double>& asked, WallSide side,
+                             const SafeOptions& options = {});
+
+}  // namespace meniscus

@@ -1,0 +1,130 @@
+#include "fea/elastic/elasticity.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "fea/distributed/distributed_system.h"
+#include "fea/equations/elastic_system.h"
+
+namespace meniscus {
+
+struct ElasticModel::Impl {
+  std::optional<ElasticSystem> system;  // one of the two
+  std::optional<DistributedSystem> distributed;
+  std::vector<LoadCase> load_cases;
+  ElasticSolution base;
+
+  const ElasticBase& input() const {
+    return system ? system->base() : distributed->base();
+  }
+};
+
+ElasticModel::ElasticModel(const TetMesh& base,
+                           const std::vector<Material>& materials,
+                           std::vector<LoadCase> load_cases,
+                           const ElasticOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+  const Timer timer;
+  impl_->load_cases = std::move(load_cases);
+  const std::vector<LoadCase>& cases = impl_->load_cases;
+  double seconds = 0.0;
+  if (options.solver == SolverKind::Distributed) {
+    impl_->distributed.emplace(base, materials, cases, options);
+    seconds = timer.seconds();
+    impl_->base = impl_->distributed->solve(
+        base, cases, impl_->distributed->base().regions, nullptr);
+  } else {
+    BlockMatrix<double> matrix;
+    impl_->system.emplace(base, materials, cases, options, matrix);
+    seconds = timer.seconds();
+    impl_->base = impl_->system->solve(
+        base, cases, impl_->system->base().regions, matrix, nullptr);
+  }
+  impl_->base.report.setup_seconds += seconds;
+}
+
+ElasticModel::~ElasticModel() = default;
+ElasticModel::ElasticModel(ElasticModel&&) noexcept = default;
+ElasticModel& ElasticModel::operator=(ElasticModel&&) noexcept = default;
+
+const ElasticSolution& ElasticModel::base_solution() const {
+  return impl_->base;
+}
+
+ElasticSolution ElasticModel::solve(const TetMesh& mesh) const {
+  return solve(mesh, impl_->load_cases);
+}
+
+ElasticSolution ElasticModel::solve(
+    const TetMesh& mesh, const std::vector<LoadCase>& load_cases) const {
+  return solve(mesh, load_cases, nullptr);
+}
+
+ElasticSolution ElasticModel::solve(const TetMesh& mesh,
+                                    const std::vector<LoadCase>& load_cases,
+                                    ElasticState* keep) const {
+  return solve(mesh, load_cases, impl_->input().regions.materials, keep);
+}
+
+ElasticSolution ElasticModel::solve(const TetMesh& mesh,
+                                    const std::vector<LoadCase>& load_cases,
+                                    const std::vector<Material>& materials,
+                                    ElasticState* keep) const {
+  const Timer timer;
+  if (keep != nullptr) {
+    keep->kept_.reset();
+  }
+  impl_->input().check_same(mesh, load_cases);
+  RegionMaterials regions = impl_->input().of_design(mesh, materials);
+  if (impl_->distributed) {
+    if (keep != nullptr) {
+      throw InvalidInput(
+          "elasticity: the solver petsc keeps its matrix in other processes; "
+          "exact gradients need another solver");
+    }
+    return impl_->distributed->solve(mesh, load_cases, regions, &impl_->base);
+  }
+  const ElasticSystem& system = *impl_->system;
+  BlockMatrix<double> matrix;
+  ElasticSolution result;
+  if (auto failure = system.assemble(mesh, regions.laws, matrix)) {
+    result.report = impl_->base.report;
+    result.failure = std::move(failure);
+    return result;
+  }
+  const double seconds = timer.seconds();
+  result = system.solve(mesh, load_cases, regions, matrix, &impl_->base);
+  result.report.setup_seconds += seconds;
+  if (keep != nullptr && !result.failure) {
+    keep->kept_ = std::make_unique<KeptState>(system.keep(
+        mesh, load_cases, std::move(regions.laws), std::move(matrix)));
+  }
+  return result;
+}
+
+AdjointSolution ElasticModel::solve_adjoint(
+    const ElasticState& state, int load_case,
+    const std::vector<VectorX>& right_hand_sides) const {
+  if (state.empty()) {
+    throw InvalidInput(
+        "adjoint of elasticity: the state is empty; keep that of a solve that "
+        "did not fail");
+  }
+  return meniscus::solve_adjoint(*state.kept_, load_case, right_hand_sides);
+}
+
+ElasticOperator ElasticModel::operator_at(
+    const TetMesh& mesh, const std::vector<LoadCase>& load_cases, int load_case,
+    const std::vector<Material>* materials) const {
+  impl_->input().check_same(mesh, load_cases);
+  if (impl_->distributed) {
+    throw InvalidInput(
+        "elasticity: the solver petsc keeps its matrix in other processes; "
+        "natural frequencies and buckling factors need another solver");
+  }
+  return impl_->system->operator_at(mesh, load_cases, load_case, materials);
+}
+
+}  // namespace meniscus

@@ -1,0 +1,169 @@
+#include "fea/equations/elastic_adjoint.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "fea/equations/elastic_operator.h"
+#include "fea/equations/elastic_system.h"
+#include "fea/equations/equilibrium_check.h"
+#include "fea/equations/kept_state.h"
+#include "fea/solver/conjugate_gradients.h"
+
+namespace meniscus {
+
+namespace {
+
+const KeptState::Group& group_of(const KeptState& state, int load_case) {
+  for (const KeptState::Group& group : state.groups) {
+    if (std::find(group.cases.begin(), group.cases.end(), load_case) !=
+        group.cases.end()) {
+      return group;
+    }
+  }
+  throw InvalidInput(fmt::format("adjoint of elasticity: load case {} of {}",
+                                 load_case, state.names.size()));
+}
+
+void check_right_hand_sides(const KeptState& state, const std::string& name,
+                            const std::vector<VectorX>& right) {
+  const auto size = static_cast<Eigen::Index>(3 * state.x.size());
+  for (const VectorX& g : right) {
+    if (g.size() != size || !g.allFinite()) {
+      throw InvalidInput(fmt::format(
+          "adjoint of load case '{}': a right-hand side of {} numbers must be "
+          "finite and 3 for each of {} nodes",
+          name, g.size(), state.x.size()));
+    }
+  }
+}
+
+/// Of up to kMostColumns right-hand sides, by a factor in double precision
+/// where the preconditioner in single precision is lost.
+std::vector<CgColumn> solve_columns(const KeptState& state,
+                                    const KeptState::Group& group,
+                                    const BlockMatrix<double>& matrix,
+                                    const std::vector<VectorX>& right,
+                                    std::vector<VectorX>& lambda) {
+  const auto solve_with = [&](const Preconditioner& preconditioner) {
+    lambda.assign(right.size(), VectorX::Zero(right.front().size()));
+    return conjugate_gradients({.pattern = state.table->pattern,
+                                .matrix = matrix,
+                                .preconditioner = preconditioner,
+                                .freedom = group.holding.freedom,
+                                .tolerance = state.tolerance,
+                                .max_iterations = state.max_iterations,
+                                .monitor = *state.monitor},
+                               right, lambda);
+  };
+  std::vector<CgColumn> columns = solve_with(*group.preconditioner);
+  const bool lost = std::any_of(
+      columns.begin(), columns.end(),
+      [](const CgColumn& column) { return column.end == CgEnd::NotPositive; });
+  if (lost && free_unknowns(group.holding) <= kSecondChance) {
+    columns = solve_with(
+        *make_direct(state.table->pattern, matrix, group.holding.freedom));
+  }
+  return columns;
+}
+
+void conclude(const KeptState& state, const KeptState::Group& group,
+              const std::string& name, const VectorX& diagonal,
+              const VectorX& g, const VectorX& lambda, const CgColumn& column,
+              AdjointSolution& result) {
+  const Equilibrium equilibrium = check_equilibrium(
+      {state.x, g, internal_forces(*state.table, state.x, state.laws, lambda),
+       spring_forces(group.holding.springs, lambda), lambda,
+       group.holding.freedom, diagonal});
+  result.lambda.push_back(to_mesh(*state.order, lambda));
+  result.reactions.push_back(to_mesh(*state.order, equilibrium.reactions));
+  result.iterations = std::max(result.iterations, column.iterations);
+  result.residual = std::max(result.residual, equilibrium.residual);
+  if (result.failure || g.isZero(0.0)) {
+    return;
+  }
+  if (column.end != CgEnd::Converged) {
+    result.failure = Failure{
+        FailureKind::SolverFailed,
+        fmt::format("load case '{}': its adjoint does not converge in {} "
+                    "iterations (relative error {:.2e})",
+                    name, column.iterations, column.error)};
+    return;
+  }
+  result.failure = judge(equilibrium, state.tolerance, name + " (adjoint)");
+}
+
+}  // namespace
+
+ElasticState::ElasticState() = default;
+ElasticState::~ElasticState() = default;
+ElasticState::ElasticState(ElasticState&&) noexcept = default;
+ElasticState& ElasticState::operator=(ElasticState&&) noexcept = default;
+
+KeptState ElasticSystem::keep(const TetMesh& mesh,
+                              const std::vector<LoadCase>& load_cases,
+                              std::vector<ElasticLaw> laws,
+                              BlockMatrix<double> matrix) const {
+  KeptState state{.table = &shared_->table,
+                  .order = &base_.order,
+                  .monitor = base_.options.monitor != nullptr
+                                 ? base_.options.monitor
+                                 : &silent_monitor(),
+                  .laws = std::move(laws),
+                  .tolerance = base_.options.tolerance,
+                  .max_iterations = base_.options.max_iterations,
+                  .groups = {},
+                  .names = {},
+                  .matrix = std::move(matrix),
+                  .x = base_.solver_points(mesh)};
+  state.groups.reserve(groups_.size());
+  for (const Group& group : groups_) {
+    state.groups.push_back(
+        {.cases = group.cases,
+         .holding =
+             make_holding(mesh, load_cases[group.cases.front()], base_.order),
+         .preconditioner = group.preconditioner.get()});
+  }
+  state.names.reserve(load_cases.size());
+  for (const LoadCase& load_case : load_cases) {
+    state.names.push_back(load_case.name);
+  }
+  return state;
+}
+
+AdjointSolution solve_adjoint(const KeptState& state, int load_case,
+                              const std::vector<VectorX>& right_hand_sides) {
+  const Timer timer;
+  const KeptState::Group& group = group_of(state, load_case);
+  const std::string& name = state.names[static_cast<std::size_t>(load_case)];
+  check_right_hand_sides(state, name, right_hand_sides);
+  const SpringBlocks& springs = group.holding.springs;
+  const bool plain = springs.at.empty();
+  const BlockMatrix<double> sprung =
+      plain ? BlockMatrix<double>{}
+            : sprung_matrix(state.table->pattern, state.matrix, springs);
+  const BlockMatrix<double>& matrix = plain ? state.matrix : sprung;
+  const VectorX diagonal = diagonal_of(matrix);
+  AdjointSolution result;
+  const std::size_t count = right_hand_sides.size();
+  for (std::size_t first = 0; first < count; first += kMostColumns) {
+    std::vector<VectorX> right;
+    right.reserve(kMostColumns);
+    for (std::size_t k = first; k < std::min(first + kMostColumns, count);
+         ++k) {
+      right.push_back(to_solver(*state.order, right_hand_sides[k]));
+    }
+    std::vector<VectorX> lambda;
+    const std::vector<CgColumn> columns =
+        solve_columns(state, group, matrix, right, lambda);
+    for (std::size_t k = 0; k < right.size(); ++k) {
+      conclude(state, group, name, diagonal, right[k], lambda[k], columns[k],
+               result);
+    }
+  }
+  result.seconds = timer.seconds();
+  return result;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,220 @@
+#include "fea/equations/elastic_base.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "fea/equations/elastic_checks.h"
+#include "fea/equations/elastic_operator.h"
+#include "fea/equations/equilibrium_check.h"
+
+namespace meniscus {
+
+namespace {
+
+std::string cause(CgEnd end, const CgColumn& column, int most) {
+  switch (end) {
+    case CgEnd::TooManyIterations:
+      return fmt::format(
+          "no convergence in {} iterations (relative error {:.2e}): the "
+          "design is too far from the base design, the material too nearly "
+          "incompressible, or elements are badly shaped",
+          most, column.error);
+    case CgEnd::NotPositive:
+      return "the stiffness matrix is not positive definite: the supports are "
+             "too weak or an element is inverted";
+    default:
+      return "the solution is not finite: check loads, material and node "
+             "positions";
+  }
+}
+
+}  // namespace
+
+ElasticBase::ElasticBase(const TetMesh& mesh,
+                         const std::vector<Material>& given,
+                         const std::vector<LoadCase>& load_cases,
+                         const ElasticOptions& chosen)
+    : options(chosen), elements(mesh.elements), faces(mesh.faces) {
+  check_arrays(mesh);
+  check_memory(mesh, options.solver);
+  check_materials(mesh, given);
+  if (load_cases.empty()) {
+    throw InvalidInput("elasticity: no load case is given");
+  }
+  if (!(options.tolerance > 0.0) || options.max_iterations < 1) {
+    throw InvalidInput(fmt::format(
+        "elasticity: tolerance is {} and max_iterations {}; both must be above "
+        "0",
+        options.tolerance, options.max_iterations));
+  }
+  regions = {given, elastic_laws(given)};
+  if (!std::all_of(mesh.nodes.begin(), mesh.nodes.end(),
+                   [](const Vec3& x) { return x.allFinite(); })) {
+    throw MeshError("elasticity: a node position of the mesh is not finite");
+  }
+  for (const LoadCase& load_case : load_cases) {
+    supports.push_back(load_case.supports);
+    springs.push_back(load_case.springs);
+    checked_forces(mesh, load_case, given);
+  }
+}
+
+void ElasticBase::check_same(const TetMesh& mesh,
+                             const std::vector<LoadCase>& load_cases) const {
+  if (mesh.elements != elements || mesh.faces != faces ||
+      mesh.nodes.size() != order.to_mesh.size()) {
+    throw InvalidInput(fmt::format(
+        "elasticity: the mesh ({} nodes, {} elements) is not a moved copy of "
+        "the base mesh ({} nodes)",
+        mesh.nodes.size(), mesh.element_count(), order.to_mesh.size()));
+  }
+  if (load_cases.size() != supports.size()) {
+    throw InvalidInput(
+        fmt::format("elasticity: {} load cases, but the base design has {}",
+                    load_cases.size(), supports.size()));
+  }
+  for (std::size_t c = 0; c < load_cases.size(); ++c) {
+    if (load_cases[c].supports != supports[c] ||
+        load_cases[c].springs != springs[c]) {
+      throw InvalidInput(fmt::format(
+          "load case '{}': its supports differ from the base design's; build "
+          "a new model for them",
+          load_cases[c].name));
+    }
+  }
+}
+
+Points ElasticBase::solver_points(const TetMesh& mesh) const {
+  Points x;
+  x.reserve(mesh.nodes.size());
+  for (const int node : order.to_mesh) {
+    x.push_back(mesh.nodes[node]);
+  }
+  return x;
+}
+
+std::vector<VectorX> ElasticBase::solver_forces(
+    const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
+    const std::vector<Material>& materials) const {
+  std::vector<VectorX> f;
+  f.reserve(load_cases.size());
+  for (const LoadCase& load_case : load_cases) {
+    f.push_back(to_solver(order, checked_forces(mesh, load_case, materials)));
+  }
+  return f;
+}
+
+RegionMaterials ElasticBase::of_design(
+    const TetMesh& mesh, const std::vector<Material>& materials) const {
+  check_materials(mesh, materials);
+  if (materials.size() != regions.materials.size()) {
+    throw InvalidInput(
+        fmt::format("elasticity: {} materials, but the base design has {}",
+                    materials.size(), regions.materials.size()));
+  }
+  return {materials, elastic_laws(materials)};
+}
+
+std::vector<int> ElasticBase::solver_elements(const TetMesh& mesh) const {
+  std::vector<int> result;
+  result.reserve(mesh.elements.size());
+  for (const int e : order.element) {
+    for (const int node : mesh.element(e)) {
+      result.push_back(order.to_solver[node]);
+    }
+  }
+  return result;
+}
+
+std::vector<int> ElasticBase::solver_regions(const TetMesh& mesh) const {
+  std::vector<int> result;
+  result.reserve(mesh.element_region.size());
+  for (const int e : order.element) {
+    result.push_back(mesh.element_region[e]);
+  }
+  return result;
+}
+
+std::optional<Failure> ElasticBase::bad_node(const TetMesh& mesh) const {
+  const auto place = std::find_if(mesh.nodes.begin(), mesh.nodes.end(),
+                                  [](const Vec3& p) { return !p.allFinite(); });
+  if (place == mesh.nodes.end()) {
+    return std::nullopt;
+  }
+  return Failure{FailureKind::NotANumber,
+                 fmt::format("node {} of the mesh is not finite",
+                             place - mesh.nodes.begin())};
+}
+
+Failure ElasticBase::inverted(const TetMesh& mesh, int element) const {
+  const int e = order.element[element];
+  const Vec3& at = mesh.nodes[mesh.element(e)[0]];
+  return {
+      FailureKind::ElementsInverted,
+      fmt::format("element {} at ({:.4g}, {:.4g}, {:.4g}) is inverted or flat: "
+                  "its Jacobian determinant is not positive",
+                  e, at.x(), at.y(), at.z())};
+}
+
+Failure ElasticBase::turned(const LoadCase& load_case) {
+  return {FailureKind::SolverFailed,
+          fmt::format("load case '{}': the directions in which its supports "
+                      "hold the nodes are no longer the base design's: the "
+                      "surfaces have turned against each other",
+                      load_case.name)};
+}
+
+std::vector<HeldCases> group_alike(const TetMesh& mesh,
+                                   const std::vector<LoadCase>& load_cases,
+                                   const NodeOrder& order) {
+  std::vector<HeldCases> groups;
+  for (std::size_t c = 0; c < load_cases.size(); ++c) {
+    check_holding(mesh, load_cases[c]);
+    Holding holding = make_holding(mesh, load_cases[c], order);
+    const auto found =
+        std::find_if(groups.begin(), groups.end(),
+                     [&](const HeldCases& g) { return g.holding == holding; });
+    if (found != groups.end()) {
+      found->cases.push_back(static_cast<int>(c));
+    } else {
+      groups.push_back({{static_cast<int>(c)}, std::move(holding)});
+    }
+  }
+  return groups;
+}
+
+void conclude(const ElasticBase& base, const ElementTable& table,
+              const SolvedCase& solved, ElasticSolution& result) {
+  const int c = solved.load_case;
+  const ElasticOptions& options = base.options;
+  const VectorX internal =
+      internal_forces(table, solved.x, solved.laws, solved.u);
+  const Equilibrium equilibrium =
+      check_equilibrium({solved.x, solved.f, internal,
+                         spring_forces(solved.holding.springs, solved.u),
+                         solved.u, solved.holding.freedom, solved.diagonal});
+  result.displacements[c] = to_mesh(base.order, solved.u);
+  result.reactions[c] = to_mesh(base.order, equilibrium.reactions);
+  ElasticReport& report = result.report;
+  report.iterations = solved.column.iterations;
+  report.residual = std::max(report.residual, equilibrium.residual);
+  report.reaction_imbalance =
+      std::max(report.reaction_imbalance, equilibrium.imbalance);
+  if (c == 0) {
+    report.strain_energy = equilibrium.energy;
+  }
+  if (result.failure) {
+    return;
+  }
+  if (solved.column.end != CgEnd::Converged) {
+    result.failure = Failure{FailureKind::SolverFailed,
+                             fmt::format("load case '{}': {}", solved.name,
+                                         cause(solved.column.end, solved.column,
+                                               options.max_iterations))};
+  } else {
+    result.failure = judge(equilibrium, options.tolerance, solved.name);
+  }
+}
+
+}  // namespace meniscus

@@ -1,0 +1,66 @@
+#include "fea/equations/elastic_operator.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "fea/equations/elastic_system.h"
+
+namespace meniscus {
+
+VectorX to_solver(const NodeOrder& order, const VectorX& v) {
+  VectorX w(v.size());
+  for (std::size_t i = 0; i < order.to_mesh.size(); ++i) {
+    w.segment<3>(static_cast<Eigen::Index>(3 * i)) =
+        v.segment<3>(3L * order.to_mesh[i]);
+  }
+  return w;
+}
+
+VectorX to_mesh(const NodeOrder& order, const VectorX& v) {
+  VectorX w(v.size());
+  for (std::size_t i = 0; i < order.to_mesh.size(); ++i) {
+    w.segment<3>(3L * order.to_mesh[i]) =
+        v.segment<3>(static_cast<Eigen::Index>(3 * i));
+  }
+  return w;
+}
+
+ElasticOperator ElasticSystem::operator_at(
+    const TetMesh& mesh, const std::vector<LoadCase>& load_cases, int load_case,
+    const std::vector<Material>* materials) const {
+  const auto group =
+      std::find_if(groups_.begin(), groups_.end(), [load_case](const Group& g) {
+        return std::find(g.cases.begin(), g.cases.end(), load_case) !=
+               g.cases.end();
+      });
+  if (group == groups_.end()) {
+    throw InvalidInput(fmt::format("elasticity: load case {} of {}", load_case,
+                                   load_cases.size()));
+  }
+  const LoadCase& loads = load_cases[load_case];
+  Holding holding = make_holding(mesh, loads, base_.order);
+  if (!alike(holding, group->holding)) {
+    throw SolverError(fmt::format(
+        "load case '{}': the directions in which its supports hold the nodes "
+        "are no longer the base design's",
+        loads.name));
+  }
+  const RegionMaterials regions =
+      materials != nullptr ? base_.of_design(mesh, *materials) : base_.regions;
+  ElasticOperator result{.table = &shared_->table,
+                         .order = &base_.order,
+                         .preconditioner = group->preconditioner.get(),
+                         .materials = regions.materials,
+                         .K = {},
+                         .freedom = std::move(holding.freedom),
+                         .x = base_.solver_points(mesh)};
+  if (const auto failure = assemble(mesh, regions.laws, result.K)) {
+    throw MeshError(failure->message);
+  }
+  add_springs(shared_->table.pattern, holding.springs, result.K);
+  return result;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,99 @@
+#include "fea/equations/equilibrium_check.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+namespace meniscus {
+
+namespace {
+
+/// Rounding of the largest terms of a row, with room for their sum.
+constexpr double kRounding = 1e-14;
+/// A residual's norm weighs short waves more than the energy norm does.
+constexpr double kShortWaves = 1e4;
+/// The sum of residuals is the work of the error on a rigid motion that the
+/// supports cut off, so that imbalance / tolerance may reach |u| |motion| /
+/// |f| in energy norms, sqrt(compliance x stiffness of the elements at the
+/// supports): about 40 for a slender part, and more on fine meshes.
+constexpr double kCutMotion = 1e3;
+
+}  // namespace
+
+Equilibrium check_equilibrium(const EquilibriumInput& input) {
+  Equilibrium result;
+  result.reactions = VectorX::Zero(input.f.size());
+  double load = 0.0;
+  double error = 0.0;
+  double rounding = 0.0;
+  std::size_t h = 0;
+  for (Eigen::Index i = 0; i < input.f.size() / 3; ++i) {
+    Mat3 P = Mat3::Identity();
+    if (h < input.freedom.held.size() && input.freedom.held[h] == i) {
+      P = input.freedom.projector[h++];
+    }
+    const Vec3 f = P * input.f.segment<3>(3 * i);
+    const Vec3 pull = input.springs.segment<3>(3 * i);
+    const Vec3 gap =
+        input.f.segment<3>(3 * i) - input.internal.segment<3>(3 * i);
+    result.reactions.segment<3>(3 * i) = P * gap - gap - P * pull;
+    load += f.squaredNorm();
+    error += (P * (gap - pull)).squaredNorm();
+    rounding += input.diagonal.segment<3>(3 * i)
+                    .cwiseProduct(P * input.u.segment<3>(3 * i))
+                    .squaredNorm();
+  }
+  if (load > 0.0) {
+    result.residual = std::sqrt(error / load);
+    result.rounding = kRounding * std::sqrt(rounding / load);
+  }
+  Vec3 centre = Vec3::Zero();
+  for (const Vec3& x : input.x) {
+    centre += x / static_cast<double>(input.x.size());
+  }
+  double size = 0.0;
+  for (const Vec3& x : input.x) {
+    size = std::max(size, (x - centre).norm());
+  }
+  Vec3 force = Vec3::Zero();
+  Vec3 moment = Vec3::Zero();
+  double total = 0.0;
+  for (std::size_t i = 0; i < input.x.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(3 * i);
+    const Vec3 sum = input.f.segment<3>(at) + result.reactions.segment<3>(at);
+    force += sum;
+    moment += ((input.x[i] - centre) / size).cross(sum);
+    total += input.f.segment<3>(at).norm();
+  }
+  result.imbalance = (force.norm() + moment.norm()) / total;
+  result.energy = 0.5 * input.u.dot(input.internal);
+  return result;
+}
+
+std::optional<Failure> judge(const Equilibrium& equilibrium, double tolerance,
+                             const std::string& load_case) {
+  const double residual_bound =
+      std::max(kShortWaves * tolerance, equilibrium.rounding);
+  if (!(equilibrium.residual <= residual_bound)) {
+    return Failure{
+        FailureKind::SolverFailed,
+        fmt::format("load case '{}': the relative residual of the displacement "
+                    "is {:.2e}, above {:.2e}: the part is nearly a mechanism, "
+                    "or its elements are badly shaped",
+                    load_case, equilibrium.residual, residual_bound)};
+  }
+  const double balance_bound =
+      std::max(kCutMotion * tolerance, equilibrium.rounding);
+  if (!(equilibrium.imbalance <= balance_bound)) {
+    return Failure{
+        FailureKind::SolverFailed,
+        fmt::format("load case '{}': reactions and loads differ by {:.2e} of "
+                    "the load, above {:.2e}: the part is nearly a mechanism, "
+                    "or its elements are badly shaped",
+                    load_case, equilibrium.imbalance, balance_bound)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace meniscus

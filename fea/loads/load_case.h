@@ -1,0 +1,122 @@
+/// What acts on a part and what holds it: plain data, by surface name.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "fea/element/local_axes.h"
+
+namespace meniscus {
+
+/// Values at places [length]. They may throw ExpressionError; what is not
+/// finite is refused with the place.
+using NumberOfPlace = std::function<double(const Vec3&)>;
+using VectorOfPlace = std::function<Vec3(const Vec3&)>;
+using MatrixOfPlace = std::function<Mat3(const Vec3&)>;
+
+/// A field and, needed for derivatives only, its gradient [value/length].
+struct SlopedField {
+  NumberOfPlace value;
+  VectorOfPlace slope;
+};
+
+enum class SupportKind {
+  Components,  // those that are fixed, along x, y, z or the support's axes
+  Normal,      // the surface slides: no displacement along its normal
+  Symmetry     // the same for a plane, which the surface must be
+};
+
+/// Fixes components of displacement on a surface. Where surfaces meet, a node
+/// is held along all their directions; normals that differ by no more than the
+/// mesh's own facets do count as one.
+struct Support {
+  std::string surface;
+  bool fix_x = false, fix_y = false, fix_z = false;  // of Components
+  SupportKind kind = SupportKind::Components;
+  std::optional<LocalAxes> axes;  // x, y, z of Components are along these
+
+  bool operator==(const Support&) const = default;
+};
+
+enum class SpringMeasure { PerArea, Total };
+
+/// A bed of springs between a surface and the ground, spread consistently:
+/// traction -stiffness u. All stiffnesses are 0 or above.
+struct SpringBed {
+  std::string surface;
+  Vec3 components =
+      Vec3::Zero();     // along x, y, z or the axes [pressure/length]
+                        // per area, [force/length] in total
+  double normal = 0.0;  // along the surface's normal; the same
+  SpringMeasure measure = SpringMeasure::PerArea;
+  std::optional<LocalAxes> axes;
+
+  bool operator==(const SpringBed&) const = default;
+};
+
+/// A total force spread as uniform traction over a surface [force].
+struct SurfaceForce {
+  std::string surface;
+  Vec3 total = Vec3::Zero();
+};
+
+/// Pressure on a surface, positive into the solid [pressure].
+struct SurfacePressure {
+  std::string surface;
+  double pressure = 0.0;
+  NumberOfPlace field;  // instead of `pressure`, where it is set
+  VectorOfPlace slope;  // the field's gradient, for derivatives only
+};
+
+/// Force per area of a surface [pressure].
+struct SurfaceTraction {
+  std::string surface;
+  Vec3 traction = Vec3::Zero();
+  VectorOfPlace field;  // instead of `traction`, where it is set
+  MatrixOfPlace slope;  // dt_i/dx_j of the field, for derivatives only
+};
+
+/// A force at a point and a moment, carried by a surface without stiffening it:
+/// the nodal forces are those of the same force and moment that are least in
+/// the norm weighted by area (RBE3).
+struct RemoteLoad {
+  std::string surface;
+  Vec3 point = Vec3::Zero();   // where the force acts [length]
+  Vec3 force = Vec3::Zero();   // [force]
+  Vec3 moment = Vec3::Zero();  // beside the force's own [force length]
+};
+
+/// Centrifugal forces, as seen from a part that turns steadily.
+struct Spin {
+  Vec3 point = Vec3::Zero();  // on the axis [length]
+  Vec3 axis = Vec3::UnitZ();  // any length but 0
+  double rate = 0.0;          // [rad/time]
+};
+
+/// Temperature at the nodes, linear or quadratic between them as displacements
+/// are. Free expansion is the material's expansion times (T - reference).
+struct Temperature {
+  double value = 0.0;
+  NumberOfPlace field;  // instead of `value`, where it is set
+  double reference = 0.0;
+  VectorOfPlace slope;  // the field's gradient, for derivatives only
+};
+
+struct LoadCase {
+  std::string name;
+  std::vector<Support> supports;
+  std::vector<SurfaceForce> forces;
+  std::vector<SurfacePressure> pressures;
+  std::vector<SurfaceTraction> tractions;
+  std::vector<RemoteLoad> remote_loads;
+  Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
+  std::optional<Spin> spin;
+  std::optional<Temperature> temperature;
+  std::vector<SpringBed> springs;
+  VectorX nodal;  // forces at nodes, 3 per node; empty: none [force]
+};
+
+}  // namespace meniscus

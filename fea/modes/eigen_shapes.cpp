@@ -1,0 +1,70 @@
+#include "fea/modes/eigen_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace meniscus {
+
+EigenPairs eigenpairs_of(const ElasticOperator& op, const NodalMatrix& A,
+                         const Columns& start, const EigenOptions& options) {
+  const BlockPattern& pattern = op.table->pattern;
+  EigenPairs pairs = largest_eigenpairs(
+      {pattern, op.K, A, *op.preconditioner, op.freedom}, start, options);
+  if (pairs.end == EigenEnd::NotPositive &&
+      3 * pattern.nodes <= kSecondChance) {
+    const auto factor = make_direct(pattern, op.K, op.freedom);
+    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom}, start,
+                               options);
+  }
+  return pairs;
+}
+
+std::optional<Failure> why_not(const EigenPairs& pairs,
+                               const std::string& what) {
+  switch (pairs.end) {
+    case EigenEnd::Converged:
+      return std::nullopt;
+    case EigenEnd::TooManyIterations:
+      return Failure{
+          FailureKind::SolverFailed,
+          fmt::format("{}: no convergence in {} iterations (residual {:.1e}): "
+                      "many eigenvalues lie close together, or the design is "
+                      "too far from the base design",
+                      what, pairs.iterations, pairs.residuals.maxCoeff())};
+    case EigenEnd::NotPositive:
+      return Failure{
+          FailureKind::SolverFailed,
+          fmt::format("{}: the stiffness matrix is not positive definite: the "
+                      "supports are too weak or an element is inverted",
+                      what)};
+    case EigenEnd::NotFinite:
+      break;
+  }
+  return Failure{FailureKind::NotANumber,
+                 fmt::format("{}: the numbers are not finite: check material, "
+                             "stresses and node positions",
+                             what)};
+}
+
+VectorX with_fixed_sign(VectorX x) {
+  constexpr double kNearly = 1.0 - 1e-6;
+  const double bound = x.size() == 0 ? 0.0 : kNearly * x.cwiseAbs().maxCoeff();
+  const auto first = std::find_if(
+      x.begin(), x.end(), [bound](double v) { return std::abs(v) >= bound; });
+  if (first != x.end() && *first < 0.0) {
+    x = -x;
+  }
+  return x;
+}
+
+double largest_of_nodes(const VectorX& x) {
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k + 2 < x.size(); k += 3) {
+    largest = std::max(largest, x.segment<3>(k).norm());
+  }
+  return largest;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,30 @@
+/// What frequencies and buckling make of eigenpairs alike.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/error.h"
+#include "fea/equations/elastic_operator.h"
+#include "fea/modes/eigenpairs.h"
+
+namespace meniscus {
+
+/// largest_eigenpairs() of A against the operator's K; once more with a factor
+/// in double precision where its preconditioner is not positive definite
+/// (supports that hardly hold) and the part is not large.
+EigenPairs eigenpairs_of(const ElasticOperator& op, const NodalMatrix& A,
+                         const Columns& start, const EigenOptions& options);
+
+/// Why there is no answer; nothing when the pairs converged.
+std::optional<Failure> why_not(const EigenPairs& pairs,
+                               const std::string& what);
+
+/// x or -x: the first of the components within a millionth of the largest is
+/// positive.
+VectorX with_fixed_sign(VectorX x);
+
+/// The largest length of a node's three numbers.
+double largest_of_nodes(const VectorX& x);
+
+}  // namespace meniscus

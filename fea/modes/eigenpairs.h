@@ -1,0 +1,58 @@
+/// Extreme eigenpairs of A x = theta K x, with K a stiffness matrix: the one
+/// problem behind natural frequencies (A = M, theta = 1 / omega^2) and buckling
+/// factors (A = -K_g, theta = 1 / lambda).
+#pragma once
+
+#include "core/monitor.h"
+#include "fea/solver/columns.h"
+
+namespace meniscus {
+
+/// `K` must be positive definite on the free directions, `preconditioner` an
+/// approximation of its inverse.
+struct EigenProblem {
+  const BlockPattern& pattern;
+  const BlockMatrix<double>& K;
+  const NodalMatrix& A;
+  const Preconditioner& preconditioner;
+  const NodeFreedom& freedom;
+};
+
+struct EigenOptions {
+  int count = 1;  // of the largest (signed) theta
+  /// Bound of the residual, see EigenPairs; theta's own error is about its
+  /// square over the relative gap.
+  double tolerance = 1e-6;
+  /// Eigenvalues below this need only be known to be so: where A has no
+  /// positive one, theta creeps towards 0 and nothing else would end it.
+  double floor = 0.0;
+  /// Vectors beyond `count`: they lift convergence off the gap behind the last
+  /// one, and catch eigenvalues that are nearly equal.
+  int guards = 2;
+  int max_iterations = 200;
+  Monitor* monitor = nullptr;  // not owned
+};
+
+enum class EigenEnd { Converged, TooManyIterations, NotPositive, NotFinite };
+
+struct EigenPairs {
+  EigenEnd end = EigenEnd::Converged;
+  VectorX theta;      // descending; fewer than asked for when there are fewer
+  Columns x;          // one a column, x^T K x = 1
+  VectorX residuals;  // |A x - theta K x| in the norm of the preconditioner
+                      // (near that of K^-1), over max(|theta|, floor): some
+                      // eigenvalue is no farther than this from theta
+  int iterations = 0;
+};
+
+/// Preconditioned block conjugate gradients (Knyazev, Toward the optimal
+/// preconditioned eigensolver: LOBPCG, SIAM J. Sci. Comput. 23, 2001; basis as
+/// in Hetmaniuk and Lehoucq, J. Comput. Phys. 218, 2006): a product and a
+/// preconditioner per vector and iteration, no inner solves. `start`: vectors
+/// to begin with, may have no columns; the rest of the block begins with fixed
+/// pseudo-random numbers. The same bits for any number of threads. Throws
+/// Interrupted when the monitor asks.
+EigenPairs largest_eigenpairs(const EigenProblem& problem, const Columns& start,
+                              const EigenOptions& options);
+
+}  // namespace meniscus

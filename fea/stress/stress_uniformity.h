@@ -1,0 +1,71 @@
+/// How evenly a part carries its load.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fea/element/point_stress.h"
+
+namespace meniscus {
+
+/// Where stresses are left out of account: about clamps and loads they are the
+/// model's, not the part's.
+struct ExclusionZone {
+  std::string surface;    // empty: none
+  double distance = 0.0;  // of an element's centre to the surface's nearest
+                          // node [length]
+  struct Box {
+    Vec3 low = Vec3::Zero();
+    Vec3 high = Vec3::Zero();  // [length]
+  };
+  std::optional<Box> box;  // elements with their centre in it
+  struct Ball {
+    Vec3 center = Vec3::Zero();  // [length]
+    double radius = 0.0;         // [length]
+  };
+  std::optional<Ball> ball;  // the same
+};
+
+/// One char per element: 1 where it is left out. Ask once, at a model's base
+/// design: the same elements must then count in every design. Throws
+/// InvalidInput for an unknown surface, a distance or radius that is not
+/// positive, an empty box, and a zone with none of them.
+std::vector<char> excluded_elements(const TetMesh& mesh,
+                                    const std::vector<ExclusionZone>& zones);
+
+/// Distribution over volume of a quantity that is not negative. A percentile
+/// p is the least value that p % of the volume do not exceed. All ratios are
+/// free of units and 0 or 1 for an even distribution.
+struct Uniformity {
+  double volume = 0.0;  // that counts [length^3]
+  double mean = 0.0;
+  double coefficient_of_variation = 0.0;  // standard deviation / mean
+  double gini = 0.0;  // mean difference of two random places / (2 mean)
+  double p05 = 0.0, p50 = 0.0, p95 = 0.0;
+  double p95_over_p50 = 0.0;
+  double peak = 0.0;
+  double peak_over_mean = 0.0;
+  std::vector<double> histogram;  // share of the volume in equal steps of
+                                  // the value from 0 to peak
+};
+
+inline constexpr int kHistogramSteps = 50;
+
+/// `volumes` > 0, one per value. Throws InvalidInput when there is no value,
+/// or one that is negative or not finite.
+Uniformity uniformity(const std::vector<double>& values,
+                      const std::vector<double>& volumes);
+
+/// Of the values at the integration points of elements that are not excluded
+/// (`excluded`: one char per element, or empty).
+struct StressUniformity {
+  Uniformity von_mises;       // [pressure]
+  Uniformity energy_density;  // [pressure]
+};
+StressUniformity stress_uniformity(const TetMesh& mesh,
+                                   const std::vector<Material>& materials,
+                                   const PointStress& points,
+                                   const std::vector<char>& excluded = {});
+
+}  // namespace meniscus

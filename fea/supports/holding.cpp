@@ -1,0 +1,99 @@
+#include "fea/supports/holding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "fea/supports/held_check.h"
+#include "fea/supports/supports.h"
+
+namespace meniscus {
+
+bool Holding::operator==(const Holding& other) const {
+  return freedom.held == other.freedom.held &&
+         freedom.projector == other.freedom.projector &&
+         springs == other.springs;
+}
+
+void check_holding(const TetMesh& mesh, const LoadCase& load_case) {
+  std::vector<HeldDirection> held = held_directions(mesh, load_case);
+  const std::vector<HeldDirection> sprung = sprung_directions(mesh, load_case);
+  held.insert(held.end(), sprung.begin(), sprung.end());
+  if (held.empty()) {
+    throw InvalidInput(fmt::format(
+        "load case '{}' has no support: fix x, y, z or the normal of a surface",
+        load_case.name));
+  }
+  check_held(mesh, held, load_case.name);
+}
+
+Holding make_holding(const TetMesh& mesh, const LoadCase& load_case,
+                     const NodeOrder& order) {
+  const NodeFreedom given =
+      node_freedom(mesh, held_directions(mesh, load_case));
+  std::vector<char> loose(mesh.nodes.size(), 1);
+  for (const int node : mesh.elements) {
+    loose[node] = 0;
+  }
+  std::vector<std::pair<int, Mat3>> held;
+  for (std::size_t h = 0; h < given.held.size(); ++h) {
+    if (loose[given.held[h]] == 0) {
+      held.emplace_back(order.to_solver[given.held[h]], given.projector[h]);
+    }
+  }
+  for (std::size_t i = 0; i < loose.size(); ++i) {
+    if (loose[i] != 0) {
+      held.emplace_back(order.to_solver[i], Mat3::Zero());
+    }
+  }
+  std::sort(held.begin(), held.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  Holding holding;
+  holding.freedom.nodes = given.nodes;
+  for (const auto& [node, P] : held) {
+    holding.freedom.held.push_back(node);
+    holding.freedom.projector.push_back(P);
+  }
+  holding.springs =
+      renumbered(spring_blocks(mesh, load_case, mesh.order), order.to_solver);
+  return holding;
+}
+
+bool alike(const Holding& a, const Holding& b) {
+  const auto same_rank = [](const Mat3& P, const Mat3& Q) {
+    return std::lround(P.trace()) == std::lround(Q.trace());
+  };
+  return a.freedom.held == b.freedom.held &&
+         std::equal(a.freedom.projector.begin(), a.freedom.projector.end(),
+                    b.freedom.projector.begin(), same_rank);
+}
+
+int free_unknowns(const Holding& holding) {
+  double free = 3.0 * holding.freedom.nodes;
+  for (const Mat3& P : holding.freedom.projector) {
+    free -= 3.0 - P.trace();
+  }
+  return static_cast<int>(std::lround(free));
+}
+
+SpringBlocks corner_springs(const TetMesh& mesh, const LoadCase& load_case,
+                            const NodeOrder& order, const CornerMap& map) {
+  std::vector<int> corner_of(mesh.nodes.size(), -1);  // the mesh's node
+  for (std::size_t c = 0; c < map.corner.size(); ++c) {
+    corner_of[order.to_mesh[map.corner[c]]] = static_cast<int>(c);
+  }
+  return renumbered(spring_blocks(mesh, load_case, 1), corner_of);
+}
+
+BlockMatrix<double> sprung_matrix(const BlockPattern& pattern,
+                                  const BlockMatrix<double>& matrix,
+                                  const SpringBlocks& springs) {
+  BlockMatrix<double> sprung = matrix;
+  add_springs(pattern, springs, sprung);
+  return sprung;
+}
+
+}  // namespace meniscus

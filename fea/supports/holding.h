@@ -1,0 +1,46 @@
+/// What holds a model in one load case: supports and springs, as the solver
+/// sees them.
+#pragma once
+
+#include <vector>
+
+#include "core/geometry/tet_mesh.h"
+#include "fea/loads/load_case.h"
+#include "fea/solver/corner_mesh.h"
+#include "fea/solver/node_freedom.h"
+#include "fea/solver/node_order.h"
+#include "fea/supports/springs.h"
+
+namespace meniscus {
+
+/// In the solver's numbering.
+struct Holding {
+  NodeFreedom freedom;  // nodes in no element are held too
+  SpringBlocks springs;
+
+  bool operator==(const Holding& other) const;
+};
+
+/// Throws InvalidInput (see supports.h, springs.h; nothing held) and
+/// SolverError when the body can move.
+void check_holding(const TetMesh& mesh, const LoadCase& load_case);
+
+/// Throws InvalidInput as check_holding does.
+Holding make_holding(const TetMesh& mesh, const LoadCase& load_case,
+                     const NodeOrder& order);
+
+/// The same nodes are held along as many directions, though these may turn.
+bool alike(const Holding& a, const Holding& b);
+
+int free_unknowns(const Holding& holding);
+
+/// The springs of `load_case` on the corner mesh of `map`.
+SpringBlocks corner_springs(const TetMesh& mesh, const LoadCase& load_case,
+                            const NodeOrder& order, const CornerMap& map);
+
+/// The stiffness with springs.
+BlockMatrix<double> sprung_matrix(const BlockPattern& pattern,
+                                  const BlockMatrix<double>& matrix,
+                                  const SpringBlocks& springs);
+
+}  // namespace meniscus

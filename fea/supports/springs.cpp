@@ -1,0 +1,225 @@
+#include "fea/supports/springs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "fea/element/face_points.h"
+#include "fea/element/surface_faces.h"
+#include "fea/element/surface_normals.h"
+#include "fea/loads/loads.h"
+
+namespace meniscus {
+
+namespace {
+
+using RowMat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+void check(const SpringBed& bed, const LoadCase& load_case) {
+  const auto refuse = [&](const std::string& what) {
+    throw InvalidInput(fmt::format("load case '{}': springs on '{}' {}",
+                                   load_case.name, bed.surface, what));
+  };
+  const Vec3& k = bed.components;
+  if (!k.allFinite() || !std::isfinite(bed.normal) || k.minCoeff() < 0.0 ||
+      bed.normal < 0.0) {
+    refuse(
+        fmt::format("have stiffnesses {}, {}, {} and {} along the normal; "
+                    "all must be 0 or above",
+                    k.x(), k.y(), k.z(), bed.normal));
+  }
+  if (k.isZero(0.0) && bed.normal == 0.0) {
+    refuse("have no stiffness; give one along a component or the normal");
+  }
+  if (bed.axes && !span_a_plane(*bed.axes)) {
+    refuse(
+        "have axes without length or parallel ones; give two that span a "
+        "plane");
+  }
+}
+
+struct Entry {
+  std::array<int, 2> at;
+  Mat3 block;
+};
+
+void add_bed_stiffness(const TetMesh& mesh, const SpringBed& bed, int order,
+                       std::vector<Entry>& entries) {
+  const BedStiffness stiffness = bed_stiffness_of(mesh, bed);
+  const int label = surface_label(mesh, bed.surface);
+  const FaceQuadrature quadrature(order, FaceRule::Seven);
+  const int count = order == 1 ? 3 : 6;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (mesh.face_label[f] != label) {
+      continue;
+    }
+    const auto ids = mesh.face(f);
+    std::array<std::array<Mat3, 6>, 6> sum;
+    for (auto& row : sum) {
+      row.fill(Mat3::Zero());
+    }
+    for (int q = 0; q < quadrature.size(); ++q) {
+      const FacePoint point = quadrature.at(mesh, f, q);
+      const double area = point.normal.norm();
+      const Vec3 n = point.normal / area;
+      const Mat3 k =
+          area * (stiffness.tensor + stiffness.normal * n * n.transpose());
+      for (int a = 0; a < count; ++a) {
+        for (int b = 0; b < count; ++b) {
+          sum[a][b] += point.shape[a] * point.shape[b] * k;
+        }
+      }
+    }
+    for (int a = 0; a < count; ++a) {
+      for (int b = 0; b < count; ++b) {
+        if (ids[a] >= ids[b]) {
+          entries.push_back({{ids[a], ids[b]}, sum[a][b]});
+        }
+      }
+    }
+  }
+}
+
+/// Sorted, with the entries of one place added in their order.
+SpringBlocks merged(std::vector<Entry> entries) {
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return a.at < b.at; });
+  SpringBlocks result;
+  for (const Entry& entry : entries) {
+    if (result.at.empty() || result.at.back() != entry.at) {
+      result.at.push_back(entry.at);
+      result.block.push_back(entry.block);
+    } else {
+      result.block.back() += entry.block;
+    }
+  }
+  return result;
+}
+
+/// Along a fixed direction, or the normal where there is none.
+SpringSet spring_set(const TetMesh& mesh, const SpringBed& bed,
+                     double stiffness, const std::optional<Vec3>& direction) {
+  const double whole = bed.measure == SpringMeasure::Total
+                           ? surface_weights(mesh, bed.surface).weights.sum()
+                           : 1.0;
+  SpringSet set{.stiffness = stiffness};
+  over_face_points(mesh, surface_label(mesh, bed.surface), FaceRule::Seven,
+                   [&](int f, const FacePoint& point) {
+                     const double area = point.normal.norm();
+                     const Vec3 along = std::sqrt(area / whole) *
+                                        direction.value_or(point.normal / area);
+                     const auto ids = mesh.face(f);
+                     SpringSet::Spring& spring = set.springs.emplace_back();
+                     spring.nodes.assign(ids.begin(), ids.end());
+                     for (std::size_t a = 0; a < ids.size(); ++a) {
+                       spring.coefficients.push_back(point.shape[a] * along);
+                     }
+                   });
+  return set;
+}
+
+}  // namespace
+
+BedStiffness bed_stiffness_of(const TetMesh& mesh, const SpringBed& bed) {
+  const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
+  const double area = surface_weights(mesh, bed.surface).weights.sum();
+  const double scale = bed.measure == SpringMeasure::Total ? 1.0 / area : 1.0;
+  return {scale * axes * bed.components.asDiagonal() * axes.transpose(),
+          scale * bed.normal};
+}
+
+std::vector<SpringSet> spring_sets(const TetMesh& mesh,
+                                   const LoadCase& load_case) {
+  std::vector<SpringSet> sets;
+  for (const SpringBed& bed : load_case.springs) {
+    check(bed, load_case);
+    const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
+    for (int c = 0; c < 3; ++c) {
+      if (bed.components[c] > 0.0) {
+        sets.push_back(
+            spring_set(mesh, bed, bed.components[c], Vec3(axes.col(c))));
+      }
+    }
+    if (bed.normal > 0.0) {
+      sets.push_back(spring_set(mesh, bed, bed.normal, std::nullopt));
+    }
+  }
+  return sets;
+}
+
+SpringBlocks spring_blocks(const TetMesh& mesh, const LoadCase& load_case,
+                           int order) {
+  std::vector<Entry> entries;
+  for (const SpringBed& bed : load_case.springs) {
+    check(bed, load_case);
+    add_bed_stiffness(mesh, bed, order, entries);
+  }
+  return merged(std::move(entries));
+}
+
+SpringBlocks renumbered(const SpringBlocks& springs,
+                        const std::vector<int>& number) {
+  std::vector<Entry> entries;
+  for (std::size_t k = 0; k < springs.at.size(); ++k) {
+    const int a = number[springs.at[k][0]];
+    const int b = number[springs.at[k][1]];
+    entries.push_back({{std::max(a, b), std::min(a, b)}, springs.block[k]});
+  }
+  return merged(std::move(entries));
+}
+
+void add_springs(const BlockPattern& pattern, const SpringBlocks& springs,
+                 BlockMatrix<double>& matrix) {
+  for (std::size_t k = 0; k < springs.at.size(); ++k) {
+    const auto [row, column] = springs.at[k];
+    double* block = matrix.diagonal.data() + 9L * row;
+    if (row != column) {
+      const auto first = pattern.column.begin() + pattern.start[row];
+      const auto last = pattern.column.begin() + pattern.start[row + 1];
+      const auto place = std::lower_bound(first, last, column);
+      block = matrix.lower.data() + 9L * (place - pattern.column.begin());
+    }
+    Eigen::Map<RowMat3>(block) += springs.block[k];
+  }
+}
+
+VectorX spring_forces(const SpringBlocks& springs, const VectorX& u) {
+  VectorX f = VectorX::Zero(u.size());
+  for (std::size_t k = 0; k < springs.at.size(); ++k) {
+    const auto [a, b] = springs.at[k];
+    f.segment<3>(3L * a) += springs.block[k] * u.segment<3>(3L * b);
+    if (a != b) {
+      f.segment<3>(3L * b) += springs.block[k] * u.segment<3>(3L * a);
+    }
+  }
+  return f;
+}
+
+std::vector<HeldDirection> sprung_directions(const TetMesh& mesh,
+                                             const LoadCase& load_case) {
+  std::vector<HeldDirection> held;
+  for (const SpringBed& bed : load_case.springs) {
+    check(bed, load_case);
+    const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
+    const SurfaceNormals normals = surface_normals(mesh, bed.surface);
+    for (std::size_t k = 0; k < normals.nodes.size(); ++k) {
+      for (int c = 0; c < 3; ++c) {
+        if (bed.components[c] > 0.0) {
+          held.push_back({normals.nodes[k], axes.col(c), kExactDirection});
+        }
+      }
+      if (bed.normal > 0.0) {
+        held.push_back({normals.nodes[k], normals.normal[k],
+                        std::max(kExactDirection, 2.0 * normals.spread[k])});
+      }
+    }
+  }
+  return held;
+}
+
+}  // namespace meniscus

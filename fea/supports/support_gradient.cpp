@@ -1,0 +1,157 @@
+#include "fea/supports/support_gradient.h"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+#include "fea/element/face_points.h"
+#include "fea/element/surface_faces.h"
+#include "fea/supports/springs.h"
+#include "fea/supports/supports.h"
+
+namespace meniscus {
+
+namespace {
+
+/// The derivative by held directions: one vector per direction of each support
+/// and node that counts.
+struct ByDirection {
+  int support;
+  int node;
+  Vec3 derivative;
+};
+
+/// The reactions of supports alone, which the reported ones at nodes with
+/// springs are not.
+VectorX of_supports(const VectorX& reactions, const SpringBlocks& springs,
+                    const VectorX& u) {
+  return springs.at.empty() ? reactions
+                            : VectorX(reactions + spring_forces(springs, u));
+}
+
+/// With directions D at a node, Q = D D^+ and lambda, u across all of D:
+///   lambda . dQ r + r' . dQ u = lambda . dD D^+ r + u . dD D^+ r'.
+void add_node(const HeldDirection* first, const HeldSpan& span, const Vec3& u,
+              const Vec3& r, const Vec3& lambda, const Vec3& adjoint_r,
+              std::vector<ByDirection>& out) {
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> D(3, span.rank);
+  for (int k = 0; k < span.rank; ++k) {
+    D.col(k) = first[span.index[k]].direction;
+  }
+  const auto inverse = (D.transpose() * D).eval().inverse().eval();
+  for (int k = 0; k < span.rank; ++k) {
+    const HeldDirection& held = first[span.index[k]];
+    const Vec3 row = D * inverse.col(k);  // of D^+
+    out.push_back({held.support, held.node,
+                   row.dot(r) * lambda + row.dot(adjoint_r) * u});
+  }
+}
+
+std::vector<ByDirection> by_directions(const TetMesh& mesh,
+                                       const LoadCase& load_case,
+                                       const AdjointPair& pair) {
+  const SpringBlocks springs = spring_blocks(mesh, load_case, mesh.order);
+  const VectorX r = of_supports(pair.reactions, springs, pair.displacement);
+  const VectorX adjoint_r =
+      of_supports(pair.adjoint_reactions, springs, pair.lambda);
+  std::vector<HeldDirection> held = held_directions(mesh, load_case);
+  std::stable_sort(held.begin(), held.end(),
+                   [](const HeldDirection& a, const HeldDirection& b) {
+                     return a.node < b.node;
+                   });
+  std::vector<ByDirection> result;
+  for (std::size_t k = 0; k < held.size();) {
+    const int node = held[k].node;
+    std::size_t end = k;
+    while (end < held.size() && held[end].node == node) {
+      ++end;
+    }
+    const HeldSpan span = held_span(held.data() + k, held.data() + end);
+    if (span.rank < 3) {  // else held fast, however the directions turn
+      const auto at = [node](const VectorX& v) -> Vec3 {
+        return v.segment<3>(3L * node);
+      };
+      add_node(held.data() + k, span, at(pair.displacement), at(r),
+               at(pair.lambda), at(adjoint_r), result);
+    }
+    k = end;
+  }
+  return result;
+}
+
+/// Through the mean normal of a plane: its area vectors' sum made unit.
+void pull_back_plane(const TetMesh& mesh, int label, const Vec3& by_normal,
+                     Points& gradient) {
+  Vec3 sum = Vec3::Zero();
+  over_face_points(mesh, label, FaceRule::Three,
+                   [&](int, const FacePoint& point) { sum += point.normal; });
+  const Vec3 n = sum.normalized();
+  const FacePointGradient each{.by_normal = (by_normal - n.dot(by_normal) * n) /
+                                            sum.norm()};
+  pull_back_faces(
+      mesh, label, FaceRule::Three, [&](int, const FacePoint&) { return each; },
+      gradient);
+}
+
+/// Through the normals at nodes: each its faces' area vectors' sum made unit.
+/// `by_normal`: 3 per node of the mesh.
+void pull_back_normals(const TetMesh& mesh, int label, const VectorX& by_normal,
+                       Points& gradient) {
+  const FaceQuadrature quadrature(mesh.order, FaceRule::Nodes);
+  VectorX sums = VectorX::Zero(by_normal.size());
+  const auto over_nodes = [&](const auto& visit) {
+    for (int f = 0; f < mesh.face_count(); ++f) {
+      if (mesh.face_label[f] == label) {
+        const auto ids = mesh.face(f);
+        for (std::size_t a = 0; a < ids.size(); ++a) {
+          visit(f, static_cast<int>(a), 3L * ids[a]);
+        }
+      }
+    }
+  };
+  over_nodes([&](int f, int a, Eigen::Index at) {
+    sums.segment<3>(at) += quadrature.at(mesh, f, a).normal;
+  });
+  over_nodes([&](int f, int a, Eigen::Index at) {
+    const Vec3 sum = sums.segment<3>(at);
+    const Vec3 n = sum.normalized();
+    const Vec3 g = by_normal.segment<3>(at);
+    quadrature.pull_back(mesh, f, a, Vec3::Zero(),
+                         (g - n.dot(g) * n) / sum.norm(), gradient);
+  });
+}
+
+}  // namespace
+
+void add_support_gradient(const TetMesh& mesh, const LoadCase& load_case,
+                          const AdjointPair& pair, Points& gradient) {
+  const auto turns = [](const Support& support) {
+    return support.kind != SupportKind::Components;
+  };
+  const std::vector<Support>& supports = load_case.supports;
+  if (std::none_of(supports.begin(), supports.end(), turns)) {
+    return;
+  }
+  const std::vector<ByDirection> all = by_directions(mesh, load_case, pair);
+  for (std::size_t s = 0; s < supports.size(); ++s) {
+    if (!turns(supports[s])) {
+      continue;
+    }
+    const int label = surface_label(mesh, supports[s].surface);
+    VectorX by_normal = VectorX::Zero(pair.lambda.size());
+    Vec3 sum = Vec3::Zero();
+    for (const ByDirection& direction : all) {
+      if (direction.support == static_cast<int>(s)) {
+        by_normal.segment<3>(3L * direction.node) += direction.derivative;
+        sum += direction.derivative;
+      }
+    }
+    if (supports[s].kind == SupportKind::Symmetry) {
+      pull_back_plane(mesh, label, sum, gradient);
+    } else {
+      pull_back_normals(mesh, label, by_normal, gradient);
+    }
+  }
+}
+
+}  // namespace meniscus

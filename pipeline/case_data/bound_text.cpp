@@ -1,0 +1,65 @@
+#include "pipeline/case_data/bound_text.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include <fmt/format.h>
+
+namespace meniscus {
+
+namespace {
+
+bool is_letter(char c) {
+  return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0;
+}
+bool is_digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Past the number that starts at `at`, its exponent included: its e is no
+/// name.
+std::size_t skip_number(const std::string& text, std::size_t at) {
+  const auto digits = [&] {
+    while (at < text.size() && (is_digit(text[at]) || text[at] == '.')) {
+      ++at;
+    }
+  };
+  digits();
+  if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
+    ++at;
+    at += at < text.size() && (text[at] == '+' || text[at] == '-') ? 1 : 0;
+    digits();
+  }
+  return at;
+}
+
+}  // namespace
+
+std::string with_values(const std::string& text,
+                        const std::vector<std::string>& names,
+                        std::span<const double> values) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t start = at;
+    if (is_digit(text[at]) || text[at] == '.') {
+      at = skip_number(text, at);
+    } else if (is_letter(text[at])) {
+      while (at < text.size() && (is_letter(text[at]) || is_digit(text[at]))) {
+        ++at;
+      }
+      const auto name =
+          std::find(names.begin(), names.end(), text.substr(start, at - start));
+      if (name != names.end()) {
+        const auto k = static_cast<std::size_t>(name - names.begin());
+        result += fmt::format("({})", values[k]);
+        continue;
+      }
+    } else {
+      ++at;
+    }
+    result.append(text, start, at - start);
+  }
+  return result;
+}
+
+}  // namespace meniscus

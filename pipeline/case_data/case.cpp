@@ -1,0 +1,377 @@
+#include "pipeline/case_data/case.h"
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/energy/fields.h"
+#include "pipeline/case_data/case_curves.h"
+#include "pipeline/case_data/case_loads.h"
+#include "pipeline/case_data/case_responses.h"
+#include "pipeline/case_data/case_sides.h"
+#include "pipeline/case_data/case_values.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr int kPlacesOnCurve = 16;
+
+/// Tells where an expression of place is not above 0 on the curves that hold a
+/// film: what can be known before there is one.
+void check_on_curves(const Case& input, const FilmSystem& system,
+                     const std::vector<std::string>& curves,
+                     const PlaceQuantity& from, const Expression& expression,
+                     const CaseValues& values) {
+  const auto tell = [&](const std::string& found, const Vec3& at,
+                        const std::string& curve) {
+    values.problems().push_back(fmt::format(
+        "{}: {} {} at ({:.4g}, {:.4g}, {:.4g}) on curve '{}'{}; it must be "
+        "above 0 on the whole film",
+        place(input, from.quantity.line), from.quantity.key, found, at.x(),
+        at.y(), at.z(), curve, values.where(from.quantity)));
+  };
+  for (const Curve& curve : system.curves) {
+    if (std::find(curves.begin(), curves.end(), curve.name) == curves.end()) {
+      continue;
+    }
+    for (int k = 0; k < kPlacesOnCurve; ++k) {
+      const Vec3 at =
+          point_at(curve.shape, static_cast<double>(k) / kPlacesOnCurve);
+      try {
+        const double value =
+            expression.evaluate(std::span<const double>(at.data(), 3));
+        if (!(value > 0.0)) {
+          return tell(fmt::format("is {:.4g}", value), at, curve.name);
+        }
+      } catch (const ExpressionError& error) {
+        return tell(fmt::format("has no value ({})", error.what()), at,
+                    curve.name);
+      }
+    }
+  }
+}
+
+PoleShape pole_of(const FieldEntry& field, const CaseValues& values) {
+  switch (field.kind) {
+    case FieldKind::Segment:
+      return SegmentPole{values.at(field.from), values.at(field.to)};
+    case FieldKind::Plane:
+      return PlanePole{values.at(field.at), values.at(field.normal)};
+    case FieldKind::Polyline: {
+      PolylinePole pole;
+      for (const QuantityVector& point : field.points) {
+        pole.points.push_back(values.at(point));
+      }
+      return pole;
+    }
+    case FieldKind::Point:
+    case FieldKind::Pressure:
+      break;
+  }
+  return PointPole{values.at(field.at)};
+}
+
+void add_field(const Case& input, const FieldEntry& field,
+               const CaseValues& values, FilmSystem& system) {
+  if (field.kind == FieldKind::Pressure) {
+    system.pressures.push_back(
+        {field.name, field.body, values.of_place(field.pressure)});
+    return;
+  }
+  const std::size_t before = values.problems().size();
+  const bool checked = !values.are_rates();
+  FieldSpec spec{.name = field.name, .shape = pole_of(field, values)};
+  spec.strength = values.at(field.strength);
+  spec.power = values.positive(field.power);
+  spec.core = values.positive(field.core);
+  if (field.body.empty()) {
+    spec.per = PerArea{field.films};
+  } else {
+    spec.per = PerVolume{field.body};
+  }
+  for (const FilmSpec& film : system.films) {
+    const bool acts = std::find(field.films.begin(), field.films.end(),
+                                film.name) != field.films.end();
+    if (checked && acts && !film.tension_field &&
+        spec.strength >= film.tension) {
+      values.problems().push_back(fmt::format(
+          "{}: {} is {:g}, and film '{}' has a tension of {:g}; it would "
+          "crumple on the pole: expected less, a larger core reaches as far",
+          place(input, field.strength.line), field.strength.key, spec.strength,
+          film.name, film.tension));
+    }
+  }
+  if (checked && values.problems().size() == before) {
+    try {
+      field_expression(spec);
+    } catch (const InvalidInput& error) {
+      values.problems().push_back(
+          fmt::format("{}: {}", place(input, field.line), error.what()));
+    }
+  }
+  system.fields.push_back(std::move(spec));
+}
+
+std::shared_ptr<const StartFacets> start_of(const FilmEntry& film,
+                                            const CaseValues& values) {
+  auto start = std::make_shared<StartFacets>();
+  start->facets = film.facets;
+  for (const QuantityVector& vertex : film.vertices) {
+    start->points.push_back(values.at(vertex));
+  }
+  return start;
+}
+
+FilmSystem films_of(const Case& input, const CaseValues& values) {
+  FilmSystem system;
+  system.curves = curves_of(input, values);
+  for (const FilmEntry& film : input.films) {
+    system.films.push_back(film.spec);
+    FilmSpec& spec = system.films.back();
+    if (film.tension.of_place) {
+      spec.tension_field = values.of_place(film.tension);
+    } else {
+      spec.tension = values.positive(film.tension.quantity);
+    }
+    if (!film.facets.empty() && !values.are_rates()) {
+      spec.start = start_of(film, values);
+    }
+  }
+  system.keep_facets = input.resolution.keep_facets;
+  for (const CapEntry& cap : input.caps) {
+    system.caps.push_back(cap.spec);
+  }
+  for (const BodyEntry& body : input.bodies) {
+    BodySpec spec{.name = body.name,
+                  .enclosed_by = body.enclosed_by,
+                  .is_void = body.material == kVoid};
+    if (body.volume) {
+      spec.volume = values.positive(*body.volume);
+    }
+    if (body.pressure) {
+      spec.pressure = values.at(*body.pressure);
+    }
+    system.bodies.push_back(std::move(spec));
+  }
+  for (const FieldEntry& field : input.fields) {
+    add_field(input, field, values, system);
+  }
+  return system;
+}
+
+std::vector<std::string> curves_under(const Case& input,
+                                      const std::vector<std::string>& films) {
+  std::vector<std::string> curves;
+  for (const FilmEntry& film : input.films) {
+    if (std::find(films.begin(), films.end(), film.spec.name) != films.end()) {
+      curves.insert(curves.end(), film.spec.curves.begin(),
+                    film.spec.curves.end());
+    }
+  }
+  return curves;
+}
+
+/// Tells of expressions of place that cannot hold on their films.
+void check_places(const Case& input, const EvaluatedCase& numbers,
+                  const CaseValues& values) {
+  for (std::size_t k = 0; k < input.films.size(); ++k) {
+    const FilmSpec& film = numbers.film_system.films[k];
+    if (film.tension_field) {
+      check_on_curves(input, numbers.film_system, film.curves,
+                      input.films[k].tension, *film.tension_field, values);
+    }
+  }
+  for (std::size_t k = 0; k < input.walls.size(); ++k) {
+    const WallSpec& wall = numbers.walls[k];
+    check_on_curves(input, numbers.film_system, curves_under(input, wall.films),
+                    input.walls[k].thickness, wall.thickness, values);
+  }
+}
+
+/// Values, or rates.
+EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
+  EvaluatedCase result;
+  result.film_system = films_of(input, values);
+  for (const WallEntry& wall : input.walls) {
+    WallSpec spec{.name = wall.name,
+                  .films = wall.films,
+                  .thickness = values.of_place(wall.thickness),
+                  .side = wall.side,
+                  .fillet = wall.fillet,
+                  .number = std::nullopt,
+                  .region = wall.region};
+    if (!wall.thickness.of_place) {
+      spec.number = values.at(wall.thickness.quantity);
+    }
+    result.walls.push_back(std::move(spec));
+  }
+  for (const BodyEntry& body : solid_bodies(input)) {
+    result.materials.push_back(material_of(
+        input, input.materials[static_cast<std::size_t>(body.material)],
+        values));
+  }
+  for (const LoadCaseEntry& entry : input.load_cases) {
+    result.load_cases.push_back(load_case_of(entry, values));
+  }
+  for (const ResponseEntry& response : input.responses) {
+    result.responses.push_back(response_of(input, response, values));
+  }
+  result.fea_edge = input.resolution.fea;
+  return result;
+}
+
+void throw_first(const std::vector<std::string>& problems) {
+  if (!problems.empty()) {
+    const std::size_t more = problems.size() - 1;
+    throw InvalidInput(problems.front() +
+                       (more > 0 ? fmt::format(" (and {} more)", more) : ""));
+  }
+}
+
+}  // namespace
+
+std::vector<BodyEntry> solid_bodies(const Case& input) {
+  std::vector<BodyEntry> solid;
+  std::copy_if(input.bodies.begin(), input.bodies.end(),
+               std::back_inserter(solid),
+               [](const BodyEntry& body) { return body.material != kVoid; });
+  if (!solid.empty()) {
+    return solid;
+  }
+  for (const WallEntry& wall : input.walls) {
+    if (wall.region == static_cast<int>(solid.size()) &&
+        wall.material != kVoid) {
+      solid.push_back({.name = wall.name,
+                       .enclosed_by = wall.films,
+                       .material = wall.material,
+                       .line = wall.line,
+                       .enclosure_line = wall.line});
+    }
+  }
+  return solid;
+}
+
+EvaluatedCase evaluate(const Case& input, const VectorX& design,
+                       std::vector<std::string>& problems) {
+  const std::size_t before = problems.size();
+  const CaseValues values(input, design, problems);
+  if (problems.size() > before) {
+    return {};  // what follows from a bad parameter is no news
+  }
+  EvaluatedCase result = numbers_of(input, values);
+  result.design = design;
+  if (problems.size() == before) {
+    check_meetings(input, result.film_system, values);
+    check_sides(input, result.film_system, values);
+    check_places(input, result, values);
+  }
+  return result;
+}
+
+EvaluatedCase evaluate(const Case& input, const VectorX& design) {
+  std::vector<std::string> problems;
+  EvaluatedCase result = evaluate(input, design, problems);
+  throw_first(problems);
+  return result;
+}
+
+EvaluatedCase rates(const Case& input, const VectorX& design, int variable) {
+  std::vector<std::string> problems;
+  const CaseValues values(input, design, problems, variable);
+  EvaluatedCase result = numbers_of(input, values);
+  throw_first(problems);
+  return result;
+}
+
+std::string place(const Case& input, SourceLine line) {
+  if (line > 0) {
+    return fmt::format("{}:{}", input.path, line);
+  }
+  return line == 0 ? input.path
+                   : fmt::format(
+                         "{}: --set {}", input.path,
+                         input.overrides[static_cast<std::size_t>(-line - 1)]);
+}
+
+std::vector<std::pair<std::string, double>> parameter_values(
+    const Case& input, const VectorX& design) {
+  std::vector<std::string> problems;
+  const CaseValues values(input, design, problems);
+  std::vector<std::pair<std::string, double>> result;
+  for (const Parameter& parameter : input.parameters) {
+    result.emplace_back(parameter.name, values.at(parameter.value));
+  }
+  throw_first(problems);
+  return result;
+}
+
+VectorX initial_design(const Case& input) {
+  VectorX design(static_cast<Eigen::Index>(input.design.size()));
+  for (std::size_t k = 0; k < input.design.size(); ++k) {
+    design[static_cast<Eigen::Index>(k)] = input.design[k].initial;
+  }
+  return design;
+}
+
+std::vector<std::string> design_names(const Case& input) {
+  std::vector<std::string> names;
+  for (const DesignVariable& variable : input.design) {
+    names.push_back(variable.name);
+  }
+  return names;
+}
+
+std::vector<std::string> response_names(const Case& input) {
+  std::vector<std::string> names;
+  for (const ResponseEntry& response : input.responses) {
+    names.push_back(response.name);
+  }
+  return names;
+}
+
+Dimension dimension_of(ResponseKind kind) {
+  switch (kind) {
+    case ResponseKind::MeanDisplacement:
+    case ResponseKind::DisplacementNorm:
+    case ResponseKind::CentreOfMass:
+    case ResponseKind::Radius:
+    case ResponseKind::Thickness:
+    case ResponseKind::Distance:
+    case ResponseKind::Gap:
+    case ResponseKind::ScanDistance:
+      return Dimension::Length;
+    case ResponseKind::Mass:
+      return Dimension::Mass;
+    case ResponseKind::Volume:
+      return Dimension::Volume;
+    case ResponseKind::MaxVonMises:
+    case ResponseKind::VonMisesNorm:
+    case ResponseKind::VonMisesKs:
+    case ResponseKind::Pressure:
+      return Dimension::Pressure;
+    case ResponseKind::Compliance:
+    case ResponseKind::StrainEnergy:
+    case ResponseKind::FilmEnergy:
+      return Dimension::Energy;
+    case ResponseKind::FilmArea:
+      return Dimension::Area;
+    case ResponseKind::Rotation:  // in radians
+    case ResponseKind::Uniformity:
+    case ResponseKind::EnergyUniformity:
+    case ResponseKind::CollapseMargin:  // force/length^3
+    case ResponseKind::Expression:      // not known
+      break;
+  }
+  return Dimension::None;
+}
+
+std::string response_unit(const Case& input, int response) {
+  return input.units.unit_of(
+      dimension_of(input.responses[static_cast<std::size_t>(response)].kind));
+}
+
+}  // namespace meniscus

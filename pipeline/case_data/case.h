@@ -1,0 +1,107 @@
+/// A case as its file says it, and the numbers that it comes to for one design.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/types.h"
+#include "core/units.h"
+#include "evolve/walls/wall_spec.h"
+#include "pipeline/case_data/case_entries.h"
+
+namespace meniscus {
+
+/// A file that a case names, kept so that the case can be read again without
+/// it.
+struct CaseFile {
+  std::string path;  // as the case names it
+  std::string text;  // its bytes
+};
+
+struct Case {
+  std::string path;
+  std::string name;  // the file's, or its folder's for case.toml
+  std::string title;
+  std::string text;                    // the file, word for word
+  std::vector<std::string> overrides;  // as given, "name=value"
+  std::vector<CaseFile> files;         // that it names, in the order of use
+  std::string hash;  // of all that evaluations depend on (docs/case-file.md)
+  UnitSystem units;
+  std::vector<DesignVariable> design;
+  std::vector<Parameter> parameters;
+  std::vector<int> parameter_order;  // each after those that it uses
+  std::vector<CurveEntry> curves;
+  std::vector<FilmEntry> films;
+  std::vector<CapEntry> caps;
+  std::vector<BodyEntry> bodies;
+  std::vector<WallEntry> walls;
+  std::vector<FieldEntry> fields;
+  std::vector<MaterialEntry> materials;
+  std::vector<LoadCaseEntry> load_cases;
+  std::vector<ResponseEntry> responses;
+  Resolution resolution;
+  ProcessEntry process;
+  AnalysisEntry analysis;
+  StudyEntry study;
+  std::vector<MergedCurves> merged;  // films and solids name the kept ones
+  std::vector<std::string> remarks;  // "PATH:LINE: ...": how it was read
+};
+
+/// The bodies that are not void, in order: the regions of the mesh. Without
+/// such bodies the walls that have a material, one for each set of walls that
+/// meet, named after its first.
+std::vector<BodyEntry> solid_bodies(const Case& input);
+
+/// What a response depends on beside fields.
+struct ResponseNumbers {
+  Vec3 direction = Vec3::Zero();
+  NumberOfPlace weight;  // empty: 1
+  VectorOfPlace weight_slope;
+  NumberOfPlace level;  // above 0 where the part must not be [length]
+  VectorOfPlace level_slope;
+};
+
+/// The numbers of one design.
+struct EvaluatedCase {
+  VectorX design;  // where
+  FilmSystem film_system;
+  std::vector<WallSpec> walls;
+  std::vector<Material> materials;  // one per body that is solid, in order
+  std::vector<LoadCase> load_cases;
+  std::vector<ResponseNumbers> responses;
+  double fea_edge = 0.0;
+};
+
+/// `design`: one value per design variable. Throws InvalidInput, naming file,
+/// line, key and values, where an expression has no finite value or one that
+/// makes no curve, film, body or material.
+EvaluatedCase evaluate(const Case& input, const VectorX& design);
+
+/// The same, with every such message in `problems` instead of a throw; the
+/// numbers are good only when there are none.
+EvaluatedCase evaluate(const Case& input, const VectorX& design,
+                       std::vector<std::string>& problems);
+
+/// The derivatives of these numbers by one design variable: every number that
+/// has one holds it, what depends on places gives it there; orthotropic
+/// constants, supports and springs, which never depend on the design, are
+/// copies, as are the expressions that films are frozen with; weights and
+/// regions of responses that do not move are empty. Throws InvalidInput where
+/// an expression has no finite derivative.
+EvaluatedCase rates(const Case& input, const VectorX& design, int variable);
+
+/// "path:12", or "path: --set load_left=x" for what an override put there.
+std::string place(const Case& input, SourceLine line);
+
+/// Values of the parameters, by name, at a design.
+std::vector<std::pair<std::string, double>> parameter_values(
+    const Case& input, const VectorX& design);
+
+VectorX initial_design(const Case& input);
+std::vector<std::string> design_names(const Case& input);
+std::vector<std::string> response_names(const Case& input);
+Dimension dimension_of(ResponseKind kind);
+std::string response_unit(const Case& input, int response);
+
+}  // namespace meniscus

@@ -1,0 +1,295 @@
+#include "pipeline/case_data/case_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "pipeline/case_data/case_curves.h"
+#include "pipeline/case_data/case_loads.h"
+#include "pipeline/case_data/case_sides.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kNesting = 0.01;  // film may miss fea / 2^k by 1 %
+constexpr int kMostRefinements = 4;
+
+void check_use(const Case& input, CaseProblems& problems) {
+  std::set<std::string> used_curves;
+  std::set<std::string> used_surfaces;
+  std::set<int> used_materials;
+  for (const BodyEntry& body : input.bodies) {
+    used_surfaces.insert(body.enclosed_by.begin(), body.enclosed_by.end());
+    used_materials.insert(body.material);
+  }
+  for (const WallEntry& wall : input.walls) {
+    used_surfaces.insert(wall.films.begin(), wall.films.end());
+    used_materials.insert(wall.material);
+  }
+  for (const FilmEntry& film : input.films) {
+    used_curves.insert(film.spec.curves.begin(), film.spec.curves.end());
+    if (used_surfaces.count(film.spec.name) == 0) {
+      problems.warn(film.line, fmt::format("film '{}' encloses no body and is "
+                                           "no wall",
+                                           film.spec.name));
+    }
+  }
+  for (const CapEntry& cap : input.caps) {
+    const std::vector<std::string> curves = cap.spec.curves();
+    used_curves.insert(curves.begin(), curves.end());
+    if (used_surfaces.count(cap.spec.name) == 0) {
+      problems.add(cap.line,
+                   fmt::format("solid '{}' encloses no body; add it to a "
+                               "body's enclosed_by or take it out",
+                               cap.spec.name));
+    }
+  }
+  for (const MergedCurves& pair : input.merged) {
+    used_curves.insert(
+        input.curves[static_cast<std::size_t>(pair.dropped)].name);
+  }
+  for (const CurveEntry& curve : input.curves) {
+    if (curve.copy.of >= 0) {
+      used_curves.insert(
+          input.curves[static_cast<std::size_t>(curve.copy.of)].name);
+    }
+  }
+  for (const CurveEntry& curve : input.curves) {
+    if (used_curves.count(curve.name) == 0) {
+      problems.warn(curve.line, fmt::format("curve '{}' holds no film or solid",
+                                            curve.name));
+    }
+  }
+  for (std::size_t k = 0; k < input.materials.size(); ++k) {
+    if (used_materials.count(static_cast<int>(k)) == 0) {
+      problems.warn(
+          input.materials[k].line,
+          fmt::format("material '{}' fills no body", input.materials[k].name));
+    }
+  }
+}
+
+void check_loads(const Case& input, const EvaluatedCase& numbers,
+                 CaseProblems& problems) {
+  for (std::size_t k = 0; k < numbers.load_cases.size(); ++k) {
+    const LoadCase& load_case = numbers.load_cases[k];
+    if (!is_loaded(load_case)) {
+      problems.add(input.load_cases[k].line,
+                   fmt::format("load case '{}' has no load that is not 0; a "
+                               "part without load has nothing to report",
+                               load_case.name));
+    }
+  }
+  const bool expands = std::any_of(
+      numbers.materials.begin(), numbers.materials.end(),
+      [](const Material& m) { return !m.thermal_expansion.isZero(0.0); });
+  for (std::size_t k = 0; k < numbers.load_cases.size() && !expands; ++k) {
+    if (numbers.load_cases[k].temperature) {
+      problems.add(input.load_cases[k].line,
+                   fmt::format("load case '{}' has a temperature, but no "
+                               "material has a thermal expansion; give one",
+                               numbers.load_cases[k].name));
+    }
+  }
+  const std::vector<BodyEntry> solid = solid_bodies(input);
+  for (std::size_t k = 0; k < numbers.materials.size(); ++k) {
+    const MaterialEntry& entry =
+        input.materials[static_cast<std::size_t>(solid[k].material)];
+    if (numbers.materials[k].density != 0.0) {
+      continue;
+    }
+    const auto weighs =
+        std::find_if(numbers.load_cases.begin(), numbers.load_cases.end(),
+                     [](const LoadCase& c) { return has_weight(c); });
+    if (weighs != numbers.load_cases.end()) {
+      problems.add(entry.density.line,
+                   fmt::format("materials.{}.density is 0, but load case '{}' "
+                               "has gravity or spin; give its mass per volume",
+                               entry.name, weighs->name));
+    } else if (input.analysis.frequencies > 0) {
+      problems.add(entry.density.line,
+                   fmt::format("materials.{}.density is 0, but natural "
+                               "frequencies are asked for; give its mass per "
+                               "volume",
+                               entry.name));
+    } else {
+      problems.warn(entry.density.line,
+                    fmt::format("materials.{}.density is 0; masses will be 0",
+                                entry.name));
+    }
+  }
+}
+
+bool takes_scale_of_yield(const Case& input) {
+  return std::any_of(input.responses.begin(), input.responses.end(),
+                     [](const ResponseEntry& r) {
+                       return r.kind == ResponseKind::VonMisesKs && !r.scale;
+                     });
+}
+
+/// What of a material has no derivatives.
+void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
+                           const EvaluatedCase& other, CaseProblems& problems) {
+  const std::vector<BodyEntry> solid = solid_bodies(input);
+  for (std::size_t k = 0; k < initial.materials.size(); ++k) {
+    const Material& a = initial.materials[k];
+    const Material& b = other.materials[k];
+    const MaterialEntry& entry =
+        input.materials[static_cast<std::size_t>(solid[k].material)];
+    if (a.poisson_ratio != b.poisson_ratio) {
+      const Quantity& ratio = entry.poisson_ratio;
+      problems.add_text(fmt::format(
+          "{}: {} depends on a design variable; it cannot in this version, "
+          "youngs_modulus and density can",
+          place(input, ratio.line), ratio.key));
+    }
+    if (a.yield_strength != b.yield_strength && takes_scale_of_yield(input)) {
+      const Quantity& strength = *entry.yield_strength;
+      problems.add_text(fmt::format(
+          "{}: {} depends on a design variable, and a von_mises_ks without a "
+          "'scale' is measured by it; give that response a scale",
+          place(input, strength.line), strength.key));
+    }
+  }
+}
+
+/// The case's numbers at the initial design and, one variable at a time, at
+/// the ends of the bounds.
+void check_numbers(const Case& input, CaseProblems& problems) {
+  const auto at = [&](const VectorX& design) {
+    std::vector<std::string> found;
+    EvaluatedCase numbers = evaluate(input, design, found);
+    for (const std::string& problem : found) {
+      problems.add_text(problem);
+    }
+    return numbers;
+  };
+  const VectorX initial = initial_design(input);
+  const EvaluatedCase numbers = at(initial);
+  if (!problems.empty()) {
+    return;
+  }
+  check_start(input, numbers, problems);
+  check_loads(input, numbers, problems);
+  for (std::size_t k = 0; k < input.design.size(); ++k) {
+    for (const double end : {input.design[k].lower, input.design[k].upper}) {
+      VectorX design = initial;
+      design[static_cast<Eigen::Index>(k)] = end;
+      const EvaluatedCase there = at(design);
+      if (problems.empty()) {
+        check_merged(input, numbers, there, problems);
+        check_fixed_materials(input, numbers, there, problems);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void order_parameters(Case& input, CaseProblems& problems) {
+  const int first = static_cast<int>(input.design.size());
+  const int count = static_cast<int>(input.parameters.size());
+  std::vector<int> state(input.parameters.size(), 0);  // 1 under way, 2 done
+  std::vector<int> trail;
+  const auto visit = [&](const auto& self, int at) -> bool {
+    const auto k = static_cast<std::size_t>(at);
+    if (state[k] != 0) {
+      trail.push_back(at);  // closes the circle when under way
+      return state[k] == 2 && (trail.pop_back(), true);
+    }
+    state[k] = 1;
+    trail.push_back(at);
+    for (const int name : input.parameters[k].value.expression.names_used()) {
+      if (name >= first && !self(self, name - first)) {
+        return false;
+      }
+    }
+    trail.pop_back();
+    state[k] = 2;
+    input.parameter_order.push_back(at);
+    return true;
+  };
+  for (int start = 0; start < count; ++start) {
+    if (!visit(visit, start)) {
+      const auto from = std::find(trail.begin(), trail.end(), trail.back());
+      std::vector<std::string> circle;
+      for (auto at = from; at != trail.end(); ++at) {
+        circle.push_back(input.parameters[static_cast<std::size_t>(*at)].name);
+      }
+      problems.add(
+          input.parameters[static_cast<std::size_t>(trail.back())].value.line,
+          fmt::format("parameters depend on each other in a circle: {}; give "
+                      "one of them a number",
+                      fmt::join(circle, " -> ")));
+      return;
+    }
+  }
+}
+
+void nest_film(Resolution& resolution, SourceLine line,
+               CaseProblems& problems) {
+  const double levels = std::log2(resolution.fea / resolution.film);
+  resolution.refinements = static_cast<int>(std::lround(
+      std::clamp(levels, 0.0, static_cast<double>(kMostRefinements))));
+  const double film = resolution.fea / std::exp2(resolution.refinements);
+  if (std::abs(resolution.film - film) > kNesting * film) {
+    problems.warn(line,
+                  fmt::format("resolution.film = {:g} is not fea / 2^k with k "
+                              "from 0 to {}; {:g} is taken (k = {})",
+                              resolution.film, kMostRefinements, film,
+                              resolution.refinements));
+  }
+  resolution.film = film;
+}
+
+std::vector<std::string> surface_names(const Case& input) {
+  std::vector<std::string> names;
+  for (const CapEntry& cap : input.caps) {
+    names.push_back(cap.spec.name);
+  }
+  for (const FilmEntry& film : input.films) {
+    names.push_back(film.spec.name);
+  }
+  const std::vector<std::string> walls = wall_surface_names(input);
+  names.insert(names.end(), walls.begin(), walls.end());
+  return names;
+}
+
+std::vector<std::string> film_names(const Case& input) {
+  std::vector<std::string> names;
+  for (const FilmEntry& film : input.films) {
+    names.push_back(film.spec.name);
+  }
+  return names;
+}
+
+std::vector<std::string> body_names(const Case& input) {
+  std::vector<std::string> names;
+  for (const BodyEntry& body : input.bodies) {
+    names.push_back(body.name);
+  }
+  return names;
+}
+
+void check_case(const Case& input, CaseProblems& problems) {
+  if (problems.empty()) {
+    check_use(input, problems);
+    check_numbers(input, problems);
+  }
+}
+
+std::string case_name(const std::string& path) {
+  const std::filesystem::path file =
+      std::filesystem::absolute(path).lexically_normal();
+  return file.filename() == "case.toml" && file.has_parent_path()
+             ? file.parent_path().filename().string()
+             : file.stem().string();
+}
+
+}  // namespace meniscus

@@ -1,0 +1,46 @@
+/// Checks of a case beyond the form of its keys: parameters that depend on
+/// each other, bodies that close, numbers that make sense.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/case_data/case.h"
+#include "pipeline/case_data/case_problems.h"
+
+namespace meniscus {
+
+/// Sets `parameter_order`: each after those that it uses. A circle is named.
+void order_parameters(Case& input, CaseProblems& problems);
+
+/// Sets `refinements` and makes `film` the nearest fea / 2^k, k from 0 to 4,
+/// with a warning when it was off by more than 1 %.
+void nest_film(Resolution& resolution, SourceLine line, CaseProblems& problems);
+
+/// Bodies close: each curve of a body's surfaces bounds two of them.
+void check_bodies(const Case& input, CaseProblems& problems);
+
+/// When nothing is wrong so far: the numbers at the initial design and at both
+/// ends of every design variable, and warnings of what serves nothing.
+void check_case(const Case& input, CaseProblems& problems);
+
+/// Films and solids that start from facets put onto their curves, at the
+/// initial design: rims that find no curve, bodies that stay open.
+void check_start(const Case& input, const EvaluatedCase& numbers,
+                 CaseProblems& problems);
+
+/// Some film or solid, or one of those that enclose a body, is of facets.
+bool has_facets(const Case& input);
+bool has_facets(const Case& input, const BodyEntry& body);
+
+/// Films and solids, backs and rims of walls.
+std::vector<std::string> surface_names(const Case& input);
+/// Of walls, beside their films.
+std::vector<std::string> wall_surface_names(const Case& input);
+std::vector<std::string> film_names(const Case& input);
+std::vector<std::string> body_names(const Case& input);
+
+/// "two_arm" for "cases/two_arm/case.toml", else the file's stem.
+std::string case_name(const std::string& path);
+
+}  // namespace meniscus

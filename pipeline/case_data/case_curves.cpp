@@ -1,0 +1,195 @@
+#include "pipeline/case_data/case_curves.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/curves/curve_contact.h"
+#include "evolve/films/shared_sides.h"
+
+namespace meniscus {
+
+namespace {
+
+Points points_of(const CurveEntry& entry, const CaseValues& values) {
+  Points points;
+  points.reserve(entry.points.size() + entry.fixed_points.size());
+  for (const PathPoint& point : entry.points) {
+    points.push_back(values.at(point.at));
+  }
+  for (const Vec3& point : entry.fixed_points) {
+    points.push_back(values.are_rates() ? Vec3(Vec3::Zero()) : point);
+  }
+  return points;
+}
+
+Polyline polyline_of(const CurveEntry& entry, const CaseValues& values) {
+  Polyline result;
+  for (const PathPoint& point : entry.points) {
+    if (point.through) {
+      result.via.back() = values.at(point.at);
+    } else {
+      result.corners.push_back(values.at(point.at));
+      result.via.emplace_back();
+    }
+  }
+  return result;
+}
+
+CurveCopy copy_of(const CurveEntry& entry, const std::vector<Curve>& above,
+                  const CaseValues& values) {
+  const CopyEntry& copy = entry.copy;
+  CurveCopy result;
+  result.of =
+      std::make_shared<const Curve>(above[static_cast<std::size_t>(copy.of)]);
+  if (copy.offset) {
+    result.offset = values.at(*copy.offset);
+  }
+  result.scale = values.at(copy.scale);
+  if (copy.mirror) {
+    result.mirror = values.at(*copy.mirror);
+  }
+  result.angle = values.at(copy.angle);
+  result.axis = values.at(entry.axis);
+  result.about = values.at(copy.about);
+  result.move = values.at(copy.move);
+  return result;
+}
+
+CurveShape shape_of(const CurveEntry& curve, const std::vector<Curve>& above,
+                    const CaseValues& values) {
+  switch (curve.kind) {
+    case CurveKind::Circle:
+      return Circle{values.at(curve.center), values.at(curve.normal),
+                    values.at(curve.radius)};
+    case CurveKind::Ellipse:
+      return Ellipse{values.at(curve.center), values.at(curve.normal),
+                     values.at(curve.axis), values.at(curve.radius_1),
+                     values.at(curve.radius_2)};
+    case CurveKind::Rectangle:
+      return Rectangle{values.at(curve.center), values.at(curve.normal),
+                       values.at(curve.axis),   values.at(curve.width),
+                       values.at(curve.height), values.at(curve.corner_radius)};
+    case CurveKind::Spline:
+      return Spline{points_of(curve, values)};
+    case CurveKind::Polyline:
+      return polyline_of(curve, values);
+    case CurveKind::Copy:
+      return copy_of(curve, above, values);
+    case CurveKind::Polygon:
+      break;
+  }
+  return Polygon{points_of(curve, values)};
+}
+
+/// The values of what a curve that is none is made of.
+std::string where(const CurveEntry& entry, const CaseValues& values) {
+  std::vector<QuantityVector> points;
+  points.reserve(entry.points.size());
+  for (const PathPoint& point : entry.points) {
+    points.push_back(point.at);
+  }
+  const CopyEntry& copy = entry.copy;
+  return values.where(entry.center, entry.normal, entry.axis, entry.radius,
+                      entry.radius_1, entry.radius_2, entry.width, entry.height,
+                      entry.corner_radius, points,
+                      copy.offset.value_or(Quantity{}), copy.scale,
+                      copy.mirror.value_or(QuantityVector{}), copy.angle,
+                      copy.about, copy.move);
+}
+
+bool may_meet_itself(const CurveEntry& entry) {
+  return entry.kind == CurveKind::Polygon || entry.kind == CurveKind::Spline ||
+         entry.kind == CurveKind::Polyline || entry.copy.offset.has_value();
+}
+
+/// Refuses what is no curve, and one that crosses itself.
+void check(const CurveEntry& entry, const Curve& curve) {
+  validate(curve);
+  if (!may_meet_itself(entry)) {
+    return;
+  }
+  if (const auto at = meets_itself(curve.shape)) {
+    throw InvalidInput(fmt::format(
+        "curve '{}': crosses or touches itself near ({:.4g}, {:.4g}, {:.4g}); "
+        "no film can start there: {}",
+        curve.name, at->x(), at->y(), at->z(),
+        entry.copy.offset ? "offset it less"
+                          : "points must follow each other around the curve"));
+  }
+}
+
+}  // namespace
+
+std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
+  std::vector<Curve> result;
+  result.reserve(input.curves.size());
+  std::vector<char> bad;  // copies of those are no news
+  for (const CurveEntry& entry : input.curves) {
+    const std::size_t before = values.problems().size();
+    if (entry.kind == CurveKind::Copy &&
+        bad[static_cast<std::size_t>(entry.copy.of)] != 0) {
+      const auto of = static_cast<std::size_t>(entry.copy.of);
+      result.push_back({entry.name, result[of].shape});
+      bad.push_back(1);
+      continue;
+    }
+    Curve curve{entry.name, shape_of(entry, result, values)};
+    if (!values.are_rates() && values.problems().size() == before) {
+      try {
+        check(entry, curve);
+      } catch (const InvalidInput& error) {
+        values.problems().push_back(
+            fmt::format("{}: {}{}", place(input, entry.line), error.what(),
+                        where(entry, values)));
+      }
+    }
+    bad.push_back(values.problems().size() > before ? 1 : 0);
+    result.push_back(std::move(curve));
+  }
+  return result;
+}
+
+void check_meetings(const Case& input, const FilmSystem& system,
+                    const CaseValues& values) {
+  const SharedRims shared(system.curves);
+  std::vector<std::size_t> rims;  // what holds a film or a cap
+  std::vector<const CurveShape*> shapes;
+  for (std::size_t c = 0; c < system.curves.size(); ++c) {
+    const std::string& name = system.curves[c].name;
+    const bool held =
+        std::any_of(system.films.begin(), system.films.end(),
+                    [&](const FilmSpec& film) {
+                      return std::find(film.curves.begin(), film.curves.end(),
+                                       name) != film.curves.end();
+                    }) ||
+        std::any_of(system.caps.begin(), system.caps.end(),
+                    [&](const CapSpec& cap) {
+                      const std::vector<std::string> at = cap.curves();
+                      return std::find(at.begin(), at.end(), name) != at.end();
+                    });
+    if (held) {
+      rims.push_back(c);
+      shapes.push_back(&system.curves[c].shape);
+    }
+  }
+  for (const CurveMeeting& meeting : meetings_of(shapes)) {
+    const std::size_t a = rims[static_cast<std::size_t>(meeting.first)];
+    const std::size_t b = rims[static_cast<std::size_t>(meeting.second)];
+    if (shared.shares(static_cast<int>(a)) &&
+        shared.shares(static_cast<int>(b))) {
+      continue;  // faces that join: check_sides() looks at them
+    }
+    const Vec3& at = meeting.place;
+    values.problems().push_back(fmt::format(
+        "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; films "
+        "join where they name the same curve, other curves must keep apart",
+        place(input, input.curves[b].line), input.curves[a].name,
+        input.curves[b].name, at.x(), at.y(), at.z(),
+        where(input.curves[b], values)));
+  }
+}
+
+}  // namespace meniscus

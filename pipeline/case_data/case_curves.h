@@ -1,0 +1,29 @@
+/// From the curves of a case to their numbers at one design.
+#pragma once
+
+#include <vector>
+
+#include "evolve/films/film_system.h"
+#include "pipeline/case_data/case_problems.h"
+#include "pipeline/case_data/case_values.h"
+
+namespace meniscus {
+
+/// One per entry, in order; values, or rates. A value that makes no curve is
+/// told in the problems of `values`.
+std::vector<Curve> curves_of(const Case& input, const CaseValues& values);
+
+/// Tells of curves that hold films or caps and touch or cross each other.
+void check_meetings(const Case& input, const FilmSystem& system,
+                    const CaseValues& values);
+
+/// Finds curves of films and solids that lie on each other at the initial
+/// design, and makes these name the first of them. Tells which were found in
+/// the case's remarks; notes a film that names both.
+void merge_curves(Case& input, CaseProblems& problems);
+
+/// Notes merged curves that part at another design.
+void check_merged(const Case& input, const EvaluatedCase& initial,
+                  const EvaluatedCase& other, CaseProblems& problems);
+
+}  // namespace meniscus

@@ -1,0 +1,316 @@
+/// What the tables of a case file hold: names checked, expressions compiled,
+/// nothing computed.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/math/expression.h"
+#include "evolve/films/film_system.h"
+#include "evolve/scan/scan.h"
+#include "evolve/walls/thicken.h"
+#include "fea/elastic/elasticity.h"
+#include "fea/stress/stress_uniformity.h"
+
+namespace meniscus {
+
+/// Where an entry stands in the case file: its line from 1; -k where the k-th
+/// override (--set) put it; 0 when not known.
+using SourceLine = int;
+
+/// A number of the case: an expression over the case's names (design variables
+/// first, then parameters), in case units.
+struct Quantity {
+  Expression expression;
+  SourceLine line = 0;
+  std::string key;  // "curves.support.radius", for messages
+};
+using QuantityVector = std::array<Quantity, 3>;
+
+/// A number, or an expression that knows the coordinates x, y, z after the
+/// case's names.
+struct PlaceQuantity {
+  Quantity quantity;
+  bool of_place = false;  // x, y or z appear
+};
+
+struct DesignVariable {
+  std::string name;
+  double initial = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+  SourceLine line = 0;
+};
+
+struct Parameter {
+  std::string name;
+  Quantity value;
+};
+
+enum class CurveKind {
+  Circle,
+  Ellipse,
+  Rectangle,
+  Polygon,
+  Spline,
+  Polyline,
+  Copy
+};
+
+/// A corner of a polyline, or what the arc between two corners goes through.
+struct PathPoint {
+  QuantityVector at;
+  bool through = false;
+};
+
+/// Another curve offset, scaled, mirrored, turned about `axis` and moved.
+struct CopyEntry {
+  int of = -1;  // index of a curve above
+  std::optional<Quantity> offset;
+  QuantityVector scale;
+  std::optional<QuantityVector> mirror;
+  Quantity angle;
+  QuantityVector about, move;
+};
+
+/// What the kind does not need is empty.
+struct CurveEntry {
+  std::string name;
+  CurveKind kind = CurveKind::Circle;
+  QuantityVector center, normal, axis;
+  Quantity radius, radius_1, radius_2, width, height, corner_radius;
+  std::vector<PathPoint> points;   // of polygon, spline, polyline; or
+  std::vector<Vec3> fixed_points;  // of polygon and spline: from a file
+  CopyEntry copy;
+  SourceLine line = 0;
+};
+
+/// Two curves in one place, indices of curves: one for films and solids.
+struct MergedCurves {
+  int kept = 0;
+  int dropped = 0;
+};
+
+struct FilmEntry {
+  FilmSpec spec;  // tension and start filled in by evaluate()
+  PlaceQuantity tension;
+  std::vector<QuantityVector> vertices;  // of facets in the case
+  std::vector<Triangle> facets;          // of vertices
+  SourceLine line = 0;
+};
+
+struct CapEntry {
+  CapSpec spec;
+  bool is_file = false;  // else a flat disk
+  SourceLine line = 0;
+};
+
+inline constexpr int kVoid = -1;
+
+struct BodyEntry {
+  std::string name;
+  std::vector<std::string> enclosed_by;
+  std::optional<Quantity> volume, pressure;
+  int material = 0;  // index into materials; kVoid: none
+  SourceLine line = 0;
+  SourceLine enclosure_line = 0;  // of enclosed_by
+};
+
+struct WallEntry {
+  std::string name;
+  std::vector<std::string> films;
+  PlaceQuantity thickness;
+  WallSide side = WallSide::Both;
+  std::optional<double> fillet;  // [length]
+  int material = kVoid;          // index into materials; kVoid: none given
+  int region = 0;                // walls whose films share a curve are of one
+  SourceLine line = 0;
+};
+
+enum class FieldKind { Point, Segment, Polyline, Plane, Pressure };
+
+struct FieldEntry {
+  std::string name;
+  FieldKind kind = FieldKind::Point;
+  QuantityVector at, normal, from, to;
+  std::vector<QuantityVector> points;
+  Quantity strength, power, core;
+  std::vector<std::string> films;  // acts per area of these; or
+  std::string body;                // per volume of this
+  PlaceQuantity pressure;
+  SourceLine line = 0;
+};
+
+struct MaterialEntry {
+  std::string name;
+  Quantity youngs_modulus, poisson_ratio, density;
+  std::optional<Quantity> yield_strength;
+  std::optional<Orthotropic> orthotropic;  // instead of modulus and ratio
+  Vec3 thermal_expansion = Vec3::Zero();
+  SourceLine line = 0;
+};
+
+enum class LoadKind {
+  Force,
+  Remote,  // force or moment through a point
+  Pressure,
+  Traction,
+  Gravity,
+  Spin,
+  Temperature
+};
+
+/// What the kind does not need is empty.
+struct LoadEntry {
+  LoadKind kind = LoadKind::Force;
+  std::string surface;
+  QuantityVector vector;  // force, gravity, axis of spin
+  QuantityVector moment;
+  QuantityVector at;    // the remote point; on the axis of spin
+  PlaceQuantity place;  // pressure, temperature
+  std::array<PlaceQuantity, 3> traction;
+  Quantity number;  // rate of spin, reference temperature
+  SourceLine line = 0;
+};
+
+struct LoadCaseEntry {
+  std::string name;
+  std::vector<Support> supports;
+  std::vector<SpringBed> springs;
+  std::vector<LoadEntry> loads;
+  SourceLine line = 0;
+};
+
+/// A zone that stress figures leave out.
+struct ExclusionEntry {
+  ExclusionZone zone;
+  std::string key;  // "analysis.exclude[0]", for messages
+  SourceLine line = 0;
+};
+
+struct AnalysisEntry {
+  bool adapt = false;  // one round of adaptive refinement
+  std::vector<ExclusionEntry> exclude;
+  SolverKind solver = SolverKind::Automatic;
+  int processes = 2;  // of Distributed
+  // Eigenvalues of the best design:
+  static constexpr int kFree = -1;  // not held at all
+  int frequencies = 0;              // lowest natural ones
+  int supports_of = 0;  // held as in this load case: index, or kFree
+  /// Smallest factors per load case; without it one, roughly; 0: none.
+  std::optional<int> buckling;
+};
+
+enum class ResponseKind {
+  MeanDisplacement,
+  DisplacementNorm,
+  Rotation,
+  Compliance,
+  StrainEnergy,
+  Mass,
+  Volume,
+  CentreOfMass,
+  MaxVonMises,
+  VonMisesNorm,
+  VonMisesKs,
+  Uniformity,
+  EnergyUniformity,
+  FilmArea,
+  FilmEnergy,
+  Pressure,
+  CollapseMargin,
+  Radius,
+  Thickness,
+  Distance,
+  Gap,
+  ScanDistance,
+  Expression
+};
+
+enum class RegionSide { KeepOut, KeepIn };
+
+/// What the kind does not need is empty.
+struct ResponseEntry {
+  std::string name;
+  ResponseKind kind = ResponseKind::MeanDisplacement;
+  std::string surface;
+  QuantityVector direction;  // an axis for Rotation
+  int load_case = 0;         // index
+  std::optional<PlaceQuantity> weight;
+  double power = 8.0;
+  double sharpness = 50.0;
+  std::optional<double> scale;  // [pressure]
+  /// Of thickness, distance and gap [length].
+  std::optional<double> smoothing;
+  std::optional<PlaceQuantity> region;  // above 0 in it
+  RegionSide side = RegionSide::KeepOut;
+  std::string film;                // empty: all
+  std::vector<std::string> films;  // of gap two; of scan_distance
+  std::string scan;                // of scan_distance: its path
+  ScanMeasure measure = ScanMeasure::Rms;
+  int body = 0;  // index
+  /// Of Expression: over the case's names, then the responses above it.
+  Quantity value;
+  SourceLine line = 0;
+};
+
+struct Resolution {
+  double fea = 0.0;          // edge of the meshed film [length]
+  double film = 0.0;         // edge of its nested refinement [length]
+  int refinements = 1;       // film = fea / 2^refinements
+  bool keep_facets = false;  // of films of facets: halved, never remeshed
+  std::vector<double> export_edges;
+};
+
+/// How the part is made.
+struct ProcessEntry {
+  std::string name;               // for messages
+  double smallest_feature = 0.0;  // the thinnest it makes [length]; 0: not said
+};
+
+enum class StudyKind { Analyse, Match, Minimize, Sweep, Tolerance, Pareto };
+
+/// lower <= response <= upper.
+struct ConstraintEntry {
+  int response = 0;  // index
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  SourceLine line = 0;
+};
+
+/// One member of a family: the case with these overrides on top of its own.
+struct MemberEntry {
+  std::string name;                    // of its folder too
+  std::vector<std::string> overrides;  // "name=value", as for --set
+  std::string place;                   // "case.toml:12" or "members.csv:3"
+};
+
+struct StudyEntry {
+  StudyKind kind = StudyKind::Analyse;  // of a family: of each member's study
+  std::vector<MemberEntry> members;     // of a family, in order; else empty
+  std::vector<std::string> equal;
+  std::vector<std::pair<std::string, double>> targets;
+  /// Of match instead of both: index of the scan_distance, whose distances are
+  /// made small; its tolerance is a length, 0: as small as they get.
+  std::optional<int> fit;
+  std::optional<int> objective;  // index of a response
+  std::optional<int> second;     // of a front: the other objective
+  std::vector<ConstraintEntry> constraints;
+  double tolerance = 1e-3;
+  std::string method = "ceres";
+  int max_evaluations = 100;
+  double coarse_first = 1.0;       // edges of a first, coarser model; 1: none
+  double time_limit = 0.0;         // [s], 0: none
+  bool refreeze = true;            // where the frozen mesh no longer follows
+  std::vector<int> levels;         // of a grid, per design variable; 0: none
+  std::vector<double> deviations;  // of tolerances, likewise
+  int count = 0;                   // of samples, or points of a front
+  int seed = 1;
+  SourceLine line = 0;
+};
+
+}  // namespace meniscus

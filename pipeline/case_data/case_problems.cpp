@@ -1,0 +1,97 @@
+#include "pipeline/case_data/case_problems.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/nearest_name.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr std::size_t kMostProblems = 20;
+constexpr std::size_t kMostKnown = 15;  // names listed in one message
+
+}  // namespace
+
+std::string advice(const std::string& name,
+                   const std::vector<std::string>& known) {
+  const std::string near = nearest_name(name, known);
+  if (!near.empty()) {
+    return "; did you mean '" + near + "'?";
+  }
+  if (known.empty()) {
+    return "; none is defined";
+  }
+  const std::size_t shown = std::min(known.size(), kMostKnown);
+  return fmt::format(
+      "; there {} {}{}", known.size() == 1 ? "is" : "are",
+      fmt::join(known.begin(),
+                known.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+      shown < known.size() ? fmt::format(" and {} more", known.size() - shown)
+                           : "");
+}
+
+std::string CaseProblems::placed(SourceLine line,
+                                 const std::string& message) const {
+  if (line > 0) {
+    return fmt::format("{}:{}: {}", path_, line, message);
+  }
+  return line == 0
+             ? fmt::format("{}: {}", path_, message)
+             : fmt::format("{}: --set {}: {}", path_,
+                           overrides_[static_cast<std::size_t>(-line - 1)],
+                           message);
+}
+
+void CaseProblems::add(SourceLine line, const std::string& message) {
+  problems_.push_back({line, placed(line, message)});
+}
+
+void CaseProblems::add_text(const std::string& message) {
+  const auto same = [&](const Entry& e) { return e.text == message; };
+  if (std::none_of(problems_.begin(), problems_.end(), same)) {
+    problems_.push_back({0, message});
+  }
+}
+
+void CaseProblems::warn(SourceLine line, const std::string& message) {
+  warnings_.push_back({line, placed(line, "warning: " + message)});
+}
+
+void CaseProblems::unknown(SourceLine line, const char* what,
+                           const std::string& name,
+                           const std::vector<std::string>& known) {
+  add(line,
+      fmt::format("there is no {} '{}'{}", what, name, advice(name, known)));
+}
+
+std::vector<std::string> CaseProblems::take() {
+  std::stable_sort(
+      problems_.begin(), problems_.end(),
+      [](const Entry& a, const Entry& b) { return a.line < b.line; });
+  std::vector<std::string> texts;
+  for (const Entry& entry : problems_) {
+    if (texts.size() == kMostProblems) {
+      texts.push_back(fmt::format("... and {} more problems",
+                                  problems_.size() - kMostProblems));
+      break;
+    }
+    texts.push_back(entry.text);
+  }
+  return texts;
+}
+
+std::vector<std::string> CaseProblems::take_warnings() {
+  std::stable_sort(
+      warnings_.begin(), warnings_.end(),
+      [](const Entry& a, const Entry& b) { return a.line < b.line; });
+  std::vector<std::string> texts;
+  for (const Entry& entry : warnings_) {
+    texts.push_back(entry.text);
+  }
+  return texts;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,180 @@
+#include "pipeline/case_data/case_values.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "pipeline/case_data/bound_text.h"
+
+namespace meniscus {
+
+namespace {
+
+double rate_of(const Dual& value) {
+  return value.is_constant() ? 0.0 : value.gradient[0];
+}
+
+}  // namespace
+
+CaseValues::CaseValues(const Case& input, const VectorX& design,
+                       std::vector<std::string>& problems)
+    : input_(input), problems_(problems) {
+  if (design.size() != static_cast<Eigen::Index>(input.design.size())) {
+    throw InvalidInput(fmt::format("{}: {} design values for {} variables",
+                                   input.path, design.size(),
+                                   input.design.size()));
+  }
+  for (const DesignVariable& variable : input.design) {
+    names_.push_back(variable.name);
+  }
+  for (const Parameter& parameter : input.parameters) {
+    names_.push_back(parameter.name);
+  }
+  values_.assign(design.begin(), design.end());
+  values_.resize(names_.size(), 0.0);
+  for (const int k : input.parameter_order) {
+    values_[input.design.size() + static_cast<std::size_t>(k)] =
+        at(input.parameters[static_cast<std::size_t>(k)].value);
+  }
+}
+
+CaseValues::CaseValues(const Case& input, const VectorX& design,
+                       std::vector<std::string>& problems, int rate_by)
+    : CaseValues(input, design, problems) {
+  std::vector<Dual> duals(values_.begin(), values_.end());
+  duals[static_cast<std::size_t>(rate_by)] =
+      Dual::variable(design[rate_by], 0, 1);
+  for (const int k : input.parameter_order) {
+    const auto i = static_cast<std::size_t>(k);
+    duals[input.design.size() + i] =
+        input.parameters[i].value.expression.evaluate(duals);
+  }
+  duals_ = std::move(duals);
+}
+
+double CaseValues::evaluate(const Quantity& quantity) const {
+  if (!are_rates()) {
+    return quantity.expression.evaluate(values_);
+  }
+  return rate_of(quantity.expression.evaluate(duals_));
+}
+
+double CaseValues::at(const Quantity& quantity) const {
+  try {
+    return evaluate(quantity);
+  } catch (const ExpressionError& error) {
+    nothing(quantity, error);
+    return 0.0;
+  }
+}
+
+Expression CaseValues::of_place(const PlaceQuantity& place_quantity) const {
+  const Quantity& quantity = place_quantity.quantity;
+  if (!place_quantity.of_place) {
+    return Expression(at(quantity));
+  }
+  try {
+    return Expression::parse(
+        with_values(quantity.expression.text(), names_, values_),
+        {"x", "y", "z"});
+  } catch (const ExpressionError& error) {
+    problems_.push_back(fmt::format("{}: {}: {}", place(input_, quantity.line),
+                                    quantity.key, error.what()));
+    return Expression();
+  }
+}
+
+NumberOfPlace CaseValues::field(const PlaceQuantity& place_quantity) const {
+  if (!are_rates()) {
+    return [expression = of_place(place_quantity)](const Vec3& x) {
+      return expression.evaluate(std::span<const double>(x.data(), 3));
+    };
+  }
+  return [expression = place_quantity.quantity.expression,
+          names = duals_](const Vec3& x) {
+    std::vector<Dual> values = names;
+    values.insert(values.end(), x.begin(), x.end());
+    return rate_of(expression.evaluate(values));
+  };
+}
+
+VectorOfPlace CaseValues::slope(const PlaceQuantity& place_quantity) const {
+  return [expression = of_place(place_quantity)](const Vec3& x) -> Vec3 {
+    const std::array<Dual3, 3> at = {Dual3::variable(x.x(), 0),
+                                     Dual3::variable(x.y(), 1),
+                                     Dual3::variable(x.z(), 2)};
+    return expression.evaluate(std::span<const Dual3>(at)).gradient;
+  };
+}
+
+bool CaseValues::moves(const Quantity& quantity) const {
+  const std::vector<int> used = quantity.expression.names_used();
+  return std::any_of(used.begin(), used.end(), [this](int name) {
+    const auto k = static_cast<std::size_t>(name);
+    return k < duals_.size() && rate_of(duals_[k]) != 0.0;
+  });
+}
+
+double CaseValues::nothing(const Quantity& quantity,
+                           const ExpressionError& error) const {
+  problems_.push_back(fmt::format("{}: {}: {}{}", place(input_, quantity.line),
+                                  quantity.key, error.what(), where(quantity)));
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double CaseValues::at(const Quantity& quantity,
+                      std::span<const double> more) const {
+  std::vector<double> values = values_;
+  values.insert(values.end(), more.begin(), more.end());
+  try {
+    return quantity.expression.evaluate(values);
+  } catch (const ExpressionError& error) {
+    return nothing(quantity, error);
+  }
+}
+
+double CaseValues::rate(const Quantity& quantity, std::span<const double> more,
+                        std::span<const double> more_rates) const {
+  std::vector<Dual> values = duals_;
+  for (std::size_t k = 0; k < more.size(); ++k) {
+    Dual value = Dual::variable(more[k], 0, 1);
+    value.gradient[0] = more_rates[k];
+    values.push_back(value);
+  }
+  try {
+    return rate_of(quantity.expression.evaluate(values));
+  } catch (const ExpressionError& error) {
+    return nothing(quantity, error);
+  }
+}
+
+void CaseValues::tell_bad(const Quantity& quantity, double value,
+                          const char* must_be) const {
+  problems_.push_back(fmt::format("{}: {} is {:g}{}; it must be {}",
+                                  place(input_, quantity.line), quantity.key,
+                                  value, where(quantity), must_be));
+}
+
+std::string CaseValues::where_text(const std::vector<char>& used) const {
+  std::string text;
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (used[k] != 0) {
+      text += fmt::format("{}{} = {:g}", text.empty() ? " where " : ", ",
+                          names_[k], values_[k]);
+    }
+  }
+  return text;
+}
+
+void CaseValues::mark(const Quantity& quantity, std::vector<char>& used) {
+  for (const int name : quantity.expression.names_used()) {
+    if (static_cast<std::size_t>(name) < used.size()) {  // else x, y or z
+      used[static_cast<std::size_t>(name)] = 1;
+    }
+  }
+}
+
+}  // namespace meniscus

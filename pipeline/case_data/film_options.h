@@ -1,0 +1,20 @@
+/// How a case's film is frozen.
+#pragma once
+
+#include <algorithm>
+
+#include "pipeline/case_data/case.h"
+
+namespace meniscus {
+
+/// Refinements that give split facets of adaptive meshes their mid-sides.
+inline constexpr int kAdaptiveRefinements = 2;
+
+/// Nested refinements from the meshed film to the film's own mesh.
+inline int film_refinements(const Case& input) {
+  return input.analysis.adapt
+             ? std::max(input.resolution.refinements, kAdaptiveRefinements)
+             : input.resolution.refinements;
+}
+
+}  // namespace meniscus

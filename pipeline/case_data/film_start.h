@@ -1,0 +1,20 @@
+/// Films of a case as they start, and where in the case a film is that cannot.
+#pragma once
+
+#include <string>
+
+#include "evolve/frozen/film_model.h"
+#include "pipeline/case_data/case.h"
+
+namespace meniscus {
+
+/// The line of the film, solid or body that a message of the start names
+/// first; 0: none.
+SourceLine line_of_start(const Case& input, const std::string& message);
+
+/// FilmModel::freeze() of the case's films; what it refuses is told with the
+/// line of the case. Throws InvalidInput.
+FilmModel freeze_films(const Case& input, const EvaluatedCase& numbers,
+                       const FilmModelOptions& options);
+
+}  // namespace meniscus

@@ -1,0 +1,202 @@
+#include "pipeline/forward/eigen_figures.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "core/timer.h"
+
+namespace meniscus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Unasked, the factor serves a warning and a line of the summary.
+constexpr double kRoughly = 1e-3;
+constexpr double kLargestOfInterest = 1e3;
+// As many steps as the solve took, so that it costs about as much, within:
+constexpr int kLeastSteps = 40;
+constexpr int kMostSteps = 150;
+// One that came out above this may be far from converged and needs no warning.
+constexpr double kSafelyStable = 10.0;
+
+/// Where the matrix is not in one process.
+bool left_out(const AnalysisEntry& analysis) {
+  return analysis.solver == SolverKind::Distributed;
+}
+
+BucklingOptions buckling_options(const AnalysisEntry& analysis,
+                                 const ElasticReport& solve, Monitor* monitor) {
+  if (left_out(analysis)) {
+    return {.count = 0};
+  }
+  if (!analysis.buckling) {
+    return {
+        .tolerance = kRoughly,
+        .largest = kLargestOfInterest,
+        .guards = 1,
+        .max_iterations = std::clamp(solve.iterations, kLeastSteps, kMostSteps),
+        .monitor = monitor};
+  }
+  return {.count = *analysis.buckling, .monitor = monitor};
+}
+
+/// solve(), or why it could not begin.
+template <class Modes, class Solve>
+Modes or_failure(const Solve& solve) {
+  Modes modes;
+  try {
+    modes = solve();
+  } catch (const InvalidInput& error) {
+    modes.failure = Failure{FailureKind::SolverFailed, error.what()};
+  } catch (const SolverError& error) {
+    modes.failure = Failure{FailureKind::SolverFailed, error.what()};
+  }
+  return modes;
+}
+
+FrequencyFigures frequencies_of(const AnalysisEntry& analysis,
+                                const EvaluationFields& fields,
+                                const ElasticModel& model, Monitor* monitor) {
+  const ModeOptions options{.count = analysis.frequencies,
+                            .monitor = monitor,
+                            .materials = &fields.inputs.materials};
+  const int held = analysis.supports_of;
+  if (held == AnalysisEntry::kFree) {
+    return {"free", or_failure<NaturalModes>([&] {
+              return natural_modes(fields.mesh, fields.inputs.materials,
+                                   LoadCase{.name = "free"}, options);
+            })};
+  }
+  const std::vector<LoadCase>& cases = fields.inputs.load_cases;
+  return {cases[static_cast<std::size_t>(held)].name,
+          or_failure<NaturalModes>([&] {
+            return natural_modes(model, fields.mesh, cases, held, options);
+          })};
+}
+
+std::string buckling_line(const BucklingFigures& b) {
+  const BucklingModes& modes = b.modes;
+  std::string text = fmt::format("  buckling of '{}': ", b.load_case);
+  if (!modes.factors.empty()) {
+    std::vector<std::string> factors;
+    for (const double factor : modes.factors) {
+      factors.push_back(fmt::format("{:.4g}", factor));
+    }
+    text += fmt::format("{}{} x the loads", b.roughly ? "about " : "",
+                        fmt::join(factors, ", "));
+  } else if (!modes.failure) {
+    text += fmt::format("none below {:.4g} x the loads", modes.none_below);
+  }
+  return text + (modes.failure ? " (not converged)\n" : "\n");
+}
+
+}  // namespace
+
+EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
+                           const ElasticModel& model, Monitor* monitor) {
+  const Timer timer;
+  const AnalysisEntry& analysis = input.analysis;
+  const std::vector<LoadCase>& cases = fields.inputs.load_cases;
+  EigenFigures figures;
+  BucklingOptions options =
+      buckling_options(analysis, model.base_solution().report, monitor);
+  options.materials = &fields.inputs.materials;
+  for (std::size_t c = 0; c < cases.size() && options.count > 0; ++c) {
+    figures.buckling.push_back(
+        {cases[c].name, or_failure<BucklingModes>([&] {
+           return buckling_modes(model, fields.mesh, cases, static_cast<int>(c),
+                                 fields.solution.displacements[c], options);
+         })});
+  }
+  if (left_out(analysis) && !analysis.buckling) {
+    figures.remark =
+        "no buckling factors: the solver petsc keeps its matrix in other "
+        "processes; another solver, or a coarser mesh with one, gives them";
+  }
+  if (analysis.frequencies > 0) {
+    figures.frequencies = frequencies_of(analysis, fields, model, monitor);
+  }
+  for (BucklingFigures& b : figures.buckling) {
+    const bool stable =
+        !b.modes.factors.empty() && b.modes.factors.front() > kSafelyStable;
+    if (!analysis.buckling && b.modes.failure && stable) {
+      b.modes.failure.reset();
+      b.roughly = true;
+    }
+  }
+  figures.seconds = timer.seconds();
+  return figures;
+}
+
+void add_eigen_json(const EigenFigures& figures, Json& json) {
+  Json buckling = Json::object();
+  for (const BucklingFigures& b : figures.buckling) {
+    Json entry = {{"factors", b.modes.factors},
+                  {"residuals", b.modes.residuals}};
+    if (b.modes.factors.empty() && !b.modes.failure) {
+      entry["none_below"] = b.modes.none_below;
+    }
+    buckling[b.load_case] = std::move(entry);
+  }
+  json["buckling"] = std::move(buckling);
+  if (figures.frequencies) {
+    const NaturalModes& modes = figures.frequencies->modes;
+    json["natural_frequencies"] = {
+        {"supports_of", figures.frequencies->load_case},
+        {"rigid_motions", modes.rigid_motions},
+        {"values", modes.frequencies},
+        {"residuals", modes.residuals}};
+  }
+}
+
+std::string eigen_text(const EigenFigures& figures) {
+  std::string text;
+  for (const BucklingFigures& b : figures.buckling) {
+    text += buckling_line(b);
+  }
+  if (figures.frequencies) {
+    std::vector<std::string> values;
+    for (const double f : figures.frequencies->modes.frequencies) {
+      values.push_back(fmt::format("{:.5g}", f));
+    }
+    const NaturalModes& modes = figures.frequencies->modes;
+    const std::string held =
+        modes.rigid_motions == 0
+            ? fmt::format("held as in '{}'", figures.frequencies->load_case)
+            : fmt::format("{} rigid motions left out", modes.rigid_motions);
+    text += fmt::format("  natural frequencies, {}: {} Hz{}\n", held,
+                        fmt::join(values, ", "),
+                        modes.failure ? " (not converged)" : "");
+  }
+  return text;
+}
+
+std::vector<ModeShape> mode_shapes(const Case& input,
+                                   const EigenFigures& figures) {
+  std::vector<ModeShape> shapes;
+  if (figures.frequencies) {
+    const NaturalModes& modes = figures.frequencies->modes;
+    for (std::size_t k = 0; k < modes.shapes.size(); ++k) {
+      shapes.push_back({fmt::format("mode_{}", k + 1),
+                        fmt::format("{:.8g} Hz", modes.frequencies[k]),
+                        modes.shapes[k]});
+    }
+  }
+  if (!input.analysis.buckling) {
+    return shapes;
+  }
+  for (const BucklingFigures& b : figures.buckling) {
+    for (std::size_t k = 0; k < b.modes.shapes.size(); ++k) {
+      shapes.push_back({fmt::format("buckling_{}_{}", b.load_case, k + 1),
+                        fmt::format("factor {:.8g}", b.modes.factors[k]),
+                        b.modes.shapes[k]});
+    }
+  }
+  return shapes;
+}
+
+}  // namespace meniscus

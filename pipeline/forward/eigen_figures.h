@@ -1,0 +1,53 @@
+/// A part's buckling factors and natural frequencies.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "fea/modes/buckling.h"
+#include "fea/modes/modes.h"
+#include "pipeline/forward/forward_model.h"
+
+namespace meniscus {
+
+/// Of one load case.
+struct BucklingFigures {
+  std::string load_case;
+  BucklingModes modes;   // as many as the case asks for, or the first
+  bool roughly = false;  // unasked, not converged, and far above 1
+};
+
+struct FrequencyFigures {
+  std::string load_case;  // whose supports hold the part; or "free"
+  NaturalModes modes;
+};
+
+struct EigenFigures {
+  std::vector<BucklingFigures> buckling;  // per load case; may be empty
+  std::optional<FrequencyFigures> frequencies;
+  std::string remark;  // why nothing was computed, unasked; or empty
+  double seconds = 0.0;
+};
+
+/// What the case's [analysis] asks for; without it the first buckling factor of
+/// every load case up to 1000, to three digits, or a remark where the solver
+/// keeps its matrix in other processes. `model` must know the fields'
+/// mesh. An answer that did not come is a failure within. Throws Interrupted.
+EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
+                           const ElasticModel& model,
+                           Monitor* monitor = nullptr);
+
+/// Adds "buckling" and "natural_frequencies" to result.json (docs/results.md).
+void add_eigen_json(const EigenFigures& figures, nlohmann::ordered_json& json);
+
+/// Lines for people, indented by two.
+std::string eigen_text(const EigenFigures& figures);
+
+/// The modes that [analysis] asked for by number, for part.vtu.
+std::vector<ModeShape> mode_shapes(const Case& input,
+                                   const EigenFigures& figures);
+
+}  // namespace meniscus

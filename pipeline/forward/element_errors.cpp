@@ -1,0 +1,244 @@
+#include "pipeline/forward/element_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fea/loads/body_loads.h"
+#include "fea/stress/error_estimate.h"
+#include "pipeline/case_data/case_values.h"
+#include "pipeline/forward/responses.h"
+
+namespace meniscus {
+
+namespace {
+
+/// The load case's supports under the forces `by_displacement`, dJ/du, times
+/// `scale`: as large as the load case's own, for the solver starts from that
+/// one's solution.
+struct DualLoad {
+  LoadCase load;
+  double scale = 1.0;
+};
+DualLoad dual_load(const EvaluationFields& fields, const LoadCase& load_case,
+                   const VectorX& by_displacement) {
+  LoadCase dual = load_case;
+  dual.forces.clear();
+  dual.pressures.clear();
+  dual.tractions.clear();
+  dual.remote_loads.clear();
+  dual.gravity.setZero();
+  dual.spin.reset();
+  dual.temperature.reset();
+  const double scale =
+      nodal_forces(fields.mesh, load_case, fields.inputs.materials).norm() /
+      by_displacement.norm();
+  dual.nodal = scale * by_displacement;
+  return {std::move(dual), scale};
+}
+
+ResponseError dual_weighted(const EvaluationFields& fields,
+                            std::size_t load_case, const VectorX& dual) {
+  const auto& materials = fields.inputs.materials;
+  const PartStress& primal = fields.stresses[load_case];
+  const RecoveredStress stress = recover_by_patches(
+      fields.mesh, point_stress(fields.mesh, materials, dual));
+  return response_error(fields.mesh, materials,
+                        {fields.solution.displacements[load_case],
+                         primal.recovered, primal.temperature_change},
+                        {dual, stress, {}});
+}
+
+/// Sums shares of errors that have different units.
+class Shares {
+ public:
+  explicit Shares(int elements)
+      : share_(static_cast<std::size_t>(elements), 0.0) {}
+
+  /// `part(e)`: not negative.
+  template <class Part>
+  void add(const Part& part) {
+    double sum = 0.0;
+    for (std::size_t e = 0; e < share_.size(); ++e) {
+      sum += part(e);
+    }
+    if (!(sum > 0.0)) {
+      return;
+    }
+    for (std::size_t e = 0; e < share_.size(); ++e) {
+      share_[e] += part(e) / sum;
+    }
+    ++count_;
+  }
+
+  std::vector<double> mean() const {
+    std::vector<double> mean = share_;
+    for (double& s : mean) {
+      s /= std::max(count_, 1);
+    }
+    return mean;
+  }
+
+ private:
+  std::vector<double> share_;
+  int count_ = 0;
+};
+
+/// Its partial derivative by the displacement makes a dual load.
+bool has_dual(const ResponseEntry& response) {
+  switch (response.kind) {
+    case ResponseKind::MeanDisplacement:
+    case ResponseKind::DisplacementNorm:
+    case ResponseKind::Rotation:
+    case ResponseKind::Compliance:
+    case ResponseKind::StrainEnergy:
+    case ResponseKind::VonMisesNorm:
+    case ResponseKind::Uniformity:
+    case ResponseKind::EnergyUniformity:
+      return true;
+    default:
+      return false;
+  }
+}
+
+struct Dual {
+  std::size_t response = 0;
+  VectorX by_displacement;
+};
+
+/// What the elements' errors mean for responses.
+class ResponseErrors {
+ public:
+  ResponseErrors(const Case& input, const EvaluationFields& fields,
+                 const VectorX& values, Shares& shares, ElementErrors& errors)
+      : input_(input),
+        fields_(fields),
+        values_(values),
+        shares_(shares),
+        errors_(errors) {
+    errors_.responses =
+        VectorX::Zero(static_cast<Eigen::Index>(input.responses.size()));
+  }
+
+  void run(const ElasticModel& model);
+
+ private:
+  /// Duals that are to be solved, by load case; what needs none is written.
+  std::vector<std::vector<Dual>> duals();
+  bool solve(const std::vector<std::vector<Dual>>& duals, std::size_t round,
+             const ElasticModel& model);
+  void add_expressions();
+  double& error(std::size_t response) {
+    return errors_.responses[static_cast<Eigen::Index>(response)];
+  }
+
+  const Case& input_;
+  const EvaluationFields& fields_;
+  const VectorX& values_;
+  Shares& shares_;
+  ElementErrors& errors_;
+};
+
+std::vector<std::vector<Dual>> ResponseErrors::duals() {
+  std::vector<std::vector<Dual>> result(fields_.inputs.load_cases.size());
+  for (std::size_t r = 0; r < input_.responses.size(); ++r) {
+    const ResponseEntry& response = input_.responses[r];
+    // Of peaks, recovery and the dual solution miss the most.
+    if (response.kind == ResponseKind::MaxVonMises ||
+        response.kind == ResponseKind::VonMisesKs) {
+      error(r) = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (!has_dual(response)) {
+      continue;
+    }
+    const auto k = static_cast<std::size_t>(response.load_case);
+    ResponsePartials partials =
+        partials_of(response, fields_.inputs.responses[r],
+                    {fields_.inputs, fields_.mesh, fields_.solution,
+                     fields_.exclusion.element},
+                    Derivatives::All);
+    if (partials.self_adjoint != 0.0) {  // the dual is the solution itself
+      const double norm = fields_.stresses[k].error.error;
+      error(r) = partials.self_adjoint * norm * norm;
+    } else if (partials.by_displacement.norm() > 0.0) {
+      result[k].push_back({r, std::move(partials.by_displacement)});
+    }
+  }
+  return result;
+}
+
+/// One dual a load case, all load cases together; false when none is left.
+bool ResponseErrors::solve(const std::vector<std::vector<Dual>>& duals,
+                           std::size_t round, const ElasticModel& model) {
+  std::vector<LoadCase> loads = fields_.inputs.load_cases;
+  std::vector<double> scale(loads.size(), 0.0);  // 0: no dual left
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    if (round < duals[k].size()) {
+      DualLoad dual =
+          dual_load(fields_, loads[k], duals[k][round].by_displacement);
+      loads[k] = std::move(dual.load);
+      scale[k] = dual.scale;
+    }
+  }
+  if (std::all_of(scale.begin(), scale.end(),
+                  [](double s) { return s == 0.0; })) {
+    return false;
+  }
+  const ElasticSolution solution =
+      model.solve(fields_.mesh, loads, fields_.inputs.materials, nullptr);
+  errors_.failure = solution.failure;
+  for (std::size_t k = 0; k < loads.size() && !errors_.failure; ++k) {
+    if (scale[k] != 0.0) {
+      const ResponseError found =
+          dual_weighted(fields_, k, solution.displacements[k]);
+      error(duals[k][round].response) = found.value / scale[k];
+      shares_.add([&](std::size_t i) { return std::abs(found.element[i]); });
+    }
+  }
+  return !errors_.failure;
+}
+
+/// What an expression would change by if all that it is made of did.
+void ResponseErrors::add_expressions() {
+  std::vector<std::string> problems;
+  const CaseValues values(input_, fields_.inputs.design, problems);
+  const VectorX& here = values_;
+  const VectorX there = here + errors_.responses;
+  for (std::size_t r = 0; r < input_.responses.size(); ++r) {
+    const ResponseEntry& response = input_.responses[r];
+    if (response.kind == ResponseKind::Expression) {
+      error(r) = values.at(response.value, {there.data(), r}) -
+                 values.at(response.value, {here.data(), r});
+    }
+  }
+}
+
+void ResponseErrors::run(const ElasticModel& model) {
+  const std::vector<std::vector<Dual>> waiting = duals();
+  for (std::size_t round = 0; solve(waiting, round, model);) {
+    ++round;
+  }
+  if (!errors_.failure) {
+    add_expressions();
+  }
+}
+
+}  // namespace
+
+ElementErrors estimate_element_errors(const Case& input,
+                                      const EvaluationFields& fields,
+                                      const VectorX& responses,
+                                      const ElasticModel& model) {
+  ElementErrors errors;
+  Shares shares(fields.mesh.element_count());
+  for (const PartStress& stress : fields.stresses) {
+    errors.energy = std::max(errors.energy, stress.error.relative());
+    const std::vector<double>& e = stress.error.element;
+    shares.add([&](std::size_t i) { return e[i] * e[i]; });
+  }
+  ResponseErrors(input, fields, responses, shares, errors).run(model);
+  errors.share = shares.mean();
+  return errors;
+}
+
+}  // namespace meniscus

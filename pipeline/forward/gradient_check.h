@@ -1,0 +1,31 @@
+/// The exact gradient of a case's responses against central differences.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "optimize/check_gradient.h"
+#include "pipeline/case_data/case.h"
+
+namespace meniscus {
+
+struct CaseGradientCheck {
+  VectorX design;  // where
+  GradientCheckReport report;
+  std::vector<std::string> left_out;  // responses without derivatives
+  double evaluation_seconds = 0.0;    // of the design, a next one
+  double gradient_seconds = 0.0;      // of all responses together
+};
+
+/// Freezes the case's model, differentiates at `design` (within the bounds) and
+/// compares. Throws InvalidInput for a case without design variables, without
+/// responses that have derivatives, or a design of another size; MeshError or
+/// SolverError when `design` cannot be evaluated.
+CaseGradientCheck check_case_gradient(const Case& input, const VectorX& design,
+                                      const GradientCheckOptions& options = {});
+
+/// The table for people: one line per response and variable, and the verdict.
+std::string gradient_check_text(const Case& input,
+                                const CaseGradientCheck& check);
+
+}  // namespace meniscus

@@ -1,0 +1,75 @@
+#include "pipeline/forward/part_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "evolve/datafile/fe_complex.h"
+#include "evolve/datafile/fe_file.h"
+#include "io/obj.h"
+#include "io/read_stl.h"
+
+namespace meniscus {
+
+namespace {
+
+struct PartReader {
+  const char* ending;
+  SurfaceMesh (*read)(const std::filesystem::path& path,
+                      const ReadStepOptions& options);
+};
+
+SurfaceMesh stl(const std::filesystem::path& path, const ReadStepOptions&) {
+  return read_stl(path);
+}
+
+SurfaceMesh obj(const std::filesystem::path& path, const ReadStepOptions&) {
+  return read_obj(path);
+}
+
+/// All that bounds: films and fixed facets.
+SurfaceMesh datafile(const std::filesystem::path& path,
+                     const ReadStepOptions&) {
+  return complex_of(read_fe(read_file(path), path.filename().string())).mesh;
+}
+
+constexpr std::array<PartReader, 5> kReaders = {{{".stl", stl},
+                                                 {".obj", obj},
+                                                 {".fe", datafile},
+                                                 {".step", read_step_part},
+                                                 {".stp", read_step_part}}};
+
+const PartReader* reader_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  });
+  const auto* const reader =
+      std::find_if(kReaders.begin(), kReaders.end(),
+                   [&](const PartReader& r) { return ending == r.ending; });
+  return reader != kReaders.end() ? reader : nullptr;
+}
+
+}  // namespace
+
+bool is_part_file(const std::filesystem::path& path) {
+  return reader_of(path) != nullptr;
+}
+
+SurfaceMesh read_part_file(const std::filesystem::path& path,
+                           const ReadStepOptions& options) {
+  const PartReader* reader = reader_of(path);
+  if (reader == nullptr) {
+    throw InvalidInput(fmt::format(
+        "{}: no file of a part; there are .stl, .obj, .step and .fe",
+        path.string()));
+  }
+  return reader->read(path, options);
+}
+
+}  // namespace meniscus

@@ -1,0 +1,26 @@
+/// The stresses of an evaluated design with their errors, found once and used
+/// by figures, error estimates and files.
+#pragma once
+
+#include <vector>
+
+#include "fea/elastic/elasticity.h"
+#include "fea/stress/error_estimate.h"
+#include "pipeline/case_data/case.h"
+
+namespace meniscus {
+
+/// Of one load case.
+struct PartStress {
+  VectorX temperature_change;  // per node, or empty
+  PointStress points;
+  RecoveredStress recovered;
+  EnergyError error;
+};
+
+/// Of every load case, in their order.
+std::vector<PartStress> part_stresses(const TetMesh& mesh,
+                                      const EvaluatedCase& numbers,
+                                      const ElasticSolution& solution);
+
+}  // namespace meniscus

@@ -1,0 +1,133 @@
+#include "pipeline/forward/part_warnings.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "fea/functionals/thickness.h"
+
+namespace meniscus {
+
+namespace {
+
+// Beyond this part of the part's size, rotations are no longer small.
+constexpr double kLargeDisplacement = 0.05;
+// Flat facets of a curved wall lie closer than it is thick.
+constexpr double kFlatFacets = 0.02;
+
+double largest_displacement(const VectorX& u) {
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k + 2 < u.size(); k += 3) {
+    largest = std::max(largest, u.segment<3>(k).norm());
+  }
+  return largest;
+}
+
+std::string yield_warning(const Case& input, const std::string& load_case,
+                          const StressFigures::Safety& s, const char* where) {
+  return fmt::format(
+      "stress above yield{}: load case '{}' reaches {:.4g} {} at ({:.4g}, "
+      "{:.4g}, {:.4g}), '{}' yields at {:.4g} {} (safety factor {:.3g}); a "
+      "linear analysis does not hold there (at a clamped edge the value grows "
+      "with every refinement)",
+      where, load_case, s.von_mises, input.units.pressure, s.position.x(),
+      s.position.y(), s.position.z(), s.material, s.yield_strength,
+      input.units.pressure, s.factor);
+}
+
+}  // namespace
+
+std::vector<std::string> part_warnings(
+    const Case& input, const EvaluationFields& fields,
+    const std::vector<StressFigures>& stress) {
+  std::vector<std::string> warnings;
+  const double size = bounding_diagonal(fields.mesh.nodes);
+  for (std::size_t k = 0; k < stress.size(); ++k) {
+    if (stress[k].safety && stress[k].safety->factor < 1.0) {
+      warnings.push_back(
+          yield_warning(input, stress[k].load_case, *stress[k].safety, ""));
+    }
+    const auto& out = stress[k].excluded;
+    if (out && out->safety && out->safety->factor < 1.0) {
+      warnings.push_back(yield_warning(input, stress[k].load_case, *out->safety,
+                                       " in an exclusion zone"));
+    }
+    const double largest =
+        largest_displacement(fields.solution.displacements[k]);
+    if (largest > kLargeDisplacement * size) {
+      warnings.push_back(fmt::format(
+          "deflection not small: load case '{}' moves a point by {:.4g} {}, "
+          "{:.1f} % of the part's size; a linear analysis does not hold",
+          stress[k].load_case, largest, input.units.length,
+          100.0 * largest / size));
+    }
+  }
+  return warnings;
+}
+
+std::vector<std::string> wall_warnings(const ForwardModel& model) {
+  std::vector<std::string> warnings;
+  if (model.walls() == nullptr) {
+    return warnings;
+  }
+  for (const ThickWall& wall : model.walls()->walls()) {
+    const SafeThickness& safe = wall.safe;
+    if (safe.limit != WallLimit::None && safe.asked >= safe.value) {
+      warnings.push_back(safe.message);
+    }
+  }
+  return warnings;
+}
+
+std::vector<std::string> process_warnings(const Case& input,
+                                          const TetMesh& mesh) {
+  const ProcessEntry& process = input.process;
+  if (!(process.smallest_feature > 0.0)) {
+    return {};
+  }
+  const double limit = (1.0 - kFlatFacets) * process.smallest_feature;
+  ThinPlace thin;
+  try {
+    thin = thinnest_place(mesh, thickness_pairs(mesh), limit);
+  } catch (const InvalidInput&) {  // no two faces across from each other
+    return {};
+  }
+  if (thin.value >= limit) {
+    return {};
+  }
+  return {fmt::format(
+      "too thin to be made: {:.3g} {} at ({:.4g}, {:.4g}, {:.4g}), and {} "
+      "makes nothing thinner than {:.4g} {}; so is {:.3g} % of the surface: "
+      "make the part thicker there (as a constraint: a response of kind "
+      "thickness), or take another process",
+      thin.value, input.units.length, thin.place.x(), thin.place.y(),
+      thin.place.z(), process.name.empty() ? "the process" : process.name,
+      process.smallest_feature, input.units.length, 100.0 * thin.share)};
+}
+
+std::vector<std::string> buckling_warnings(const EigenFigures& figures) {
+  std::vector<std::string> warnings;
+  for (const BucklingFigures& b : figures.buckling) {
+    if (!b.modes.factors.empty() && b.modes.factors.front() < 1.0) {
+      warnings.push_back(fmt::format(
+          "buckling factor below 1: the part of load case '{}' buckles at "
+          "{:.3g} of its loads; a linear analysis does not hold",
+          b.load_case, b.modes.factors.front()));
+    }
+    if (b.modes.failure) {
+      warnings.push_back("no certain buckling factor: " +
+                         b.modes.failure->message);
+    }
+  }
+  if (!figures.remark.empty()) {
+    warnings.push_back(figures.remark);
+  }
+  if (figures.frequencies && figures.frequencies->modes.failure) {
+    warnings.push_back("not all natural frequencies: " +
+                       figures.frequencies->modes.failure->message);
+  }
+  return warnings;
+}
+
+}  // namespace meniscus

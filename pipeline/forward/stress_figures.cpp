@@ -1,0 +1,119 @@
+#include "pipeline/forward/stress_figures.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "pipeline/tables/place_json.h"
+
+namespace meniscus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json uniformity_json(const Uniformity& u) {
+  return {{"mean", u.mean},
+          {"coefficient_of_variation", u.coefficient_of_variation},
+          {"gini", u.gini},
+          {"p05", u.p05},
+          {"p50", u.p50},
+          {"p95", u.p95},
+          {"p95_over_p50", u.p95_over_p50},
+          {"peak", u.peak},
+          {"peak_over_mean", u.peak_over_mean},
+          {"histogram", u.histogram}};
+}
+
+std::optional<StressFigures::Safety> safety_of(
+    const TetMesh& mesh, const std::vector<Material>& materials,
+    const RecoveredStress& stress, const std::vector<char>& excluded) {
+  const SafetyFactors safety =
+      safety_factors(mesh, materials, stress, excluded);
+  if (!std::isfinite(safety.smallest)) {
+    return std::nullopt;
+  }
+  const Material& weakest = materials[static_cast<std::size_t>(safety.region)];
+  return StressFigures::Safety{
+      .factor = safety.smallest,
+      .von_mises = safety.von_mises,
+      .position = mesh.nodes[static_cast<std::size_t>(safety.node)],
+      .material = weakest.name,
+      .yield_strength = *weakest.yield_strength};
+}
+
+std::vector<char> complement(std::vector<char> excluded) {
+  for (char& e : excluded) {
+    e = e == 0 ? 1 : 0;
+  }
+  return excluded;
+}
+
+StressFigures figures_of(const EvaluationFields& fields,
+                         std::size_t load_case) {
+  const TetMesh& mesh = fields.mesh;
+  const auto& materials = fields.inputs.materials;
+  const LoadCase& loads = fields.inputs.load_cases[load_case];
+  const std::vector<char>& excluded = fields.exclusion.element;
+  const PointStress& points = fields.stresses[load_case].points;
+  const RecoveredStress& recovered = fields.stresses[load_case].recovered;
+  StressField nodal = nodal_stress(mesh, recovered);
+  const auto place = [&] {
+    return mesh.nodes[static_cast<std::size_t>(nodal.max_node)];
+  };
+  StressFigures figures{.load_case = loads.name};
+  if (fields.exclusion.all.elements > 0) {
+    const std::vector<char> counted = complement(excluded);
+    find_peak(mesh, counted, nodal);
+    figures.excluded =
+        StressFigures::Excluded{nodal.max_von_mises, place(),
+                                safety_of(mesh, materials, recovered, counted)};
+    find_peak(mesh, excluded, nodal);
+  }
+  figures.max_von_mises = nodal.max_von_mises;
+  figures.position = place();
+  figures.safety = safety_of(mesh, materials, recovered, excluded);
+  figures.uniformity = stress_uniformity(mesh, materials, points, excluded);
+  return figures;
+}
+
+Json safety_json(const StressFigures::Safety& safety) {
+  return {{"smallest", safety.factor},
+          {"von_mises", safety.von_mises},
+          {"position", place_json(safety.position)},
+          {"material", safety.material}};
+}
+
+}  // namespace
+
+std::vector<StressFigures> stress_figures(const EvaluationFields& fields) {
+  std::vector<StressFigures> figures;
+  for (std::size_t k = 0; k < fields.inputs.load_cases.size(); ++k) {
+    figures.push_back(figures_of(fields, k));
+  }
+  return figures;
+}
+
+Json stress_json(const std::vector<StressFigures>& figures) {
+  Json json = Json::object();
+  for (const StressFigures& f : figures) {
+    Json entry = {{"max_von_mises", f.max_von_mises},
+                  {"position", place_json(f.position)}};
+    if (f.safety) {
+      entry["safety_factor"] = safety_json(*f.safety);
+    }
+    if (f.excluded) {
+      entry["excluded"] = {{"max_von_mises", f.excluded->max_von_mises},
+                           {"position", place_json(f.excluded->position)}};
+      if (f.excluded->safety) {
+        entry["excluded"]["safety_factor"] = safety_json(*f.excluded->safety);
+      }
+    }
+    entry["von_mises"] = uniformity_json(f.uniformity.von_mises);
+    entry["energy_density"] = uniformity_json(f.uniformity.energy_density);
+    json[f.load_case] = std::move(entry);
+  }
+  return json;
+}
+
+}  // namespace meniscus

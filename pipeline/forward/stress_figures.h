@@ -1,0 +1,46 @@
+/// What a part's stresses come to, load case by load case.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "fea/stress/safety_factor.h"
+#include "fea/stress/stress_uniformity.h"
+#include "pipeline/forward/forward_model.h"
+
+namespace meniscus {
+
+struct StressFigures {
+  std::string load_case;
+  double max_von_mises = 0.0;    // of nodal stresses that count [pressure]
+  Vec3 position = Vec3::Zero();  // of that [length]
+  /// Where the part is nearest to yield, against each body's own material; none
+  /// where no material has a yield strength.
+  struct Safety {
+    double factor = 0.0;
+    double von_mises = 0.0;        // there [pressure]
+    Vec3 position = Vec3::Zero();  // [length]
+    std::string material;
+    double yield_strength = 0.0;  // its [pressure]
+  };
+  std::optional<Safety> safety;
+  StressUniformity uniformity;  // of the elements that count
+  /// The same peaks of the zones that do not count, so that nothing is hidden.
+  struct Excluded {
+    double max_von_mises = 0.0;
+    Vec3 position = Vec3::Zero();
+    std::optional<Safety> safety;
+  };
+  std::optional<Excluded> excluded;  // where there are zones
+};
+
+/// Of `fields.stresses`; elements of `fields.exclusion` are left out.
+std::vector<StressFigures> stress_figures(const EvaluationFields& fields);
+
+/// result.json's "stress": an entry per load case (docs/results.md).
+nlohmann::ordered_json stress_json(const std::vector<StressFigures>& figures);
+
+}  // namespace meniscus

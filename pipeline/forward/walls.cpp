@@ -1,0 +1,186 @@
+#include "pipeline/forward/walls.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "io/stl.h"
+#include "io/vtk_files.h"
+#include "pipeline/tables/place_json.h"
+
+namespace meniscus {
+
+WallModel wall_model(const EvaluatedCase& numbers, const FilmModel& model,
+                     const Points& points) {
+  return WallModel::freeze(model, numbers.film_system, points, numbers.walls);
+}
+
+std::vector<CaseWall> named_walls(const EvaluatedCase& numbers,
+                                  const WallModel& model) {
+  std::vector<CaseWall> walls;
+  for (const WallSpec& spec : numbers.walls) {
+    if (spec.region == static_cast<int>(walls.size())) {
+      walls.push_back({spec.name, model.walls()[walls.size()], {}});
+    }
+  }
+  return walls;
+}
+
+std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
+                                 const FilmModel& model, const Points& points) {
+  if (numbers.walls.empty()) {
+    return {};
+  }
+  const WallModel made =
+      WallModel::freeze(model, numbers.film_system, points, numbers.walls,
+                        SafePlaces::Everywhere);
+  std::vector<CaseWall> walls = named_walls(numbers, made);
+  for (CaseWall& wall : walls) {
+    for (const WallTrace& trace : wall.wall.trace) {
+      wall.safe.push_back(trace.vertex < 0
+                              ? std::numeric_limits<double>::infinity()
+                              : made.safe()[trace.vertex]);
+    }
+  }
+  return walls;
+}
+
+std::string wall_text(const Case& input, const CaseWall& made) {
+  const ThickWall& wall = made.wall;
+  const std::string& unit = input.units.length;
+  const auto measured = [&](const MeasuredThickness& t) {
+    return fmt::format("{:.4g} {} of {:.4g} asked at ({:.4g}, {:.4g}, {:.4g})",
+                       t.value, unit, t.asked, t.place.x(), t.place.y(),
+                       t.place.z());
+  };
+  return fmt::format(
+      "wall {}: {} facets, volume {:.8g} {}\n"
+      "  thinnest {}\n  thickest {}\n  largest safe thickness {}\n",
+      made.name, wall.surface.facets.size(), wall.volume,
+      input.units.unit_of(Dimension::Volume), measured(wall.thinnest),
+      measured(wall.thickest),
+      wall.safe.limit == WallLimit::None
+          ? std::string("not limited by the film")
+          : fmt::format("{:.4g} {}: {}", wall.safe.value, unit,
+                        wall.safe.message));
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json measured_json(const MeasuredThickness& t) {
+  return {
+      {"value", t.value}, {"asked", t.asked}, {"place", place_json(t.place)}};
+}
+
+Json wall_json(const Case& input, const CaseWall& made) {
+  const ThickWall& wall = made.wall;
+  Json json = {{"schema_version", 1},
+               {"title", input.title},
+               {"length_unit", input.units.length},
+               {"facets", wall.surface.facets.size()},
+               {"volume", wall.volume},
+               {"thinnest", measured_json(wall.thinnest)},
+               {"thickest", measured_json(wall.thickest)},
+               {"safe", nullptr},
+               {"findings", summary(wall.findings)}};
+  if (wall.safe.limit != WallLimit::None) {
+    json["safe"] = {{"value", wall.safe.value},
+                    {"asked", wall.safe.asked},
+                    {"place", place_json(wall.safe.place)},
+                    {"message", wall.safe.message}};
+  }
+  return json;
+}
+
+}  // namespace
+
+void write_wall(const Case& input, const CaseWall& made,
+                const std::filesystem::path& folder) {
+  const std::string name = "wall_" + made.name;
+  MeshFields fields;
+  fields.notes = {{"title", input.title}, {"length_unit", input.units.length}};
+  if (!made.safe.empty()) {
+    // Viewers choke on infinity; nothing is thicker than the part is long.
+    Field safe{.name = "safe_thickness",
+               .unit = input.units.length,
+               .components = 1,
+               .values = made.safe};
+    const double most = bounding_diagonal(made.wall.surface.points);
+    for (double& value : safe.values) {
+      value = std::min(value, most);
+    }
+    fields.points.push_back(std::move(safe));
+  }
+  write_vtp(folder / (name + ".vtp"), made.wall.surface, fields);
+  write_stl(folder / (name + ".stl"), made.wall.surface,
+            {.name = input.title, .unit = input.units.length});
+  write_file(folder / (name + ".json"), wall_json(input, made).dump(1) + "\n");
+}
+
+void refuse_walls(const Case& input) {
+  if (input.walls.empty()) {
+    return;
+  }
+  const WallEntry& first = input.walls.front();
+  for (const BodyEntry& body : input.bodies) {
+    if (body.material != kVoid) {
+      throw InvalidInput(fmt::format(
+          "{}: walls.{} stands beside bodies.{}, which is solid; a run "
+          "analyses walls or bodies: make the body's material \"void\", so "
+          "that it only shapes its films, or take [walls] out",
+          place(input, first.line), first.name, body.name));
+    }
+  }
+  for (const WallEntry& wall : input.walls) {
+    if (wall.material == kVoid) {
+      throw InvalidInput(fmt::format(
+          "{}: walls.{} has no material, which a run needs; add material = "
+          "\"NAME\" ({}), or look at the wall alone with `meniscus evolve`",
+          place(input, wall.line), wall.name,
+          input.materials.empty() ? "and a table [materials.NAME]"
+                                  : "of [materials.NAME]"));
+    }
+  }
+  if (input.load_cases.empty() || input.responses.empty()) {
+    const bool loads = input.load_cases.empty();
+    throw InvalidInput(fmt::format(
+        "{}: the case has no [{}.NAME], which a run needs; add one, or look at "
+        "the walls alone with `meniscus evolve`",
+        input.path, loads ? "load_cases" : "responses"));
+  }
+}
+
+SurfaceMesh boundary_of(const EvaluatedCase& numbers, const FilmModel& model,
+                        const Points& points) {
+  if (numbers.walls.empty()) {
+    return model.boundary(points);
+  }
+  const WallModel walls = wall_model(numbers, model, points);
+  return walls.fine(points, walls.thickness(numbers.walls));
+}
+
+std::optional<Failure> wall_failure(const EvaluatedCase& numbers,
+                                    const WallModel& model) {
+  for (const CaseWall& made : named_walls(numbers, model)) {
+    const ThickWall& wall = made.wall;
+    if (wall.findings.empty()) {
+      continue;
+    }
+    std::string message = fmt::format("walls.{} cannot be meshed: ", made.name);
+    if (wall.safe.limit != WallLimit::None &&
+        wall.safe.asked >= wall.safe.value) {
+      message += wall.safe.message + ". ";
+    }
+    message += summary(wall.findings);
+    return Failure{FailureKind::SurfaceInvalid, std::move(message)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace meniscus

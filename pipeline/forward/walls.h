@@ -1,0 +1,57 @@
+/// The walls of a case on its settled film.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "evolve/frozen/film_model.h"
+#include "evolve/walls/wall_model.h"
+#include "pipeline/case_data/case.h"
+
+namespace meniscus {
+
+struct CaseWall {
+  std::string name;
+  ThickWall wall;
+  std::vector<double> safe;  // largest safe thickness [length], per point;
+                             // empty where nobody asked
+};
+
+/// The walls of a case that has some, on the film `points` of a state of
+/// `model`. Throws InvalidInput and MeshError as WallModel.
+WallModel wall_model(const EvaluatedCase& numbers, const FilmModel& model,
+                     const Points& points);
+
+/// Those of a model, one for each set of walls that meet, named after its
+/// first.
+std::vector<CaseWall> named_walls(const EvaluatedCase& numbers,
+                                  const WallModel& model);
+
+/// Both in one; none for a case without walls.
+std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
+                                 const FilmModel& model, const Points& points);
+
+/// The closed surface of the part on the film `points` of a state of `model`:
+/// walls made anew there, or what bounds its bodies.
+SurfaceMesh boundary_of(const EvaluatedCase& numbers, const FilmModel& model,
+                        const Points& points);
+
+/// Why the walls cannot be meshed, with place and largest safe thickness.
+std::optional<Failure> wall_failure(const EvaluatedCase& numbers,
+                                    const WallModel& model);
+
+/// The wall for people: thickness, volume, the largest safe thickness.
+std::string wall_text(const Case& input, const CaseWall& wall);
+
+/// wall_NAME.vtp, wall_NAME.stl and wall_NAME.json in `folder`. Throws IoError.
+void write_wall(const Case& input, const CaseWall& wall,
+                const std::filesystem::path& folder);
+
+/// Throws InvalidInput, with line and advice, for walls that cannot be
+/// analysed: beside solid bodies, or without material, loads or responses.
+void refuse_walls(const Case& input);
+
+}  // namespace meniscus

@@ -1,0 +1,90 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "pipeline/case_data/case_checks.h"
+#include "pipeline/reader/case_reader_tables.h"
+
+namespace meniscus {
+
+namespace {
+
+/// More modes at once would take more memory than the part's own solve.
+constexpr int kMostModes = 50;
+
+/// After the eigenvalues that are asked for.
+void read_solver(CaseContext& context, const CaseTable& table,
+                 AnalysisEntry& analysis) {
+  static const std::map<std::string, SolverKind> kinds = {
+      {"auto", SolverKind::Automatic},
+      {"cholmod", SolverKind::Cholesky},
+      {"p-multigrid", SolverKind::Multigrid},
+      {"petsc", SolverKind::Distributed}};
+  if (const auto kind = table.choice("solver")) {
+    analysis.solver = kinds.at(*kind);
+  }
+  if (analysis.solver != SolverKind::Distributed) {
+    if (table.has("processes")) {
+      context.problems.add(table.line("processes"),
+                           "analysis.processes belongs to solver = \"petsc\"; "
+                           "take it out, or choose that solver");
+    }
+    return;
+  }
+  analysis.processes = table.integer_within("processes", 1, kMostProcesses)
+                           .value_or(analysis.processes);
+  for (const auto& [key, asked] :
+       {std::pair("frequencies", analysis.frequencies > 0),
+        std::pair("buckling", analysis.buckling.value_or(0) > 0)}) {
+    if (asked) {
+      context.problems.add(
+          table.line(key),
+          fmt::format("analysis.{} needs the matrix in one process, and solver "
+                      "= \"petsc\" spreads it; choose another solver or take "
+                      "it out",
+                      key));
+    }
+  }
+}
+
+void read_analysis_table(CaseContext& context, const toml::table& root,
+                         Case& result) {
+  const auto table = single_table(context, root, "analysis");
+  if (!table) {
+    return;
+  }
+  AnalysisEntry& analysis = result.analysis;
+  analysis.adapt = table->flag("adapt").value_or(false);
+  read_zones(context, *table, result);
+  analysis.frequencies =
+      table->integer_within("frequencies", 0, kMostModes).value_or(0);
+  analysis.buckling = table->integer_within("buckling", 0, kMostModes);
+  read_solver(context, *table, analysis);
+  const auto is_free = [](const LoadCaseEntry& entry) {
+    return entry.name == "free";
+  };
+  if (table->text("supports_of") == "free" &&
+      std::none_of(result.load_cases.begin(), result.load_cases.end(),
+                   is_free)) {
+    analysis.supports_of = AnalysisEntry::kFree;
+  } else {
+    analysis.supports_of =
+        index_of_load_case(context, *table, result, "supports_of");
+  }
+  if (result.load_cases.empty() && context.problems.empty()) {
+    context.problems.add(table->line(),
+                         "analysis needs a load case: its supports and loads");
+  }
+}
+
+}  // namespace
+
+void read_analysis(CaseContext& context, const toml::table& root,
+                   Case& result) {
+  read_load_cases(context, root, result);
+  read_analysis_table(context, root, result);
+  read_responses(context, root, result);
+  read_study(context, root, result);
+}
+
+}  // namespace meniscus

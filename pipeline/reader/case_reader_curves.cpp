@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "pipeline/reader/case_reader_tables.h"
+
+namespace meniscus {
+
+namespace {
+
+const std::map<std::string, KindKeys>& curve_kinds() {
+  static const std::map<std::string, KindKeys> kinds = {
+      {"circle", {{"center", "normal", "radius"}, {}}},
+      {"ellipse", {{"center", "normal", "axis", "radius_1", "radius_2"}, {}}},
+      {"rectangle",
+       {{"center", "normal", "axis", "width", "height"}, {"corner_radius"}}},
+      {"polygon", {{"points"}, {}}},
+      {"spline", {{"points"}, {}}},
+      {"polyline", {{"points"}, {}}},
+      {"file", {{"file"}, {"as", "edge", "face"}}},
+      {"copy",
+       {{"of"},
+        {"offset", "scale", "scales", "mirror", "rotate", "axis", "about",
+         "move"}}}};
+  return kinds;
+}
+
+CurveKind curve_kind_of(const std::string& kind) {
+  static const std::map<std::string, CurveKind> kinds = {
+      {"circle", CurveKind::Circle},
+      {"ellipse", CurveKind::Ellipse},
+      {"rectangle", CurveKind::Rectangle},
+      {"polygon", CurveKind::Polygon},
+      {"spline", CurveKind::Spline},
+      {"polyline", CurveKind::Polyline},
+      {"copy", CurveKind::Copy}};
+  return kind == "file" ? CurveKind::Spline : kinds.at(kind);
+}
+
+Quantity fixed(const CaseTable& table, const char* key, double value) {
+  return {.expression = Expression(value),
+          .line = table.line(key),
+          .key = fmt::format("{}.{}", table.path(), key)};
+}
+
+/// What arcs go through stands between two corners.
+void check_path(CaseContext& context, const CaseTable& table,
+                const CurveEntry& curve) {
+  for (std::size_t k = 0; k < curve.points.size(); ++k) {
+    if (!curve.points[k].through) {
+      continue;
+    }
+    const SourceLine line = curve.points[k].at[0].line;
+    if (curve.kind != CurveKind::Polyline) {
+      context.problems.add(
+          line, fmt::format("{}.points[{}] has 'through', which only a "
+                            "polyline knows; expected [x, y, z]",
+                            table.path(), k));
+    } else if (k == 0 || curve.points[k - 1].through) {
+      context.problems.add(
+          line,
+          fmt::format("{}.points[{}]: an arc goes from the corner before it to "
+                      "the one after it; put {} before it",
+                      table.path(), k, k == 0 ? "a corner" : "another corner"));
+    }
+  }
+}
+
+/// The curve above that a copy is of; -1 with a problem noted.
+int find_curve(CaseContext& context, const CaseTable& table,
+               const toml::table& root, const Case& result) {
+  const auto wanted = table.text("of");
+  if (!wanted) {
+    return -1;
+  }
+  std::vector<std::string> known;
+  for (const CurveEntry& curve : result.curves) {
+    if (curve.name == *wanted) {
+      return static_cast<int>(known.size());
+    }
+    known.push_back(curve.name);
+  }
+  if (*wanted == table.name()) {
+    context.problems.add(table.line("of"),
+                         fmt::format("{} is a copy of itself", table.path()));
+  } else if (root["curves"][*wanted].is_table()) {
+    context.problems.add(table.line("of"),
+                         fmt::format("{}.of: [curves.{}] stands below; move it "
+                                     "above its copy",
+                                     table.path(), *wanted));
+  } else {
+    context.problems.unknown(table.line("of"), "curve", *wanted, known);
+  }
+  return -1;
+}
+
+void read_copy(CaseContext& context, const CaseTable& table,
+               const toml::table& root, const Case& result, CurveEntry& curve) {
+  CopyEntry& copy = curve.copy;
+  copy.of = find_curve(context, table, root, result);
+  copy.offset = table.quantity("offset");
+  if (copy.offset && copy.of >= 0 &&
+      result.curves[static_cast<std::size_t>(copy.of)].kind ==
+          CurveKind::Copy) {
+    context.problems.add(
+        table.line("offset"),
+        fmt::format("{}.offset: '{}' is a copy itself, and copies have no "
+                    "offset; give its offset to '{}', or copy the first curve",
+                    table.path(),
+                    result.curves[static_cast<std::size_t>(copy.of)].name,
+                    result.curves[static_cast<std::size_t>(copy.of)].name));
+  }
+  const Quantity uniform =
+      table.quantity("scale").value_or(fixed(table, "scale", 1.0));
+  copy.scale = table.vector("scales").value_or(
+      QuantityVector{uniform, uniform, uniform});
+  if (table.has("scale") && table.has("scales")) {
+    context.problems.add(table.line("scales"),
+                         table.path() + " has both scale and scales; keep one");
+  }
+  copy.mirror = table.vector("mirror");
+  copy.angle = table.quantity("rotate").value_or(fixed(table, "rotate", 0.0));
+  curve.axis = table.vector("axis").value_or(
+      QuantityVector{fixed(table, "axis", 0.0), fixed(table, "axis", 0.0),
+                     fixed(table, "axis", 1.0)});
+  if (table.has("rotate") != table.has("axis")) {
+    context.problems.add(
+        table.line(table.has("axis") ? "axis" : "rotate"),
+        fmt::format("{} has {}; add it, it is turned right-handed about axis "
+                    "by the angle rotate",
+                    table.path(),
+                    table.has("axis") ? "an axis and no rotate"
+                                      : "rotate and no axis"));
+  }
+  copy.about = table.vector_or_zero("about");
+  copy.move = table.vector_or_zero("move");
+}
+
+CurveEntry read_curve(CaseContext& context, const CaseTable& table,
+                      const toml::table& root, Case& result) {
+  CurveEntry curve{.name = table.name(), .line = table.line()};
+  const auto kind = table.choice("kind");
+  if (!kind) {
+    return curve;
+  }
+  table.check_kind(*kind, curve_kinds().at(*kind));
+  curve.kind = curve_kind_of(*kind);
+  if (*kind == "copy") {
+    read_copy(context, table, root, result, curve);
+    return curve;
+  }
+  if (*kind == "file") {
+    read_curve_file(context, table, result, curve);
+    return curve;
+  }
+  curve.center = table.vector_or_zero("center");
+  curve.normal = table.vector_or_zero("normal");
+  curve.axis = table.vector_or_zero("axis");
+  curve.radius = table.quantity_or_zero("radius");
+  curve.radius_1 = table.quantity_or_zero("radius_1");
+  curve.radius_2 = table.quantity_or_zero("radius_2");
+  curve.width = table.quantity_or_zero("width");
+  curve.height = table.quantity_or_zero("height");
+  curve.corner_radius = table.quantity_or_zero("corner_radius");
+  curve.points = table.path_points("points");
+  check_path(context, table, curve);
+  return curve;
+}
+
+}  // namespace
+
+void read_curves(CaseContext& context, const toml::table& root, Case& result) {
+  for (const CaseTable& table : named_tables(context, root, "curves")) {
+    result.curves.push_back(read_curve(context, table, root, result));
+  }
+}
+
+}  // namespace meniscus

@@ -1,0 +1,143 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "pipeline/case_data/bound_text.h"
+#include "pipeline/reader/case_reader_repeat.h"
+
+namespace meniscus {
+
+namespace {
+
+const char* const kQuantity =
+    "a number, an expression in quotes or a value with a unit";
+
+/// `names`: those of the context, and more after them.
+std::optional<Quantity> read_expression(CaseContext& context,
+                                        const toml::node& node,
+                                        std::optional<Dimension> dimension,
+                                        const std::string& key,
+                                        const std::vector<std::string>& names) {
+  Quantity result{.line = context.line_of(node), .key = key};
+  const auto* text = node.as_string();
+  if (text == nullptr) {
+    const auto value = node.value<double>();
+    if (node.is_number() && value && std::isfinite(*value)) {
+      result.expression = Expression(*value);
+      return result;
+    }
+    context.problems.add(result.line, fmt::format("{} is {}; expected {}", key,
+                                                  described(node), kQuantity));
+    return std::nullopt;
+  }
+  static const std::vector<std::string> letters = {"i", "j", "k"};
+  std::string bound = text->get();
+  if (!context.indices.empty()) {
+    bound = with_values(
+        filled(context, bound, context.indices, result.line, key),
+        {letters.begin(), letters.begin() + std::ssize(context.indices)},
+        std::vector<double>(context.indices.begin(), context.indices.end()));
+  }
+  try {
+    result.expression =
+        looks_like_quantity(bound)
+            ? Expression(parse_quantity(bound, dimension, context.units))
+            : Expression::parse(bound, names);
+    for (const int name : result.expression.names_used()) {
+      if (static_cast<std::size_t>(name) < context.used.size()) {
+        context.used[static_cast<std::size_t>(name)] = 1;
+      }
+    }
+    return result;
+  } catch (const ExpressionError& error) {
+    context.problems.add(
+        result.line, fmt::format("{}: {} at character {}", key, error.what(),
+                                 error.column()));
+  } catch (const InvalidInput& error) {
+    context.problems.add(result.line, fmt::format("{}: {}", key, error.what()));
+  }
+  return std::nullopt;
+}
+
+/// The first name that a design variable moves or that has no value; empty
+/// when there is none.
+std::string moving_name(const CaseContext& context, const Quantity& quantity) {
+  for (const int name : quantity.expression.names_used()) {
+    const auto k = static_cast<std::size_t>(name);
+    if (k < context.names.size() &&
+        (k >= context.constants.size() || !context.constants[k])) {
+      return context.names[k];
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::optional<Quantity> read_quantity(CaseContext& context,
+                                      const toml::node& node,
+                                      std::optional<Dimension> dimension,
+                                      const std::string& key) {
+  return read_expression(context, node, dimension, key, context.names);
+}
+
+std::optional<PlaceQuantity> read_place_quantity(
+    CaseContext& context, const toml::node& node,
+    std::optional<Dimension> dimension, const std::string& key) {
+  std::vector<std::string> names = context.names;
+  names.insert(names.end(), {"x", "y", "z"});
+  auto quantity = read_expression(context, node, dimension, key, names);
+  if (!quantity) {
+    return std::nullopt;
+  }
+  const std::vector<int> used = quantity->expression.names_used();
+  const bool of_place =
+      !used.empty() && used.back() >= static_cast<int>(context.names.size());
+  return PlaceQuantity{*std::move(quantity), of_place};
+}
+
+void require_frozen(CaseContext& context, const Quantity& quantity,
+                    const char* what) {
+  if (const std::string name = moving_name(context, quantity); !name.empty()) {
+    context.problems.add(
+        quantity.line,
+        fmt::format("{} depends on '{}', which a design variable moves or "
+                    "which has no value; {} is part of the frozen model and "
+                    "must be the same for every design: take '{}' out of it",
+                    quantity.key, name, what, name));
+  }
+}
+
+std::optional<double> read_constant(CaseContext& context,
+                                    const toml::node& node,
+                                    std::optional<Dimension> dimension,
+                                    const std::string& key) {
+  const auto quantity = read_quantity(context, node, dimension, key);
+  if (!quantity) {
+    return std::nullopt;
+  }
+  if (const std::string name = moving_name(context, *quantity); !name.empty()) {
+    context.problems.add(
+        quantity->line,
+        fmt::format("{} depends on '{}', which a design variable moves or "
+                    "which has no value; expected a number that is the same "
+                    "for every design",
+                    key, name));
+    return std::nullopt;
+  }
+  std::vector<double> values(context.names.size(), 0.0);
+  for (const int name : quantity->expression.names_used()) {
+    const auto k = static_cast<std::size_t>(name);
+    values[k] = *context.constants[k];
+  }
+  try {
+    return quantity->expression.evaluate(values);
+  } catch (const ExpressionError& error) {
+    context.problems.add(quantity->line,
+                         fmt::format("{}: {}", key, error.what()));
+    return std::nullopt;
+  }
+}
+
+}  // namespace meniscus

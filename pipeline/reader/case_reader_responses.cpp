@@ -1,0 +1,327 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/atomic_file.h"
+#include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/content_hash.h"
+#include "pipeline/case_data/scan_path.h"
+#include "pipeline/reader/case_reader_tables.h"
+
+namespace meniscus {
+
+namespace {
+
+struct ResponseKeys {
+  ResponseKind kind;
+  KindKeys keys;
+};
+
+const std::map<std::string, ResponseKeys>& response_kinds() {
+  using Kind = ResponseKind;
+  static const std::map<std::string, ResponseKeys> kinds = {
+      {"mean_displacement",
+       {Kind::MeanDisplacement,
+        {{"on", "direction"}, {"load_case", "weight"}}}},
+      {"displacement_norm",
+       {Kind::DisplacementNorm, {{"on", "direction"}, {"load_case", "power"}}}},
+      {"rotation", {Kind::Rotation, {{"on", "axis"}, {"load_case"}}}},
+      {"compliance", {Kind::Compliance, {{}, {"load_case"}}}},
+      {"strain_energy", {Kind::StrainEnergy, {{}, {"load_case"}}}},
+      {"mass", {Kind::Mass, {}}},
+      {"volume", {Kind::Volume, {}}},
+      {"centre_of_mass", {Kind::CentreOfMass, {{"direction"}, {}}}},
+      {"max_von_mises", {Kind::MaxVonMises, {{}, {"load_case"}}}},
+      {"von_mises_norm", {Kind::VonMisesNorm, {{}, {"load_case", "power"}}}},
+      {"von_mises_ks",
+       {Kind::VonMisesKs, {{}, {"load_case", "sharpness", "scale"}}}},
+      {"uniformity", {Kind::Uniformity, {{}, {"load_case"}}}},
+      {"energy_uniformity", {Kind::EnergyUniformity, {{}, {"load_case"}}}},
+      {"film_area", {Kind::FilmArea, {{}, {"film"}}}},
+      {"film_energy", {Kind::FilmEnergy, {}}},
+      {"pressure", {Kind::Pressure, {{"body"}, {}}}},
+      {"collapse_margin", {Kind::CollapseMargin, {}}},
+      {"radius", {Kind::Radius, {{}, {"power"}}}},
+      {"thickness", {Kind::Thickness, {{}, {"smoothing"}}}},
+      {"distance",
+       {Kind::Distance, {{}, {"keep_out", "keep_in", "smoothing"}}}},
+      {"gap", {Kind::Gap, {{"films"}, {"smoothing"}}}},
+      {"scan_distance", {Kind::ScanDistance, {{"scan"}, {"films", "measure"}}}},
+      {"expression", {Kind::Expression, {{"value"}, {}}}}};
+  return kinds;
+}
+
+/// A constant above `above`; `standard` without the key or when it is wrong.
+double constant_above(CaseContext& context, const CaseTable& table,
+                      const char* key, double above, double standard) {
+  const double value = table.constant(key).value_or(standard);
+  if (value > above) {
+    return value;
+  }
+  context.problems.add(table.line(key),
+                       fmt::format("{}.{} is {:g}; it must be above {:g}",
+                                   table.path(), key, value, above));
+  return standard;
+}
+
+/// The index of the name that `key` gives among `known`; 0, and a note, for a
+/// name that is not there.
+int index_among(CaseContext& context, const CaseTable& table, const char* key,
+                const std::vector<std::string>& known) {
+  const auto name = table.text(key);
+  const auto at = std::find(known.begin(), known.end(), name.value_or(""));
+  if (name && at == known.end()) {
+    context.problems.unknown(table.line(key), key, *name, known);
+  }
+  return at == known.end() ? 0 : static_cast<int>(at - known.begin());
+}
+
+/// A radius is a mean of even powers; a norm of displacements has second
+/// derivatives from 2 on.
+double read_power(CaseContext& context, const CaseTable& table,
+                  const ResponseEntry& response) {
+  constexpr double kUsualOfRadius = 16.0;
+  constexpr double kMostOfRadius = 64.0;
+  const bool of_radius = response.kind == ResponseKind::Radius;
+  const double usual = of_radius ? kUsualOfRadius : response.power;
+  const double power = table.constant("power").value_or(usual);
+  bool good = power > 1.0;
+  std::string must_be = "above 1";
+  if (of_radius) {
+    good =
+        power >= 2.0 && power <= kMostOfRadius && std::fmod(power, 2.0) == 0.0;
+    must_be = fmt::format("even, from 2 to {:g}", kMostOfRadius);
+  } else if (response.kind == ResponseKind::DisplacementNorm) {
+    good = power >= 2.0;
+    must_be = "2 or above";
+  }
+  if (!good) {
+    context.problems.add(
+        table.line("power"),
+        fmt::format("{}.power is {:g}; it must be {}; {:g} when left out",
+                    table.path(), power, must_be, usual));
+    return usual;
+  }
+  return power;
+}
+
+bool any_yields(const Case& result) {
+  const std::vector<BodyEntry> bodies = solid_bodies(result);
+  return std::any_of(bodies.begin(), bodies.end(), [&](const BodyEntry& body) {
+    const auto material = static_cast<std::size_t>(body.material);
+    return material < result.materials.size() &&
+           result.materials[material].yield_strength;
+  });
+}
+
+/// What stress norms are measured in; the least yield strength when left out.
+std::optional<double> stress_scale(CaseContext& context, const CaseTable& table,
+                                   const ResponseEntry& response,
+                                   const Case& result) {
+  if (table.has("scale")) {
+    return constant_above(context, table, "scale", 0.0, 1.0);
+  }
+  if (response.kind == ResponseKind::VonMisesKs && context.bodies_good &&
+      !any_yields(result)) {
+    context.problems.add(
+        table.line(),
+        fmt::format("{} has no 'scale', and no body's material a "
+                    "yield_strength to take in its place; add scale = STRESS "
+                    "here, or yield_strength to the material",
+                    table.path()));
+  }
+  return std::nullopt;
+}
+
+/// Over the case's names and the responses above this one.
+Quantity read_value(CaseContext& context, const CaseTable& table,
+                    const Case& result) {
+  const std::size_t own = context.names.size();
+  for (const ResponseEntry& response : result.responses) {
+    const bool taken = std::find(context.names.begin(), context.names.end(),
+                                 response.name) != context.names.end();
+    // A name of the case hides a response of that name.
+    context.names.push_back(taken ? "" : response.name);
+  }
+  Quantity value = table.quantity_or_zero("value");
+  context.names.resize(own);
+  return value;
+}
+
+/// The region of a distance, and how smooth extremes over places are.
+void read_place(CaseContext& context, const CaseTable& table,
+                ResponseEntry& response) {
+  if (table.has("smoothing")) {
+    response.smoothing = constant_above(context, table, "smoothing", 0.0, 1.0);
+  }
+  if (response.kind != ResponseKind::Distance) {
+    return;
+  }
+  if (table.has("keep_out") == table.has("keep_in")) {
+    context.problems.add(
+        table.line(),
+        fmt::format("{} has {} of keep_out and keep_in; expected one, an "
+                    "expression of x, y, z that is above 0 in the region",
+                    table.path(), table.has("keep_in") ? "both" : "none"));
+    return;
+  }
+  response.side =
+      table.has("keep_in") ? RegionSide::KeepIn : RegionSide::KeepOut;
+  response.region =
+      table.place_quantity(table.has("keep_in") ? "keep_in" : "keep_out");
+}
+
+/// Bytes of a scan belong to the case, by their fingerprint: scans are large.
+void keep_scan(CaseContext& context, const CaseTable& table,
+               const std::string& scan, Case& result) {
+  const auto known =
+      std::any_of(result.files.begin(), result.files.end(),
+                  [&](const CaseFile& file) { return file.path == scan; });
+  if (known) {
+    return;
+  }
+  const std::filesystem::path path = scan_path(result, scan);
+  const std::string ending = path.extension().string();
+  if (ending != ".stl" && ending != ".obj" && ending != ".STL") {
+    context.problems.add(
+        table.line("scan"),
+        fmt::format("{}.scan is '{}'; expected a file that ends in .stl or "
+                    ".obj",
+                    table.path(), scan));
+  } else if (!std::filesystem::is_regular_file(path)) {
+    context.problems.add(
+        table.line("scan"),
+        fmt::format("{}.scan: there is no file '{}'; expected an STL or OBJ "
+                    "file, its path relative to the case",
+                    table.path(), path.string()));
+  } else {
+    try {
+      result.files.push_back({scan, content_hash(read_file(path))});
+    } catch (const IoError& error) {
+      context.problems.add(table.line("scan"), error.what());
+    }
+  }
+}
+
+/// Films of a gap, or of a distance to a scan.
+void read_response_films(CaseContext& context, const CaseTable& table,
+                         const Case& result, ResponseEntry& response) {
+  const std::vector<std::string> known = film_names(result);
+  response.films = table.names("films");
+  for (const std::string& film : response.films) {
+    if (std::find(known.begin(), known.end(), film) == known.end()) {
+      context.problems.unknown(table.line("films"), "film", film, known);
+    }
+  }
+  if (response.kind == ResponseKind::Gap && table.has("films") &&
+      (response.films.size() != 2 || response.films[0] == response.films[1])) {
+    context.problems.add(
+        table.line("films"),
+        fmt::format("{}.films has [{}]; a gap is between two films",
+                    table.path(), fmt::join(response.films, ", ")));
+  }
+  if (response.kind == ResponseKind::ScanDistance && response.films.empty()) {
+    response.films = known;
+  }
+}
+
+ScanMeasure measure_of(const CaseTable& table) {
+  static const std::map<std::string, ScanMeasure> measures = {
+      {"rms", ScanMeasure::Rms},
+      {"mean", ScanMeasure::Mean},
+      {"p95", ScanMeasure::P95},
+      {"largest", ScanMeasure::Largest}};
+  return measures.at(table.choice("measure").value_or("rms"));
+}
+
+/// What only liquid has; parts of plane faces may have none.
+void require_films(CaseContext& context, const CaseTable& table,
+                   const std::string& kind, const Case& result) {
+  static const std::set<std::string> of_films = {
+      "film_area", "film_energy",     "pressure",     "radius",
+      "gap",       "collapse_margin", "scan_distance"};
+  if (result.films.empty() && of_films.contains(kind)) {
+    context.problems.add(
+        table.line("kind"),
+        fmt::format("{} is a {}, and the case has no films; take it out, or "
+                    "add [films.NAME]",
+                    table.path(), kind));
+  }
+}
+
+ResponseEntry read_response(CaseContext& context, const CaseTable& table,
+                            const std::string& kind, const Case& result) {
+  ResponseEntry response;
+  response.name = table.name();
+  response.line = table.line();
+  response.kind = response_kinds().at(kind).kind;
+  table.check_kind(kind, response_kinds().at(kind).keys);
+  require_films(context, table, kind, result);
+  response.surface = surface_on(context, table, result);
+  response.direction = table.vector_or_zero(
+      response.kind == ResponseKind::Rotation ? "axis" : "direction");
+  const std::vector<std::string>& optional =
+      response_kinds().at(kind).keys.optional;
+  if (std::find(optional.begin(), optional.end(), "load_case") !=
+      optional.end()) {
+    response.load_case = index_of_load_case(context, table, result);
+  }
+  response.weight = table.place_quantity("weight");
+  response.power = read_power(context, table, response);
+  response.sharpness =
+      constant_above(context, table, "sharpness", 0.0, response.sharpness);
+  response.scale = stress_scale(context, table, response, result);
+  read_place(context, table, response);
+  if (const auto film = table.text("film")) {
+    response.film = *film;
+    index_among(context, table, "film", film_names(result));
+  }
+  read_response_films(context, table, result, response);
+  response.measure = measure_of(table);
+  response.scan = table.text("scan").value_or("");
+  response.body = index_among(context, table, "body", body_names(result));
+  if (response.kind == ResponseKind::Expression) {
+    response.value = read_value(context, table, result);
+  }
+  return response;
+}
+
+}  // namespace
+
+/// The load case that `key` names; the first when left out or wrong.
+int index_of_load_case(CaseContext& context, const CaseTable& table,
+                       const Case& result, const char* key) {
+  const auto wanted = table.text(key);
+  if (!wanted) {
+    return 0;
+  }
+  std::vector<std::string> known;
+  for (const LoadCaseEntry& entry : result.load_cases) {
+    if (entry.name == *wanted) {
+      return static_cast<int>(known.size());
+    }
+    known.push_back(entry.name);
+  }
+  context.problems.unknown(table.line(key), "load case", *wanted, known);
+  return 0;
+}
+
+void read_responses(CaseContext& context, const toml::table& root,
+                    Case& result) {
+  for (const CaseTable& table : named_tables(context, root, "responses")) {
+    if (const auto kind = table.choice("kind")) {
+      result.responses.push_back(read_response(context, table, *kind, result));
+      if (const std::string& scan = result.responses.back().scan;
+          !scan.empty()) {
+        keep_scan(context, table, scan, result);
+      }
+    }
+  }
+}
+
+}  // namespace meniscus

@@ -1,0 +1,325 @@
+#include "pipeline/reader/case_reader_study.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "optimize/minimize.h"
+#include "pipeline/case_data/response_entries.h"
+#include "pipeline/case_data/studied_responses.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kCoarsest = 8.0;  // edges of a coarser model over the case's
+
+/// The dimension of a response; notes an unknown name.
+std::optional<Dimension> response_dimension(CaseContext& context,
+                                            const Case& result,
+                                            const std::string& name,
+                                            SourceLine line) {
+  for (const ResponseEntry& response : result.responses) {
+    if (response.name == name) {
+      return dimension_of(response.kind);
+    }
+  }
+  context.problems.unknown(line, "response", name, response_names(result));
+  return std::nullopt;
+}
+
+void read_equal(CaseContext& context, const CaseTable& table, Case& result) {
+  StudyEntry& study = result.study;
+  study.equal = table.names("equal");
+  const SourceLine line = table.line("equal");
+  std::set<std::string> seen;
+  std::set<Dimension> dimensions;
+  for (const std::string& name : study.equal) {
+    if (const auto dimension =
+            response_dimension(context, result, name, line)) {
+      dimensions.insert(*dimension);
+    }
+    if (!seen.insert(name).second) {
+      context.problems.add(
+          line,
+          fmt::format("study.equal names '{}' twice; name each once", name));
+    }
+  }
+  if (dimensions.size() > 1) {
+    context.problems.add(line,
+                         "study.equal names responses of different dimensions; "
+                         "only like can be made equal");
+  }
+  if (study.equal.size() == 1) {
+    context.problems.add(
+        line, "study.equal names one response; two or more can be made equal");
+  }
+}
+
+void read_targets(CaseContext& context, const CaseTable& table, Case& result) {
+  const toml::node* node = table.node("targets");
+  if (node == nullptr) {
+    return;
+  }
+  const toml::table* targets = node->as_table();
+  if (targets == nullptr || targets->empty()) {
+    context.problems.add(
+        context.line_of(*node),
+        fmt::format("study.targets is {}; expected {{ response = value }}",
+                    targets == nullptr ? described(*node) : "empty"));
+    return;
+  }
+  for (const auto& [key, value] : *targets) {
+    const std::string name(key.str());
+    if (const auto dimension =
+            response_dimension(context, result, name, context.line_of(value))) {
+      result.study.targets.emplace_back(
+          name,
+          read_constant(context, value, dimension, "study.targets." + name)
+              .value_or(0.0));
+    }
+  }
+}
+
+/// The distance to a scan that a match makes small, and how small is enough.
+void read_fit(CaseContext& context, const CaseTable& table, Case& result) {
+  const auto name = table.text("fit");
+  if (!name) {
+    return;
+  }
+  const SourceLine line = table.line("fit");
+  result.study.fit = find_response(context, result, *name, line);
+  if (!result.study.fit) {
+    return;
+  }
+  const ResponseEntry& response =
+      result.responses[static_cast<std::size_t>(*result.study.fit)];
+  if (response.kind != ResponseKind::ScanDistance ||
+      response.measure != ScanMeasure::Rms) {
+    context.problems.add(
+        line, fmt::format("study.fit names '{}'; expected a response of kind = "
+                          "\"scan_distance\" and measure = \"rms\"",
+                          *name));
+  }
+  if (result.study.method != "ceres") {
+    context.problems.add(
+        table.line("method"),
+        fmt::format("study.fit is a match of many distances by method ceres; "
+                    "found \"{}\"",
+                    result.study.method));
+  }
+  if (!table.has("tolerance")) {
+    result.study.tolerance = 0.0;
+  }
+}
+
+StudyKind study_kind_of(const std::string& name) {
+  static const std::map<std::string, StudyKind> kinds = {
+      {"match", StudyKind::Match},
+      {"minimize", StudyKind::Minimize},
+      {"sweep", StudyKind::Sweep},
+      {"tolerance", StudyKind::Tolerance},
+      {"pareto", StudyKind::Pareto}};
+  const auto at = kinds.find(name);
+  return at == kinds.end() ? StudyKind::Analyse : at->second;
+}
+
+/// A study that moves something needs something to move.
+void check_variables(CaseContext& context, const CaseTable& table,
+                     const std::string& kind, const Case& result) {
+  if (result.design.empty()) {
+    context.problems.add(
+        table.line(),
+        fmt::format("study.kind {} needs a design variable to move: add "
+                    "[design.NAME] with initial and bounds",
+                    kind));
+  }
+}
+
+}  // namespace
+
+std::optional<int> find_response(CaseContext& context, const Case& result,
+                                 const std::string& name, SourceLine line) {
+  if (!response_dimension(context, result, name, line)) {
+    return std::nullopt;
+  }
+  return response_index(result, name);
+}
+
+namespace {
+
+/// Index of the response that `key` names; 0 for none, which is noted.
+int index_of_response(CaseContext& context, const CaseTable& table,
+                      const char* key, const Case& result) {
+  const auto name = table.text(key);
+  if (!name || !response_dimension(context, result, *name, table.line(key))) {
+    return 0;
+  }
+  return response_index(result, *name);
+}
+
+std::optional<double> bound_of(CaseContext& context, const CaseTable& table,
+                               const char* key, const Case& result,
+                               int response) {
+  const toml::node* node = table.node(key);
+  if (node == nullptr) {
+    return std::nullopt;
+  }
+  const ResponseKind kind = result.responses[response].kind;
+  return read_constant(context, *node,
+                       kind == ResponseKind::Expression
+                           ? std::nullopt
+                           : std::optional<Dimension>(dimension_of(kind)),
+                       table.path() + "." + key);
+}
+
+void read_constraints(CaseContext& context, const CaseTable& table,
+                      Case& result) {
+  for (const CaseTable& entry : table.tables("constraints", "constraint")) {
+    if (!entry.has("response") || result.responses.empty()) {
+      continue;
+    }
+    ConstraintEntry constraint{
+        .response = index_of_response(context, entry, "response", result),
+        .line = entry.line()};
+    if (!entry.has("min") && !entry.has("max")) {
+      context.problems.add(
+          entry.line(),
+          fmt::format("{} bounds nothing; add min or max", entry.path()));
+    }
+    constraint.lower =
+        bound_of(context, entry, "min", result, constraint.response)
+            .value_or(constraint.lower);
+    constraint.upper =
+        bound_of(context, entry, "max", result, constraint.response)
+            .value_or(constraint.upper);
+    if (constraint.lower > constraint.upper) {
+      context.problems.add(
+          entry.line(),
+          fmt::format("{}: min is {:g} and max {:g}; nothing lies between",
+                      entry.path(), constraint.lower, constraint.upper));
+    }
+    result.study.constraints.push_back(constraint);
+  }
+}
+
+/// What a gradient method asks of responses that have no derivatives.
+void check_derivatives(CaseContext& context, const CaseTable& table,
+                       const Case& result) {
+  if (!asks_for_gradients(result.study)) {
+    return;
+  }
+  for (const int response : studied_responses(result)) {
+    if (!has_derivatives(result, response)) {
+      context.problems.add(
+          table.line(),
+          fmt::format("response '{}' has no derivatives, and method {} needs "
+                      "them: use von_mises_norm or von_mises_ks for a peak, "
+                      "or method = \"cobyla\"",
+                      result.responses[response].name, result.study.method));
+    }
+  }
+}
+
+void read_objective(CaseContext& context, const CaseTable& table,
+                    Case& result) {
+  if (result.responses.empty() || !context.problems.empty()) {
+    return;
+  }
+  if (table.has("objective")) {
+    result.study.objective =
+        index_of_response(context, table, "objective", result);
+  } else if (table.has("constraints") && !result.study.objective) {
+    context.problems.add(table.line("constraints"),
+                         "study.constraints say which designs count, and "
+                         "study.objective which is the best of them; add it");
+  }
+  read_constraints(context, table, result);
+  check_derivatives(context, table, result);
+}
+
+void read_coarse_first(CaseContext& context, const CaseTable& table,
+                       StudyEntry& study) {
+  const std::optional<double> factor = table.constant("coarse_first");
+  if (!factor) {
+    return;
+  }
+  if (!(*factor > 1.0 && *factor <= kCoarsest)) {
+    context.problems.add(
+        table.line("coarse_first"),
+        fmt::format("study.coarse_first is {:g}; it must be above 1 and at "
+                    "most {:g}, 2 is usual",
+                    *factor, kCoarsest));
+    return;
+  }
+  study.coarse_first = *factor;
+}
+
+void read_time_limit(CaseContext& context, const CaseTable& table,
+                     StudyEntry& study) {
+  const std::optional<double> limit = table.constant("time_limit");
+  if (limit && !(*limit > 0.0)) {
+    context.problems.add(
+        table.line("time_limit"),
+        fmt::format("study.time_limit is {:g}; it must be above 0: seconds, or "
+                    "a time such as \"10 min\"",
+                    *limit));
+    return;
+  }
+  study.time_limit = limit.value_or(0.0);
+}
+
+}  // namespace
+
+void read_study(CaseContext& context, const toml::table& root, Case& result) {
+  const auto table = single_table(context, root, "study");
+  if (!table) {
+    return;
+  }
+  StudyEntry& study = result.study;
+  study.line = table->line();
+  const std::string asked = table->choice("kind").value_or("analyse");
+  const std::string kind =
+      asked == "family" ? read_members(context, *table, result) : asked;
+  study.kind = study_kind_of(kind);
+  const bool minimizes =
+      study.kind == StudyKind::Minimize || study.kind == StudyKind::Pareto;
+  const bool sweeps = study.kind == StudyKind::Sweep;
+  study.tolerance =
+      table->constant("tolerance").value_or(minimizes ? 1e-4 : 1e-3);
+  if (!(study.tolerance > 0.0)) {
+    context.problems.add(table->line("tolerance"),
+                         fmt::format("study.tolerance is {:g}; it must be "
+                                     "above 0",
+                                     study.tolerance));
+  }
+  read_method(context, *table, study);
+  study.max_evaluations = table->positive_integer("max_evaluations")
+                              .value_or(study.max_evaluations);
+  read_coarse_first(context, *table, study);
+  read_time_limit(context, *table, study);
+  study.refreeze = table->flag("refreeze").value_or(study.refreeze);
+  check_keys(context, *table, kind);
+  if (study.kind != StudyKind::Analyse) {
+    check_variables(context, *table, kind, result);
+  }
+  read_equal(context, *table, result);
+  read_targets(context, *table, result);
+  read_fit(context, *table, result);
+  if (sweeps) {
+    read_sweep(context, *table, result);
+  }
+  if (study.kind == StudyKind::Tolerance) {
+    read_tolerance(context, *table, result);
+  }
+  if (study.kind == StudyKind::Pareto) {
+    read_front(context, *table, result);
+  }
+  if (minimizes || sweeps) {
+    read_objective(context, *table, result);
+  }
+}
+
+}  // namespace meniscus

@@ -1,0 +1,103 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "optimize/sampling.h"
+#include "pipeline/reader/case_reader_study.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr int kMostDesignsLooked = 100'000;
+constexpr int kUsualPoints = 7;  // of a front
+constexpr int kMostFrontPoints = 1000;
+
+void read_deviation(CaseContext& context, const std::string& name,
+                    const toml::node& node, Case& result) {
+  const auto at = std::find_if(
+      result.design.begin(), result.design.end(),
+      [&](const DesignVariable& variable) { return variable.name == name; });
+  if (at == result.design.end()) {
+    std::vector<std::string> names;
+    names.reserve(result.design.size());
+    for (const DesignVariable& variable : result.design) {
+      names.push_back(variable.name);
+    }
+    context.problems.unknown(context.line_of(node), "design variable", name,
+                             names);
+    return;
+  }
+  const auto value =
+      read_constant(context, node, std::nullopt, "study.deviations." + name);
+  if (value && !(*value > 0.0)) {
+    context.problems.add(context.line_of(node),
+                         fmt::format("study.deviations.{} is {:g}; a standard "
+                                     "deviation must be above 0",
+                                     name, *value));
+    return;
+  }
+  result.study
+      .deviations[static_cast<std::size_t>(at - result.design.begin())] =
+      value.value_or(0.0);
+}
+
+}  // namespace
+
+void read_tolerance(CaseContext& context, const CaseTable& table,
+                    Case& result) {
+  const toml::node* node = table.node("deviations");
+  const toml::table* deviations = node == nullptr ? nullptr : node->as_table();
+  if (deviations == nullptr || deviations->empty()) {
+    context.problems.add(
+        table.line("deviations"),
+        fmt::format("study.deviations is {}; a tolerance study needs {{ "
+                    "variable = standard deviation }}",
+                    node == nullptr ? "missing" : described(*node)));
+    return;
+  }
+  result.study.deviations.assign(result.design.size(), 0.0);
+  for (const auto& [key, value] : *deviations) {
+    read_deviation(context, std::string(key.str()), value, result);
+  }
+  if (result.study.method == "sobol" &&
+      static_cast<int>(deviations->size()) > kMostSobolDimensions) {
+    context.problems.add(
+        table.line("deviations"),
+        fmt::format("method sobol serves {} variables that scatter at most, "
+                    "found {}; try latin_hypercube",
+                    kMostSobolDimensions, deviations->size()));
+  }
+  if (result.study.method == "sobol" && table.has("seed")) {
+    context.problems.add(table.line("seed"),
+                         "study.seed: a Sobol sequence has nothing random; "
+                         "take it out");
+  }
+  if (table.has("count")) {
+    result.study.count =
+        table.integer_within("count", 2, kMostDesignsLooked).value_or(2);
+  }
+  result.study.seed =
+      table.positive_integer("seed").value_or(result.study.seed);
+}
+
+void read_front(CaseContext& context, const CaseTable& table, Case& result) {
+  const std::vector<std::string> names = table.names("objectives");
+  const SourceLine line = table.line("objectives");
+  if (names.size() != 2 || names[0] == names[1]) {
+    context.problems.add(
+        line,
+        fmt::format("a pareto study needs study.objectives = "
+                    "[\"a\", \"b\"], two different "
+                    "responses; found {}",
+                    names.empty() ? "none"
+                                  : fmt::format("{}", fmt::join(names, ", "))));
+    return;
+  }
+  result.study.objective = find_response(context, result, names[0], line);
+  result.study.second = find_response(context, result, names[1], line);
+  result.study.count =
+      table.integer_within("count", 3, kMostFrontPoints).value_or(kUsualPoints);
+}
+
+}  // namespace meniscus

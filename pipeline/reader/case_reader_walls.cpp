@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "pipeline/case_data/case_checks.h"
+#include "pipeline/reader/case_reader_tables.h"
+
+namespace meniscus {
+
+namespace {
+
+/// Films that the table's `films` names, each once.
+std::vector<std::string> wall_films(CaseContext& context,
+                                    const CaseTable& table, const Case& result,
+                                    std::map<std::string, std::string>& taken) {
+  const std::vector<std::string> known = film_names(result);
+  std::vector<std::string> films;
+  for (const std::string& film : table.names("films")) {
+    const auto at = taken.find(film);
+    if (std::find(known.begin(), known.end(), film) == known.end()) {
+      context.problems.unknown(table.line("films"), "film", film, known);
+    } else if (at != taken.end()) {
+      context.problems.add(
+          table.line("films"),
+          fmt::format("{}.films names '{}', of which '{}' is made already; a "
+                      "film has one wall",
+                      table.path(), film, at->second));
+    } else {
+      taken[film] = table.name();
+      films.push_back(film);
+    }
+  }
+  return films;
+}
+
+std::vector<std::string> curves_of(const Case& input, const WallEntry& wall) {
+  std::vector<std::string> curves;
+  for (const FilmEntry& film : input.films) {
+    if (std::count(wall.films.begin(), wall.films.end(), film.spec.name) > 0) {
+      curves.insert(curves.end(), film.spec.curves.begin(),
+                    film.spec.curves.end());
+    }
+  }
+  return curves;
+}
+
+bool meet(const Case& input, const WallEntry& a, const WallEntry& b) {
+  const std::vector<std::string> there = curves_of(input, b);
+  const std::vector<std::string> here = curves_of(input, a);
+  return std::any_of(here.begin(), here.end(), [&](const std::string& curve) {
+    return std::find(there.begin(), there.end(), curve) != there.end();
+  });
+}
+
+/// Walls whose films share a curve become one body, numbered by its first.
+void find_regions(CaseContext& context, Case& result) {
+  std::vector<WallEntry>& walls = result.walls;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    walls[k].region = static_cast<int>(k);
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (WallEntry& a : walls) {
+      for (const WallEntry& b : walls) {
+        if (b.region < a.region && meet(result, a, b)) {
+          a.region = b.region;
+          changed = true;
+        }
+      }
+    }
+  }
+  std::map<int, int> number;
+  std::map<int, const WallEntry*> first;
+  for (WallEntry& wall : walls) {
+    wall.region =
+        number.try_emplace(wall.region, static_cast<int>(number.size()))
+            .first->second;
+    const WallEntry& other =
+        *first.try_emplace(wall.region, &wall).first->second;
+    if (other.material != wall.material) {
+      context.problems.add(
+          wall.line,
+          fmt::format("walls.{} and walls.{} meet and so are one body, but "
+                      "their materials differ; give both the same",
+                      other.name, wall.name));
+    }
+  }
+}
+
+int material_of(CaseContext& context, const CaseTable& table,
+                const Case& result) {
+  const auto wanted = table.text("material");
+  if (!wanted) {
+    return kVoid;
+  }
+  std::vector<std::string> known;
+  for (const MaterialEntry& material : result.materials) {
+    if (material.name == *wanted) {
+      return static_cast<int>(known.size());
+    }
+    known.push_back(material.name);
+  }
+  context.problems.unknown(table.line("material"), "material", *wanted, known);
+  return kVoid;
+}
+
+}  // namespace
+
+std::vector<std::string> wall_surface_names(const Case& input) {
+  std::map<std::string, int> uses;  // of curves by films with walls
+  for (const WallEntry& wall : input.walls) {
+    for (const std::string& curve : curves_of(input, wall)) {
+      ++uses[curve];
+    }
+  }
+  std::vector<std::string> names;
+  for (const WallEntry& wall : input.walls) {
+    for (const FilmEntry& film : input.films) {
+      if (std::count(wall.films.begin(), wall.films.end(), film.spec.name) ==
+          0) {
+        continue;
+      }
+      names.push_back(film.spec.name + "/back");
+      for (const std::string& curve : film.spec.curves) {
+        if (uses[curve] == 1) {
+          names.push_back(film.spec.name + "/rim:" + curve);
+        }
+      }
+    }
+  }
+  return names;
+}
+
+void read_walls(CaseContext& context, const toml::table& root, Case& result) {
+  static const std::map<std::string, WallSide> sides = {
+      {"both", WallSide::Both},
+      {"inside", WallSide::Inside},
+      {"outside", WallSide::Outside}};
+  std::map<std::string, std::string> taken;
+  for (const CaseTable& table : named_tables(context, root, "walls")) {
+    WallEntry wall{.name = table.name(), .line = table.line()};
+    wall.films = wall_films(context, table, result, taken);
+    wall.thickness =
+        table.place_quantity("thickness").value_or(PlaceQuantity{});
+    if (wall.thickness.of_place) {
+      require_frozen(context, wall.thickness.quantity,
+                     "a thickness of x, y, z");
+    }
+    wall.side = sides.at(table.choice("side").value_or("both"));
+    wall.fillet = table.constant("fillet");
+    if (wall.fillet && !(*wall.fillet >= 0.0)) {
+      context.problems.add(table.line("fillet"),
+                           fmt::format("{}.fillet is {:g}; it must not be "
+                                       "below 0",
+                                       table.path(), *wall.fillet));
+    }
+    wall.material = material_of(context, table, result);
+    result.walls.push_back(std::move(wall));
+  }
+  find_regions(context, result);
+}
+
+}  // namespace meniscus

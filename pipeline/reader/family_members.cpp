@@ -1,0 +1,100 @@
+#include "pipeline/reader/family_members.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "pipeline/reader/member_file.h"
+
+namespace meniscus {
+
+namespace {
+
+const char* name_of(StudyKind kind) {
+  switch (kind) {
+    case StudyKind::Match:
+      return "match";
+    case StudyKind::Minimize:
+      return "minimize";
+    default:  // what study.each allows
+      return "analyse";
+  }
+}
+
+/// A member's problem at the member's own place.
+std::string placed(const Case& family, const MemberEntry& member,
+                   const std::string& problem) {
+  std::string what = problem;
+  for (const std::string& override : member.overrides) {
+    const std::string before =
+        fmt::format("{}: --set {}: ", family.path, override);
+    if (problem.starts_with(before)) {
+      what = fmt::format("{}: {}", override, problem.substr(before.size()));
+    }
+  }
+  return fmt::format("{}: member '{}': {}", member.place, member.name, what);
+}
+
+}  // namespace
+
+CaseReading read_family_member(const Case& family, const MemberEntry& member) {
+  std::vector<std::string> overrides = family.overrides;
+  overrides.insert(overrides.end(), member.overrides.begin(),
+                   member.overrides.end());
+  // Last, so that a member is never a family itself.
+  overrides.push_back(fmt::format("study.kind={}", name_of(family.study.kind)));
+  CaseReading reading =
+      read_case_text(family.text, family.path, overrides, family.files);
+  for (std::string& problem : reading.problems) {
+    problem = placed(family, member, problem);
+  }
+  if (reading.input) {
+    reading.input->title += ": " + member.name;
+  }
+  return reading;
+}
+
+std::vector<std::string> member_problems(const Case& family) {
+  std::vector<std::string> problems;
+  std::size_t more = 0;
+  for (const MemberEntry& member : family.study.members) {
+    for (std::string& problem : read_family_member(family, member).problems) {
+      if (problems.size() < kMostProblems) {
+        problems.push_back(std::move(problem));
+      } else {
+        ++more;
+      }
+    }
+  }
+  if (more > 0) {
+    problems.push_back(fmt::format("... and {} more problems", more));
+  }
+  return problems;
+}
+
+std::vector<Case> family_cases(const Case& family) {
+  std::vector<Case> cases;
+  cases.reserve(family.study.members.size());
+  for (const MemberEntry& member : family.study.members) {
+    CaseReading reading = read_family_member(family, member);
+    if (!reading.input) {
+      throw InvalidInput(fmt::format("{}", fmt::join(reading.problems, "\n")));
+    }
+    cases.push_back(*std::move(reading.input));
+  }
+  return cases;
+}
+
+VectorX member_numbers(const Case& member) {
+  std::vector<double> numbers;
+  for (const auto& [name, value] :
+       parameter_values(member, initial_design(member))) {
+    numbers.push_back(value);
+  }
+  for (const DesignVariable& variable : member.design) {
+    numbers.insert(numbers.end(),
+                   {variable.initial, variable.lower, variable.upper});
+  }
+  return Eigen::Map<const VectorX>(numbers.data(), std::ssize(numbers));
+}
+
+}  // namespace meniscus

@@ -1,0 +1,214 @@
+#include "pipeline/results/calculix_export.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "fea/loads/body_loads.h"
+#include "fea/loads/loads.h"
+#include "fea/supports/springs.h"
+#include "fea/supports/supports.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kNothing = 1e-12;  // a coefficient that rounding left
+
+DeckMaterial material_of(const Material& m) {
+  DeckMaterial result{.name = m.name,
+                      .youngs_modulus = m.youngs_modulus,
+                      .poisson_ratio = m.poisson_ratio,
+                      .density = m.density};
+  result.thermal_expansion = m.thermal_expansion;
+  if (m.orthotropic) {
+    const Orthotropic& o = *m.orthotropic;
+    result.orthotropic =
+        DeckOrthotropic{o.youngs_moduli, o.poisson_ratios, o.shear_moduli,
+                        o.axes.first, o.axes.second};
+  }
+  return result;
+}
+
+bool along_axes(const LoadCase& load_case) {
+  return std::all_of(load_case.supports.begin(), load_case.supports.end(),
+                     [](const Support& s) {
+                       return s.kind == SupportKind::Components && !s.axes;
+                     });
+}
+
+/// Rows of the held directions, each solved for a component of its own: that
+/// component has coefficient 1, and 0 in all other rows.
+std::vector<DeckEquation> solved_rows(int node, const Mat3& projector) {
+  Mat3 rows = Mat3::Identity() - projector;
+  std::vector<DeckEquation> result;
+  for (int k = 0; k < 3; ++k) {
+    Eigen::Index row = 0;
+    Eigen::Index column = 0;
+    if (rows.bottomRows(3 - k).cwiseAbs().maxCoeff(&row, &column) < kNothing) {
+      break;
+    }
+    rows.row(k).swap(rows.row(k + row));
+    rows.row(k) /= rows(k, column);
+    for (int r = 0; r < 3; ++r) {
+      if (r != k) {
+        rows.row(r) -= (rows(r, column) * rows.row(k)).eval();
+      }
+    }
+    result.push_back({node, Vec3::Zero(), static_cast<int>(column)});
+  }
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    const Vec3 row = rows.row(static_cast<Eigen::Index>(k));
+    result[k].coefficients = row.unaryExpr(
+        [](double x) { return std::abs(x) > kNothing ? x : 0.0; });
+  }
+  return result;
+}
+
+/// Supports of nodes held along the axes; equations for the others.
+struct HeldNodes {
+  std::vector<DeckSupport> supports;
+  std::vector<DeckEquation> equations;
+};
+
+HeldNodes held_nodes(const TetMesh& mesh, const LoadCase& load_case) {
+  const NodeFreedom freedom =
+      node_freedom(mesh, held_directions(mesh, load_case));
+  HeldNodes result;
+  std::map<std::array<bool, 3>, std::vector<int>> fixed;
+  for (std::size_t h = 0; h < freedom.held.size(); ++h) {
+    std::array<bool, 3> fix{};
+    for (const DeckEquation& row :
+         solved_rows(freedom.held[h], freedom.projector[h])) {
+      if ((row.coefficients.array() != 0.0).count() == 1) {
+        fix[row.dependent] = true;
+      } else {
+        result.equations.push_back(row);
+      }
+    }
+    if (fix[0] || fix[1] || fix[2]) {
+      fixed[fix].push_back(freedom.held[h]);
+    }
+  }
+  for (const auto& [fix, nodes] : fixed) {
+    result.supports.push_back({"", nodes, fix[0], fix[1], fix[2]});
+  }
+  return result;
+}
+
+bool same(const std::vector<DeckEquation>& a,
+          const std::vector<DeckEquation>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const DeckEquation& x, const DeckEquation& y) {
+                      return x.node == y.node && x.dependent == y.dependent &&
+                             x.coefficients == y.coefficients;
+                    });
+}
+
+/// What the deck has no card for goes into nodal forces.
+void add_loads(const LoadCase& load_case, const TetMesh& mesh, DeckStep& step) {
+  LoadCase rest{.name = load_case.name};
+  rest.forces = load_case.forces;
+  rest.tractions = load_case.tractions;
+  rest.remote_loads = load_case.remote_loads;
+  for (const SurfacePressure& p : load_case.pressures) {
+    if (p.field) {
+      rest.pressures.push_back(p);
+    } else {
+      step.pressures.push_back({p.surface, p.pressure});
+    }
+  }
+  if (!rest.forces.empty() || !rest.tractions.empty() ||
+      !rest.remote_loads.empty() || !rest.pressures.empty()) {
+    step.nodal_forces = nodal_forces(mesh, rest);
+  }
+  step.gravity = load_case.gravity;
+  if (load_case.spin) {
+    step.spin = DeckSpin{load_case.spin->point, load_case.spin->axis,
+                         load_case.spin->rate};
+  }
+  step.temperature_change = temperature_change(mesh, load_case);
+}
+
+/// The springs of load case `step`, together with those of an earlier one that
+/// stands on the same beds.
+void add_springs(const std::vector<LoadCase>& load_cases, std::size_t step,
+                 const TetMesh& mesh, CalculixDeck& deck) {
+  const LoadCase& load_case = load_cases[step];
+  if (load_case.springs.empty()) {
+    return;
+  }
+  const auto number = static_cast<int>(step);
+  const auto same_beds = std::find_if(
+      load_cases.begin(), load_cases.begin() + number,
+      [&](const LoadCase& c) { return c.springs == load_case.springs; });
+  const auto earlier = static_cast<int>(same_beds - load_cases.begin());
+  if (earlier < number) {
+    for (DeckSprings& set : deck.springs) {
+      if (set.steps.front() == earlier) {
+        set.steps.push_back(number);
+      }
+    }
+    return;
+  }
+  for (SpringSet& set : spring_sets(mesh, load_case)) {
+    DeckSprings springs{.stiffness = set.stiffness, .steps = {number}};
+    for (SpringSet::Spring& spring : set.springs) {
+      springs.springs.push_back(
+          {std::move(spring.nodes), std::move(spring.coefficients)});
+    }
+    deck.springs.push_back(std::move(springs));
+  }
+}
+
+}  // namespace
+
+CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
+                              const std::vector<LoadCase>& load_cases,
+                              const TetMesh& mesh) {
+  CalculixDeck deck;
+  for (const Material& m : materials) {
+    deck.materials.push_back(material_of(m));
+  }
+  for (const LoadCase& load_case : load_cases) {
+    DeckStep step{.name = load_case.name};
+    std::vector<DeckEquation> equations;
+    if (along_axes(load_case)) {
+      for (const Support& s : load_case.supports) {
+        step.supports.push_back({.surface = s.surface,
+                                 .fix_x = s.fix_x,
+                                 .fix_y = s.fix_y,
+                                 .fix_z = s.fix_z});
+      }
+    } else {
+      HeldNodes held = held_nodes(mesh, load_case);
+      step.supports = std::move(held.supports);
+      equations = std::move(held.equations);
+    }
+    if (!deck.steps.empty() && !same(equations, deck.equations)) {
+      throw InvalidInput(fmt::format(
+          "load case '{}' is held along other oblique directions than '{}'; a "
+          "deck has one set of equations for all its steps: export a case with "
+          "one of them",
+          load_case.name, deck.steps.front().name));
+    }
+    deck.equations = std::move(equations);
+    add_loads(load_case, mesh, step);
+    add_springs(load_cases, deck.steps.size(), mesh, deck);
+    deck.steps.push_back(std::move(step));
+  }
+  return deck;
+}
+
+CalculixDeck calculix_deck_of(const Case& input, const EvaluatedCase& numbers,
+                              const TetMesh& mesh) {
+  CalculixDeck deck =
+      calculix_deck_of(numbers.materials, numbers.load_cases, mesh);
+  deck.comments = {"case: " + input.title, "units: " + input.units.name};
+  return deck;
+}
+
+}  // namespace meniscus

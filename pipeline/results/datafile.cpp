@@ -1,0 +1,269 @@
+#include "pipeline/results/datafile.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/timer.h"
+#include "evolve/datafile/fe_bodies.h"
+#include "evolve/datafile/fe_script.h"
+#include "evolve/datafile/fe_write.h"
+#include "evolve/groom/flip_average.h"
+#include "evolve/groom/pop.h"
+#include "evolve/groom/refine.h"
+#include "evolve/settle/equilibrium.h"
+#include "evolve/settle/find_equilibrium.h"
+#include "evolve/settle/pop_search.h"
+#include "evolve/settle/slide_vertices.h"
+#include "io/vtk_files.h"
+#include "pipeline/results/evolved_film.h"
+#include "pipeline/results/results.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kEnoughFacets = 2000.0;
+constexpr double kDescentResidual = 1e-6;  // x tension x edge
+// Facets below which vertices slide: there what facets miss is more than a
+// rounding, and the shapes that sliding leaves do not matter.
+constexpr std::size_t kSlid = 2000;
+
+int refinements_of(const FilmComplex& complex, const DatafileOptions& options) {
+  if (options.refinements) {
+    return *options.refinements;
+  }
+  auto facets = static_cast<double>(std::count_if(
+      complex.mesh.facet_label.begin(), complex.mesh.facet_label.end(),
+      [&](int s) { return complex.surfaces[s].liquid; }));
+  int result = 0;
+  for (; facets > 0.0 && facets < kEnoughFacets; facets *= 4.0) {
+    ++result;
+  }
+  return result;
+}
+
+double residual_bound_of(const FilmEnergy& energy, const Points& points,
+                         const FilmTargets& targets) {
+  const double tension =
+      targets.tension.empty()
+          ? 0.0
+          : *std::max_element(targets.tension.begin(), targets.tension.end());
+  return kDescentResidual * tension * energy.mean_edge(points);
+}
+
+/// The film as descent left it, with the verdict.
+FilmState state_after(const FilmComplex& complex, const DescentReport& descent,
+                      int steps) {
+  const FilmEnergy energy(complex);
+  const FilmTargets targets = targets_of(complex);
+  FilmState state;
+  state.points = complex.mesh.points;
+  FilmReport& figures = state.report;
+  figures = figures_of(energy, targets, state.points, descent.pressure);
+  figures.residual = descent.residual;
+  figures.residual_bound = residual_bound_of(energy, state.points, targets);
+  figures.iterations = steps;
+  const LowestMode mode =
+      lowest_mode_of(energy, targets, state.points, descent.pressure);
+  figures.min_eigenvalue = mode.eigenvalue;
+  figures.index = mode.eigenvalue < 0.0 ? 1 : 0;
+  const bool at_rest = figures.residual <= figures.residual_bound;
+  judge(energy, complex, {.reason = at_rest ? "" : descent.message}, state);
+  return state;
+}
+
+DescentReport descend_to_rest(FilmComplex& complex, DescentOptions options) {
+  const FilmEnergy energy(complex);
+  const FilmTargets targets = targets_of(complex);
+  const Points directions = energy.space().directions(complex.mesh.points);
+  options.residual_bound =
+      residual_bound_of(energy, complex.mesh.points, targets);
+  return descend(energy, targets, directions, complex.mesh.points, options);
+}
+
+/// The paper's motion, refined and groomed between its runs.
+FilmState descend_by_levels(FilmComplex& complex, int refinements,
+                            const DatafileOptions& options) {
+  const DescentMethod method = options.method == DatafileMethod::Gradient
+                                   ? DescentMethod::Gradient
+                                   : DescentMethod::ConjugateGradients;
+  DescentReport report;
+  int steps = 0;
+  for (int level = 0; level <= refinements; ++level) {
+    if (level > 0) {
+      complex = refine(complex).complex;
+    }
+    equiangulate(complex);
+    average_vertices(complex);
+    report = descend_to_rest(complex, {.method = method,
+                                       .max_steps = options.max_steps,
+                                       .monitor = options.monitor});
+    steps += report.steps;
+  }
+  return state_after(complex, report, steps);
+}
+
+/// The film as it is, with the verdict on it.
+FilmState judge_macro(FilmComplex& complex, int iterations) {
+  DescentReport now =
+      descend_to_rest(complex, {.max_steps = 0, .most_restore = 0.0});
+  now.message = "the macro ended here";
+  FilmState state = state_after(complex, now, iterations);
+  if (state.report.residual > state.report.residual_bound) {
+    state.report.verdict = fmt::format(
+        "not at rest: the macro ended at a residual of {:.3g} (bound {:.3g})",
+        state.report.residual, state.report.residual_bound);
+  }
+  state.failure.reset();
+  return state;
+}
+
+/// Our own route: raw facets flipped as Surface Evolver's users do with `u`,
+/// equilibrium, and where facets are few, vertices moved to where they have
+/// least area, as `g` does.
+FilmState settle(FilmComplex& complex, const FindOptions& options) {
+  equiangulate(complex, FlipRule::AnglesOnly);
+  FilmState state = find_equilibrium(complex, options);
+  if (state.failure || complex.mesh.facets.size() >= kSlid) {
+    return state;
+  }
+  FilmComplex slid = complex;
+  FilmState lower = slide_vertices(slid, {.settle = options.settle});
+  if (lower.failure || !(lower.report.energy < state.report.energy)) {
+    return state;
+  }
+  lower.report.iterations += state.report.iterations;
+  complex = std::move(slid);
+  return lower;
+}
+
+/// Settled; where junctions are to pop or there is no stable film, the
+/// histories of pops are searched from the start and from the start at rest,
+/// and the lowest films that they end at are settled in turn.
+FilmState settle_and_pop(FilmComplex& complex, const FindOptions& options,
+                         int& popped) {
+  FilmComplex raw = complex;
+  FilmState state = settle(complex, options);
+  FilmComplex rested = raw;
+  equiangulate(rested, FlipRule::AnglesOnly);
+  find_equilibrium(rested, {.settle = options.settle});
+  FilmComplex probe = rested;
+  if (!state.failure &&
+      pop_edges(probe).popped + pop_vertices(probe).popped == 0) {
+    return state;
+  }
+  std::optional<FilmState> lowest;
+  for (PoppedFilm& film :
+       search_pops({raw, rested}, {.monitor = options.settle.monitor})) {
+    FilmState found = settle(film.complex, options);
+    if (!found.failure &&
+        (!lowest || found.report.energy < lowest->report.energy)) {
+      lowest = std::move(found);
+      complex = std::move(film.complex);
+      popped = film.popped;
+    }
+  }
+  return lowest ? std::move(*lowest) : std::move(state);
+}
+
+}  // namespace
+
+DatafileResult evolve_datafile(const std::filesystem::path& path,
+                               const DatafileOptions& options) {
+  const Timer timer;
+  const FeFile file = read_fe(read_file(path), path.filename().string());
+  check_fe_bodies(file);
+  // Commands of the file that stand outside its macros are part of the film.
+  FeScriptResult script =
+      run_fe_script(file, options.parameters,
+                    {.macro = options.macro, .monitor = options.monitor});
+  DatafileResult result;
+  result.complex = std::move(script.complex);
+  result.printed = std::move(script.output);
+  const int refinements = refinements_of(result.complex, options);
+  FilmState state;
+  if (options.macro) {
+    state = judge_macro(result.complex, script.iterations);
+  } else if (options.method == DatafileMethod::Newton) {
+    const FindOptions find{.refinements = refinements,
+                           .settle = {.monitor = options.monitor}};
+    state = options.pop ? settle_and_pop(result.complex, find, result.popped)
+                        : settle(result.complex, find);
+  } else {
+    state = descend_by_levels(result.complex, refinements, options);
+  }
+  const FilmEnergy energy(result.complex);
+  const VectorX values = energy.quantities(result.complex.mesh.points);
+  for (std::size_t q = 0; q < result.complex.quantities.size(); ++q) {
+    result.quantities.emplace_back(result.complex.quantities[q].name,
+                                   values[static_cast<Eigen::Index>(q)]);
+  }
+  result.report = std::move(state.report);
+  result.report.seconds = timer.seconds();
+  result.failure = std::move(state.failure);
+  return result;
+}
+
+std::vector<std::string> solids_of(const FilmComplex& complex) {
+  std::vector<std::string> solids;
+  for (const ComplexSurface& surface : complex.surfaces) {
+    if (!surface.liquid) {
+      solids.push_back(surface.name);
+    }
+  }
+  return solids;
+}
+
+std::string write_datafile_result(const DatafileResult& result,
+                                  const std::string& title,
+                                  const std::filesystem::path& folder) {
+  write_vtp(folder / "film.vtp", result.complex.mesh);
+  EvolvedFilm film{.title = title,
+                   .report = result.report,
+                   .failure = result.failure,
+                   .solids = solids_of(result.complex),
+                   .curves = pieces_of_curves(result.complex),
+                   .quantities = result.quantities};
+  write_evolved_film(film, {}, folder);
+  try {
+    write_file(folder / "film.fe", fe_text(result.complex));
+  } catch (const InvalidInput& error) {
+    return fmt::format("film.fe is left out: {}", error.what());
+  }
+  return "";
+}
+
+std::string datafile_text(const DatafileResult& result) {
+  const FilmReport& film = result.report;
+  std::string text = result.printed;
+  text += fmt::format(
+      "film: {}\n  {} vertices, {} facets, area {:.12g}, energy {:.12g} (units "
+      "of the datafile)\n  residual {:.2e} (bound {:.2e}), smallest eigenvalue "
+      "{:.4g}, index {}\n",
+      film.verdict, film.vertices, film.facets, film.area, film.energy,
+      film.residual, film.residual_bound, film.min_eigenvalue, film.index);
+  if (film.smallest_neck > 0.0) {
+    text += fmt::format("  smallest neck {:.4g} at ({:.4g}, {:.4g}, {:.4g})\n",
+                        film.smallest_neck, film.neck_position.x(),
+                        film.neck_position.y(), film.neck_position.z());
+  }
+  for (const BodyState& body : film.bodies) {
+    text += fmt::format("  {}: volume {:.12g}, pressure {:.8g}\n", body.name,
+                        body.volume, body.pressure);
+  }
+  for (const auto& [name, value] : result.quantities) {
+    text += fmt::format("  quantity {}: {:.12g}\n", name, value);
+  }
+  if (result.popped > 0) {
+    text += fmt::format("  {} junctions popped\n", result.popped);
+  }
+  text +=
+      fmt::format("  {} steps in {:.2f} s\n", film.iterations, film.seconds);
+  return text;
+}
+
+}  // namespace meniscus

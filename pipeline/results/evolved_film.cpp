@@ -1,0 +1,117 @@
+#include "pipeline/results/evolved_film.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "pipeline/forward/figures_json.h"
+#include "pipeline/results/results.h"
+
+namespace meniscus {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json numbers(const Points& points) {
+  const auto values = flat(points);
+  return std::vector<double>(values.begin(), values.end());
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> areas_of_films(
+    const Case& input, const FilmModel& model) {
+  const VectorX areas = model.areas(model.reference().points);
+  std::vector<std::pair<std::string, double>> all;
+  for (std::size_t k = 0; k < model.labels().size(); ++k) {
+    const std::string& name = model.labels()[k];
+    const bool is_film = std::any_of(
+        input.films.begin(), input.films.end(),
+        [&](const FilmEntry& entry) { return entry.spec.name == name; });
+    if (is_film) {
+      all.emplace_back(name, areas[static_cast<Eigen::Index>(k)]);
+    }
+  }
+  return all;
+}
+
+std::vector<CurvePieces> pieces_of_curves(const std::vector<Curve>& curves) {
+  constexpr int kPieces = 96;
+  std::vector<CurvePieces> all;
+  for (const Curve& curve : curves) {
+    if (std::holds_alternative<ParametricCurve>(curve.shape)) {
+      continue;
+    }
+    CurvePieces& pieces = all.emplace_back();
+    pieces.name = curve.name;
+    for (int k = 0; k < kPieces; ++k) {
+      for (const int end : {k, (k + 1) % kPieces}) {
+        pieces.ends.push_back(
+            point_at(curve.shape, static_cast<double>(end) / kPieces));
+      }
+    }
+  }
+  return all;
+}
+
+std::vector<CurvePieces> pieces_of_curves(const FilmComplex& complex) {
+  std::map<int, Points> ends;  // by curve
+  for (const ComplexEdge& edge : complex.edges) {
+    if (edge.curve >= 0) {
+      for (const int end : {edge.a, edge.b}) {
+        ends[edge.curve].push_back(
+            complex.mesh.points[static_cast<std::size_t>(end)]);
+      }
+    }
+  }
+  std::vector<CurvePieces> all;
+  all.reserve(ends.size());
+  for (auto& [curve, points] : ends) {
+    all.push_back({complex.curves[static_cast<std::size_t>(curve)].name,
+                   std::move(points)});
+  }
+  return all;
+}
+
+void write_evolved_film(const EvolvedFilm& film,
+                        const std::vector<FilmFrame>& frames,
+                        const std::filesystem::path& folder) {
+  Json json = {{"schema_version", kResultSchemaVersion},
+               {"title", film.title},
+               {"status", film.failure ? "failed" : "converged"},
+               {"message", film.failure ? film.failure->message
+                                        : "the film is at rest and stable"}};
+  if (film.units) {
+    json["units"] = units_json(*film.units);
+  }
+  json.update(film_json(film.report));
+  for (const auto& [name, value] : film.quantities) {
+    json["quantities"][name] = value;
+  }
+  for (const auto& [name, area] : film.areas) {
+    json["films"][name] = {{"area", area}};
+  }
+  json["seconds"] = film.report.seconds;
+  json["solids"] = film.solids;
+  json["curves"] = Json::array();
+  for (const CurvePieces& curve : film.curves) {
+    json["curves"].push_back(
+        {{"name", curve.name}, {"ends", numbers(curve.ends)}});
+  }
+  json["frames"] = Json::array();
+  for (const FilmFrame& frame : frames) {
+    json["frames"].push_back(settling_caption(frame));
+  }
+  write_file(folder / "film.json", json.dump(1) + "\n");
+}
+
+std::string settling_caption(const FilmFrame& frame) {
+  return frame.kept == "flowing" ? fmt::format("step {}", frame.evaluation)
+                                 : frame.kept;
+}
+
+}  // namespace meniscus

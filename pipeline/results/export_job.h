@@ -1,0 +1,74 @@
+/// What the writers of a run's part share: its case and answer and, made when
+/// first asked for, its film, its mesh and its solution.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/monitor.h"
+#include "io/file_notes.h"
+#include "pipeline/forward/forward_model.h"
+
+namespace meniscus {
+
+/// A film at rest and the model that settled it.
+struct SettledFilm {
+  FilmModel model;
+  FilmState state;
+};
+
+class ExportJob {
+ public:
+  struct Options {
+    std::optional<double> edge;   // [length]; the run's own when absent
+    std::string program_version;  // for the notes
+    Monitor* monitor = nullptr;
+  };
+
+  /// The answer of the study in `folder`. Throws IoError (no study there),
+  /// InvalidInput (no finished evaluation).
+  ExportJob(const std::filesystem::path& folder, Options options);
+
+  const Case& input() const { return input_; }
+  const VectorX& design() const { return design_; }
+  const EvaluatedCase& numbers() const { return numbers_; }
+  std::optional<double> edge() const { return options_.edge; }
+  Monitor* monitor() const { return options_.monitor; }
+
+  /// Without an edge the run's own film, at the film's own resolution: frozen
+  /// at the initial design, settled at the answer, the same bits. At an edge,
+  /// settled from the answer's curves there. Throws MeshError where there is no
+  /// stable film.
+  const SettledFilm& film();
+
+  /// The closed surface of that film with the bodies on its sides, at the
+  /// film's own resolution.
+  SurfaceMesh bodies_surface();
+
+  /// The mesh and the case's numbers there: nothing is solved for it. Throws
+  /// MeshError where the design has no mesh, what ForwardModel throws.
+  const EvaluationFields& meshed();
+
+  /// Mesh, solution and stresses. Throws MeshError where the design cannot be
+  /// evaluated, what ForwardModel throws.
+  const EvaluationFields& fields();
+
+  /// Program, title, units, name of the case and the answer's design.
+  FileNotes notes() const;
+
+  /// Of the bodies of material, in the order of the mesh's regions.
+  std::vector<std::string> body_names() const;
+
+ private:
+  Options options_;
+  Case input_;
+  VectorX design_;
+  EvaluatedCase numbers_;
+  std::optional<SettledFilm> film_;
+  std::optional<EvaluationFields> meshed_;
+  std::optional<EvaluationFields> fields_;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,195 @@
+#include "pipeline/results/export_part.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "cad/solid/film_solid.h"
+#include "cad/step/step_writer.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "io/gmsh_msh.h"
+#include "io/nastran_bdf.h"
+#include "io/obj.h"
+#include "io/stl.h"
+#include "io/three_mf.h"
+#include "pipeline/forward/walls.h"
+#include "pipeline/results/calculix_export.h"
+#include "pipeline/results/export_job.h"
+#include "pipeline/results/export_step.h"
+#include "pipeline/results/make_ledger.h"
+#include "pipeline/results/results.h"
+#include "pipeline/study/ledger.h"
+
+namespace meniscus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void stl(ExportJob& job, const fs::path& file) {
+  const SettledFilm& film = job.film();
+  write_stl(file, boundary_of(job.numbers(), film.model, film.state.points),
+            {.name = job.input().title,
+             .unit = job.input().units.length,
+             .program = job.notes().program});
+}
+
+void three_mf(ExportJob& job, const fs::path& file) {
+  write_3mf(file, job.bodies_surface(),
+            {.notes = job.notes(), .bodies = job.body_names()});
+}
+
+void obj(ExportJob& job, const fs::path& file) {
+  write_obj(file, job.bodies_surface(),
+            {.notes = job.notes(), .bodies = job.body_names()});
+}
+
+void fe(ExportJob& job, const fs::path& file) {
+  const SettledFilm& film = job.film();
+  std::vector<std::string> comments = comment_lines(job.notes());
+  comments.push_back(fmt::format("energy of the films and fields: {} ({})",
+                                 film.state.report.energy,
+                                 job.input().units.unit_of(Dimension::Energy)));
+  comments.emplace_back(
+      "'m 0; g' sets the pressures that 'hessian' asks for, and moves nothing");
+  write_file(file, film.model.datafile(film.state, job.numbers().film_system,
+                                       comments));
+}
+
+void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
+  if (!faceted) {
+    throw InvalidInput(
+        "step: walls have no B-spline faces in this version; take "
+        "--format step-faceted, or stl, 3mf, obj");
+  }
+  const SettledFilm& film = job.film();
+  write_step(
+      file,
+      faceted_solid(boundary_of(job.numbers(), film.model, film.state.points)),
+      {.name = job.input().title, .unit = job.input().units.length});
+}
+
+void step(ExportJob& job, const fs::path& file, bool faceted) {
+  if (!job.numbers().walls.empty()) {
+    wall_step(job, file, faceted);
+    return;
+  }
+  export_step(file, job.numbers().film_system,
+              {.title = job.input().title,
+               .unit = job.input().units.length,
+               .edge = job.edge().value_or(job.input().resolution.film),
+               .faceted = faceted,
+               .monitor = job.monitor()});
+}
+
+void smooth_step(ExportJob& job, const fs::path& file) {
+  step(job, file, false);
+}
+
+void faceted_step(ExportJob& job, const fs::path& file) {
+  step(job, file, true);
+}
+
+CalculixDeck deck(ExportJob& job) {
+  const EvaluationFields& fields = job.meshed();
+  CalculixDeck deck = calculix_deck_of(job.input(), fields.inputs, fields.mesh);
+  const FileNotes notes = job.notes();
+  deck.comments.insert(deck.comments.begin(), notes.program);
+  deck.comments.insert(deck.comments.end(), notes.lines.begin(),
+                       notes.lines.end());
+  return deck;
+}
+
+void inp(ExportJob& job, const fs::path& file) {
+  write_calculix_inp(file, job.meshed().mesh, deck(job));
+}
+
+void bdf(ExportJob& job, const fs::path& file) {
+  write_nastran_bdf(file, job.meshed().mesh, deck(job));
+}
+
+void msh(ExportJob& job, const fs::path& file) {
+  const EvaluationFields& fields = job.fields();
+  MshOptions options{
+      .notes = job.notes(), .regions = job.body_names(), .fields = {}};
+  const UnitSystem& units = job.input().units;
+  for (std::size_t k = 0; k < fields.stresses.size(); ++k) {
+    const std::string& load_case = fields.inputs.load_cases[k].name;
+    const VectorX& u = fields.solution.displacements[k];
+    options.fields.push_back(
+        {.name = fmt::format("displacement, {} [{}]", load_case, units.length),
+         .components = 3,
+         .values = {u.begin(), u.end()}});
+    options.fields.push_back(
+        {.name = fmt::format("von Mises, {} [{}]", load_case, units.pressure),
+         .components = 1,
+         .values = nodal_stress(fields.mesh, fields.stresses[k].recovered)
+                       .von_mises});
+  }
+  write_msh(file, fields.mesh, options);
+}
+
+void vtu(ExportJob& job, const fs::path& file) {
+  const FileNotes notes = job.notes();
+  write_part(
+      file, job.input(), job.fields(),
+      {{"program", notes.program},
+       {"case_and_design", fmt::format("{}", fmt::join(notes.lines, "; "))}});
+}
+
+const ExportFormat& format_named(const std::string& name) {
+  for (const ExportFormat& format : export_formats()) {
+    if (format.name == name) {
+      return format;
+    }
+  }
+  throw InvalidInput(fmt::format("format '{}' is not known; there are {}", name,
+                                 export_format_names()));
+}
+
+}  // namespace
+
+const std::vector<ExportFormat>& export_formats() {
+  static const std::vector<ExportFormat> formats = {
+      {"stl", "stl", "surface, binary, for printing", true, stl},
+      {"3mf", "3mf", "surface with its unit, for slicers", true, three_mf},
+      {"obj", "obj", "surface with named groups", true, obj},
+      {"step", "step", "CAD, films as B-spline faces", true, smooth_step},
+      {"step-faceted", "step", "CAD, a plane for each facet", true,
+       faceted_step},
+      {"fe", "fe", "film for Surface Evolver", true, fe},
+      {"inp", "inp", "deck for CalculiX and Abaqus", false, inp},
+      {"bdf", "bdf", "deck for Nastran", false, bdf},
+      {"msh", "msh", "elements for Gmsh", false, msh},
+      {"vtu", "vtu", "elements and fields for ParaView", false, vtu},
+  };
+  return formats;
+}
+
+std::string export_format_names() {
+  std::vector<std::string> names;
+  for (const ExportFormat& format : export_formats()) {
+    names.emplace_back(format.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+fs::path export_part(const fs::path& folder, const ExportOptions& options) {
+  const ExportFormat& format = format_named(options.format);
+  ExportJob job(folder, {.edge = options.edge,
+                         .program_version = options.program_version,
+                         .monitor = options.monitor});
+  const Resolution& resolution = job.input().resolution;
+  const double edge =
+      options.edge.value_or(format.of_film ? resolution.film : resolution.fea);
+  fs::path file =
+      options.out.empty()
+          ? folder / fmt::format("part_{:g}.{}", edge, format.extension)
+          : options.out;
+  format.write(job, file);
+  note_file(folder, file, fmt::format("part_{:g}.{}", edge, format.name));
+  return file;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,207 @@
+#include "pipeline/results/export_step.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "cad/solid/bulge_volume.h"
+#include "cad/solid/film_solid.h"
+#include "cad/step/step_writer.h"
+#include "core/error.h"
+#include "evolve/curves/curve_shape.h"
+#include "evolve/frozen/film_model.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kMostDeviation = 0.1;  // of the film's edge: else a warning
+constexpr double kMostBreak = 1.0;      // [degree]
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
+
+RimPiece line_piece(const Vec3& from, const Vec3& to) {
+  const Vec3 way = to - from;
+  return {StraightLine{from, way.normalized()}, 0.0, way.norm()};
+}
+
+std::vector<RimPiece> pieces_of(const Circle& circle) {
+  const auto frame = curve_shape::frame_of(circle);
+  return {{EllipseCurve{circle.center, circle.radius * frame.u,
+                        circle.radius * frame.v},
+           0.0, kFullTurn}};
+}
+
+std::vector<RimPiece> pieces_of(const Ellipse& ellipse) {
+  const auto frame = curve_shape::frame_of(ellipse);
+  return {{EllipseCurve{ellipse.center, ellipse.radius_1 * frame.u,
+                        ellipse.radius_2 * frame.v},
+           0.0, kFullTurn}};
+}
+
+std::vector<RimPiece> pieces_of(const Rectangle& box) {
+  const auto frame = curve_shape::frame_of(box);
+  const double r = box.corner_radius;
+  std::vector<RimPiece> pieces;
+  const auto at = [&](double a, double b) {
+    return Vec3(box.center + a * frame.u + b * frame.v);
+  };
+  // Counter-clockwise from the right side, as evolve/curves/curve has it.
+  const double w = 0.5 * box.width;
+  const double h = 0.5 * box.height;
+  const std::array<Vec2, 4> from{Vec2(w, r - h), Vec2(w - r, h),
+                                 Vec2(-w, h - r), Vec2(r - w, -h)};
+  const std::array<Vec2, 4> to{Vec2(w, h - r), Vec2(r - w, h), Vec2(-w, r - h),
+                               Vec2(w - r, -h)};
+  const std::array<Vec2, 4> middle{Vec2(w - r, h - r), Vec2(r - w, h - r),
+                                   Vec2(r - w, r - h), Vec2(w - r, r - h)};
+  for (int k = 0; k < 4; ++k) {
+    pieces.push_back(
+        line_piece(at(from[k][0], from[k][1]), at(to[k][0], to[k][1])));
+    if (r > 0.0) {
+      const double start = 0.25 * kFullTurn * k;
+      pieces.push_back({EllipseCurve{at(middle[k][0], middle[k][1]),
+                                     r * frame.u, r * frame.v},
+                        start, start + 0.25 * kFullTurn});
+    }
+  }
+  return pieces;
+}
+
+std::vector<RimPiece> pieces_of(const Polygon& polygon) {
+  std::vector<RimPiece> pieces;
+  const std::size_t n = polygon.points.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    pieces.push_back(
+        line_piece(polygon.points[k], polygon.points[(k + 1) % n]));
+  }
+  return pieces;
+}
+
+/// Other kinds: none, a spline goes through the film's own points.
+template <class Shape>
+std::vector<RimPiece> pieces_of(const Shape& /*shape*/) {
+  return {};
+}
+
+std::vector<NamedRim> rims_of(const FilmSystem& system,
+                              const FilmModel& model) {
+  std::vector<NamedRim> rims;
+  for (const Curve& curve : system.curves) {
+    std::vector<RimPiece> pieces = std::visit(
+        [](const auto& shape) { return pieces_of(shape); }, curve.shape);
+    if (!pieces.empty()) {
+      rims.push_back(
+          {curve.name, RimCurve(std::move(pieces)), model.rim(curve.name)});
+    }
+  }
+  return rims;
+}
+
+/// Volumes are those of flat facets, and the smooth film encloses more where
+/// it bulges: the same system with each body's volume so much less.
+FilmSystem for_smooth_films(FilmSystem system, const SurfaceMesh& mesh) {
+  std::vector<char> flat;
+  flat.reserve(mesh.labels.size());
+  for (const std::string& label : mesh.labels) {
+    flat.push_back(
+        std::any_of(system.caps.begin(), system.caps.end(),
+                    [&](const CapSpec& cap) { return cap.name == label; })
+            ? 1
+            : 0);
+  }
+  const std::vector<double> bulges = bulge_volumes(mesh, flat);
+  const auto bodies_of = [&](const std::string& surface) {
+    return std::count_if(system.bodies.begin(), system.bodies.end(),
+                         [&](const BodySpec& b) {
+                           return std::count(b.enclosed_by.begin(),
+                                             b.enclosed_by.end(), surface) > 0;
+                         });
+  };
+  for (BodySpec& body : system.bodies) {
+    for (const std::string& surface : body.enclosed_by) {
+      const int label = mesh.label_of(surface);
+      if (body.volume && label >= 0 && bodies_of(surface) == 1) {
+        *body.volume -= (body.is_void ? -1.0 : 1.0) * bulges[label];
+      }
+    }
+  }
+  return system;
+}
+
+FilmModel settled(const FilmSystem& system, double edge) {
+  FilmModel model = FilmModel::freeze(system, {.edge = edge, .refinements = 0});
+  if (model.reference().failure) {
+    throw MeshError(fmt::format("no film at edge {:g}: {}", edge,
+                                model.reference().failure->message));
+  }
+  return model;
+}
+
+std::string number_of(int count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+void tell(const StepExport& options, const FilmSolidReport& film,
+          const StepReport& step) {
+  Monitor& monitor =
+      options.monitor != nullptr ? *options.monitor : silent_monitor();
+  const std::string& unit = options.unit;
+  monitor.log(
+      Severity::Info,
+      fmt::format("{}, {}, {}, {}; valid closed solid of {:.6g} {}3",
+                  number_of(film.patches, "B-spline face"),
+                  number_of(film.planes, "plane"),
+                  number_of(film.cylinders, "cylinder"),
+                  number_of(film.spheres, "sphere"), step.volume, unit));
+  for (const SimpleFace& face : film.simple) {
+    monitor.log(Severity::Info,
+                fmt::format("{} is a {}{}; the film leaves it by {:.2g} {} at "
+                            "most ({:.2g} of its edge)",
+                            face.film, face.shape,
+                            face.shape == "plane" ? "" : " " + unit, face.off,
+                            unit, face.off / options.edge));
+  }
+  monitor.log(
+      Severity::Info,
+      fmt::format(
+          "gap at edges {:.2g} {} at most; film to faces {:.2g} {}, faces "
+          "to film {:.2g} {} ({:.2g} of its edge)",
+          film.gap, unit, film.film_to_solid, unit, film.solid_to_film, unit,
+          std::max(film.film_to_solid, film.solid_to_film) / options.edge));
+  monitor.log(
+      Severity::Info,
+      fmt::format("tangent breaks between faces of one film {:.2g} "
+                  "degrees at most{}",
+                  film.tangent_break,
+                  film.break_film.empty()
+                      ? ""
+                      : fmt::format(", in {} at ({:.4g}, {:.4g}, "
+                                    "{:.4g})",
+                                    film.break_film, film.break_place[0],
+                                    film.break_place[1], film.break_place[2])));
+}
+
+}  // namespace
+
+void export_step(const std::filesystem::path& file, const FilmSystem& system,
+                 const StepExport& options) {
+  FilmModel model = settled(system, options.edge);
+  SurfaceMesh mesh = model.boundary(model.reference().points);
+  const StepOptions names{.name = options.title, .unit = options.unit};
+  if (options.faceted) {
+    write_step(file, faceted_solid(mesh), names);
+    return;
+  }
+  model = settled(for_smooth_films(system, mesh), options.edge);
+  mesh = model.boundary(model.reference().points);
+  FilmSolidInput input{mesh, rims_of(system, model), {}, options.edge};
+  for (const CapSpec& cap : system.caps) {
+    input.caps.push_back(cap.name);
+  }
+  const FilmSolid solid = film_solid(input);
+  tell(options, solid.report, write_step(file, solid.brep, names));
+}
+
+}  // namespace meniscus

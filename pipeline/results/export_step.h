@@ -1,0 +1,27 @@
+/// A finished run's part as STEP.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/monitor.h"
+#include "evolve/films/film_system.h"
+
+namespace meniscus {
+
+struct StepExport {
+  std::string title;           // of the part
+  std::string unit = "mm";     // of lengths
+  double edge = 0.0;           // the film is settled at this edge [length], > 0
+  bool faceted = false;        // every facet a plane, for want of better
+  Monitor* monitor = nullptr;  // hears what was measured
+};
+
+/// Settles the films of `system` and writes them as a closed solid: films as
+/// B-spline faces, caps as planes with their exact rims. Throws MeshError (no
+/// stable film, a film that cannot be cut into patches, no valid solid),
+/// IoError.
+void export_step(const std::filesystem::path& file, const FilmSystem& system,
+                 const StepExport& options);
+
+}  // namespace meniscus

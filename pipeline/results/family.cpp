@@ -1,0 +1,366 @@
+#include "pipeline/results/family.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <omp.h>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/timer.h"
+#include "optimize/family_tree.h"
+#include "pipeline/case_data/content_hash.h"
+#include "pipeline/reader/family_members.h"
+#include "pipeline/results/results.h"
+#include "pipeline/results/run_folder.h"
+#include "pipeline/store/run_lock.h"
+#include "pipeline/store/stored_case.h"
+#include "pipeline/store/study_table.h"
+#include "pipeline/study/result_so_far.h"
+#include "pipeline/study/study_records.h"
+#include "pipeline/study/time_limit.h"
+
+namespace meniscus {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// [s]; none at all would mean no limit.
+constexpr double kLeastTime = 1e-3;
+
+/// Says whose message it is; called from several threads.
+class MemberMonitor : public Monitor {
+ public:
+  MemberMonitor(Monitor& family, std::string name)
+      : family_(family), name_(std::move(name)) {}
+
+  void log(Severity severity, const std::string& message) override {
+    family_.log(severity, name_ + ": " + message);
+  }
+  void progress(const Progress& progress) override {
+    Progress named = progress;
+    named.detail = name_ + ": " + progress.detail;
+    family_.progress(named);
+  }
+  bool stop_requested() const override { return family_.stop_requested(); }
+
+ private:
+  Monitor& family_;
+  std::string name_;
+};
+
+/// The result that the member's folder holds, when it is whole.
+std::optional<Json> stored_result(const fs::path& folder) {
+  if (!fs::exists(folder / "result.json")) {
+    return std::nullopt;
+  }
+  Json json = Json::parse(read_file(folder / "result.json"), nullptr, false);
+  if (!json.is_object()) {
+    return std::nullopt;
+  }
+  return json;
+}
+
+StudyStore open_store(const Case& member, const fs::path& folder,
+                      const FamilyOptions& options) {
+  bool same = false;
+  if (options.resume && fs::exists(folder / "study.sqlite")) {
+    same = StudyStore::read(folder.string()).meta().case_hash == member.hash;
+  }
+  return open_run(member, folder, same ? RunBegins::Resumed : RunBegins::Anew,
+                  options.program_version);
+}
+
+class FamilyRun {
+ public:
+  FamilyRun(const Case& family, const FamilyOptions& options)
+      : family_(family),
+        options_(options),
+        monitor_(options.monitor != nullptr ? *options.monitor
+                                            : silent_monitor()),
+        lock_(options.folder.string()),
+        limit_(smaller_limit(options.time_limit, family.study.time_limit)),
+        members_(family_cases(family)) {}
+
+  FamilyResult run();
+
+ private:
+  void prepare();
+  void run_wave(const std::vector<int>& wave);
+  void work(const std::vector<int>& wave, std::atomic<std::size_t>& next);
+  void size(std::size_t k);
+  Json study(std::size_t k, const std::optional<VectorX>& start);
+  Json compute(const Case& member, const fs::path& folder, StudyStore& store,
+               const StudyOptions& options);
+  StudyListener listener_of(std::size_t k) const;
+  std::optional<VectorX> start_of(std::size_t k) const;
+  Json passport(std::size_t k, const std::optional<VectorX>& start) const;
+  void finish(std::size_t k, const Json& result);
+  void write_table();
+  void tell();
+  double time_left() const;
+
+  const Case& family_;
+  const FamilyOptions& options_;
+  Monitor& monitor_;
+  RunLock lock_;
+  Timer timer_;
+  double limit_;  // [s], 0: none
+  std::vector<Case> members_;
+  std::vector<int> parents_;  // -1: none
+  FamilyResult result_;
+  std::mutex mutex_;  // of all below and of result_.rows while threads run
+  std::exception_ptr error_;
+  std::atomic<bool> stopping_{false};
+  int finished_ = 0;
+  int computed_ = 0;      // of these not only read
+  double seconds_ = 0.0;  // that computing them took
+};
+
+double FamilyRun::time_left() const { return limit_ - timer_.seconds(); }
+
+void FamilyRun::prepare() {
+  remove_leftovers(options_.folder);
+  // An older result must not stand beside a study that is not its own.
+  fs::remove(options_.folder / "result.json");
+  parents_.assign(members_.size(), -1);
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const std::string& name = family_.study.members[k].name;
+    FamilyRow row;
+    row.name = name;
+    row.folder = "members/" + name;
+    row.status = "waiting";
+    result_.rows.push_back(std::move(row));
+  }
+}
+
+/// The parent's answer by name, clipped to this member's bounds.
+std::optional<VectorX> FamilyRun::start_of(std::size_t k) const {
+  if (parents_[k] < 0) {
+    return std::nullopt;
+  }
+  const FamilyRow& parent = result_.rows[static_cast<std::size_t>(parents_[k])];
+  const std::vector<DesignVariable>& design = members_[k].design;
+  if (!parent.sized() || parent.design.size() != design.size()) {
+    return std::nullopt;
+  }
+  VectorX start(std::ssize(design));
+  for (std::size_t i = 0; i < design.size(); ++i) {
+    start[static_cast<Eigen::Index>(i)] =
+        std::clamp(parent.design[i].second, design[i].lower, design[i].upper);
+  }
+  return start;
+}
+
+/// What this member's answer comes from: a finished one of the same is read
+/// and not computed again.
+Json FamilyRun::passport(std::size_t k,
+                         const std::optional<VectorX>& start) const {
+  const std::string& name = family_.study.members[k].name;
+  Json json = {
+      {"name", name},
+      {"parent",
+       start ? result_.rows[static_cast<std::size_t>(parents_[k])].name : ""},
+      {"fingerprint",
+       content_hash(options_.program_version + stored_case(members_[k]))},
+      {"start", Json::array()}};
+  if (start) {
+    json["start"] = std::vector<double>(start->begin(), start->end());
+  }
+  return json;
+}
+
+Json FamilyRun::compute(const Case& member, const fs::path& folder,
+                        StudyStore& store, const StudyOptions& options) {
+  RunResult result;
+  try {
+    EvaluationFields fields;
+    result = run_study(member, store, options, &fields);
+    if (options_.write_files) {
+      const Timer timer;
+      options_.write_files(member, fields, folder, result);
+      result.output_seconds = timer.seconds();
+      result.total_seconds += result.output_seconds;
+    }
+  } catch (const Interrupted&) {
+    result = result_so_far(member, store.all());
+    result.status = RunStatus::Interrupted;
+    result.message = fmt::format(
+        "{} finished evaluations are kept, go on with --resume", store.size());
+    stopping_ = true;
+  } catch (const IoError&) {
+    throw;
+  } catch (const Error& error) {
+    result = result_so_far(member, store.all());
+    result.status = RunStatus::Failed;
+    result.message = error.what();
+  }
+  write_file(folder / "history.csv", history_csv(store.all()));
+  return result_json(member, result, options_.program_version);
+}
+
+/// The family's, told whose news it is.
+StudyListener FamilyRun::listener_of(std::size_t k) const {
+  if (!options_.listener) {
+    return {};
+  }
+  return [this, name = result_.rows[k].name](const StudyNews& news) {
+    StudyNews named = news;
+    named.member = name;
+    options_.listener(named);
+  };
+}
+
+/// The member's result, read or computed and written.
+Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
+  const Case& member = members_[k];
+  const fs::path folder = options_.folder / result_.rows[k].folder;
+  const Json own = passport(k, start);
+  make_folder(folder);
+  if (options_.resume) {
+    const std::optional<Json> known = stored_result(folder);
+    if (known && known->value("member", Json()) == own &&
+        (*known)["status"] != "stopped" &&
+        (*known)["status"] != "interrupted") {
+      return *known;
+    }
+  }
+  StudyStore store = open_store(member, folder, options_);
+  MemberMonitor monitor(monitor_, result_.rows[k].name);
+  const Timer timer;
+  Json json = compute(
+      member, folder, store,
+      {.time_limit = limit_ > 0.0 ? std::max(time_left(), kLeastTime) : 0.0,
+       .frames = options_.frames,
+       .start = start,
+       .listener = listener_of(k),
+       .monitor = &monitor});
+  json["member"] = own;
+  write_file(folder / "result.json", json.dump(2) + "\n");
+  const std::lock_guard<std::mutex> guard(mutex_);
+  ++computed_;
+  seconds_ += timer.seconds();
+  return json;
+}
+
+void FamilyRun::finish(std::size_t k, const Json& result) {
+  FamilyRow row = family_row(members_[k], result);
+  const std::lock_guard<std::mutex> guard(mutex_);
+  row.name = result_.rows[k].name;
+  row.folder = result_.rows[k].folder;
+  row.parent = result["member"].value("parent", "");
+  result_.rows[k] = std::move(row);
+  ++finished_;
+  write_table();
+  tell();
+}
+
+void FamilyRun::size(std::size_t k) {
+  if (limit_ > 0.0 && time_left() <= 0.0) {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    result_.rows[k].status = "stopped";
+    result_.rows[k].message = "the time limit was reached before it began";
+    return;
+  }
+  finish(k, study(k, start_of(k)));
+}
+
+void FamilyRun::write_table() {
+  write_file(options_.folder / "family.csv", family_csv(result_.rows));
+}
+
+void FamilyRun::tell() {
+  std::string detail =
+      fmt::format("{} of {} members done", finished_, members_.size());
+  const auto left = static_cast<double>(members_.size()) - finished_;
+  if (computed_ > 0 && left > 0) {
+    detail += fmt::format(", about {:.0f} s left",
+                          seconds_ / computed_ * left / options_.jobs);
+  }
+  monitor_.progress({.stage = "family", .detail = detail});
+}
+
+/// Members of the wave until none is left or something is wrong.
+void FamilyRun::work(const std::vector<int>& wave,
+                     std::atomic<std::size_t>& next) {
+  try {
+    for (std::size_t k = next++; k < wave.size() && !stopping_; k = next++) {
+      size(static_cast<std::size_t>(wave[k]));
+    }
+  } catch (...) {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    error_ = error_ ? error_ : std::current_exception();
+    stopping_ = true;
+  }
+}
+
+void FamilyRun::run_wave(const std::vector<int>& wave) {
+  std::atomic<std::size_t> next{0};
+  const int jobs = std::min(options_.jobs, static_cast<int>(wave.size()));
+  if (jobs <= 1) {
+    work(wave, next);
+  } else {
+    std::vector<std::thread> threads;
+    threads.reserve(static_cast<std::size_t>(jobs));
+    for (int job = 0; job < jobs; ++job) {
+      threads.emplace_back([&] {
+        omp_set_num_threads(std::max(1, options_.threads / jobs));
+        work(wave, next);
+      });
+    }
+    for (std::thread& thread : threads) {
+      thread.join();
+    }
+  }
+  if (error_) {
+    std::rethrow_exception(error_);
+  }
+}
+
+FamilyResult FamilyRun::run() {
+  prepare();
+  std::vector<VectorX> numbers;
+  numbers.reserve(members_.size());
+  for (const Case& member : members_) {
+    numbers.push_back(member_numbers(member));
+  }
+  const std::vector<FamilyStep> steps = family_tree(numbers);
+  if (family_.study.kind != StudyKind::Analyse) {  // that has no start
+    for (const FamilyStep& step : steps) {
+      parents_[static_cast<std::size_t>(step.member)] =
+          step.parent.value_or(-1);
+    }
+  }
+  write_table();
+  tell();
+  for (const std::vector<int>& wave : family_waves(steps)) {
+    if (!stopping_) {
+      run_wave(wave);
+    }
+  }
+  conclude(result_);
+  if (stopping_) {
+    result_.status = RunStatus::Interrupted;
+  }
+  result_.total_seconds = timer_.seconds();
+  write_table();
+  write_file(
+      options_.folder / "result.json",
+      family_json(family_, result_, options_.program_version).dump(2) + "\n");
+  return std::move(result_);
+}
+
+}  // namespace
+
+FamilyResult run_family(const Case& family, const FamilyOptions& options) {
+  return FamilyRun(family, options).run();
+}
+
+}  // namespace meniscus

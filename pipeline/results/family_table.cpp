@@ -1,0 +1,222 @@
+#include "pipeline/results/family_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/forward/figures_json.h"
+#include "pipeline/results/results.h"
+#include "pipeline/tables/text_table.h"
+
+namespace meniscus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double number(const Json& json) {
+  return json.is_number() ? json.get<double>()
+                          : std::numeric_limits<double>::quiet_NaN();
+}
+
+FamilyRow::Numbers numbers_of(const Json& result, const char* key,
+                              const std::vector<std::string>& names) {
+  FamilyRow::Numbers numbers;
+  for (const std::string& name : names) {
+    if (result.contains(key) && result[key].contains(name)) {
+      numbers.emplace_back(name, number(result[key][name]));
+    }
+  }
+  return numbers;
+}
+
+Json object(const FamilyRow::Numbers& numbers) {
+  Json json = Json::object();
+  for (const auto& [name, value] : numbers) {
+    json[name] = value;
+  }
+  return json;
+}
+
+std::vector<std::string> names_of(const FamilyRow::Numbers& numbers) {
+  std::vector<std::string> names;
+  names.reserve(numbers.size());
+  for (const auto& entry : numbers) {
+    names.push_back(entry.first);
+  }
+  return names;
+}
+
+void add_cells(const FamilyRow::Numbers& numbers,
+               const std::vector<std::string>& columns, TextRow& cells) {
+  for (const std::string& column : columns) {
+    const auto at =
+        std::find_if(numbers.begin(), numbers.end(),
+                     [&](const auto& entry) { return entry.first == column; });
+    cells.push_back(at == numbers.end() ? "" : fmt::format("{}", at->second));
+  }
+}
+
+/// The longest list of names among the members.
+std::vector<std::string> columns_of(const std::vector<FamilyRow>& rows,
+                                    FamilyRow::Numbers FamilyRow::*numbers) {
+  std::vector<std::string> columns;
+  for (const FamilyRow& row : rows) {
+    if ((row.*numbers).size() > columns.size()) {
+      columns = names_of(row.*numbers);
+    }
+  }
+  return columns;
+}
+
+/// Six digits of what is a number.
+std::string shortened(const std::string& cell) {
+  double value = 0.0;
+  const char* end = cell.data() + cell.size();
+  const auto [at, error] = std::from_chars(cell.data(), end, value);
+  return error == std::errc() && at == end ? fmt::format("{:.6g}", value)
+                                           : cell;
+}
+
+}  // namespace
+
+FamilyRow family_row(const Case& member, const Json& result) {
+  FamilyRow row;
+  row.status = result.value("status", "error");
+  row.message = result.value("message", "");
+  std::vector<std::string> parameters;
+  for (const Parameter& parameter : member.parameters) {
+    parameters.push_back(parameter.name);
+  }
+  row.parameters = numbers_of(result, "parameters", parameters);
+  row.responses = numbers_of(result, "responses", response_names(member));
+  if (!row.responses.empty()) {
+    row.design = numbers_of(result, "parameters", design_names(member));
+  }
+  row.objective = number(result.value("objective", Json()));
+  const Json constraints = result.value("constraints", Json::object());
+  for (const auto& [name, c] : constraints.items()) {
+    row.constraints.push_back({.name = name,
+                               .value = number(c["value"]),
+                               .bound = number(c["bound"]),
+                               .satisfied = c["satisfied"] == true});
+  }
+  row.evaluations = result.value("evaluations", 0);
+  row.seconds = number(result.value("seconds", Json::object())["total"]);
+  return row;
+}
+
+std::string family_csv(const std::vector<FamilyRow>& rows) {
+  const auto parameters = columns_of(rows, &FamilyRow::parameters);
+  const auto design = columns_of(rows, &FamilyRow::design);
+  const auto responses = columns_of(rows, &FamilyRow::responses);
+  TextRow head = {"member", "status", "parent"};
+  for (const auto* names : {&parameters, &design, &responses}) {
+    head.insert(head.end(), names->begin(), names->end());
+  }
+  head.insert(head.end(), {"objective", "evaluations", "seconds", "message"});
+  std::vector<TextRow> table = {head};
+  for (const FamilyRow& row : rows) {
+    TextRow cells = {row.name, row.status, row.parent};
+    add_cells(row.parameters, parameters, cells);
+    add_cells(row.design, design, cells);
+    add_cells(row.responses, responses, cells);
+    cells.push_back(row.responses.empty() || std::isnan(row.objective)
+                        ? ""
+                        : fmt::format("{}", row.objective));
+    cells.push_back(std::to_string(row.evaluations));
+    cells.push_back(fmt::format("{:.3f}", row.seconds));
+    cells.push_back(row.message);
+    table.push_back(std::move(cells));
+  }
+  return csv_text(table);
+}
+
+std::string family_table_text(const std::string& csv,
+                              const std::map<std::string, std::string>& units) {
+  std::vector<TextRow> table;
+  std::string messages;
+  for (const CsvRow& row : parse_csv(csv).rows) {
+    TextRow cells = row.cells;
+    const std::string message = cells.back();
+    cells.pop_back();
+    if (!table.empty() && cells.size() > 1) {
+      if (cells[1] != "converged" && !message.empty()) {
+        messages += fmt::format("{}: {}\n", cells[0], message);
+      }
+      std::transform(cells.begin() + 1, cells.end(), cells.begin() + 1,
+                     shortened);
+    }
+    if (table.empty()) {
+      add_units(units, cells);
+    }
+    table.push_back(std::move(cells));
+  }
+  return table.empty() ? "" : aligned_text(table) + messages;
+}
+
+Json family_json(const Case& family, const FamilyResult& result,
+                 const std::string& program_version) {
+  Json json;
+  json["schema_version"] = kResultSchemaVersion;
+  json["case"] = family.title;
+  json["case_hash"] = family.hash;
+  json["program_version"] = program_version;
+  json["units"] = units_json(family.units);
+  json["status"] = name_of(result.status);
+  json["message"] = result.message;
+  json["members"] = Json::array();
+  for (const FamilyRow& row : result.rows) {
+    Json entry = {{"name", row.name},
+                  {"folder", row.folder},
+                  {"parent", row.parent},
+                  {"status", row.status},
+                  {"message", row.message},
+                  {"parameters", object(row.parameters)},
+                  {"design", object(row.design)},
+                  {"objective", row.objective},
+                  {"constraints", Json::object()},
+                  {"responses", object(row.responses)},
+                  {"evaluations", row.evaluations},
+                  {"seconds", row.seconds}};
+    for (const Constraint& c : row.constraints) {
+      entry["constraints"][c.name] = {
+          {"value", c.value}, {"bound", c.bound}, {"satisfied", c.satisfied}};
+    }
+    json["members"].push_back(std::move(entry));
+  }
+  json["seconds"] = {{"total", result.total_seconds}};
+  json["warnings"] = result.warnings;
+  return json;
+}
+
+void conclude(FamilyResult& result) {
+  const auto sized =
+      std::count_if(result.rows.begin(), result.rows.end(),
+                    [](const FamilyRow& r) { return r.sized(); });
+  const auto has = [&](const char* status) {
+    return std::any_of(result.rows.begin(), result.rows.end(),
+                       [&](const FamilyRow& r) { return r.status == status; });
+  };
+  const bool all = sized == std::ssize(result.rows);
+  result.status = all                                ? RunStatus::Converged
+                  : has("interrupted")               ? RunStatus::Interrupted
+                  : has("stopped") || has("waiting") ? RunStatus::Stopped
+                                                     : RunStatus::Infeasible;
+  result.message =
+      fmt::format("{} of {} members are sized", sized, result.rows.size());
+  std::vector<std::string> others;
+  for (const FamilyRow& row : result.rows) {
+    if (!row.sized()) {
+      others.push_back(fmt::format("{} ({})", row.name, row.status));
+    }
+  }
+  if (!others.empty()) {
+    result.message += fmt::format("; not {}", fmt::join(others, ", "));
+  }
+}
+
+}  // namespace meniscus

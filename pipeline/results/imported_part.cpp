@@ -1,0 +1,214 @@
+#include "pipeline/results/imported_part.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "mesh_tet/quadratic.h"
+#include "mesh_tet/tetrahedralize.h"
+#include "pipeline/forward/part_file.h"
+
+namespace meniscus {
+
+namespace {
+
+// Longest edge over the wanted one: halves of it are not below two thirds.
+constexpr double kLongestEdge = 4.0 / 3.0;
+
+constexpr const char* kNameless = "unnamed";  // as readers call it
+
+/// The facet's parts where some of its edges have a point half way (-1: none),
+/// which stand at (01), (12), (20).
+std::vector<Triangle> parts_of(const Triangle& t, std::array<int, 3> mid) {
+  const auto count =
+      std::count_if(mid.begin(), mid.end(), [](int m) { return m >= 0; });
+  // Turned so that the edges with points come first.
+  int turn = 0;
+  while (count > 0 && count < 3 &&
+         !(mid[static_cast<std::size_t>(turn)] >= 0 &&
+           mid[static_cast<std::size_t>((turn + 2) % 3)] < 0)) {
+    ++turn;
+  }
+  const auto corner = [&](int k) {
+    return t[static_cast<std::size_t>((turn + k) % 3)];
+  };
+  const auto half = [&](int k) {
+    return mid[static_cast<std::size_t>((turn + k) % 3)];
+  };
+  switch (count) {
+    case 0:
+      return {t};
+    case 1:
+      return {{corner(0), half(0), corner(2)}, {half(0), corner(1), corner(2)}};
+    case 2:
+      return {{half(0), corner(1), half(1)},
+              {corner(0), half(0), half(1)},
+              {corner(0), half(1), corner(2)}};
+    default:
+      return {{corner(0), half(0), half(2)},
+              {half(0), corner(1), half(1)},
+              {half(2), half(1), corner(2)},
+              {half(0), half(1), half(2)}};
+  }
+}
+
+/// Each surface that a load or support of the run names.
+std::set<std::string> surfaces_used(const EvaluatedCase& numbers) {
+  std::set<std::string> used;
+  for (const LoadCase& load_case : numbers.load_cases) {
+    const auto add = [&](const auto& entries) {
+      for (const auto& entry : entries) {
+        used.insert(entry.surface);
+      }
+    };
+    add(load_case.supports);
+    add(load_case.forces);
+    add(load_case.pressures);
+    add(load_case.tractions);
+    add(load_case.remote_loads);
+    add(load_case.springs);
+  }
+  return used;
+}
+
+void check_names(const SurfaceMesh& surface, const EvaluatedCase& numbers,
+                 const std::string& path) {
+  for (const std::string& name : surfaces_used(numbers)) {
+    if (surface.label_of(name) < 0) {
+      const bool nameless =
+          surface.labels.size() == 1 && surface.labels[0] == kNameless;
+      throw InvalidInput(fmt::format(
+          "{}: no face '{}', which the run's loads and supports name; {}; "
+          "say which it is (--face {}=FACE), or write its facets as `solid {}` "
+          "of an ASCII STL file or as group `g {}` of an OBJ file",
+          path, name,
+          nameless
+              ? "the file has no names (binary STL never has)"
+              : fmt::format("there are {}", fmt::join(surface.labels, ", ")),
+          name, name, name));
+    }
+  }
+}
+
+SurfaceMesh renamed(SurfaceMesh surface, const FaceNames& names,
+                    const std::string& path) {
+  for (const auto& [face, name] : names) {
+    const int label = surface.label_of(face);
+    if (label < 0) {
+      throw InvalidInput(
+          fmt::format("{}: no face '{}' (--face {}={}); there "
+                      "are {}",
+                      path, face, name, face, fmt::join(surface.labels, ", ")));
+    }
+    surface.labels[static_cast<std::size_t>(label)] = name;
+  }
+  return surface;
+}
+
+/// Ten-node elements with straight sides.
+TetMesh filled(const SurfaceMesh& surface, double edge, const std::string& path,
+               Monitor* monitor) {
+  const Tetrahedralization linear =
+      tetrahedralize(surface, {.edge = edge, .monitor = monitor});
+  if (linear.failure) {
+    throw MeshError(fmt::format("{}: it cannot be filled with elements: {}",
+                                path, linear.failure->message));
+  }
+  QuadraticSurface quadratic;
+  quadratic.base = surface;
+  list_edges(surface.facets, quadratic.edges, quadratic.facet_edges);
+  for (const Edge& e : quadratic.edges) {
+    quadratic.mid.push_back(0.5 *
+                            (surface.points[static_cast<std::size_t>(e[0])] +
+                             surface.points[static_cast<std::size_t>(e[1])]));
+  }
+  return make_quadratic(linear.mesh, quadratic);
+}
+
+}  // namespace
+
+SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
+  while (true) {
+    std::vector<Edge> edges;
+    std::vector<Triangle> facet_edges;
+    list_edges(surface.facets, edges, facet_edges);
+    std::vector<int> half(edges.size(), -1);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const Vec3 a = surface.points[static_cast<std::size_t>(edges[e][0])];
+      const Vec3 b = surface.points[static_cast<std::size_t>(edges[e][1])];
+      if ((b - a).norm() > longest) {
+        half[e] = static_cast<int>(surface.points.size());
+        surface.points.push_back(0.5 * (a + b));
+      }
+    }
+    SurfaceMesh next{.points = std::move(surface.points),
+                     .facets = {},
+                     .facet_label = {},
+                     .labels = surface.labels};
+    for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+      std::array<int, 3> mid{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        mid[k] = half[static_cast<std::size_t>(facet_edges[f][k])];
+      }
+      for (const Triangle& part : parts_of(surface.facets[f], mid)) {
+        next.facets.push_back(part);
+        next.facet_label.push_back(surface.facet_label[f]);
+        if (!surface.facet_bodies.empty()) {
+          next.facet_bodies.push_back(surface.facet_bodies[f]);
+        }
+      }
+    }
+    const bool done = next.facets.size() == surface.facets.size();
+    surface = std::move(next);
+    if (done) {
+      return surface;
+    }
+  }
+}
+
+PartFigures imported_part_figures(const std::filesystem::path& path,
+                                  const RunPart& run, const FaceNames& names,
+                                  Monitor* monitor, EvaluationFields* kept) {
+  const std::vector<BodyEntry> bodies = solid_bodies(run.input);
+  if (std::any_of(bodies.begin(), bodies.end(), [&](const BodyEntry& body) {
+        return body.material != bodies.front().material;
+      })) {
+    throw InvalidInput(fmt::format(
+        "{}: the run has {} bodies of several materials; a part from a file is "
+        "of one material, and which is not known",
+        path.string(), bodies.size()));
+  }
+  const double edge = run.input.resolution.fea;
+  const SurfaceMesh surface = with_short_edges(
+      renamed(
+          read_part_file(path, {.unit = run.input.units.length, .edge = edge}),
+          names, path.string()),
+      kLongestEdge * edge);
+  check_names(surface, run.fields.inputs, path.string());
+  EvaluationFields fields;
+  fields.inputs = run.fields.inputs;
+  fields.inputs.materials.resize(1);
+  fields.mesh = filled(surface, edge, path.string(), monitor);
+  fields.exclusion =
+      choose_exclusion(run.input, fields.mesh, EmptyZones::Allowed);
+  const ElasticModel elasticity(fields.mesh, fields.inputs.materials,
+                                fields.inputs.load_cases,
+                                {.solver = run.input.analysis.solver,
+                                 .processes = run.input.analysis.processes,
+                                 .monitor = monitor});
+  fields.solution = elasticity.base_solution();
+  if (fields.solution.failure) {
+    throw SolverError(path.string() + ": " + fields.solution.failure->message);
+  }
+  PartFigures figures = part_figures(path.string(), fields);
+  if (kept != nullptr) {
+    *kept = std::move(fields);
+  }
+  return figures;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,296 @@
+#include "pipeline/results/part_comparison.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "fea/functionals/volume_functionals.h"
+#include "fea/loads/loads.h"
+#include "pipeline/forward/figures_json.h"
+#include "pipeline/forward/stress_figures.h"
+#include "pipeline/results/results.h"
+#include "pipeline/store/refreeze.h"
+#include "pipeline/store/stored_case.h"
+
+namespace meniscus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A resultant below this part of the forces' sum is rounding.
+constexpr double kNoResultant = 1e-9;
+
+/// Elements that share a corner and a region, counted as one piece.
+int piece_count(const TetMesh& mesh) {
+  std::vector<int> parent(static_cast<std::size_t>(mesh.element_count()));
+  std::iota(parent.begin(), parent.end(), 0);
+  const std::function<int(int)> root = [&](int e) {
+    while (parent[static_cast<std::size_t>(e)] != e) {
+      int& next = parent[static_cast<std::size_t>(e)];
+      next = parent[static_cast<std::size_t>(next)];
+      e = next;
+    }
+    return e;
+  };
+  const int regions = 1 + *std::max_element(mesh.element_region.begin(),
+                                            mesh.element_region.end());
+  for (int region = 0; region < regions; ++region) {
+    std::vector<int> first(static_cast<std::size_t>(mesh.corner_count), -1);
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      if (mesh.element_region[static_cast<std::size_t>(e)] != region) {
+        continue;
+      }
+      for (int corner = 0; corner < 4; ++corner) {
+        int& seen = first[static_cast<std::size_t>(
+            mesh.element(e)[static_cast<std::size_t>(corner)])];
+        seen = seen < 0 ? e : seen;
+        parent[static_cast<std::size_t>(root(e))] = root(seen);
+      }
+    }
+  }
+  int pieces = 0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    pieces += root(e) == e ? 1 : 0;
+  }
+  return pieces;
+}
+
+/// Of the nodes of elements that count.
+double largest_principal(const TetMesh& mesh, const std::vector<char>& excluded,
+                         const RecoveredStress& recovered) {
+  const StressField field = nodal_stress(mesh, recovered);
+  double largest = -std::numeric_limits<double>::infinity();
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!excluded.empty() && excluded[static_cast<std::size_t>(e)] != 0) {
+      continue;
+    }
+    for (const int n : mesh.element(e)) {
+      const Stress& stress = field.nodal[static_cast<std::size_t>(n)];
+      largest = std::max(largest, principal_stresses(stress)[0]);
+    }
+  }
+  return largest;
+}
+
+PartLoadFigures load_figures(const EvaluationFields& fields, std::size_t k,
+                             const StressFigures& stress) {
+  const LoadCase& load_case = fields.inputs.load_cases[k];
+  PartLoadFigures figures{
+      .load_case = load_case.name,
+      .stiffness = std::nullopt,
+      .max_von_mises = stress.max_von_mises,
+      .max_principal = largest_principal(fields.mesh, fields.exclusion.element,
+                                         fields.stresses[k].recovered),
+      .coefficient_of_variation =
+          stress.uniformity.von_mises.coefficient_of_variation,
+      .gini = stress.uniformity.von_mises.gini};
+  const VectorX forces =
+      nodal_forces(fields.mesh, load_case, fields.inputs.materials);
+  figures.work = forces.dot(fields.solution.displacements[k]);
+  Vec3 resultant = Vec3::Zero();
+  double sum = 0.0;
+  for (Eigen::Index n = 0; n < forces.size(); n += 3) {
+    resultant += forces.segment<3>(n);
+    sum += forces.segment<3>(n).norm();
+  }
+  if (!load_case.temperature && figures.work > 0.0 &&
+      resultant.norm() > kNoResultant * sum) {
+    figures.stiffness = resultant.squaredNorm() / figures.work;
+  }
+  return figures;
+}
+
+/// The figure of `part` under the load case of that name.
+const PartLoadFigures* find(const PartFigures& part, const std::string& name) {
+  const auto at =
+      std::find_if(part.load_cases.begin(), part.load_cases.end(),
+                   [&](const auto& f) { return f.load_case == name; });
+  return at == part.load_cases.end() ? nullptr : &*at;
+}
+
+/// Adds rows to the table of comparison.
+class Table {
+ public:
+  explicit Table(const std::vector<PartFigures>& parts) : parts_(parts) {
+    std::vector<std::string> head = {"", parts[0].name};
+    for (std::size_t k = 1; k < parts.size(); ++k) {
+      head.push_back(parts[k].name);
+      head.emplace_back("ratio");
+    }
+    rows.push_back(std::move(head));
+  }
+
+  void add(const std::string& what, const std::string& unit,
+           const std::function<std::optional<double>(const PartFigures&)>& of) {
+    std::vector<std::string> row = {
+        unit.empty() ? what : fmt::format("{} [{}]", what, unit)};
+    const std::optional<double> first = of(parts_[0]);
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      const std::optional<double> value = of(parts_[k]);
+      row.push_back(value ? fmt::format("{:.6g}", *value) : "");
+      if (k > 0) {
+        const bool both = value && first && *first != 0.0;
+        row.push_back(both ? fmt::format("{:.4g}", *value / *first) : "");
+      }
+    }
+    rows.push_back(std::move(row));
+  }
+
+  std::vector<std::vector<std::string>> rows;
+
+ private:
+  const std::vector<PartFigures>& parts_;
+};
+
+void add_load_case(Table& table, const std::string& name,
+                   const UnitSystem& units) {
+  const std::string stiffness_unit = units.force + "/" + units.length;
+  const auto figure =
+      [&](const std::function<std::optional<double>(
+              const PartFigures&, const PartLoadFigures&)>& of) {
+        return [&name, of](const PartFigures& part) -> std::optional<double> {
+          const PartLoadFigures* figures = find(part, name);
+          return figures == nullptr ? std::nullopt : of(part, *figures);
+        };
+      };
+  table.add(
+      name + ": stiffness", stiffness_unit,
+      figure([](const auto& /*part*/, const auto& f) { return f.stiffness; }));
+  table.add(name + ": stiffness per mass", stiffness_unit + "/" + units.mass,
+            figure([](const auto& part, const auto& f) {
+              return f.stiffness && part.mass > 0.0
+                         ? std::optional(*f.stiffness / part.mass)
+                         : std::nullopt;
+            }));
+  table.add(name + ": peak von Mises", units.pressure,
+            figure([](const auto& /*part*/, const auto& f) {
+              return std::optional(f.max_von_mises);
+            }));
+  table.add(name + ": peak principal", units.pressure,
+            figure([](const auto& /*part*/, const auto& f) {
+              return std::optional(f.max_principal);
+            }));
+  table.add(name + ": coefficient of variation", "",
+            figure([](const auto& /*part*/, const auto& f) {
+              return std::optional(f.coefficient_of_variation);
+            }));
+  table.add(name + ": Gini", "",
+            figure([](const auto& /*part*/, const auto& f) {
+              return std::optional(f.gini);
+            }));
+}
+
+std::vector<std::string> load_case_names(
+    const std::vector<PartFigures>& parts) {
+  std::vector<std::string> names;
+  for (const PartFigures& part : parts) {
+    for (const PartLoadFigures& f : part.load_cases) {
+      if (std::find(names.begin(), names.end(), f.load_case) == names.end()) {
+        names.push_back(f.load_case);
+      }
+    }
+  }
+  return names;
+}
+
+Json part_json(const PartFigures& part) {
+  Json json = {{"name", part.name},         {"parts", part.parts},
+               {"volume", part.volume},     {"mass", part.mass},
+               {"elements", part.elements}, {"load_cases", Json::object()}};
+  if (!part.surface.empty()) {
+    json["surface"] = part.surface;
+  }
+  for (const PartLoadFigures& f : part.load_cases) {
+    Json entry = {{"stiffness", nullptr},
+                  {"stiffness_per_mass", nullptr},
+                  {"work", f.work},
+                  {"max_von_mises", f.max_von_mises},
+                  {"max_principal", f.max_principal},
+                  {"coefficient_of_variation", f.coefficient_of_variation},
+                  {"gini", f.gini}};
+    if (f.stiffness) {
+      entry["stiffness"] = *f.stiffness;
+      if (part.mass > 0.0) {
+        entry["stiffness_per_mass"] = *f.stiffness / part.mass;
+      }
+    }
+    json["load_cases"][f.load_case] = std::move(entry);
+  }
+  return json;
+}
+
+}  // namespace
+
+PartFigures part_figures(const std::string& name, EvaluationFields& fields) {
+  fields.stresses = part_stresses(fields.mesh, fields.inputs, fields.solution);
+  PartFigures part{
+      .name = name,
+      .parts = piece_count(fields.mesh),
+      .volume = volume_functional(fields.mesh, Derivatives::None).value,
+      .mass = mass_functional(fields.mesh, fields.inputs.materials,
+                              Derivatives::None)
+                  .value,
+      .elements = fields.mesh.element_count(),
+      .load_cases = {}};
+  const std::vector<StressFigures> stresses = stress_figures(fields);
+  for (std::size_t k = 0; k < stresses.size(); ++k) {
+    part.load_cases.push_back(load_figures(fields, k, stresses[k]));
+  }
+  return part;
+}
+
+RunPart load_run_part(const std::filesystem::path& folder, Monitor* monitor) {
+  const StudyStore store = StudyStore::read(folder.string());
+  const std::vector<EvaluationRecord> records = store.all();
+  RunPart part{.input = frozen_as_answered(restore_case(store.meta()), records),
+               .design = {},
+               .fields = {},
+               .figures = {}};
+  part.design = answer_of_run(part.input, records, folder);
+  const ForwardModel model(part.input, {.monitor = monitor});
+  const Evaluation found = model.failure()
+                               ? model.frozen()
+                               : model.evaluate(part.design, &part.fields);
+  if (found.failure) {
+    throw MeshError(fmt::format("{}: the run's part cannot be made again: {}",
+                                folder.string(), found.failure->message));
+  }
+  part.figures = part_figures(folder.string(), part.fields);
+  return part;
+}
+
+std::vector<std::vector<std::string>> comparison_table(
+    const std::vector<PartFigures>& parts, const UnitSystem& units) {
+  Table table(parts);
+  table.add("parts", "", [](const PartFigures& part) {
+    return std::optional<double>(part.parts);
+  });
+  table.add("mass", units.mass,
+            [](const PartFigures& part) { return std::optional(part.mass); });
+  table.add("volume", units.unit_of(Dimension::Volume),
+            [](const PartFigures& part) { return std::optional(part.volume); });
+  for (const std::string& name : load_case_names(parts)) {
+    add_load_case(table, name, units);
+  }
+  return std::move(table.rows);
+}
+
+Json comparison_json(const std::vector<PartFigures>& parts,
+                     const UnitSystem& units,
+                     const std::string& program_version) {
+  Json json = {{"schema_version", kResultSchemaVersion},
+               {"program_version", program_version},
+               {"units", units_json(units)},
+               {"parts", Json::array()}};
+  for (const PartFigures& part : parts) {
+    json["parts"].push_back(part_json(part));
+  }
+  return json;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,297 @@
+#include "pipeline/results/results.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "io/stl.h"
+#include "io/vtk_files.h"
+#include "pipeline/forward/figures_json.h"
+#include "pipeline/forward/walls.h"
+#include "pipeline/store/refreeze.h"
+#include "pipeline/store/stored_case.h"
+#include "pipeline/store/study_table.h"
+
+namespace meniscus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json seconds_json(const StageSeconds& seconds) {
+  return {{"evolve", seconds.film},
+          {"mesh", seconds.mesh},
+          {"fea", seconds.fea},
+          {"gradient", seconds.gradient}};
+}
+
+/// A field of `components` values per node from what numbers them by node.
+Field node_field(const char* name, const std::string& unit, int components,
+                 const double* values, std::size_t count) {
+  return {.name = name,
+          .unit = unit,
+          .components = components,
+          .values = {values, values + count}};
+}
+
+Field element_field(const char* name, const std::string& unit) {
+  return {.name = name, .unit = unit};
+}
+
+/// What elements have of the first load case: stresses at integration points,
+/// one after the other, and their errors.
+std::vector<Field> element_fields(const Case& input,
+                                  const EvaluationFields& fields) {
+  const PartStress& first = fields.stresses.front();
+  Field stress = element_field("point_stress", input.units.pressure);
+  stress.components = 6 * first.points.points_per_element;
+  for (const Stress& s : first.points.stress) {
+    stress.values.insert(stress.values.end(), s.begin(), s.end());
+  }
+  Field error = element_field("energy_error", "");
+  error.values = first.error.element;
+  Field excluded = element_field("excluded", "");
+  excluded.values.assign(fields.exclusion.element.begin(),
+                         fields.exclusion.element.end());
+  excluded.values.resize(first.error.element.size(), 0.0);
+  return {std::move(stress), std::move(error), std::move(excluded)};
+}
+
+MeshFields part_fields(const Case& input, const EvaluationFields& fields) {
+  const VectorX& u = fields.solution.displacements.front();
+  const StressField nodal =
+      nodal_stress(fields.mesh, fields.stresses.front().recovered);
+  MeshFields out;
+  out.points.push_back(node_field("displacement", input.units.length, 3,
+                                  u.data(),
+                                  static_cast<std::size_t>(u.size())));
+  Field stress{.name = "stress", .unit = input.units.pressure, .components = 6};
+  for (const auto& s : nodal.nodal) {
+    // xx yy zz xy yz zx: VTK's order of a symmetric tensor too.
+    stress.values.insert(stress.values.end(), s.begin(), s.end());
+  }
+  out.points.push_back(std::move(stress));
+  out.points.push_back(node_field("von_mises", input.units.pressure, 1,
+                                  nodal.von_mises.data(),
+                                  nodal.von_mises.size()));
+  out.cells = element_fields(input, fields);
+  out.notes = {{"title", input.title},
+               {"length_unit", input.units.length},
+               {"load_case", input.load_cases.front().name}};
+  for (const ModeShape& mode : fields.modes) {
+    out.points.push_back(
+        node_field(mode.name.c_str(), "", 3, mode.shape.data(),
+                   static_cast<std::size_t>(mode.shape.size())));
+    out.notes.emplace_back(mode.name, mode.value);
+  }
+  return out;
+}
+
+Json value_map(const std::vector<std::string>& names, const VectorX& values) {
+  Json map = Json::object();
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    map[names[static_cast<std::size_t>(k)]] = values[k];
+  }
+  return map;
+}
+
+Json parameters_json(const Case& input, const VectorX& design) {
+  Json json = value_map(design_names(input), design);
+  for (const auto& [name, value] : parameter_values(input, design)) {
+    json[name] = value;
+  }
+  return json;
+}
+
+Json coarse_json(const Case& input, const CoarseFigures& coarse) {
+  const bool answered = coarse.design.size() > 0;
+  return {{"edge_factor", coarse.edge_factor},
+          {"message", coarse.message},
+          {"parameters",
+           answered ? value_map(design_names(input), coarse.design) : Json()},
+          {"evaluations", coarse.evaluations},
+          {"gradient_evaluations", coarse.gradients}};
+}
+
+Json refrozen_json(const Case& input, const std::vector<Refreeze>& refrozen) {
+  Json json = Json::array();
+  for (const Refreeze& r : refrozen) {
+    json.push_back({{"evaluation", r.evaluation},
+                    {"reason", r.reason},
+                    {"parameters", value_map(design_names(input), r.design)},
+                    {"shift", value_map(response_names(input), r.shift)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
+                                   const std::string& program_version) {
+  Json json;
+  json["schema_version"] = kResultSchemaVersion;
+  json["case"] = input.title;
+  json["case_hash"] = input.hash;
+  json["program_version"] = program_version;
+  json["units"] = units_json(input.units);
+  json["status"] = name_of(result.status);
+  json["message"] = result.message;
+  const Evaluation* best = result.best ? &*result.best : nullptr;
+  json["parameters"] = parameters_json(
+      input, best != nullptr ? best->design : initial_design(input));
+  const bool has_objective =
+      input.study.kind == StudyKind::Match || input.study.objective;
+  json["objective"] = has_objective ? Json(result.objective) : Json();
+  json["constraints"] = Json::object();
+  for (const Constraint& c : result.constraints) {
+    json["constraints"][c.name] = {
+        {"value", c.value}, {"bound", c.bound}, {"satisfied", c.satisfied}};
+  }
+  if (result.sweep) {
+    json["sweep"] = sweep_json(input, *result.sweep);
+  }
+  if (result.tolerance) {
+    json["tolerance"] = tolerance_json(input, *result.tolerance);
+  }
+  if (result.front) {
+    json["front"] = front_json(input, *result.front);
+  }
+  const std::vector<std::string> names = response_names(input);
+  json["responses"] =
+      value_map(names, best != nullptr ? best->responses : VectorX());
+  json["response_errors"] = value_map(names, result.response_errors);
+  if (result.element_errors) {
+    json["element_errors"] = {
+        {"energy", result.element_errors->energy},
+        {"responses", value_map(names, result.element_errors->responses)}};
+  }
+  json["parameter_errors"] =
+      value_map(design_names(input), result.design_errors);
+  if (result.start) {
+    json["start"] = {
+        {"parameters", value_map(design_names(input), result.start->design)},
+        {"responses", value_map(names, result.start->responses)}};
+  }
+  json["evaluations"] = result.evaluations;
+  json["failed_evaluations"] = result.failed_evaluations;
+  json["gradient_evaluations"] = result.gradient_evaluations;
+  if (result.coarse) {
+    json["coarse"] = coarse_json(input, *result.coarse);
+  }
+  if (!result.refrozen.empty()) {
+    json["refrozen"] = refrozen_json(input, result.refrozen);
+  }
+  if (best != nullptr) {
+    json["film"] = film_json(best->film);
+    json["tet"] = tet_json(best->tet);
+    json["fea"] = fea_json(best->fea);
+  }
+  if (result.adaptation) {
+    json["adaptation"] = adaptation_json(input, *result.adaptation);
+  }
+  json["stress"] = stress_json(result.stress);
+  if (result.eigen) {
+    add_eigen_json(*result.eigen, json);
+  }
+  if (!result.exclusion.zones.empty()) {
+    json["exclusion"] = exclusion_json(result.exclusion);
+  }
+  json["seconds"] = seconds_json(result.seconds);
+  json["seconds"]["output"] = result.output_seconds;
+  json["seconds"]["total"] = result.total_seconds;
+  if (result.ledger) {
+    json["ledger"] = ledger_json(*result.ledger);
+  }
+  json["warnings"] = result.warnings;
+  return json;
+}
+
+void write_film(const Case& input, const SurfaceMesh& film,
+                const std::filesystem::path& folder) {
+  MeshFields fields;
+  fields.notes = {{"title", input.title}, {"length_unit", input.units.length}};
+  write_vtp(folder / "film.vtp", film, fields);
+}
+
+void write_part(const std::filesystem::path& file, const Case& input,
+                const EvaluationFields& fields,
+                const std::vector<std::pair<std::string, std::string>>& notes) {
+  MeshFields part = part_fields(input, fields);
+  part.notes.insert(part.notes.end(), notes.begin(), notes.end());
+  write_vtu(file, fields.mesh, part);
+}
+
+void write_part_surface(const std::filesystem::path& file, const Case& input,
+                        const EvaluationFields& fields) {
+  write_boundary_vtp(file, fields.mesh, part_fields(input, fields));
+}
+
+std::vector<std::string> write_meshes(const Case& input,
+                                      const EvaluationFields& fields,
+                                      const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  const auto path = [&](const std::string& name) {
+    names.push_back(name);
+    return folder / name;
+  };
+  const MeshFields part = part_fields(input, fields);
+  names.emplace_back("film.vtp");
+  write_film(input, fields.film, folder);
+  write_vtu(path("part.vtu"), fields.mesh, part);
+  write_boundary_vtp(path("part_surface.vtp"), fields.mesh, part);
+  const auto write_part_stl = [&](const SurfaceMesh& mesh, double edge) {
+    write_stl(path(stl_name(edge)), mesh,
+              {.name = input.title, .unit = input.units.length});
+  };
+  if (input.resolution.export_edges.empty()) {
+    write_part_stl(fields.boundary, input.resolution.film);
+  }
+  for (const double edge : input.resolution.export_edges) {
+    write_part_stl(settle_again(fields.inputs, edge), edge);
+  }
+  return names;
+}
+
+std::vector<std::string> write_unfilled(const EvaluationFields& fields,
+                                        const std::filesystem::path& folder) {
+  if (fields.surface.base.facets.empty() || !fields.mesh.nodes.empty()) {
+    return {};
+  }
+  write_findings_vtp(folder / "findings.vtp", fields.surface.base,
+                     fields.findings);
+  // Broken corners cannot be drawn; the findings leave them out.
+  const auto broken = [](const Finding& finding) {
+    return finding.kind == FindingKind::BadIndex ||
+           finding.kind == FindingKind::NotFinite;
+  };
+  if (std::any_of(fields.findings.begin(), fields.findings.end(), broken)) {
+    return {"findings.vtp"};
+  }
+  write_vtp(folder / "unfilled_surface.vtp", fields.surface.base);
+  return {"findings.vtp", "unfilled_surface.vtp"};
+}
+
+SurfaceMesh settle_again(const EvaluatedCase& numbers, double edge) {
+  const FilmModel model =
+      FilmModel::freeze(numbers.film_system, {.edge = edge, .refinements = 0});
+  if (model.reference().failure) {
+    throw MeshError(fmt::format("no film at edge {:g}: {}", edge,
+                                model.reference().failure->message));
+  }
+  return boundary_of(numbers, model, model.reference().points);
+}
+
+std::string stl_name(double edge) { return fmt::format("part_{:g}.stl", edge); }
+
+void write_summary(const Case& input, const RunResult& result,
+                   const std::vector<EvaluationRecord>& records,
+                   const std::string& program_version,
+                   const std::filesystem::path& folder) {
+  write_file(folder / "history.csv", history_csv(records));
+  write_file(folder / "result.json",
+             result_json(input, result, program_version).dump(2) + "\n");
+}
+
+}  // namespace meniscus

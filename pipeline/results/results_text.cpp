@@ -1,0 +1,166 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/count_text.h"
+#include "pipeline/forward/eigen_figures.h"
+#include "pipeline/results/results.h"
+
+namespace meniscus {
+
+namespace {
+
+std::string with_error(double value, const VectorX& errors, Eigen::Index k,
+                       const std::string& unit) {
+  std::string text = quantity_text(value, unit);
+  if (k < errors.size()) {
+    text += "  +- " + quantity_text(errors[k], unit, 2);
+  }
+  return text;
+}
+
+/// What another mesh changed most, relative to the answer.
+std::string shift_text(const Case& input, const Refreeze& refreeze,
+                       const VectorX& answer) {
+  Eigen::Index worst = -1;
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < refreeze.shift.size(); ++k) {
+    const double relative = std::abs(refreeze.shift[k] / answer[k]);
+    if (std::isfinite(relative) && relative > largest) {
+      worst = k;
+      largest = relative;
+    }
+  }
+  return worst < 0 ? ""
+                   : fmt::format("; the new mesh changes '{}' by {:.2g} %",
+                                 input.responses[worst].name, 100.0 * largest);
+}
+
+/// "  sway   0.09 mm, at most 0.1 mm: kept".
+std::string bounds_text(const Case& input, const ConstraintEntry& entry,
+                        const Constraint& constraint) {
+  const std::string unit = response_unit(input, entry.response);
+  std::string bounds;
+  if (entry.lower == entry.upper) {
+    bounds = "wanted " + quantity_text(entry.lower, unit);
+  } else {
+    if (std::isfinite(entry.lower)) {
+      bounds = "at least " + quantity_text(entry.lower, unit);
+    }
+    if (std::isfinite(entry.upper)) {
+      bounds += (bounds.empty() ? "at most " : ", at most ") +
+                quantity_text(entry.upper, unit);
+    }
+  }
+  return fmt::format("  {:<20} {}, {}: {}\n", constraint.name,
+                     quantity_text(constraint.value, unit), bounds,
+                     constraint.satisfied ? "kept" : "VIOLATED");
+}
+
+}  // namespace
+
+std::string result_text(const Case& input, const RunResult& result) {
+  std::string text;
+  if (!result.best || result.best->responses.size() == 0) {
+    return text;
+  }
+  const Evaluation& best = *result.best;
+  const std::vector<std::string> designs = design_names(input);
+  for (Eigen::Index k = 0; k < best.design.size(); ++k) {
+    text +=
+        fmt::format("  {:<20} {}\n", designs[k],
+                    with_error(best.design[k], result.design_errors, k, ""));
+  }
+  const std::vector<std::string> names = response_names(input);
+  for (Eigen::Index k = 0; k < best.responses.size(); ++k) {
+    const std::string unit = response_unit(input, static_cast<int>(k));
+    text += fmt::format(
+        "  {:<20} {}", names[k],
+        with_error(best.responses[k], result.response_errors, k, unit));
+    if (result.start && result.start->responses.size() > k) {
+      text += "   (at the start " +
+              quantity_text(result.start->responses[k], unit) + ")";
+    }
+    text += "\n";
+  }
+  const bool matches = input.study.kind == StudyKind::Match;
+  for (std::size_t k = 0; k < result.constraints.size(); ++k) {
+    const Constraint& c = result.constraints[k];
+    text += matches
+                ? fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n",
+                              c.name, c.value, c.bound)
+                : bounds_text(input, input.study.constraints[k], c);
+  }
+  if (result.sweep) {
+    text += sweep_text(input, *result.sweep);
+  }
+  if (result.tolerance) {
+    text += tolerance_text(input, *result.tolerance);
+  }
+  if (result.front) {
+    text += front_text(input, *result.front);
+  }
+  for (const ExclusionShare& zone : result.exclusion.zones) {
+    text += fmt::format(
+        "  left out of stress figures: {}: {} elements, {:.2g} % of the "
+        "volume\n",
+        zone.where, zone.elements, 100.0 * zone.volume_share);
+  }
+  for (const Refreeze& r : result.refrozen) {
+    text += fmt::format("  frozen anew at evaluation {}: {}{}\n", r.evaluation,
+                        r.reason, shift_text(input, r, best.responses));
+  }
+  if (result.eigen) {
+    text += eigen_text(*result.eigen);
+  }
+  if (result.adaptation) {
+    const AdaptedState& before = result.adaptation->before;
+    const AdaptedState& after = result.adaptation->after;
+    text += fmt::format(
+        "  adapted: {} elements with an energy error of {:.2g} % to {} with "
+        "{:.2g} %\n",
+        before.tet.elements, 100.0 * before.errors.energy, after.tet.elements,
+        100.0 * after.errors.energy);
+  }
+  text += fmt::format(
+      "  film: {}, {} facets, residual {:.1e} (bound {:.1e}), smallest "
+      "eigenvalue {:.3g}\n"
+      "  elements: {} ten-node tetrahedra, {} unknowns, dihedral angles {:.1f} "
+      "to {:.1f} degrees\n"
+      "  {} and {} in {:.1f} s (film {:.1f}, mesh "
+      "{:.1f}, elasticity {:.1f}, gradients {:.1f})\n",
+      best.film.verdict, best.film.facets, best.film.residual,
+      best.film.residual_bound, best.film.min_eigenvalue, best.tet.elements,
+      best.fea.dofs, best.tet.min_dihedral_deg, best.tet.max_dihedral_deg,
+      count_text(static_cast<std::size_t>(result.evaluations), "evaluation"),
+      count_text(static_cast<std::size_t>(result.gradient_evaluations),
+                 "gradient"),
+      result.total_seconds, result.seconds.film, result.seconds.mesh,
+      result.seconds.fea, result.seconds.gradient);
+  if (result.ledger) {
+    text += ledger_text(*result.ledger, input.units.length);
+  }
+  return text;
+}
+
+std::string film_text(const Case& input, const FilmReport& film) {
+  std::string text = fmt::format(
+      "film: {}\n  {} vertices, {} facets, area {:.8g} {}, energy {:.8g} {}\n"
+      "  residual {:.2e} {} (bound {:.2e}), smallest eigenvalue {:.4g}, index "
+      "{}\n  smallest neck {:.4g} {} at ({:.4g}, {:.4g}, {:.4g})\n",
+      film.verdict, film.vertices, film.facets, film.area,
+      input.units.unit_of(Dimension::Area), film.energy,
+      input.units.unit_of(Dimension::Energy), film.residual, input.units.force,
+      film.residual_bound, film.min_eigenvalue, film.index, film.smallest_neck,
+      input.units.length, film.neck_position.x(), film.neck_position.y(),
+      film.neck_position.z());
+  for (const BodyState& body : film.bodies) {
+    text += fmt::format("  body {}: volume {:.8g} {}, pressure {:.6g} {}\n",
+                        body.name, body.volume,
+                        input.units.unit_of(Dimension::Volume), body.pressure,
+                        input.units.pressure);
+  }
+  return text;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,294 @@
+#include "pipeline/schema/case_schema.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace meniscus {
+
+namespace {
+
+using D = Dimension;
+using K = KeyType;
+using N = TableNeed;
+
+std::vector<TableSpec> make_tables() {
+  return {
+      {"",
+       false,
+       N::Always,
+       "Above the first table",
+       {{"title", K::Text, D::None, true, "one line for people"},
+        {"units", K::Choice, D::None, true,
+         "consistent unit system of every number in the file",
+         "mm-N-MPa|m-N-Pa|in-lbf-psi"}}},
+      {"parameters",
+       false,
+       N::Optional,
+       "Named numbers for expressions, `name = value`; override from outside "
+       "with --set name=value",
+       {}},
+      {"design",
+       true,
+       N::Optional,
+       "A design variable: what the optimizer moves",
+       {{"initial", K::Constant, std::nullopt, true,
+         "value at which the model freezes and the study starts"},
+        {"bounds", K::Bounds, std::nullopt, true, "[least, largest]"}}},
+      {"bodies",
+       true,
+       N::ForParts,
+       "A chamber that films and solids enclose; it becomes solid material",
+       {{"enclosed_by", K::Names, D::None, true,
+         "films and solids that close it"},
+        {"volume", K::Quantity, D::Volume, false, "enclosed volume"},
+        {"pressure", K::Quantity, D::Pressure, false,
+         "inside minus outside, instead of a volume"},
+        {"material", K::Name, D::None, true,
+         "what fills it; \"void\": nothing, and only its surfaces shape the "
+         "part"}}},
+      walls_table(),
+      {"fields",
+       true,
+       N::Optional,
+       "A field energy. Poles (point, segment, polyline, plane) at distance d "
+       "add -strength (1 + (d / core)^2)^(-power / 2) to the energy per area "
+       "of films or per volume of a body; a pressure adds to a body's own. "
+       "Part of the frozen film: no design variable may move it",
+       {{"kind", K::Choice, D::None, true, "what acts",
+         "point|segment|polyline|plane|pressure"},
+        {"at", K::Vector, D::Length, false, "of point, plane"},
+        {"normal", K::Vector, D::None, false, "of plane; any length but 0"},
+        {"from", K::Vector, D::Length, false, "of segment"},
+        {"to", K::Vector, D::Length, false, "of segment"},
+        {"points", K::Vectors, D::Length, false,
+         "of polyline, in order; it closes where the last is the first"},
+        {"strength", K::Quantity, std::nullopt, false,
+         "of poles: energy on the pole per area or volume, above 0 attracts, "
+         "below repels. A film whose tension it exceeds crumples there"},
+        {"power", K::Quantity, D::None, false,
+         "of poles: falls as d^-power far away; 2 when left out"},
+        {"core", K::Quantity, D::Length, false,
+         "of poles: within it the field is soft"},
+        {"films", K::Names, D::None, false,
+         "of poles: acts per area of these, or"},
+        {"body", K::Name, D::None, false,
+         "of poles and pressure: acts per volume of this"},
+        {"pressure", K::Place, D::Pressure, false,
+         "of pressure: above 0 inflates"}}},
+      {"resolution",
+       false,
+       N::Always,
+       "Edge lengths",
+       {{"fea", K::Constant, D::Length, true,
+         "of the settled film that is filled with elements"},
+        {"film", K::Constant, D::Length, false,
+         "of its nested refinement: fea, fea / 2, fea / 4, ... (the nearest is "
+         "taken); fea / 2 when left out"},
+        {"export", K::Constants, D::Length, false,
+         "of the STL files, each settled again; the film's own when left "
+         "out"},
+        {"keep_facets", K::Flag, D::None, false,
+         "films of kind facets and file keep their facets: each is cut in four "
+         "until they are about as small as fea, and never remeshed; false when "
+         "left out"}}},
+      {"process",
+       false,
+       N::Optional,
+       "How the part is made",
+       {{"name", K::Text, D::None, false, "for messages, as \"sand casting\""},
+        {"smallest_feature", K::Constant, D::Length, true,
+         "the thinnest material that it can make; thinner parts are warned "
+         "of, with the place"}}},
+      {"materials",
+       true,
+       N::ForParts,
+       "A linear-elastic material: isotropic (youngs_modulus, poisson_ratio) "
+       "or orthotropic (youngs_moduli, poisson_ratios, shear_moduli)",
+       {{"youngs_modulus", K::Quantity, D::Pressure, false, "above 0"},
+        {"poisson_ratio", K::Quantity, D::None, false,
+         "above -1 and below 0.5; no design variable may move it"},
+        {"density", K::Quantity, D::Density, true, "mass per volume"},
+        {"yield_strength", K::Quantity, D::Pressure, false,
+         "stress above it is warned of"},
+        {"youngs_moduli", K::ConstantVector, D::Pressure, false,
+         "of orthotropic: along axes 1, 2, 3"},
+        {"poisson_ratios", K::ConstantVector, D::None, false,
+         "of orthotropic: 12, 13, 23; nu_12 / E_1 = nu_21 / E_2"},
+        {"shear_moduli", K::ConstantVector, D::Pressure, false,
+         "of orthotropic: 12, 13, 23"},
+        {"axes", K::Axes, D::None, false,
+         "of orthotropic: axis 1, and one that spans the plane of 1 and 2; x "
+         "and y when left out"},
+        {"thermal_expansion", K::Constant, D::None, false,
+         "strain per degree; 0 when left out"},
+        {"thermal_expansions", K::ConstantVector, D::None, false,
+         "of orthotropic: along axes 1, 2, 3"}}},
+      {"load_cases",
+       true,
+       N::ForParts,
+       "Supports and loads that act together",
+       {{"supports", K::Supports, D::None, true, "at least one"},
+        {"loads", K::Loads, D::None, true, "at least one"}}},
+      {"support",
+       false,
+       N::Optional,
+       "A surface that is held, by fix or by springs",
+       {{"on", K::Name, D::None, true, "the surface that is held"},
+        {"fix", K::Text, D::None, false,
+         "components held at 0, some of \"xyz\"; \"normal\": slides; "
+         "\"symmetry\": the same, and the surface must be plane"},
+        {"stiffness", K::ConstantVector, std::nullopt, false,
+         "of springs along x, y, z: force per displacement and area"},
+        {"normal_stiffness", K::Constant, std::nullopt, false,
+         "of springs along the normal: the same"},
+        {"stiffness_of", K::Choice, D::None, false,
+         "area: stiffnesses are per area (when left out); total: of the whole "
+         "surface",
+         "area|total"},
+        {"axes", K::Axes, D::None, false,
+         "of components: x is along the first, y in the plane of both"}}},
+      {"load",
+       false,
+       N::Optional,
+       "A load: force, moment, pressure or traction on a surface, or gravity, "
+       "spin or temperature of all bodies",
+       {{"on", K::Name, D::None, false,
+         "of force, moment, pressure, traction: the surface that is loaded"},
+        {"force", K::Vector, D::Force, false,
+         "total, spread as uniform traction; with `at` through that point"},
+        {"moment", K::Vector, D::Energy, false,
+         "total, beside that of the force"},
+        {"at", K::Vector, D::Length, false,
+         "of force and moment: the point they act through; of spin: on the "
+         "axis"},
+        {"pressure", K::Place, D::Pressure, false,
+         "positive into the material"},
+        {"traction", K::PlaceVector, D::Pressure, false, "force per area"},
+        {"gravity", K::Vector, std::nullopt, false, "force per mass"},
+        {"spin", K::Quantity, std::nullopt, false,
+         "angular velocity in radians per time"},
+        {"axis", K::Vector, D::None, false, "of spin; any length but 0"},
+        {"temperature", K::Place, D::None, false,
+         "of all bodies; they expand from the reference"},
+        {"reference", K::Quantity, D::None, false,
+         "of temperature: where nothing has expanded; 0 when left out"}}},
+      {"analysis",
+       false,
+       N::Optional,
+       "How the part is analysed, what counts of it, vibration and buckling",
+       {{"adapt", K::Flag, D::None, false,
+         "one round of adaptive refinement of the frozen model: elements and "
+         "surface are halved where that should leave 40 % of the estimated "
+         "error at the initial design, with the fewest elements; false when "
+         "left out"},
+        {"exclude", K::Zones, D::None, false,
+         "zones that stress figures leave out: peaks, safety factors, "
+         "distributions and max_von_mises responses. Elements whose centre is "
+         "in one at the initial design, for every design"},
+        {"solver", K::Choice, D::None, false,
+         "of the linear systems: auto chooses by size between cholmod (a "
+         "factor) and p-multigrid (conjugate gradients); petsc: in processes "
+         "of its own, for parts that outgrow one machine; auto when left out",
+         "auto|cholmod|p-multigrid|petsc"},
+        {"processes", K::Integer, D::None, false,
+         "of solver = \"petsc\": how many share the part; 2 when left out"},
+        {"frequencies", K::Integer, D::None, false,
+         "how many natural frequencies, lowest first; none when left out"},
+        {"supports_of", K::Name, D::None, false,
+         "of frequencies: the load case whose supports and springs hold the "
+         "part, or free: not held; the first load case when left out"},
+        {"buckling", K::Integer, D::None, false,
+         "how many buckling factors per load case, smallest first; 0: none; "
+         "the first to three digits when left out"}}},
+      {"exclude",
+       false,
+       N::Optional,
+       "A zone: near and distance, center and radius (a ball), or low and high "
+       "(a box)",
+       {{"near", K::Name, D::None, false, "a surface"},
+        {"distance", K::Constant, D::Length, false,
+         "from the nearest node of that surface; above 0"},
+        {"center", K::ConstantVector, D::Length, false, "of a ball"},
+        {"radius", K::Constant, D::Length, false, "of a ball; above 0"},
+        {"low", K::ConstantVector, D::Length, false,
+         "of a box along x, y, z: the least coordinates"},
+        {"high", K::ConstantVector, D::Length, false,
+         "of a box: the largest; above low"}}},
+  };
+}
+
+bool can_repeat(const std::string& table) {
+  static const std::vector<std::string> tables = {
+      "curves",  "films",     "solids",  "bodies", "walls",     "fields",
+      "support", "responses", "exclude", "load",   "constraint"};
+  return std::find(tables.begin(), tables.end(), table) != tables.end();
+}
+
+KeySpec repeat_key() {
+  return {"repeat", K::Counts, D::None, false,
+          "makes so many: NAME_1, NAME_2, ..., which know their number as i in "
+          "expressions and as {i} in names; [N, M] makes NAME_1_1, ... with i "
+          "and j"};
+}
+
+}  // namespace
+
+const std::vector<TableSpec>& case_tables() {
+  static const std::vector<TableSpec> tables = [] {
+    std::vector<TableSpec> all = make_tables();
+    const auto bodies =
+        std::find_if(all.begin(), all.end(), [](const TableSpec& table) {
+          return std::string(table.name) == "bodies";
+        });
+    const std::vector<TableSpec> shapes = shape_tables();
+    all.insert(bodies, shapes.begin(), shapes.end());
+    for (auto* const more : {&response_tables, &study_tables}) {
+      for (TableSpec& table : more()) {
+        all.push_back(std::move(table));
+      }
+    }
+    for (TableSpec& table : all) {
+      if (can_repeat(table.name)) {
+        table.keys.push_back(repeat_key());
+      }
+    }
+    return all;
+  }();
+  return tables;
+}
+
+const TableSpec& case_table(const std::string& name) {
+  const auto& tables = case_tables();
+  return *std::find_if(tables.begin(), tables.end(),
+                       [&](const TableSpec& t) { return name == t.name; });
+}
+
+const KeySpec* find_key(const TableSpec& table, const std::string& key) {
+  const auto at = std::find_if(table.keys.begin(), table.keys.end(),
+                               [&](const KeySpec& k) { return key == k.key; });
+  return at == table.keys.end() ? nullptr : &*at;
+}
+
+std::vector<std::string> split_choices(const char* choices) {
+  std::vector<std::string> parts;
+  std::string rest = choices;
+  while (!rest.empty()) {
+    const std::size_t bar = rest.find('|');
+    parts.push_back(rest.substr(0, bar));
+    rest = bar == std::string::npos ? "" : rest.substr(bar + 1);
+  }
+  return parts;
+}
+
+bool is_entry_table(const std::string& name) {
+  return name == "support" || name == "load" || name == "exclude" ||
+         name == "constraint";
+}
+
+bool is_later_table(const std::string& name) {
+  constexpr std::array<const char*, 3> kLater = {"regions", "family", "sweep"};
+  return std::find(kLater.begin(), kLater.end(), name) != kLater.end();
+}
+
+}  // namespace meniscus

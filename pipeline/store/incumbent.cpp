@@ -1,0 +1,57 @@
+#include "pipeline/store/incumbent.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/store/refreeze.h"
+
+namespace meniscus {
+
+double violation_of(const ConstraintEntry& constraint, double value) {
+  double scale = 0.0;
+  for (const double bound : {constraint.lower, constraint.upper}) {
+    if (std::isfinite(bound)) {
+      scale = std::max(scale, std::abs(bound));
+    }
+  }
+  const double off =
+      std::max({constraint.lower - value, value - constraint.upper, 0.0});
+  return off / (scale > 0.0 ? scale : 1.0);
+}
+
+Standing standing_of(const StudyEntry& study, const VectorX& responses) {
+  Standing standing{.objective = responses[*study.objective]};
+  for (const ConstraintEntry& constraint : study.constraints) {
+    standing.violation =
+        std::max(standing.violation,
+                 violation_of(constraint, responses[constraint.response]));
+  }
+  return standing;
+}
+
+bool is_better(const Standing& a, const Standing& b) {
+  if (a.feasible() != b.feasible()) {
+    return a.feasible();
+  }
+  return a.feasible() ? a.objective < b.objective : a.violation < b.violation;
+}
+
+const EvaluationRecord* best_by_objective(
+    const StudyEntry& study, const std::vector<EvaluationRecord>& records) {
+  const EvaluationRecord* best = nullptr;
+  Standing standing;
+  const std::string model = answering_model(records);
+  for (const EvaluationRecord& record : records) {
+    if (record.failure || record.model != model) {
+      continue;
+    }
+    const Standing other = standing_of(study, record.responses);
+    if (best == nullptr || is_better(other, standing)) {
+      best = &record;
+      standing = other;
+    }
+  }
+  return best;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,62 @@
+/// New frozen models on a study's way: when, where, and how its database names
+/// them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/case_data/case.h"
+#include "pipeline/store/study_store.h"
+
+namespace meniscus {
+
+/// A model frozen at a design that the one before has evaluated.
+struct Refreeze {
+  int evaluation = 0;  // of that design, in the database
+  VectorX design;
+  std::string reason;  // in words
+  VectorX shift;       // responses there, the new model's less those of the one
+                       // before: what another mesh changes
+};
+
+inline constexpr int kMostRefreezes = 3;
+
+/// How the database names a model: "frozen at evaluation 12".
+std::string refrozen_model(int evaluation);
+
+/// Of the case's own resolution: the first model, or one frozen later.
+bool is_study_model(const std::string& model);
+
+/// Number of records of one model.
+int count_of_model(const std::vector<EvaluationRecord>& records,
+                   const std::string& model);
+
+/// The last of these models that has evaluated a design; kStudyModel when none
+/// has.
+std::string answering_model(const std::vector<EvaluationRecord>& records);
+
+/// The case with `design` for its initial one.
+Case frozen_at(Case input, const VectorX& design);
+
+/// The case whose freeze is the answering model.
+Case frozen_as_answered(Case input,
+                        const std::vector<EvaluationRecord>& records);
+
+/// What a study on one model has come to.
+struct FrozenStage {
+  const Case& input;                      // frozen at its initial design
+  std::vector<EvaluationRecord> records;  // designs asked for
+  const std::string& model;
+  const VectorX& best;            // of the model's evaluated designs
+  double min_dihedral_deg = 0.0;  // of the freeze
+  bool converged = false;
+};
+
+/// Where the study should go on with a new model, shift not filled in: at its
+/// best design when the elements there have become flat, or when the search
+/// ended among designs that invert elements. Nothing where the model is frozen
+/// at that very design.
+std::optional<Refreeze> wanted_refreeze(const FrozenStage& stage);
+
+}  // namespace meniscus

@@ -1,0 +1,111 @@
+#include "pipeline/store/stored_case.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "pipeline/reader/case_reader.h"
+#include "pipeline/store/incumbent.h"
+#include "pipeline/store/refreeze.h"
+#include "pipeline/store/runs_in.h"
+
+namespace meniscus {
+
+std::string stored_case(const Case& input) {
+  nlohmann::ordered_json stored = {{"path", input.path},
+                                   {"overrides", input.overrides},
+                                   {"text", input.text}};
+  for (const CaseFile& file : input.files) {
+    stored["files"].push_back({{"path", file.path}, {"text", file.text}});
+  }
+  return stored.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+Case restore_case(const StudyMeta& meta) {
+  const auto stored = nlohmann::json::parse(meta.case_text, nullptr, false);
+  if (!stored.is_object() || !stored.contains("text")) {
+    throw IoError("the study holds no case that can be read; run it again");
+  }
+  std::vector<CaseFile> files;
+  if (stored.contains("files")) {
+    for (const auto& file : stored["files"]) {
+      files.push_back({file["path"], file["text"]});
+    }
+  }
+  CaseReading reading = read_case_text(
+      stored["text"], stored["path"],
+      stored["overrides"].get<std::vector<std::string>>(), std::move(files));
+  if (!reading.input) {
+    throw IoError("the study's case cannot be read by this version: " +
+                  reading.problems.front());
+  }
+  return *std::move(reading.input);
+}
+
+std::map<std::string, std::string> stored_units(
+    const std::filesystem::path& folder) {
+  std::map<std::string, std::string> units;
+  try {
+    const Case input =
+        restore_case(StudyStore::read(runs_in(folder).front().string()).meta());
+    for (std::size_t k = 0; k < input.responses.size(); ++k) {
+      units[input.responses[k].name] =
+          response_unit(input, static_cast<int>(k));
+    }
+  } catch (const Error&) {
+    units.clear();  // of another version, or not begun: tables go without
+  }
+  return units;
+}
+
+const EvaluationRecord& best_record(
+    const Case& input, const std::vector<EvaluationRecord>& records) {
+  const EvaluationRecord* best =
+      input.study.objective ? best_by_objective(input.study, records) : nullptr;
+  if (best != nullptr) {
+    return *best;
+  }
+  const std::string model = answering_model(records);
+  for (const EvaluationRecord& record : records) {
+    if (record.failure || record.model != model) {
+      continue;
+    }
+    const bool better =
+        best == nullptr ||
+        (input.study.kind == StudyKind::Match && record.mismatch &&
+         (!best->mismatch || *record.mismatch < *best->mismatch));
+    best = better ? &record : best;
+  }
+  if (best == nullptr) {
+    throw InvalidInput(
+        "the study has no design that could be evaluated; nothing to export");
+  }
+  return *best;
+}
+
+VectorX answer_of_run(const Case& input,
+                      const std::vector<EvaluationRecord>& records,
+                      const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "result.json")) {
+    const auto result = nlohmann::json::parse(read_file(folder / "result.json"),
+                                              nullptr, false);
+    VectorX design = initial_design(input);
+    for (std::size_t k = 0; k < input.design.size(); ++k) {
+      const nlohmann::json::json_pointer at("/parameters/" +
+                                            input.design[k].name);
+      if (result.is_object() && result.contains(at)) {
+        design[static_cast<Eigen::Index>(k)] = result[at].get<double>();
+      }
+    }
+    for (const EvaluationRecord& record : records) {
+      if (!record.failure && record.inputs.size() == design.size() &&
+          record.inputs == design) {
+        return design;
+      }
+    }
+  }
+  return best_record(input, records).inputs;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,38 @@
+/// A case as the study database keeps it: path, text and overrides, so that
+/// the part can be made again from the results folder alone.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pipeline/case_data/case.h"
+#include "pipeline/store/study_store.h"
+
+namespace meniscus {
+
+/// For StudyMeta::case_text (JSON).
+std::string stored_case(const Case& input);
+
+/// The case back. Throws IoError when the study holds none that can be read.
+Case restore_case(const StudyMeta& meta);
+
+/// Units of the responses, by name, of the run in `folder` or of a family's
+/// first member there; none where that has no case that can be read.
+std::map<std::string, std::string> stored_units(
+    const std::filesystem::path& folder);
+
+/// The incumbent of a study: the evaluated design with the least mismatch; of a
+/// minimum the one that violates its bounds least, then with the least
+/// objective; of an analysis the first. Throws InvalidInput when there is none.
+const EvaluationRecord& best_record(
+    const Case& input, const std::vector<EvaluationRecord>& records);
+
+/// The design of the run's answer: that of FOLDER/result.json where the study
+/// has it, else of best_record(). Throws as that does.
+VectorX answer_of_run(const Case& input,
+                      const std::vector<EvaluationRecord>& records,
+                      const std::filesystem::path& folder);
+
+}  // namespace meniscus

@@ -1,0 +1,202 @@
+#include "pipeline/study/design_evaluator.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "pipeline/study/ordered_jobs.h"
+#include "pipeline/study/study_records.h"
+
+namespace meniscus {
+
+namespace {
+
+/// The rows of `responses` are all there.
+bool has_rows(const Eigen::MatrixXd& gradient,
+              const std::vector<int>& responses) {
+  return gradient.size() > 0 &&
+         std::all_of(responses.begin(), responses.end(),
+                     [&](int r) { return gradient.row(r).allFinite(); });
+}
+
+}  // namespace
+
+DesignEvaluator::DesignEvaluator(const Case& input, StudyStore& store,
+                                 DesignEvaluatorOptions options)
+    : input_(input),
+      store_(store),
+      options_(std::move(options)),
+      monitor_(options_.monitor),
+      model_(input,
+             {.edge_factor = options_.edge_factor, .monitor = &monitor_}),
+      seconds_(model_.frozen().seconds),
+      teller_(input, options_.model, options_.time_limit) {
+  if (options_.listener) {
+    for (const EvaluationRecord& record : store_.all()) {
+      teller_.remember(record);
+    }
+  }
+}
+
+EvaluationRecord DesignEvaluator::keep(const Evaluation& evaluation,
+                                       const std::string& phase) {
+  seconds_ += evaluation.seconds;
+  EvaluationRecord record = make_record(input_, evaluation);
+  record.model = options_.model;
+  record.phase = phase;
+  if (mismatch_ && !record.failure) {
+    record.mismatch = mismatch_(record.responses);
+  }
+  record.number = store_.append(record);
+  if (options_.listener) {
+    options_.listener(teller_.tell(record));
+  } else {
+    monitor_.log(Severity::Info, describe(input_, record));
+  }
+  return record;
+}
+
+EvaluationRecord DesignEvaluator::evaluate(const VectorX& design,
+                                           const std::string& phase) {
+  throw_if_stopped(monitor_, "the study");
+  ++counts_.evaluations;
+  std::optional<EvaluationRecord> record = store_.find(options_.model, design);
+  if (!record) {
+    last_ = model_.evaluate(design, &last_fields_, adjoint_wanted());
+    record = keep(last_, phase);
+  }
+  counts_.failed += record->failure ? 1 : 0;
+  if (watch_) {
+    watch_(*record);
+  }
+  return *std::move(record);
+}
+
+std::vector<VectorX> DesignEvaluator::missing(
+    const std::vector<VectorX>& designs) const {
+  std::vector<VectorX> result;
+  std::set<std::vector<double>> seen;
+  for (const VectorX& design : designs) {
+    if (!store_.find(options_.model, design) &&
+        seen.emplace(design.begin(), design.end()).second) {
+      result.push_back(design);
+    }
+  }
+  return result;
+}
+
+void DesignEvaluator::compute(const std::vector<VectorX>& designs,
+                              const std::string& phase) {
+  throw_if_stopped(monitor_, "the study");
+  const std::vector<VectorX> wanted = missing(designs);
+  const int count = static_cast<int>(wanted.size());
+  std::vector<Evaluation> found(wanted.size());
+  StudyMonitor::Group group(monitor_, deadline_ ? &*deadline_ : nullptr);
+  const auto tell = [&](int done) {
+    monitor_.user().progress(
+        {.stage = "study",
+         .detail = fmt::format("{}: {} of {} designs", phase, done, count),
+         .fraction = static_cast<double>(done) / count});
+  };
+  if (count > 0) {
+    tell(0);
+  }
+  try {
+    run_in_order({.count = count,
+                  .jobs = options_.jobs,
+                  .work =
+                      [&](int k) {
+                        throw_if_stopped(monitor_, "the study");
+                        found[k] = model_.evaluate(wanted[k]);
+                      },
+                  .take =
+                      [&](int k) {
+                        keep(std::exchange(found[k], {}), phase);
+                        tell(k + 1);
+                      },
+                  .cancel = [&] { group.cancel(); }});
+  } catch (const Interrupted&) {
+    if (monitor_.user_stops()) {
+      throw;
+    }  // else the time is up: what is done is kept
+  }
+}
+
+std::vector<EvaluationRecord> DesignEvaluator::evaluate_all(
+    const std::vector<VectorX>& designs, const std::string& phase) {
+  compute(designs, phase);
+  std::vector<EvaluationRecord> records;
+  records.reserve(designs.size());
+  for (const VectorX& design : designs) {
+    std::optional<EvaluationRecord> record =
+        store_.find(options_.model, design);
+    if (!record) {
+      break;
+    }
+    ++counts_.evaluations;
+    counts_.failed += record->failure ? 1 : 0;
+    records.push_back(*std::move(record));
+  }
+  return records;
+}
+
+void DesignEvaluator::prefetch(const std::vector<VectorX>& designs,
+                               const std::string& phase) {
+  compute(designs, phase);
+}
+
+void DesignEvaluator::limit_time(double seconds) {
+  deadline_.reset();
+  if (seconds > 0.0) {
+    deadline_ = StudyMonitor::Clock::now() +
+                std::chrono::duration_cast<StudyMonitor::Clock::duration>(
+                    std::chrono::duration<double>(seconds));
+  }
+}
+
+JacobianAnswer DesignEvaluator::gradient(const VectorX& design,
+                                         const std::vector<int>& responses) {
+  throw_if_stopped(monitor_, "the study");
+  ++counts_.gradients;
+  const EvaluationRecord record = *store_.find(options_.model, design);
+  if (has_rows(record.gradient, responses)) {
+    return {record.gradient, std::nullopt};
+  }
+  if (!is_last(design) || last_adjoint_.elastic.empty()) {
+    last_ = model_.evaluate(design, &last_fields_, &last_adjoint_);
+    seconds_ += last_.seconds;
+  }
+  const DesignGradient found =
+      model_.gradient(last_, last_fields_, last_adjoint_, responses);
+  seconds_.gradient += found.seconds;
+  if (found.failure) {
+    monitor_.log(Severity::Warning, "no gradient: " + found.failure->message);
+    return {{}, found.failure};
+  }
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Constant(
+      static_cast<Eigen::Index>(input_.responses.size()), design.size(),
+      std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < responses.size(); ++k) {
+    gradient.row(responses[k]) =
+        found.jacobian.row(static_cast<Eigen::Index>(k));
+  }
+  store_.set_gradient(record.number, gradient);
+  return {std::move(gradient), std::nullopt};
+}
+
+Evaluation DesignEvaluator::with_fields(const VectorX& design,
+                                        EvaluationFields& fields) {
+  if (!is_last(design)) {
+    monitor_.progress({.stage = "study", .detail = "the best design's fields"});
+    last_ = model_.evaluate(design, &last_fields_);
+    seconds_ += last_.seconds;
+  }
+  Evaluation result = std::exchange(last_, {});
+  fields = std::exchange(last_fields_, {});
+  last_adjoint_ = {};
+  return result;
+}
+
+}  // namespace meniscus

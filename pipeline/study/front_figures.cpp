@@ -1,0 +1,88 @@
+#include "pipeline/study/front_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace meniscus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// (value - least) / (largest - least), 0 where all are the same.
+double share(const std::vector<FrontPoint>& points, const FrontPoint& point,
+             double FrontPoint::*value) {
+  const auto [least, largest] =
+      std::minmax_element(points.begin(), points.end(),
+                          [&](const FrontPoint& a, const FrontPoint& b) {
+                            return a.*value < b.*value;
+                          });
+  const double range = (*largest).*value - (*least).*value;
+  return range > 0.0 ? (point.*value - (*least).*value) / range : 0.0;
+}
+
+std::string value_text(const Case& input, int response, double value) {
+  const std::string unit = response_unit(input, response);
+  return fmt::format("{} = {:.6g}{}{}", input.responses[response].name, value,
+                     unit.empty() ? "" : " ", unit);
+}
+
+}  // namespace
+
+int middle_of_front(const std::vector<FrontPoint>& points) {
+  int nearest = 0;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double distance =
+        std::hypot(share(points, points[k], &FrontPoint::first),
+                   share(points, points[k], &FrontPoint::second));
+    if (distance < shortest) {
+      shortest = distance;
+      nearest = static_cast<int>(k);
+    }
+  }
+  return nearest;
+}
+
+nlohmann::ordered_json front_json(const Case& input,
+                                  const FrontFigures& figures) {
+  const std::string& first = input.responses[*input.study.objective].name;
+  const std::string& second = input.responses[*input.study.second].name;
+  Json json = {{"objectives", {first, second}},
+               {"left_out", figures.left_out},
+               {"points", Json::array()}};
+  for (const FrontPoint& point : figures.points) {
+    Json entry = {{first, point.first},
+                  {second, point.second},
+                  {"end", point.end},
+                  {"parameters", Json::object()}};
+    for (std::size_t j = 0; j < input.design.size(); ++j) {
+      entry["parameters"][input.design[j].name] =
+          point.design[static_cast<Eigen::Index>(j)];
+    }
+    json["points"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+std::string front_text(const Case& input, const FrontFigures& figures) {
+  std::string text = "  front:\n";
+  for (const FrontPoint& point : figures.points) {
+    text += fmt::format("    {}, {} at",
+                        value_text(input, *input.study.objective, point.first),
+                        value_text(input, *input.study.second, point.second));
+    for (std::size_t j = 0; j < input.design.size(); ++j) {
+      text +=
+          fmt::format("{} {} = {:.6g}", j == 0 ? "" : ",", input.design[j].name,
+                      point.design[static_cast<Eigen::Index>(j)]);
+    }
+    text += fmt::format(" ({})\n", point.end);
+  }
+  return text;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,16 @@
+/// What a study that did not end has come to.
+#pragma once
+
+#include <vector>
+
+#include "pipeline/case_data/case.h"
+#include "pipeline/store/study_store.h"
+#include "pipeline/study/study.h"
+
+namespace meniscus {
+
+/// What a run that ended early has come to: the incumbent and the counts.
+RunResult result_so_far(const Case& input,
+                        const std::vector<EvaluationRecord>& records);
+
+}  // namespace meniscus

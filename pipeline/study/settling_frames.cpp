@@ -1,0 +1,60 @@
+#include <cmath>
+
+#include "evolve/groom/refine.h"
+#include "evolve/groom/remesh.h"
+#include "evolve/settle/curvature_flow.h"
+#include "evolve/start/start_complex.h"
+#include "pipeline/study/film_frames.h"
+
+namespace meniscus {
+
+namespace {
+
+// As a film is found, coarse first, but in steps small enough to see.
+constexpr int kSteps = 30;          // at most, coarse and fine
+constexpr double kSmoothing = 0.5;  // edges in the first step
+
+}  // namespace
+
+std::vector<FilmFrame> settling_frames(const EvaluatedCase& numbers,
+                                       const FilmModel& model, Monitor& monitor,
+                                       int most) {
+  FilmComplex complex = build_start(numbers.film_system, model.start_edge());
+  std::vector<FilmFrame> all;
+  const auto keep = [&](const char* kept, SurfaceMesh surface) {
+    all.push_back({.evaluation = static_cast<int>(all.size()),
+                   .kept = kept,
+                   .surface = std::move(surface)});
+  };
+  keep("raw", complex.mesh);
+  FlowOptions flow{
+      .max_steps = kSteps, .smoothing = kSmoothing, .monitor = &monitor};
+  flow.torn = [&](const FilmEnergy&, const Points& points) {
+    SurfaceMesh surface = complex.mesh;
+    surface.points = points;
+    keep("flowing", std::move(surface));
+    return false;
+  };
+  // Long facets between the curves have nothing to flow with.
+  remesh_films(complex, {.edge = model.start_edge()});
+  flow_to_rest(complex, flow);
+  if (model.start_edge() > numbers.fea_edge) {
+    complex = refine(complex).complex;
+  }
+  remesh_films(complex, {.edge = numbers.fea_edge});
+  flow_to_rest(complex, flow);
+  if (!model.reference().failure) {
+    keep("settled", model.fine_mesh(model.reference().points));
+  }
+  std::vector<FilmFrame> frames;
+  const auto count = static_cast<int>(all.size());
+  const int wanted = std::min(most, count);
+  for (int k = 0; k < wanted; ++k) {
+    const auto at = static_cast<std::size_t>(std::lround(
+        static_cast<double>(k) * (count - 1) / std::max(wanted - 1, 1)));
+    frames.push_back(std::move(all[at]));
+  }
+  return frames;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,433 @@
+#include "pipeline/study/study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include <Eigen/QR>
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "pipeline/forward/part_warnings.h"
+#include "pipeline/study/film_frames.h"
+#include "pipeline/study/precision.h"
+#include "pipeline/study/study_monitor.h"
+#include "pipeline/study/study_records.h"
+#include "pipeline/study/study_stage.h"
+#include "pipeline/study/time_limit.h"
+
+namespace meniscus {
+
+namespace {
+
+// A response's error estimate is its change when all edges double, times a
+// factor: 1 / (2^p - 1) at the order p = 0.74 of a clamped rim
+// (docs/decisions/0006, docs/verification.md).
+constexpr double kCoarserEdges = 2.0;
+constexpr double kErrorPerChange = 1.5;
+
+/// From the frozen model to the answer with its error, step by step.
+class StudyRun {
+ public:
+  StudyRun(const Case& input, StudyStore& store, const StudyOptions& options)
+      : input_(input),
+        store_(store),
+        options_(options),
+        monitor_(options.monitor != nullptr ? *options.monitor
+                                            : silent_monitor()),
+        limit_(smaller_limit(options.time_limit, input.study.time_limit)),
+        limited_(monitor_, limit_) {
+    options_.time_limit = limit_;
+  }
+
+  RunResult run();
+  /// Of the best design; or what there is of a surface that was not filled.
+  EvaluationFields take_fields() { return std::move(fields_); }
+
+ private:
+  void start_coarse();
+  bool begin();
+  bool may_refreeze() const;
+  bool refreeze();
+  std::unique_ptr<StudyStage> stage_at(const Refreeze& refreeze,
+                                       const Case& input);
+  void pass_time();
+  void leave_stage();
+  void conduct_study();
+  bool finish_best();
+  template <class Work>
+  void in_time_left(const char* what, const Work& work);
+  void keep_history();
+  void solve_eigenproblems();
+  void estimate_element_errors_of_best();
+  void estimate_errors();
+  void combine_errors(const VectorX& coarse);
+  void warn();
+  void count();
+
+  const Case& input_;
+  StudyStore& store_;
+  StudyOptions options_;  // its start and time as stages leave them
+  Monitor& monitor_;
+  double limit_;            // [s], 0: none
+  LimitedMonitor limited_;  // of what may be left out at the end
+  std::vector<std::string> left_out_;
+  Timer timer_;
+  std::unique_ptr<Case> frozen_;  // what the stage's model is frozen of, where
+                                  // that is not the case's initial design
+  std::unique_ptr<StudyStage> stage_;
+  EvaluationFields fields_;
+  StageSeconds own_seconds_;   // beside those of the evaluator
+  int earlier_gradients_ = 0;  // of stages before this one
+  int earlier_evaluations_ = 0;
+  RunResult result_;
+};
+
+/// The answer of the coarser model is where the case's own starts.
+void StudyRun::start_coarse() {
+  if (!(input_.study.coarse_first > 1.0)) {
+    return;
+  }
+  monitor_.log(Severity::Info, "first on a coarser model");
+  CoarseStage coarse = run_coarse_stage(input_, store_, options_);
+  own_seconds_ += coarse.seconds;
+  if (coarse.best) {
+    options_.start = coarse.best;
+  } else {
+    result_.warnings.push_back("the coarser model gave no start: " +
+                               coarse.figures.message);
+  }
+  result_.coarse = std::move(coarse.figures);
+  pass_time();
+}
+
+/// What a stage took is gone for the next.
+void StudyRun::pass_time() {
+  constexpr double kLeast = 1e-3;
+  if (limit_ > 0.0) {
+    options_.time_limit = std::max(limit_ - timer_.seconds(), kLeast);
+  }
+}
+
+bool StudyRun::begin() {
+  stage_ = std::make_unique<StudyStage>(input_, store_, options_);
+  const ForwardModel& model = stage_->evaluator().model();
+  if (const Adaptation* adaptation = model.adaptation()) {
+    result_.adaptation = *adaptation;
+  }
+  result_.start = stage_->start();
+  result_.frozen = model.frozen();
+  if (stage_->failure()) {
+    result_.status = RunStatus::Failed;
+    result_.message = fmt::format("the initial design cannot be evaluated: {}",
+                                  stage_->failure()->message);
+    result_.best = stage_->start();
+    if (model.failure()) {
+      fields_.surface.base = model.unfilled_surface();
+      fields_.findings = model.findings();
+    }
+    return false;
+  }
+  return true;
+}
+
+void StudyRun::leave_stage() {
+  own_seconds_ += stage_->evaluator().seconds();
+  earlier_gradients_ += stage_->evaluator().counts().gradients;
+  earlier_evaluations_ += stage_->evaluations();
+}
+
+/// A stage on a model frozen there, or null where it cannot be.
+std::unique_ptr<StudyStage> StudyRun::stage_at(const Refreeze& refreeze,
+                                               const Case& input) {
+  std::string reason;
+  try {
+    auto stage = std::make_unique<StudyStage>(
+        input, store_, options_,
+        StageModel{.name = refrozen_model(refreeze.evaluation),
+                   .reference = result_.start->responses});
+    if (!stage->failure()) {
+      return stage;
+    }
+    own_seconds_ += stage->evaluator().seconds();
+    reason = stage->failure()->message;
+  } catch (const MeshError& error) {
+    reason = error.what();
+  }
+  result_.warnings.push_back(fmt::format(
+      "{}, but no new model can be frozen there: {}", refreeze.reason, reason));
+  return nullptr;
+}
+
+/// Goes on with a new model where the study has left the reach of the last;
+/// false when there is none.
+bool StudyRun::refreeze() {
+  const StudyOutcome& outcome = stage_->outcome();
+  const int evaluations = earlier_evaluations_ + stage_->evaluations();
+  if (!may_refreeze() || outcome.status == RunStatus::Stopped ||
+      evaluations >= input_.study.max_evaluations) {
+    return false;
+  }
+  std::optional<Refreeze> wanted =
+      stage_->wanted(outcome.best, outcome.status == RunStatus::Converged);
+  if (!wanted) {
+    return false;
+  }
+  monitor_.log(Severity::Info,
+               fmt::format("a new model is frozen at evaluation {}: {}",
+                           wanted->evaluation, wanted->reason));
+  auto input = std::make_unique<Case>(frozen_at(input_, wanted->design));
+  input->study.max_evaluations -= evaluations;
+  pass_time();
+  std::unique_ptr<StudyStage> stage = stage_at(*wanted, *input);
+  if (stage == nullptr) {
+    return false;
+  }
+  wanted->shift = stage->start().responses -
+                  store_.find(stage_->model_name(), wanted->design)->responses;
+  leave_stage();
+  options_.start.reset();
+  stage_ = std::move(stage);
+  frozen_ = std::move(input);
+  result_.refrozen.push_back(*std::move(wanted));
+  return true;
+}
+
+bool StudyRun::may_refreeze() const {
+  const StudyEntry& study = input_.study;
+  return study.refreeze &&
+         static_cast<int>(result_.refrozen.size()) < kMostRefreezes &&
+         (study.kind == StudyKind::Match || study.kind == StudyKind::Minimize);
+}
+
+void StudyRun::conduct_study() {
+  using Leave = StudyStage::Leave;
+  do {
+    stage_->conduct(may_refreeze() ? Leave::Early : Leave::Late);
+  } while (refreeze());
+  if (stage_->left_early()) {
+    stage_->conduct();
+  }
+  if (const Adaptation* adaptation = stage_->evaluator().model().adaptation()) {
+    result_.adaptation = *adaptation;
+  }
+  const StudyOutcome& outcome = stage_->outcome();
+  result_.status = outcome.status;
+  result_.message = outcome.message;
+  result_.objective = outcome.objective;
+  result_.constraints = outcome.constraints;
+  result_.sweep = outcome.sweep;
+  result_.tolerance = outcome.tolerance;
+  result_.front = outcome.front;
+  result_.warnings.insert(result_.warnings.end(), outcome.warnings.begin(),
+                          outcome.warnings.end());
+}
+
+bool StudyRun::finish_best() {
+  result_.best =
+      stage_->evaluator().with_fields(stage_->outcome().best, fields_);
+  if (result_.best->failure) {  // only an analysis can end here
+    result_.status = RunStatus::Failed;
+    result_.message = result_.best->failure->message;
+    return false;
+  }
+  fields_.stresses =
+      part_stresses(fields_.mesh, fields_.inputs, fields_.solution);
+  result_.stress = stress_figures(fields_);
+  result_.exclusion = fields_.exclusion;
+  for (std::string& warning : part_warnings(input_, fields_, result_.stress)) {
+    result_.warnings.push_back(std::move(warning));
+  }
+  for (std::string& warning : wall_warnings(stage_->evaluator().model())) {
+    result_.warnings.push_back(std::move(warning));
+  }
+  for (std::string& warning : process_warnings(input_, fields_.mesh)) {
+    result_.warnings.push_back(std::move(warning));
+  }
+  return true;
+}
+
+/// What an answer can do without; told in the warnings where it is missing.
+template <class Work>
+void StudyRun::in_time_left(const char* what, const Work& work) {
+  bool done = false;
+  if (!limited_.late()) {
+    try {
+      work();
+      done = true;
+    } catch (const Interrupted&) {
+      if (monitor_.stop_requested()) {
+        throw;
+      }
+    }
+  }
+  if (!done) {
+    left_out_.emplace_back(what);
+  }
+}
+
+void StudyRun::keep_history() {
+  fields_.history =
+      film_frames(input_, stage_->evaluator().model(),
+                  kept_designs(input_, store_.all(), stage_->outcome().best,
+                               options_.frames),
+                  limited_);
+}
+
+void StudyRun::solve_eigenproblems() {
+  monitor_.progress({.stage = "fea", .detail = "buckling, frequencies"});
+  result_.eigen = eigen_figures(
+      input_, fields_, stage_->evaluator().model().elasticity(), &limited_);
+  own_seconds_.fea += result_.eigen->seconds;
+  fields_.modes = mode_shapes(input_, *result_.eigen);
+  for (std::string& warning : buckling_warnings(*result_.eigen)) {
+    result_.warnings.push_back(std::move(warning));
+  }
+}
+
+void StudyRun::estimate_element_errors_of_best() {
+  monitor_.progress({.stage = "accuracy", .detail = "dual solutions"});
+  const Timer timer;
+  ElementErrors errors =
+      estimate_element_errors(input_, fields_, result_.best->responses,
+                              stage_->evaluator().model().elasticity());
+  own_seconds_.fea += timer.seconds();
+  if (errors.failure) {
+    result_.warnings.push_back("no estimate of the elements' errors: " +
+                               errors.failure->message);
+  } else {
+    result_.element_errors = std::move(errors);
+  }
+}
+
+void StudyRun::estimate_errors() {
+  estimate_element_errors_of_best();
+  monitor_.progress({.stage = "accuracy",
+                     .detail = "a second model with edges twice as long"});
+  try {
+    const ForwardModel coarse(
+        frozen_ ? *frozen_ : input_,
+        {.edge_factor = kCoarserEdges, .monitor = &limited_});
+    own_seconds_ += coarse.frozen().seconds;
+    const std::optional<Failure>& failure = coarse.failure();
+    Evaluation there;
+    if (!failure) {
+      there = coarse.evaluate(stage_->outcome().best);
+      own_seconds_ += there.seconds;
+    }
+    if (failure || there.failure) {
+      result_.warnings.push_back(
+          "no error estimate, the coarser model cannot be evaluated: " +
+          (failure ? *failure : *there.failure).message);
+      return;
+    }
+    combine_errors(there.responses);
+  } catch (const MeshError& error) {
+    result_.warnings.push_back(std::string("no error estimate: ") +
+                               error.what());
+  }
+}
+
+/// From the responses of the coarser model.
+void StudyRun::combine_errors(const VectorX& coarse) {
+  result_.response_errors =
+      kErrorPerChange * (coarse - result_.best->responses).cwiseAbs();
+  if (result_.element_errors) {  // no smaller than the elements' own part
+    result_.response_errors = result_.response_errors.binaryExpr(
+        result_.element_errors->responses, [](double all, double part) {
+          return std::isfinite(part) ? std::max(all, std::abs(part)) : all;
+        });
+  }
+  if (stage_->targets() != nullptr && stage_->outcome().jacobian.size() > 0) {
+    const Eigen::MatrixXd inverse =
+        stage_->outcome()
+            .jacobian.completeOrthogonalDecomposition()
+            .pseudoInverse();
+    result_.design_errors =
+        inverse.cwiseAbs() *
+        stage_->targets()->residual_errors(result_.response_errors);
+  }
+}
+
+void StudyRun::warn() {
+  if (!left_out_.empty()) {
+    result_.warnings.push_back(
+        fmt::format("the time limit of {:g} s left no time for: {}",
+                    limited_.limit(), fmt::join(left_out_, ", ")));
+  }
+  const std::string note =
+      precision_statement(input_, stage_->targets(), result_.best->responses,
+                          result_.response_errors);
+  if (!note.empty()) {
+    result_.message += ". " + note;
+    result_.warnings.push_back(note);
+  }
+}
+
+void StudyRun::count() {
+  leave_stage();
+  for (const EvaluationRecord& record : store_.all()) {
+    if (is_study_model(record.model)) {
+      ++result_.evaluations;
+      result_.failed_evaluations += record.failure ? 1 : 0;
+    }
+  }
+  result_.gradient_evaluations = earlier_gradients_;
+  result_.seconds = own_seconds_;
+}
+
+RunResult StudyRun::run() {
+  start_coarse();
+  if (begin()) {
+    conduct_study();
+    if (finish_best()) {
+      if (options_.answered) {
+        options_.answered(fields_);
+      }
+      in_time_left("buckling and frequencies", [&] { solve_eigenproblems(); });
+      if (options_.estimate_errors) {
+        in_time_left("estimates of the errors", [&] { estimate_errors(); });
+      }
+      if (options_.frames > 0) {
+        in_time_left("films of the history", [&] { keep_history(); });
+      }
+    }
+    warn();
+  }
+  count();
+  result_.total_seconds = timer_.seconds();
+  return std::move(result_);
+}
+
+}  // namespace
+
+const char* name_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::Converged:
+      return "converged";
+    case RunStatus::Infeasible:
+      return "infeasible";
+    case RunStatus::Stopped:
+      return "stopped";
+    case RunStatus::Failed:
+      return "failed";
+    case RunStatus::Error:
+      return "error";
+    case RunStatus::Interrupted:
+      return "interrupted";
+  }
+  return "unknown";
+}
+
+RunResult run_study(const Case& input, StudyStore& store,
+                    const StudyOptions& options, EvaluationFields* fields) {
+  StudyRun run(input, store, options);
+  RunResult result = run.run();
+  if (fields != nullptr) {
+    *fields = run.take_fields();
+  }
+  return result;
+}
+
+}  // namespace meniscus

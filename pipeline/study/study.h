@@ -1,0 +1,111 @@
+/// Runs a case's study from the frozen model to the answer with its error.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/monitor.h"
+#include "pipeline/case_data/case.h"
+#include "pipeline/forward/adaptation.h"
+#include "pipeline/forward/eigen_figures.h"
+#include "pipeline/forward/element_errors.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/forward/stress_figures.h"
+#include "pipeline/store/refreeze.h"
+#include "pipeline/store/study_store.h"
+#include "pipeline/study/front_figures.h"
+#include "pipeline/study/ledger.h"
+#include "pipeline/study/study_news.h"
+#include "pipeline/study/sweep_figures.h"
+#include "pipeline/study/tolerance_figures.h"
+
+namespace meniscus {
+
+enum class RunStatus {
+  Converged,   // exit 0
+  Infeasible,  // exit 3: no acceptable design exists or was found
+  Stopped,     // exit 3: a limit was reached; best point kept
+  Failed,      // exit 3: the initial design cannot be evaluated
+  Error,       // exit 4
+  Interrupted  // exit 130
+};
+const char* name_of(RunStatus status);
+
+/// One target of the study: `value` is its relative mismatch.
+struct Constraint {
+  std::string name;
+  double value = 0.0;
+  double bound = 0.0;
+  bool satisfied = false;
+};
+
+/// What a first stage on a coarser model came to.
+struct CoarseFigures {
+  double edge_factor = 1.0;  // its edges over the case's
+  VectorX design;            // its answer; empty where it has none
+  std::string message;
+  int evaluations = 0;
+  int gradients = 0;
+};
+
+struct RunResult {
+  RunStatus status = RunStatus::Failed;
+  std::string message;              // why it ended, in words, with figures
+  std::optional<Evaluation> start;  // the initial design
+  std::optional<Evaluation> best;
+  double objective = 0.0;  // of a match: sum of squared residuals / 2
+  std::vector<Constraint> constraints;
+  std::optional<SweepFigures> sweep;
+  std::optional<ToleranceFigures> tolerance;
+  std::optional<FrontFigures> front;
+  VectorX response_errors;  // estimated discretisation errors; may be empty
+  VectorX design_errors;    // of the matched variables; may be empty
+  std::vector<StressFigures> stress;     // of the best design, per load case
+  Exclusion exclusion;                   // what these leave out
+  std::optional<Adaptation> adaptation;  // at the initial design
+  std::optional<ElementErrors> element_errors;  // the elements' part of them
+  std::optional<EigenFigures> eigen;            // of the best design
+  std::optional<CoarseFigures> coarse;  // what study.coarse_first asked for
+  std::vector<Refreeze> refrozen;       // models after the first, in order
+  /// Designs evaluated at the case's own resolution, each once per frozen
+  /// model, finite-difference ones included: as many as the database holds.
+  int evaluations = 0;
+  int failed_evaluations = 0;
+  int gradient_evaluations = 0;
+  Evaluation frozen;             // the freeze of the case's own model
+  std::optional<Ledger> ledger;  // once its files are written
+  StageSeconds seconds;  // summed over freeze, evaluations, error estimate
+  double output_seconds = 0.0;
+  double total_seconds = 0.0;
+  std::vector<std::string> warnings;
+};
+
+struct StudyOptions {
+  double time_limit = 0.0;      // [s], 0: none; the case may have its own
+  bool estimate_errors = true;  // one more, coarser model
+  int frames = 0;  // at most so many films of the design's history; 0: none
+  int jobs = 1;  // independent designs side by side; no effect on what is found
+  /// Where the optimizer starts, within the bounds; the model freezes at the
+  /// case's initial design all the same, and that is the start where this one
+  /// cannot be evaluated. None: the initial design.
+  std::optional<VectorX> start = {};
+  StudyListener listener = {};  // hears of every evaluation that is computed;
+                                // then the monitor is not told of it
+  /// Called once with the answer's meshes, solution and stresses, before its
+  /// errors, buckling and the films of the history are computed: time for what
+  /// can be made of them meanwhile. Must not keep the reference.
+  std::function<void(const EvaluationFields&)> answered = {};
+  Monitor* monitor = nullptr;
+};
+
+/// Every evaluation is in `store` before the next begins; those that the store
+/// holds already (--resume) are read and not computed. `fields`, when given,
+/// receives the meshes of the best design. Interrupted passes through, after
+/// the store has what was finished.
+RunResult run_study(const Case& input, StudyStore& store,
+                    const StudyOptions& options,
+                    EvaluationFields* fields = nullptr);
+
+}  // namespace meniscus

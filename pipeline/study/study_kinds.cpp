@@ -1,0 +1,145 @@
+#include "pipeline/study/study_kinds.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "pipeline/case_data/response_entries.h"
+#include "pipeline/case_data/studied_responses.h"
+#include "pipeline/forward/responses.h"
+
+namespace meniscus {
+
+namespace {
+
+ResidualAnswer answer(const MatchTargets& targets,
+                      const EvaluationRecord& record) {
+  ResidualAnswer found;
+  found.failure = record.failure;
+  if (!record.failure) {
+    found.residuals = targets.residuals(record.responses);
+    found.mismatch = targets.mismatch(record.responses);
+  }
+  return found;
+}
+
+StudyOutcome analyse(const StudyTask& task) {
+  task.evaluator.evaluate(task.start, "start");
+  return {.status = RunStatus::Converged,
+          .message = "analysed the initial design",
+          .best = task.start};
+}
+
+/// Empty where a response of the targets has no derivatives.
+JacobianFunction match_jacobian(const StudyTask& task) {
+  if (!uses_gradients(task.input)) {
+    return {};
+  }
+  return [&task, responses = studied_responses(task.input)](const VectorX& x) {
+    JacobianAnswer answer = task.evaluator.gradient(x, responses);
+    if (!answer.failure) {
+      answer.jacobian = task.targets->jacobian(answer.jacobian);
+    }
+    return answer;
+  };
+}
+
+StudyOutcome match(const StudyTask& task) {
+  const StudyEntry& study = task.input.study;
+  std::string phase = "start";
+  const MatchReport report = meniscus::match(
+      variables_of(task.input, task.start),
+      [&](const VectorX& x) {
+        return answer(*task.targets, task.evaluator.evaluate(x, phase));
+      },
+      {.method = study.method,
+       .tolerance = study.tolerance,
+       .max_evaluations = study.max_evaluations,
+       .time_limit = task.options.time_limit,
+       .monitor = task.options.monitor,
+       .announce = [&](EvaluationPhase next) { phase = name_of(next); },
+       .jacobian = match_jacobian(task),
+       .prefetch = prefetch_of(task)});
+  StudyOutcome outcome{.status = status_of(report.termination),
+                       .message = report.message,
+                       .best = report.best,
+                       .objective = report.cost,
+                       .jacobian = report.jacobian};
+  for (Eigen::Index k = 0; k < report.answer.mismatch.size(); ++k) {
+    const double value = report.answer.mismatch[k];
+    outcome.constraints.push_back({.name = task.targets->name(k),
+                                   .value = value,
+                                   .bound = study.tolerance,
+                                   .satisfied = value <= study.tolerance});
+  }
+  return outcome;
+}
+
+}  // namespace
+
+RunStatus status_of(Termination termination) {
+  switch (termination) {
+    case Termination::Converged:
+      return RunStatus::Converged;
+    case Termination::LimitReached:
+      return RunStatus::Stopped;
+    case Termination::Stalled:
+    case Termination::AtBound:
+    case Termination::NoFeasible:
+    case Termination::Infeasible:
+    case Termination::Constant:
+    case Termination::NoFreedom:
+      return RunStatus::Infeasible;
+  }
+  return RunStatus::Error;
+}
+
+std::function<void(const std::vector<VectorX>&)> prefetch_of(
+    const StudyTask& task) {
+  return [&task](const std::vector<VectorX>& designs) {
+    task.evaluator.prefetch(designs, name_of(EvaluationPhase::Difference));
+  };
+}
+
+StudyOutcome conduct(const StudyTask& task) {
+  task.evaluator.limit_time(task.options.time_limit);
+  switch (task.input.study.kind) {
+    case StudyKind::Match:
+      return task.input.study.fit ? fit_scan(task) : match(task);
+    case StudyKind::Minimize:
+      return minimize(task);
+    case StudyKind::Sweep:
+      return sweep(task);
+    case StudyKind::Tolerance:
+      return tolerance(task);
+    case StudyKind::Pareto:
+      return pareto(task);
+    case StudyKind::Analyse:
+      break;
+  }
+  return analyse(task);
+}
+
+bool uses_gradients(const Case& input) {
+  const std::vector<int> responses = studied_responses(input);
+  return asks_for_gradients(input.study) && !responses.empty() &&
+         input.analysis.solver != SolverKind::Distributed &&
+         std::all_of(responses.begin(), responses.end(),
+                     [&](int r) { return has_derivatives(input, r); });
+}
+
+std::vector<Variable> variables_of(const Case& input, const VectorX& start) {
+  std::vector<Variable> variables;
+  variables.reserve(input.design.size());
+  for (const DesignVariable& v : input.design) {
+    const auto k = static_cast<Eigen::Index>(variables.size());
+    variables.push_back({.name = v.name,
+                         .initial = start[k],
+                         .lower = v.lower,
+                         .upper = v.upper});
+  }
+  return variables;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,76 @@
+/// The kinds of study, each a function from a task to an outcome (internal to
+/// run_study()).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "optimize/minimize.h"
+#include "pipeline/study/design_evaluator.h"
+#include "pipeline/study/match_targets.h"
+#include "pipeline/study/study.h"
+
+namespace meniscus {
+
+/// Everything a kind of study works with; the references are on loan.
+struct StudyTask {
+  const Case& input;
+  DesignEvaluator& evaluator;
+  const StudyOptions& options;
+  const MatchTargets* targets = nullptr;  // of a match, else null
+  VectorX start;  // where to begin; evaluated, within the bounds
+};
+
+struct StudyOutcome {
+  RunStatus status = RunStatus::Failed;
+  std::string message;  // why it ended, in words, with figures
+  VectorX best;         // a design that has been evaluated
+  double objective = 0.0;
+  std::vector<Constraint> constraints;
+  Eigen::MatrixXd jacobian;  // of a match: d residual / d x near `best`
+  std::optional<SweepFigures> sweep;
+  std::optional<ToleranceFigures> tolerance;
+  std::optional<FrontFigures> front;
+  std::vector<std::string> warnings;
+};
+
+/// What the case's study.kind says.
+StudyOutcome conduct(const StudyTask& task);
+
+/// A match of the films with a scan.
+StudyOutcome fit_scan(const StudyTask& task);
+StudyOutcome minimize(const StudyTask& task);
+/// Looks at every design of a grid or a sample.
+StudyOutcome sweep(const StudyTask& task);
+/// How far the responses of the start spread when the design scatters.
+StudyOutcome tolerance(const StudyTask& task);
+/// Compromises of two objectives by bounds on the second.
+StudyOutcome pareto(const StudyTask& task);
+
+/// The objective and the constraints as the optimizer sees them; a second
+/// objective is the last constraint, without bounds. `phase`, which records
+/// are given, and the task must outlive the problem.
+MinimizeProblem minimize_problem(const StudyTask& task,
+                                 const std::string& phase);
+
+/// The case's; `phase` is told what is asked for next.
+MinimizeOptions minimize_options(const StudyTask& task, std::string& phase);
+
+RunStatus status_of(Termination termination);
+
+/// As result.json tells it, with the bound that the value is nearest to.
+Constraint told(const ConstraintState& state);
+
+/// Computes the neighbours of a difference side by side.
+std::function<void(const std::vector<VectorX>&)> prefetch_of(
+    const StudyTask& task);
+
+/// The study's method asks for derivatives, and all that it looks at have them.
+bool uses_gradients(const Case& input);
+
+/// The design variables as the optimizers want them, starting at `start`.
+std::vector<Variable> variables_of(const Case& input, const VectorX& start);
+
+}  // namespace meniscus

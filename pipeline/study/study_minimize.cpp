@@ -1,0 +1,94 @@
+#include <cmath>
+
+#include "pipeline/case_data/studied_responses.h"
+#include "pipeline/study/study_kinds.h"
+
+namespace meniscus {
+
+namespace {
+
+/// Rows or entries of `all` at `indices`.
+VectorX picked(const VectorX& all, const std::vector<int>& indices) {
+  VectorX result(static_cast<Eigen::Index>(indices.size()));
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    result[static_cast<Eigen::Index>(k)] = all[indices[k]];
+  }
+  return result;
+}
+
+}  // namespace
+
+MinimizeProblem minimize_problem(const StudyTask& task,
+                                 const std::string& phase) {
+  const Case& input = task.input;
+  MinimizeProblem problem;
+  problem.variables = variables_of(input, task.start);
+  problem.objective = input.responses[*input.study.objective].name;
+  for (const ConstraintEntry& constraint : input.study.constraints) {
+    problem.constraints.push_back(
+        {.name = input.responses[constraint.response].name,
+         .lower = constraint.lower,
+         .upper = constraint.upper});
+  }
+  if (input.study.second) {
+    problem.constraints.push_back(
+        {.name = input.responses[*input.study.second].name});
+  }
+  const std::vector<int> responses = studied_responses(input);
+  problem.function = [&task, &phase, responses](const VectorX& x) {
+    const EvaluationRecord record = task.evaluator.evaluate(x, phase);
+    VectorAnswer answer{.values = {}, .failure = record.failure};
+    if (!record.failure) {
+      answer.values = picked(record.responses, responses);
+    }
+    return answer;
+  };
+  if (uses_gradients(input)) {
+    problem.jacobian = [&task, responses](const VectorX& x) {
+      JacobianAnswer answer = task.evaluator.gradient(x, responses);
+      if (!answer.failure) {
+        answer.jacobian =
+            Eigen::MatrixXd(answer.jacobian(responses, Eigen::all));
+      }
+      return answer;
+    };
+  }
+  return problem;
+}
+
+Constraint told(const ConstraintState& state) {
+  const bool above = state.value > 0.5 * (state.lower + state.upper);
+  const bool upper =
+      !std::isfinite(state.lower) || (std::isfinite(state.upper) && above);
+  return {.name = state.name,
+          .value = state.value,
+          .bound = upper ? state.upper : state.lower,
+          .satisfied = state.satisfied};
+}
+
+MinimizeOptions minimize_options(const StudyTask& task, std::string& phase) {
+  const StudyEntry& study = task.input.study;
+  return {.method = study.method,
+          .optimality_tolerance = study.tolerance,
+          .max_evaluations = study.max_evaluations,
+          .time_limit = task.options.time_limit,
+          .monitor = task.options.monitor,
+          .announce = [&phase](EvaluationPhase next) { phase = name_of(next); },
+          .prefetch = prefetch_of(task)};
+}
+
+StudyOutcome minimize(const StudyTask& task) {
+  std::string phase = "start";
+  const MinimizeReport report = meniscus::minimize(
+      minimize_problem(task, phase), minimize_options(task, phase));
+  StudyOutcome outcome{.status = status_of(report.termination),
+                       .message = report.message,
+                       .best = report.best,
+                       .objective = report.objective};
+  for (const ConstraintState& state : report.constraints) {
+    outcome.constraints.push_back(told(state));
+  }
+  return outcome;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,167 @@
+#include "pipeline/study/study_news.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/count_text.h"
+#include "pipeline/store/incumbent.h"
+
+namespace meniscus {
+
+namespace {
+
+/// Evaluations that the study asks for at most, where that is known.
+std::optional<int> planned_of(const Case& input) {
+  const StudyEntry& study = input.study;
+  switch (study.kind) {
+    case StudyKind::Analyse:
+      return 1;
+    case StudyKind::Match:
+    case StudyKind::Minimize:
+      return study.max_evaluations;
+    case StudyKind::Sweep: {
+      int designs = study.method == "grid" ? 1 : study.count;
+      for (const int level : study.levels) {
+        designs *= study.method == "grid" ? std::max(level, 1) : 1;
+      }
+      return designs + 1;  // the start
+    }
+    case StudyKind::Tolerance:
+      return study.count + 1;
+    case StudyKind::Pareto:
+      break;  // a chain of minimisations
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole < 100) {
+    return fmt::format("{} s", whole);
+  }
+  return whole < 6000 ? fmt::format("{} min", (whole + 59) / 60)
+                      : fmt::format("{} h", (whole + 3599) / 3600);
+}
+
+StudyTeller::StudyTeller(const Case& input, std::string model,
+                         double time_limit)
+    : input_(input),
+      model_(std::move(model)),
+      time_limit_(time_limit),
+      planned_(planned_of(input)) {}
+
+DesignStanding StudyTeller::standing_of(const EvaluationRecord& record) const {
+  DesignStanding standing{.evaluation = record.number};
+  if (record.failure) {
+    return standing;
+  }
+  const StudyEntry& study = input_.study;
+  if (study.kind == StudyKind::Match) {
+    standing.objective = record.mismatch;
+  } else if (study.objective) {
+    const Standing found = meniscus::standing_of(study, record.responses);
+    standing.objective = found.objective;
+    if (!study.constraints.empty()) {
+      standing.violation = found.violation;
+    }
+  }
+  return standing;
+}
+
+bool StudyTeller::better(const DesignStanding& a,
+                         const DesignStanding& b) const {
+  return is_better(
+      {.violation = a.violation.value_or(0.0), .objective = *a.objective},
+      {.violation = b.violation.value_or(0.0), .objective = *b.objective});
+}
+
+void StudyTeller::remember(const EvaluationRecord& record) {
+  if (record.model != model_) {
+    return;
+  }
+  ++evaluations_;
+  failed_ += record.failure ? 1 : 0;
+  const DesignStanding standing = standing_of(record);
+  if (standing.objective && (!best_ || better(standing, *best_))) {
+    best_ = standing;
+  }
+}
+
+StudyNews StudyTeller::tell(const EvaluationRecord& record) {
+  remember(record);
+  if (++timed_ == 1) {
+    first_ = timer_.seconds();
+  }
+  return news(record);
+}
+
+StudyNews StudyTeller::news(const EvaluationRecord& record) const {
+  StudyNews news;
+  news.record = &record;
+  news.standing = standing_of(record);
+  news.best = best_;
+  if (const std::optional<int>& fit = input_.study.fit) {
+    news.objective_name = input_.responses[static_cast<std::size_t>(*fit)].name;
+    news.objective_unit = response_unit(input_, *fit);
+  } else if (input_.study.kind == StudyKind::Match) {
+    news.objective_name = "mismatch";
+  } else if (input_.study.objective) {
+    const int response = *input_.study.objective;
+    news.objective_name =
+        input_.responses[static_cast<std::size_t>(response)].name;
+    news.objective_unit = response_unit(input_, response);
+  }
+  news.evaluations = evaluations_;
+  news.failed = failed_;
+  news.planned = planned_;
+  news.elapsed = timer_.seconds();
+  news.left = time_left();
+  return news;
+}
+
+std::optional<double> StudyTeller::time_left() const {
+  const double now = timer_.seconds();
+  std::optional<double> left;
+  if (planned_ && timed_ > 0) {
+    const double each = timed_ > 1 ? (now - first_) / (timed_ - 1) : now;
+    left = each * std::max(*planned_ - evaluations_, 0);
+  }
+  if (time_limit_ > 0.0) {
+    const double limit = std::max(time_limit_ - now, 0.0);
+    left = left ? std::min(*left, limit) : limit;
+  }
+  return left;
+}
+
+std::string standing_text(const StudyNews& news) {
+  std::string text;
+  const auto add = [&](const std::string& part) {
+    text += (text.empty() ? "" : ", ") + part;
+  };
+  if (news.standing.violation) {
+    add(*news.standing.violation <= kFeasible
+            ? "keeps all constraints"
+            : fmt::format("violation {:.2g}", *news.standing.violation));
+  }
+  if (news.best && news.best->evaluation != news.standing.evaluation) {
+    const bool kept = news.best->violation.value_or(0.0) <= kFeasible;
+    add(fmt::format(
+        "best so far {} = {}{} (evaluation {})", news.objective_name,
+        quantity_text(*news.best->objective, news.objective_unit),
+        kept ? ""
+             : fmt::format(" with violation {:.2g}", *news.best->violation),
+        news.best->evaluation));
+  } else if (news.best) {
+    add("the best so far");
+  }
+  if (news.left && *news.left > 0.0) {
+    add(fmt::format("at most {} left", duration_text(*news.left)));
+  }
+  return text;
+}
+
+}  // namespace meniscus

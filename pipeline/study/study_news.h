@@ -1,0 +1,80 @@
+/// What a running study tells of itself after every evaluation, to terminals,
+/// logs and those who watch its database.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/timer.h"
+#include "pipeline/case_data/case.h"
+#include "pipeline/store/study_store.h"
+
+namespace meniscus {
+
+/// How one design stands. Of a match `objective` is the largest mismatch; a
+/// study that looks for nothing has none. `violation`: the largest of the
+/// constraints, in bounds (pipeline/store/incumbent.h); none without
+/// constraints.
+struct DesignStanding {
+  int evaluation = 0;
+  std::optional<double> objective;
+  std::optional<double> violation;
+};
+
+struct StudyNews {
+  const EvaluationRecord* record = nullptr;  // the evaluation; on loan
+  DesignStanding standing;             // of it; empty where the design failed
+  std::optional<DesignStanding> best;  // of this model, so far
+  std::string objective_name;          // "mismatch", or a response
+  std::string objective_unit;
+  int evaluations = 0;         // of this model, in the database
+  int failed = 0;              // of these
+  std::optional<int> planned;  // evaluations in all, at most
+  double elapsed = 0.0;        // since the study began [s]
+  std::optional<double> left;  // [s], at most: to `planned` or to the limit
+  std::string member;          // of a family
+};
+
+using StudyListener = std::function<void(const StudyNews&)>;
+
+/// Keeps what is known of the evaluations of one model, in their order.
+class StudyTeller {
+ public:
+  /// `model`: the one whose records count. `time_limit`: of the study from now
+  /// [s], 0: none. `input` must outlive this.
+  StudyTeller(const Case& input, std::string model, double time_limit = 0.0);
+
+  /// Accounts for a record that was found in the database; of another model:
+  /// nothing happens.
+  void remember(const EvaluationRecord& record);
+  /// The same of one that was computed now. It must outlive the answer.
+  StudyNews tell(const EvaluationRecord& record);
+  /// How things stand, `record` being the last that was accounted for.
+  StudyNews news(const EvaluationRecord& record) const;
+
+ private:
+  DesignStanding standing_of(const EvaluationRecord& record) const;
+  bool better(const DesignStanding& a, const DesignStanding& b) const;
+  std::optional<double> time_left() const;
+
+  const Case& input_;
+  std::string model_;
+  double time_limit_;
+  std::optional<int> planned_;
+  std::optional<DesignStanding> best_;
+  int evaluations_ = 0;
+  int failed_ = 0;
+  int timed_ = 0;       // of them computed now
+  double first_ = 0.0;  // when the first of these ended [s]
+  Timer timer_;
+};
+
+/// "45 s", "3 min", "2 h"; rounded up.
+std::string duration_text(double seconds);
+
+/// "best so far 0.0119 t (evaluation 9), at most 2 min left": what follows an
+/// evaluation's own line; may be empty.
+std::string standing_text(const StudyNews& news);
+
+}  // namespace meniscus

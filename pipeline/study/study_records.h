@@ -1,0 +1,20 @@
+/// Evaluations as the database keeps them, and a line for people.
+#pragma once
+
+#include <string>
+
+#include "pipeline/case_data/case.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/store/study_store.h"
+
+namespace meniscus {
+
+EvaluationRecord make_record(const Case& input, const Evaluation& evaluation);
+
+/// Inputs, responses and failure of a record; the figures stay in its text.
+Evaluation to_evaluation(const EvaluationRecord& record);
+
+/// One line: "evaluation 3 (step): support_x = 12.3; left_deflection = ...".
+std::string describe(const Case& input, const EvaluationRecord& record);
+
+}  // namespace meniscus

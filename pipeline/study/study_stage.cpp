@@ -1,0 +1,162 @@
+#include "pipeline/study/study_stage.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "pipeline/store/refreeze.h"
+#include "pipeline/store/stored_case.h"
+#include "pipeline/study/study_records.h"
+
+namespace meniscus {
+
+namespace {
+
+/// The study goes on with another model, from there.
+struct OutOfReach {
+  VectorX best;
+};
+
+}  // namespace
+
+StudyStage::StudyStage(const Case& input, StudyStore& store,
+                       const StudyOptions& options, const StageModel& model)
+    : input_(input),
+      options_(options),
+      model_(model),
+      evaluator_(input, store,
+                 DesignEvaluatorOptions{.model = model.name,
+                                        .edge_factor = model.edge_factor,
+                                        .with_gradients = uses_gradients(input),
+                                        .jobs = options.jobs,
+                                        .time_limit = options.time_limit,
+                                        .listener = options.listener,
+                                        .monitor = options.monitor}) {
+  if (evaluator_.model().failure()) {
+    failure_ = evaluator_.model().failure();
+    start_ = evaluator_.model().frozen();
+    return;
+  }
+  const EvaluationRecord record =
+      evaluator_.evaluate(initial_design(input_), "start");
+  failure_ = record.failure;
+  start_ = to_evaluation(record);
+  see(record);
+  if (!failure_ && input_.study.fit) {
+    evaluator_.judge_by([fit = *input_.study.fit](const VectorX& responses) {
+      return responses[fit];
+    });
+  } else if (!failure_ && input_.study.kind == StudyKind::Match) {
+    targets_.emplace(input_, model_.reference.value_or(record.responses));
+    evaluator_.judge_by([this](const VectorX& responses) {
+      return targets_->mismatch(responses).maxCoeff();
+    });
+  }
+}
+
+VectorX StudyStage::begin() {
+  const VectorX& initial = start_.design;
+  if (!options_.start || *options_.start == initial) {
+    return initial;
+  }
+  if (const auto failure =
+          evaluator_.evaluate(*options_.start, "start").failure) {
+    Monitor& monitor =
+        options_.monitor != nullptr ? *options_.monitor : silent_monitor();
+    monitor.log(Severity::Info,
+                "starts from the initial design instead: " + failure->message);
+    return initial;
+  }
+  return *options_.start;
+}
+
+std::optional<Refreeze> StudyStage::wanted(const VectorX& best,
+                                           bool converged) const {
+  return wanted_refreeze(
+      {.input = input_,
+       .records = seen_,
+       .model = model_.name,
+       .best = best,
+       .min_dihedral_deg = evaluator_.model().frozen().tet.min_dihedral_deg,
+       .converged = converged});
+}
+
+void StudyStage::see(const EvaluationRecord& record) {
+  if (std::none_of(seen_.begin(), seen_.end(), [&](const EvaluationRecord& r) {
+        return r.number == record.number;
+      })) {
+    seen_.push_back(record);
+    seen_.back().gradient.resize(0, 0);
+  }
+}
+
+/// Ends the study after so many designs that invert elements, when the mesh is
+/// what holds it up.
+void StudyStage::leave_at_walls(const EvaluationRecord& record) {
+  constexpr int kPatience = 6;
+  if (!record.failure ||
+      record.failure->kind != FailureKind::ElementsInverted ||
+      ++inverted_ < kPatience) {
+    return;
+  }
+  const VectorX best = best_record(input_, seen_).inputs;
+  if (wanted(best, false)) {
+    throw OutOfReach{best};
+  }
+}
+
+void StudyStage::conduct(Leave leave) {
+  const VectorX start = begin();
+  evaluator_.reset_counts();  // the kinds of study ask for the start again
+  left_early_ = false;
+  inverted_ = 0;
+  evaluator_.watch_by([this, leave](const EvaluationRecord& record) {
+    see(record);
+    if (leave == Leave::Early) {
+      leave_at_walls(record);
+    }
+  });
+  try {
+    outcome_ = meniscus::conduct({.input = input_,
+                                  .evaluator = evaluator_,
+                                  .options = options_,
+                                  .targets = targets(),
+                                  .start = start});
+  } catch (const OutOfReach& left) {
+    left_early_ = true;
+    outcome_ = {.status = RunStatus::Infeasible,
+                .message = "the study left the reach of its frozen mesh",
+                .best = left.best};
+  }
+  evaluator_.watch_by({});
+}
+
+CoarseStage run_coarse_stage(const Case& input, StudyStore& store,
+                             const StudyOptions& options) {
+  const double factor = input.study.coarse_first;
+  CoarseStage result;
+  result.figures.edge_factor = factor;
+  try {
+    StudyStage stage(
+        input, store, options,
+        {.name = fmt::format("coarse x{}", factor), .edge_factor = factor});
+    result.seconds = stage.evaluator().seconds();
+    if (stage.failure()) {
+      result.figures.message = stage.failure()->message;
+      return result;
+    }
+    stage.conduct();
+    result.best = stage.outcome().best;
+    result.figures.design = stage.outcome().best;
+    result.figures.message = stage.outcome().message;
+    result.figures.evaluations =
+        count_of_model(store.all(), stage.model_name());
+    result.figures.gradients = stage.evaluator().counts().gradients;
+    result.seconds = stage.evaluator().seconds();
+  } catch (const MeshError& error) {
+    result.figures.message = error.what();
+  }
+  return result;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,89 @@
+/// A study on one frozen model, from its initial design to its answer without
+/// files or errors (internal to run_study()).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "pipeline/store/refreeze.h"
+#include "pipeline/study/design_evaluator.h"
+#include "pipeline/study/match_targets.h"
+#include "pipeline/study/study.h"
+#include "pipeline/study/study_kinds.h"
+
+namespace meniscus {
+
+struct StageModel {
+  std::string name = kStudyModel;  // in the database
+  double edge_factor = 1.0;        // as in ForwardModelOptions
+  /// Responses that a match's residuals are measured by; none: those of the
+  /// initial design.
+  std::optional<VectorX> reference = {};
+};
+
+class StudyStage {
+ public:
+  /// Freezes the model and evaluates the initial design. All references must
+  /// outlive the stage; throws what ForwardModel's constructor throws.
+  StudyStage(const Case& input, StudyStore& store, const StudyOptions& options,
+             const StageModel& model = {});
+
+  /// Why it cannot begin; then nothing below may be asked but evaluator().
+  const std::optional<Failure>& failure() const { return failure_; }
+  /// The initial design, or what there is of it.
+  const Evaluation& start() const { return start_; }
+
+  /// Does what the case's study asks, from options.start where that can be
+  /// evaluated, else from the initial design. `Leave::Early`: ends it, without
+  /// convergence, once it is clear that wanted_refreeze() will want a new
+  /// model; a second call then does the rest.
+  enum class Leave { Late, Early };
+  void conduct(Leave leave = Leave::Late);
+  /// What a new model is wanted for, as things stand.
+  std::optional<Refreeze> wanted(const VectorX& best, bool converged) const;
+  const StudyOutcome& outcome() const { return outcome_; }
+  /// Designs that the stage has asked for.
+  int evaluations() const { return static_cast<int>(seen_.size()); }
+  bool left_early() const { return left_early_; }
+
+  const std::string& model_name() const { return model_.name; }
+  DesignEvaluator& evaluator() { return evaluator_; }
+  const DesignEvaluator& evaluator() const { return evaluator_; }
+  /// Of a match, else null.
+  const MatchTargets* targets() const {
+    return targets_ ? &*targets_ : nullptr;
+  }
+
+ private:
+  VectorX begin();
+
+  void see(const EvaluationRecord& record);
+  void leave_at_walls(const EvaluationRecord& record);
+
+  const Case& input_;
+  // Designs asked for, each once: not what the database holds, which on a
+  // resumed run knows what comes later.
+  std::vector<EvaluationRecord> seen_;
+  const StudyOptions& options_;
+  StageModel model_;
+  DesignEvaluator evaluator_;
+  std::optional<Failure> failure_;
+  Evaluation start_;
+  std::optional<MatchTargets> targets_;
+  StudyOutcome outcome_;
+  bool left_early_ = false;
+  int inverted_ = 0;  // designs that the study has asked for
+};
+
+/// The same study on a model whose edges are study.coarse_first as long, for
+/// the answer that the study on the case's own model starts from. `best` is
+/// empty where it has none; `message` says why.
+struct CoarseStage {
+  std::optional<VectorX> best;
+  CoarseFigures figures;
+  StageSeconds seconds;
+};
+CoarseStage run_coarse_stage(const Case& input, StudyStore& store,
+                             const StudyOptions& options);
+
+}  // namespace meniscus

@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "optimize/sampling.h"
+#include "pipeline/store/incumbent.h"
+#include "pipeline/study/study_kinds.h"
+
+namespace meniscus {
+
+namespace {
+
+/// Variables of a grid without levels stay where they start.
+std::vector<VectorX> grid_designs(const StudyTask& task) {
+  std::vector<int> levels = task.input.study.levels;
+  std::replace(levels.begin(), levels.end(), 0, 1);
+  std::vector<VectorX> designs =
+      designs_of(variables_of(task.input, task.start), grid_samples(levels));
+  for (VectorX& design : designs) {
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+      if (task.input.study.levels[k] == 0) {
+        const auto j = static_cast<Eigen::Index>(k);
+        design[j] = task.start[j];
+      }
+    }
+  }
+  return designs;
+}
+
+std::vector<VectorX> designs_of_sweep(const StudyTask& task) {
+  const StudyEntry& study = task.input.study;
+  if (study.method == "grid") {
+    return grid_designs(task);
+  }
+  const int variables = static_cast<int>(task.input.design.size());
+  return designs_of(
+      variables_of(task.input, task.start),
+      study.method == "sobol"
+          ? sobol_samples(variables, study.count)
+          : latin_hypercube_samples(variables, study.count,
+                                    static_cast<std::uint64_t>(study.seed)));
+}
+
+Constraint constraint_of(const Case& input, const ConstraintEntry& entry,
+                         double value) {
+  const bool upper =
+      !std::isfinite(entry.lower) ||
+      (std::isfinite(entry.upper) && value > 0.5 * (entry.lower + entry.upper));
+  return {.name = input.responses[entry.response].name,
+          .value = value,
+          .bound = upper ? entry.upper : entry.lower,
+          .satisfied = violation_of(entry, value) <= kFeasible};
+}
+
+/// The best design by objective and constraints, and what it comes to.
+void choose_best(const StudyTask& task,
+                 const std::vector<EvaluationRecord>& records,
+                 StudyOutcome& outcome) {
+  const StudyEntry& study = task.input.study;
+  const EvaluationRecord* best =
+      study.objective ? best_by_objective(study, records) : nullptr;
+  if (best == nullptr) {
+    return;
+  }
+  const Standing standing = standing_of(study, best->responses);
+  outcome.best = best->inputs;
+  outcome.objective = standing.objective;
+  outcome.constraints.reserve(study.constraints.size());
+  for (const ConstraintEntry& entry : study.constraints) {
+    outcome.constraints.push_back(
+        constraint_of(task.input, entry, best->responses[entry.response]));
+  }
+  if (standing.feasible()) {
+    outcome.message += fmt::format("; the best has {} = {:.6g}",
+                                   task.input.responses[*study.objective].name,
+                                   standing.objective);
+  } else if (outcome.status == RunStatus::Converged) {
+    outcome.status = RunStatus::Infeasible;
+    outcome.message += fmt::format(
+        "; none keeps every constraint, the least violation is {:.2g} of a "
+        "bound: loosen the bounds, or widen those of the design variables",
+        standing.violation);
+  }
+}
+
+}  // namespace
+
+StudyOutcome sweep(const StudyTask& task) {
+  const std::vector<VectorX> designs = designs_of_sweep(task);
+  const std::vector<EvaluationRecord> records =
+      task.evaluator.evaluate_all(designs, "sweep");
+  StudyOutcome outcome{.best = task.start};
+  outcome.sweep = sweep_figures(static_cast<int>(designs.size()), records);
+  const SweepFigures& figures = *outcome.sweep;
+  if (figures.looked_at < figures.designs) {
+    outcome.status = RunStatus::Stopped;
+    outcome.message = fmt::format(
+        "the time limit of {:g} s ended the sweep after {} of {} designs; go "
+        "on with --resume",
+        task.options.time_limit, figures.looked_at, figures.designs);
+  } else if (figures.failed == figures.designs) {
+    outcome.status = RunStatus::Failed;
+    outcome.message = fmt::format(
+        "none of the {} designs can be evaluated (the first: {}); bring the "
+        "bounds of the design variables nearer to their initial values, where "
+        "the film holds",
+        figures.designs, records.front().failure->message);
+  } else {
+    outcome.status = RunStatus::Converged;
+    outcome.message = fmt::format("looked at all {} designs", figures.designs);
+    if (figures.failed > 0) {
+      outcome.message +=
+          fmt::format(", {} of them cannot be evaluated", figures.failed);
+    }
+  }
+  choose_best(task, records, outcome);
+  return outcome;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,150 @@
+#include "pipeline/tables/text_table.h"
+
+#include <algorithm>
+
+namespace meniscus {
+
+namespace {
+
+std::string quoted(const std::string& cell) {
+  if (cell.find_first_of(",\"\r\n") == std::string::npos) {
+    return cell;
+  }
+  std::string text = "\"";
+  for (const char c : cell) {
+    text += c == '"' ? "\"\"" : std::string(1, c);
+  }
+  return text + "\"";
+}
+
+// Characters of UTF-8 text as a terminal counts them, near enough.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+/// Cuts a text into rows of cells.
+class Cutter {
+ public:
+  explicit Cutter(const std::string& text) : text_(text) {
+    if (text_.starts_with("\xef\xbb\xbf")) {
+      at_ = 3;
+    }
+  }
+
+  CsvRows cut() {
+    while (at_ < text_.size()) {
+      CsvRow row{.line = line_, .cells = {}};
+      bool more = true;
+      while (more) {
+        row.cells.push_back(cell());
+        more = at_ < text_.size() && text_[at_] == ',';
+        ++at_;  // a comma or the end of the line
+      }
+      ++line_;
+      if (row.cells.size() > 1 || !row.cells[0].empty()) {
+        found_.rows.push_back(std::move(row));
+      }
+    }
+    return std::move(found_);
+  }
+
+ private:
+  bool ends_cell() const {
+    return at_ >= text_.size() || text_[at_] == ',' || text_[at_] == '\n';
+  }
+
+  std::string cell() {
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) {
+      ++at_;
+    }
+    if (at_ < text_.size() && text_[at_] == '"') {
+      std::string inside = quoted_cell();
+      while (!ends_cell()) {
+        inside += text_[at_++];
+      }
+      return trimmed(inside);
+    }
+    std::string plain;
+    while (!ends_cell()) {
+      plain += text_[at_++];
+    }
+    return trimmed(plain);
+  }
+
+  std::string quoted_cell() {
+    const int begun = line_;
+    std::string inside;
+    for (++at_; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '"') {
+        ++at_;
+        if (at_ >= text_.size() || text_[at_] != '"') {
+          return inside;
+        }
+      }
+      line_ += text_[at_] == '\n' ? 1 : 0;
+      inside += text_[at_];
+    }
+    found_.open_quote = begun;
+    return inside;
+  }
+
+  const std::string& text_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+  CsvRows found_;
+};
+
+}  // namespace
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  const std::size_t last = text.find_last_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+std::string csv_text(const std::vector<TextRow>& rows) {
+  std::string text;
+  for (const TextRow& row : rows) {
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      if (j > 0) {
+        text += ',';
+      }
+      text += quoted(row[j]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string aligned_text(const std::vector<TextRow>& rows) {
+  std::vector<std::size_t> widths(rows[0].size(), 0);
+  for (const TextRow& row : rows) {
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      widths[j] = std::max(widths[j], width_of(row[j]));
+    }
+  }
+  std::string text;
+  for (const TextRow& row : rows) {
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      text += (j == 0 ? "" : "  ") +
+              std::string(widths[j] - width_of(row[j]), ' ') + row[j];
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+void add_units(const std::map<std::string, std::string>& units,
+               TextRow& names) {
+  for (std::string& name : names) {
+    const auto unit = units.find(name);
+    if (unit != units.end() && !unit->second.empty()) {
+      name += " [" + unit->second + "]";
+    }
+  }
+}
+
+CsvRows parse_csv(const std::string& text) { return Cutter(text).cut(); }
+
+}  // namespace meniscus

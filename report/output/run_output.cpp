@@ -1,0 +1,112 @@
+#include "report/output/run_output.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/timer.h"
+#include "pipeline/results/export_part.h"
+#include "pipeline/results/make_ledger.h"
+#include "pipeline/results/results.h"
+#include "pipeline/study/film_frames.h"
+#include "report/output/run_pictures.h"
+
+namespace meniscus {
+
+namespace fs = std::filesystem;
+
+RunOutput::RunOutput(const Case& input, fs::path folder,
+                     const RunOutputOptions& options)
+    : input_(input),
+      folder_(std::move(folder)),
+      options_(options),
+      monitor_(options.monitor != nullptr ? *options.monitor
+                                          : silent_monitor()) {}
+
+void RunOutput::begin(const EvaluationFields& fields) {
+  if (options_.pictures && !fields.mesh.nodes.empty()) {
+    pictures_.emplace(run_pictures(input_, fields, folder_),
+                      PictureOptions{.monitor = options_.monitor});
+  }
+}
+
+void RunOutput::finish(const EvaluationFields& fields, RunResult& result) {
+  const Timer timer;
+  std::vector<fs::path> exported;
+  if (!fields.mesh.nodes.empty()) {
+    monitor_.progress({.stage = "output", .detail = "writing meshes"});
+    write_meshes(input_, fields, folder_);
+    write_frames(input_, fields.history, folder_);
+    exported = export_all(result);
+    if (options_.pictures) {
+      draw_rest(fields, result);
+    }
+  }
+  if (result.best && !fields.mesh.nodes.empty()) {
+    result.output_seconds = timer.seconds();
+    result.ledger = make_ledger(input_, result, fields, folder_, exported);
+  }
+  for (const std::string& name : write_unfilled(fields, folder_)) {
+    result.warnings.push_back("look at the surface in " + name);
+  }
+}
+
+/// The answer in the formats asked for, as `meniscus export` writes it.
+std::vector<fs::path> RunOutput::export_all(RunResult& result) {
+  std::vector<fs::path> files;
+  for (const std::string& format : options_.exports) {
+    monitor_.progress({.stage = "output", .detail = "writing " + format});
+    try {
+      files.push_back(
+          export_part(folder_, {.format = format,
+                                .program_version = options_.program_version,
+                                .monitor = options_.monitor}));
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const IoError&) {
+      throw;
+    } catch (const Error& error) {
+      result.warnings.push_back(
+          fmt::format("not written as {}: {}", format, error.what()));
+    }
+  }
+  return files;
+}
+
+/// What was begun, and what needs the frames.
+void RunOutput::draw_rest(const EvaluationFields& fields, RunResult& result) {
+  const bool late =
+      options_.time_limit > 0.0 && result.total_seconds >= options_.time_limit;
+  if (late) {
+    pictures_.reset();
+    result.warnings.push_back(
+        fmt::format("the time limit of {:g} s left no time for pictures",
+                    options_.time_limit));
+    return;
+  }
+  monitor_.progress({.stage = "output", .detail = "drawing pictures"});
+  const auto warn = [&](std::vector<std::string> warnings) {
+    result.warnings.insert(result.warnings.end(), warnings.begin(),
+                           warnings.end());
+  };
+  if (!pictures_) {
+    begin(fields);
+  }
+  warn(pictures_->wait());
+  pictures_.reset();
+  if (!options_.frame_pictures || fields.history.empty()) {
+    return;
+  }
+  std::vector<std::string> captions;
+  captions.reserve(fields.history.size());
+  for (const FilmFrame& frame : fields.history) {
+    captions.push_back(frame_caption(input_, frame));
+  }
+  std::vector<std::string> solids;
+  for (const CapSpec& cap : fields.inputs.film_system.caps) {
+    solids.push_back(cap.name);
+  }
+  warn(draw_frames(input_.title, solids, fields.history, captions, folder_,
+                   monitor_));
+}
+
+}  // namespace meniscus

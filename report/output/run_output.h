@@ -1,0 +1,53 @@
+/// What a run leaves in its folder beside result.json.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/monitor.h"
+#include "pipeline/study/study.h"
+#include "report/picture/picture.h"
+
+namespace meniscus {
+
+struct RunOutputOptions {
+  bool pictures = true;
+  bool frame_pictures = false;  // and one of each film of the history
+  /// Formats of export_formats() to write the part in besides.
+  std::vector<std::string> exports = {};
+  std::string program_version = {};  // for the heads of those files
+  double time_limit = 0.0;     // [s]: pictures are left out beyond; 0: none
+  Monitor* monitor = nullptr;  // not owned
+};
+
+/// The files of one run, from its best design on.
+class RunOutput {
+ public:
+  /// `input` must outlive it.
+  RunOutput(const Case& input, std::filesystem::path folder,
+            const RunOutputOptions& options);
+
+  /// For StudyOptions::answered: the pictures are begun, beside what the study
+  /// still has to compute.
+  void begin(const EvaluationFields& fields);
+
+  /// Meshes of the best design, films of the history, exports, pictures and the
+  /// ledger, or the surface that could not be filled; warnings go to `result`,
+  /// also of an export that does not work out.
+  /// Throws IoError, Interrupted.
+  void finish(const EvaluationFields& fields, RunResult& result);
+
+ private:
+  std::vector<std::filesystem::path> export_all(RunResult& result);
+  void draw_rest(const EvaluationFields& fields, RunResult& result);
+
+  const Case& input_;
+  std::filesystem::path folder_;
+  RunOutputOptions options_;
+  Monitor& monitor_;
+  std::optional<PicturesBeside> pictures_;
+};
+
+}  // namespace meniscus

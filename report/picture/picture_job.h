@@ -1,0 +1,66 @@
+/// What a picture shows, as handed from the program to its helper.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "report/picture/picture_data.h"
+
+namespace meniscus {
+
+enum class PictureKind {
+  Part,     // the deflected part coloured by von Mises stress
+  Film,     // the liquid films with their rims and caps
+  Overview  // film, cut mesh and stressed part side by side
+};
+
+/// An arrow on a loaded surface.
+struct PictureLoad {
+  std::string surface;
+  Vec3 direction = Vec3::Zero();  // its length is relative to the others'
+  std::string label;              // "40 kN"
+};
+
+/// A shape of a picture: in memory, else in a file (UTF-8).
+template <class Data>
+struct PictureSource {
+  std::shared_ptr<const Data> data;  // may be shared between jobs
+  std::string file;
+};
+
+/// Part needs `part_surface` with displacement and von Mises stress (in a
+/// file: the point fields `displacement` and `von_mises` and the cell data
+/// `surface`); Film needs `film`; Overview needs both and `part`.
+struct PictureJob {
+  PictureKind kind = PictureKind::Part;
+  std::string output;                          // PNG, replaced whole; UTF-8
+  PictureSource<PictureTets> part;             // part.vtu
+  PictureSource<PictureSurface> part_surface;  // part_surface.vtp
+  PictureSource<PictureSurface> film;          // film.vtp
+  std::string title;                           // one line, may be empty
+  int width = 1600;                            // [pixel], 200 to 8000
+  int height = 1000;                           // [pixel], 200 to 8000
+  std::vector<std::string> supports;           // surfaces that are held
+  std::vector<std::string> solids;             // of the film: caps, plates
+  std::vector<PictureLoad> loads;
+  Vec3 view = Vec3(0.26, -1.0, 0.62);  // from the part to the eye; z is up
+  bool facet_edges = false;            // Film: thin lines along facets
+  std::vector<std::string> hidden;     // Film: surfaces left out
+  // Film, of a series seen by one fixed camera:
+  Points seen;          // what must be in view; empty: the film
+  std::string caption;  // a line below the title
+};
+
+/// Whether a surface is one of `hidden`; a * at the end of one of these stands
+/// for anything.
+bool is_hidden(const std::string& surface,
+               const std::vector<std::string>& hidden);
+
+/// Jobs with their shapes as bytes for the helper on this machine, and back;
+/// the latter throws InvalidInput.
+std::string to_bytes(const std::vector<PictureJob>& jobs);
+std::vector<PictureJob> picture_jobs_from_bytes(const std::string& bytes);
+
+}  // namespace meniscus

@@ -1,0 +1,175 @@
+/// meniscus-render: draws the picture jobs that come on stdin (picture_job.h).
+/// Needs a display; the program that starts it sees to that
+/// (report/picture/picture.h). Exit code 0: all drawn; 1: stderr says what is
+/// missing; 2: no valid jobs.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <iterator>
+#include <string>
+#include <vector>
+#include <vtkObject.h>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "report/render/render_views.h"
+#include "report/render/save_picture.h"
+
+namespace meniscus {
+namespace {
+
+constexpr Colour kGrey = {0.38, 0.42, 0.48};
+
+std::string with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.3g}{}{}", value, unit.empty() ? "" : " ", unit);
+}
+
+/// 12,345
+std::string grouped(std::size_t count) {
+  const std::string digits = std::to_string(count);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) {
+      text += ',';
+    }
+    text += digits[i];
+  }
+  return text;
+}
+
+void draw_one(const PictureJob& job) {
+  Panel panel({0, 0, 1, 1}, job.width, job.height);
+  ViewLayout layout;
+  layout.text = std::max(12, job.height / 42);
+  std::string line;
+  if (job.kind == PictureKind::Part) {
+    const auto part = shape_of(job.part_surface, load_surface);
+    const PartFigures figures = draw_part(panel, job, *part, layout);
+    line = fmt::format(
+        "deflection drawn \u00d7 {:g} (largest {}), peak stress {}",
+        figures.factor, with_unit(figures.largest, part->length_unit),
+        with_unit(figures.peak, part->stress_unit));
+  } else {
+    layout.model = {0.05, 0.05, 0.95, 0.87};
+    const auto film = shape_of(job.film, load_surface);
+    PictureSurface shown;
+    shown.mesh = without(film->mesh, job.hidden);
+    draw_film(panel, job, shown);
+    line = job.caption;
+  }
+  panel.fit_camera(job.view, layout.model);
+  panel.add_text(0.025, 1.0 - 2.2 * layout.text / job.height, job.title,
+                 {.size = layout.text * 3 / 2, .bold = true});
+  panel.add_text(0.025, 1.0 - 4.0 * layout.text / job.height, line,
+                 {.size = layout.text, .colour = kGrey});
+  save_picture({&panel}, job.width, job.height, job.output);
+}
+
+/// Where three panels of an overview have their things, and its height [pixel].
+struct OverviewLayout {
+  ViewLayout view;
+  int height = 0;
+};
+
+/// A part taller than a panel is wide gets a taller picture.
+OverviewLayout overview_layout(const PictureJob& job, const Points& film) {
+  constexpr double kHead = 0.14;    // x the height asked for: titles
+  constexpr double kFoot = 0.22;    // bar and legends
+  constexpr double kTallest = 1.9;  // x the height asked for
+  constexpr double kMargin = 0.02;  // x the panel's width
+  const double asked = job.height;
+  const double panel = job.width / 3.0;
+  const double tall =
+      seen_aspect(film, job.view) * (1.0 - 2.0 * kMargin) * panel +
+      (kHead + kFoot) * asked;
+  OverviewLayout layout;
+  layout.height = static_cast<int>(std::clamp(tall, asked, kTallest * asked));
+  const double part = asked / layout.height;
+  layout.view.text = std::max(11, job.height / 30);
+  layout.view.model = {kMargin, kFoot * part, 1.0 - kMargin,
+                       1.0 - kHead * part};
+  layout.view.bar = {0.15, 0.105 * part, 0.85, 0.13 * part};
+  return layout;
+}
+
+void draw_overview(const PictureJob& job) {
+  const auto surface = shape_of(job.film, load_surface);
+  const OverviewLayout overview = overview_layout(job, surface->mesh.points);
+  const ViewLayout& layout = overview.view;
+  const int height = overview.height;
+  Panel film({0, 0, 1.0 / 3, 1}, job.width, height);
+  Panel mesh({1.0 / 3, 0, 2.0 / 3, 1}, job.width, height);
+  Panel part({2.0 / 3, 0, 1, 1}, job.width, height);
+  const auto tets = shape_of(job.part, load_tets);
+  const bool liquid = draw_film(film, job, *surface);
+  draw_cut_mesh(mesh, job, *tets);
+  const PartFigures figures =
+      draw_part(part, job, *shape_of(job.part_surface, load_surface), layout);
+  const auto caption = [&](Panel& panel, const std::string& title,
+                           const std::string& line) {
+    const double row = layout.text / static_cast<double>(height);
+    panel.add_text(0.5, 1.0 - 2.0 * row, title,
+                   {.size = layout.text * 5 / 4,
+                    .bold = true,
+                    .justify = Justify::Centre});
+    panel.add_text(
+        0.5, 1.0 - 3.5 * row, line,
+        {.size = layout.text, .colour = kGrey, .justify = Justify::Centre});
+    // One scale and one eye for all three.
+    if (&panel != &part) {
+      panel.show(part.shown());
+    }
+    panel.fit_camera(job.view, layout.model);
+  };
+  caption(film, liquid ? "Liquid film" : "Plane faces",
+          fmt::format("{} facets{}", grouped(surface->mesh.facets.size()),
+                      liquid ? " at rest" : ""));
+  caption(mesh, "Solid, cut open",
+          fmt::format("{} tetrahedra", grouped(tets->corners.size())));
+  caption(part, "Stress under load",
+          fmt::format("deflection \u00d7 {:g}", figures.factor));
+  std::vector<Panel::Key> keys = {
+      {kCapColour, liquid ? "cap" : "face"},
+      {kRimColour, liquid ? "boundary curve" : "edge"}};
+  if (liquid) {
+    keys.insert(keys.begin(), {kFilmColour, "film"});
+  }
+  film.add_legend(layout.bar.bottom, keys, layout.text);
+  mesh.add_legend(layout.bar.bottom,
+                  {{kOutsideColour, "surface"}, {kInsideColour, "inside"}},
+                  layout.text);
+  save_picture({&film, &mesh, &part}, job.width, height, job.output);
+}
+
+int run() {
+  const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
+  std::vector<PictureJob> jobs;
+  try {
+    jobs = picture_jobs_from_bytes(text);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+  vtkObject::GlobalWarningDisplayOff();
+  int code = 0;
+  for (const PictureJob& job : jobs) {
+    try {
+      if (job.kind == PictureKind::Overview) {
+        draw_overview(job);
+      } else {
+        draw_one(job);
+      }
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s: %s\n", job.output.c_str(), error.what());
+      code = 1;
+    }
+  }
+  return code;
+}
+
+}  // namespace
+}  // namespace meniscus
+
+int main() { return meniscus::run(); }

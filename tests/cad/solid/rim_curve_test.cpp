@@ -1,0 +1,107 @@
+#include "cad/solid/rim_curve.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "cad/solid/rim_edges.h"
+
+namespace meniscus {
+namespace {
+
+constexpr double kWholeTurn = 2.0 * std::numbers::pi;
+
+/// Two straight sides and two half circles.
+RimCurve stadium() {
+  return RimCurve(
+      {{StraightLine{Vec3(-2, -1, 0), Vec3::UnitX()}, 0.0, 4.0},
+       {EllipseCurve{Vec3(2, 0, 0), Vec3::UnitX(), Vec3::UnitY()},
+        -0.25 * kWholeTurn, 0.25 * kWholeTurn},
+       {StraightLine{Vec3(2, 1, 0), -Vec3::UnitX()}, 0.0, 4.0},
+       {EllipseCurve{Vec3(-2, 0, 0), -Vec3::UnitX(), -Vec3::UnitY()},
+        -0.25 * kWholeTurn, 0.25 * kWholeTurn}});
+}
+
+TEST(RimCurve, KnowsLengthAndPlaces) {
+  const RimCurve curve = stadium();
+  EXPECT_NEAR(curve.length(), 8.0 + kWholeTurn, 1e-12);
+  for (int k = 0; k < 40; ++k) {
+    const double s = curve.length() * k / 40.0;
+    EXPECT_NEAR(curve.nearest(curve.point(s)), s, 1e-9);
+    EXPECT_NEAR((curve.point(s + 1e-6) - curve.point(s - 1e-6)).norm(), 2e-6,
+                1e-10);
+  }
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_FALSE(curve.is_sharp(k));
+  }
+  EXPECT_NEAR(curve.turning(1), 0.5 * kWholeTurn, 1e-9);
+}
+
+TEST(RimCurve, SplineThroughPointsClosesSmoothly) {
+  Points points;
+  for (int k = 0; k < 48; ++k) {
+    const double angle = kWholeTurn * k / 48.0;
+    points.emplace_back(std::cos(angle), std::sin(angle),
+                        0.2 * std::cos(2.0 * angle));
+  }
+  const RimCurve curve = rim_through(points);
+  ASSERT_EQ(curve.piece_count(), 1);
+  EXPECT_FALSE(curve.is_sharp(0));
+  constexpr double kTolerance = 1e-5;  // the poles' third differences, a little
+  for (const Vec3& p : points) {
+    EXPECT_NEAR((curve.point(curve.nearest(p)) - p).norm(), 0.0, kTolerance);
+  }
+  const RimPiece& piece = curve.piece(0);
+  EXPECT_NEAR(
+      (point_of(piece.curve, piece.first) - point_of(piece.curve, piece.last))
+          .norm(),
+      0.0, kTolerance);
+}
+
+TEST(RimCurve, CornersStayCorners) {
+  Points points;
+  for (int side = 0; side < 4; ++side) {
+    for (int k = 0; k < 5; ++k) {
+      const double s = k / 5.0;
+      points.push_back(side == 0   ? Vec3(s, 0, 0)
+                       : side == 1 ? Vec3(1, s, 0)
+                       : side == 2 ? Vec3(1 - s, 1, 0)
+                                   : Vec3(0, 1 - s, 0));
+    }
+  }
+  const RimCurve curve = rim_through(points);
+  ASSERT_EQ(curve.piece_count(), 4);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_TRUE(curve.is_sharp(k));
+  }
+  constexpr double kTolerance = 1e-3;  // lengths of splines are by 64 samples
+  EXPECT_NEAR(curve.length(), 4.0, kTolerance);
+}
+
+TEST(RimEdges, WishesNearEachOtherBecomeOneVertex) {
+  const RimCurve curve = stadium();
+  RimEdges edges(curve);
+  edges.want(1.0);
+  edges.want(1.05);
+  edges.want(4.02);  // the end of the first side
+  Brep brep;
+  edges.build(0.1, brep);
+  EXPECT_EQ(brep.vertices.size(), 5U);
+  EXPECT_EQ(brep.edges.size(), 5U);
+  EXPECT_EQ(edges.vertex(1.05), edges.vertex(1.0));
+  const auto steps = edges.between(1.0, 4.0, false);
+  ASSERT_EQ(steps.size(), 4U);
+  EXPECT_FALSE(steps[0].forward);
+  EXPECT_NEAR(edges.way(1.0, 4.0, false), curve.length() - 3.0, 1e-12);
+  for (const BrepEdge& edge : brep.edges) {
+    EXPECT_LT(
+        (point_of(edge.curve, edge.first) - brep.vertices[edge.from]).norm(),
+        1e-12);
+    EXPECT_LT((point_of(edge.curve, edge.last) - brep.vertices[edge.to]).norm(),
+              1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace meniscus

@@ -1,0 +1,409 @@
+// Walls of films that meet: closed, as thick as asked, rounded, and a smooth
+// map of their films.
+#include "evolve/walls/wall_model.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "evolve/walls/facet_probe.h"
+#include "tests/support/sheet_shapes.h"
+
+namespace meniscus {
+namespace {
+
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kPromisedThickness =
+    0.05;                                // of the thickness away from junctions
+constexpr double kWallRounding = 1e-11;  // of sums over some thousand facets
+constexpr double kDifference = 1e-6;     // central differences, step 1e-6
+
+/// Films that share points closer than 1e-9.
+SurfaceMesh welded(const std::vector<SurfaceMesh>& films) {
+  SurfaceMesh all;
+  for (const SurfaceMesh& film : films) {
+    std::vector<int> id;
+    for (const Vec3& p : film.points) {
+      int at = 0;
+      while (at < static_cast<int>(all.points.size()) &&
+             (all.points[at] - p).norm() > 1e-9) {
+        ++at;
+      }
+      if (at == static_cast<int>(all.points.size())) {
+        all.points.push_back(p);
+      }
+      id.push_back(at);
+    }
+    for (const Triangle& t : film.facets) {
+      all.facets.push_back({id[t[0]], id[t[1]], id[t[2]]});
+      all.facet_label.push_back(static_cast<int>(all.labels.size()));
+    }
+    all.labels.push_back(film.labels[0]);
+  }
+  return all;
+}
+
+SurfaceMesh flat(const std::string& name, const Vec3& o, const Vec3& u,
+                 const Vec3& v, int n = 8) {
+  return shapes::patch(
+      [&](double a, double b) { return Vec3(o + a * u + b * v); },
+      {.rows = n, .columns = n, .jitter = 0.0}, name);
+}
+
+/// Films around the y axis, at these angles [degree], of width 1 and length 2.
+SurfaceMesh fan(const std::vector<double>& angles, int n = 8) {
+  std::vector<SurfaceMesh> films;
+  for (const double degree : angles) {
+    const double a = degree * kHalfTurn / 180.0;
+    films.push_back(flat("film" + std::to_string(films.size()), Vec3::Zero(),
+                         {std::cos(a), 0, std::sin(a)}, {0, 2, 0}, n));
+  }
+  return welded(films);
+}
+
+/// Six films from the edges of a tetrahedron to its middle.
+SurfaceMesh tetrahedral(int n = 8) {
+  const std::array<Vec3, 4> corner = {Vec3(1, 1, 1), Vec3(1, -1, -1),
+                                      Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
+  std::vector<SurfaceMesh> films;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i + 1; j < 4; ++j) {
+      SurfaceMesh film;
+      film.labels = {"film" + std::to_string(films.size())};
+      std::map<std::pair<int, int>, int> id;
+      for (int a = 0; a <= n; ++a) {
+        for (int b = 0; a + b <= n; ++b) {
+          id[{a, b}] = static_cast<int>(film.points.size());
+          film.points.push_back((a * corner[i] + b * corner[j]) / n);
+        }
+      }
+      for (int a = 0; a < n; ++a) {
+        for (int b = 0; a + b < n; ++b) {
+          film.facets.push_back({id[{a, b}], id[{a + 1, b}], id[{a, b + 1}]});
+          if (a + b + 2 <= n) {
+            film.facets.push_back(
+                {id[{a + 1, b}], id[{a + 1, b + 1}], id[{a, b + 1}]});
+          }
+        }
+      }
+      film.facet_label.assign(film.facets.size(), 0);
+      films.push_back(std::move(film));
+    }
+  }
+  return welded(films);
+}
+
+WallFilms films_of(SurfaceMesh mesh, int levels, double thickness) {
+  WallFilms films;
+  films.wall.assign(mesh.labels.size(), 0);
+  films.region = {0};
+  films.asked = {thickness};
+  films.levels = levels;
+  std::vector<Triangle> facets = mesh.facets;
+  for (int level = 0; level < levels; ++level) {
+    std::vector<Triangle> finer;
+    for (const Triangle& t : facets) {
+      Triangle m;
+      for (int k = 0; k < 3; ++k) {
+        const int a = t[k];
+        const int b = t[(k + 1) % 3];
+        const auto [at, is_new] =
+            films.middles.try_emplace({std::min(a, b), std::max(a, b)},
+                                      static_cast<int>(mesh.points.size()));
+        if (is_new) {
+          mesh.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
+        }
+        m[k] = at->second;
+      }
+      finer.push_back({t[0], m[0], m[2]});
+      finer.push_back({t[1], m[1], m[0]});
+      finer.push_back({t[2], m[2], m[1]});
+      finer.push_back(m);
+    }
+    facets = std::move(finer);
+  }
+  films.mesh = std::move(mesh);
+  return films;
+}
+
+WallSpec spec(const SurfaceMesh& mesh, double thickness,
+              std::optional<double> fillet = std::nullopt) {
+  return {.name = "web",
+          .films = mesh.labels,
+          .thickness = Expression(thickness),
+          .side = WallSide::Both,
+          .fillet = fillet,
+          .number = thickness,
+          .region = 0};
+}
+
+struct Made {
+  WallFilms films;
+  std::vector<WallSpec> specs;
+  WallModel model;
+};
+
+Made make(const SurfaceMesh& mesh, double thickness, int levels = 1,
+          std::optional<double> fillet = std::nullopt) {
+  WallFilms films = films_of(mesh, levels, thickness);
+  std::vector<WallSpec> specs = {spec(mesh, thickness, fillet)};
+  WallModel model(films, specs);
+  return {std::move(films), std::move(specs), std::move(model)};
+}
+
+/// Largest relative error of the thickness at places of one film's front that
+/// `away` accepts: to the nearest place of its back.
+template <class Away>
+double worst_thickness(const SurfaceMesh& wall, const std::string& film,
+                       double thickness, const Away& away) {
+  SurfaceMesh back = wall;
+  back.facets.clear();
+  const int front = wall.label_of(film);
+  const int behind = wall.label_of(film + "/back");
+  for (std::size_t f = 0; f < wall.facets.size(); ++f) {
+    if (wall.facet_label[f] == behind) {
+      back.facets.push_back(wall.facets[f]);
+    }
+  }
+  const FacetProbe probe(back.points, back.facets);
+  double worst = 0.0;
+  for (std::size_t f = 0; f < wall.facets.size(); ++f) {
+    const Triangle& t = wall.facets[f];
+    const Vec3 p =
+        (wall.points[t[0]] + wall.points[t[1]] + wall.points[t[2]]) / 3.0;
+    if (wall.facet_label[f] == front && away(p)) {
+      worst = std::max(worst,
+                       std::abs(probe.nearest(p).distance / thickness - 1.0));
+    }
+  }
+  return worst;
+}
+
+/// Largest distance of a point to the nearest of the others.
+double farthest(const Points& points, const Points& others) {
+  double worst = 0.0;
+  for (const Vec3& p : points) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& q : others) {
+      least = std::min(least, (p - q).norm());
+    }
+    worst = std::max(worst, least);
+  }
+  return worst;
+}
+
+struct Junction {
+  const char* name;
+  std::vector<double> angles;
+  int levels;
+};
+
+class WallsAtALine : public testing::TestWithParam<Junction> {};
+
+TEST_P(WallsAtALine, AreClosedAndAsThickAsAsked) {
+  const double t = 0.12;
+  const SurfaceMesh mesh = fan(GetParam().angles);
+  const Made made = make(mesh, t, GetParam().levels);
+  const ThickWall& wall = made.model.walls().at(0);
+  EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
+  // Of every film 2 x 1 x t, less what overlaps at the line, plus fillets.
+  const auto films = static_cast<double>(mesh.labels.size());
+  EXPECT_NEAR(wall.volume, films * 2.0 * t, 2.5 * films * t * t);
+  for (const std::string& film : mesh.labels) {
+    EXPECT_LT(worst_thickness(wall.surface, film, t,
+                              [&](const Vec3& p) {
+                                return std::hypot(p.x(), p.z()) > 2.0 * t;
+                              }),
+              kPromisedThickness)
+        << film;
+  }
+  const QuadraticSurface surface = made.model.surface(
+      made.films.mesh.points, made.model.thickness(made.specs));
+  EXPECT_TRUE(check_surface(surface.base).empty())
+      << summary(check_surface(surface.base));
+}
+
+INSTANTIATE_TEST_SUITE_P(Junctions, WallsAtALine,
+                         // A fillet of t/2 between films at 50 degrees ends
+                         // 2.14 t from their line, at 2 t it is 2 % thicker.
+                         testing::Values(Junction{"T", {0, 90, 180}, 1},
+                                         Junction{"Y", {0, 120, 240}, 2},
+                                         Junction{"X", {0, 90, 180, 270}, 1},
+                                         Junction{"sharp", {0, 60, 200}, 1},
+                                         Junction{"one sided", {0, 50, 100}, 2},
+                                         Junction{"coarse", {0, 120, 240}, 0}),
+                         [](const auto& junction) {
+                           std::string name = junction.param.name;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+TEST(WallsAtAPoint, OfFourLinesAreClosed) {
+  const double t = 0.08;
+  const SurfaceMesh mesh = tetrahedral();
+  for (const int levels : {0, 1}) {
+    const Made made = make(mesh, t, levels);
+    const ThickWall& wall = made.model.walls().at(0);
+    EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
+    EXPECT_NEAR(wall.volume, 6.0 * std::sqrt(2.0) * t, 0.12 * wall.volume);
+  }
+}
+
+// The middle of an arc of radius r between sides h off two films at an angle:
+// (h + r) / sin(angle / 2) - r from their line.
+TEST(Fillets, AreArcs) {
+  const double t = 0.12;
+  for (const double r : {0.0, 0.06, 0.15}) {
+    const Made made = make(fan({0, 90, 180, 270}, 24), t, 1, r);
+    const ThickWall& wall = made.model.walls().at(0);
+    EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
+    const double expected = (0.5 * t + r) * std::sqrt(2.0) - r;
+    double least = 1.0;
+    double worst = 0.0;
+    const double centre = 0.5 * t + r;
+    for (std::size_t p = 0; p < wall.surface.points.size(); ++p) {
+      const Vec3& x = wall.surface.points[p];
+      if (wall.trace[p].vertex < 0) {
+        continue;
+      }
+      const Vec3 q(std::abs(x.x()), x.y(), std::abs(x.z()));
+      least = std::min(least, std::hypot(q.x(), q.z()));
+      if (q.x() < centre && q.z() < centre) {
+        worst = std::max(
+            worst, std::abs(std::hypot(q.x() - centre, q.z() - centre) - r));
+      }
+    }
+    EXPECT_NEAR(least, expected, 1e-9);
+    EXPECT_LT(worst, 1e-9);
+  }
+}
+
+TEST(WallModel, TurnsWithItsFilm) {
+  const Made made = make(fan({0, 90, 200}), 0.1);
+  const Mat3 turn =
+      Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  Points turned = made.films.mesh.points;
+  for (Vec3& p : turned) {
+    p = turn * p + Vec3(5, 6, 7);
+  }
+  const VectorX t = made.model.thickness(made.specs);
+  const Points before = made.model.fine(made.films.mesh.points, t).points;
+  const Points after = made.model.fine(turned, t).points;
+  for (std::size_t p = 0; p < before.size(); ++p) {
+    EXPECT_LT((after[p] - turn * before[p] - Vec3(5, 6, 7)).norm(),
+              kWallRounding);
+  }
+}
+
+TEST(WallModel, DoublesWithItsThickness) {
+  const Made made = make(fan({0, 90, 180}), 0.05);
+  const Points& x = made.films.mesh.points;
+  const VectorX t = made.model.thickness(made.specs);
+  const double once = enclosed_volume(made.model.fine(x, t));
+  const double twice = enclosed_volume(made.model.fine(x, 2.0 * t));
+  const double again = make(fan({0, 90, 180}), 0.10).model.walls().at(0).volume;
+  EXPECT_NEAR(twice, again, 0.01 * again);
+  EXPECT_GT(twice, 1.9 * once);
+}
+
+TEST(WallModel, TransposesItsDerivative) {
+  const Made made = make(fan({0, 100, 190}, 4), 0.1);
+  const VectorX t = made.model.thickness(made.specs);
+  Points film = made.films.mesh.points;
+  Points rate(film.size());
+  for (std::size_t v = 0; v < film.size(); ++v) {
+    const auto k = static_cast<double>(v);
+    rate[v] = Vec3(std::sin(k), std::sin(2.0 * k), std::sin(3.0 * k));
+    film[v] += 0.02 * Vec3(std::cos(k), std::cos(2.0 * k), std::cos(3.0 * k));
+  }
+  const auto objective = [&](const Points& x, const VectorX& thickness) {
+    const QuadraticSurface s = made.model.surface(x, thickness);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < s.base.points.size(); ++i) {
+      sum += std::sin(1.0 * i) * s.base.points[i].dot(Vec3(1, 2, 3));
+    }
+    for (std::size_t i = 0; i < s.mid.size(); ++i) {
+      sum += std::cos(1.0 * i) * s.mid[i].dot(Vec3(3, -1, 2));
+    }
+    return sum;
+  };
+  const QuadraticSurface s = made.model.surface(film, t);
+  Points by_corners;
+  Points by_mid;
+  for (std::size_t i = 0; i < s.base.points.size(); ++i) {
+    by_corners.push_back(std::sin(1.0 * i) * Vec3(1, 2, 3));
+  }
+  for (std::size_t i = 0; i < s.mid.size(); ++i) {
+    by_mid.push_back(std::cos(1.0 * i) * Vec3(3, -1, 2));
+  }
+  const WallGradient gradient =
+      made.model.transpose(film, t, by_corners, by_mid);
+  const double step = 1e-6;
+  Points ahead = film;
+  Points behind = film;
+  double exact = 0.0;
+  for (std::size_t v = 0; v < film.size(); ++v) {
+    ahead[v] += step * rate[v];
+    behind[v] -= step * rate[v];
+    exact += gradient.film[v].dot(rate[v]);
+  }
+  const double by_film =
+      (objective(ahead, t) - objective(behind, t)) / (2.0 * step);
+  EXPECT_NEAR(exact, by_film, kDifference * std::abs(by_film));
+  const VectorX more = t.array() + step;
+  const VectorX less = t.array() - step;
+  const double by_thickness =
+      (objective(film, more) - objective(film, less)) / (2.0 * step);
+  EXPECT_NEAR(gradient.thickness[0], by_thickness,
+              kDifference * std::abs(by_thickness));
+}
+
+TEST(WallModel, SplitsItsFacets) {
+  Made made = make(fan({0, 90, 180}, 4), 0.2, 2);
+  const VectorX t = made.model.thickness(made.specs);
+  const Points& x = made.films.mesh.points;
+  const std::size_t before = made.model.surface(x, t).base.facets.size();
+  std::vector<char> marked(before, 0);
+  for (std::size_t f = 0; f < before; f += 3) {
+    marked[f] = 1;
+  }
+  made.model.split_facets(marked);
+  const SurfaceMesh split = made.model.surface(x, t).base;
+  EXPECT_GT(split.facets.size(), before);
+  EXPECT_TRUE(check_surface(split).empty()) << summary(check_surface(split));
+}
+
+// Point by point, and what was measured; skew cells of the rims may be cut
+// along the other diagonal.
+TEST(WallModel, OfACatenoidIsWhatThickenMakes) {
+  constexpr double kDiagonals = 1e-4;  // of the volume
+  const SurfaceMesh film =
+      shapes::catenoid_sheet(0.6, {.rows = 8, .columns = 32, .around = true});
+  for (const double t : {0.1, 0.4}) {
+    const ThickWall plain = thicken(film, {.thickness = Expression(t)});
+    const Made made = make(film, t, 0);
+    const ThickWall& wall = made.model.walls().at(0);
+    EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
+    EXPECT_EQ(wall.surface.points.size(), plain.surface.points.size());
+    EXPECT_LT(farthest(wall.surface.points, plain.surface.points),
+              kWallRounding);
+    EXPECT_NEAR(wall.volume, plain.volume, kDiagonals * plain.volume);
+    EXPECT_NEAR(wall.thinnest.value, plain.thinnest.value, kWallRounding);
+    EXPECT_NEAR(wall.safe.value, plain.safe.value, kWallRounding);
+  }
+}
+
+TEST(WallModel, OfOneSideRefusesJunctions) {
+  const SurfaceMesh mesh = fan({0, 90, 180});
+  std::vector<WallSpec> specs = {spec(mesh, 0.1)};
+  specs[0].side = WallSide::Inside;
+  EXPECT_THROW(WallModel(films_of(mesh, 0, 0.1), specs), InvalidInput);
+}
+
+}  // namespace
+}  // namespace meniscus

@@ -1,0 +1,88 @@
+#include "fea/functionals/thickness.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/support/derivatives.h"
+#include "tests/support/gradient_parts.h"
+
+namespace meniscus {
+namespace {
+
+constexpr double kThicknessRounding = 1e-12;
+
+/// The bounds of a smooth minimum.
+void expect_least(const TetMesh& mesh, double exact, double error) {
+  const ThicknessPairs pairs = thickness_pairs(mesh);
+  constexpr double kSharpness = 400.0;
+  const double value = thickness_functional(mesh, pairs, kSharpness).value;
+  EXPECT_LE(value, exact + error);
+  EXPECT_GE(value,
+            exact - error - std::log(1.0 * pairs.faces.size()) / kSharpness);
+}
+
+class Thickness : public testing::TestWithParam<int> {
+ protected:
+  static TetMesh of_order(const TetMesh& mesh) {
+    return GetParam() == 1 ? mesh : shapes::straight_quadratic(mesh);
+  }
+};
+
+TEST_P(Thickness, OfAPlateIsExact) {
+  expect_least(of_order(shapes::brick({2.0, 1.0, 0.2}, 7, 3, 2)), 0.2,
+               kThicknessRounding);
+}
+
+// A wedge from 0.1 to 0.3 thick along x from 0 to 2.
+TEST_P(Thickness, ThinnestPlaceOfAWedge) {
+  TetMesh wedge = shapes::brick({2.0, 1.0, 1.0}, 20, 3, 2);
+  for (Vec3& p : wedge.nodes) {
+    p.z() *= 0.1 + 0.1 * p.x();
+  }
+  wedge = of_order(wedge);
+  const ThinPlace thin = thinnest_place(wedge, thickness_pairs(wedge), 0.2);
+  EXPECT_NEAR(thin.value, 0.1, 0.01);
+  EXPECT_LT(thin.place.x(), 0.1);
+  EXPECT_NEAR(thin.share, 0.5, 0.06);  // x below 1, by facets of 0.1
+  EXPECT_EQ(thinnest_place(wedge, thickness_pairs(wedge), 0.05).share, 0.0);
+}
+
+/// A wall of thickness 1 between radii 1 and 2, as thick as its height is.
+TEST_P(Thickness, OfACurvedWallConvergesAtSecondOrder) {
+  double before = 0.0;
+  for (const int n : {2, 4}) {
+    TetMesh mesh = shapes::brick({1.0, 1.5, 4.0}, n, 3 * n, 4);
+    for (Vec3& x : mesh.nodes) {
+      const double r = 1.0 + x.x();
+      x = Vec3(r * std::cos(x.y()), r * std::sin(x.y()), x.z());
+    }
+    mesh = of_order(mesh);
+    const ThicknessPairs pairs = thickness_pairs(mesh);
+    // So sharp that the logarithm counts little.
+    const double error =
+        std::abs(thickness_functional(mesh, pairs, 1e5).value - 1.0);
+    EXPECT_LE(error, 0.1 / (n * n));
+    if (before > 0.0) {
+      EXPECT_GE(before / error, 2.5);
+    }
+    before = error;
+  }
+}
+
+TEST_P(Thickness, HasDerivatives) {
+  const TetMesh mesh = gradient_parts::block(GetParam());
+  const ThicknessPairs pairs = thickness_pairs(mesh);
+  derivatives::expect_partials(
+      mesh, VectorX::Zero(static_cast<Eigen::Index>(3 * mesh.nodes.size())),
+      [&](const TetMesh& at, const VectorX&) {
+        return thickness_functional(at, pairs, 30.0);
+      });
+  EXPECT_THROW(thickness_functional(mesh, pairs, -1.0), InvalidInput);
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, Thickness, testing::Values(1, 2));
+
+}  // namespace
+}  // namespace meniscus

@@ -1,0 +1,196 @@
+/// The exact gradient through film, mesh and elasticity against central
+/// differences of the same map.
+#include <gmock/gmock.h>
+
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/forward/gradient_check.h"
+#include "tests/support/case_text.h"
+
+namespace meniscus {
+namespace {
+
+Case read(const std::string& text) {
+  CaseReading reading = read_case_text(text, "case.toml");
+  EXPECT_THAT(reading.problems, testing::IsEmpty());
+  return std::move(*reading.input);
+}
+
+/// A strut whose curves, volume and load follow three design variables, with
+/// every kind of response that has derivatives.
+std::string every_response() {
+  std::string text = changed(strut(), "[curves.base]",
+                             "[design.lean]\ninitial = 3.0\n"
+                             "bounds = [-10.0, 10.0]\n\n"
+                             "[design.fill]\ninitial = 1.0\n"
+                             "bounds = [0.8, 1.3]\n\n"
+                             "[curves.base]");
+  text = changed(text, "center = [0, 0, \"length\"]",
+                 "center = [\"lean\", 0, \"length + lean / 4\"]");
+  text = changed(text, "normal = [0, 0, 1]", "normal = [\"lean / 50\", 0, 1]");
+  text = changed(text, "volume = 9e4", "volume = \"9e4 * fill\"");
+  text = changed(text, "density = 2.8e-9",
+                 "density = 2.8e-9\nyield_strength = 200");
+  text = changed(text, "length = 60.0", "length = 60.0\nfoot_at = 30.0");
+  text = changed(text, "[responses.sway]", R"toml([responses.tilt]
+kind = "mean_displacement"
+on = "head_pad"
+direction = [0, "lean / 10", 1]
+weight = "(x - 3) / 20 + y^2 / 400"
+
+[responses.far]
+kind = "displacement_norm"
+on = "skin"
+direction = [1, 0, 0.2]
+power = 6
+
+[responses.turn]
+kind = "rotation"
+on = "head_pad"
+axis = [0, 1, 0]
+
+[responses.work]
+kind = "compliance"
+
+[responses.strain]
+kind = "strain_energy"
+
+[responses.size]
+kind = "volume"
+
+[responses.middle]
+kind = "centre_of_mass"
+direction = ["fill", 0, "lean / 3"]
+
+[responses.norm]
+kind = "von_mises_norm"
+power = 10
+
+[responses.ks]
+kind = "von_mises_ks"
+sharpness = 20
+
+[responses.evenness]
+kind = "uniformity"
+
+[responses.energy_evenness]
+kind = "energy_uniformity"
+
+[responses.area]
+kind = "film_area"
+film = "skin"
+
+[responses.energy]
+kind = "film_energy"
+
+[responses.gas]
+kind = "pressure"
+body = "part"
+
+[responses.margin]
+kind = "collapse_margin"
+
+[responses.tightest]
+kind = "radius"
+
+[responses.thinnest]
+kind = "thickness"
+
+[responses.clearance]
+kind = "distance"
+keep_out = "12 - sqrt((x - foot_at)^2 + y^2 + (z - 30)^2)"
+smoothing = 2
+
+[responses.overhang]
+kind = "distance"
+keep_in = "28 - sqrt(x^2 + y^2 + z / 8)"
+
+[responses.sway])toml");
+  return changed(text, "[study]",
+                 R"([responses.price]
+kind = "expression"
+value = "mass * 1e6 + sqrt(norm) * load / (1000 + lean) + area / fill"
+
+[study])");
+}
+
+void expect_exact(const std::string& text, const VectorX& move) {
+  const Case input = read(text);
+  const VectorX design = initial_design(input) + move;
+  const CaseGradientCheck check = check_case_gradient(input, design);
+  EXPECT_TRUE(check.report.passed) << gradient_check_text(input, check);
+}
+
+TEST(DesignGradient, IsExactForEveryResponseAtTheFrozenDesign) {
+  expect_exact(every_response(), VectorX::Zero(3));
+}
+
+TEST(DesignGradient, IsExactAwayFromTheFrozenDesign) {
+  expect_exact(every_response(), Vec3(1.5, -4.0, 0.07));
+}
+
+TEST(DesignGradient, IsExactUnderEveryKindOfLoad) {
+  std::string text = changed(
+      every_response(), "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
+      "[{ on = \"head_pad\", force = [\"load\", \"30 * lean\", 0], "
+      "at = [\"lean\", 5, 80], moment = [0, 1e4, \"1e3 * fill\"] },\n"
+      "  { on = \"skin\", pressure = \"fill + x * lean / 400 + z^2 / 3e3\" },\n"
+      "  { on = \"skin\", traction = [\"lean * y / 900\", 0.1, \"x / foot\"] "
+      "},\n"
+      "  { gravity = [0, \"1e5 * lean\", -9.8e6] },\n"
+      "  { spin = \"20 * fill\", at = [\"lean\", 0, 0], axis = [0, 0.1, 1] }]");
+  expect_exact(text, VectorX::Zero(3));
+}
+
+TEST(DesignGradient, IsExactWhereMaterialsFollowTheDesign) {
+  std::string text = changed(
+      every_response(), "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
+      "[{ on = \"head_pad\", force = [\"load\", \"30 * lean\", 0] },\n"
+      "  { gravity = [0, 1e6, -9.8e6] },\n"
+      "  { spin = 20, at = [0, 0, 0], axis = [0, 0.1, 1] },\n"
+      "  { temperature = \"20 + z * fill / 4\", reference = 15 }]");
+  text = changed(text, "youngs_modulus = 71700.0",
+                 "youngs_modulus = \"7e4 + 400 * lean * fill\"\n"
+                 "thermal_expansion = 2.3e-6");
+  text = changed(text, "density = 2.8e-9", "density = \"2.8e-9 * fill^2\"");
+  expect_exact(text, Vec3(0.5, 1.0, 0.03));
+}
+
+TEST(DesignGradient, IsExactWhereWeightsAndRegionsFollowTheDesign) {
+  std::string text = changed(every_response(), "(x - 3) / 20 + y^2 / 400",
+                             "(x - lean) / 20 + fill * y^2 / 400");
+  text = changed(text, "foot_at = 30.0", "foot_at = \"30.0 + lean / 3\"");
+  text = changed(text, "28 - sqrt(x^2", "28 * fill - sqrt(x^2");
+  expect_exact(text, Vec3(0.5, 1.0, 0.03));
+}
+
+TEST(DesignGradient, HasTheSameBitsInAnotherOrderOfDesigns) {
+  const Case input = read(every_response());
+  const ForwardModel model(input);
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  const VectorX a = initial_design(input);
+  const VectorX b = a + Vec3(1.0, 2.0, 0.05);
+  const std::vector<int> wanted = {0, 3, 8};
+  const auto gradient_at = [&](const VectorX& design) {
+    EvaluationFields fields;
+    AdjointState adjoint;
+    const Evaluation there = model.evaluate(design, &fields, &adjoint);
+    EXPECT_FALSE(there.failure);
+    return model.gradient(there, fields, adjoint, wanted).jacobian;
+  };
+  const Eigen::MatrixXd first = gradient_at(a);
+  gradient_at(b);
+  EXPECT_EQ(first, gradient_at(a));
+}
+
+TEST(DesignGradient, PeaksAreLeftOutByName) {
+  const Case input = read(changed(strut(), "[responses.mass]",
+                                  "[responses.peak]\nkind = "
+                                  "\"max_von_mises\"\n\n[responses.mass]"));
+  const CaseGradientCheck check =
+      check_case_gradient(input, initial_design(input));
+  EXPECT_TRUE(check.report.passed);
+  EXPECT_THAT(check.left_out, testing::ElementsAre("peak"));
+}
+
+}  // namespace
+}  // namespace meniscus

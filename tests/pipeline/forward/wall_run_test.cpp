@@ -1,0 +1,289 @@
+// Walls are meshed, analysed and differentiated like any part.
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/forward/gradient_check.h"
+#include "pipeline/forward/part_warnings.h"
+#include "pipeline/forward/responses.h"
+#include "pipeline/forward/walls.h"
+#include "tests/support/case_text.h"
+
+namespace meniscus {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Case read(const std::string& text) {
+  CaseReading reading = read_case_text(text, "case.toml");
+  EXPECT_THAT(reading.problems, IsEmpty());
+  return std::move(*reading.input);
+}
+
+/// A cylinder by the volume of a void, 30 around, with a wall; ends slide.
+std::string cylinder() {
+  return R"toml(title = "A pipe"
+units = "mm-N-MPa"
+
+[parameters]
+inside = 10.0 # MPa
+soft = 1e-3
+
+[design.radius]
+initial = 30.0
+bounds = [28.0, 32.0]
+
+[design.thick]
+initial = 6.0
+bounds = [5.0, 8.0]
+
+[curves.base]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = "radius"
+
+[curves.head]
+kind = "circle"
+center = [0, 0, 20]
+normal = [0, 0, 1]
+radius = "radius"
+
+[films.skin]
+kind = "loft"
+curves = ["base", "head"]
+
+[solids.floor]
+kind = "cap"
+curve = "base"
+
+[solids.lid]
+kind = "cap"
+curve = "head"
+
+[bodies.gas]
+enclosed_by = ["skin", "floor", "lid"]
+volume = "20 * pi * radius^2"
+material = "void"
+
+[walls.pipe]
+films = ["skin"]
+thickness = "thick"
+material = "steel"
+
+[resolution]
+fea = 5.0
+film = 2.5
+
+[materials.steel]
+youngs_modulus = 2.1e5
+poisson_ratio = 0.3
+density = 7.8e-9
+
+[load_cases.service]
+supports = [
+  { on = "skin/rim:base", fix = "normal" },
+  { on = "skin/rim:head", fix = "normal" },
+  { on = "skin", stiffness = ["soft", "soft", 0] },
+]
+loads = [{ on = "skin/back", pressure = "inside" }]
+
+[responses.widening]
+kind = "mean_displacement"
+on = "skin/back"
+direction = [1, 0, 0]
+weight = "x / sqrt(x^2 + y^2)"
+
+[responses.stress]
+kind = "von_mises_norm"
+power = 8
+
+[responses.mass]
+kind = "mass"
+
+[responses.work]
+kind = "compliance"
+)toml";
+}
+
+std::string fixed_springs(std::string text) {
+  return changed(std::move(text), "stiffness = [\"soft\", \"soft\", 0]",
+                 "stiffness = [1e-3, 1e-3, 0]");
+}
+
+// Lame's cylinder in plane strain, of radius 27 to 33.
+TEST(WallRuns, OfAPipeAreLames) {
+  constexpr double kMesh = 0.01;  // facets of 9 degrees, one element thick
+  const Case input = read(fixed_springs(cylinder()));
+  const ForwardModel model(input);
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  EvaluationFields fields;
+  const Evaluation at = model.evaluate(initial_design(input), &fields);
+  ASSERT_FALSE(at.failure) << at.failure->message;
+  const double a = 27.0;
+  const double b = 33.0;
+  const double nu = 0.3;
+  const double widening = (1.0 + nu) * 10.0 * a * a /
+                          (2.1e5 * (b * b - a * a)) *
+                          ((1.0 - 2.0 * nu) * a + b * b / a);
+  EXPECT_NEAR(2.0 * at.responses[0], widening, kMesh * widening);
+  const double volume = std::numbers::pi * 20.0 * (b * b - a * a);
+  EXPECT_NEAR(at.responses[2], 7.8e-9 * volume, kMesh * 7.8e-9 * volume);
+  // Of the inside, the largest.
+  const double hoop = 10.0 * (a * a + b * b) / (b * b - a * a);
+  const double along = nu * (hoop - 10.0);
+  const double largest =
+      std::sqrt(0.5 * (std::pow(hoop + 10.0, 2) + std::pow(hoop - along, 2) +
+                       std::pow(along + 10.0, 2)));
+  const StressField stress = load_case_stress(fields.mesh, fields.inputs, 0,
+                                              fields.solution.displacements[0]);
+  EXPECT_NEAR(stress.max_von_mises, largest, 0.05 * largest);
+}
+
+TEST(WallRuns, HaveExactGradients) {
+  const Case input =
+      read(fixed_springs(changed(changed(cylinder(), "fea = 5.0", "fea = 9.0"),
+                                 "film = 2.5", "film = 4.5")));
+  VectorX design = initial_design(input);
+  design[0] += 0.4;
+  design[1] -= 0.3;
+  const CaseGradientCheck check = check_case_gradient(input, design);
+  EXPECT_TRUE(check.report.passed) << gradient_check_text(input, check);
+  EXPECT_THAT(check.left_out, IsEmpty());
+}
+
+TEST(WallRuns, FollowTheirThickness) {
+  const Case input = read(fixed_springs(cylinder()));
+  const ForwardModel model(input);
+  VectorX design = initial_design(input);
+  const double before = model.evaluate(design).responses[2];
+  design[1] = 8.0;
+  const double after = model.evaluate(design).responses[2];
+  EXPECT_NEAR(after / before, 8.0 / 6.0, 1e-3);
+}
+
+TEST(WallRuns, TellTheLargestSafeThickness) {
+  const std::string text =
+      changed(changed(cylinder(), "initial = 6.0", "initial = 70.0"),
+              "bounds = [5.0, 8.0]", "bounds = [5.0, 80.0]");
+  const Case input = read(fixed_springs(text));
+  const ForwardModel model(input);
+  ASSERT_TRUE(model.failure());
+  EXPECT_EQ(model.failure()->kind, FailureKind::SurfaceInvalid);
+  EXPECT_THAT(model.failure()->message, HasSubstr("walls.pipe"));
+  EXPECT_THAT(model.failure()->message, HasSubstr("thick at most near ("));
+  EXPECT_FALSE(model.findings().empty());
+}
+
+void expect_refused(const std::string& text, const std::string& words) {
+  const Case input = read(text);
+  try {
+    const ForwardModel model(input);
+    ADD_FAILURE() << "not refused: " << words;
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), HasSubstr(words));
+  }
+}
+
+TEST(WallRuns, NeedAMaterialAndNoSolidBodies) {
+  const std::string text = fixed_springs(cylinder());
+  expect_refused(changed(text, "thickness = \"thick\"\nmaterial = \"steel\"\n",
+                         "thickness = \"thick\"\n"),
+                 "walls.pipe has no material");
+  expect_refused(changed(text, "material = \"void\"", "material = \"steel\""),
+                 "walls.pipe stands beside bodies.gas");
+}
+
+TEST(WallRuns, WarnOfWhatTheirProcessCannotMake) {
+  const auto warnings = [](const char* least) {
+    const Case input =
+        read(changed(fixed_springs(cylinder()), "[resolution]",
+                     "[process]\nname = \"sand casting\"\nsmallest_feature = " +
+                         std::string(least) + "\n\n[resolution]"));
+    const ForwardModel model(input);
+    EvaluationFields fields;
+    model.evaluate(initial_design(input), &fields);
+    return process_warnings(input, fields.mesh);
+  };
+  // Of 6 mm; flat facets of 9 degrees between radii 27 and 33.
+  EXPECT_THAT(warnings("5.9"), IsEmpty());
+  const std::vector<std::string> thin = warnings("\"7 mm\"");
+  ASSERT_EQ(thin.size(), 1U);
+  EXPECT_THAT(thin[0], HasSubstr("too thin to be made: "));
+  EXPECT_THAT(thin[0], HasSubstr("sand casting makes nothing thinner than 7 "
+                                 "mm"));
+  EXPECT_THAT(thin[0], HasSubstr("100 % of the surface"));
+}
+
+/// A cylinder with a floor across its waist: three films at a circle.
+std::string waist() {
+  std::string text = fixed_springs(cylinder());
+  text =
+      changed(text,
+              "[films.skin]\nkind = \"loft\"\n"
+              "curves = [\"base\", \"head\"]\n",
+              "[curves.waist]\nkind = \"circle\"\ncenter = [0, 0, 10]\n"
+              "normal = [0, 0, 1]\nradius = 25\n"
+              "[films.low]\nkind = \"loft\"\ncurves = [\"base\", \"waist\"]\n"
+              "[films.high]\nkind = \"loft\"\n"
+              "curves = [\"waist\", \"head\"]\n"
+              "[films.floor]\nkind = \"disk\"\ncurves = [\"waist\"]\n");
+  const std::size_t from = text.find("[solids.floor]");
+  text.erase(from, text.find("[walls.pipe]") - from);
+  text = changed(text, "films = [\"skin\"]\nthickness = \"thick\"\n",
+                 "films = [\"low\", \"high\"]\nthickness = \"thick / 2\"\n");
+  text = changed(text, "[resolution]",
+                 "[walls.plate]\nfilms = [\"floor\"]\nthickness = 2\n"
+                 "fillet = 2\nmaterial = \"steel\"\n\n[resolution]");
+  const std::size_t loads = text.find("supports = [");
+  text.erase(loads, text.find("[responses.widening]") - loads);
+  text = changed(text, "[responses.widening]",
+                 "supports = [{ on = \"low/rim:base\", fix = \"xyz\" }]\n"
+                 "loads = [{ on = \"floor\", pressure = 0.1 }]\n\n"
+                 "[responses.widening]");
+  text = changed(text,
+                 "on = \"skin/back\"\ndirection = [1, 0, 0]\n"
+                 "weight = \"x / sqrt(x^2 + y^2)\"",
+                 "on = \"floor\"\ndirection = [0, 0, 1]");
+  return text;
+}
+
+TEST(WallRuns, JoinWallsThatMeet) {
+  const Case input = read(waist());
+  EXPECT_EQ(solid_bodies(input).size(), 1U);
+  const ForwardModel model(input);
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  VectorX design = initial_design(input);
+  design[0] = 30.5;
+  const CaseGradientCheck check = check_case_gradient(input, design);
+  EXPECT_TRUE(check.report.passed) << gradient_check_text(input, check);
+}
+
+TEST(WallRuns, OfOneBodyHaveOneMaterial) {
+  const CaseReading reading = read_case_text(
+      changed(changed(waist(), "fillet = 2\nmaterial = \"steel\"",
+                      "fillet = 2\nmaterial = \"other\""),
+              "[materials.steel]",
+              "[materials.other]\nyoungs_modulus = 7e4\npoisson_ratio = 0.3\n"
+              "density = 2.8e-9\n\n[materials.steel]"),
+      "case.toml");
+  ASSERT_EQ(reading.problems.size(), 1U);
+  EXPECT_THAT(reading.problems[0],
+              HasSubstr("walls.pipe and walls.plate meet"));
+}
+
+TEST(WallRuns, NameBacksAndRims) {
+  const CaseReading reading = read_case_text(
+      changed(waist(), "on = \"low/rim:base\"", "on = \"low/rim:waist\""),
+      "case.toml");
+  ASSERT_FALSE(reading.problems.empty());
+  EXPECT_THAT(reading.problems[0], HasSubstr("low/rim:base"));
+}
+
+}  // namespace
+}  // namespace meniscus

@@ -1,0 +1,120 @@
+/// Derivatives of a case's numbers against central differences.
+#include <cmath>
+#include <functional>
+#include <variant>
+
+#include <gmock/gmock.h>
+
+#include "tests/support/case_text.h"
+
+namespace meniscus {
+namespace {
+
+constexpr double kStep = 1e-4;
+// Central differences of these expressions err by the step squared.
+constexpr double kDifference = 1e-6;
+
+/// Every number that depends on a design variable, directly or through
+/// parameters.
+std::string depending() {
+  std::string text = changed(strut(), "length = 60.0",
+                             "length = \"40 + foot^2 / 30\"\nslope = "
+                             "\"sin(length / 20) + lean / foot\"");
+  text = changed(text, "[curves.base]",
+                 "[design.lean]\ninitial = 3.0\nbounds = [-10.0, 10.0]\n\n"
+                 "[curves.base]");
+  text = changed(text, "center = [0, 0, \"length\"]",
+                 "center = [\"lean\", \"slope * lean\", \"length\"]");
+  text = changed(text, "volume = 9e4", "volume = \"3e3 * foot + lean^2\"");
+  text = changed(
+      text, "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
+      "[{ on = \"head_pad\", force = [\"load * slope\", 0, \"lean^3\"] },\n"
+      "  { on = \"skin\", pressure = \"foot * x + exp(lean / 9) * z^2\" },\n"
+      "  { on = \"skin\", traction = [\"lean * y\", 0, \"x / foot\"] }]");
+  return changed(text, "density = ", "density = \"1e-9 * sqrt(foot)\" #");
+}
+
+using Number = std::function<double(const EvaluatedCase&)>;
+
+std::vector<Number> numbers_to_look_at() {
+  const Vec3 place(3.0, -4.0, 11.0);
+  const auto circle = [](const EvaluatedCase& c, int k) {
+    return std::get<Circle>(c.film_system.curves[k].shape);
+  };
+  return {
+      [=](const EvaluatedCase& c) { return circle(c, 0).radius; },
+      [=](const EvaluatedCase& c) { return circle(c, 1).center.x(); },
+      [=](const EvaluatedCase& c) { return circle(c, 1).center.y(); },
+      [=](const EvaluatedCase& c) { return circle(c, 1).center.z(); },
+      [](const EvaluatedCase& c) { return *c.film_system.bodies[0].volume; },
+      [](const EvaluatedCase& c) { return c.materials[0].density; },
+      [](const EvaluatedCase& c) {
+        return c.load_cases[0].forces[0].total.x();
+      },
+      [](const EvaluatedCase& c) {
+        return c.load_cases[0].forces[0].total.z();
+      },
+      [=](const EvaluatedCase& c) {
+        return c.load_cases[0].pressures[0].field(place);
+      },
+      [=](const EvaluatedCase& c) {
+        return c.load_cases[0].tractions[0].field(place).x();
+      },
+      [=](const EvaluatedCase& c) {
+        return c.load_cases[0].tractions[0].field(place).z();
+      }};
+}
+
+TEST(CaseRates, AreTheDerivativesOfTheNumbers) {
+  const CaseReading reading = read_case_text(depending(), "case.toml");
+  ASSERT_THAT(reading.problems, testing::IsEmpty());
+  const Case& input = *reading.input;
+  const VectorX design = initial_design(input);
+  for (int j = 0; j < 2; ++j) {
+    const EvaluatedCase rate = rates(input, design, j);
+    VectorX before = design;
+    VectorX after = design;
+    before[j] -= kStep;
+    after[j] += kStep;
+    const EvaluatedCase a = evaluate(input, before);
+    const EvaluatedCase b = evaluate(input, after);
+    int index = 0;
+    for (const Number& number : numbers_to_look_at()) {
+      const double expected = (number(b) - number(a)) / (2.0 * kStep);
+      EXPECT_NEAR(number(rate), expected,
+                  kDifference * std::max(1.0, std::abs(expected)))
+          << "number " << index << ", variable " << j;
+      ++index;
+    }
+  }
+}
+
+TEST(CaseRates, AreZeroForWhatStandsAsNumbers) {
+  const CaseReading reading = read_case_text(strut(), "case.toml");
+  const EvaluatedCase rate =
+      rates(*reading.input, initial_design(*reading.input), 0);
+  EXPECT_EQ(std::get<Circle>(rate.film_system.curves[0].shape).radius, 1.0);
+  EXPECT_EQ(std::get<Circle>(rate.film_system.curves[0].shape).normal,
+            Vec3(0, 0, 0));
+  EXPECT_EQ(std::get<Circle>(rate.film_system.curves[1].shape).radius, 0.0);
+  EXPECT_EQ(*rate.film_system.bodies[0].volume, 0.0);
+  EXPECT_EQ(rate.load_cases[0].forces[0].total, Vec3(0, 0, 0));
+  EXPECT_EQ(rate.materials[0].youngs_modulus, 0.0);
+}
+
+TEST(CaseRates, ExpressionsWithoutADerivativeAreNamed) {
+  const CaseReading reading =
+      read_case_text(changed(strut(), "volume = 9e4",
+                             "volume = \"9e4 + sqrt((foot - 25) ^ 2)\""),
+                     "case.toml");
+  ASSERT_THAT(reading.problems, testing::IsEmpty());
+  try {
+    rates(*reading.input, initial_design(*reading.input), 0);
+    FAIL() << "a square root of 0 has no derivative";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("bodies.part.volume"));
+  }
+}
+
+}  // namespace
+}  // namespace meniscus

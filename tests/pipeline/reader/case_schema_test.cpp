@@ -1,0 +1,154 @@
+#include "pipeline/schema/case_schema.h"
+
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <toml++/toml.h>
+
+#include "pipeline/reader/new_case.h"
+#include "tests/support/case_text.h"
+
+namespace meniscus {
+namespace {
+
+using nlohmann::json;
+
+/// What of `value` breaks `schema`, of the keywords that json_schema() uses.
+void validate(const json& schema, const json& value, const std::string& path,
+              std::vector<std::string>& problems) {
+  const auto is = [&](const std::string& type) {
+    return (type == "object" && value.is_object()) ||
+           (type == "array" && value.is_array()) ||
+           (type == "string" && value.is_string()) ||
+           (type == "boolean" && value.is_boolean()) ||
+           (type == "integer" && value.is_number_integer()) ||
+           (type == "number" && value.is_number());
+  };
+  if (schema.contains("type")) {
+    const json types = schema["type"].is_array()
+                           ? schema["type"]
+                           : json::array({schema["type"]});
+    if (std::none_of(types.begin(), types.end(), is)) {
+      problems.push_back(path + ": type");
+      return;
+    }
+  }
+  if (schema.contains("enum") &&
+      std::find(schema["enum"].begin(), schema["enum"].end(), value) ==
+          schema["enum"].end()) {
+    problems.push_back(path + ": enum");
+  }
+  if (value.is_array()) {
+    if (value.size() < schema.value("minItems", std::size_t{0}) ||
+        value.size() > schema.value("maxItems", std::size_t{1000})) {
+      problems.push_back(path + ": size");
+    }
+    for (const json& item : value) {
+      validate(schema["items"], item, path + "[]", problems);
+    }
+  }
+  if (!value.is_object()) {
+    return;
+  }
+  for (const json& key : schema.value("required", json::array())) {
+    if (!value.contains(key.get<std::string>())) {
+      problems.push_back(path + ": needs " + key.get<std::string>());
+    }
+  }
+  const json any = schema.value("anyOf", json::array());
+  if (!any.empty() &&
+      std::none_of(any.begin(), any.end(), [&](const json& one) {
+        std::vector<std::string> found;
+        validate(one, value, path, found);
+        return found.empty();
+      })) {
+    problems.push_back(path + ": none of anyOf");
+  }
+  for (const auto& [key, item] : value.items()) {
+    const json properties = schema.value("properties", json::object());
+    const json others = schema.value("additionalProperties", json(true));
+    if (properties.contains(key)) {
+      validate(properties[key], item, path + "." + key, problems);
+    } else if (others.is_object()) {
+      validate(others, item, path + "." + key, problems);
+    } else if (others == false) {
+      problems.push_back(path + ": unknown " + key);
+    }
+  }
+}
+
+std::vector<std::string> against_schema(const std::string& text) {
+  std::ostringstream stream;
+  stream << toml::json_formatter(toml::parse(std::string_view(text)));
+  std::vector<std::string> problems;
+  validate(json::parse(json_schema()), json::parse(stream.str()), "", problems);
+  return problems;
+}
+
+std::string file_text(const std::string& path) {
+  std::ifstream stream(path);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+TEST(JsonSchema, AcceptsTheCasesThatTheReaderAccepts) {
+  EXPECT_THAT(against_schema(file_text(two_arm_path())), testing::IsEmpty());
+  EXPECT_THAT(against_schema(new_case_text("x")), testing::IsEmpty());
+  EXPECT_THAT(against_schema(strut()), testing::IsEmpty());
+  const std::string analysis =
+      "[analysis]\nadapt = true\nexclude = [\n"
+      "  { near = \"foot_pad\", distance = \"5 mm\" },\n"
+      "  { center = [0, 0, \"length\"], radius = 7 },\n"
+      "  { low = [-1, -2, -3], high = [1, 2, 3] }]\n"
+      "solver = \"petsc\"\nprocesses = 4\n";
+  EXPECT_THAT(problems_of(strut() + analysis), testing::IsEmpty());
+  EXPECT_THAT(against_schema(strut() + analysis), testing::IsEmpty());
+  EXPECT_THAT(
+      against_schema(tube("films = [\"skin\"]\nthickness = \"z + 1\"\n")),
+      testing::IsEmpty());
+}
+
+TEST(JsonSchema, RefusesWhatTheReaderRefuses) {
+  using testing::ElementsAre;
+  EXPECT_THAT(against_schema(changed(strut(), "volume", "volme")),
+              ElementsAre(".bodies.part: unknown volme"));
+  EXPECT_THAT(against_schema(changed(strut(), "\"branch\"", "\"x\"")),
+              ElementsAre(".films.skin.kind: enum"));
+  EXPECT_THAT(against_schema(changed(strut(), "[0, 0, 0]", "[0, 0]")),
+              ElementsAre(".curves.base.center: size"));
+  EXPECT_THAT(against_schema(changed(strut(), "radius = 20", "radius = true")),
+              ElementsAre(".curves.head.radius: type"));
+  EXPECT_THAT(against_schema(strut() + "[analysis]\nadapt = 1\n"),
+              ElementsAre(".analysis.adapt: type"));
+  EXPECT_THAT(against_schema(changed(strut(), "title = \"A strut\"", "")),
+              ElementsAre(": needs title"));
+  EXPECT_THAT(against_schema(changed(strut(), "[materials", "[material")),
+              testing::Contains(": none of anyOf"));
+}
+
+TEST(CaseTables, AreFoundByName) {
+  EXPECT_EQ(find_key(case_table("bodies"), "volume")->dimension,
+            Dimension::Volume);
+  EXPECT_EQ(find_key(case_table("bodies"), "volme"), nullptr);
+  EXPECT_THAT(split_choices("a|bc|d"), testing::ElementsAre("a", "bc", "d"));
+  EXPECT_THAT(split_choices(""), testing::IsEmpty());
+  EXPECT_TRUE(is_later_table("regions"));
+  EXPECT_FALSE(is_later_table("walls"));
+}
+
+TEST(CaseSchema, TheReferenceIsCurrent) {
+  EXPECT_THAT(file_text(MENISCUS_SOURCE_DIR "/docs/case-file.md"),
+              testing::EndsWith(schema_markdown()));
+}
+
+TEST(CaseSchema, TheFileForEditorsIsCurrent) {
+  EXPECT_EQ(file_text(MENISCUS_SOURCE_DIR "/docs/case.schema.json"),
+            json_schema());
+}
+
+}  // namespace
+}  // namespace meniscus

@@ -1,0 +1,135 @@
+// Which designs of a study are shown, and what it tells of each.
+#include "pipeline/study/film_frames.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/atomic_file.h"
+#include "pipeline/study/study.h"
+#include "pipeline/study/study_news.h"
+#include "tests/support/case_text.h"
+#include "tests/support/temp_folder.h"
+
+namespace meniscus {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The strut's responses: sway, mass.
+EvaluationRecord record(int number, double sway, double mass,
+                        const char* phase = "step") {
+  EvaluationRecord record;
+  record.number = number;
+  record.phase = phase;
+  record.input_names = {"foot"};
+  record.inputs = VectorX::Constant(1, 20.0 + number);
+  record.response_names = {"sway", "mass"};
+  record.responses = Eigen::Vector2d(sway, mass);
+  return record;
+}
+
+Case minimized() {
+  Case input = *read_case_text(strut(), "case.toml").input;
+  input.study.kind = StudyKind::Minimize;
+  input.study.objective = 1;
+  input.study.constraints = {{.response = 0, .upper = 1.0}};
+  input.study.max_evaluations = 10;
+  return input;
+}
+
+std::vector<int> numbers_of(const std::vector<KeptDesign>& kept) {
+  std::vector<int> numbers;
+  for (const KeptDesign& design : kept) {
+    numbers.push_back(design.record->number);
+  }
+  return numbers;
+}
+
+TEST(KeptDesigns, AreTheStartWhatIsBetterAndTheBest) {
+  const Case input = minimized();
+  std::vector<EvaluationRecord> records = {
+      record(1, 2.0, 5.0, "start"), record(2, 1.9, 5.0, "difference"),
+      record(3, 1.5, 6.0),          record(4, 1.7, 4.0),
+      record(5, 0.9, 7.0),          record(6, 0.8, 6.5),
+      record(7, 0.7, 9.0),          record(8, 0.9, 6.0)};
+  records[5].failure = Failure{FailureKind::FilmNotFound, "none"};
+  EvaluationRecord other = record(9, 0.1, 0.1);
+  other.model = "coarse x2";
+  records.push_back(other);
+  const auto kept = kept_designs(input, records, records[7].inputs);
+  EXPECT_THAT(numbers_of(kept), ElementsAre(1, 3, 5, 8));
+  EXPECT_STREQ(kept.front().why, "start");
+  EXPECT_STREQ(kept[1].why, "better");
+  EXPECT_STREQ(kept.back().why, "best");
+  EXPECT_THAT(numbers_of(kept_designs(input, records, records[4].inputs, 2)),
+              ElementsAre(1, 5));
+}
+
+TEST(KeptDesigns, OfASweepAreAllOrSomeEvenlyChosen) {
+  Case input = minimized();
+  input.study.kind = StudyKind::Sweep;
+  input.study.objective.reset();
+  std::vector<EvaluationRecord> records;
+  for (int k = 1; k <= 41; ++k) {
+    records.push_back(record(k, 1.0, 1.0, "sweep"));
+  }
+  EXPECT_EQ(kept_designs(input, records, records[0].inputs, 50).size(), 41);
+  EXPECT_THAT(numbers_of(kept_designs(input, records, records[0].inputs, 5)),
+              ElementsAre(1, 11, 21, 31, 41));
+  // The best takes the place of a neighbour.
+  EXPECT_THAT(numbers_of(kept_designs(input, records, records[12].inputs, 5)),
+              ElementsAre(1, 11, 13, 31, 41));
+}
+
+TEST(FilmFrames, HaveTheEvaluationsOwnBits) {
+  const TempFolder folder;
+  const Case input = *read_case_text(strut(), "case.toml").input;
+  StudyStore store =
+      StudyStore::start(folder.path().string(), {.case_hash = input.hash});
+  EvaluationFields fields;
+  const RunResult result = run_study(
+      input, store, {.estimate_errors = false, .frames = 24}, &fields);
+  ASSERT_FALSE(fields.history.empty());
+  const FilmFrame& last = fields.history.back();
+  EXPECT_EQ(last.design, result.best->design);
+  ASSERT_EQ(last.surface.points.size(), fields.surface.base.points.size());
+  for (std::size_t i = 0; i < last.surface.points.size(); ++i) {
+    EXPECT_EQ(last.surface.points[i], fields.surface.base.points[i]);
+  }
+  write_frames(input, fields.history, folder.path());
+  EXPECT_THAT(read_file(folder.path() / "frames.pvd"),
+              HasSubstr("frames/" + frame_name(last.evaluation)));
+  remove_frames(folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "frames"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "frames.pvd"));
+}
+
+TEST(StudyTeller, KnowsTheBestSoFarAndWhatIsLeft) {
+  const Case input = minimized();
+  StudyTeller teller(input, kStudyModel);
+  teller.remember(record(1, 2.0, 5.0));  // found in the database
+  EvaluationRecord failed = record(2, 0.0, 0.0);
+  failed.failure = Failure{FailureKind::FilmNotFound, "none"};
+  EXPECT_EQ(teller.tell(failed).best->evaluation, 1);
+  const EvaluationRecord good = record(3, 0.5, 6.0);
+  const StudyNews news = teller.tell(good);
+  EXPECT_EQ(news.best->evaluation, 3);
+  EXPECT_EQ(news.standing.objective, 6.0);
+  EXPECT_EQ(news.standing.violation, 0.0);
+  EXPECT_EQ(news.evaluations, 3);
+  EXPECT_EQ(news.failed, 1);
+  EXPECT_EQ(news.planned, 10);
+  EXPECT_TRUE(news.left);
+  EXPECT_THAT(standing_text(news), HasSubstr("the best so far"));
+  const EvaluationRecord worse = record(4, 1.5, 3.0);
+  const std::string text = standing_text(teller.tell(worse));
+  EXPECT_THAT(text, HasSubstr("violation 0.5"));
+  EXPECT_THAT(text, HasSubstr("best so far mass = 6 t (evaluation 3)"));
+  EXPECT_THAT(duration_text(61.0), Not(HasSubstr("min")));
+  EXPECT_EQ(duration_text(119.5), "2 min");
+}
+
+}  // namespace
+}  // namespace meniscus

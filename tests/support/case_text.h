@@ -1,0 +1,117 @@
+/// Small case files to break in tests.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/reader/case_reader.h"
+
+namespace meniscus {
+
+/// The shipped case, found from the tests' source folder.
+inline std::string two_arm_path() {
+  return MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml";
+}
+
+/// A complete case on as few lines as it takes; "case.toml:LINE" of tests
+/// counts these.
+inline std::string strut() {
+  return R"(title = "A strut"
+units = "mm-N-MPa"
+
+[parameters]
+load = 1000.0
+length = 60.0
+
+[design.foot]
+initial = 25.0
+bounds = [20.0, 32.0]
+
+[curves.base]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = "foot"
+
+[curves.head]
+kind = "circle"
+center = [0, 0, "length"]
+normal = [0, 0, 1]
+radius = 20
+
+[films.skin]
+kind = "branch"
+curves = ["base", "head"]
+
+[solids.foot_pad]
+kind = "cap"
+curve = "base"
+
+[solids.head_pad]
+kind = "cap"
+curve = "head"
+
+[bodies.part]
+enclosed_by = ["skin", "foot_pad", "head_pad"]
+volume = 9e4
+material = "aluminium"
+
+[resolution]
+fea = 6.0
+film = 3.0
+
+[materials.aluminium]
+youngs_modulus = 71700.0
+poisson_ratio = 0.33
+density = 2.8e-9
+
+[load_cases.service]
+supports = [{ on = "foot_pad", fix = "xyz" }]
+loads = [{ on = "head_pad", force = ["load", 0, 0] }]
+
+[responses.sway]
+kind = "mean_displacement"
+on = "head_pad"
+direction = [1, 0, 0]
+
+[responses.mass]
+kind = "mass"
+
+[study]
+kind = "match"
+targets = { sway = 0.01 }
+)";
+}
+
+/// `text` with the one place where `from` stands replaced by `to`.
+inline std::string changed(std::string text, const std::string& from,
+                           const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << "the case has no '" << from << "'";
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+/// The strut's film as a wall, without body, loads and study.
+inline std::string tube(const std::string& wall) {
+  const std::string films =
+      changed(strut().substr(0, strut().find("[solids.foot_pad]")),
+              "load = 1000.0\n", "");
+  return changed(films, "\"length\"", "\"length - 40\"") + "[walls.web]\n" +
+         wall + "[resolution]\nfea = 6\nfilm = 3\n";
+}
+
+inline std::string strut_without_head() {
+  return changed(strut(),
+                 "[curves.head]\nkind = \"circle\"\n"
+                 "center = [0, 0, \"length\"]\nnormal = [0, 0, 1]\n"
+                 "radius = 20\n",
+                 "");
+}
+
+inline std::vector<std::string> problems_of(const std::string& text) {
+  return read_case_text(text, "case.toml").problems;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,22 @@
+/// Plain sums over a film complex, written apart from the engine: what a
+/// datafile's complex must add up to.
+#pragma once
+
+#include "evolve/films/film_complex.h"
+
+namespace meniscus::sums {
+
+double area(const FilmComplex& complex);  // of all facets [length^2]
+
+/// Tension times area, weight of bodies, line integrals with five Gauss
+/// points an edge, quantities that are energies.
+double energy(const FilmComplex& complex);
+
+double volume(const FilmComplex& complex, int body);  // content included
+
+/// Value of quantity `index` without its modulus.
+double quantity(const FilmComplex& complex, int index);
+
+int edges(const FilmComplex& complex);  // of facets, each once
+
+}  // namespace meniscus::sums
