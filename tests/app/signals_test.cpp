@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-namespace meniscus {
+namespace meniscus::signals_test {
 namespace {
 
 // How a child process that does this ends, as waitpid tells it. A child,
@@ -66,4 +66,4 @@ TEST(Signals, HaveNames) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::signals_test

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::terminal_monitor_test {
 namespace {
 
 using testing::HasSubstr;
@@ -202,4 +202,4 @@ TEST_F(TerminalMonitorTest, AsksItsStopFunction) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::terminal_monitor_test

@@ -109,7 +109,7 @@ void growth(const BenchOptions& options) {
   int first_facets = 0;
   for (const int refinements : {5, 6, 7}) {
     const FilmRun run = fastest(options.repeat, [&] {
-      return run_film(films::catenoid_start(),
+      return run_film(test_films::catenoid_start(),
                       std::max(0, refinements - options.scale));
     });
     if (first_facets == 0) {
@@ -128,7 +128,7 @@ void growth(const BenchOptions& options) {
 }
 
 void large() {
-  const FilmRun run = run_film(films::catenoid_start(), 8);
+  const FilmRun run = run_film(test_films::catenoid_start(), 8);
   fmt::print(
       "\nlarge: catenoid, {} facets: {:.1f} s, {:.0f} MB (at most "
       "{:.0f}), {}\n",

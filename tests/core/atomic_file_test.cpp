@@ -19,7 +19,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ TEST(AtomicFile, NoWriterLeavesHalfAFile) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::atomic_file_test

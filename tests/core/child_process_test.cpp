@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "core/find_program.h"
 
-namespace meniscus {
+namespace meniscus::child_process_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -186,4 +186,4 @@ TEST(FindHelper, LooksBesideTheProgramAndObeysTheVariable) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::child_process_test

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::memory_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -32,4 +32,4 @@ TEST(Memory, WhatDoesNotFitIsSaidBefore) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::memory_test

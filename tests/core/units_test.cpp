@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/support/not_here.h"
 
-namespace meniscus {
+namespace meniscus::units_test {
 namespace {
 
 using testing::HasSubstr;
@@ -139,4 +139,4 @@ TEST(Quantity, ReadsFromSeveralThreads) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::units_test

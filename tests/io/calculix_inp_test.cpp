@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::calculix_inp_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -108,4 +108,4 @@ TEST(CalculixInp, NamesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::calculix_inp_test

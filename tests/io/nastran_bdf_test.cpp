@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::nastran_bdf_test {
 namespace {
 
 using testing::HasSubstr;
@@ -112,4 +112,4 @@ TEST_F(NastranBdf, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::nastran_bdf_test

@@ -12,7 +12,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::stl_test {
 namespace {
 
 constexpr double kFloat = 1e-6;  // 32-bit coordinates
@@ -75,4 +75,4 @@ TEST(Stl, RefusesWhatItCannotHold) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::stl_test

@@ -12,7 +12,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::surface_files_test {
 namespace {
 
 using testing::HasSubstr;
@@ -215,4 +215,4 @@ TEST(ThreeMf, IsTheSameBytesAgainAndRefusesWhatItCannotHold) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::surface_files_test

@@ -25,7 +25,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::vtk_files_test {
 namespace {
 
 Field ramp(const std::string& name, std::size_t count, int components) {
@@ -178,4 +178,4 @@ TEST(Vtp, RefusesFieldsAndIdsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::vtk_files_test

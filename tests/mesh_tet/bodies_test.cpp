@@ -10,7 +10,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::bodies_test {
 
 namespace {
 
@@ -219,4 +219,4 @@ TEST(Bodies, MotionCarriesTheInterface) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::bodies_test

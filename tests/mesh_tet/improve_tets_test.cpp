@@ -9,7 +9,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::improve_tets_test {
 
 namespace {
 
@@ -128,4 +128,4 @@ TEST(ImproveTets, StretchedSurfaceBecomesUsable) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::improve_tets_test

@@ -9,7 +9,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::mesh_motion_test {
 
 namespace {
 
@@ -135,4 +135,4 @@ TEST(MeshMotion, RefusesWhatDoesNotFit) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_motion_test

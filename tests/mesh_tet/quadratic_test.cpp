@@ -11,7 +11,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::quadratic_test {
 
 namespace {
 
@@ -212,4 +212,4 @@ TEST(Quadratic, RefusesWhatDoesNotFit) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::quadratic_test

@@ -12,7 +12,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::quality_test {
 
 namespace {
 
@@ -161,4 +161,4 @@ TEST(MotionCheck, NoInvertedElementGoesUnseen) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::quality_test

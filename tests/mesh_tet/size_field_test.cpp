@@ -9,7 +9,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::size_field_test {
 
 namespace {
 
@@ -187,4 +187,4 @@ TEST(RefineTets, RefusesWhatDoesNotFit) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::size_field_test

@@ -9,7 +9,7 @@
 #include "tests/support/environment_variable.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::tetgen_limits_test {
 
 namespace {
 
@@ -107,4 +107,4 @@ TEST(TetgenLimits, TwoAtOnce) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::tetgen_limits_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::tetrahedralize_test {
 
 namespace {
 
@@ -162,4 +162,4 @@ TEST(TetQuality, RegularTetrahedron) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::tetrahedralize_test

@@ -8,7 +8,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::thread_count_test {
 
 namespace {
 
@@ -81,4 +81,4 @@ TEST(ThreadCount, SameBitsOnOneAndTwo) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::thread_count_test

@@ -10,7 +10,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::ugly_random_test {
 
 namespace {
 
@@ -309,4 +309,4 @@ TEST(UglySurfaces, TwoHundredAtRandom) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::ugly_random_test

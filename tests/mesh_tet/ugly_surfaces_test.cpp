@@ -9,7 +9,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::ugly_surfaces_test {
 
 namespace {
 
@@ -196,4 +196,4 @@ TEST(UglySurfaces, FlatAndThin) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::ugly_surfaces_test

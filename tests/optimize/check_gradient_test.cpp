@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace meniscus {
+namespace meniscus::check_gradient_test {
 namespace {
 
 using testing::HasSubstr;
@@ -81,4 +81,4 @@ TEST(CheckGradient, RefusesWrongSizesAndFailingCentre) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::check_gradient_test

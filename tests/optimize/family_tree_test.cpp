@@ -9,7 +9,7 @@
 #include "optimize/sampling.h"
 #include "tests/support/standard_problems.h"
 
-namespace meniscus {
+namespace meniscus::family_tree_test {
 namespace {
 
 using tests::vector_of;
@@ -114,4 +114,4 @@ TEST(FamilyTree, EqualMembersAndEmptyFamilies) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::family_tree_test

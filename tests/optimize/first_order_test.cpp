@@ -8,7 +8,7 @@
 #include "optimize/sampling.h"
 #include "tests/support/standard_problems.h"
 
-namespace meniscus {
+namespace meniscus::first_order_test {
 namespace {
 
 using tests::vector_of;
@@ -104,4 +104,4 @@ TEST(FirstOrder, RefusesSizesThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::first_order_test

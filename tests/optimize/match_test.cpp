@@ -6,7 +6,7 @@
 
 #include "optimize/problem.h"
 
-namespace meniscus {
+namespace meniscus::match_test {
 namespace {
 
 using testing::HasSubstr;
@@ -326,4 +326,4 @@ TEST(MatchMessage, SaysWhenTheToleranceIsBelowTheMeshesError) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::match_test

@@ -7,7 +7,7 @@
 
 #include "optimize/problem.h"
 
-namespace meniscus {
+namespace meniscus::match_trouble_test {
 namespace {
 
 using testing::AllOf;
@@ -263,4 +263,4 @@ TEST(MatchDifferences, UseTheOtherSideWhenANeighbourFails) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::match_trouble_test

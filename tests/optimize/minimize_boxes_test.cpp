@@ -6,7 +6,7 @@
 #include "optimize/minimize.h"
 #include "tests/support/standard_problems.h"
 
-namespace meniscus {
+namespace meniscus::minimize_boxes_test {
 namespace {
 
 using tests::vector_of;
@@ -98,4 +98,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, Tunnel,
                          testing::Values("slsqp", "mma", "ccsa"));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::minimize_boxes_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/standard_problems.h"
 
-namespace meniscus {
+namespace meniscus::minimize_test {
 namespace {
 
 using testing::AllOf;
@@ -223,4 +223,4 @@ TEST(StandardProblems, HaveExactJacobians) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::minimize_test

@@ -8,7 +8,7 @@
 #include "optimize/minimize.h"
 #include "tests/support/standard_problems.h"
 
-namespace meniscus {
+namespace meniscus::minimize_trouble_test {
 namespace {
 
 using testing::AllOf;
@@ -403,4 +403,4 @@ TEST(MinimizePhases, AreAnnouncedAndNeighboursTold) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::minimize_trouble_test

@@ -8,7 +8,7 @@
 #include "optimize/spread.h"
 #include "tests/support/standard_problems.h"
 
-namespace meniscus {
+namespace meniscus::pareto_test {
 namespace {
 
 using testing::ElementsAre;
@@ -125,4 +125,4 @@ TEST(Spread, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::pareto_test

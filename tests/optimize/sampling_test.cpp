@@ -7,7 +7,7 @@
 
 #include "tests/support/standard_problems.h"
 
-namespace meniscus {
+namespace meniscus::sampling_test {
 namespace {
 
 using tests::vector_of;
@@ -116,4 +116,4 @@ TEST(NormalQuantile, InvertsTheDistribution) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::sampling_test

@@ -9,7 +9,7 @@
 #include "tests/support/not_here.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::calculix_deck_test {
 namespace {
 
 constexpr double kPrinted = 2e-6;  // CalculiX prints 7 digits
@@ -135,4 +135,4 @@ INSTANTIATE_TEST_SUITE_P(Orders, CalculixDeckTest, ::testing::Values(1, 2),
                          });
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::calculix_deck_test

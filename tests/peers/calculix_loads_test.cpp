@@ -17,7 +17,7 @@
 #include "tests/support/not_here.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::calculix_loads_test {
 namespace {
 
 // CalculiX prints seven digits.
@@ -253,4 +253,4 @@ INSTANTIATE_TEST_SUITE_P(Parts, InCalculix, testing::ValuesIn(jobs()),
                          });
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::calculix_loads_test

@@ -12,7 +12,7 @@
 #include "tests/support/not_here.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::calculix_modes_test {
 namespace {
 
 // CalculiX prints seven digits.
@@ -118,4 +118,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& job) { return job.param.name; });
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::calculix_modes_test

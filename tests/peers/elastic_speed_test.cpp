@@ -5,7 +5,7 @@
 #include "tests/support/elastic_race.h"
 #include "tests/support/not_here.h"
 
-namespace meniscus {
+namespace meniscus::elastic_speed_test {
 namespace {
 
 constexpr double kScale = 0.125;
@@ -90,4 +90,4 @@ INSTANTIATE_TEST_SUITE_P(Works, ElasticSpeed,
                          [](const auto& work) { return work.param.name; });
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::elastic_speed_test

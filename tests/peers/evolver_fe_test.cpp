@@ -18,7 +18,7 @@
 #include "tests/support/not_here.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::evolver_fe_test {
 namespace {
 
 constexpr double kTwelveDigits = 1e-12;  // of size 1; both sum in doubles
@@ -278,4 +278,4 @@ TEST_F(EvolverFe, AgreesOnCurvesAndTensionFields) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::evolver_fe_test

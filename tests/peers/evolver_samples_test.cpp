@@ -20,7 +20,7 @@
 #include "tests/support/not_here.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::evolver_samples_test {
 namespace {
 
 constexpr double kDumped = 1e-12;  // relative: dumps have 15 digits
@@ -259,4 +259,4 @@ TEST(EvolverSamples, TankexRunsOutOfItsTank) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::evolver_samples_test

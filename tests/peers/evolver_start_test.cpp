@@ -11,7 +11,7 @@
 #include "tests/support/film_complexes.h"
 #include "tests/support/not_here.h"
 
-namespace meniscus {
+namespace meniscus::evolver_start_test {
 namespace {
 
 constexpr double kPrinted = 1e-12;  // relative: 15 digits, hundreds of terms
@@ -60,19 +60,19 @@ void expect_same_film(const FilmComplex& start,
 }
 
 TEST(EvolverStart, Catenoid) {
-  const FilmComplex start = films::catenoid_start();
+  const FilmComplex start = test_films::catenoid_start();
   expect_same_film(start, {},
-                   {film_area(start), films::catenoid(1.0, 1.0).area});
+                   {film_area(start), test_films::catenoid(1.0, 1.0).area});
 }
 
 TEST(EvolverStart, Cube) {
-  const FilmComplex start = films::cube_start();
-  expect_same_film(start, {1.0}, {6.0, films::sphere_of_volume(1.0).area});
+  const FilmComplex start = test_films::cube_start();
+  expect_same_film(start, {1.0}, {6.0, test_films::sphere_of_volume(1.0).area});
 }
 
 TEST(EvolverStart, Strut) {
   constexpr double kArea = 26.89002;  // at volume 14, extrapolated
-  const FilmComplex start = films::strut_start();
+  const FilmComplex start = test_films::strut_start();
   // All facets, caps included, as cones to the origin.
   double volume = 0.0;
   for (const Triangle& t : start.mesh.facets) {
@@ -83,29 +83,30 @@ TEST(EvolverStart, Strut) {
 }
 
 TEST(EvolverStart, TripleDisk) {
-  const FilmComplex start = films::triple_disk_start();
-  expect_same_film(start, {}, {film_area(start), films::triple_disk().area});
+  const FilmComplex start = test_films::triple_disk_start();
+  expect_same_film(start, {},
+                   {film_area(start), test_films::triple_disk().area});
 }
 
 TEST(EvolverStart, Frames) {
-  const FilmComplex cube = films::cube_frame_start();
-  expect_same_film(cube, {}, {film_area(cube), films::kCubeFrameArea});
-  const FilmComplex tetrahedron = films::tetrahedral_frame_start();
+  const FilmComplex cube = test_films::cube_frame_start();
+  expect_same_film(cube, {}, {film_area(cube), test_films::kCubeFrameArea});
+  const FilmComplex tetrahedron = test_films::tetrahedral_frame_start();
   expect_same_film(tetrahedron, {},
-                   {film_area(tetrahedron), films::kTetrahedralFrameArea});
+                   {film_area(tetrahedron), test_films::kTetrahedralFrameArea});
 }
 
 TEST(EvolverStart, DoubleBubble) {
-  expect_same_film(films::double_bubble_start(), {1.0, 1.0},
-                   {11.0, films::double_bubble(1.0).area});
+  expect_same_film(test_films::double_bubble_start(), {1.0, 1.0},
+                   {11.0, test_films::double_bubble(1.0).area});
 }
 
 TEST(EvolverStart, SessileCap) {
   const double angle = 75.0 * std::numbers::pi / 180.0;
-  expect_same_film(films::sessile_cap_start(angle), {1.0},
+  expect_same_film(test_films::sessile_cap_start(angle), {1.0},
                    {5.0 - std::cos(angle),
-                    films::sessile_cap(1.0, angle).energy, kLongDescent});
+                    test_films::sessile_cap(1.0, angle).energy, kLongDescent});
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::evolver_start_test

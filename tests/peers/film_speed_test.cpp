@@ -6,7 +6,7 @@
 #include "tests/support/film_race.h"
 #include "tests/support/not_here.h"
 
-namespace meniscus {
+namespace meniscus::film_speed_test {
 namespace {
 
 constexpr int kScale = 2;  // 1/4^2 of the facets
@@ -55,4 +55,4 @@ INSTANTIATE_TEST_SUITE_P(Works, FilmSpeed, ::testing::ValuesIn(speed_works()),
                          [](const auto& work) { return work.param.name; });
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_speed_test

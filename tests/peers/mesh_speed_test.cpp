@@ -4,7 +4,7 @@
 #include "tests/support/mesh_race.h"
 #include "tests/support/not_here.h"
 
-namespace meniscus {
+namespace meniscus::mesh_speed_test {
 namespace {
 
 // At full size 1.2 is asked. Here a process is started in 5 ms of 80, and a
@@ -32,4 +32,4 @@ TEST(MeshSpeed, IsNearTetgens) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::mesh_speed_test

@@ -10,7 +10,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::stl_admesh_test {
 namespace {
 
 TEST(StlAdmesh, FindsTheSurfaceClosedAndItsVolume) {
@@ -37,4 +37,4 @@ TEST(StlAdmesh, FindsTheSurfaceClosedAndItsVolume) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::stl_admesh_test

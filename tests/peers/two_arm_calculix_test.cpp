@@ -6,7 +6,7 @@
 #include "pipeline/results/calculix_export.h"
 #include "tests/support/calculix.h"
 
-namespace meniscus {
+namespace meniscus::two_arm_calculix_test {
 namespace {
 
 // CalculiX prints seven digits; the bound is 1e-6 of the largest.
@@ -93,4 +93,4 @@ TEST_F(TwoArmInCalculix, LoadsAPadAsCalculixDoes) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::two_arm_calculix_test

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace meniscus::films {
+namespace meniscus::test_films {
 
 namespace {
 
@@ -121,4 +121,4 @@ void ComplexBuilder::plate(int surface, const Vec3& origin, const Vec3& u,
   }
 }
 
-}  // namespace meniscus::films
+}  // namespace meniscus::test_films

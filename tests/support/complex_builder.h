@@ -7,7 +7,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus::films {
+namespace meniscus::test_films {
 
 class ComplexBuilder {
  public:
@@ -52,4 +52,4 @@ class ComplexBuilder {
   std::vector<int> corners_;  // vertices that plates share
 };
 
-}  // namespace meniscus::films
+}  // namespace meniscus::test_films

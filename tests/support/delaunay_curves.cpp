@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace meniscus::films {
+namespace meniscus::test_films {
 
 namespace {
 
@@ -165,4 +165,4 @@ DoubleBubble double_bubble(double volume) {
   return {r, 0.5 * std::sqrt(3.0) * r, 6.75 * pi * r * r, 2.0 / r};
 }
 
-}  // namespace meniscus::films
+}  // namespace meniscus::test_films

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace meniscus::films {
+namespace meniscus::test_films {
 
 /// Half of a film of revolution about the z axis with constant mean curvature,
 /// from its equator (neck or bulge) at z = 0 upwards, by arclength:
@@ -100,4 +100,4 @@ constexpr double kTetrahedralFrameArea = 8.48528137423857;
 /// of Surface Evolver's areas; the last digit is good to 2.
 constexpr double kCubeFrameArea = 4.2395630;
 
-}  // namespace meniscus::films
+}  // namespace meniscus::test_films

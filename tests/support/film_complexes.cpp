@@ -7,7 +7,7 @@
 
 #include "tests/support/complex_builder.h"
 
-namespace meniscus::films {
+namespace meniscus::test_films {
 
 namespace {
 
@@ -343,4 +343,4 @@ FilmComplex fins_start(const std::vector<double>& degrees, int along) {
   return builder.complex();
 }
 
-}  // namespace meniscus::films
+}  // namespace meniscus::test_films

@@ -9,7 +9,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus::films {
+namespace meniscus::test_films {
 
 /// Cylinder between rings of radius 1 at z = +-0.5: `around` x `rows` quads of
 /// two facets each. 15 x 2: 60 facets, x 4^6 = 245,760.
@@ -81,4 +81,4 @@ FilmComplex thin_catenoid_saddle(int around = 18, int rows = 18);
 /// `along` quads each; rims and the axis' ends are fixed.
 FilmComplex fins_start(const std::vector<double>& degrees, int along);
 
-}  // namespace meniscus::films
+}  // namespace meniscus::test_films

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace meniscus {
+namespace meniscus::film_complexes_test {
 namespace {
 
 using std::numbers::pi;
@@ -90,7 +90,7 @@ void expect_sound(const FilmComplex& complex, int triple_edges) {
 }
 
 TEST(FilmComplexes, Catenoid) {
-  const FilmComplex complex = films::catenoid_start();
+  const FilmComplex complex = test_films::catenoid_start();
   expect_sound(complex, 0);
   EXPECT_EQ(complex.mesh.facets.size(), 60U);
   EXPECT_NEAR(surface_area(complex.mesh), 30.0 * std::sin(pi / 15.0),
@@ -98,7 +98,7 @@ TEST(FilmComplexes, Catenoid) {
 }
 
 TEST(FilmComplexes, Cube) {
-  const FilmComplex complex = films::cube_start();
+  const FilmComplex complex = test_films::cube_start();
   expect_sound(complex, 0);
   EXPECT_EQ(complex.mesh.facets.size(), 216U);
   EXPECT_NEAR(surface_area(complex.mesh), 6.0, kRounding);
@@ -106,7 +106,7 @@ TEST(FilmComplexes, Cube) {
 }
 
 TEST(FilmComplexes, Strut) {
-  const FilmComplex complex = films::strut_start();
+  const FilmComplex complex = test_films::strut_start();
   expect_sound(complex, 0);
   EXPECT_EQ(liquid_facets(complex), 240);
   EXPECT_NEAR(surface_area(complex.mesh, complex.mesh.label_of("foot")), 4.0,
@@ -120,7 +120,7 @@ TEST(FilmComplexes, Strut) {
 }
 
 TEST(FilmComplexes, TripleDisk) {
-  const FilmComplex complex = films::triple_disk_start();
+  const FilmComplex complex = test_films::triple_disk_start();
   expect_sound(complex, 12);
   EXPECT_EQ(complex.mesh.facets.size(), 60U);
   EXPECT_NEAR(surface_area(complex.mesh, complex.mesh.label_of("disk")),
@@ -128,7 +128,7 @@ TEST(FilmComplexes, TripleDisk) {
 }
 
 TEST(FilmComplexes, CubeFrame) {
-  const FilmComplex complex = films::cube_frame_start();
+  const FilmComplex complex = test_films::cube_frame_start();
   expect_sound(complex, 12);
   EXPECT_EQ(complex.mesh.facets.size(), 40U);
   EXPECT_EQ(complex.edges.size(), 12U);
@@ -140,7 +140,7 @@ TEST(FilmComplexes, CubeFrame) {
 }
 
 TEST(FilmComplexes, TetrahedralFrame) {
-  const FilmComplex complex = films::tetrahedral_frame_start();
+  const FilmComplex complex = test_films::tetrahedral_frame_start();
   expect_sound(complex, 8);
   EXPECT_EQ(complex.mesh.facets.size(), 24U);
   EXPECT_EQ(complex.edges.size(), 12U);
@@ -148,7 +148,7 @@ TEST(FilmComplexes, TetrahedralFrame) {
 }
 
 TEST(FilmComplexes, DoubleBubble) {
-  const FilmComplex complex = films::double_bubble_start(2);
+  const FilmComplex complex = test_films::double_bubble_start(2);
   expect_sound(complex, 8);
   EXPECT_EQ(complex.mesh.facets.size(), 11U * 4 * 4);
   EXPECT_NEAR(surface_area(complex.mesh), 11.0, kRounding);
@@ -159,7 +159,7 @@ TEST(FilmComplexes, DoubleBubble) {
 
 TEST(FilmComplexes, SessileCap) {
   const double angle = pi / 3.0;
-  const FilmComplex complex = films::sessile_cap_start(angle, 2);
+  const FilmComplex complex = test_films::sessile_cap_start(angle, 2);
   expect_sound(complex, 0);
   EXPECT_EQ(complex.mesh.facets.size(), 5U * 4 * 4);
   EXPECT_EQ(complex.edges.size(), 8U);
@@ -180,21 +180,21 @@ TEST(FilmComplexes, SessileCap) {
 }
 
 TEST(FilmComplexes, Tube) {
-  const films::TubeSpec spec{.radius = 0.5, .length = 3.0, .volume = 2.0};
-  const FilmComplex complex = films::tube_start(spec);
+  const test_films::TubeSpec spec{.radius = 0.5, .length = 3.0, .volume = 2.0};
+  const FilmComplex complex = test_films::tube_start(spec);
   expect_sound(complex, 0);
   EXPECT_EQ(liquid_facets(complex), 2 * spec.around * spec.rows);
   EXPECT_NEAR(body_volume(complex, complex.bodies[0]),
-              films::prism_volume(spec), kRounding);
+              test_films::prism_volume(spec), kRounding);
   EXPECT_EQ(complex.bodies[0].volume, 2.0);
 }
 
 TEST(FilmComplexes, Saddles) {
-  const FilmComplex tube = films::long_tube_saddle();
+  const FilmComplex tube = test_films::long_tube_saddle();
   expect_sound(tube, 0);
   EXPECT_NEAR(*tube.bodies[0].volume, body_volume(tube, tube.bodies[0]),
               kRounding);
-  const FilmComplex catenoid = films::thin_catenoid_saddle(48, 24);
+  const FilmComplex catenoid = test_films::thin_catenoid_saddle(48, 24);
   expect_sound(catenoid, 0);
   double waist = 1.0;
   for (const Vec3& p : catenoid.mesh.points) {
@@ -207,4 +207,4 @@ TEST(FilmComplexes, Saddles) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_complexes_test

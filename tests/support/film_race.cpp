@@ -64,15 +64,16 @@ void PrintTo(const SpeedWork& work, std::ostream* out) { *out << work.name; }
 
 const std::vector<SpeedWork>& speed_works() {
   static const std::vector<SpeedWork> works = {
-      {"catenoid", [] { return films::catenoid_start(); }, 6, kDescent, 5, 16,
-       10, 30},
-      {"cube", [] { return films::cube_start(); }, 5, kDescent, 5, 20, 12, 48},
-      {"strut", [] { return films::strut_start(); }, 5, kDescent, 5, 25, 10,
-       50},
-      {"triple_disk", [] { return films::triple_disk_start(); }, 6, kDescent, 3,
-       9, 8, 24},
-      {"cube_frame", [] { return films::cube_frame_start(); }, 6, kLongDescent,
-       3, 8, 6, 16}};
+      {"catenoid", [] { return test_films::catenoid_start(); }, 6, kDescent, 5,
+       16, 10, 30},
+      {"cube", [] { return test_films::cube_start(); }, 5, kDescent, 5, 20, 12,
+       48},
+      {"strut", [] { return test_films::strut_start(); }, 5, kDescent, 5, 25,
+       10, 50},
+      {"triple_disk", [] { return test_films::triple_disk_start(); }, 6,
+       kDescent, 3, 9, 8, 24},
+      {"cube_frame", [] { return test_films::cube_frame_start(); }, 6,
+       kLongDescent, 3, 8, 6, 16}};
   return works;
 }
 

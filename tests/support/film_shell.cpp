@@ -8,7 +8,7 @@
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
 
-namespace meniscus::films {
+namespace meniscus::test_films {
 
 namespace {
 
@@ -151,4 +151,4 @@ TetMesh film_shell(const QuadraticSurface& surface, const ShellSpec& spec) {
   return make_quadratic(filled.mesh, wall);
 }
 
-}  // namespace meniscus::films
+}  // namespace meniscus::test_films

@@ -7,7 +7,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus::films {
+namespace meniscus::test_films {
 
 struct ShellSpec {
   std::string film;        // label of the surface
@@ -23,4 +23,4 @@ struct ShellSpec {
 /// and MeshError where the wall cannot be filled.
 TetMesh film_shell(const QuadraticSurface& surface, const ShellSpec& spec);
 
-}  // namespace meniscus::films
+}  // namespace meniscus::test_films

@@ -15,7 +15,7 @@
 #include "tests/support/parts.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::adaptation_test {
 namespace {
 
 /// Three cubes of edge 1 with n x n squares a face, "top" at y = 2 and "end" at
@@ -132,4 +132,4 @@ TEST(Adaptation, ErrsLessThanUniformMeshesOfAsManyElements) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::adaptation_test

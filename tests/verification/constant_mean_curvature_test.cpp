@@ -13,7 +13,7 @@
 #include "tests/support/delaunay_curves.h"
 #include "tests/verification/film_cases.h"
 
-namespace meniscus {
+namespace meniscus::constant_mean_curvature_test {
 namespace {
 
 using std::numbers::pi;
@@ -37,15 +37,15 @@ struct Exact {
 double radius_of(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
 std::vector<Exact> exact_films() {
-  const films::Catenoid foot = films::catenoid(40.0, 40.0);
-  const films::Meridian neck =
-      films::delaunay_meridian(14.0, 0.05, 28.404561080364);
-  const films::Meridian bulge =
-      films::delaunay_meridian(26.0, 0.1, 14.328593303765);
+  const test_films::Catenoid foot = test_films::catenoid(40.0, 40.0);
+  const test_films::Meridian neck =
+      test_films::delaunay_meridian(14.0, 0.05, 28.404561080364);
+  const test_films::Meridian bulge =
+      test_films::delaunay_meridian(26.0, 0.1, 14.328593303765);
   const double collar = 70.0;
   const double girdle = collar + 2.0 * neck.rim().z;
   const double crown = girdle + 2.0 * bulge.rim().z;
-  const auto meridian = [](const films::Meridian& m, double bottom) {
+  const auto meridian = [](const test_films::Meridian& m, double bottom) {
     return [m, bottom](const Vec3& p) {
       return m.distance(radius_of(p), std::abs(p.z() - bottom - m.rim().z));
     };
@@ -107,7 +107,7 @@ void expect_order(const std::string& what, const std::vector<double>& errors,
     }
   }
   if (!is_exact) {
-    for (const double rate : films::rates(errors)) {
+    for (const double rate : test_films::rates(errors)) {
       EXPECT_NEAR(rate, kOrder, kOrderBand) << what << text;
       text += fmt::format(" order {:.2f}", rate);
     }
@@ -150,4 +150,4 @@ TEST(ConstantMeanCurvature, EachFilmIsItsClosedForm) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::constant_mean_curvature_test

@@ -14,7 +14,7 @@
 #include "pipeline/study/study.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::convergence_test {
 namespace {
 
 /// Edges halve from one to the next; film edges are half of them. Above 16 the
@@ -98,4 +98,4 @@ TEST(TwoArmConvergence, AnswerConvergesAndItsErrorEstimateIsHonest) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::convergence_test

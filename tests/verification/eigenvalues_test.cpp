@@ -10,7 +10,7 @@
 #include "fea/modes/modes.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::eigenvalues_test {
 namespace {
 
 using std::numbers::pi;
@@ -340,4 +340,4 @@ TEST(FreeBar, TorsionOfARoundBarIsExact) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::eigenvalues_test

@@ -3,7 +3,7 @@
 
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::elasticity_test {
 namespace {
 
 /// Deflection of a cantilever of square section under an end force: bending
@@ -109,4 +109,4 @@ TEST(ThickCylinder, FourNodeElementsConverge) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::elasticity_test

@@ -11,7 +11,7 @@
 #include "tests/support/mapped_shapes.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::error_estimate_test {
 namespace {
 
 // The demands: estimate over true error, in energy and per response.
@@ -179,4 +179,4 @@ TEST(EstimateOfFourNodeElements, IsCloseToTheTrueError) {
 INSTANTIATE_TEST_SUITE_P(Problems, Estimate, testing::Range(0, 4));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::error_estimate_test

@@ -5,7 +5,7 @@
 #include "tests/support/exact_elasticity.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::exact_fields_test {
 namespace {
 
 constexpr double kRounding = 1e-12;
@@ -60,4 +60,4 @@ TEST(ExactField, SphericalCavityIsGoodiers) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::exact_fields_test

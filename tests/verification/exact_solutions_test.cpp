@@ -10,7 +10,7 @@
 #include "tests/support/mapped_shapes.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::exact_solutions_test {
 namespace {
 
 // Measured orders may fall short of theory by this on meshes that are not yet
@@ -218,4 +218,4 @@ TEST(StressConcentration, OfASphericalCavityIsGoodiers) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::exact_solutions_test

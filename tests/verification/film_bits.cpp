@@ -27,7 +27,8 @@ struct Work {
 /// A drop under gravity, wetting its floor at 75 degrees, below a ceiling that
 /// it touches.
 FilmComplex drop_between_walls() {
-  FilmComplex complex = films::sessile_cap_start(75.0 * std::numbers::pi / 180);
+  FilmComplex complex =
+      test_films::sessile_cap_start(75.0 * std::numbers::pi / 180);
   complex.bodies[0].density = 1.0;
   complex.gravity = Vec3(0.0, 0.0, -1.0);
   complex.level_sets.push_back(
@@ -47,14 +48,15 @@ FilmComplex drop_between_walls() {
 
 std::vector<Work> works() {
   // Past the facets that are factored directly: multigrid takes part.
-  return {{"catenoid", films::catenoid_start(), {.refinements = 4}},
-          {"cube", films::cube_start(), {.refinements = 3}},
-          {"strut", films::strut_start(), {.refinements = 3}},
-          {"triple_disk", films::triple_disk_start(), {.refinements = 4}},
-          {"cube_frame", films::cube_frame_start(), {.refinements = 4}},
-          {"double_bubble", films::double_bubble_start(), {.refinements = 3}},
-          {"drop_between_walls", drop_between_walls(), {.refinements = 1}},
-          {"remeshed_strut", films::strut_start(), {.edge = 0.12}}};
+  return {
+      {"catenoid", test_films::catenoid_start(), {.refinements = 4}},
+      {"cube", test_films::cube_start(), {.refinements = 3}},
+      {"strut", test_films::strut_start(), {.refinements = 3}},
+      {"triple_disk", test_films::triple_disk_start(), {.refinements = 4}},
+      {"cube_frame", test_films::cube_frame_start(), {.refinements = 4}},
+      {"double_bubble", test_films::double_bubble_start(), {.refinements = 3}},
+      {"drop_between_walls", drop_between_walls(), {.refinements = 1}},
+      {"remeshed_strut", test_films::strut_start(), {.edge = 0.12}}};
 }
 
 class Digest {

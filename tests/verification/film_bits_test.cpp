@@ -7,7 +7,7 @@
 
 #include "core/child_process.h"
 
-namespace meniscus {
+namespace meniscus::film_bits_test {
 namespace {
 
 constexpr int kFilms = 8;  // that film_bits settles
@@ -32,4 +32,4 @@ TEST(FilmBits, AreTheSameOnOneAndTwoThreads) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_bits_test

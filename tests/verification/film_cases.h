@@ -13,7 +13,7 @@
 #include "evolve/groom/refine.h"
 #include "evolve/settle/find_equilibrium.h"
 
-namespace meniscus::films {
+namespace meniscus::test_films {
 
 struct Found {
   FilmComplex complex;
@@ -95,4 +95,4 @@ inline std::vector<double> rates(const std::vector<double>& errors) {
   return result;
 }
 
-}  // namespace meniscus::films
+}  // namespace meniscus::test_films

@@ -13,11 +13,11 @@
 #include "tests/support/film_complexes.h"
 #include "tests/verification/film_cases.h"
 
-namespace meniscus {
+namespace meniscus::film_convergence_test {
 namespace {
 
-using films::Found;
 using std::numbers::pi;
+using test_films::Found;
 
 constexpr double kOrder = 2.0;
 constexpr double kOrderBand = 0.2;  // what two halvings resolve of an order
@@ -35,7 +35,7 @@ void expect_order(const char* what, const std::vector<double>& errors,
   for (const double error : errors) {
     text += fmt::format(" {:.3e}", error);
   }
-  for (const double rate : films::rates(errors)) {
+  for (const double rate : test_films::rates(errors)) {
     EXPECT_NEAR(rate, order, kOrderBand) << what << text;
     text += fmt::format(" rate {:.3f}", rate);
   }
@@ -62,7 +62,7 @@ Found expect_second_order(const FilmComplex& start, int first,
   std::vector<double> others;
   Found found;
   for (int k = first; k < first + 3; ++k) {
-    found = films::settled(start, k);
+    found = test_films::settled(start, k);
     expect_settled(found);
     const FilmReport& report = found.report();
     area.push_back(report.area - exact.area.value_or(0.0));
@@ -97,8 +97,9 @@ void expect_120_degrees(const FilmComplex& start, int first) {
   constexpr double kHalving =
       0.6;  // first order, and room for the frame's ends
   for (int k = first; k < first + 3; ++k) {
-    const Found found = films::settled(start, k);
-    const films::TripleAngles angles = films::triple_angles(found.complex);
+    const Found found = test_films::settled(start, k);
+    const test_films::TripleAngles angles =
+        test_films::triple_angles(found.complex);
     fmt::print(
         "  {} triple edges: off 120 by {:.3f} in the mean, {:.3f} deg "
         "at worst\n",
@@ -126,15 +127,16 @@ double rms_error(const Found& found,
 }
 
 TEST(FilmConvergence, CubeBecomesASphere) {
-  const films::Sphere sphere = films::sphere_of_volume(1.0);
-  expect_second_order(films::cube_start(), 1,
+  const test_films::Sphere sphere = test_films::sphere_of_volume(1.0);
+  expect_second_order(test_films::cube_start(), 1,
                       {.area = sphere.area, .pressure = sphere.pressure});
 }
 
 TEST(FilmConvergence, Catenoid) {
-  const films::Catenoid exact = films::catenoid(1.0, 1.0);
+  const test_films::Catenoid exact = test_films::catenoid(1.0, 1.0);
   const Found found = expect_second_order(
-      films::catenoid_start(), 2, {.area = exact.area}, [&](const Found& film) {
+      test_films::catenoid_start(), 2, {.area = exact.area},
+      [&](const Found& film) {
         return rms_error(film, [&](const Vec3& p) {
           return std::hypot(p.x(), p.y()) -
                  exact.waist * std::cosh(p.z() / exact.waist);
@@ -146,19 +148,20 @@ TEST(FilmConvergence, Catenoid) {
 TEST(FilmConvergence, CylinderAtFixedVolume) {
   constexpr double kLength = 3.0;
   expect_second_order(
-      films::tube_start({.length = kLength, .volume = pi * kLength}), 2,
+      test_films::tube_start({.length = kLength, .volume = pi * kLength}), 2,
       {.area = 2.0 * pi * kLength, .pressure = 1.0});
 }
 
 TEST(FilmConvergence, CylinderAtFixedPressure) {
   constexpr double kLength = 2.0;
-  expect_second_order(films::tube_start({.length = kLength, .pressure = 1.0}),
-                      2, {.area = 2.0 * pi * kLength}, [&](const Found& found) {
-                        return found.report().bodies[0].volume - pi * kLength;
-                      });
+  expect_second_order(
+      test_films::tube_start({.length = kLength, .pressure = 1.0}), 2,
+      {.area = 2.0 * pi * kLength}, [&](const Found& found) {
+        return found.report().bodies[0].volume - pi * kLength;
+      });
 }
 
-More profile_error(const films::Meridian& exact) {
+More profile_error(const test_films::Meridian& exact) {
   return [&exact](const Found& found) {
     return rms_error(found, [&](const Vec3& p) {
       return exact.distance(std::hypot(p.x(), p.y()),
@@ -167,14 +170,14 @@ More profile_error(const films::Meridian& exact) {
   };
 }
 
-FilmComplex tube_for(const films::Meridian& exact) {
-  return films::tube_start({.radius = exact.rim().r,
-                            .length = 2.0 * exact.rim().z,
-                            .volume = exact.volume});
+FilmComplex tube_for(const test_films::Meridian& exact) {
+  return test_films::tube_start({.radius = exact.rim().r,
+                                 .length = 2.0 * exact.rim().z,
+                                 .volume = exact.volume});
 }
 
 TEST(FilmConvergence, Unduloid) {
-  const films::Meridian exact = films::unduloid();
+  const test_films::Meridian exact = test_films::unduloid();
   expect_second_order(tube_for(exact), 2,
                       {.area = exact.area, .pressure = exact.pressure},
                       profile_error(exact));
@@ -183,7 +186,8 @@ TEST(FilmConvergence, Unduloid) {
 // Its rim before the turn: a nodoid that has turned back in z slides off its
 // axis (Russo and Steen 1986).
 TEST(FilmConvergence, Nodoid) {
-  const films::Meridian exact = films::delaunay_meridian(1.0, 2.6, 0.7);
+  const test_films::Meridian exact =
+      test_films::delaunay_meridian(1.0, 2.6, 0.7);
   ASSERT_LT(exact.rim().r * std::cos(exact.rim().psi),
             0.5 * exact.pressure * exact.rim().r * exact.rim().r);
   expect_second_order(tube_for(exact), 2,
@@ -192,7 +196,7 @@ TEST(FilmConvergence, Nodoid) {
 }
 
 TEST(FilmConvergence, PlaneIsExact) {
-  films::ComplexBuilder builder;
+  test_films::ComplexBuilder builder;
   const int film = builder.liquid("film");
   // A rectangle of 2 x 3 that stands askew in space.
   const Vec3 u = Vec3(1.0, 2.0, 2.0) / 3.0 * 2.0;
@@ -203,7 +207,7 @@ TEST(FilmConvergence, PlaneIsExact) {
   builder.fan(film, builder.rim(rim, 12), VertexKind::Free);
   FilmComplex& start = builder.complex();
   start.mesh.points.back() += 0.7 * u.cross(v).normalized() + 0.1 * u;
-  const Found found = films::settled(start, 3);
+  const Found found = test_films::settled(start, 3);
   expect_settled(found);
   EXPECT_NEAR(found.report().area, 6.0, 6.0 * kFlat);
 }
@@ -213,14 +217,14 @@ TEST(FilmConvergence, PlaneIsExact) {
 void expect_cap(double degrees) {
   SCOPED_TRACE(degrees);
   const double angle = degrees * pi / 180.0;
-  const films::SessileCap exact = films::sessile_cap(1.0, angle);
+  const test_films::SessileCap exact = test_films::sessile_cap(1.0, angle);
   EXPECT_NEAR(exact.pressure, 2.0 / exact.radius, 1e-14);
   Exact asked{.energy = exact.energy};
   if (degrees >= 90.0) {
     asked.pressure = exact.pressure;
   }
   const Found found =
-      expect_second_order(films::sessile_cap_start(angle, 3), 1, asked);
+      expect_second_order(test_films::sessile_cap_start(angle, 3), 1, asked);
   const double area = found.report().area / exact.film_area - 1.0;
   const double pressure = found.pressure() / exact.pressure - 1.0;
   fmt::print("  relative error of area {:.2e}, pressure {:.2e}\n", area,
@@ -237,16 +241,16 @@ TEST(FilmConvergence, SessileCaps) {
 }
 
 TEST(FilmConvergence, TripleDisk) {
-  const films::TripleDisk exact = films::triple_disk();
+  const test_films::TripleDisk exact = test_films::triple_disk();
   const double rounding = 1e-10;  // of the printed digits
   EXPECT_NEAR(exact.waist, 0.6386863468, rounding);
   EXPECT_NEAR(exact.area, 6.03860031878515, rounding);
-  expect_second_order(films::triple_disk_start(), 2, {.area = exact.area});
-  const FilmComplex start = films::triple_disk_start();
+  expect_second_order(test_films::triple_disk_start(), 2, {.area = exact.area});
+  const FilmComplex start = test_films::triple_disk_start();
   // Vertices of the triple line are those with three surfaces.
   std::vector<double> radius;
   for (int k = 2; k < 5; ++k) {
-    const Found found = films::settled(start, k);
+    const Found found = test_films::settled(start, k);
     double sum = 0.0;
     int count = 0;
     const SurfaceMesh& mesh = found.complex.mesh;
@@ -274,36 +278,38 @@ TEST(FilmConvergence, TripleDisk) {
 TEST(FilmConvergence, CubeFrame) {
   std::vector<double> errors;
   for (int k = 3; k < 6; ++k) {
-    const Found found = films::settled(films::cube_frame_start(), k);
+    const Found found = test_films::settled(test_films::cube_frame_start(), k);
     expect_settled(found);
-    errors.push_back(found.report().area - films::kCubeFrameArea);
+    errors.push_back(found.report().area - test_films::kCubeFrameArea);
   }
   expect_order("area", errors);
-  expect_120_degrees(films::cube_frame_start(), 2);
+  expect_120_degrees(test_films::cube_frame_start(), 2);
   // Richardson at order 2 from the two finest.
   constexpr double kDigits = 1.5e-6;  // orders below 2 leave their trace
   EXPECT_NEAR(errors[2] + (errors[2] - errors[1]) / 3.0, 0.0, kDigits);
 }
 
 TEST(FilmConvergence, TetrahedralFrameIsExact) {
-  const Found found = films::settled(films::tetrahedral_frame_start(), 3);
+  const Found found =
+      test_films::settled(test_films::tetrahedral_frame_start(), 3);
   expect_settled(found);
-  EXPECT_NEAR(found.report().area, films::kTetrahedralFrameArea, kFlat);
-  const films::TripleAngles angles = films::triple_angles(found.complex);
+  EXPECT_NEAR(found.report().area, test_films::kTetrahedralFrameArea, kFlat);
+  const test_films::TripleAngles angles =
+      test_films::triple_angles(found.complex);
   EXPECT_EQ(angles.edges, 4 * 2 * 8);
   EXPECT_NEAR(angles.worst, 0.0, 1e-9);
 }
 
 TEST(FilmConvergence, DoubleBubble) {
-  const films::DoubleBubble exact = films::double_bubble(1.0);
+  const test_films::DoubleBubble exact = test_films::double_bubble(1.0);
   const Found found =
-      expect_second_order(films::double_bubble_start(), 1,
+      expect_second_order(test_films::double_bubble_start(), 1,
                           {.area = exact.area, .pressure = exact.pressure});
   // The middle film is flat: both pressures are equal, but for what the two
   // sides' triangulations differ in; a tenth of their error.
   EXPECT_NEAR(found.pressure(0), found.pressure(1), 5e-5);
-  expect_120_degrees(films::double_bubble_start(), 1);
+  expect_120_degrees(test_films::double_bubble_start(), 1);
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_convergence_test

@@ -9,10 +9,10 @@
 #include "tests/support/film_complexes.h"
 #include "tests/verification/film_cases.h"
 
-namespace meniscus {
+namespace meniscus::film_robustness_test {
 namespace {
 
-using films::Found;
+using test_films::Found;
 
 // Relative error of energy and pressure x facets: 0.2 on the catenoid, 2.4 on
 // the cube that became a sphere, 13 in the pressure of the flattest cap, whose
@@ -22,7 +22,7 @@ constexpr double kFaceting = 16.0;
 /// One find_equilibrium() with default options on `start` refined `times`
 /// times before the engine sees it: no level, scale or tolerance is given.
 Found found_raw(FilmComplex start, int times) {
-  Found found{films::raw_fine(std::move(start), times), {}};
+  Found found{test_films::raw_fine(std::move(start), times), {}};
   found.state = find_equilibrium(found.complex, {});
   const FilmReport& report = found.report();
   EXPECT_FALSE(found.state.failure);
@@ -49,14 +49,14 @@ void expect_pressure(const Found& found, double exact) {
 }
 
 TEST(FilmRobustness, Cylinder) {
-  const Found found = found_raw(films::catenoid_start(), 6);
+  const Found found = found_raw(test_films::catenoid_start(), 6);
   EXPECT_EQ(found.report().facets, 245760);
-  expect_energy(found, films::catenoid(1.0, 1.0).area);
+  expect_energy(found, test_films::catenoid(1.0, 1.0).area);
 }
 
 TEST(FilmRobustness, Cube) {
-  const films::Sphere exact = films::sphere_of_volume(1.0);
-  const Found found = found_raw(films::cube_start(), 5);
+  const test_films::Sphere exact = test_films::sphere_of_volume(1.0);
+  const Found found = found_raw(test_films::cube_start(), 5);
   EXPECT_EQ(found.report().facets, 221184);
   expect_energy(found, exact.area);
   expect_pressure(found, exact.pressure);
@@ -64,8 +64,8 @@ TEST(FilmRobustness, Cube) {
 
 // No closed form: the groomed film of as many facets differs by its faceting.
 TEST(FilmRobustness, Strut) {
-  const Found found = found_raw(films::strut_start(), 3);
-  const Found nested = films::settled(films::strut_start(), 3);
+  const Found found = found_raw(test_films::strut_start(), 3);
+  const Found nested = test_films::settled(test_films::strut_start(), 3);
   EXPECT_GE(found.report().facets, 15360);
   expect_energy(found, nested.report().energy);
   expect_pressure(found, nested.pressure());
@@ -75,32 +75,32 @@ TEST(FilmRobustness, SessileCaps) {
   for (const double degrees : {50.0, 90.0, 150.0}) {
     SCOPED_TRACE(degrees);
     const double angle = degrees * std::numbers::pi / 180.0;
-    const films::SessileCap exact = films::sessile_cap(1.0, angle);
-    const Found found = found_raw(films::sessile_cap_start(angle), 4);
+    const test_films::SessileCap exact = test_films::sessile_cap(1.0, angle);
+    const Found found = found_raw(test_films::sessile_cap_start(angle), 4);
     expect_energy(found, exact.energy);
     expect_pressure(found, exact.pressure);
   }
 }
 
 TEST(FilmRobustness, DoubleBubble) {
-  const films::DoubleBubble exact = films::double_bubble(1.0);
-  const Found found = found_raw(films::double_bubble_start(), 4);
+  const test_films::DoubleBubble exact = test_films::double_bubble(1.0);
+  const Found found = found_raw(test_films::double_bubble_start(), 4);
   expect_energy(found, exact.area);
   expect_pressure(found, exact.pressure);
 }
 
 TEST(FilmRobustness, TripleDisk) {
-  const Found found = found_raw(films::triple_disk_start(), 4);
-  expect_energy(found, films::triple_disk().area);
+  const Found found = found_raw(test_films::triple_disk_start(), 4);
+  expect_energy(found, test_films::triple_disk().area);
 }
 
 // Places where lines meet have to move by many edges.
 TEST(FilmRobustness, Frames) {
-  const Found cube = found_raw(films::cube_frame_start(), 4);
-  expect_energy(cube, films::kCubeFrameArea);
-  const Found tetrahedron = found_raw(films::tetrahedral_frame_start(), 4);
-  expect_energy(tetrahedron, films::kTetrahedralFrameArea);
+  const Found cube = found_raw(test_films::cube_frame_start(), 4);
+  expect_energy(cube, test_films::kCubeFrameArea);
+  const Found tetrahedron = found_raw(test_films::tetrahedral_frame_start(), 4);
+  expect_energy(tetrahedron, test_films::kTetrahedralFrameArea);
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_robustness_test

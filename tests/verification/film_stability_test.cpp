@@ -13,7 +13,7 @@
 #include "tests/support/film_race.h"
 #include "tests/support/film_systems.h"
 
-namespace meniscus {
+namespace meniscus::film_stability_test {
 namespace {
 
 FilmReport report_of(const FilmComplex& start) {
@@ -21,26 +21,26 @@ FilmReport report_of(const FilmComplex& start) {
   return find_refined(complex, 0).report;
 }
 
-films::TubeSpec tube(double length) {
+test_films::TubeSpec tube(double length) {
   return {.length = length,
           .around = 24,
           .rows = static_cast<int>(std::lround(4.0 * length))};
 }
 
 FilmReport at_pressure(double length) {
-  films::TubeSpec spec = tube(length);
-  spec.pressure = films::prism_pressure(spec);
-  return report_of(films::tube_start(spec));
+  test_films::TubeSpec spec = tube(length);
+  spec.pressure = test_films::prism_pressure(spec);
+  return report_of(test_films::tube_start(spec));
 }
 
 FilmReport at_volume(double length) {
-  films::TubeSpec spec = tube(length);
-  spec.volume = films::prism_volume(spec);
-  return report_of(films::tube_start(spec));
+  test_films::TubeSpec spec = tube(length);
+  spec.volume = test_films::prism_volume(spec);
+  return report_of(test_films::tube_start(spec));
 }
 
 FilmReport catenoid_between(double spacing) {
-  FilmComplex start = films::catenoid_start(24, 8);
+  FilmComplex start = test_films::catenoid_start(24, 8);
   for (Curve& curve : start.curves) {
     std::get<Circle>(curve.shape).center.z() *= spacing;
   }
@@ -77,12 +77,12 @@ TEST(FilmStability, CylinderAtFixedVolume) {
 }
 
 TEST(FilmStability, SymmetricSaddles) {
-  const FilmReport tube = report_of(films::long_tube_saddle());
+  const FilmReport tube = report_of(test_films::long_tube_saddle());
   EXPECT_EQ(tube.index, 1) << tube.verdict;
-  const FilmReport catenoid = report_of(films::thin_catenoid_saddle());
+  const FilmReport catenoid = report_of(test_films::thin_catenoid_saddle());
   EXPECT_EQ(catenoid.index, 1) << catenoid.verdict;
   EXPECT_NEAR(0.5 * catenoid.smallest_neck,
-              films::thin_catenoid(1.0, 1.0).waist, 0.01);
+              test_films::thin_catenoid(1.0, 1.0).waist, 0.01);
 }
 
 // Found at 1.31, none at 1.34 (limit 1.32548).
@@ -98,7 +98,7 @@ TEST(FilmStability, CatenoidNearItsLimit) {
 constexpr double kStrutLength = 4.0;
 
 FilmReport strut_at(double volume, int refinements) {
-  FilmComplex strut = films::strut_start();
+  FilmComplex strut = test_films::strut_start();
   strut.bodies[0].volume = volume;
   return find_refined(strut, refinements).report;
 }
@@ -207,7 +207,7 @@ TEST(FilmStability, TwoArmBracketFarOut) {
 // Plateau: four half planes along one line are a saddle however well they
 // rest; popped, they are none.
 TEST(FilmStability, FourFilmsAlongALine) {
-  FilmComplex cross = films::fins_start({0, 60, 180, 240}, 4);
+  FilmComplex cross = test_films::fins_start({0, 60, 180, 240}, 4);
   FilmComplex settled = cross;
   const FilmState state = find_equilibrium(settled, {.refinements = 2});
   ASSERT_TRUE(state.failure);
@@ -222,4 +222,4 @@ TEST(FilmStability, FourFilmsAlongALine) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_stability_test

@@ -15,7 +15,7 @@
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::two_arm_sized_test {
 namespace {
 
 constexpr const char* kCase =
@@ -219,4 +219,4 @@ TEST(TwoArmSized, TwoStartsComeToOneMassAndNoSampleIsLighter) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::two_arm_sized_test

@@ -11,7 +11,7 @@
 #include "pipeline/study/study.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::two_arm_test {
 namespace {
 
 constexpr const char* kCase = MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml";
@@ -154,4 +154,4 @@ TEST(TwoArm, TooLittleVolumeFarOutCannotBeEvaluated) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::two_arm_test

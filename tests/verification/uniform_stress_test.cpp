@@ -17,7 +17,7 @@
 #include "pipeline/reader/case_reader.h"
 #include "tests/support/film_shell.h"
 
-namespace meniscus {
+namespace meniscus::uniform_stress_test {
 namespace {
 
 constexpr const char* kCase =
@@ -68,16 +68,16 @@ struct Shell {
 };
 
 TetMesh mesh_of(const Films& films, const Shell& shell, double thickness) {
-  return films::film_shell(films.surface,
-                           {.film = shell.film,
-                            .thickness = thickness,
-                            .rim = [&](const Vec3& p) -> std::string {
-                              if (shell.film == "plane") {
-                                return std::hypot(p.x(), p.y()) < 30.0 ? "low"
-                                                                       : "high";
-                              }
-                              return p.z() < shell.middle ? "low" : "high";
-                            }});
+  return test_films::film_shell(
+      films.surface, {.film = shell.film,
+                      .thickness = thickness,
+                      .rim = [&](const Vec3& p) -> std::string {
+                        if (shell.film == "plane") {
+                          return std::hypot(p.x(), p.y()) < 30.0 ? "low"
+                                                                 : "high";
+                        }
+                        return p.z() < shell.middle ? "low" : "high";
+                      }});
 }
 
 /// Springs so soft that they only keep the shell from floating off: a millionth
@@ -220,4 +220,4 @@ TEST(UniformStress, IsOfThatLoadAlone) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::uniform_stress_test

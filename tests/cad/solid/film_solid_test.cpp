@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "tests/support/film_parts.h"
 
-namespace meniscus {
+namespace meniscus::film_solid_test {
 namespace {
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
@@ -168,4 +168,4 @@ TEST(FilmSolid, FacetedHasAFaceForEachFacet) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_solid_test

@@ -7,7 +7,7 @@
 
 #include "cad/solid/rim_edges.h"
 
-namespace meniscus {
+namespace meniscus::rim_curve_test {
 namespace {
 
 constexpr double kWholeTurn = 2.0 * std::numbers::pi;
@@ -104,4 +104,4 @@ TEST(RimEdges, WishesNearEachOtherBecomeOneVertex) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::rim_curve_test

@@ -13,7 +13,7 @@
 #include "tests/support/film_parts.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::simple_faces_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -144,4 +144,4 @@ TEST_F(SimpleFaces, DomesAndBubblesOfPatchesAreValidSolids) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::simple_faces_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace meniscus {
+namespace meniscus::spline_test {
 namespace {
 
 const std::vector<double> kKnots =
@@ -91,4 +91,4 @@ TEST(Spline, EndsAreExactAndTangentsHeld) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::spline_test

@@ -10,7 +10,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::step_writer_test {
 namespace {
 
 /// A box with a corner at the origin, of planes and lines.
@@ -169,4 +169,4 @@ TEST_F(StepWriter, RefusesWhatIsNoSolid) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::step_writer_test

@@ -9,7 +9,7 @@
 #include "core/timer.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::mesh_checks_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -398,4 +398,4 @@ TEST(MeshChecks, IsFastEnoughForEveryDesign) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::mesh_checks_test

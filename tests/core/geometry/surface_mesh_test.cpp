@@ -8,7 +8,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::surface_mesh_test {
 namespace {
 
 constexpr double kRounding = 1e-13;  // sums of some hundred terms of order 1
@@ -86,4 +86,4 @@ TEST(TetMesh, BrickFillsItsBoxWithOutwardFaces) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::surface_mesh_test

@@ -9,7 +9,7 @@
 #include "tests/support/nested_surface.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::surface_nodes_test {
 namespace {
 
 constexpr double kNodeRounding = 1e-14;
@@ -122,4 +122,4 @@ TEST(SurfaceNodes, AreTransposed) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::surface_nodes_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/not_here.h"
 
-namespace meniscus {
+namespace meniscus::expression_test {
 namespace {
 
 using testing::HasSubstr;
@@ -283,4 +283,4 @@ TEST(NearestName, FindsSlipsOfTheFinger) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::expression_test

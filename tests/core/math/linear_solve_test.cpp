@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::linear_solve_test {
 namespace {
 
 constexpr double kResidual = 1e-12;  // relative, condition number about 1e3
@@ -131,4 +131,4 @@ TEST(NestedDissection, IsAPermutationEvenOfUnconnectedUnknowns) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::linear_solve_test

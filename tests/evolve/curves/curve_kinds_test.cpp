@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "evolve/curves/curve.h"
 
-namespace meniscus {
+namespace meniscus::curve_kinds_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -192,4 +192,4 @@ TEST(Curve, RefusesWhatIsNoneOfTheseKinds) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::curve_kinds_test

@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::curve_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -347,4 +347,4 @@ TEST(CurveRate, RefusesAnotherKind) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::curve_test

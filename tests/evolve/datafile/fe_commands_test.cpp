@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::fe_commands_test {
 namespace {
 
 using ::testing::StartsWith;
@@ -98,4 +98,4 @@ TEST(FeCommands, RefusesWhatItDoesNotKnowByNameAndLine) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::fe_commands_test

@@ -10,7 +10,7 @@
 #include "evolve/datafile/fe_write.h"
 #include "tests/support/film_sums.h"
 
-namespace meniscus {
+namespace meniscus::fe_reader_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -355,4 +355,4 @@ TEST(FeReader, EndsOnLargeGarbageInBoundedTime) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::fe_reader_test

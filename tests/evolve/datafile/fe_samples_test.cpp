@@ -13,7 +13,7 @@
 #include "tests/support/film_sums.h"
 #include "tests/support/not_here.h"
 
-namespace meniscus {
+namespace meniscus::fe_samples_test {
 namespace {
 
 constexpr double kTwelveDigits = 1e-12;  // Evolver prints 14; sums round
@@ -113,4 +113,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& refused) { return "sample_" + refused.param.name; });
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::fe_samples_test

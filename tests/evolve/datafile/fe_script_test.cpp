@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "evolve/energy/energy.h"
 
-namespace meniscus {
+namespace meniscus::fe_script_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -176,4 +176,4 @@ TEST(FeScript, EndlessMacrosAreStopped) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::fe_script_test

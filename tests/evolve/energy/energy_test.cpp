@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/film_shapes.h"
 
-namespace meniscus {
+namespace meniscus::energy_test {
 namespace {
 
 constexpr double kRounding = 1e-13;
@@ -219,4 +219,4 @@ TEST(FilmEnergy, RefusesCornersOutOfRange) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::energy_test

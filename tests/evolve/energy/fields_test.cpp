@@ -13,7 +13,7 @@
 #include "evolve/settle/find_equilibrium.h"
 #include "tests/support/film_shapes.h"
 
-namespace meniscus {
+namespace meniscus::fields_test {
 namespace {
 
 using std::numbers::pi;
@@ -416,4 +416,4 @@ TEST(Fields, RefusesWhatMakesNoField) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::fields_test

@@ -13,7 +13,7 @@
 #include "tests/support/film_shapes.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::film_operation_count_test {
 namespace {
 
 constexpr double kSameSum = 1e-12;
@@ -284,4 +284,4 @@ TEST(FilmOperationCount, AHessian) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_operation_count_test

@@ -10,7 +10,7 @@
 #include "evolve/settle/equilibrium.h"
 #include "tests/support/film_shapes.h"
 
-namespace meniscus {
+namespace meniscus::nesting_test {
 namespace {
 
 using testing::ElementsAre;
@@ -164,4 +164,4 @@ TEST(Nesting, RefusesBrokenMeshes) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::nesting_test

@@ -10,7 +10,7 @@
 #include "evolve/settle/find_equilibrium.h"
 #include "tests/support/film_shapes.h"
 
-namespace meniscus {
+namespace meniscus::split_surface_test {
 namespace {
 
 FilmComplex plain_tube() {
@@ -99,4 +99,4 @@ TEST(SplitSurface, RefusesWhatMakesNoRegion) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::split_surface_test

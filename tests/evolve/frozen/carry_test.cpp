@@ -6,7 +6,7 @@
 
 #include "tests/support/film_shapes.h"
 
-namespace meniscus {
+namespace meniscus::carry_test {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of coordinates of order 1, after a solve
@@ -86,4 +86,4 @@ TEST(Carry, CapsStayFlatWhenTheirRimTurnsAndGrows) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::carry_test

@@ -9,7 +9,7 @@
 #include "evolve/curves/curve_contact.h"
 #include "evolve/frozen/film_model.h"
 
-namespace meniscus {
+namespace meniscus::disk_films_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -148,4 +148,4 @@ TEST(CurveContact, FindsCrossingsAndTouches) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::disk_films_test

@@ -12,7 +12,7 @@
 #include "evolve/settle/equilibrium.h"
 #include "tests/support/film_shapes.h"
 
-namespace meniscus {
+namespace meniscus::film_adjoint_test {
 namespace {
 
 constexpr double kRounding = 1e-12;   // relative, of sums of products
@@ -264,4 +264,4 @@ TEST(LowestModes, AreThoseOfTheDenseProblem) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_adjoint_test

@@ -11,7 +11,7 @@
 #include "tests/support/film_systems.h"
 #include "tests/support/systems.h"
 
-namespace meniscus {
+namespace meniscus::film_gradient_test {
 namespace {
 
 using Design = std::function<FilmSystem(double)>;
@@ -394,4 +394,4 @@ TEST(FilmGradient, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_gradient_test

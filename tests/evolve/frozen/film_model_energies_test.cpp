@@ -9,7 +9,7 @@
 #include "evolve/frozen/film_model.h"
 #include "tests/support/film_systems.h"
 
-namespace meniscus {
+namespace meniscus::film_model_energies_test {
 namespace {
 
 // Tension 1 / r makes the energy of a surface of revolution 2 pi x the length
@@ -145,4 +145,4 @@ TEST(FieldEnergy, PolesMoveTheFilmAndBelongToTheModel) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_model_energies_test

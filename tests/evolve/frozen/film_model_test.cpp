@@ -10,7 +10,7 @@
 #include "tests/support/film_systems.h"
 #include "tests/support/systems.h"
 
-namespace meniscus {
+namespace meniscus::film_model_test {
 namespace {
 
 using systems::two_arm;
@@ -242,4 +242,4 @@ TEST(FilmModel, RefusesNumbersThatNoFilmCanFollow) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_model_test

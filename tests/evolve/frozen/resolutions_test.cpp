@@ -14,7 +14,7 @@
 #include "tests/support/film_complexes.h"
 #include "tests/support/nonmanifold_shapes.h"
 
-namespace meniscus {
+namespace meniscus::resolutions_test {
 namespace {
 
 using nonmanifold::triple_lines;
@@ -70,43 +70,44 @@ FilmResolution expect_second_order(const FilmComplex& film,
 }
 
 TEST(Resolutions, CatenoidAtThreeEdges) {
-  expect_second_order(settled(films::catenoid_start(), 1), {0.12, 0.06, 0.03},
-                      films::catenoid(1.0, 1.0).area);
+  expect_second_order(settled(test_films::catenoid_start(), 1),
+                      {0.12, 0.06, 0.03}, test_films::catenoid(1.0, 1.0).area);
 }
 
 TEST(Resolutions, BodyKeepsItsVolume) {
-  const FilmComplex film = settled(films::cube_start(), 1);
+  const FilmComplex film = settled(test_films::cube_start(), 1);
   expect_second_order(film, {0.16, 0.08, 0.04},
-                      films::sphere_of_volume(1.0).area);
+                      test_films::sphere_of_volume(1.0).area);
 }
 
 TEST(Resolutions, TripleLineStays) {
-  const FilmComplex film = settled(films::triple_disk_start(), 2);
-  const FilmResolution finest =
-      expect_second_order(film, {0.12, 0.06, 0.03}, films::triple_disk().area);
+  const FilmComplex film = settled(test_films::triple_disk_start(), 2);
+  const FilmResolution finest = expect_second_order(
+      film, {0.12, 0.06, 0.03}, test_films::triple_disk().area);
   EXPECT_EQ(triple_lines(finest.complex.mesh).of_films,
             triple_lines(film.mesh).of_films);
 }
 
 // Rims keep their edges, so the film may be coarser between them only.
 TEST(Resolutions, CoarserThanTheFilm) {
-  const FilmComplex film = settled(films::catenoid_start(), 3);
+  const FilmComplex film = settled(test_films::catenoid_start(), 3);
   const FilmResolution coarse = at_edge(film, 0.12);
   EXPECT_EQ(coarse.state.report.verdict, "stable");
   EXPECT_LT(coarse.complex.mesh.facets.size(), film.mesh.facets.size());
-  EXPECT_NEAR(coarse.state.report.energy, films::catenoid(1.0, 1.0).area, 0.02);
+  EXPECT_NEAR(coarse.state.report.energy, test_films::catenoid(1.0, 1.0).area,
+              0.02);
   expect_on_curves(coarse.complex);
 }
 
 // One edge's film does not depend on the others.
 TEST(Resolutions, AreIndependent) {
-  const FilmComplex film = settled(films::catenoid_start(), 1);
+  const FilmComplex film = settled(test_films::catenoid_start(), 1);
   const Points among = at_edges(film, {0.2, 0.1})[1].state.points;
   EXPECT_EQ(among, at_edge(film, 0.1).state.points);
 }
 
 TEST(Resolutions, RefuseWhatIsNoLength) {
-  const FilmComplex film = films::catenoid_start();
+  const FilmComplex film = test_films::catenoid_start();
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const double edge : {0.0, -1.0, kNan, 1e-9}) {
     EXPECT_THROW(at_edge(film, edge), InvalidInput) << edge;
@@ -114,4 +115,4 @@ TEST(Resolutions, RefuseWhatIsNoLength) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::resolutions_test

@@ -13,7 +13,7 @@
 #include "evolve/groom/check_complex.h"
 #include "evolve/start/start_complex.h"
 
-namespace meniscus {
+namespace meniscus::ring_films_test {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
@@ -219,4 +219,4 @@ TEST(Gap, OfSettledFilmsHasAnExactDerivative) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::ring_films_test

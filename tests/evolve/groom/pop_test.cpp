@@ -15,13 +15,13 @@
 #include "tests/support/nonmanifold_shapes.h"
 #include "tests/support/systems.h"
 
-namespace meniscus {
+namespace meniscus::pop_test {
 namespace {
 
-using films::fins_start;
 using nonmanifold::count_edges;
 using nonmanifold::triple_lines;
 using std::numbers::pi;
+using test_films::fins_start;
 
 constexpr double kRounding = 1e-12;
 
@@ -73,7 +73,7 @@ TEST(PopEdges, TakesFilmsOffUntilThreeAreLeft) {
 TEST(PopEdges, PopsAClosedLine) {
   // Four bands along the unit circle: inwards, up, outwards, down.
   constexpr int kAround = 12;
-  films::ComplexBuilder builder;
+  test_films::ComplexBuilder builder;
   const auto ring = [&](double radius, double z, VertexKind kind) {
     std::vector<int> points;
     for (int i = 0; i < kAround; ++i) {
@@ -118,7 +118,7 @@ TEST(PopEdges, LeavesMarkedLinesAlone) {
 
 // Four unit cubes about the z axis; their common edge has four films.
 FilmComplex four_cubes() {
-  films::ComplexBuilder builder;
+  test_films::ComplexBuilder builder;
   constexpr int kPieces = 2;
   const std::array<Vec3, 4> corner = {Vec3(0, 0, 0), Vec3(-1, 0, 0),
                                       Vec3(-1, -1, 0), Vec3(0, -1, 0)};
@@ -212,7 +212,7 @@ TEST(PopVertices, SeparatesAPinchedNeck) {
 
 // Films from every edge of the cube to its centre.
 FilmComplex cube_cone() {
-  films::ComplexBuilder builder;
+  test_films::ComplexBuilder builder;
   std::array<int, 8> corner{};
   for (int i = 0; i < 8; ++i) {
     corner[i] =
@@ -259,8 +259,8 @@ TEST(PopVertices, PopsTheConeOverACubeToASquareFilm) {
 
 TEST(PopVertices, KeepsMinimalCones) {
   for (const FilmComplex& start :
-       {films::tetrahedral_frame_start(), films::cube_frame_start(),
-        films::double_bubble_start(), films::triple_disk_start()}) {
+       {test_films::tetrahedral_frame_start(), test_films::cube_frame_start(),
+        test_films::double_bubble_start(), test_films::triple_disk_start()}) {
     FilmComplex complex = start;
     EXPECT_EQ(pop_edges(complex).popped, 0);
     EXPECT_EQ(pop_vertices(complex).popped, 0);
@@ -270,7 +270,7 @@ TEST(PopVertices, KeepsMinimalCones) {
 
 TEST(PopVertices, PopsAConeOverAnOctahedronAfterItsEdges) {
   // Lines of four films meet at the centre.
-  films::ComplexBuilder builder;
+  test_films::ComplexBuilder builder;
   std::vector<int> tip;
   for (int k = 0; k < 3; ++k) {
     tip.push_back(builder.vertex(Vec3::Unit(k), VertexKind::Fixed));
@@ -297,7 +297,7 @@ TEST(PopVertices, PopsAConeOverAnOctahedronAfterItsEdges) {
 }
 
 TEST(CollapseTiny, TakesShortEdgesOnly) {
-  FilmComplex complex = films::cube_start(3);
+  FilmComplex complex = test_films::cube_start(3);
   EXPECT_EQ(collapse_tiny_edges(complex, 0.1), 0);
   complex.mesh.points.back() +=
       0.99 * (complex.mesh.points[complex.mesh.facets.back()[0]] -
@@ -306,11 +306,11 @@ TEST(CollapseTiny, TakesShortEdgesOnly) {
   check_complex(complex);
   EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);
   EXPECT_THROW(collapse_tiny_edges(complex, std::nan("")), InvalidInput);
-  FilmComplex frame = films::cube_frame_start();
+  FilmComplex frame = test_films::cube_frame_start();
   collapse_tiny_edges(frame, 100.0);
   check_complex(frame);
   EXPECT_EQ(frame.edges.size(), 12U);
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::pop_test

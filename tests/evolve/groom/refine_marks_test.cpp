@@ -8,7 +8,7 @@
 #include "tests/support/film_complexes.h"
 #include "tests/support/nonmanifold_shapes.h"
 
-namespace meniscus {
+namespace meniscus::refine_marks_test {
 namespace {
 
 constexpr double kMarkRounding = 1e-13;  // sums of a few terms of size 1
@@ -147,7 +147,7 @@ TEST(RefineMarks, WholeEdgesAndSurfacesStayAndTheRestConforms) {
 }
 
 TEST(RefineMarks, NumbersChildrenAsMultigridNeeds) {
-  const FilmComplex coarse = films::cube_frame_start();
+  const FilmComplex coarse = test_films::cube_frame_start();
   const Refinement fine = refine(coarse);
   std::vector<Edge> edges;
   std::vector<Triangle> facet_edges;
@@ -183,7 +183,7 @@ TEST(RefineMarks, AWireWithoutFilmsIsHalvedToo) {
 }
 
 TEST(RefineMarks, IsFast) {
-  FilmComplex complex = films::catenoid_start();
+  FilmComplex complex = test_films::catenoid_start();
   while (complex.mesh.facets.size() < 245760) {
     complex = refine(complex).complex;
   }
@@ -211,4 +211,4 @@ TEST(NearestParameter, FindsTheFootOnEveryShape) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::refine_marks_test

@@ -9,7 +9,7 @@
 #include "evolve/start/start_complex.h"
 #include "tests/support/systems.h"
 
-namespace meniscus {
+namespace meniscus::refine_test {
 namespace {
 
 TEST(Refine, KeepsOldVerticesAndPutsNewOnesInTheMiddle) {
@@ -107,4 +107,4 @@ TEST(CheckComplex, NamesWhatIsBroken) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::refine_test

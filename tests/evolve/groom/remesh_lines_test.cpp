@@ -11,7 +11,7 @@
 #include "tests/support/nonmanifold_shapes.h"
 #include "tests/support/systems.h"
 
-namespace meniscus {
+namespace meniscus::remesh_lines_test {
 namespace {
 
 using nonmanifold::triple_lines;
@@ -29,11 +29,11 @@ struct Case {
 };
 
 std::vector<Case> cases() {
-  return {{"triple disk", films::triple_disk_start(), 2, 0.13},
-          {"cube frame", films::cube_frame_start(), 3, 0.09},
-          {"tetrahedral frame", films::tetrahedral_frame_start(), 3, 0.2},
-          {"double bubble", films::double_bubble_start(), 2, 0.14},
-          {"sessile", films::sessile_cap_start(1.0), 2, 0.12}};
+  return {{"triple disk", test_films::triple_disk_start(), 2, 0.13},
+          {"cube frame", test_films::cube_frame_start(), 3, 0.09},
+          {"tetrahedral frame", test_films::tetrahedral_frame_start(), 3, 0.2},
+          {"double bubble", test_films::double_bubble_start(), 2, 0.14},
+          {"sessile", test_films::sessile_cap_start(1.0), 2, 0.12}};
 }
 
 FilmComplex refined(FilmComplex complex, int levels) {
@@ -99,7 +99,7 @@ TEST(RemeshLines, KeepTheirFilmsAndJunctionsAtSeveralSizes) {
 }
 
 TEST(RemeshLines, FollowTheTargetLength) {
-  FilmComplex complex = refined(films::triple_disk_start(), 2);
+  FilmComplex complex = refined(test_films::triple_disk_start(), 2);
   const int before = nonmanifold::count_edges(complex.mesh, 3);
   EXPECT_EQ(before, 48);
   remesh_films(complex, {.edge = 0.06});
@@ -111,7 +111,7 @@ TEST(RemeshLines, FollowTheTargetLength) {
 }
 
 TEST(RemeshLines, StayOnTheirWallWithTheirIntegrals) {
-  FilmComplex complex = refined(films::sessile_cap_start(1.0), 2);
+  FilmComplex complex = refined(test_films::sessile_cap_start(1.0), 2);
   const auto wetted = [&] {
     double sum = 0.0;
     for (const ComplexEdge& e : complex.edges) {
@@ -138,9 +138,9 @@ TEST(RemeshLines, StayOnTheirWallWithTheirIntegrals) {
 }
 
 TEST(CheckComplex, NamesWhatIsBrokenAtMarksAndWalls) {
-  const FilmComplex sound = refined(films::sessile_cap_start(1.0), 1);
+  const FilmComplex sound = refined(test_films::sessile_cap_start(1.0), 1);
   check_complex(sound);
-  check_complex(films::double_bubble_start());
+  check_complex(test_films::double_bubble_start());
   const auto refuses = [&](const auto& breaks) {
     FilmComplex broken = sound;
     breaks(broken);
@@ -202,7 +202,7 @@ TEST(RemeshLines, SlideAlongTheirCurve) {
 }
 
 TEST(RemeshLines, AreTheSameInEveryBit) {
-  FilmComplex once = refined(films::cube_frame_start(), 2);
+  FilmComplex once = refined(test_films::cube_frame_start(), 2);
   nonmanifold::shake(once, 0.02, 5);
   FilmComplex twice = once;
   remesh_films(once, {.edge = 0.08});
@@ -214,8 +214,8 @@ TEST(RemeshLines, SurviveRandomShapes) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(seed);
     FilmComplex complex =
-        refined(seed % 2 == 0 ? films::cube_frame_start()
-                              : films::tetrahedral_frame_start(),
+        refined(seed % 2 == 0 ? test_films::cube_frame_start()
+                              : test_films::tetrahedral_frame_start(),
                 2);
     nonmanifold::shake(complex, 0.05 * (1 + seed % 5), seed);
     const auto lines = triple_lines(complex.mesh);
@@ -227,7 +227,7 @@ TEST(RemeshLines, SurviveRandomShapes) {
 }
 
 TEST(RemeshGraded, FollowsTheField) {
-  FilmComplex complex = refined(films::triple_disk_start(), 2);
+  FilmComplex complex = refined(test_films::triple_disk_start(), 2);
   const auto field = [](const Vec3& p) {
     return 0.04 + 0.12 * std::abs(p.x());
   };
@@ -294,4 +294,4 @@ TEST(AverageLines, MovesVerticesAlongAStraightLineOnly) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::remesh_lines_test

@@ -12,7 +12,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/systems.h"
 
-namespace meniscus {
+namespace meniscus::remesh_test {
 namespace {
 
 using systems::Part;
@@ -218,4 +218,4 @@ TEST(Remesh, CutsTheNeedlesOfAFineHullFastEnough) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::remesh_test

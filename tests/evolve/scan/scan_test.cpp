@@ -14,7 +14,7 @@
 #include "evolve/start/closed_line.h"
 #include "tests/support/shapes.h"
 
-namespace meniscus {
+namespace meniscus::scan_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -226,4 +226,4 @@ TEST(ClosedLine, OfACircleKeepsItWithSixPoints) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::scan_test

@@ -8,7 +8,7 @@
 #include "evolve/settle/find_equilibrium.h"
 #include "tests/support/film_complexes.h"
 
-namespace meniscus {
+namespace meniscus::contacts_test {
 namespace {
 
 /// A disk film across a ring of radius 1 at z = 0 under which a ball of radius
@@ -102,4 +102,4 @@ TEST(Contacts, AFilmOverABallLeavesItTangentially) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::contacts_test

@@ -9,7 +9,7 @@
 #include "evolve/settle/slide_vertices.h"
 #include "tests/support/film_complexes.h"
 
-namespace meniscus {
+namespace meniscus::descent_test {
 namespace {
 
 // Where a parabola's minimum is lost in rounding of the energy sum, its
@@ -19,7 +19,7 @@ constexpr double kResidual = 1e-6;
 
 /// About 800 facets, not far from rest.
 FilmComplex near_sphere() {
-  FilmComplex complex = refine(films::cube_start(3)).complex;
+  FilmComplex complex = refine(test_films::cube_start(3)).complex;
   for (Vec3& p : complex.mesh.points) {
     const Vec3 out = p - Vec3::Constant(0.5);
     p = Vec3::Constant(0.5) +
@@ -29,7 +29,7 @@ FilmComplex near_sphere() {
 }
 
 FilmComplex near_catenoid() {
-  return refine(refine(films::catenoid_start(15, 2)).complex).complex;
+  return refine(refine(test_films::catenoid_start(15, 2)).complex).complex;
 }
 
 class Descends : public testing::TestWithParam<DescentMethod> {};
@@ -100,4 +100,4 @@ INSTANTIATE_TEST_SUITE_P(ByName, Descends,
                                          DescentMethod::ConjugateGradients));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::descent_test

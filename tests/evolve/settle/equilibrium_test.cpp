@@ -11,7 +11,7 @@
 #include "tests/support/film_complexes.h"
 #include "tests/support/film_shapes.h"
 
-namespace meniscus {
+namespace meniscus::equilibrium_test {
 namespace {
 
 FilmState settle_normals(const FilmComplex& complex) {
@@ -126,7 +126,7 @@ TEST(Equilibrium, CylinderAtFixedVolumeIsStableBelowTwoPi) {
 // Gravity on bodies without weight moves nothing: the bubble floats still, and
 // its lowest mode is that of a sphere, 4 T / R^2.
 TEST(Equilibrium, GravityWithoutWeightHoldsNothing) {
-  FilmComplex bubble = films::cube_start();
+  FilmComplex bubble = test_films::cube_start();
   bubble.gravity = Vec3(0, 0, -9.81);
   const FilmState state = find_equilibrium(bubble, {.refinements = 1});
   EXPECT_EQ(state.report.verdict, "stable");
@@ -135,4 +135,4 @@ TEST(Equilibrium, GravityWithoutWeightHoldsNothing) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::equilibrium_test

@@ -9,7 +9,7 @@
 #include "evolve/frozen/film_model.h"
 #include "evolve/start/disk_fill.h"
 
-namespace meniscus {
+namespace meniscus::shared_sides_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -176,4 +176,4 @@ TEST(SharedSides, AFaceThatIsMissingIsTold) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::shared_sides_test

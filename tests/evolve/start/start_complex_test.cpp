@@ -14,7 +14,7 @@
 #include "evolve/start/disk_fill.h"
 #include "tests/support/systems.h"
 
-namespace meniscus {
+namespace meniscus::start_complex_test {
 namespace {
 
 using systems::Part;
@@ -299,4 +299,4 @@ TEST(StartComplex, RefusesACurveThatCrossesItself) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::start_complex_test

@@ -9,7 +9,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/sheet_shapes.h"
 
-namespace meniscus {
+namespace meniscus::jet_fit_test {
 namespace {
 
 // Curvatures are of order 2 where rings surround a vertex, on irregular sheets
@@ -103,4 +103,4 @@ TEST(JetFit, SaddleIsExactAtItsCentre) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::jet_fit_test

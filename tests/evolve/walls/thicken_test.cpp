@@ -14,7 +14,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/sheet_shapes.h"
 
-namespace meniscus {
+namespace meniscus::thicken_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -362,4 +362,4 @@ TEST(Thicken, RefusesBrokenArrays) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::thicken_test

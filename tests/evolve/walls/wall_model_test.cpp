@@ -14,7 +14,7 @@
 #include "evolve/walls/facet_probe.h"
 #include "tests/support/sheet_shapes.h"
 
-namespace meniscus {
+namespace meniscus::wall_model_test {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
@@ -406,4 +406,4 @@ TEST(WallModel, OfOneSideRefusesJunctions) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::wall_model_test

@@ -16,7 +16,7 @@
 #include "tests/support/parts.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::distributed_test {
 namespace {
 
 constexpr double kSolvers = 1e-8;  // what two solvers may differ by
@@ -304,4 +304,4 @@ TEST_F(BadHelper, OneThatHangsEndsAtItsLimitOrOnRequest) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::distributed_test

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::hostile_test {
 namespace {
 
 using testing::AllOf;
@@ -231,4 +231,4 @@ TEST(Memory, TooLittleIsForeseen) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::hostile_test

@@ -14,7 +14,7 @@
 #include "tests/support/counted.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::operation_count_test {
 namespace {
 
 struct Stiffness {
@@ -318,4 +318,4 @@ TEST(OperationCount, AStepOfConjugateGradientsIsAProductAndFiveVectors) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::operation_count_test

@@ -7,7 +7,7 @@
 #include "fea/solver/row_chunks.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::solve_test {
 namespace {
 
 constexpr double kSolvers = 1e-8;  // what two solvers may differ by
@@ -293,4 +293,4 @@ TEST(LoadCases, WithOtherSupportsAndMoreThanFourAreSolvedAsAlone) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::solve_test

@@ -4,7 +4,7 @@
 
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::element_test {
 namespace {
 
 constexpr double kElementRounding =
@@ -173,4 +173,4 @@ TEST(BendingPatch, OfQuadraticElementsIsInEquilibriumWithExactStress) {
 INSTANTIATE_TEST_SUITE_P(Orders, Element, testing::Values(1, 2));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::element_test

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::material_test {
 namespace {
 
 constexpr double kMaterialRounding = 1e-12;
@@ -196,4 +196,4 @@ TEST(OrthotropicChecks, RefuseModuliAxesAndExpansions) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::material_test

@@ -10,7 +10,7 @@
 #include "tests/support/derivatives.h"
 #include "tests/support/gradient_parts.h"
 
-namespace meniscus {
+namespace meniscus::adjoint_test {
 namespace {
 
 using derivatives::expect_derivative;
@@ -244,4 +244,4 @@ TEST(Adjoint, RefusesWhatItCannotDifferentiate) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::adjoint_test

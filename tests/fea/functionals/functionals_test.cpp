@@ -11,7 +11,7 @@
 #include "tests/support/derivatives.h"
 #include "tests/support/gradient_parts.h"
 
-namespace meniscus {
+namespace meniscus::functionals_test {
 namespace {
 
 using derivatives::expect_derivative;
@@ -161,4 +161,4 @@ TEST_P(Functionals, CentreOfMassOfABoxIsItsMiddle) {
 INSTANTIATE_TEST_SUITE_P(Orders, Functionals, testing::Values(1, 2));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::functionals_test

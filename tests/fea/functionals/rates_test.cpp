@@ -14,7 +14,7 @@
 #include "tests/support/derivatives.h"
 #include "tests/support/gradient_parts.h"
 
-namespace meniscus {
+namespace meniscus::rates_test {
 namespace {
 
 using derivatives::expect_derivative;
@@ -207,4 +207,4 @@ TEST_P(Rates, IntrusionIntoABall) {
 INSTANTIATE_TEST_SUITE_P(Orders, Rates, testing::Values(1, 2));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::rates_test

@@ -10,7 +10,7 @@
 #include "tests/support/derivatives.h"
 #include "tests/support/gradient_parts.h"
 
-namespace meniscus {
+namespace meniscus::stress_functionals_test {
 namespace {
 
 using derivatives::expect_partials;
@@ -146,4 +146,4 @@ TEST_P(StressFunctionals, RefusesNonsense) {
 INSTANTIATE_TEST_SUITE_P(Orders, StressFunctionals, testing::Values(1, 2));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::stress_functionals_test

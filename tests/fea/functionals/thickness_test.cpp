@@ -8,7 +8,7 @@
 #include "tests/support/derivatives.h"
 #include "tests/support/gradient_parts.h"
 
-namespace meniscus {
+namespace meniscus::thickness_test {
 namespace {
 
 constexpr double kThicknessRounding = 1e-12;
@@ -85,4 +85,4 @@ TEST_P(Thickness, HasDerivatives) {
 INSTANTIATE_TEST_SUITE_P(Orders, Thickness, testing::Values(1, 2));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::thickness_test

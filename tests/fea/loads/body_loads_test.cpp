@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::body_loads_test {
 namespace {
 
 using testing::AllOf;
@@ -251,4 +251,4 @@ TEST(BodyLoadChecks, TemperatureNeedsExpansionAndNumbers) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::body_loads_test

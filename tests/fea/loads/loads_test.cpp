@@ -6,7 +6,7 @@
 #include "core/math/expression.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::loads_test {
 namespace {
 
 constexpr double kLoadRounding = 1e-12;
@@ -249,4 +249,4 @@ TEST(Loads, SurfaceWithoutAreaIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::loads_test

@@ -9,7 +9,7 @@
 #include "fea/element/elastic_law.h"
 #include "tests/support/eigen_parts.h"
 
-namespace meniscus {
+namespace meniscus::buckling_test {
 namespace {
 
 TetMesh column(int order) {
@@ -178,4 +178,4 @@ TEST(BucklingOf, OneAndTwoThreadsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::buckling_test

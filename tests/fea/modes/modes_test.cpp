@@ -12,7 +12,7 @@
 #include "fea/element/elastic_law.h"
 #include "tests/support/eigen_parts.h"
 
-namespace meniscus {
+namespace meniscus::modes_test {
 namespace {
 
 using std::numbers::pi;
@@ -262,4 +262,4 @@ TEST(ModesOf, OneAndTwoThreadsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::modes_test

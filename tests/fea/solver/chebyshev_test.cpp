@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace meniscus {
+namespace meniscus::chebyshev_test {
 namespace {
 
 // What the steps leave of an error along the eigenvalue t of M A.
@@ -79,4 +79,4 @@ TEST(Chebyshev, LanczosFindsTheLowestEigenvalue) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::chebyshev_test

@@ -11,7 +11,7 @@
 #include "fea/solver/smoothed_aggregation.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::multigrid_test {
 namespace {
 
 using Blocks6 = Eigen::Matrix<double, 3, 6, Eigen::RowMajor>;
@@ -223,4 +223,4 @@ TEST(Aggregation, CoarseOperatorIsGalerkinsAndRigidMotionsSurvive) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::multigrid_test

@@ -11,7 +11,7 @@
 #include "fea/stress/stress.h"
 #include "tests/support/eigen_parts.h"
 
-namespace meniscus {
+namespace meniscus::nodal_matrix_test {
 namespace {
 
 // Rounding over some thousand sums.
@@ -179,4 +179,4 @@ TEST(NodalMatrix, MassOfACurvedTubeIsItsVolume) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::nodal_matrix_test

@@ -9,7 +9,7 @@
 #include "fea/stress/safety_factor.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::error_estimate_test {
 namespace {
 
 constexpr double kEstimateRounding =
@@ -202,4 +202,4 @@ TEST(SafetyFactors, AreEachRegionsOwnAndTellThePlace) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::error_estimate_test

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::patch_recovery_test {
 namespace {
 
 // Least squares with ten terms lose some digits.
@@ -169,4 +169,4 @@ TEST_P(PatchRecovery, SurvivesElementsWithoutSizeAndStressesThatAreNoNumbers) {
 INSTANTIATE_TEST_SUITE_P(Orders, PatchRecovery, testing::Values(1, 2));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::patch_recovery_test

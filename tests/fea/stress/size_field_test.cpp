@@ -8,7 +8,7 @@
 #include "fea/element/nearest_point.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::size_field_test {
 namespace {
 
 constexpr double kSizeRounding = 1e-9;
@@ -132,4 +132,4 @@ TEST_P(Sizes, RefuseOptionsOutOfRange) {
 INSTANTIATE_TEST_SUITE_P(Orders, Sizes, testing::Values(1, 2));
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::size_field_test

@@ -7,7 +7,7 @@
 #include "fea/element/tet_shape.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::stress_test {
 namespace {
 
 constexpr double kStressRounding = 1e-12;  // closed forms in double
@@ -189,4 +189,4 @@ TEST(Stress, WrongSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::stress_test

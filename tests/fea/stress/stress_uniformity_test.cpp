@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::stress_uniformity_test {
 namespace {
 
 constexpr double kRounding = 1e-12;
@@ -177,4 +177,4 @@ TEST(StressUniformity, WrongZonesAreRefused) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::stress_uniformity_test

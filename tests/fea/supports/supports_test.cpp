@@ -8,7 +8,7 @@
 #include "fea/supports/springs.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::supports_test {
 namespace {
 
 using testing::AllOf;
@@ -402,4 +402,4 @@ TEST(NodeFreedom, NormalsOfOneSmoothSurfaceUnderTwoNamesCountOnce) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::supports_test

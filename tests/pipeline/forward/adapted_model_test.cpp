@@ -8,7 +8,7 @@
 #include "pipeline/forward/forward_model.h"
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::adapted_model_test {
 namespace {
 
 Case adaptive_strut() {
@@ -83,4 +83,4 @@ TEST(AdaptedModel, IsAPureAndSmoothFunctionOfTheDesign) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::adapted_model_test

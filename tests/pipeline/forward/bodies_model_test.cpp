@@ -7,7 +7,7 @@
 #include "pipeline/forward/forward_model.h"
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::bodies_model_test {
 namespace {
 
 /// The strut cut at half its height.
@@ -200,4 +200,4 @@ TEST(Voids, AreRefusedWhereNothingIsLeft) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::bodies_model_test

@@ -11,7 +11,7 @@
 #include "tests/support/case_text.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::case_films_test {
 namespace {
 
 using testing::ElementsAre;
@@ -210,4 +210,4 @@ TEST(CaseWalls, OfThreeFilmsAtALineAreJoined) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_films_test

@@ -6,7 +6,7 @@
 #include "pipeline/forward/gradient_check.h"
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::design_gradient_test {
 namespace {
 
 Case read(const std::string& text) {
@@ -193,4 +193,4 @@ TEST(DesignGradient, PeaksAreLeftOutByName) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::design_gradient_test

@@ -9,7 +9,7 @@
 #include "tests/support/case_text.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::eigen_figures_test {
 namespace {
 
 using testing::AllOf;
@@ -210,4 +210,4 @@ TEST(AnalysisTable, WrongNumbersAndNamesAreRefused) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::eigen_figures_test

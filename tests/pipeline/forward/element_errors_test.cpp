@@ -8,7 +8,7 @@
 #include "tests/support/mapped_shapes.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::element_errors_test {
 namespace {
 
 /// A plate with a hole, pulled along x and along y in two load cases; responses
@@ -125,4 +125,4 @@ TEST(ElementErrors, PredictWhatAFinerMeshGives) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::element_errors_test

@@ -8,7 +8,7 @@
 #include "tests/support/case_text.h"
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::exclusion_test {
 namespace {
 
 using testing::AllOf;
@@ -166,4 +166,4 @@ TEST(ExclusionZones, OfNoElementOrEveryElementAreRefusedByPlace) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::exclusion_test

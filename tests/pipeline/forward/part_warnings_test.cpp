@@ -6,7 +6,7 @@
 
 #include "tests/support/parts.h"
 
-namespace meniscus {
+namespace meniscus::part_warnings_test {
 namespace {
 
 using testing::AllOf;
@@ -101,4 +101,4 @@ TEST(StressFigures, KnowNoSafetyWithoutAYieldStrength) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::part_warnings_test

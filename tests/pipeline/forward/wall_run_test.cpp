@@ -13,7 +13,7 @@
 #include "pipeline/forward/walls.h"
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::wall_run_test {
 namespace {
 
 using testing::HasSubstr;
@@ -286,4 +286,4 @@ TEST(WallRuns, NameBacksAndRims) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::wall_run_test

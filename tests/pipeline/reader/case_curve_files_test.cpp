@@ -14,7 +14,7 @@
 #include "pipeline/store/stored_case.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::case_curve_files_test {
 namespace {
 
 using testing::AllOf;
@@ -294,4 +294,4 @@ TEST_F(CurvesOfStep, OfSeveralEdgesMustClose) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_curve_files_test

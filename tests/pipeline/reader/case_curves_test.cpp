@@ -14,7 +14,7 @@
 #include "pipeline/tables/curve_file.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::case_curves_test {
 namespace {
 
 using testing::AllOf;
@@ -306,4 +306,4 @@ fea = 0.1
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_curves_test

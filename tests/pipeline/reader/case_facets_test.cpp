@@ -13,7 +13,7 @@
 #include "pipeline/store/stored_case.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::case_facets_test {
 namespace {
 
 using testing::AllOf;
@@ -373,4 +373,4 @@ TEST(CaseFacets, WhoseRimsFindNoCurveSayWhere) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_facets_test

@@ -2,7 +2,7 @@
 
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::case_loads_test {
 namespace {
 
 using testing::Contains;
@@ -178,4 +178,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& mistake) { return std::string(mistake.param.name); });
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_loads_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::case_rates_test {
 namespace {
 
 constexpr double kStep = 1e-4;
@@ -117,4 +117,4 @@ TEST(CaseRates, ExpressionsWithoutADerivativeAreNamed) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_rates_test

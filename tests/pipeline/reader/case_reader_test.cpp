@@ -7,7 +7,7 @@
 #include "pipeline/reader/new_case.h"
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::case_reader_test {
 namespace {
 
 using testing::AllOf;
@@ -295,4 +295,4 @@ TEST(CaseHash, CoversWhatEvaluationsDependOn) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_reader_test

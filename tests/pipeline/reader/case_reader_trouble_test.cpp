@@ -11,7 +11,7 @@
 #include "tests/support/case_text.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::case_reader_trouble_test {
 namespace {
 
 using testing::AllOf;
@@ -496,4 +496,4 @@ TEST(CaseTrouble, RandomDamageEndsInAMessage) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_reader_trouble_test

@@ -5,7 +5,7 @@
 #include "evolve/frozen/film_model.h"
 #include "pipeline/reader/case_reader.h"
 
-namespace meniscus {
+namespace meniscus::case_repeat_test {
 namespace {
 
 using testing::AllOf;
@@ -243,4 +243,4 @@ TEST(CaseMerge, CurvesThatPartOrOnlyTouchAreRefused) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_repeat_test

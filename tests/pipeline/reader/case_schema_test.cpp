@@ -11,7 +11,7 @@
 #include "pipeline/reader/new_case.h"
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::case_schema_test {
 namespace {
 
 using nlohmann::json;
@@ -151,4 +151,4 @@ TEST(CaseSchema, TheFileForEditorsIsCurrent) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::case_schema_test

@@ -4,7 +4,7 @@
 
 #include "pipeline/tables/text_table.h"
 
-namespace meniscus {
+namespace meniscus::member_file_test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -68,4 +68,4 @@ TEST(MemberFile, NamesMakeFolders) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::member_file_test

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::datafile_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -135,4 +135,4 @@ TEST(Datafile, PopsAPinchedNeckIntoTwoDisks) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::datafile_test

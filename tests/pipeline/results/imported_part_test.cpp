@@ -14,7 +14,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::imported_part_test {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of sums of a few hundred numbers
@@ -110,4 +110,4 @@ TEST(ImportedPart, ShortEdgesKeepTheShape) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::imported_part_test

@@ -6,7 +6,7 @@
 #include "pipeline/results/results.h"
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::result_json_test {
 namespace {
 
 // JSON has no NaN and no infinity; readers stop at them.
@@ -39,4 +39,4 @@ TEST(ResultJson, TellsUnknownNumbersAsNull) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::result_json_test

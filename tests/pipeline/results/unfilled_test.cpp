@@ -8,7 +8,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::unfilled_test {
 
 namespace {
 
@@ -48,4 +48,4 @@ TEST(Unfilled, NothingWhenTheSurfaceWasFilled) {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::unfilled_test

@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::run_lock_test {
 namespace {
 
 using testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST(RunLock, MakesTheFolderAndRefusesAFile) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::run_lock_test

@@ -20,7 +20,7 @@
 
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::study_store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -361,4 +361,4 @@ TEST(StudyStore, FailureKindsHaveNamesBothWays) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::study_store_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace meniscus {
+namespace meniscus::study_table_test {
 namespace {
 
 std::vector<EvaluationRecord> two_records() {
@@ -54,4 +54,4 @@ TEST(StudyTable, TextIsAligned) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::study_table_test

@@ -11,7 +11,7 @@
 #include "tests/support/case_text.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::design_evaluator_test {
 namespace {
 
 using testing::SizeIs;
@@ -103,4 +103,4 @@ TEST_F(DesignEvaluatorTest, AStopReachesTheCallerFromEveryJob) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::design_evaluator_test

@@ -10,7 +10,7 @@
 #include "tests/support/case_text.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::film_frames_test {
 namespace {
 
 using testing::ElementsAre;
@@ -132,4 +132,4 @@ TEST(StudyTeller, KnowsTheBestSoFarAndWhatIsLeft) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::film_frames_test

@@ -13,7 +13,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::ordered_jobs_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -134,4 +134,4 @@ TEST(OrderedJobs, RefusesANumberOfThreadsThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::ordered_jobs_test

@@ -10,11 +10,12 @@
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/gradient_check.h"
 #include "pipeline/results/scan_curves.h"
+#include "pipeline/study/scan_match.h"
 #include "pipeline/study/study.h"
 #include "tests/support/case_text.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::scan_fit_test {
 namespace {
 
 using testing::Contains;
@@ -272,4 +273,4 @@ TEST(ScanCurves, AreTheRimsThatTheFilmHangsOnAndMakeACase) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::scan_fit_test

@@ -12,9 +12,10 @@
 #include "pipeline/results/results.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/match_targets.h"
+#include "pipeline/study/result_so_far.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::start_case_test {
 namespace {
 
 const std::vector<std::string> kCoarse = {"resolution.fea=10",
@@ -141,4 +142,4 @@ TEST(ForwardModel, GivesTheSameBitsOnOneAndTwoThreads) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::start_case_test

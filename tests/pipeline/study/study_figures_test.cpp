@@ -11,7 +11,7 @@
 #include "pipeline/study/tolerance_figures.h"
 #include "tests/support/case_text.h"
 
-namespace meniscus {
+namespace meniscus::study_figures_test {
 namespace {
 
 using testing::ElementsAre;
@@ -107,4 +107,4 @@ TEST(ToleranceFigures, WarnsWhereTheSampleIsFarFromLinear) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::study_figures_test

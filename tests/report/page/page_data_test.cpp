@@ -13,7 +13,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::page_data_test {
 namespace {
 
 using testing::HasSubstr;
@@ -199,4 +199,4 @@ TEST(PageFrames, StayInTheirFolder) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::page_data_test

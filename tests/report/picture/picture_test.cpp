@@ -22,7 +22,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::picture_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -286,4 +286,4 @@ TEST(PictureJobs, RefuseWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::picture_test

@@ -4,7 +4,7 @@
 
 #include "report/render/eye_view.h"
 
-namespace meniscus {
+namespace meniscus::canvas_test {
 namespace {
 
 constexpr double kPixel = 1.0;  // what rounding and perspective may leave
@@ -73,4 +73,4 @@ TEST(Canvas, LettersStandAtTheirPlace) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::canvas_test

@@ -9,7 +9,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
-namespace meniscus {
+namespace meniscus::render_data_test {
 namespace {
 
 constexpr double kDataRounding = 1e-12;
@@ -80,4 +80,4 @@ TEST(RenderData, RefusesForeignFiles) {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::render_data_test
