@@ -1,7 +1,9 @@
 /// Derivatives against central differences over a sweep of steps.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,7 +40,12 @@ void expect_derivative(const Check& check, const Value& value) {
   EXPECT_NEAR(twice, check.exact, check.tolerance * check.scale);
   const double first = std::abs(a - check.exact);
   const double second = std::abs(b - check.exact);
-  if (second > kRounding / check.step * 1e-3 * check.scale) {
+  const double rounding =
+      std::max(kRounding * 1e-3 * check.scale,
+               64.0 * std::numeric_limits<double>::epsilon() *
+                   std::abs(value(0.0))) /
+      check.step;
+  if (second > rounding) {
     EXPECT_NEAR(std::log2(first / second), 2.0, 0.2)
         << "errors " << first << " and " << second << " of " << check.exact;
   }
