@@ -8,6 +8,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/union_find.h"
+
 namespace meniscus {
 
 namespace {
@@ -288,26 +290,14 @@ class Corners {
 
 /// A number per point that is the same for points of films that hang together.
 std::vector<int> joined_films(const FilmEnergy& energy, std::size_t count) {
-  std::vector<int> up(count);
-  std::iota(up.begin(), up.end(), 0);
-  const auto root = [&](int v) {
-    while (up[v] != v) {
-      up[v] = up[up[v]];
-      v = up[v];
-    }
-    return v;
-  };
+  UnionFind films(count);
   for (std::size_t f = 0; f < energy.facets().size(); ++f) {
     const Triangle& t = energy.facets()[f];
     for (int k = 1; energy.is_liquid(static_cast<int>(f)) && k < 3; ++k) {
-      const auto [low, high] = std::minmax({root(t[0]), root(t[k])});
-      up[high] = low;
+      films.join(t[0], t[k]);
     }
   }
-  for (std::size_t v = 0; v < count; ++v) {
-    up[v] = root(static_cast<int>(v));
-  }
-  return up;
+  return films.roots();
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 
+#include "core/union_find.h"
 namespace meniscus {
 
 namespace {
@@ -168,27 +169,19 @@ int corner_of(const Sheet& sheet, int facet, int vertex) {
 
 // The corners around a vertex must hang together by the edges there.
 void check_fans(const Sheet& sheet) {
-  std::vector<int> parent(3 * sheet.film.facets.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int corner) {
-    while (parent[corner] != corner) {
-      parent[corner] = parent[parent[corner]];
-      corner = parent[corner];
-    }
-    return corner;
-  };
+  UnionFind fans(3 * sheet.film.facets.size());
   for (std::size_t e = 0; e < sheet.edges.size(); ++e) {
     const auto& [f, g] = sheet.edge_facets[e];
     for (int k = 0; g >= 0 && k < 2; ++k) {
       const int v = sheet.edges[e][k];
-      parent[root(corner_of(sheet, f, v))] = root(corner_of(sheet, g, v));
+      fans.join(corner_of(sheet, f, v), corner_of(sheet, g, v));
     }
   }
   for (int v = 0; v < static_cast<int>(sheet.film.points.size()); ++v) {
     const int first = sheet.facet_list[sheet.facet_start[v]];
     for (int k = sheet.facet_start[v]; k < sheet.facet_start[v + 1]; ++k) {
-      if (root(corner_of(sheet, sheet.facet_list[k], v)) !=
-          root(corner_of(sheet, first, v))) {
+      if (!fans.same(corner_of(sheet, sheet.facet_list[k], v),
+                     corner_of(sheet, first, v))) {
         throw MeshError(fmt::format(
             "wall: parts of the film touch in one point only, {} (point {}); "
             "separate them or join them along edges",

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/surface_mesh.h"
+#include "core/union_find.h"
 #include "evolve/curve_contact.h"
 #include "pipeline/case_curves.h"
 
@@ -73,16 +74,7 @@ std::vector<Outline> outlines_of(const Case& input,
 std::vector<int> first_of(const Case& input, const std::vector<Curve>& curves,
                           std::map<int, double>& distance) {
   const std::vector<Outline> outlines = outlines_of(input, curves);
-  std::vector<int> first(curves.size());
-  for (std::size_t c = 0; c < first.size(); ++c) {
-    first[c] = static_cast<int>(c);
-  }
-  const auto root = [&](int c) {
-    while (first[c] != c) {
-      c = first[c];
-    }
-    return c;
-  };
+  UnionFind alikes(curves.size());
   for (std::size_t i = 0; i < outlines.size(); ++i) {
     const Outline& a = outlines[i];
     for (std::size_t j = i + 1;
@@ -95,17 +87,14 @@ std::vector<int> first_of(const Case& input, const std::vector<Curve>& curves,
       }
       if (const auto off =
               lie_on_each_other(curves[a.curve].shape, curves[b.curve].shape)) {
-        const int kept = std::min(root(a.curve), root(b.curve));
-        const int dropped = std::max(root(a.curve), root(b.curve));
-        first[dropped] = kept;
+        const int dropped =
+            std::max(alikes.root(a.curve), alikes.root(b.curve));
+        alikes.join(a.curve, b.curve);
         distance[dropped] = *off;
       }
     }
   }
-  for (std::size_t c = 0; c < first.size(); ++c) {
-    first[c] = root(static_cast<int>(c));
-  }
-  return first;
+  return alikes.roots();
 }
 
 /// The kept names in a list; a list that would have one twice is noted.

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,6 +17,7 @@
 
 #include "core/error.h"
 #include "report/shaded_surface.h"
+#include "core/union_find.h"
 
 namespace meniscus {
 
@@ -48,20 +48,13 @@ std::vector<char> labels_among(const SurfaceMesh& mesh,
 
 /// Length of the shortest chain of `rims`; infinite where there is none.
 double shortest_rim(const Points& points, const std::vector<Edge>& rims) {
-  std::vector<int> chain(points.size());
-  std::iota(chain.begin(), chain.end(), 0);
-  const auto root = [&](int v) {
-    while (chain[v] != v) {
-      v = chain[v] = chain[chain[v]];
-    }
-    return v;
-  };
+  UnionFind chains(points.size());
   for (const Edge& e : rims) {
-    chain[root(e[0])] = root(e[1]);
+    chains.join(e[0], e[1]);
   }
   std::vector<double> length(points.size(), 0.0);
   for (const Edge& e : rims) {
-    length[root(e[0])] += (points[e[1]] - points[e[0]]).norm();
+    length[chains.root(e[0])] += (points[e[1]] - points[e[0]]).norm();
   }
   double least = std::numeric_limits<double>::infinity();
   for (const double one : length) {
