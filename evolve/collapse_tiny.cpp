@@ -5,9 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "core/edge_key.h"
 #include "core/error.h"
-#include "evolve/film_cutter.h"
 #include "core/union_find.h"
+#include "evolve/film_cutter.h"
 #include "evolve/pop.h"
 
 namespace meniscus {
@@ -35,9 +36,7 @@ bool doubles(const FilmCutter& cut, int gone, int kept) {
           ++count;
         }
       }
-      if (count == 2 &&
-          ++opposite[{std::min(far[0], far[1]), std::max(far[0], far[1])}] >
-              1) {
+      if (count == 2 && ++opposite[edge_key(far[0], far[1])] > 1) {
         return true;
       }
     }

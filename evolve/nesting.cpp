@@ -9,10 +9,11 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/edge_key.h"
 #include "core/error.h"
 #include "core/facet_pairs.h"
-#include "evolve/film_gap.h"
 #include "core/union_find.h"
+#include "evolve/film_gap.h"
 
 namespace meniscus {
 
@@ -67,7 +68,7 @@ class Shell {
       for (int k = 0; k < 3; ++k) {
         const int a = t[k];
         const int b = t[(k + 1) % 3];
-        ++count[{std::min(a, b), std::max(a, b)}];
+        ++count[edge_key(a, b)];
       }
     }
     std::erase_if(count, [](const auto& item) { return item.second % 2 == 0; });

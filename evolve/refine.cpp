@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/edge_key.h"
 #include "evolve/edge_marks.h"
 #include "evolve/grooming.h"
 
@@ -46,8 +47,7 @@ EdgePlan plan_edges(const FilmComplex& complex, const EdgeMarks& marks) {
   for (std::size_t m = 0; m < complex.edges.size(); ++m) {
     if (seen[m] == 0) {
       const ComplexEdge& wire = complex.edges[m];
-      plan.edges.push_back(
-          {std::min(wire.a, wire.b), std::max(wire.a, wire.b)});
+      plan.edges.push_back(edge_key(wire.a, wire.b));
       plan.mark.push_back(static_cast<int>(m));
       plan.in_film.push_back(0);
       plan.obstacle.push_back(-1);

@@ -8,9 +8,10 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/edge_key.h"
 #include "core/error.h"
-
 #include "core/union_find.h"
+
 namespace meniscus {
 
 namespace {
@@ -111,7 +112,7 @@ void join_edges(Sheet& sheet) {
     for (int k = 0; k < 3; ++k) {
       const int a = t[k];
       const int b = t[(k + 1) % 3];
-      uses.push_back({{std::min(a, b), std::max(a, b)}, f, a < b});
+      uses.push_back({edge_key(a, b), f, a < b});
     }
   }
   std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {

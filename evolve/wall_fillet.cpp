@@ -10,6 +10,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/edge_key.h"
 #include "core/union_find.h"
 #include "evolve/wall_offset.h"
 
@@ -96,7 +97,7 @@ class Fillets {
         const int a = t[k];
         const int b = t[(k + 1) % 3];
         if (in_.topology.junction[a] != 0 && in_.topology.junction[b] != 0) {
-          users[{std::min(a, b), std::max(a, b)}].push_back(f);
+          users[edge_key(a, b)].push_back(f);
         }
       }
     }

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/edge_key.h"
 #include "core/union_find.h"
 
 namespace meniscus {
@@ -40,7 +41,7 @@ class Finder {
       for (int k = 0; k < 3; ++k) {
         const int a = t[k];
         const int b = t[(k + 1) % 3];
-        edges_[{std::min(a, b), std::max(a, b)}].push_back({f, k});
+        edges_[edge_key(a, b)].push_back({f, k});
       }
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/edge_key.h"
 #include "core/union_find.h"
 #include "evolve/wall_middles.h"
 #include "evolve/wall_sectors.h"
@@ -355,7 +356,7 @@ class Builder {
       for (int k = 0; k < 3; ++k) {
         const int a = f.film[k];
         const int b = f.film[(k + 1) % 3];
-        if (++uses[{std::min(a, b), std::max(a, b)}] > 2) {
+        if (++uses[edge_key(a, b)] > 2) {
           result_.junction[a] = 1;
           result_.junction[b] = 1;
         }

@@ -15,9 +15,10 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/edge_key.h"
 #include "core/error.h"
-#include "report/shaded_surface.h"
 #include "core/union_find.h"
+#include "report/shaded_surface.h"
 
 namespace meniscus {
 
@@ -132,7 +133,7 @@ SurfaceMesh ground_block(const SurfaceMesh& mesh, const std::string& name,
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = t[k];
       const int b = t[(k + 1) % 3];
-      const Edge key{std::min(a, b), std::max(a, b)};
+      const Edge key = edge_key(a, b);
       if (rim.count(key) != 0) {
         add(a, b, b + count, 2);
         add(a, b + count, a + count, 2);

@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "core/edge_key.h"
 #include "core/union_find.h"
 #include "evolve/film_complex.h"
 
@@ -19,7 +20,7 @@ inline std::map<Edge, std::vector<int>> edge_facets(const SurfaceMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
       const int a = mesh.facets[f][k];
       const int b = mesh.facets[f][(k + 1) % 3];
-      uses[{std::min(a, b), std::max(a, b)}].push_back(static_cast<int>(f));
+      uses[edge_key(a, b)].push_back(static_cast<int>(f));
     }
   }
   return uses;

@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "core/edge_key.h"
 #include "evolve/find_equilibrium.h"
 #include "evolve/grooming.h"
 
@@ -64,7 +65,7 @@ inline TripleAngles triple_angles(const FilmComplex& complex) {
       const Vec3 along = (mesh.points[b] - mesh.points[a]).normalized();
       Vec3 arm = mesh.points[t[(k + 2) % 3]] - mesh.points[a];
       arm -= arm.dot(along) * along;
-      arms[{std::min(a, b), std::max(a, b)}].push_back(arm.normalized());
+      arms[edge_key(a, b)].push_back(arm.normalized());
     }
   }
   TripleAngles result;
