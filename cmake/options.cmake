@@ -60,16 +60,6 @@ function(meniscus_add_column name)
   set_property(GLOBAL APPEND PROPERTY MENISCUS_LIBRARIES meniscus_${name})
 endfunction()
 
-# meniscus_starts_helper(TARGET program ...): a library that starts helper
-# programs knows where an installed one keeps them, should it have been moved.
-function(meniscus_starts_helper target)
-  target_compile_definitions(${target} PRIVATE
-    MENISCUS_HELPER_FOLDER="${CMAKE_INSTALL_FULL_LIBEXECDIR}/meniscus")
-  if(ARGN)
-    add_dependencies(${target} ${ARGN})
-  endif()
-endfunction()
-
 # meniscus_link_whole(TARGET): a test's program or library. Tests link one shared
 # library of all rooms and are compiled for a quick build, not for quick tests:
 # what they measure is in the library. It binds its own symbols, so no inline

@@ -5,6 +5,11 @@
 #include <unistd.h>
 #include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/error.h"
+
 namespace meniscus {
 
 namespace fs = std::filesystem;
@@ -20,6 +25,26 @@ bool is_executable_file(const fs::path& path) {
 std::vector<fs::path>& added_folders() {
   static std::vector<fs::path> folders;
   return folders;
+}
+
+/// Where helpers are looked for, in this order.
+std::vector<fs::path> helper_folders() {
+  std::vector<fs::path> folders = added_folders();
+  std::error_code failed;
+  const fs::path self = fs::read_symlink("/proc/self/exe", failed);
+  if (!failed) {
+    const fs::path here = self.parent_path();
+    folders.push_back(here);
+    folders.push_back(here.parent_path() / "libexec" / "meniscus");
+  }
+  folders.emplace_back(MENISCUS_HELPER_FOLDER);
+  return folders;
+}
+
+/// What an environment variable says; empty as if it were not set.
+std::string setting(const std::string& variable) {
+  const char* set = std::getenv(variable.c_str());
+  return set != nullptr ? set : "";
 }
 
 }  // namespace
@@ -48,26 +73,35 @@ std::optional<fs::path> find_program(const std::string& name) {
 
 std::optional<fs::path> find_helper(const std::string& name,
                                     const std::string& variable) {
-  if (const char* set = std::getenv(variable.c_str());
-      set != nullptr && *set != '\0') {
+  if (const std::string set = setting(variable); !set.empty()) {
     return is_executable_file(set) ? std::optional<fs::path>(set)
                                    : std::nullopt;
   }
-  std::error_code failed;
-  const fs::path self = fs::read_symlink("/proc/self/exe", failed);
-  if (failed) {
-    return std::nullopt;
-  }
-  const fs::path here = self.parent_path();
-  std::vector<fs::path> folders = added_folders();
-  folders.push_back(here);
-  folders.push_back(here.parent_path() / "libexec" / "meniscus");
-  for (const fs::path& folder : folders) {
+  for (const fs::path& folder : helper_folders()) {
     if (is_executable_file(folder / name)) {
       return folder / name;
     }
   }
   return std::nullopt;
+}
+
+std::string require_helper(const std::string& name, const std::string& variable,
+                           const std::string& advice) {
+  if (const auto found = find_helper(name, variable)) {
+    return found->string();
+  }
+  if (const std::string set = setting(variable); !set.empty()) {
+    throw IoError(fmt::format(
+        "helper {} not found: the environment variable {} says '{}', which is "
+        "not an executable file; correct or unset it",
+        name, variable, set));
+  }
+  std::vector<std::string> looked;
+  for (const fs::path& folder : helper_folders()) {
+    looked.push_back((folder / name).string());
+  }
+  throw IoError(fmt::format("helper {} not found; looked for {}; {}", name,
+                            fmt::join(looked, ", "), advice));
 }
 
 void add_helper_folder(const std::string& folder) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "mesh_tet/jacobian.h"
 
@@ -18,22 +19,18 @@ class EdgeNumbers {
   explicit EdgeNumbers(std::size_t expected) { ids_.reserve(expected); }
 
   int add(int a, int b) {
-    return ids_.emplace(key(a, b), static_cast<int>(ids_.size())).first->second;
+    return ids_.emplace(edge_key(a, b), static_cast<int>(ids_.size()))
+        .first->second;
   }
   /// -1 when it is not there.
   int find(int a, int b) const {
-    const auto at = ids_.find(key(a, b));
+    const auto at = ids_.find(edge_key(a, b));
     return at == ids_.end() ? -1 : at->second;
   }
   std::size_t size() const { return ids_.size(); }
 
  private:
-  static std::uint64_t key(int a, int b) {
-    const auto [low, high] = std::minmax(a, b);
-    return (static_cast<std::uint64_t>(low) << 32) |
-           static_cast<std::uint32_t>(high);
-  }
-  std::unordered_map<std::uint64_t, int> ids_;
+  std::unordered_map<Edge, int, EdgeHash> ids_;
 };
 
 std::array<Vec3, 10> positions(const TetMesh& mesh, int e) {

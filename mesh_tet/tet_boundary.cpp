@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "core/math/union_find.h"
 #include "mesh_tet/tet_quality.h"
 
 namespace meniscus {
@@ -109,15 +109,13 @@ class SideTable {
 /// Regions grow from the facets through all faces that are none.
 class RegionFiller {
  public:
-  explicit RegionFiller(int elements) : parent_(elements), body_(elements, -1) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
+  explicit RegionFiller(int elements) : parts_(elements), body_(elements, -1) {}
 
-  void join(int e, int f) { parent_[root(e)] = root(f); }
+  void join(int e, int f) { parts_.join(e, f); }
 
   /// To be called when all are joined; what is wrong, if anything.
   std::string claim(int e, int body, int facet) {
-    int& owner = body_[root(e)];
+    int& owner = body_[parts_.root(e)];
     if (owner >= 0 && owner != body) {
       return fmt::format(
           "element {} behind or before facet {} belongs to body {} and to "
@@ -129,22 +127,15 @@ class RegionFiller {
   }
 
   std::vector<int> regions() {
-    std::vector<int> result(parent_.size());
-    for (std::size_t e = 0; e < parent_.size(); ++e) {
-      result[e] = body_[root(static_cast<int>(e))];
+    std::vector<int> result = parts_.roots();
+    for (int& e : result) {
+      e = body_[e];
     }
     return result;
   }
 
  private:
-  int root(int e) {
-    while (parent_[e] != e) {
-      parent_[e] = parent_[parent_[e]];
-      e = parent_[e];
-    }
-    return e;
-  }
-  std::vector<int> parent_;
+  UnionFind parts_;
   std::vector<int> body_;
 };
 

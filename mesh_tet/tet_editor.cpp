@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/edge_key.h"
+
 namespace meniscus {
 
 namespace {
@@ -117,7 +119,7 @@ void TetEditor::move(int node, const Vec3& place) {
 bool TetEditor::is_surface_edge(int a, int b) const {
   return std::max(a, b) < fixed_ &&
          std::binary_search(surface_edges_.begin(), surface_edges_.end(),
-                            Edge{std::min(a, b), std::max(a, b)});
+                            edge_key(a, b));
 }
 
 bool TetEditor::is_surface_face(std::array<int, 3> face) const {

@@ -1,8 +1,6 @@
 #include "mesh_tet/tetgen_child.h"
 
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -19,28 +17,10 @@ constexpr const char* kHelper = "meniscus-tetgen";
 constexpr const char* kVariable = "MENISCUS_TETGEN";
 
 std::string find_tetgen() {
-  if (const auto found = find_helper(kHelper, kVariable)) {
-    return found->string();
-  }
-  std::string installed = fmt::format("{}/{}", MENISCUS_HELPER_FOLDER, kHelper);
-  const char* set = std::getenv(kVariable);
-  if (set != nullptr && *set != '\0') {
-    throw IoError(fmt::format(
-        "helper {} not found: the environment variable {} says '{}', which is "
-        "not an executable file; correct or unset it",
-        kHelper, kVariable, set));
-  }
-  if (find_program(installed)) {
-    return installed;
-  }
-  std::error_code ignored;
-  const auto here =
-      std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
-  throw IoError(fmt::format(
-      "helper {} not found; looked for {}/{}, {}/libexec/meniscus/{} and {}; "
-      "install it there or set {} to its path",
-      kHelper, here.string(), kHelper, here.parent_path().string(), kHelper,
-      installed, kVariable));
+  return require_helper(
+      kHelper, kVariable,
+      fmt::format("install it in one of these places or set {} to its path",
+                  kVariable));
 }
 
 void append(std::string& bytes, const void* data, std::size_t size) {

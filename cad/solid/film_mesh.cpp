@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -109,7 +110,7 @@ Vec3 smooth_point(const FilmMesh& mesh, int facet, const Vec3& at) {
     for (int k = 0; k < 3; ++k) {
       const int a = t[k];
       const int b = t[(k + 1) % 3];
-      const auto found = mesh.bulges.find({std::min(a, b), std::max(a, b)});
+      const auto found = mesh.bulges.find(edge_key(a, b));
       if (found != mesh.bulges.end()) {
         result += 4.0 * at[k] * at[(k + 1) % 3] * found->second;
       }

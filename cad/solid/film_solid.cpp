@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <deque>
 #include <map>
-#include <numeric>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -12,6 +11,7 @@
 #include "cad/solid/film_faces.h"
 #include "cad/solid/measure_solid.h"
 #include "cad/solid/turned_face.h"
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "core/geometry/facet_tree.h"
 
@@ -30,7 +30,7 @@ std::vector<std::vector<int>> connected_parts(const SurfaceMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
       const int a = mesh.facets[f][k];
       const int b = mesh.facets[f][(k + 1) % 3];
-      at_edge[{std::min(a, b), std::max(a, b)}].push_back(static_cast<int>(f));
+      at_edge[edge_key(a, b)].push_back(static_cast<int>(f));
     }
   }
   std::vector<char> seen(mesh.facets.size(), 0);
@@ -49,7 +49,7 @@ std::vector<std::vector<int>> connected_parts(const SurfaceMesh& mesh) {
       for (int k = 0; k < 3; ++k) {
         const int a = mesh.facets[f][k];
         const int b = mesh.facets[f][(k + 1) % 3];
-        for (const int g : at_edge[{std::min(a, b), std::max(a, b)}]) {
+        for (const int g : at_edge[edge_key(a, b)]) {
           if (seen[g] == 0 && mesh.facet_label[g] == mesh.facet_label[f]) {
             seen[g] = 1;
             queue.push_back(g);

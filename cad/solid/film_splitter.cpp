@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "core/geometry/edge_key.h"
+
 namespace meniscus {
 
 namespace {
@@ -15,8 +17,6 @@ constexpr double kNearEnd = 0.03;
 constexpr double kOnLevel = 1e-9;
 constexpr int kMostRefinements = 3;
 constexpr std::size_t kEnoughFacets = 8000;  // for smooth cuts
-
-Edge sorted(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// The polygon's fan from its first corner.
 template <class Corner, class Make>
@@ -31,7 +31,7 @@ void fan(const std::vector<Corner>& corners, const Make& make) {
 int add_vertex(SplitFilm& split, int a, int b, double t) {
   CutFilm& film = split.film;
   const int v = static_cast<int>(film.mesh.points.size());
-  const Edge edge = sorted(a, b);
+  const Edge edge = edge_key(a, b);
   Vec3 point = smooth_edge_point(film.mesh, a, b, t);
   int rim = -1;
   double position = 0.0;
@@ -42,8 +42,8 @@ int add_vertex(SplitFilm& split, int a, int b, double t) {
     way -= curve.length() * std::round(way / curve.length());
     position = curve.wrapped(film.rim_position[a] + t * way);
     point = curve.point(position);
-    split.rim_edges.insert(sorted(a, v));
-    split.rim_edges.insert(sorted(v, b));
+    split.rim_edges.insert(edge_key(a, v));
+    split.rim_edges.insert(edge_key(v, b));
   }
   film.mesh.points.push_back(point);
   film.mesh.normals.push_back(mixed_normal(film.mesh, a, b, t));
@@ -65,8 +65,7 @@ SplitFilm start(FilmMesh mesh, const std::vector<FilmRim>& rims) {
       const int next = loop[(k + 1) % loop.size()];
       split.film.rim_of[loop[k]] = static_cast<int>(r);
       split.film.rim_position[loop[k]] = rims[r].positions[k];
-      split.rim_edges.insert(
-          {std::min(loop[k], next), std::max(loop[k], next)});
+      split.rim_edges.insert(edge_key(loop[k], next));
     }
   }
   split.cell.assign(mesh.facets.size(), 0);
@@ -138,7 +137,7 @@ struct GreatestCutter {
   std::vector<int> nodes;
 
   int crossing(int a, int b) {
-    const Edge edge = sorted(a, b);
+    const Edge edge = edge_key(a, b);
     const auto found = crossings.find(edge);
     if (found != crossings.end()) {
       return found->second;
@@ -279,7 +278,7 @@ struct LevelCutter {
     at_level = std::move(marks);
   }
   int crossing(int a, int b, double da, double db) {
-    const Edge edge = sorted(a, b);
+    const Edge edge = edge_key(a, b);
     const auto found = crossings.find(edge);
     if (found != crossings.end()) {
       return found->second;

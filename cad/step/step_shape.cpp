@@ -1,7 +1,6 @@
 #include "cad/step/step_shape.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include <BRepGProp.hxx>
 #include <BRepLib.hxx>
@@ -25,6 +24,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -290,14 +290,7 @@ std::vector<int> ShapeBuilder::shells_of_faces() const {
       }
     }
   }
-  std::vector<int> shell(brep_.faces.size());
-  std::iota(shell.begin(), shell.end(), 0);
-  const auto root = [&](int f) {
-    while (shell[f] != f) {
-      f = shell[f];
-    }
-    return f;
-  };
+  UnionFind shells(brep_.faces.size());
   for (std::size_t e = 0; e < users.size(); ++e) {
     const auto& both = users[e];
     if (both.size() != 2 || both[0].second == both[1].second) {
@@ -305,14 +298,9 @@ std::vector<int> ShapeBuilder::shells_of_faces() const {
           "the solid is not closed: edge {} of face '{}' is used {} times", e,
           both.empty() ? "" : brep_.faces[both[0].first].name, both.size()));
     }
-    const int f = root(both[0].first);
-    const int g = root(both[1].first);
-    shell[std::max(f, g)] = std::min(f, g);
+    shells.join(both[0].first, both[1].first);
   }
-  for (std::size_t f = 0; f < shell.size(); ++f) {
-    shell[f] = root(static_cast<int>(f));
-  }
-  return shell;
+  return shells.roots();
 }
 
 StepShape ShapeBuilder::build() {

@@ -1,49 +1,16 @@
 #include "core/geometry/chambers.h"
 
-#include <algorithm>
 #include <array>
 #include <numeric>
 
 #include <Eigen/Geometry>
 
 #include "core/geometry/edge_uses.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
 namespace {
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int root(int i) {
-    while (parent_[i] != i) {
-      parent_[i] = parent_[parent_[i]];
-      i = parent_[i];
-    }
-    return i;
-  }
-  void join(int i, int j) {
-    const int a = root(i);
-    const int b = root(j);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
-/// Numbers of the sets, in order of their first members.
-std::vector<int> numbers(UnionFind& sets, int count, int& found) {
-  std::vector<int> number(count, -1);
-  found = 0;
-  for (int i = 0; i < count; ++i) {
-    const int root = sets.root(i);  // the smallest member
-    number[i] = root == i ? found++ : number[root];
-  }
-  return number;
-}
 
 // In no symmetry of likely surfaces.
 const std::array<Vec3, 7> kDirections = {
@@ -128,8 +95,8 @@ Chambers find_chambers(const SurfaceMesh& mesh) {
                 });
   Chambers chambers;
   int count = 0;
-  chambers.part_of = numbers(parts, facets, chambers.parts);
-  chambers.shell_of = numbers(sides, 2 * facets, count);
+  chambers.part_of = parts.numbers(chambers.parts);
+  chambers.shell_of = sides.numbers(count);
   chambers.shells.resize(count);
   for (int side = 0; side < 2 * facets; ++side) {
     const int f = side / 2;

@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/edge_key.h"
+
 namespace meniscus {
 
 namespace {
@@ -29,7 +31,7 @@ void for_each_edge(const SurfaceMesh& mesh, const std::vector<char>& facets,
       for (int k = 0; facets[f] != 0 && k < 3; ++k) {
         const int a = mesh.facets[f][k];
         const int b = mesh.facets[f][(k + 1) % 3];
-        take(EdgeUse{{std::min(a, b), std::max(a, b)}, f, a < b});
+        take(EdgeUse{edge_key(a, b), f, a < b});
       }
     }
   };

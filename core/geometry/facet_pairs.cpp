@@ -273,7 +273,7 @@ bool for_each_near_pair(const SurfaceMesh& mesh, std::vector<int> facets,
                         double tolerance,
                         const std::function<bool(int, int)>& visit,
                         std::int64_t most_steps) {
-  return FacetTree(mesh, std::move(facets), tolerance)
+  return FacetTree(mesh, facets, tolerance)
       .visit_pairs(visit, most_steps);
 }
 

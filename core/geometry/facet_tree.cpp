@@ -10,7 +10,6 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kLeafSize = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Where the ray meets the facet, or kNever.
@@ -40,6 +39,32 @@ NearestPoint weighted(const std::array<Vec3, 3>& t, const Vec3& place, double b,
   result.point = t[0] + b * (t[1] - t[0]) + c * (t[2] - t[0]);
   result.distance = (place - result.point).norm();
   return result;
+}
+
+std::vector<BoxTree::Item> boxes_of(const SurfaceMesh& mesh,
+                                    const std::vector<int>& facets,
+                                    double tolerance) {
+  auto items = facet_items(mesh.facets, mesh.points, facets);
+  const Vec3 margin = Vec3::Constant(0.5 * tolerance);
+  for (BoxTree::Item& item : items) {
+    item.bounds = {item.bounds.low - margin, item.bounds.high + margin};
+    item.center = item.bounds.low + item.bounds.high;
+  }
+  return items;
+}
+
+/// Where the ray enters the box; kNever when it misses it.
+double reach(const AxisBox& box, const Vec3& origin, const Vec3& inverse) {
+  double enter = 0.0;
+  double leave = kNever;
+  for (int k = 0; k < 3; ++k) {
+    const double low = (box.low[k] - origin[k]) * inverse[k];
+    const double high = (box.high[k] - origin[k]) * inverse[k];
+    enter = std::max(enter, std::min(low, high));
+    leave = std::min(leave, std::max(low, high));
+  }
+  // Rounding of the bounds must not lose a facet in a flat box.
+  return enter <= leave * (1.0 + 1e-12) ? enter * (1.0 - 1e-12) : kNever;
 }
 
 }  // namespace
@@ -79,70 +104,9 @@ NearestPoint nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
   return weighted(t, p, vb / sum, vc / sum);
 }
 
-FacetTree::FacetTree(const SurfaceMesh& mesh, std::vector<int> facets,
+FacetTree::FacetTree(const SurfaceMesh& mesh, const std::vector<int>& facets,
                      double tolerance)
-    : mesh_(mesh), facets_(std::move(facets)) {
-  boxes_.resize(mesh.facets.size());
-  const Vec3 margin = Vec3::Constant(0.5 * tolerance);
-  for (const int f : facets_) {
-    const Triangle& t = mesh.facets[f];
-    const Vec3& a = mesh.points[t[0]];
-    const Vec3& b = mesh.points[t[1]];
-    const Vec3& c = mesh.points[t[2]];
-    boxes_[f] = {a.cwiseMin(b).cwiseMin(c) - margin,
-                 a.cwiseMax(b).cwiseMax(c) + margin};
-  }
-  if (!facets_.empty()) {
-    nodes_.reserve(facets_.size());
-    build(0, static_cast<int>(facets_.size()));
-  }
-  std::vector<Box> ordered;
-  ordered.reserve(facets_.size());
-  for (const int f : facets_) {
-    ordered.push_back(boxes_[f]);
-  }
-  boxes_.swap(ordered);
-}
-
-int FacetTree::build(int first, int last) {
-  const int id = static_cast<int>(nodes_.size());
-  Node node{boxes_[facets_[first]], first, last, -1};
-  for (int i = first + 1; i < last; ++i) {
-    const Box& box = boxes_[facets_[i]];
-    node.box.low = node.box.low.cwiseMin(box.low);
-    node.box.high = node.box.high.cwiseMax(box.high);
-  }
-  nodes_.push_back(node);
-  if (last - first > kLeafSize) {
-    int axis = 0;
-    (node.box.high - node.box.low).maxCoeff(&axis);
-    const int middle = (first + last) / 2;
-    const auto key = [&](int f) {
-      return std::pair{boxes_[f].low[axis] + boxes_[f].high[axis], f};
-    };
-    std::nth_element(facets_.begin() + first, facets_.begin() + middle,
-                     facets_.begin() + last,
-                     [&](int f, int g) { return key(f) < key(g); });
-    build(first, middle);
-    nodes_[id].second_child = build(middle, last);
-  }
-  return id;
-}
-
-/// Where the ray enters the box; kNever when it misses it.
-double FacetTree::reach(const Box& box, const Vec3& origin,
-                        const Vec3& inverse) const {
-  double enter = 0.0;
-  double leave = kNever;
-  for (int k = 0; k < 3; ++k) {
-    const double low = (box.low[k] - origin[k]) * inverse[k];
-    const double high = (box.high[k] - origin[k]) * inverse[k];
-    enter = std::max(enter, std::min(low, high));
-    leave = std::min(leave, std::max(low, high));
-  }
-  // Rounding of the bounds must not lose a facet in a flat box.
-  return enter <= leave * (1.0 + 1e-12) ? enter * (1.0 - 1e-12) : kNever;
-}
+    : mesh_(mesh), tree_(boxes_of(mesh, facets, tolerance)) {}
 
 std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
                                            const Vec3& direction,
@@ -150,27 +114,29 @@ std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
                                            int part) const {
   RayHit best{-1, kNever};
   const Vec3 inverse = direction.cwiseInverse();
+  const std::vector<BoxTree::Node>& nodes = tree_.nodes();
   std::vector<int> stack;
-  if (!nodes_.empty()) {
+  if (!nodes.empty()) {
     stack.push_back(0);
   }
   while (!stack.empty()) {
     const int id = stack.back();
     stack.pop_back();
-    const Node& node = nodes_[id];
-    const double enter = reach(node.box, origin, inverse);
+    const BoxTree::Node& node = nodes[id];
+    const double enter = reach(node.bounds, origin, inverse);
     if (enter == kNever || enter > best.distance) {
       continue;
     }
-    if (node.second_child >= 0) {
-      const double near = reach(nodes_[id + 1].box, origin, inverse);
-      const double far = reach(nodes_[node.second_child].box, origin, inverse);
+    if (!node.is_leaf()) {
+      const double near = reach(nodes[id + 1].bounds, origin, inverse);
+      const double far =
+          reach(nodes[node.second_child].bounds, origin, inverse);
       stack.push_back(near <= far ? node.second_child : id + 1);
       stack.push_back(near <= far ? id + 1 : node.second_child);
       continue;
     }
     for (int i = node.first; i < node.last; ++i) {
-      const int f = facets_[i];
+      const int f = tree_.items()[i].id;
       if (part_of[f] == part) {
         continue;
       }
@@ -189,29 +155,31 @@ std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
 
 std::optional<NearestPoint> FacetTree::nearest(const Vec3& place) const {
   NearestPoint best{.distance = kNever};
+  const std::vector<BoxTree::Node>& nodes = tree_.nodes();
   std::vector<int> stack;
-  if (!nodes_.empty()) {
+  if (!nodes.empty()) {
     stack.push_back(0);
   }
   while (!stack.empty()) {
     const int id = stack.back();
     stack.pop_back();
-    const Node& node = nodes_[id];
-    if (node.box.to(place) > best.distance) {
+    const BoxTree::Node& node = nodes[id];
+    if (node.bounds.to(place) > best.distance) {
       continue;
     }
-    if (node.second_child >= 0) {
-      const bool first = nodes_[id + 1].box.to(place) <=
-                         nodes_[node.second_child].box.to(place);
+    if (!node.is_leaf()) {
+      const bool first = nodes[id + 1].bounds.to(place) <=
+                         nodes[node.second_child].bounds.to(place);
       stack.push_back(first ? node.second_child : id + 1);
       stack.push_back(first ? id + 1 : node.second_child);
       continue;
     }
     for (int i = node.first; i < node.last; ++i) {
-      const Triangle& t = mesh_.facets[facets_[i]];
+      const int f = tree_.items()[i].id;
+      const Triangle& t = mesh_.facets[f];
       NearestPoint found = nearest_in(
           {mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]}, place);
-      found.facet = facets_[i];
+      found.facet = f;
       if (found.distance < best.distance ||
           (found.distance == best.distance && found.facet < best.facet)) {
         best = found;

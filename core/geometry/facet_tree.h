@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry/surface_mesh.h"
+#include "core/geometry/box_tree.h"
 
 namespace meniscus {
 
@@ -35,7 +36,7 @@ class FacetTree {
  public:
   /// Of the given facets, which have finite, sound corners. Boxes grow by half
   /// of `tolerance` [length], so that they meet when facets are within it.
-  FacetTree(const SurfaceMesh& mesh, std::vector<int> facets,
+  FacetTree(const SurfaceMesh& mesh, const std::vector<int>& facets,
             double tolerance = 0.0);
 
   /// Calls visit(f, g), f < g, once for every pair of facets whose boxes meet,
@@ -55,38 +56,15 @@ class FacetTree {
   std::optional<NearestPoint> nearest(const Vec3& place) const;
 
  private:
-  struct Box {
-    Vec3 low;
-    Vec3 high;
-    bool meets(const Box& other) const {
-      return (low.array() <= other.high.array()).all() &&
-             (other.low.array() <= high.array()).all();
-    }
-    double to(const Vec3& place) const {
-      return (low - place).cwiseMax(place - high).cwiseMax(0.0).norm();
-    }
-  };
-  // Facets first .. last - 1 of the tree's order; inner nodes have children,
-  // the first of which follows them.
-  struct Node {
-    Box box;
-    int first = 0;
-    int last = 0;
-    int second_child = -1;
-  };
-
-  int build(int first, int last);
-  double reach(const Box& box, const Vec3& origin, const Vec3& inverse) const;
-
   const SurfaceMesh& mesh_;
-  std::vector<int> facets_;
-  std::vector<Box> boxes_;  // in the tree's order
-  std::vector<Node> nodes_;
+  BoxTree tree_;
 };
 
 template <class Visit>
 bool FacetTree::visit_pairs(Visit visit, std::int64_t most_steps) const {
-  if (nodes_.empty()) {
+  const std::vector<BoxTree::Node>& nodes = tree_.nodes();
+  const std::vector<BoxTree::Item>& items = tree_.items();
+  if (nodes.empty()) {
     return true;
   }
   std::int64_t steps = 0;
@@ -94,22 +72,20 @@ bool FacetTree::visit_pairs(Visit visit, std::int64_t most_steps) const {
   while (!stack.empty()) {
     const auto [i, j] = stack.back();
     stack.pop_back();
-    const Node& a = nodes_[i];
-    const Node& b = nodes_[j];
+    const BoxTree::Node& a = nodes[i];
+    const BoxTree::Node& b = nodes[j];
     if (++steps > most_steps) {
       return false;
     }
-    if (i != j && !a.box.meets(b.box)) {
+    if (i != j && !a.bounds.meets(b.bounds)) {
       continue;
     }
-    const bool leaf_a = a.second_child < 0;
-    const bool leaf_b = b.second_child < 0;
-    if (leaf_a && leaf_b) {
+    if (a.is_leaf() && b.is_leaf()) {
       for (int p = a.first; p < a.last; ++p) {
         for (int q = i == j ? p + 1 : b.first; q < b.last; ++q) {
           steps += 1;
-          const auto [f, g] = std::minmax(facets_[p], facets_[q]);
-          if (boxes_[p].meets(boxes_[q]) && !visit(f, g)) {
+          const auto [f, g] = std::minmax(items[p].id, items[q].id);
+          if (items[p].bounds.meets(items[q].bounds) && !visit(f, g)) {
             return true;
           }
         }
@@ -118,7 +94,7 @@ bool FacetTree::visit_pairs(Visit visit, std::int64_t most_steps) const {
       stack.push_back({i + 1, i + 1});
       stack.push_back({a.second_child, a.second_child});
       stack.push_back({i + 1, a.second_child});
-    } else if (leaf_b || (!leaf_a && a.last - a.first >= b.last - b.first)) {
+    } else if (b.is_leaf() || (!a.is_leaf() && a.count() >= b.count())) {
       stack.push_back({i + 1, j});
       stack.push_back({a.second_child, j});
     } else {

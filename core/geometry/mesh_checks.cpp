@@ -240,7 +240,7 @@ class Checker {
     std::vector<int> facets(mesh_.facets.size());
     std::iota(facets.begin(), facets.end(), 0);
     const Chambers chambers = find_chambers(mesh_);
-    const FacetTree tree(mesh_, std::move(facets));
+    const FacetTree tree(mesh_, facets);
     const auto around = find_surroundings(mesh_, chambers, tree);
     for (const Shell& shell : chambers.shells) {
       const auto& outside = around[shell.part];

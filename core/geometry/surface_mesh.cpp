@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/edge_key.h"
+
 namespace meniscus {
 
 int SurfaceMesh::label_of(const std::string& name) const {
@@ -136,7 +138,7 @@ void list_edges(const std::vector<Triangle>& facets, std::vector<Edge>& edges,
       const int a = facets[f][k];
       const int b = facets[f][k == 2 ? 0 : k + 1];
       facet_edges[f][k] = static_cast<int>(edges.size());
-      edges.push_back({std::min(a, b), std::max(a, b)});
+      edges.push_back(edge_key(a, b));
     }
   }
 }

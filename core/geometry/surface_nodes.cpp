@@ -4,16 +4,15 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 
 namespace meniscus {
 
 namespace {
 
-Edge sorted(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
-
 int middle_of(const EdgeMiddles& middles, int a, int b) {
-  const auto at = middles.find(sorted(a, b));
+  const auto at = middles.find(edge_key(a, b));
   return at == middles.end() ? -1 : at->second;
 }
 
@@ -144,10 +143,10 @@ class Splitter {
     if (m < 0) {
       return;
     }
-    new_middles_[sorted(pa, pb)] = m;
+    new_middles_[edge_key(pa, pb)] = m;
     for (const int end : {pa, pb}) {
       if (const int half = middle_of(middles_, end, m); half >= 0) {
-        new_middles_[sorted(end, m)] = half;
+        new_middles_[edge_key(end, m)] = half;
       }
     }
   }
@@ -157,8 +156,8 @@ class Splitter {
   void add_median(int a, int b, int c, int on_ab) {
     const int m = middle_of(middles_, middle(b, c), middle(c, a));
     if (m >= 0) {
-      new_middles_[sorted(corner_[static_cast<std::size_t>(c)],
-                          corner_[static_cast<std::size_t>(on_ab)])] = m;
+      new_middles_[edge_key(corner_[static_cast<std::size_t>(c)],
+                            corner_[static_cast<std::size_t>(on_ab)])] = m;
     }
   }
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <tuple>
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "evolve/datafile/fe_formulas.h"
 #include "evolve/films/put_on_constraints.h"
@@ -156,7 +156,7 @@ class ComplexBuilder {
   }
 
   void marked_edges() {
-    std::map<std::array<int, 2>, int> joined;
+    std::map<Edge, int> joined;
     for (std::size_t e = 0; e < file_.edges.size(); ++e) {
       const FeEdge& edge = file_.edges[e];
       if (used_[e] == 0) {
@@ -168,8 +168,7 @@ class ComplexBuilder {
         }
         continue;
       }
-      const std::array<int, 2> pair = {std::min(edge.tail, edge.head),
-                                       std::max(edge.tail, edge.head)};
+      const Edge pair = edge_key(edge.tail, edge.head);
       const auto [other, added] = joined.emplace(pair, edge.id);
       if (!added) {
         fe_fail(

@@ -11,6 +11,7 @@
 #include "evolve/groom/refine.h"
 #include "evolve/settle/descent.h"
 #include "evolve/settle/newton.h"
+#include "core/geometry/edge_key.h"
 
 namespace meniscus {
 
@@ -55,10 +56,10 @@ const std::vector<Edge>& FeSession::edges() const {
     std::map<Edge, int> marks;
     for (std::size_t m = 0; m < complex_.edges.size(); ++m) {
       const ComplexEdge& e = complex_.edges[m];
-      marks[{std::min(e.a, e.b), std::max(e.a, e.b)}] = static_cast<int>(m);
+      marks[edge_key(e.a, e.b)] = static_cast<int>(m);
     }
     for (const Edge& e : edges_) {
-      const auto at = marks.find({std::min(e[0], e[1]), std::max(e[0], e[1])});
+      const auto at = marks.find(edge_key(e[0], e[1]));
       edge_mark_.push_back(at == marks.end() ? -1 : at->second);
     }
   }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "evolve/curves/curve.h"
 #include "evolve/datafile/fe_expression.h"
@@ -81,8 +82,7 @@ class FeWriter {
     mark_.assign(edges_.size(), -1);
     for (std::size_t m = 0; m < complex_.edges.size(); ++m) {
       const ComplexEdge& edge = complex_.edges[m];
-      const auto found =
-          number.find({std::min(edge.a, edge.b), std::max(edge.a, edge.b)});
+      const auto found = number.find(edge_key(edge.a, edge.b));
       if (found == number.end()) {
         throw InvalidInput(fmt::format("marked edge {}-{} belongs to no facet",
                                        edge.a, edge.b));

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "evolve/energy/term_kinds.h"
 
@@ -174,7 +175,7 @@ class FilmTermBuilder {
     std::map<Edge, std::vector<int>> around;
     for (const ComplexEdge& e : complex_.edges) {
       if (e.integrals >= 0 || e.constraints >= 0) {
-        around[{std::min(e.a, e.b), std::max(e.a, e.b)}];
+        around[edge_key(e.a, e.b)];
       }
     }
     for (std::size_t f = 0; f < complex_.mesh.facets.size(); ++f) {
@@ -182,7 +183,7 @@ class FilmTermBuilder {
       for (int k = 0; k < 3; ++k) {
         const int a = t[k];
         const int b = t[(k + 1) % 3];
-        const auto at = around.find({std::min(a, b), std::max(a, b)});
+        const auto at = around.find(edge_key(a, b));
         if (at != around.end()) {
           at->second.push_back(static_cast<int>(f));
         }
@@ -222,7 +223,7 @@ class FilmTermBuilder {
       if (!has(e, integral)) {
         continue;
       }
-      const auto& facets = around.at({std::min(e.a, e.b), std::max(e.a, e.b)});
+      const auto& facets = around.at(edge_key(e.a, e.b));
       if (!facets.empty()) {
         result.push_back(on_facet(e, facets.front()));
       }
@@ -238,7 +239,7 @@ class FilmTermBuilder {
         continue;
       }
       const auto& set = complex_.constraint_sets[e.constraints];
-      const auto& facets = around.at({std::min(e.a, e.b), std::max(e.a, e.b)});
+      const auto& facets = around.at(edge_key(e.a, e.b));
       if (std::find(set.begin(), set.end(), wall) != set.end() &&
           !facets.empty()) {
         FilmTerm::Element element = on_facet(e, facets.front());
@@ -257,7 +258,7 @@ class FilmTermBuilder {
       if (!has(e, integral)) {
         continue;
       }
-      for (const int f : around.at({std::min(e.a, e.b), std::max(e.a, e.b)})) {
+      for (const int f : around.at(edge_key(e.a, e.b))) {
         const int sign = side(complex_.mesh.facet_label[f], body);
         if (sign != 0) {
           // Along the facet's own run, which has sign `sign` in the body.

@@ -1,27 +1,15 @@
 // Floating parts of FilmEnergy and the motions that change nothing.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Dense>
 
 #include "core/error.h"
 #include "evolve/energy/energy.h"
 #include "evolve/energy/facet_terms.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
-
-namespace {
-
-int root_of(std::vector<int>& parent, int i) {
-  while (parent[i] != i) {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
-  }
-  return i;
-}
-
-}  // namespace
 
 void FilmEnergy::find_floating(const FilmComplex& complex) {
   floating_.assign(unknowns(), -1);
@@ -36,21 +24,20 @@ void FilmEnergy::find_floating(const FilmComplex& complex) {
               (space_.rank(v) == 0 && space_.vertex_count() > v);
     any_free = any_free || held[v] == 0;
   }
-  std::vector<int> parent(points);
-  std::iota(parent.begin(), parent.end(), 0);
+  UnionFind parts(complex.mesh.points.size());
   for (const Triangle& t : facets_) {
     for (int k = 1; k < 3; ++k) {
-      parent[root_of(parent, t[k])] = root_of(parent, t[0]);
+      parts.join(t[0], t[k]);
     }
   }
   for (int v = 0; v < points; ++v) {
     if (held[v] != 0) {
-      held[root_of(parent, v)] = 1;
+      held[parts.root(v)] = 1;
     }
   }
   std::vector<int> number(points, -1);
   for (int i = 0; i < unknowns(); ++i) {
-    const int root = root_of(parent, vertices()[i]);
+    const int root = parts.root(vertices()[i]);
     if (held[root] == 0) {
       if (number[root] < 0) {
         number[root] = floating_count_++;

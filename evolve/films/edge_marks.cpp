@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 
 #include "evolve/films/rims.h"
+#include "core/geometry/edge_key.h"
 
 namespace meniscus {
 
@@ -168,20 +169,18 @@ EdgeMarks::EdgeMarks(const FilmComplex& complex)
   sorted_.resize(all_.size());
   std::iota(sorted_.begin(), sorted_.end(), 0);
   std::stable_sort(sorted_.begin(), sorted_.end(), [&](int i, int j) {
-    return std::minmax(all_[i].a, all_[i].b) <
-           std::minmax(all_[j].a, all_[j].b);
+    return edge_key(all_[i].a, all_[i].b) < edge_key(all_[j].a, all_[j].b);
   });
 }
 
 int EdgeMarks::search(int a, int b) const {
-  const auto key = std::minmax(a, b);
+  const Edge key = edge_key(a, b);
   const auto at = std::lower_bound(
-      sorted_.begin(), sorted_.end(), key, [&](int i, const auto& wanted) {
-        return std::minmax(all_[i].a, all_[i].b) < wanted;
+      sorted_.begin(), sorted_.end(), key, [&](int i, const Edge& wanted) {
+        return edge_key(all_[i].a, all_[i].b) < wanted;
       });
-  return at != sorted_.end() && std::minmax(all_[*at].a, all_[*at].b) == key
-             ? *at
-             : -1;
+  return at != sorted_.end() && edge_key(all_[*at].a, all_[*at].b) == key ? *at
+                                                                          : -1;
 }
 
 PlacedVertex born_on(const FilmComplex& complex, const ComplexEdge& mark,

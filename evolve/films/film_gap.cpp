@@ -7,13 +7,13 @@
 #include <Eigen/Geometry>
 
 #include "core/geometry/facet_tree.h"
+#include "core/geometry/box_tree.h"
 
 namespace meniscus {
 
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-constexpr int kLeafSize = 4;
 
 void keep_shorter(ShortestLine& best, const Vec3& from, const Vec3& to) {
   const double length = (to - from).norm();
@@ -48,79 +48,26 @@ void edge_to_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s,
   keep_shorter(best, p + u * d1, r + v * d2);
 }
 
-struct Box {
-  Vec3 low = Vec3::Constant(kFar);
-  Vec3 high = Vec3::Constant(-kFar);
-
-  void add(const Vec3& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  double to(const Box& other) const {
-    return (low - other.high).cwiseMax(other.low - high).cwiseMax(0.0).norm();
-  }
-};
-
-struct Node {
-  Box box;
-  int first = 0;
-  int last = 0;
-  std::array<int, 2> child = {-1, -1};
-};
-
-struct Tree {
+struct GapTree {
   const SurfaceMesh& mesh;
-  std::vector<int> facets;
-  std::vector<Node> nodes;
+  BoxTree boxes;
 
-  Tree(const SurfaceMesh& of, std::vector<int> which)
-      : mesh(of), facets(std::move(which)) {
-    build(0, static_cast<int>(facets.size()));
-  }
+  GapTree(const SurfaceMesh& of, const std::vector<int>& facets)
+      : mesh(of), boxes(facet_items(of.facets, of.points, facets)) {}
 
   std::array<Vec3, 3> corners(int i) const {
-    const Triangle& t = mesh.facets[facets[i]];
+    const Triangle& t = mesh.facets[boxes.items()[i].id];
     return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
-  }
-
-  int build(int first, int last) {
-    const int id = static_cast<int>(nodes.size());
-    Node node;
-    node.first = first;
-    node.last = last;
-    for (int i = first; i < last; ++i) {
-      for (const Vec3& p : corners(i)) {
-        node.box.add(p);
-      }
-    }
-    nodes.push_back(node);
-    if (last - first > kLeafSize) {
-      int axis = 0;
-      (node.box.high - node.box.low).maxCoeff(&axis);
-      const int middle = (first + last) / 2;
-      const auto key = [&](int f) {
-        const Triangle& t = mesh.facets[f];
-        return std::pair{mesh.points[t[0]][axis] + mesh.points[t[1]][axis] +
-                             mesh.points[t[2]][axis],
-                         f};
-      };
-      std::nth_element(facets.begin() + first, facets.begin() + middle,
-                       facets.begin() + last,
-                       [&](int f, int g) { return key(f) < key(g); });
-      const int low = build(first, middle);
-      const int high = build(middle, last);
-      nodes[id].child = {low, high};
-    }
-    return id;
   }
 };
 
-void search(const Tree& a, int i, const Tree& b, int j, ShortestLine& best) {
-  const Node& m = a.nodes[i];
-  const Node& n = b.nodes[j];
-  const bool leaf_m = m.child[0] < 0;
-  const bool leaf_n = n.child[0] < 0;
-  if (leaf_m && leaf_n) {
+void search(const GapTree& a, int i, const GapTree& b, int j,
+            ShortestLine& best) {
+  const std::vector<BoxTree::Node>& of_a = a.boxes.nodes();
+  const std::vector<BoxTree::Node>& of_b = b.boxes.nodes();
+  const BoxTree::Node& m = of_a[i];
+  const BoxTree::Node& n = of_b[j];
+  if (m.is_leaf() && n.is_leaf()) {
     for (int f = m.first; f < m.last; ++f) {
       for (int g = n.first; g < n.last; ++g) {
         const ShortestLine line = shortest_line(a.corners(f), b.corners(g));
@@ -131,13 +78,14 @@ void search(const Tree& a, int i, const Tree& b, int j, ShortestLine& best) {
     }
     return;
   }
-  const bool split_m =
-      leaf_n || (!leaf_m && m.last - m.first >= n.last - n.first);
+  const bool split_m = n.is_leaf() || (!m.is_leaf() && m.count() >= n.count());
+  const std::array<int, 2> child = split_m ? std::array{i + 1, m.second_child}
+                                           : std::array{j + 1, n.second_child};
   std::array<std::array<int, 2>, 2> next{};
   std::array<double, 2> away{};
   for (int k = 0; k < 2; ++k) {
-    next[k] = split_m ? std::array{m.child[k], j} : std::array{i, n.child[k]};
-    away[k] = a.nodes[next[k][0]].box.to(b.nodes[next[k][1]].box);
+    next[k] = split_m ? std::array{child[k], j} : std::array{i, child[k]};
+    away[k] = of_a[next[k][0]].bounds.to(of_b[next[k][1]].bounds);
   }
   const int nearer = away[0] <= away[1] ? 0 : 1;
   for (const int k : {nearer, 1 - nearer}) {
@@ -166,9 +114,9 @@ ShortestLine shortest_line(const SurfaceMesh& mesh,
                            const std::vector<int>& from,
                            const std::vector<int>& to) {
   ShortestLine best{kFar, {}, {}};
-  const Tree a(mesh, from);
-  const Tree b(mesh, to);
-  search(a, 0, b, 0, best);
+  if (!from.empty() && !to.empty()) {
+    search(GapTree(mesh, from), 0, GapTree(mesh, to), 0, best);
+  }
   return best;
 }
 

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "core/geometry/facet_pairs.h"
 #include "evolve/films/film_gap.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -65,7 +68,7 @@ class Shell {
       for (int k = 0; k < 3; ++k) {
         const int a = t[k];
         const int b = t[(k + 1) % 3];
-        ++count[{std::min(a, b), std::max(a, b)}];
+        ++count[edge_key(a, b)];
       }
     }
     std::erase_if(count, [](const auto& item) { return item.second % 2 == 0; });
@@ -89,28 +92,21 @@ class Shell {
 
  private:
   void close(const SurfaceMesh& mesh, const std::map<Edge, int>& rim) {
-    std::map<int, int> parent;
-    const auto root = [&](int v) {
-      while (parent[v] != v) {
-        v = parent[v];
-      }
-      return v;
-    };
+    UnionFind lines(mesh.points.size());
+    std::set<int> there;
     for (const auto& [edge, n] : rim) {
-      parent.try_emplace(edge[0], edge[0]);
-      parent.try_emplace(edge[1], edge[1]);
-      const int a = root(edge[0]);
-      const int b = root(edge[1]);
-      parent[std::max(a, b)] = std::min(a, b);
+      there.insert(edge.begin(), edge.end());
+      lines.join(edge[0], edge[1]);
     }
     std::map<int, std::pair<Vec3, int>> sums;
-    for (const auto& [v, up] : parent) {
-      auto& [sum, n] = sums.try_emplace(root(v), Vec3::Zero(), 0).first->second;
+    for (const int v : there) {
+      auto& [sum, n] =
+          sums.try_emplace(lines.root(v), Vec3::Zero(), 0).first->second;
       sum += mesh.points[v];
       ++n;
     }
     for (const auto& [edge, n] : rim) {
-      const auto& [sum, count] = sums.at(root(edge[0]));
+      const auto& [sum, count] = sums.at(lines.root(edge[0]));
       triangles_.push_back({mesh.points[edge[0]], mesh.points[edge[1]],
                             Vec3(sum / static_cast<double>(count))});
     }

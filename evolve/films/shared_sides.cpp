@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/geometry/edge_key.h"
+
 namespace meniscus {
 
 namespace {
@@ -103,8 +105,7 @@ std::vector<int> SharedRims::rim(int curve, const std::vector<double>& t,
     inner.erase(inner.begin());
     const int a = corners[k];
     const int b = corners[(k + 1) % n];
-    const auto [known, first] =
-        sides_.try_emplace({std::min(a, b), std::max(a, b)});
+    const auto [known, first] = sides_.try_emplace(edge_key(a, b));
     Chain& chain = known->second;
     if (first) {
       chain.curve = curve;

@@ -3,7 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "evolve/films/film_complex.h"
@@ -54,7 +53,7 @@ class SharedRims {
   std::vector<char> shares_;
   double reach_ = 0.0;  // corners nearer than this are one [length]
   std::vector<int> corners_;
-  std::map<std::pair<int, int>, Chain> sides_;
+  std::map<Edge, Chain> sides_;
 };
 
 }  // namespace meniscus

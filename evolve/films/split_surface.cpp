@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "core/nearest_name.h"
 
@@ -88,7 +89,7 @@ std::set<Edge> border_edges(const SurfaceMesh& mesh, int old_label, int label) {
     for (int k = 0; k < 3 && side != 0; ++k) {
       const int a = mesh.facets[f][k];
       const int b = mesh.facets[f][(k + 1) % 3];
-      sides[{std::min(a, b), std::max(a, b)}] |= side;
+      sides[edge_key(a, b)] |= side;
     }
   }
   std::set<Edge> result;
@@ -102,9 +103,8 @@ std::set<Edge> border_edges(const SurfaceMesh& mesh, int old_label, int label) {
 
 void mark_border(FilmComplex& complex, std::set<Edge> border, bool solid) {
   for (ComplexEdge& edge : complex.edges) {
-    if (border.erase({std::min(edge.a, edge.b), std::max(edge.a, edge.b)}) >
-            0 &&
-        solid && edge.kind != VertexKind::OnCurve) {
+    if (border.erase(edge_key(edge.a, edge.b)) > 0 && solid &&
+        edge.kind != VertexKind::OnCurve) {
       edge.kind = VertexKind::Fixed;
       edge.curve = -1;
       edge.constraints = -1;

@@ -1,8 +1,7 @@
 #include "evolve/frozen/carry.h"
 
-#include <numeric>
-
 #include "core/error.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -13,32 +12,25 @@ namespace {
 std::vector<char> carried_vertices(const FilmComplex& reference,
                                    VertexKind kind) {
   const bool film = kind == VertexKind::Free;
-  std::vector<int> parent(reference.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int v) {
-    while (parent[v] != v) {
-      v = parent[v] = parent[parent[v]];
-    }
-    return v;
-  };
+  UnionFind parts(reference.vertices.size());
   const SurfaceMesh& mesh = reference.mesh;
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     if (reference.surfaces[mesh.facet_label[f]].liquid == film) {
       const Triangle& t = mesh.facets[f];
-      parent[root(t[1])] = root(t[0]);
-      parent[root(t[2])] = root(t[0]);
+      parts.join(t[0], t[1]);
+      parts.join(t[0], t[2]);
     }
   }
-  std::vector<char> held(parent.size(), 0);
+  std::vector<char> held(parts.size(), 0);
   for (std::size_t v = 0; v < held.size(); ++v) {
     if (reference.vertices[v].kind != kind) {
-      held[root(static_cast<int>(v))] = 1;
+      held[parts.root(static_cast<int>(v))] = 1;
     }
   }
   std::vector<char> result(held.size(), 0);
   for (std::size_t v = 0; v < held.size(); ++v) {
     result[v] = reference.vertices[v].kind == kind &&
-                        held[root(static_cast<int>(v))] != 0
+                        held[parts.root(static_cast<int>(v))] != 0
                     ? 1
                     : 0;
   }

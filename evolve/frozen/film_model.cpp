@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/timer.h"
 #include "evolve/energy/fields.h"
 #include "evolve/energy/tension_field.h"
@@ -169,7 +170,7 @@ EdgeMiddles FilmModel::Impl::middles(std::size_t count) const {
   const auto first = static_cast<int>(meshed.points.size());
   for (std::size_t k = 0; k < count; ++k) {
     const auto [a, b] = parents[k];
-    result[{std::min(a, b), std::max(a, b)}] = first + static_cast<int>(k);
+    result[edge_key(a, b)] = first + static_cast<int>(k);
   }
   return result;
 }

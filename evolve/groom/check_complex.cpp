@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "evolve/films/edge_marks.h"
 
@@ -166,7 +167,7 @@ void check_marks(const FilmComplex& complex) {
                 MayBeNone::Yes, name + " is on constraint set");
     check_index(edge.integrals, complex.integral_sets.size(), MayBeNone::Yes,
                 name + " has integral set");
-    ends.push_back({std::min(edge.a, edge.b), std::max(edge.a, edge.b)});
+    ends.push_back(edge_key(edge.a, edge.b));
   }
   std::sort(ends.begin(), ends.end());
   const auto twice = std::adjacent_find(ends.begin(), ends.end());

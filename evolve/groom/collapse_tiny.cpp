@@ -5,9 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "evolve/groom/film_cutter.h"
 #include "evolve/groom/pop.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -34,9 +36,7 @@ bool doubles(const FilmCutter& cut, int gone, int kept) {
           ++count;
         }
       }
-      if (count == 2 &&
-          ++opposite[{std::min(far[0], far[1]), std::max(far[0], far[1])}] >
-              1) {
+      if (count == 2 && ++opposite[edge_key(far[0], far[1])] > 1) {
         return true;
       }
     }
@@ -92,21 +92,13 @@ int collapse_tiny_edges(FilmComplex& complex, double length) {
   FilmCutter cut(complex);
   int count = 0;
   // Where a vertex went: later edges of the list follow it.
-  std::vector<int> into(complex.mesh.points.size());
-  for (std::size_t v = 0; v < into.size(); ++v) {
-    into[v] = static_cast<int>(v);
-  }
-  const auto find = [&](int v) {
-    while (into[v] != v) {
-      v = into[v] = into[into[v]];
-    }
-    return v;
-  };
+  UnionFind went(complex.mesh.points.size());
   for (const auto& [l, from, to] : tiny) {
-    const int a = find(from);
-    const int b = find(to);
+    const int a = went.root(from);
+    const int b = went.root(to);
     if (a != b && collapse(cut, a, b)) {
-      (cut.star(a).empty() ? into[a] : into[b]) = cut.star(a).empty() ? b : a;
+      const bool first = cut.star(a).empty();
+      went.join_to(first ? b : a, first ? a : b);
       ++count;
     }
   }

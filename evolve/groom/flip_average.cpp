@@ -3,6 +3,7 @@
 #include <queue>
 
 #include "evolve/groom/surface_editor.h"
+#include "core/geometry/edge_key.h"
 
 namespace meniscus {
 
@@ -84,7 +85,7 @@ int SurfaceEditor::flip_all(FlipRule rule) {
       const int b = t[(k + 1) % 3];
       // The facet beside queues it unless only this one has a changed corner.
       if (a < b || changed_[a] + changed_[b] == 0) {
-        queue.push({std::min(a, b), std::max(a, b)});
+        queue.push(edge_key(a, b));
       }
     }
   }
@@ -109,7 +110,7 @@ int SurfaceEditor::flip_all(FlipRule rule) {
     ++flips;
     for (const int u : {a, b}) {
       for (const int v : {left.corner, right.corner}) {
-        queue.push({std::min(u, v), std::max(u, v)});
+        queue.push(edge_key(u, v));
       }
     }
   }

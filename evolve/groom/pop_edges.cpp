@@ -9,6 +9,7 @@
 
 #include "evolve/groom/film_cutter.h"
 #include "evolve/groom/pop.h"
+#include "core/geometry/edge_key.h"
 
 namespace meniscus {
 
@@ -55,8 +56,7 @@ class EdgePopper {
 
   void pop_at(int v, int u) {
     // Each turn takes one film off the line.
-    while (crowded(v, u) &&
-           !failed_.contains({std::min(v, u), std::max(v, u)})) {
+    while (crowded(v, u) && !failed_.contains(edge_key(v, u))) {
       const Chain chain = chain_from(v, u);
       if (chain.points.size() == 2 && may_change(v, u)) {
         halve(v, u);  // popped when its new point's turn comes
@@ -65,8 +65,7 @@ class EdgePopper {
       if (!pull(chain)) {
         ++report_.refused;
         for (std::size_t i = 0; i + 1 < chain.points.size(); ++i) {
-          failed_.insert({std::min(chain.points[i], chain.points[i + 1]),
-                          std::max(chain.points[i], chain.points[i + 1])});
+          failed_.insert(edge_key(chain.points[i], chain.points[i + 1]));
         }
       }
     }

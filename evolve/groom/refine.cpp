@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "evolve/films/edge_marks.h"
+#include "core/geometry/edge_key.h"
 
 namespace meniscus {
 
@@ -47,8 +48,7 @@ EdgePlan plan_edges(const FilmComplex& complex, const EdgeMarks& marks) {
   for (std::size_t m = 0; m < complex.edges.size(); ++m) {
     if (seen[m] == 0) {
       const ComplexEdge& wire = complex.edges[m];
-      plan.edges.push_back(
-          {std::min(wire.a, wire.b), std::max(wire.a, wire.b)});
+      plan.edges.push_back(edge_key(wire.a, wire.b));
       plan.mark.push_back(static_cast<int>(m));
       plan.in_film.push_back(0);
       plan.obstacle.push_back(-1);

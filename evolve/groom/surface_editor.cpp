@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -170,23 +170,12 @@ bool SurfaceEditor::link_is_connected(int v) const {
     }
   }
   std::sort(corners.begin(), corners.end());
-  std::vector<int> root(count);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int i) {
-    while (root[i] != i) {
-      i = root[i] = root[root[i]];
-    }
-    return i;
-  };
+  UnionFind sheets(star.size());
   int parts = count;
   for (std::size_t i = 1; i < corners.size(); ++i) {
-    if (corners[i].first == corners[i - 1].first) {
-      const int p = find(corners[i].second);
-      const int q = find(corners[i - 1].second);
-      if (p != q) {
-        root[p] = q;
-        --parts;
-      }
+    if (corners[i].first == corners[i - 1].first &&
+        sheets.join(corners[i].second, corners[i - 1].second)) {
+      --parts;
     }
   }
   return parts == 1;

@@ -5,12 +5,12 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -23,17 +23,11 @@ constexpr double kNoArea = 1e-14;
 class Basins {
  public:
   Basins(std::vector<double> lowest, std::vector<double> area)
-      : lowest_(std::move(lowest)), area_(std::move(area)), up_(area_.size()) {
-    std::iota(up_.begin(), up_.end(), 0);
-  }
+      : lowest_(std::move(lowest)),
+        area_(std::move(area)),
+        sets_(area_.size()) {}
 
-  int root(int f) {
-    while (up_[f] != f) {
-      up_[f] = up_[up_[f]];
-      f = up_[f];
-    }
-    return f;
-  }
+  int root(int f) { return sets_.root(f); }
 
   /// Joins them over a pass where one is shallow or small.
   void meet(int f, int g, double height, double depth, double least_area) {
@@ -47,7 +41,7 @@ class Basins {
       return;
     }
     const auto [low, high] = std::minmax(f, g);
-    up_[high] = low;
+    sets_.join(low, high);
     lowest_[low] = std::min(lowest_[f], lowest_[g]);
     area_[low] += area_[high];
   }
@@ -55,7 +49,7 @@ class Basins {
  private:
   std::vector<double> lowest_;
   std::vector<double> area_;
-  std::vector<int> up_;
+  UnionFind sets_;
 };
 
 }  // namespace

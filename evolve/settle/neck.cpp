@@ -8,31 +8,23 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/box_tree.h"
+#include "core/math/union_find.h"
+
 namespace meniscus {
 
 namespace {
 
 constexpr double kFacing = 0.7;  // cosine between line and facet normal
-constexpr int kLeaf = 4;
-constexpr int kNearLine = 2;  // edges from a line, rim or junction
-constexpr int kCorner = 3;    // edges along the films
+constexpr int kNearLine = 2;     // edges from a line, rim or junction
+constexpr int kCorner = 3;       // edges along the films
 
-/// Bounding volume tree over facets, split at the median of the longest axis.
-class FacetTree {
+/// What lines of sight meet first. Not FacetTree's rays: a facet is met a
+/// little beyond its sides too, and who is passed over is the caller's say.
+class SightLines {
  public:
-  FacetTree(const std::vector<Triangle>& facets, const Points& points)
-      : facets_(facets), points_(points) {
-    ids_.resize(facets.size());
-    centers_.resize(facets.size());
-    for (std::size_t f = 0; f < facets.size(); ++f) {
-      ids_[f] = static_cast<int>(f);
-      const Triangle& t = facets[f];
-      centers_[f] = (points[t[0]] + points[t[1]] + points[t[2]]) / 3.0;
-    }
-    if (!ids_.empty()) {
-      build(0, static_cast<int>(ids_.size()));
-    }
-  }
+  SightLines(const std::vector<Triangle>& facets, const Points& points)
+      : facets_(facets), points_(points), tree_(items(facets, points)) {}
 
   /// Nearest hit of origin + t direction with 0 < t < limit on a facet that
   /// accept(facet) admits; returns the facet or -1, and t in `limit`.
@@ -40,7 +32,8 @@ class FacetTree {
   int first_hit(const Vec3& origin, const Vec3& direction, double& limit,
                 const Accept& accept) const {
     int best = -1;
-    if (nodes_.empty()) {
+    const std::vector<BoxTree::Node>& nodes = tree_.nodes();
+    if (nodes.empty()) {
       return best;
     }
     // No infinity, so that a line in a box's own plane gives 0 and not NaN.
@@ -51,79 +44,51 @@ class FacetTree {
     int top = 0;
     stack[top++] = 0;
     while (top > 0) {
-      const Node& node = nodes_[stack[--top]];
-      if (!node.box_hit(origin, inverse, limit)) {
+      const int id = stack[--top];
+      const BoxTree::Node& node = nodes[id];
+      if (!box_hit(node.bounds, origin, inverse, limit)) {
         continue;
       }
-      if (node.left < 0) {
+      if (node.is_leaf()) {
         for (int k = node.first; k < node.last; ++k) {
-          const double t = hit(ids_[k], origin, direction);
-          if (t > 0.0 && t < limit && accept(ids_[k])) {
+          const int f = tree_.items()[k].id;
+          const double t = hit(f, origin, direction);
+          if (t > 0.0 && t < limit && accept(f)) {
             limit = t;
-            best = ids_[k];
+            best = f;
           }
         }
       } else {
         // The near half last, so that it comes off the stack first.
         const bool forward = direction[node.axis] > 0.0;
-        stack[top++] = forward ? node.right : node.left;
-        stack[top++] = forward ? node.left : node.right;
+        stack[top++] = forward ? node.second_child : id + 1;
+        stack[top++] = forward ? id + 1 : node.second_child;
       }
     }
     return best;
   }
 
  private:
-  struct Node {
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-    Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
-    int first = 0;
-    int last = 0;
-    int left = -1;
-    int right = -1;
-    int axis = 0;
+  static std::vector<BoxTree::Item> items(const std::vector<Triangle>& facets,
+                                          const Points& points) {
+    auto result = facet_items(facets, points);
+    for (BoxTree::Item& item : result) {
+      item.center /= 3.0;
+    }
+    return result;
+  }
 
-    bool box_hit(const Vec3& origin, const Vec3& inverse, double limit) const {
-      double enter = 0.0;
-      double leave = limit;
-      for (int k = 0; k < 3; ++k) {
-        const double a = (low[k] - origin[k]) * inverse[k];
-        const double b = (high[k] - origin[k]) * inverse[k];
-        enter = std::max(enter, std::min(a, b));
-        leave = std::min(leave, std::max(a, b));
-      }
-      return enter <= leave * (1.0 + 1e-12);
+  static bool box_hit(const AxisBox& box, const Vec3& origin,
+                      const Vec3& inverse, double limit) {
+    double enter = 0.0;
+    double leave = limit;
+    for (int k = 0; k < 3; ++k) {
+      const double a = (box.low[k] - origin[k]) * inverse[k];
+      const double b = (box.high[k] - origin[k]) * inverse[k];
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
     }
-  };
-
-  int build(int first, int last) {
-    const int at = static_cast<int>(nodes_.size());
-    nodes_.emplace_back();
-    Node node;
-    node.first = first;
-    node.last = last;
-    for (int k = first; k < last; ++k) {
-      for (const int v : facets_[ids_[k]]) {
-        node.low = node.low.cwiseMin(points_[v]);
-        node.high = node.high.cwiseMax(points_[v]);
-      }
-    }
-    if (last - first > kLeaf) {
-      Eigen::Index axis = 0;
-      (node.high - node.low).maxCoeff(&axis);
-      const int middle = (first + last) / 2;
-      std::nth_element(ids_.begin() + first, ids_.begin() + middle,
-                       ids_.begin() + last, [&](int a, int b) {
-                         const double x = centers_[a][axis];
-                         const double y = centers_[b][axis];
-                         return x < y || (x == y && a < b);
-                       });
-      node.axis = static_cast<int>(axis);
-      node.left = build(first, middle);
-      node.right = build(middle, last);
-    }
-    nodes_[at] = node;
-    return at;
+    return enter <= leave * (1.0 + 1e-12);
   }
 
   /// Moeller and Trumbore (1997); negative for a miss.
@@ -150,9 +115,7 @@ class FacetTree {
 
   const std::vector<Triangle>& facets_;
   const Points& points_;
-  std::vector<int> ids_;
-  Points centers_;
-  std::vector<Node> nodes_;
+  BoxTree tree_;
 };
 
 /// Do two facets look into one chamber? Films without a body share the outside.
@@ -288,26 +251,14 @@ class Corners {
 
 /// A number per point that is the same for points of films that hang together.
 std::vector<int> joined_films(const FilmEnergy& energy, std::size_t count) {
-  std::vector<int> up(count);
-  std::iota(up.begin(), up.end(), 0);
-  const auto root = [&](int v) {
-    while (up[v] != v) {
-      up[v] = up[up[v]];
-      v = up[v];
-    }
-    return v;
-  };
+  UnionFind films(count);
   for (std::size_t f = 0; f < energy.facets().size(); ++f) {
     const Triangle& t = energy.facets()[f];
     for (int k = 1; energy.is_liquid(static_cast<int>(f)) && k < 3; ++k) {
-      const auto [low, high] = std::minmax({root(t[0]), root(t[k])});
-      up[high] = low;
+      films.join(t[0], t[k]);
     }
   }
-  for (std::size_t v = 0; v < count; ++v) {
-    up[v] = root(static_cast<int>(v));
-  }
-  return up;
+  return films.roots();
 }
 
 }  // namespace
@@ -315,7 +266,7 @@ std::vector<int> joined_films(const FilmEnergy& energy, std::size_t count) {
 Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
                     const std::vector<int>& facet_label) {
   const std::vector<Triangle>& facets = energy.facets();
-  const FacetTree tree(facets, points);
+  const SightLines lines(facets, points);
   const Points normals = energy.space().directions(points);
   const std::vector<Outlook> looks = outlooks(energy, points.size());
   const std::vector<char> near = near_lines(energy, points.size());
@@ -340,7 +291,7 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
         return t[0] != v && t[1] != v && t[2] != v && !corner &&
                share_body(energy, f, looks[i].facet);
       };
-      const int f = tree.first_hit(points[v], direction, length, accept);
+      const int f = lines.first_hit(points[v], direction, length, accept);
       if (f < 0 || !energy.is_liquid(f) || film[facets[f][0]] != film[v]) {
         continue;
       }

@@ -286,7 +286,7 @@ class Cutter {
 
  private:
   std::vector<Triangle> facets_;
-  std::map<std::pair<int, int>, int> at_;  // rim edges: their facet
+  std::map<Edge, int> at_;  // directed rim edges: their facet
 };
 
 void Builder::add_sheet(int part) {

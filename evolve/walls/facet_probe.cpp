@@ -9,71 +9,17 @@
 
 namespace meniscus {
 
-namespace {
-
-constexpr int kLeaf = 4;
-
-}  // namespace
-
 FacetProbe::FacetProbe(const Points& points,
                        const std::vector<Triangle>& facets)
-    : points_(points), facets_(facets) {
-  ids_.resize(facets.size());
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    ids_[f] = static_cast<int>(f);
-  }
-  if (!ids_.empty()) {
-    nodes_.reserve(facets.size());
-    build(0, static_cast<int>(ids_.size()));
-  }
+    : points_(points), facets_(facets), tree_(facet_items(facets, points)) {
   planes_.reserve(facets.size());
-  for (const int f : ids_) {
-    const auto& [a, b, c] = facets[f];
+  for (const BoxTree::Item& item : tree_.items()) {
+    const auto& [a, b, c] = facets[item.id];
     const Vec3 n = (points[b] - points[a]).cross(points[c] - points[a]);
     const double length = n.norm();
     const Vec3 unit = length > 0.0 ? Vec3(n / length) : Vec3::Zero();
     planes_.push_back({unit, unit.dot(points[a])});
   }
-}
-
-int FacetProbe::build(int first, int last) {
-  const auto center3 = [&](int f) -> Vec3 {
-    const Triangle& t = facets_[f];
-    return points_[t[0]] + points_[t[1]] + points_[t[2]];
-  };
-  Node node;
-  node.low.setConstant(std::numeric_limits<double>::infinity());
-  node.high = -node.low;
-  for (int k = first; k < last; ++k) {
-    for (const int v : facets_[ids_[k]]) {
-      node.low = node.low.cwiseMin(points_[v]);
-      node.high = node.high.cwiseMax(points_[v]);
-    }
-  }
-  node.first = first;
-  node.last = last;
-  const int id = static_cast<int>(nodes_.size());
-  nodes_.push_back(node);
-  if (last - first > kLeaf) {
-    int axis = 0;
-    (node.high - node.low).maxCoeff(&axis);
-    const int middle = first + (last - first) / 2;
-    std::nth_element(ids_.begin() + first, ids_.begin() + middle,
-                     ids_.begin() + last, [&](int f, int g) {
-                       const double a = center3(f)[axis];
-                       const double b = center3(g)[axis];
-                       return a != b ? a < b : f < g;
-                     });
-    const int left = build(first, middle);
-    const int right = build(middle, last);
-    nodes_[id].left = left;
-    nodes_[id].right = right;
-  }
-  return id;
-}
-
-double FacetProbe::distance_to(const Node& node, const Vec3& p) const {
-  return (p - p.cwiseMax(node.low).cwiseMin(node.high)).norm();
 }
 
 // By the regions of the triangle (Ericson, Real-Time Collision Detection,
@@ -120,7 +66,8 @@ Vec3 FacetProbe::nearest_on(int facet, const Vec3& p) const {
 FacetProbe::Hit FacetProbe::nearest(const Vec3& p, double bound) const {
   Hit hit;
   hit.distance = bound;
-  if (nodes_.empty()) {
+  const std::vector<BoxTree::Node>& nodes = tree_.nodes();
+  if (nodes.empty()) {
     return hit;
   }
   std::array<std::pair<int, double>, 64> stack;
@@ -131,30 +78,32 @@ FacetProbe::Hit FacetProbe::nearest(const Vec3& p, double bound) const {
     if (least >= hit.distance) {
       continue;
     }
-    const Node& node = nodes_[id];
-    if (node.left < 0) {
+    const BoxTree::Node& node = nodes[id];
+    if (node.is_leaf()) {
       for (int k = node.first; k < node.last; ++k) {
         // Boxes of tilted facets reach far beyond them, planes do not.
         const Plane& plane = planes_[k];
         if (std::abs(plane.normal.dot(p) - plane.offset) >= hit.distance) {
           continue;
         }
-        const Vec3 q = nearest_on(ids_[k], p);
+        const int f = tree_.items()[k].id;
+        const Vec3 q = nearest_on(f, p);
         const double distance = (q - p).norm();
         if (distance < hit.distance) {
-          hit = {ids_[k], q, distance};
+          hit = {f, q, distance};
         }
       }
       continue;
     }
-    const double left = distance_to(nodes_[node.left], p);
-    const double right = distance_to(nodes_[node.right], p);
+    const int second = node.second_child;
+    const double left = nodes[id + 1].bounds.to(p);
+    const double right = nodes[second].bounds.to(p);
     if (left <= right) {
-      stack[top++] = {node.right, right};
-      stack[top++] = {node.left, left};
+      stack[top++] = {second, right};
+      stack[top++] = {id + 1, left};
     } else {
-      stack[top++] = {node.left, left};
-      stack[top++] = {node.right, right};
+      stack[top++] = {id + 1, left};
+      stack[top++] = {second, right};
     }
   }
   return hit;
@@ -198,7 +147,8 @@ FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
                                           double limit,
                                           const Home& home) const {
   Ball ball;
-  if (nodes_.empty()) {
+  const std::vector<BoxTree::Node>& nodes = tree_.nodes();
+  if (nodes.empty()) {
     return ball;
   }
   std::array<int, 64> stack;
@@ -206,31 +156,33 @@ FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
   stack[top++] = 0;
   ball.radius = limit / (1.0 - kSlack);
   while (top > 0) {
-    const Node& node = nodes_[stack[--top]];
+    const int at = stack[--top];
+    const BoxTree::Node& node = nodes[at];
     const Vec3 center = p + ball.radius * normal;
-    if (distance_to(node, center) >= ball.radius * (1.0 - kSlack)) {
+    if (node.bounds.to(center) >= ball.radius * (1.0 - kSlack)) {
       continue;
     }
-    if (node.left < 0) {
+    if (node.is_leaf()) {
       for (int k = node.first; k < node.last; ++k) {
-        const Triangle& t = facets_[ids_[k]];
+        const int f = tree_.items()[k].id;
+        const Triangle& t = facets_[f];
         const bool at_home =
-            ids_[k] == home.facet ||
+            f == home.facet ||
             std::find(t.begin(), t.end(), home.vertex) != t.end();
         if (!at_home) {
-          shrink(ids_[k], p, normal, limit, ball);
+          shrink(f, p, normal, limit, ball);
         }
       }
       continue;
     }
     // Nearest to the ray first: there the ball shrinks fastest.
     const auto away = [&](int id) {
-      const Vec3 c = 0.5 * (nodes_[id].low + nodes_[id].high) - p;
+      const Vec3 c = 0.5 * (nodes[id].bounds.low + nodes[id].bounds.high) - p;
       return c.squaredNorm() - 2.0 * ball.radius * std::max(0.0, normal.dot(c));
     };
-    const bool left_first = away(node.left) <= away(node.right);
-    stack[top++] = left_first ? node.right : node.left;
-    stack[top++] = left_first ? node.left : node.right;
+    const bool first = away(at + 1) <= away(node.second_child);
+    stack[top++] = first ? node.second_child : at + 1;
+    stack[top++] = first ? at + 1 : node.second_child;
   }
   if (ball.facet < 0) {
     ball.radius = std::numeric_limits<double>::infinity();

@@ -5,11 +5,12 @@
 #include <limits>
 #include <vector>
 
-#include "core/types.h"
+#include "core/geometry/box_tree.h"
 
 namespace meniscus {
 
-/// A bounding-box tree over facets; O(n log n) to build, about O(log n) a
+/// Its questions are not FacetTree's: they come with a bound or a ball, which
+/// the planes of facets cut short. O(n log n) to build, about O(log n) a
 /// question. Points and facets must outlive it unchanged.
 class FacetProbe {
  public:
@@ -47,16 +48,6 @@ class FacetProbe {
   static constexpr double kSlack = 0.01;  // relative
 
  private:
-  struct Node {
-    Vec3 low;
-    Vec3 high;
-    int first = 0;  // facets first .. last - 1 of ids_
-    int last = 0;
-    int left = -1;  // -1: a leaf
-    int right = -1;
-  };
-  int build(int first, int last);
-  double distance_to(const Node& node, const Vec3& p) const;
   Vec3 nearest_on(int facet, const Vec3& p) const;
   bool shrink(int facet, const Vec3& p, const Vec3& normal, const Vec3& q,
               Ball& ball) const;
@@ -65,13 +56,12 @@ class FacetProbe {
 
   const Points& points_;
   const std::vector<Triangle>& facets_;
-  std::vector<int> ids_;
+  BoxTree tree_;
   struct Plane {
     Vec3 normal = Vec3::Zero();  // unit; 0 for a facet without area
     double offset = 0.0;
   };
-  std::vector<Plane> planes_;  // of the facets in the order of ids_
-  std::vector<Node> nodes_;
+  std::vector<Plane> planes_;  // of the facets in the tree's order
 };
 
 }  // namespace meniscus

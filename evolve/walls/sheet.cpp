@@ -8,7 +8,9 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -110,7 +112,7 @@ void join_edges(Sheet& sheet) {
     for (int k = 0; k < 3; ++k) {
       const int a = t[k];
       const int b = t[(k + 1) % 3];
-      uses.push_back({{std::min(a, b), std::max(a, b)}, f, a < b});
+      uses.push_back({edge_key(a, b), f, a < b});
     }
   }
   std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
@@ -168,27 +170,19 @@ int corner_of(const Sheet& sheet, int facet, int vertex) {
 
 // The corners around a vertex must hang together by the edges there.
 void check_fans(const Sheet& sheet) {
-  std::vector<int> parent(3 * sheet.film.facets.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int corner) {
-    while (parent[corner] != corner) {
-      parent[corner] = parent[parent[corner]];
-      corner = parent[corner];
-    }
-    return corner;
-  };
+  UnionFind fans(3 * sheet.film.facets.size());
   for (std::size_t e = 0; e < sheet.edges.size(); ++e) {
     const auto& [f, g] = sheet.edge_facets[e];
     for (int k = 0; g >= 0 && k < 2; ++k) {
       const int v = sheet.edges[e][k];
-      parent[root(corner_of(sheet, f, v))] = root(corner_of(sheet, g, v));
+      fans.join(corner_of(sheet, f, v), corner_of(sheet, g, v));
     }
   }
   for (int v = 0; v < static_cast<int>(sheet.film.points.size()); ++v) {
     const int first = sheet.facet_list[sheet.facet_start[v]];
     for (int k = sheet.facet_start[v]; k < sheet.facet_start[v + 1]; ++k) {
-      if (root(corner_of(sheet, sheet.facet_list[k], v)) !=
-          root(corner_of(sheet, first, v))) {
+      if (!fans.same(corner_of(sheet, sheet.facet_list[k], v),
+                     corner_of(sheet, first, v))) {
         throw MeshError(fmt::format(
             "wall: parts of the film touch in one point only, {} (point {}); "
             "separate them or join them along edges",

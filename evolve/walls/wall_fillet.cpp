@@ -11,6 +11,8 @@
 #include <Eigen/Geometry>
 
 #include "evolve/walls/wall_offset.h"
+#include "core/geometry/edge_key.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -95,7 +97,7 @@ class Fillets {
         const int a = t[k];
         const int b = t[(k + 1) % 3];
         if (in_.topology.junction[a] != 0 && in_.topology.junction[b] != 0) {
-          users[{std::min(a, b), std::max(a, b)}].push_back(f);
+          users[edge_key(a, b)].push_back(f);
         }
       }
     }
@@ -114,24 +116,13 @@ class Fillets {
         at[v].push_back(static_cast<int>(e));
       }
     }
-    line_.resize(edges_.size());
-    std::iota(line_.begin(), line_.end(), 0);
-    const auto root = [&](int e) {
-      while (line_[e] != e) {
-        e = line_[e] = line_[line_[e]];
-      }
-      return e;
-    };
+    UnionFind lines(edges_.size());
     for (const auto& [v, edges] : at) {
       if (edges.size() == 2) {
-        const int a = root(edges[0]);
-        const int b = root(edges[1]);
-        line_[std::max(a, b)] = std::min(a, b);
+        lines.join(edges[0], edges[1]);
       }
     }
-    for (int e = 0; e < static_cast<int>(line_.size()); ++e) {
-      line_[e] = root(e);
-    }
+    line_ = lines.roots();
   }
 
   void find_sectors() {

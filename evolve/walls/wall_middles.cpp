@@ -1,10 +1,10 @@
 #include "evolve/walls/wall_middles.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -34,7 +34,7 @@ int WallMiddles::strip_point(const StripCorner& at) {
 }
 
 int WallMiddles::film_middle(int a, int b) const {
-  const auto at = film_.find({std::min(a, b), std::max(a, b)});
+  const auto at = film_.find(edge_key(a, b));
   if (at == film_.end()) {
     throw MeshError(fmt::format(
         "wall: the film's edge between points {} and {} has no middle in the "
@@ -48,7 +48,7 @@ int WallMiddles::side_middle(int a, int b) {
   if (a == b) {
     return a;
   }
-  const Edge key = {std::min(a, b), std::max(a, b)};
+  const Edge key = edge_key(a, b);
   const auto known = walls_.middles.find(key);
   if (known != walls_.middles.end()) {
     return known->second;
@@ -70,7 +70,7 @@ StripCorner WallMiddles::strip_middle(const StripCorner& a,
 }
 
 void WallMiddles::remember(int a, int b, int middle) {
-  walls_.middles.try_emplace({std::min(a, b), std::max(a, b)}, middle);
+  walls_.middles.try_emplace(edge_key(a, b), middle);
 }
 
 // Along a column as in its strip; inside a cap half way.
@@ -81,7 +81,7 @@ StripCorner WallMiddles::cap_middle(const StripCorner& a,
   }
   const int pa = strip_point(a);
   const int pb = strip_point(b);
-  const Edge key = {std::min(pa, pb), std::max(pa, pb)};
+  const Edge key = edge_key(pa, pb);
   const auto known = walls_.middles.find(key);
   if (known != walls_.middles.end()) {
     return {known->second, known->second, 1.0};

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include <Eigen/Geometry>
+
+#include "core/geometry/edge_key.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -14,15 +16,14 @@ namespace {
 
 class Finder {
  public:
-  explicit Finder(const SurfaceMesh& mesh) : mesh_(mesh), x_(mesh.points) {}
+  explicit Finder(const SurfaceMesh& mesh)
+      : mesh_(mesh), x_(mesh.points), corners_(6 * mesh.facets.size()) {}
 
   Sectors find() {
     find_edges();
     join_sides();
     Sectors result;
-    for (int c = 0; c < static_cast<int>(parent_.size()); ++c) {
-      result.of_corner.push_back(root(c));
-    }
+    result.of_corner = corners_.roots();
     for (const auto& [edge, facets] : edges_) {
       if (facets.size() == 1) {
         result.rims.push_back(facets[0]);
@@ -40,7 +41,7 @@ class Finder {
       for (int k = 0; k < 3; ++k) {
         const int a = t[k];
         const int b = t[(k + 1) % 3];
-        edges_[{std::min(a, b), std::max(a, b)}].push_back({f, k});
+        edges_[edge_key(a, b)].push_back({f, k});
       }
     }
   }
@@ -50,26 +51,12 @@ class Finder {
     return (2 * facet + side) * 3 + corner;
   }
 
-  int root(int c) {
-    while (parent_[c] != c) {
-      parent_[c] = parent_[parent_[c]];
-      c = parent_[c];
-    }
-    return c;
-  }
-
-  void join(int a, int b) {
-    const int ra = root(a);
-    const int rb = root(b);
-    parent_[std::max(ra, rb)] = std::min(ra, rb);
-  }
-
   // Sides that face each other across the edge, at both of its ends.
   void join_across(const Edge& edge, const Incidence& f, int side_f,
                    const Incidence& g, int side_g) {
     for (const int v : edge) {
-      join(corner_id(f.facet, side_f, corner_at(f, v)),
-           corner_id(g.facet, side_g, corner_at(g, v)));
+      corners_.join(corner_id(f.facet, side_f, corner_at(f, v)),
+                    corner_id(g.facet, side_g, corner_at(g, v)));
     }
   }
 
@@ -113,8 +100,6 @@ class Finder {
   }
 
   void join_sides() {
-    parent_.resize(6 * mesh_.facets.size());
-    std::iota(parent_.begin(), parent_.end(), 0);
     for (const auto& [edge, facets] : edges_) {
       if (facets.size() == 2) {
         const bool same =
@@ -139,7 +124,7 @@ class Finder {
   const SurfaceMesh& mesh_;
   const Points& x_;
   std::map<Edge, std::vector<Incidence>> edges_;
-  std::vector<int> parent_;
+  UnionFind corners_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -52,9 +53,7 @@ class Sheets {
  private:
   Edge edge(int f, int k) const {
     const Triangle& t = topology_.facets[f].film;
-    const int a = t[k];
-    const int b = t[(k + 1) % 3];
-    return {std::min(a, b), std::max(a, b)};
+    return edge_key(t[k], t[(k + 1) % 3]);
   }
 
   bool forward(int f, const Edge& e) const {

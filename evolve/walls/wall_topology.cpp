@@ -7,6 +7,8 @@
 
 #include "evolve/walls/wall_middles.h"
 #include "evolve/walls/wall_sectors.h"
+#include "core/geometry/edge_key.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -87,13 +89,7 @@ class Builder {
 
   void collect_rim_edges() {
     std::map<Column, int> group_of;
-    std::vector<int> parent;
-    const auto find = [&](int g) {
-      while (parent[g] != g) {
-        g = parent[g] = parent[parent[g]];
-      }
-      return g;
-    };
+    UnionFind strips(0);
     for (const Incidence& rim_edge : sectors_.rims) {
       const auto [f, k] = rim_edge;
       const WallFacet& facet = result_.facets[f];
@@ -106,19 +102,18 @@ class Builder {
       int i = 0;
       for (const Column& column : {rim.from, rim.to}) {
         const auto [at, is_new] =
-            group_of.try_emplace(column, static_cast<int>(parent.size()));
+            group_of.try_emplace(column, static_cast<int>(strips.size()));
         if (is_new) {
-          parent.push_back(at->second);
+          strips.add();
         }
         groups[i++] = at->second;
       }
-      parent[std::max(find(groups[0]), find(groups[1]))] =
-          std::min(find(groups[0]), find(groups[1]));
+      strips.join(groups[0], groups[1]);
       rim.group = groups[0];
       rim_edges_.push_back(rim);
     }
     for (RimEdge& rim : rim_edges_) {
-      rim.group = find(rim.group);
+      rim.group = strips.root(rim.group);
     }
   }
 
@@ -361,7 +356,7 @@ class Builder {
       for (int k = 0; k < 3; ++k) {
         const int a = f.film[k];
         const int b = f.film[(k + 1) % 3];
-        if (++uses[{std::min(a, b), std::max(a, b)}] > 2) {
+        if (++uses[edge_key(a, b)] > 2) {
           result_.junction[a] = 1;
           result_.junction[b] = 1;
         }

@@ -22,26 +22,10 @@ constexpr const char* kStarter = "mpirun";
 constexpr int kKilled = 137;  // mpirun's code for a process that was
 
 std::string find_petsc() {
-  if (const auto found = find_helper(kHelper, kVariable)) {
-    return found->string();
-  }
-  const char* set = std::getenv(kVariable);
-  if (set != nullptr && *set != '\0') {
-    throw IoError(fmt::format(
-        "helper {} not found: the environment variable {} says '{}', which is "
-        "not an executable file; correct or unset it",
-        kHelper, kVariable, set));
-  }
-  const std::string installed =
-      fmt::format("{}/{}", MENISCUS_HELPER_FOLDER, kHelper);
-  if (find_program(installed)) {
-    return installed;
-  }
-  throw IoError(fmt::format(
-      "helper {} not found beside the program nor at {}: this program was "
-      "built without PETSc; install libpetsc-real-dev and openmpi-bin and "
-      "build again, or choose another solver",
-      kHelper, installed));
+  return require_helper(
+      kHelper, kVariable,
+      "this program was built without PETSc; install libpetsc-real-dev and "
+      "openmpi-bin and build again, or choose another solver");
 }
 
 void require_starter() {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "fea/element/nearest_point.h"
 #include "fea/element/node_elements.h"
+#include "fea/element/point_grid.h"
 
 namespace meniscus {
 
@@ -138,11 +138,11 @@ SizeField size_field(const TetMesh& mesh, const EnergyError& error,
 
 std::function<double(const Vec3&)> SizeField::function() const {
   struct Lookup {
-    NearestPoint nearest;
+    PointGrid nearest;
     SizeField field;
   };
   const auto lookup =
-      std::make_shared<const Lookup>(Lookup{NearestPoint(points), *this});
+      std::make_shared<const Lookup>(Lookup{PointGrid(points), *this});
   return [lookup](const Vec3& x) {
     const int i = lookup->nearest.of(x);
     return lookup->field.length[i] +

@@ -8,8 +8,8 @@
 
 #include "core/error.h"
 #include "fea/element/elastic_law.h"
-#include "fea/element/nearest_point.h"
 #include "fea/element/surface_faces.h"
+#include "fea/element/point_grid.h"
 
 namespace meniscus {
 
@@ -35,7 +35,7 @@ void exclude_near(const TetMesh& mesh, const ExclusionZone& zone,
        surface_nodes(mesh, surface_label(mesh, zone.surface))) {
     points.push_back(mesh.nodes[node]);
   }
-  const NearestPoint nearest(points);
+  const PointGrid nearest(points);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const Vec3 x = centre(mesh, e);
     if ((points[nearest.of(x)] - x).norm() <= zone.distance) {

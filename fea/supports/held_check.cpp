@@ -1,13 +1,12 @@
 #include "fea/supports/held_check.h"
 
-#include <numeric>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -25,28 +24,14 @@ constexpr double kExactWeight = 1e6;
 
 /// Part number of every node; parts are numbered by their lowest node.
 std::vector<int> connected_parts(const TetMesh& mesh) {
-  std::vector<int> parent(mesh.nodes.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[i] != i) {
-      parent[i] = parent[parent[i]];
-      i = parent[i];
-    }
-    return i;
-  };
+  UnionFind parts(mesh.nodes.size());
   for (int e = 0; e < mesh.element_count(); ++e) {
     const auto ids = mesh.element(e);
     for (const int node : ids) {
-      const int a = root(ids[0]);
-      const int b = root(node);
-      parent[std::max(a, b)] = std::min(a, b);
+      parts.join(ids[0], node);
     }
   }
-  std::vector<int> part(mesh.nodes.size());
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    part[i] = root(static_cast<int>(i));
-  }
-  return part;
+  return parts.roots();
 }
 
 /// Rigid motions about `centre`, lengths in units of `size`.

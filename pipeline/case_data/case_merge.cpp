@@ -9,6 +9,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "evolve/curves/curve_contact.h"
 #include "pipeline/case_data/case_curves.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -74,16 +75,7 @@ std::vector<int> first_curves(const Case& input,
                               const std::vector<Curve>& curves,
                               std::map<int, double>& distance) {
   const std::vector<Outline> outlines = outlines_of(input, curves);
-  std::vector<int> first(curves.size());
-  for (std::size_t c = 0; c < first.size(); ++c) {
-    first[c] = static_cast<int>(c);
-  }
-  const auto root = [&](int c) {
-    while (first[c] != c) {
-      c = first[c];
-    }
-    return c;
-  };
+  UnionFind alikes(curves.size());
   for (std::size_t i = 0; i < outlines.size(); ++i) {
     const Outline& a = outlines[i];
     for (std::size_t j = i + 1;
@@ -96,17 +88,14 @@ std::vector<int> first_curves(const Case& input,
       }
       if (const auto off =
               lie_on_each_other(curves[a.curve].shape, curves[b.curve].shape)) {
-        const int kept = std::min(root(a.curve), root(b.curve));
-        const int dropped = std::max(root(a.curve), root(b.curve));
-        first[dropped] = kept;
+        const int dropped =
+            std::max(alikes.root(a.curve), alikes.root(b.curve));
+        alikes.join(a.curve, b.curve);
         distance[dropped] = *off;
       }
     }
   }
-  for (std::size_t c = 0; c < first.size(); ++c) {
-    first[c] = root(static_cast<int>(c));
-  }
-  return first;
+  return alikes.roots();
 }
 
 /// The kept names in a list; a list that would have one twice is noted.

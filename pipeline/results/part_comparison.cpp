@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <numeric>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "pipeline/results/results.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -27,16 +27,8 @@ constexpr double kNoResultant = 1e-9;
 
 /// Elements that share a corner and a region, counted as one piece.
 int piece_count(const TetMesh& mesh) {
-  std::vector<int> parent(static_cast<std::size_t>(mesh.element_count()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const std::function<int(int)> root = [&](int e) {
-    while (parent[static_cast<std::size_t>(e)] != e) {
-      int& next = parent[static_cast<std::size_t>(e)];
-      next = parent[static_cast<std::size_t>(next)];
-      e = next;
-    }
-    return e;
-  };
+  UnionFind joined(static_cast<std::size_t>(mesh.element_count()));
+  int pieces = mesh.element_count();
   const int regions = 1 + *std::max_element(mesh.element_region.begin(),
                                             mesh.element_region.end());
   for (int region = 0; region < regions; ++region) {
@@ -49,13 +41,9 @@ int piece_count(const TetMesh& mesh) {
         int& seen = first[static_cast<std::size_t>(
             mesh.element(e)[static_cast<std::size_t>(corner)])];
         seen = seen < 0 ? e : seen;
-        parent[static_cast<std::size_t>(root(e))] = root(seen);
+        pieces -= joined.join(e, seen) ? 1 : 0;
       }
     }
-  }
-  int pieces = 0;
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    pieces += root(e) == e ? 1 : 0;
   }
   return pieces;
 }

@@ -153,26 +153,17 @@ std::vector<std::string> render_pictures(const std::vector<PictureJob>& jobs,
   if (jobs.empty()) {
     return {};
   }
-  auto helper = find_helper(kHelper, kHelperVariable);
-  const char* set = std::getenv(kHelperVariable);
-  if (!helper && (set == nullptr || *set == '\0')) {
-    helper =
-        find_program(fmt::format("{}/{}", MENISCUS_HELPER_FOLDER, kHelper));
-  }
-  if (!helper) {
-    return {fmt::format(
-        "no pictures: the helper program {} is neither beside this program, "
-        "nor in ../libexec/meniscus, nor in {}; set {} to its path",
-        kHelper, MENISCUS_HELPER_FOLDER, kHelperVariable)};
-  }
   std::string warning;
   try {
+    const std::string helper =
+        require_helper(kHelper, kHelperVariable,
+                       fmt::format("set {} to its path", kHelperVariable));
     const Display display = open_display(options.niceness);
     if (display.name.empty()) {
       return {fmt::format("no pictures: there is no display and {}",
                           display.problem)};
     }
-    warning = render_with(helper->string(), display, jobs, options);
+    warning = render_with(helper, display, jobs, options);
   } catch (const IoError& error) {
     warning = fmt::format("no pictures: {}", error.what());
   }

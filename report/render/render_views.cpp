@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -16,8 +15,10 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "report/render/shaded_surface.h"
+#include "core/math/union_find.h"
 
 namespace meniscus {
 
@@ -48,20 +49,13 @@ std::vector<char> labels_among(const SurfaceMesh& mesh,
 
 /// Length of the shortest chain of `rims`; infinite where there is none.
 double shortest_rim(const Points& points, const std::vector<Edge>& rims) {
-  std::vector<int> chain(points.size());
-  std::iota(chain.begin(), chain.end(), 0);
-  const auto root = [&](int v) {
-    while (chain[v] != v) {
-      v = chain[v] = chain[chain[v]];
-    }
-    return v;
-  };
+  UnionFind chains(points.size());
   for (const Edge& e : rims) {
-    chain[root(e[0])] = root(e[1]);
+    chains.join(e[0], e[1]);
   }
   std::vector<double> length(points.size(), 0.0);
   for (const Edge& e : rims) {
-    length[root(e[0])] += (points[e[1]] - points[e[0]]).norm();
+    length[chains.root(e[0])] += (points[e[1]] - points[e[0]]).norm();
   }
   double least = std::numeric_limits<double>::infinity();
   for (const double one : length) {
@@ -139,7 +133,7 @@ SurfaceMesh ground_block(const SurfaceMesh& mesh, const std::string& name,
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = t[k];
       const int b = t[(k + 1) % 3];
-      const Edge key{std::min(a, b), std::max(a, b)};
+      const Edge key = edge_key(a, b);
       if (rim.count(key) != 0) {
         add(a, b, b + count, 2);
         add(a, b + count, a + count, 2);

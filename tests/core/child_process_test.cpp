@@ -185,5 +185,26 @@ TEST(FindHelper, LooksBesideTheProgramAndObeysTheVariable) {
   EXPECT_FALSE(find_helper(self.filename(), variable));
 }
 
+TEST(FindHelper, SaysWhereItLooked) {
+  const auto says = [](const std::string& name) {
+    try {
+      return require_helper(name, "MENISCUS_TEST_HELPER", "build it again");
+    } catch (const IoError& error) {
+      return std::string(error.what());
+    }
+  };
+  const fs::path self = fs::read_symlink("/proc/self/exe");
+  ::setenv("MENISCUS_TEST_HELPER", "/no/such/file", 1);
+  EXPECT_THAT(says("helper"), testing::HasSubstr("says '/no/such/file'"));
+  ::unsetenv("MENISCUS_TEST_HELPER");
+  EXPECT_EQ(says(self.filename()), self);
+  EXPECT_THAT(
+      says("no-such-helper"),
+      testing::AllOf(
+          testing::HasSubstr((self.parent_path() / "no-such-").string()),
+          testing::HasSubstr("libexec/meniscus/no-such-helper"),
+          testing::EndsWith("build it again")));
+}
+
 }  // namespace
 }  // namespace meniscus::child_process_test

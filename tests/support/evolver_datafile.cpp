@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/geometry/edge_key.h"
 #include "tests/support/evolver.h"
 
 namespace meniscus {
@@ -132,12 +133,12 @@ std::string vertices(const FilmComplex& complex, const Numbers& numbers) {
 std::string edges(const FilmComplex& complex, const Numbers& numbers) {
   std::map<Edge, const ComplexEdge*> marked;
   for (const ComplexEdge& edge : complex.edges) {
-    marked[{std::min(edge.a, edge.b), std::max(edge.a, edge.b)}] = &edge;
+    marked[edge_key(edge.a, edge.b)] = &edge;
   }
   std::string text = "\nedges\n";
   for (std::size_t e = 0; e < numbers.edges.size(); ++e) {
     auto [a, b] = numbers.edges[e];
-    const auto found = marked.find({std::min(a, b), std::max(a, b)});
+    const auto found = marked.find(edge_key(a, b));
     text +=
         fmt::format("{} {} {}", e + 1, numbers.vertex[a], numbers.vertex[b]);
     if (found != marked.end()) {

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/edge_key.h"
+
 namespace meniscus::film_complexes_test {
 namespace {
 
@@ -26,7 +28,7 @@ std::map<Edge, EdgeUse> edge_uses(const SurfaceMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
       const int a = mesh.facets[f][k];
       const int b = mesh.facets[f][(k + 1) % 3];
-      EdgeUse& use = uses[{std::min(a, b), std::max(a, b)}];
+      EdgeUse& use = uses[edge_key(a, b)];
       ++use.facets;
       use.balance += a < b ? 1 : -1;
       use.labels.insert(mesh.facet_label[f]);
@@ -65,7 +67,7 @@ void expect_sound(const FilmComplex& complex, int triple_edges) {
   std::set<Edge> marked;
   const std::map<Edge, EdgeUse> uses = edge_uses(complex.mesh);
   for (const ComplexEdge& edge : complex.edges) {
-    const Edge key{std::min(edge.a, edge.b), std::max(edge.a, edge.b)};
+    const Edge key = edge_key(edge.a, edge.b);
     EXPECT_TRUE(marked.insert(key).second) << "marked twice";
     EXPECT_TRUE(uses.contains(key)) << edge.a << "-" << edge.b;
   }

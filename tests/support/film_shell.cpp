@@ -1,8 +1,8 @@
 #include "tests/support/film_shell.h"
 
-#include <algorithm>
 #include <map>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "evolve/walls/thicken.h"
 #include "mesh_tet/quadratic.h"
@@ -19,8 +19,6 @@ struct Film {
   std::vector<Triangle> facets;  // of corners
   std::map<Edge, int> middle;    // of an edge of corners
 };
-
-Edge sorted(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 Film film_of(const QuadraticSurface& surface, int label) {
   Film film;
@@ -46,7 +44,7 @@ Film film_of(const QuadraticSurface& surface, int label) {
     }
     film.facets.push_back(facet);
     for (int k = 0; k < 3; ++k) {
-      const Edge edge = sorted(facet[k], facet[(k + 1) % 3]);
+      const Edge edge = edge_key(facet[k], facet[(k + 1) % 3]);
       if (film.middle.try_emplace(edge, static_cast<int>(film.points.size()))
               .second) {
         film.points.push_back(surface.mid[surface.facet_edges[f][k]]);
@@ -62,9 +60,9 @@ SurfaceMesh refined(const Film& film) {
   mesh.points = film.points;
   mesh.labels = {"film"};
   for (const Triangle& t : film.facets) {
-    const int ab = film.middle.at(sorted(t[0], t[1]));
-    const int bc = film.middle.at(sorted(t[1], t[2]));
-    const int ca = film.middle.at(sorted(t[2], t[0]));
+    const int ab = film.middle.at(edge_key(t[0], t[1]));
+    const int bc = film.middle.at(edge_key(t[1], t[2]));
+    const int ca = film.middle.at(edge_key(t[2], t[0]));
     for (const Triangle& part :
          {Triangle{t[0], ab, ca}, Triangle{t[1], bc, ab},
           Triangle{t[2], ca, bc}, Triangle{ab, bc, ca}}) {
@@ -93,14 +91,14 @@ SurfaceMesh coarse_wall(const Film& film, const Points& front,
     add(t[0], t[1], t[2], 0);
     add(t[0] + n, t[2] + n, t[1] + n, 1);
     for (int k = 0; k < 3; ++k) {
-      ++uses[sorted(t[k], t[(k + 1) % 3])];
+      ++uses[edge_key(t[k], t[(k + 1) % 3])];
     }
   }
   for (const Triangle& t : film.facets) {
     for (int k = 0; k < 3; ++k) {
       const int a = t[k];
       const int b = t[(k + 1) % 3];
-      if (uses[sorted(a, b)] != 1) {
+      if (uses[edge_key(a, b)] != 1) {
         continue;
       }
       const std::string name = spec.rim(film.points[a]);
@@ -140,7 +138,7 @@ TetMesh film_shell(const QuadraticSurface& surface, const ShellSpec& spec) {
       wall.mid.push_back(0.5 * (wall.base.points[p] + wall.base.points[q]));
       continue;
     }
-    const int m = film.middle.at(sorted(a, b));
+    const int m = film.middle.at(edge_key(a, b));
     const double across = 0.5 * ((p < n ? 1.0 : 0.0) + (q < n ? 1.0 : 0.0));
     wall.mid.push_back(across * front[m] + (1.0 - across) * back[m]);
   }

@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "core/geometry/edge_key.h"
+
 namespace meniscus {
 
 NestedSurface nested_surface(const SurfaceMesh& base, int levels) {
@@ -14,8 +16,7 @@ NestedSurface nested_surface(const SurfaceMesh& base, int levels) {
     list_edges(facets, edges, facet_edges);
     const auto first = static_cast<int>(result.points.size());
     for (const auto& [a, b] : edges) {
-      result.middles[{std::min(a, b), std::max(a, b)}] =
-          static_cast<int>(result.points.size());
+      result.middles[edge_key(a, b)] = static_cast<int>(result.points.size());
       result.points.push_back(0.5 * (result.points[a] + result.points[b]));
     }
     std::vector<Triangle> finer;

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <random>
 #include <set>
 #include <vector>
 
 #include "evolve/films/film_complex.h"
+#include "core/geometry/edge_key.h"
+#include "core/math/union_find.h"
 
 namespace meniscus::nonmanifold {
 
@@ -19,7 +20,7 @@ inline std::map<Edge, std::vector<int>> edge_facets(const SurfaceMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
       const int a = mesh.facets[f][k];
       const int b = mesh.facets[f][(k + 1) % 3];
-      uses[{std::min(a, b), std::max(a, b)}].push_back(static_cast<int>(f));
+      uses[edge_key(a, b)].push_back(static_cast<int>(f));
     }
   }
   return uses;
@@ -58,20 +59,13 @@ inline Lines triple_lines(const SurfaceMesh& mesh) {
   }
   Lines lines;
   for (const auto& [labels, list] : edges) {
-    std::map<int, int> root;
-    const auto find = [&](int v) {
-      root.emplace(v, v);
-      while (root[v] != v) {
-        v = root[v];
-      }
-      return v;
-    };
+    UnionFind joined(mesh.points.size());
     for (const Edge& e : list) {
-      root[find(e[0])] = find(e[1]);
+      joined.join(e[0], e[1]);
     }
     std::set<int> roots;
-    for (const auto& [v, up] : root) {
-      roots.insert(find(v));
+    for (const Edge& e : list) {
+      roots.insert(joined.root(e[0]));
     }
     lines.of_films[labels] = static_cast<int>(roots.size());
   }
@@ -83,21 +77,14 @@ inline Lines triple_lines(const SurfaceMesh& mesh) {
 
 /// Connected parts of the facets, across shared points.
 inline int components(const SurfaceMesh& mesh) {
-  std::vector<int> root(mesh.points.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int v) {
-    while (root[v] != v) {
-      v = root[v] = root[root[v]];
-    }
-    return v;
-  };
+  UnionFind joined(mesh.points.size());
   for (const Triangle& t : mesh.facets) {
-    root[find(t[0])] = find(t[1]);
-    root[find(t[1])] = find(t[2]);
+    joined.join(t[0], t[1]);
+    joined.join(t[1], t[2]);
   }
   std::set<int> roots;
   for (const Triangle& t : mesh.facets) {
-    roots.insert(find(t[0]));
+    roots.insert(joined.root(t[0]));
   }
   return static_cast<int>(roots.size());
 }

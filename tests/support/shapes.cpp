@@ -3,6 +3,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/geometry/edge_key.h"
+
 namespace meniscus::shapes {
 
 namespace {
@@ -230,7 +232,7 @@ TetMesh straight_quadratic(const TetMesh& linear) {
   mesh.labels = linear.labels;
   std::map<Edge, int> ids;
   const auto middle = [&](int a, int b) {
-    const Edge key{std::min(a, b), std::max(a, b)};
+    const Edge key = edge_key(a, b);
     const auto [at, added] =
         ids.emplace(key, static_cast<int>(mesh.nodes.size()));
     if (added) {

@@ -12,6 +12,7 @@
 
 #include "evolve/groom/refine.h"
 #include "evolve/settle/find_equilibrium.h"
+#include "core/geometry/edge_key.h"
 
 namespace meniscus::test_films {
 
@@ -64,7 +65,7 @@ inline TripleAngles triple_angles(const FilmComplex& complex) {
       const Vec3 along = (mesh.points[b] - mesh.points[a]).normalized();
       Vec3 arm = mesh.points[t[(k + 2) % 3]] - mesh.points[a];
       arm -= arm.dot(along) * along;
-      arms[{std::min(a, b), std::max(a, b)}].push_back(arm.normalized());
+      arms[edge_key(a, b)].push_back(arm.normalized());
     }
   }
   TripleAngles result;

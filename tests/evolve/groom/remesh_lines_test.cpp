@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "evolve/groom/check_complex.h"
 #include "evolve/groom/flip_average.h"
@@ -66,8 +67,7 @@ std::vector<std::array<double, 3>> junctions(const SurfaceMesh& mesh) {
 void expect_marks_on_edges(const FilmComplex& complex) {
   const auto uses = nonmanifold::edge_facets(complex.mesh);
   for (const ComplexEdge& mark : complex.edges) {
-    EXPECT_EQ(uses.count({std::min(mark.a, mark.b), std::max(mark.a, mark.b)}),
-              1U);
+    EXPECT_EQ(uses.count(edge_key(mark.a, mark.b)), 1U);
   }
 }
 

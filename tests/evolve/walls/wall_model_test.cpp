@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "core/geometry/edge_key.h"
 #include "core/error.h"
 #include "evolve/walls/facet_probe.h"
 #include "tests/support/sheet_shapes.h"
@@ -112,9 +113,8 @@ WallFilms films_of(SurfaceMesh mesh, int levels, double thickness) {
       for (int k = 0; k < 3; ++k) {
         const int a = t[k];
         const int b = t[(k + 1) % 3];
-        const auto [at, is_new] =
-            films.middles.try_emplace({std::min(a, b), std::max(a, b)},
-                                      static_cast<int>(mesh.points.size()));
+        const auto [at, is_new] = films.middles.try_emplace(
+            edge_key(a, b), static_cast<int>(mesh.points.size()));
         if (is_new) {
           mesh.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
         }

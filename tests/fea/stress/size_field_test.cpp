@@ -5,15 +5,15 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "fea/element/nearest_point.h"
 #include "tests/support/parts.h"
+#include "fea/element/point_grid.h"
 
 namespace meniscus::size_field_test {
 namespace {
 
 constexpr double kSizeRounding = 1e-9;
 
-TEST(NearestPoint, AgreesWithLookingAtAll) {
+TEST(PointGrid, AgreesWithLookingAtAll) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (const Vec3& size : {Vec3(1, 1, 1), Vec3(5, 1, 0.01), Vec3(1, 0, 0)}) {
@@ -22,7 +22,7 @@ TEST(NearestPoint, AgreesWithLookingAtAll) {
       points.push_back(
           size.cwiseProduct(Vec3(unit(random), unit(random), unit(random))));
     }
-    const NearestPoint nearest(points);
+    const PointGrid nearest(points);
     for (int k = 0; k < 200; ++k) {
       const Vec3 x =
           3.0 * Vec3(unit(random), unit(random), unit(random)) - Vec3::Ones();
@@ -33,7 +33,7 @@ TEST(NearestPoint, AgreesWithLookingAtAll) {
       EXPECT_EQ((points[nearest.of(x)] - x).norm(), least);
     }
   }
-  EXPECT_EQ(NearestPoint({Vec3(1, 2, 3), Vec3(1, 2, 3)}).of({9, 9, 9}), 0);
+  EXPECT_EQ(PointGrid({Vec3(1, 2, 3), Vec3(1, 2, 3)}).of({9, 9, 9}), 0);
 }
 
 /// Errors of a unit cube's elements as `density` (error^2 per volume) has it.

@@ -1,4 +1,5 @@
-/// The nearest of many points.
+/// The nearest of many points: a grid, for points that are spread evenly. What
+/// is nearest on facets is asked of core/geometry/facet_tree.h.
 #pragma once
 
 #include <array>
@@ -10,10 +11,10 @@ namespace meniscus {
 
 /// Points sorted into equal boxes, about one a box. Owns copies; safe to ask
 /// from several threads.
-class NearestPoint {
+class PointGrid {
  public:
   /// `points` must be finite and not empty.
-  explicit NearestPoint(Points points);
+  explicit PointGrid(Points points);
 
   /// Index of the nearest point; the lowest of several.
   int of(const Vec3& x) const;

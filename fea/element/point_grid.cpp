@@ -1,4 +1,8 @@
+<<<<<<<< HEAD:fea/element/nearest_point.cpp
 #include "fea/element/nearest_point.h"
+========
+#include "fea/element/point_grid.h"
+>>>>>>>> help-a:fea/element/point_grid.cpp
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +11,7 @@
 
 namespace meniscus {
 
-NearestPoint::NearestPoint(Points points) : points_(std::move(points)) {
+PointGrid::PointGrid(Points points) : points_(std::move(points)) {
   Vec3 high = points_.front();
   low_ = high;
   for (const Vec3& x : points_) {
@@ -39,7 +43,7 @@ NearestPoint::NearestPoint(Points points) : points_(std::move(points)) {
   }
 }
 
-std::array<int, 3> NearestPoint::box_of(const Vec3& x) const {
+std::array<int, 3> PointGrid::box_of(const Vec3& x) const {
   std::array<int, 3> box;
   for (int k = 0; k < 3; ++k) {
     const double at = std::floor((x[k] - low_[k]) / width_);
@@ -48,7 +52,7 @@ std::array<int, 3> NearestPoint::box_of(const Vec3& x) const {
   return box;
 }
 
-int NearestPoint::of(const Vec3& x) const {
+int PointGrid::of(const Vec3& x) const {
   const auto middle = box_of(x);
   // Distances count from the place in the grid next to x.
   int best = -1;
