@@ -49,17 +49,14 @@ int check_gradient_command(const CheckGradientArguments& arguments) {
   const Case& input = *reading.input;
   TerminalMonitor monitor(monitor_options(arguments.common));
   catch_stop_signals();
-  try {
+  return exit_code_of({on<SolverError>(kExitNoSolution, "failed: ")}, [&] {
     const CaseGradientCheck check = check_case_gradient(
         input, design_at(input, arguments.at), {.monitor = &monitor});
     if (!arguments.common.quiet || !check.report.passed) {
       std::fputs(gradient_check_text(input, check).c_str(), stdout);
     }
     return check.report.passed ? kExitDone : kExitError;
-  } catch (const SolverError& error) {
-    std::fprintf(stderr, "failed: %s\n", error.what());
-    return kExitNoSolution;
-  }
+  });
 }
 
 }  // namespace meniscus

@@ -9,8 +9,6 @@
 
 namespace meniscus {
 
-struct Case;
-
 struct CommonArguments {
   std::vector<std::string> overrides;  // "name=value"
   std::string out;                     // results folder; empty: results/<name>
@@ -86,10 +84,6 @@ int new_command(const std::string& name);
 int check_command(const std::string& case_path, const CommonArguments& common);
 int check_gradient_command(const CheckGradientArguments& arguments);
 int run_command(const RunArguments& arguments);
-/// The same of a family; `warnings` of its reading.
-int run_family_command(const Case& input,
-                       const std::vector<std::string>& warnings,
-                       const RunArguments& arguments);
 int evolve_command(const EvolveArguments& arguments);
 /// Proposes rims of a scan as curves of a case.
 int curves_command(const CurvesArguments& arguments);

@@ -8,8 +8,8 @@
 #include "app/case_input.h"
 #include "app/commands.h"
 #include "app/exit_code.h"
-#include "app/report_file.h"
 #include "app/signals.h"
+#include "app/terminal.h"
 #include "app/terminal_monitor.h"
 #include "app/versions.h"
 #include "core/atomic_file.h"
@@ -20,6 +20,7 @@
 #include "pipeline/results/results.h"
 #include "pipeline/store/study_store.h"
 #include "pipeline/tables/text_table.h"
+#include "report/page/report_page.h"
 
 namespace meniscus {
 
@@ -125,6 +126,26 @@ std::vector<PartFigures> load_parts(const CompareArguments& arguments,
   return parts;
 }
 
+void compare(const CompareArguments& arguments, Surfaces& surfaces,
+             Monitor& monitor) {
+  const fs::path folder = arguments.out;
+  UnitSystem units;
+  const std::vector<PartFigures> parts = load_parts(arguments, monitor, units);
+  const std::vector<TextRow> table = comparison_table(parts, units);
+  if (!arguments.quiet) {
+    std::fputs(for_people(table).c_str(), stdout);
+  }
+  write_file(folder / "compare.csv", csv_text(table));
+  write_file(folder / "compare.json",
+             comparison_json(parts, units, kProgramVersion).dump(2) + "\n");
+  surfaces.keep();
+  write_report_or_warn(folder, {.versions = version_text()}, &monitor,
+                       [](const std::string& warning) { warn({warning}); });
+  if (!arguments.quiet) {
+    std::printf("written to %s\n", (folder / "compare.json").c_str());
+  }
+}
+
 }  // namespace
 
 int compare_command(const CompareArguments& arguments) {
@@ -132,35 +153,14 @@ int compare_command(const CompareArguments& arguments) {
   TerminalMonitor monitor(
       {.style = arguments.quiet ? MonitorStyle::Quiet : MonitorStyle::Automatic,
        .stop = [] { return stop_signal() != 0; }});
-  const fs::path folder = arguments.out;
-  Surfaces surfaces(folder, arguments.parts.size());
-  try {
-    UnitSystem units;
-    const std::vector<PartFigures> parts =
-        load_parts(arguments, monitor, units);
-    const std::vector<TextRow> table = comparison_table(parts, units);
-    if (!arguments.quiet) {
-      std::fputs(for_people(table).c_str(), stdout);
-    }
-    write_file(folder / "compare.csv", csv_text(table));
-    write_file(folder / "compare.json",
-               comparison_json(parts, units, kProgramVersion).dump(2) + "\n");
-    surfaces.keep();
-    report_aloud(folder, {}, monitor);
-    if (!arguments.quiet) {
-      std::printf("written to %s\n", (folder / "compare.json").c_str());
-    }
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
-  } catch (const MeshError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitNoSolution;
-  } catch (const SolverError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitNoSolution;
-  }
-  return kExitDone;
+  Surfaces surfaces(arguments.out, arguments.parts.size());
+  return exit_code_of(
+      {on<IoError>(kExitWrongInput), on<MeshError>(kExitNoSolution),
+       on<SolverError>(kExitNoSolution)},
+      [&] {
+        compare(arguments, surfaces, monitor);
+        return kExitDone;
+      });
 }
 
 }  // namespace meniscus

@@ -12,7 +12,8 @@ namespace meniscus {
 
 int curves_command(const CurvesArguments& arguments) {
   std::string text;
-  try {
+  // Until then nothing is written: whatever is wrong is wrong with the scan.
+  const int no_curves = exit_code_of({on<Error>(kExitWrongInput)}, [&] {
     const ScanRimReport report =
         rims_of_scan(arguments.scan, {.angle = arguments.angle,
                                       .radius = arguments.radius,
@@ -26,9 +27,10 @@ int curves_command(const CurvesArguments& arguments) {
       return kExitNoSolution;
     }
     text = curves_text(report, arguments.scan);
-  } catch (const Error& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
+    return kExitDone;
+  });
+  if (no_curves != kExitDone) {
+    return no_curves;
   }
   if (arguments.out.empty()) {
     std::fputs(text.c_str(), stdout);

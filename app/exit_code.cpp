@@ -1,6 +1,22 @@
 #include "app/exit_code.h"
 
+#include <cstdio>
+#include <new>
+
+#include "core/error.h"
+
 namespace meniscus {
+
+namespace {
+
+/// In place of std::bad_alloc's own words.
+const char* message_of(const std::exception& error) {
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr
+             ? "not enough memory; try longer edges"
+             : error.what();
+}
+
+}  // namespace
 
 int exit_code_of(RunStatus status) {
   switch (status) {
@@ -16,6 +32,26 @@ int exit_code_of(RunStatus status) {
       return kExitInterrupted;
   }
   return kExitError;
+}
+
+std::vector<ErrorRule> program_rules() {
+  return {on<InvalidInput>(kExitWrongInput), on<Interrupted>(kExitInterrupted),
+          on<std::exception>(kExitError, "error: ")};
+}
+
+int exit_code_of(const std::vector<ErrorRule>& rules,
+                 const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const std::exception& error) {
+    for (const ErrorRule& rule : rules) {
+      if (rule.matches(error)) {
+        std::fprintf(stderr, "%s%s\n", rule.prefix.c_str(), message_of(error));
+        return rule.exit_code;
+      }
+    }
+    throw;
+  }
 }
 
 }  // namespace meniscus

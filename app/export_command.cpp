@@ -21,23 +21,16 @@ namespace fs = std::filesystem;
 
 /// One run; what goes wrong with it is told. Returns the exit code.
 int export_run(const fs::path& run, const ExportOptions& options) {
-  try {
-    const fs::path file = export_part(run, options);
-    std::printf("%s\n", file.string().c_str());
-    return kExitDone;
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
-  } catch (const InvalidInput& error) {
-    std::fprintf(stderr, "%s: %s\n", run.c_str(), error.what());
-    return kExitWrongInput;
-  } catch (const MeshError& error) {
-    std::fprintf(stderr, "%s: %s\n", run.c_str(), error.what());
-    return kExitNoSolution;
-  } catch (const SolverError& error) {
-    std::fprintf(stderr, "%s: %s\n", run.c_str(), error.what());
-    return kExitNoSolution;
-  }
+  const std::string prefix = run.string() + ": ";
+  return exit_code_of(
+      {on<IoError>(kExitWrongInput), on<InvalidInput>(kExitWrongInput, prefix),
+       on<MeshError>(kExitNoSolution, prefix),
+       on<SolverError>(kExitNoSolution, prefix)},
+      [&] {
+        const fs::path file = export_part(run, options);
+        std::printf("%s\n", file.string().c_str());
+        return kExitDone;
+      });
 }
 
 }  // namespace
@@ -47,11 +40,12 @@ int export_command(const ExportArguments& arguments) {
   TerminalMonitor monitor({.stop = [] { return stop_signal() != 0; }});
   const fs::path folder = arguments.run_folder;
   std::vector<fs::path> runs;
-  try {
+  const int no_runs = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     runs = runs_in(folder);
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
+    return kExitDone;
+  });
+  if (no_runs != kExitDone) {
+    return no_runs;
   }
   if (!arguments.out.empty() && runs.front() != folder) {
     throw InvalidInput(fmt::format(

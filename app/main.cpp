@@ -1,8 +1,6 @@
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <functional>
-#include <new>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -10,7 +8,6 @@
 
 #include "app/commands.h"
 #include "app/exit_code.h"
-#include "core/error.h"
 #include "core/memory.h"
 #include "core/thread_waits.h"
 #include "pipeline/results/export_part.h"
@@ -324,19 +321,6 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   meniscus::wait_asleep(argv);
   meniscus::keep_freed_memory();
-  try {
-    return run_program(argc, argv);
-  } catch (const meniscus::InvalidInput& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return meniscus::kExitWrongInput;
-  } catch (const meniscus::Interrupted& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return meniscus::kExitInterrupted;
-  } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "error: not enough memory; try longer edges\n");
-    return meniscus::kExitError;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return meniscus::kExitError;
-  }
+  return meniscus::exit_code_of(meniscus::program_rules(),
+                                [&] { return run_program(argc, argv); });
 }

@@ -38,16 +38,13 @@ int new_command(const std::string& name) {
                  file.string().c_str());
     return kExitWrongInput;
   }
-  try {
+  return exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     make_folder(folder);
     write_file(file, new_case_text(folder.filename().string()));
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
-  }
-  std::printf("%s is written; run it with: meniscus run %s\n",
-              file.string().c_str(), file.string().c_str());
-  return kExitDone;
+    std::printf("%s is written; run it with: meniscus run %s\n",
+                file.string().c_str(), file.string().c_str());
+    return kExitDone;
+  });
 }
 
 int check_command(const std::string& case_path, const CommonArguments& common) {
@@ -75,35 +72,42 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
 
 namespace {
 
+DatafileOptions datafile_options(const EvolveArguments& arguments,
+                                 Monitor& monitor) {
+  DatafileOptions options;
+  options.refinements = arguments.refinements;
+  for (const std::string& text : arguments.common.overrides) {
+    const auto [name, value] = named_number("--set", text);
+    options.parameters[name] = value;
+  }
+  options.method = arguments.method == "gradient" ? DatafileMethod::Gradient
+                   : arguments.method == "conjugate_gradients"
+                       ? DatafileMethod::ConjugateGradients
+                       : DatafileMethod::Newton;
+  if (!arguments.macro.empty()) {
+    options.macro = arguments.macro;
+  }
+  options.pop = arguments.pop;
+  options.monitor = &monitor;
+  return options;
+}
+
 int evolve_datafile_command(const EvolveArguments& arguments) {
   const CommonArguments& common = arguments.common;
   const fs::path path = arguments.path;
   const fs::path folder = common.out.empty() ? fs::path("results") / path.stem()
                                              : fs::path(common.out);
-  DatafileOptions options;
   DatafileResult result;
   TerminalMonitor monitor(monitor_options(common));
-  try {
-    options.refinements = arguments.refinements;
-    for (const std::string& text : common.overrides) {
-      const auto [name, value] = named_number("--set", text);
-      options.parameters[name] = value;
-    }
-    options.method = arguments.method == "gradient" ? DatafileMethod::Gradient
-                     : arguments.method == "conjugate_gradients"
-                         ? DatafileMethod::ConjugateGradients
-                         : DatafileMethod::Newton;
-    if (!arguments.macro.empty()) {
-      options.macro = arguments.macro;
-    }
-    options.pop = arguments.pop;
-    options.monitor = &monitor;
+  const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
+    const DatafileOptions options = datafile_options(arguments, monitor);
     make_folder(folder);
     catch_stop_signals();
     result = evolve_datafile(path, options);
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
+    return kExitDone;
+  });
+  if (refused != kExitDone) {
+    return refused;
   }
   const std::string title = path.filename().string();
   const std::string warning = write_datafile_result(result, title, folder);
@@ -121,8 +125,8 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
   if (result.failure) {
     std::fprintf(stderr, "failed: %s\n", result.failure->message.c_str());
     const FailureKind kind = result.failure->kind;
-    if (!options.pop && (kind == FailureKind::FilmUnstable ||
-                         kind == FailureKind::FilmPinched)) {
+    if (!arguments.pop && (kind == FailureKind::FilmUnstable ||
+                           kind == FailureKind::FilmPinched)) {
       std::fprintf(stderr,
                    "--pop splits junctions and pinched necks and settles "
                    "what is left\n");
@@ -214,11 +218,12 @@ int evolve_command(const EvolveArguments& arguments) {
   }
   const Case& input = *reading.input;
   const fs::path folder = results_folder(input, common.out);
-  try {
+  const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     make_folder(folder);
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
+    return kExitDone;
+  });
+  if (refused != kExitDone) {
+    return refused;
   }
   catch_stop_signals();
   TerminalMonitor monitor(monitor_options(common));
@@ -250,7 +255,7 @@ int evolve_command(const EvolveArguments& arguments) {
 }
 
 int study_show_command(const std::string& folder, const std::string& csv) {
-  try {
+  return exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     const fs::path family = fs::path(folder) / "family.csv";
     if (fs::exists(family)) {
       const std::string table = read_file(family);
@@ -270,11 +275,8 @@ int study_show_command(const std::string& folder, const std::string& csv) {
     } else {
       write_file(csv, history_csv(records));
     }
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
-  }
-  return kExitDone;
+    return kExitDone;
+  });
 }
 
 std::string version_text() {

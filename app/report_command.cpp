@@ -40,14 +40,15 @@ int report_command(const ReportArguments& arguments) {
   catch_stop_signals();
   TerminalMonitor monitor({.stop = [] { return stop_signal() != 0; }});
   const fs::path folder = arguments.folder;
-  try {
+  const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     warn(write_report(folder, {.versions = version_text()}));
     if (arguments.pictures) {
       draw_again(folder, monitor);
     }
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
+    return kExitDone;
+  });
+  if (refused != kExitDone) {
+    return refused;
   }
   if (fs::exists(folder / "report.html")) {
     std::printf("%s\n", (folder / "report.html").c_str());

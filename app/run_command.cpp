@@ -6,18 +6,14 @@
 #include "app/case_input.h"
 #include "app/commands.h"
 #include "app/exit_code.h"
-#include "app/report_file.h"
 #include "app/signals.h"
 #include "app/study_events.h"
+#include "app/terminal.h"
 #include "app/versions.h"
-#include "core/atomic_file.h"
-#include "core/timer.h"
-#include "pipeline/forward/forward_model.h"
-#include "pipeline/forward/walls.h"
 #include "pipeline/results/results.h"
-#include "pipeline/results/run_folder.h"
-#include "pipeline/study/film_frames.h"
-#include "report/output/run_output.h"
+#include "core/error.h"
+#include "pipeline/store/stored_case.h"
+#include "report/output/folder_run.h"
 
 namespace meniscus {
 
@@ -25,115 +21,129 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TerminalMonitorOptions options_of(const Case& input,
-                                  const CommonArguments& common) {
-  TerminalMonitorOptions options = monitor_options(common);
-  options.outer_stage = outer_stage_of(input);
-  return options;
+FolderRunOptions run_options(const RunArguments& arguments, fs::path folder,
+                             const std::vector<std::string>& warnings) {
+  return {.folder = std::move(folder),
+          .program_version = kProgramVersion,
+          .page_versions = version_text(),
+          .resume = arguments.resume,
+          .jobs = arguments.jobs,
+          .threads = omp_get_max_threads(),
+          .time_limit = arguments.time_limit,
+          .pictures = arguments.pictures,
+          .frames = arguments.frames,
+          .frame_pictures = arguments.frame_pictures,
+          .report = arguments.report,
+          .exports = arguments.exports,
+          .warnings = warnings};
 }
 
-/// One run from the open study to the files.
-class Run {
- public:
-  Run(const Case& input, StudyStore& store, const RunArguments& arguments,
-      fs::path folder)
-      : input_(input),
-        store_(store),
-        arguments_(arguments),
-        folder_(std::move(folder)),
-        monitor_(options_of(input, arguments.common)),
-        output_(input, folder_,
-                {.pictures = arguments.pictures,
-                 .frame_pictures = arguments.frame_pictures,
-                 .exports = arguments.exports,
-                 .program_version = kProgramVersion,
-                 .time_limit = arguments.time_limit,
-                 .monitor = &monitor_}) {}
-
-  int execute(const std::vector<std::string>& warnings);
-
- private:
-  void write_all(RunResult& result, const EvaluationFields& fields);
-  int keep(RunStatus status, const std::string& reason);
-  void explain(const RunResult& result) const;
-
-  const Case& input_;
-  StudyStore& store_;
-  const RunArguments& arguments_;
-  fs::path folder_;
-  TerminalMonitor monitor_;
-  RunOutput output_;
-};
-
-/// Meshes and pictures first, result.json last: it tells that all is there.
-void Run::write_all(RunResult& result, const EvaluationFields& fields) {
-  const Timer timer;
-  output_.finish(fields, result);
-  result.output_seconds = timer.seconds();
-  result.total_seconds += result.output_seconds;
-  write_summary(input_, result, store_.all(), kProgramVersion, folder_);
-  monitor_.tell(end_event(result.status, result.message, result.total_seconds));
+/// Events for terminal and log, warnings on stderr.
+FolderRunListener run_listener(const Case& input, TerminalMonitor& monitor) {
+  return {.monitor = &monitor,
+          .evaluated =
+              [&](const StudyNews& news) {
+                monitor.tell(evaluation_event(input, news));
+              },
+          .finished =
+              [&](const RunResult& result) {
+                monitor.tell(end_event(result.status, result.message,
+                                       result.total_seconds));
+              },
+          .ended_early =
+              [&](const RunResult& result) {
+                monitor.tell(end_event(result.status, result.message,
+                                       result.total_seconds));
+                std::fprintf(stderr, "%s: %s\n", name_of(result.status),
+                             result.message.c_str());
+              },
+          .page_warning = [](const std::string& warning) { warn({warning}); },
+          .stop_reason =
+              [] {
+                return std::string("stopped by ") +
+                       name_of_signal(stop_signal());
+              }};
 }
 
-/// The state of a run that ended early, for people and for --resume.
-int Run::keep(RunStatus status, const std::string& reason) {
-  const RunResult result =
-      kept_result(input_, store_, status, reason, "--resume");
-  monitor_.tell(end_event(status, result.message, result.total_seconds));
-  std::fprintf(stderr, "%s: %s\n", name_of(status), result.message.c_str());
-  write_summary(input_, result, store_.all(), kProgramVersion, folder_);
-  report_aloud(folder_, arguments_, monitor_);
-  return exit_code_of(status);
-}
-
-void Run::explain(const RunResult& result) const {
-  const bool good = result.status == RunStatus::Converged;
-  if (!good || !arguments_.common.quiet) {
-    std::fprintf(good ? stdout : stderr, "%s: %s\n", name_of(result.status),
-                 result.message.c_str());
+/// Status and message, on stderr unless all is good; with `quiet` only then.
+void explain_end(RunStatus status, const std::string& message, bool quiet) {
+  const bool good = status == RunStatus::Converged;
+  if (!good || !quiet) {
+    std::fprintf(good ? stdout : stderr, "%s: %s\n", name_of(status),
+                 message.c_str());
   }
-  if (arguments_.common.quiet) {
+}
+
+void explain(const Case& input, const RunResult& result, const fs::path& folder,
+             bool quiet) {
+  explain_end(result.status, result.message, quiet);
+  if (quiet) {
     return;
   }
-  std::fputs(result_text(input_, result).c_str(), stdout);
-  std::printf("  results in %s\n", folder_.string().c_str());
+  std::fputs(result_text(input, result).c_str(), stdout);
+  std::printf("  results in %s\n", folder.string().c_str());
   std::fflush(stdout);
   for (const std::string& warning : result.warnings) {
     if (result.message.find(warning) == std::string::npos) {  // told already
-      std::fprintf(stderr, "warning: %s\n", warning.c_str());
+      warn({warning});
     }
   }
 }
 
-int Run::execute(const std::vector<std::string>& warnings) {
-  try {
-    EvaluationFields fields;
-    RunResult result = run_study(
-        input_, store_,
-        {.time_limit = arguments_.time_limit,
-         .frames = arguments_.frames ? kMostFrames : 0,
-         .jobs = arguments_.jobs,
-         .listener =
-             [this](const StudyNews& news) {
-               monitor_.tell(evaluation_event(input_, news));
-             },
-         .answered =
-             [this](const EvaluationFields& answer) { output_.begin(answer); },
-         .monitor = &monitor_},
-        &fields);
-    result.warnings.insert(result.warnings.begin(), warnings.begin(),
-                           warnings.end());
-    write_all(result, fields);
-    report_aloud(folder_, arguments_, monitor_);
-    explain(result);
-    return exit_code_of(result.status);
-  } catch (const Interrupted&) {
-    return keep(RunStatus::Interrupted,
-                std::string("stopped by ") + name_of_signal(stop_signal()));
-  } catch (const IoError& error) {
-    // A full disk may well refuse this file too; the study is safe.
-    return keep(RunStatus::Error, error.what());
+void explain(const FamilyResult& result, const FolderRunOptions& options,
+             bool quiet) {
+  explain_end(result.status, result.message, quiet);
+  if (quiet) {
+    return;
   }
+  std::fputs(
+      family_table_text(family_csv(result.rows), stored_units(options.folder))
+          .c_str(),
+      stdout);
+  std::printf("  %zu members in %.1f s\n  results in %s\n", result.rows.size(),
+              result.total_seconds, options.folder.string().c_str());
+  std::fflush(stdout);
+  warn(options.warnings);
+  warn(result.warnings);
+}
+
+int run_one(const Case& input, const FolderRunOptions& options, bool quiet,
+            TerminalMonitorOptions monitor_options) {
+  std::optional<FolderRun> run;
+  const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
+    run.emplace(input, options);
+    return kExitDone;
+  });
+  if (refused != kExitDone) {
+    return refused;
+  }
+  monitor_options.outer_stage = outer_stage_of(input);
+  TerminalMonitor monitor(std::move(monitor_options));
+  const FolderRunResult end = run->run(run_listener(input, monitor));
+  if (!end.error) {
+    explain(input, end.result, options.folder, quiet);
+  }
+  return exit_code_of(end.result.status);
+}
+
+int run_members(const Case& input, const FolderRunOptions& options, bool quiet,
+                TerminalMonitorOptions monitor_options) {
+  monitor_options.outer_stage = "family";
+  TerminalMonitor monitor(std::move(monitor_options));
+  const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
+    prepare_run_folder(input, options.folder);
+    fs::remove(options.folder / "report.html");
+    return kExitDone;
+  });
+  if (refused != kExitDone) {
+    return refused;
+  }
+  const FolderRunListener listener = run_listener(input, monitor);
+  const FamilyResult result = run_family_into_folder(input, options, listener);
+  write_family_pages(result, options, listener);
+  monitor.tell(end_event(result.status, result.message, result.total_seconds));
+  explain(result, options, quiet);
+  return exit_code_of(result.status);
 }
 
 }  // namespace
@@ -142,30 +152,17 @@ int run_command(const RunArguments& arguments) {
   if (arguments.threads > 0) {
     omp_set_num_threads(arguments.threads);
   }
-  const CaseReading reading =
-      read_case_aloud(arguments.case_path, arguments.common);
+  const CommonArguments& common = arguments.common;
+  const CaseReading reading = read_case_aloud(arguments.case_path, common);
   if (!reading.input) {
     return kExitWrongInput;
   }
   const Case& input = *reading.input;
-  if (!input.study.members.empty()) {
-    return run_family_command(input, reading.warnings, arguments);
-  }
-  const fs::path folder = results_folder(input, arguments.common.out);
+  const FolderRunOptions options = run_options(
+      arguments, results_folder(input, common.out), reading.warnings);
   catch_stop_signals();
-  std::optional<StudyStore> store;
-  try {
-    refuse_walls(input);
-    require_solver(input);
-    make_folder(folder);
-    store.emplace(open_run(
-        input, folder, arguments.resume ? RunBegins::Resumed : RunBegins::Anew,
-        kProgramVersion));
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
-  }
-  return Run(input, *store, arguments, folder).execute(reading.warnings);
+  const auto run = input.study.members.empty() ? run_one : run_members;
+  return run(input, options, common.quiet, monitor_options(common));
 }
 
 }  // namespace meniscus

@@ -100,12 +100,8 @@ int watch(const WatchArguments& arguments) {
 }  // namespace
 
 int study_watch_command(const WatchArguments& arguments) {
-  try {
-    return watch(arguments);
-  } catch (const IoError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitWrongInput;
-  }
+  return exit_code_of({on<IoError>(kExitWrongInput)},
+                      [&] { return watch(arguments); });
 }
 
 }  // namespace meniscus

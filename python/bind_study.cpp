@@ -11,7 +11,7 @@
 #include "python/array_view.h"
 #include "python/bindings.h"
 #include "python/call.h"
-#include "python/study_run.h"
+#include "report/output/folder_run.h"
 
 namespace meniscus::python {
 
@@ -114,7 +114,32 @@ void bind_columns(py::class_<StudyTable>& type) {
           "Number of evaluations.");
 }
 
-void run_study_in(const ReadCase& input, StudyRunOptions options,
+/// What ended it early passes on, once the folder's result.json tells of it.
+void run_into_folder(const Case& input, const FolderRunOptions& options,
+                     Monitor& monitor) {
+  const FolderRunListener listener{
+      .monitor = &monitor,
+      .page_warning =
+          [&](const std::string& warning) {
+            monitor.log(Severity::Warning, warning);
+          },
+      .stop_reason = [] { return std::string("stopped on request"); }};
+  if (input.study.members.empty()) {
+    const FolderRunResult end = FolderRun(input, options).run(listener);
+    if (end.error) {
+      std::rethrow_exception(end.error);
+    }
+    return;
+  }
+  prepare_run_folder(input, options.folder);
+  const FamilyResult result = run_family_into_folder(input, options, listener);
+  if (result.status == RunStatus::Interrupted) {
+    throw Interrupted(result.message);
+  }
+  write_family_pages(result, options, listener);
+}
+
+void run_study_in(const ReadCase& input, FolderRunOptions options,
                   const py::object& progress) {
   if (options.jobs < 1 || options.jobs > kMostJobs) {
     throw InvalidInput(fmt::format("jobs: found {}, expected 1 to {}",
@@ -125,8 +150,12 @@ void run_study_in(const ReadCase& input, StudyRunOptions options,
         fmt::format("time_limit: found {}, expected seconds above 0, or None",
                     options.time_limit));
   }
+  options.program_version = MENISCUS_VERSION;
+  options.page_versions = "meniscus " MENISCUS_VERSION ", from Python";
   options.threads = thread_count();
   options.warnings = input.warnings;
+  options.resume_word = "resume";
+  options.pictures_when_late = true;
   Call call(progress);
   call.run([&] { run_into_folder(*input.input, options, call); });
 }

@@ -1,5 +1,6 @@
 #include "pipeline/store/study_store.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <ctime>
@@ -267,6 +268,23 @@ int StudyStore::size() const {
 
 std::vector<EvaluationRecord> StudyStore::all() const {
   return select_rows(impl_->database, "");
+}
+
+std::vector<EvaluationRecord> StudyStore::some(
+    const std::vector<int>& numbers) const {
+  const std::vector<EvaluationRecord> records = all();
+  std::vector<EvaluationRecord> found;
+  found.reserve(numbers.size());
+  for (const int number : numbers) {
+    const auto at = std::lower_bound(
+        records.begin(), records.end(), number,
+        [](const EvaluationRecord& r, int n) { return r.number < n; });
+    if (at == records.end() || at->number != number) {
+      throw InvalidInput(fmt::format("study: there is no record {}", number));
+    }
+    found.push_back(*at);
+  }
+  return found;
 }
 
 std::string purpose_of(const EvaluationRecord& record) {

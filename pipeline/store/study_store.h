@@ -97,6 +97,9 @@ class StudyStore {
 
   int size() const;
   std::vector<EvaluationRecord> all() const;  // by number
+  /// Those of `numbers`, in that order; throws InvalidInput for one that is not
+  /// there.
+  std::vector<EvaluationRecord> some(const std::vector<int>& numbers) const;
 
  private:
   struct Impl;

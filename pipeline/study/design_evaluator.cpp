@@ -58,14 +58,22 @@ EvaluationRecord DesignEvaluator::keep(const Evaluation& evaluation,
   return record;
 }
 
+void DesignEvaluator::compute_last(const VectorX& design, KeepStiffness keep) {
+  last_ = {};  // memory: not two designs at a time
+  last_.evaluation =
+      model_.evaluate(design, &last_.fields,
+                      keep == KeepStiffness::Yes ? &last_.adjoint : nullptr);
+}
+
 EvaluationRecord DesignEvaluator::evaluate(const VectorX& design,
                                            const std::string& phase) {
   throw_if_stopped(monitor_, "the study");
   ++counts_.evaluations;
   std::optional<EvaluationRecord> record = store_.find(options_.model, design);
   if (!record) {
-    last_ = model_.evaluate(design, &last_fields_, adjoint_wanted());
-    record = keep(last_, phase);
+    compute_last(design, options_.with_gradients ? KeepStiffness::Yes
+                                                 : KeepStiffness::No);
+    record = keep(last_.evaluation, phase);
   }
   counts_.failed += record->failure ? 1 : 0;
   if (watch_) {
@@ -164,12 +172,12 @@ JacobianAnswer DesignEvaluator::gradient(const VectorX& design,
   if (has_rows(record.gradient, responses)) {
     return {record.gradient, std::nullopt};
   }
-  if (!is_last(design) || last_adjoint_.elastic.empty()) {
-    last_ = model_.evaluate(design, &last_fields_, &last_adjoint_);
-    seconds_ += last_.seconds;
+  if (!is_last(design) || last_.adjoint.elastic.empty()) {
+    compute_last(design, KeepStiffness::Yes);
+    seconds_ += last_.evaluation.seconds;
   }
   const DesignGradient found =
-      model_.gradient(last_, last_fields_, last_adjoint_, responses);
+      model_.gradient(last_.evaluation, last_.fields, last_.adjoint, responses);
   seconds_.gradient += found.seconds;
   if (found.failure) {
     monitor_.log(Severity::Warning, "no gradient: " + found.failure->message);
@@ -190,13 +198,12 @@ Evaluation DesignEvaluator::with_fields(const VectorX& design,
                                         EvaluationFields& fields) {
   if (!is_last(design)) {
     monitor_.progress({.stage = "study", .detail = "the best design's fields"});
-    last_ = model_.evaluate(design, &last_fields_);
-    seconds_ += last_.seconds;
+    compute_last(design, KeepStiffness::No);
+    seconds_ += last_.evaluation.seconds;
   }
-  Evaluation result = std::exchange(last_, {});
-  fields = std::exchange(last_fields_, {});
-  last_adjoint_ = {};
-  return result;
+  StagedDesign last = std::exchange(last_, {});
+  fields = std::move(last.fields);
+  return std::move(last.evaluation);
 }
 
 }  // namespace meniscus

@@ -1,5 +1,6 @@
 /// One frozen model with the study database in front of it: the place that the
-/// kinds of study ask for designs.
+/// kinds of study ask for designs. What they have evaluated is remembered there
+/// alone; of one design, the last, this holds all that was computed.
 #pragma once
 
 #include <functional>
@@ -12,6 +13,7 @@
 #include "pipeline/store/study_store.h"
 #include "pipeline/study/study_monitor.h"
 #include "pipeline/study/study_news.h"
+#include "pipeline/forward/design_stages.h"
 
 namespace meniscus {
 
@@ -96,11 +98,11 @@ class DesignEvaluator {
 
  private:
   bool is_last(const VectorX& design) const {
-    return last_.design.size() == design.size() && last_.design == design;
+    return last_.evaluation.design.size() == design.size() &&
+           last_.evaluation.design == design;
   }
-  AdjointState* adjoint_wanted() {
-    return options_.with_gradients ? &last_adjoint_ : nullptr;
-  }
+  /// Computes the design, which is the last one from then on.
+  void compute_last(const VectorX& design, KeepStiffness keep);
   /// Those that the database lacks, each once, in order.
   std::vector<VectorX> missing(const std::vector<VectorX>& designs) const;
   void compute(const std::vector<VectorX>& designs, const std::string& phase);
@@ -117,11 +119,9 @@ class DesignEvaluator {
   EvaluationCounts counts_;
   StageSeconds seconds_;
   StudyTeller teller_;
-  // What the last computed evaluation left, so that a gradient or the best
-  // design's meshes need no second one when it came last.
-  Evaluation last_;
-  EvaluationFields last_fields_;
-  AdjointState last_adjoint_;
+  // The design computed last, side by side ones aside, so that its gradient or
+  // its meshes need no second evaluation; no stiffness unless it was kept.
+  StagedDesign last_;
 };
 
 }  // namespace meniscus

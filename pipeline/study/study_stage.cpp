@@ -22,6 +22,7 @@ struct OutOfReach {
 StudyStage::StudyStage(const Case& input, StudyStore& store,
                        const StudyOptions& options, const StageModel& model)
     : input_(input),
+      store_(store),
       options_(options),
       model_(model),
       evaluator_(input, store,
@@ -41,7 +42,7 @@ StudyStage::StudyStage(const Case& input, StudyStore& store,
       evaluator_.evaluate(initial_design(input_), "start");
   failure_ = record.failure;
   start_ = to_evaluation(record);
-  see(record);
+  count(record);
   if (!failure_ && input_.study.fit) {
     evaluator_.judge_by([fit = *input_.study.fit](const VectorX& responses) {
       return responses[fit];
@@ -74,19 +75,16 @@ std::optional<Refreeze> StudyStage::wanted(const VectorX& best,
                                            bool converged) const {
   return wanted_refreeze(
       {.input = input_,
-       .records = seen_,
+       .records = records(),
        .model = model_.name,
        .best = best,
        .min_dihedral_deg = evaluator_.model().frozen().tet.min_dihedral_deg,
        .converged = converged});
 }
 
-void StudyStage::see(const EvaluationRecord& record) {
-  if (std::none_of(seen_.begin(), seen_.end(), [&](const EvaluationRecord& r) {
-        return r.number == record.number;
-      })) {
-    seen_.push_back(record);
-    seen_.back().gradient.resize(0, 0);
+void StudyStage::count(const EvaluationRecord& record) {
+  if (std::find(asked_.begin(), asked_.end(), record.number) == asked_.end()) {
+    asked_.push_back(record.number);
   }
 }
 
@@ -99,7 +97,7 @@ void StudyStage::leave_at_walls(const EvaluationRecord& record) {
       ++inverted_ < kPatience) {
     return;
   }
-  const VectorX best = best_record(input_, seen_).inputs;
+  const VectorX best = best_record(input_, records()).inputs;
   if (wanted(best, false)) {
     throw OutOfReach{best};
   }
@@ -111,7 +109,7 @@ void StudyStage::conduct(Leave leave) {
   left_early_ = false;
   inverted_ = 0;
   evaluator_.watch_by([this, leave](const EvaluationRecord& record) {
-    see(record);
+    count(record);
     if (leave == Leave::Early) {
       leave_at_walls(record);
     }

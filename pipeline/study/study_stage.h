@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline/store/refreeze.h"
 #include "pipeline/study/design_evaluator.h"
@@ -43,7 +44,7 @@ class StudyStage {
   std::optional<Refreeze> wanted(const VectorX& best, bool converged) const;
   const StudyOutcome& outcome() const { return outcome_; }
   /// Designs that the stage has asked for.
-  int evaluations() const { return static_cast<int>(seen_.size()); }
+  int evaluations() const { return static_cast<int>(asked_.size()); }
   bool left_early() const { return left_early_; }
 
   const std::string& model_name() const { return model_.name; }
@@ -57,13 +58,15 @@ class StudyStage {
  private:
   VectorX begin();
 
-  void see(const EvaluationRecord& record);
+  void count(const EvaluationRecord& record);
+  std::vector<EvaluationRecord> records() const { return store_.some(asked_); }
   void leave_at_walls(const EvaluationRecord& record);
 
   const Case& input_;
-  // Designs asked for, each once: not what the database holds, which on a
-  // resumed run knows what comes later.
-  std::vector<EvaluationRecord> seen_;
+  const StudyStore& store_;
+  // Numbers in the database of designs asked for, each once: not all that it
+  // holds, which on a resumed run knows what comes later.
+  std::vector<int> asked_;
   const StudyOptions& options_;
   StageModel model_;
   DesignEvaluator evaluator_;

@@ -351,4 +351,23 @@ std::vector<std::string> write_report(const fs::path& folder,
   return {};
 }
 
+void write_report_or_warn(const fs::path& folder, const ReportOptions& options,
+                          Monitor* monitor,
+                          const std::function<void(const std::string&)>& warn) {
+  const auto tell = [&](const std::string& warning) {
+    if (warn) {
+      warn(warning);
+    }
+  };
+  try {
+    (monitor != nullptr ? *monitor : silent_monitor())
+        .progress({.stage = "output", .detail = "writing the report page"});
+    for (const std::string& warning : write_report(folder, options)) {
+      tell(warning);
+    }
+  } catch (const Error& error) {
+    tell(std::string("no report page: ") + error.what());
+  }
+}
+
 }  // namespace meniscus

@@ -4,8 +4,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "core/monitor.h"
 
 namespace meniscus {
 
@@ -26,5 +29,12 @@ struct ReportOptions {
 /// half-written then.
 std::vector<std::string> write_report(const std::filesystem::path& folder,
                                       const ReportOptions& options = {});
+
+/// The same at the end of a run, which is a run without its page too: what
+/// hinders it goes to `warn` (may be empty) like its warnings. `monitor` may be
+/// null.
+void write_report_or_warn(const std::filesystem::path& folder,
+                          const ReportOptions& options, Monitor* monitor,
+                          const std::function<void(const std::string&)>& warn);
 
 }  // namespace meniscus

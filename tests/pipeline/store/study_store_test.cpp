@@ -129,6 +129,23 @@ TEST(StudyStore, FindsByExactBitsOnly) {
   EXPECT_FALSE(store.find("base", VectorX::Zero(1)));
 }
 
+TEST(StudyStore, GivesRecordsByNumberInTheOrderAskedFor) {
+  const TempFolder folder;
+  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
+  for (int i = 1; i <= 3; ++i) {
+    store.append(record_of(i));
+  }
+  const std::vector<EvaluationRecord> some = store.some({3, 1});
+  ASSERT_EQ(some.size(), 2);
+  EXPECT_EQ(some[0].number, 3);
+  EXPECT_EQ(some[0].responses, record_of(3).responses);
+  EXPECT_EQ(some[1].inputs, record_of(1).inputs);
+  EXPECT_THAT(message_of<InvalidInput>([&] {
+                store.some({1, 4});
+              }),
+              HasSubstr("no record 4"));
+}
+
 TEST(StudyStore, ResumesWhatIsThereOrStarts) {
   const TempFolder folder;
   { StudyStore::resume(folder.path().string(), kMeta).append(record_of(1)); }

@@ -79,6 +79,25 @@ TEST_F(DesignEvaluatorTest, FetchedAheadIsNotCountedAndNotComputedAgain) {
   EXPECT_EQ(evaluator.counts().evaluations, 1);
 }
 
+/// Whether the stiffness of each design is kept or only that of those whose
+/// gradient is asked for.
+TEST_F(DesignEvaluatorTest, AGradientIsOfItsOwnDesign) {
+  std::vector<Eigen::RowVectorXd> gradients;
+  for (const bool kept : {true, false}) {
+    StudyStore store = start(kept ? "kept" : "again");
+    DesignEvaluator evaluator(input_, store, {.with_gradients = kept});
+    for (const double radius : {22.0, 30.0}) {
+      evaluator.evaluate(foot(radius), "step");
+      const JacobianAnswer answer = evaluator.gradient(foot(radius), {0});
+      ASSERT_FALSE(answer.failure);
+      gradients.emplace_back(answer.jacobian.row(0));
+    }
+  }
+  EXPECT_NE(gradients[0], gradients[1]);
+  EXPECT_EQ(gradients[0], gradients[2]);
+  EXPECT_EQ(gradients[1], gradients[3]);
+}
+
 TEST_F(DesignEvaluatorTest, ATimeLimitKeepsTheBeginning) {
   StudyStore store = start("hurried");
   DesignEvaluator evaluator(input_, store, {.jobs = 2});
