@@ -5,8 +5,9 @@
 #include <limits>
 #include <numeric>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
+#include "core/dense.h"
 #include "evolve/rims.h"
 
 namespace meniscus {
@@ -135,7 +136,7 @@ Vec3 onto_walls(const FilmComplex& complex, int set, bool held,
     if (gap.size() == 0) {
       break;
     }
-    const Vec3 move = rows.completeOrthogonalDecomposition().solve(gap);
+    const Vec3 move = least_norm_move(rows, gap);
     if (!move.allFinite()) {
       break;
     }

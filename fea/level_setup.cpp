@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 
+#include "core/dense.h"
 #include "fea/smoothed_aggregation.h"
 
 namespace meniscus {
@@ -59,7 +60,8 @@ std::vector<double> inverse_blocks(const BlockMatrix<double>& matrix,
     for (int k = 0; k < 6; ++k) {
       none(k, k) = D(k, k) > 0.0 ? 0.0 : 1.0;
     }
-    Eigen::Map<RowMat6>(inverse.data() + 36L * i) = (D + none).inverse() - none;
+    Eigen::Map<RowMat6>(inverse.data() + 36L * i) =
+        inverse_of(RowMatrix6(D + none)) - none;
   }
   return inverse;
 }
