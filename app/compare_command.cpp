@@ -13,6 +13,7 @@
 #include "app/terminal_monitor.h"
 #include "app/versions.h"
 #include "core/error.h"
+#include "core/json.h"
 #include "io/atomic_file.h"
 #include "pipeline/imported_part.h"
 #include "pipeline/part_comparison.h"
@@ -142,8 +143,9 @@ int compare_command(const CompareArguments& arguments) {
       std::fputs(for_people(table).c_str(), stdout);
     }
     write_file(folder / "compare.csv", csv_text(table));
-    write_file(folder / "compare.json",
-               comparison_json(parts, units, kProgramVersion).dump(2) + "\n");
+    write_file(
+        folder / "compare.json",
+        json_text(comparison_json(parts, units, kProgramVersion), 2) + "\n");
     surfaces.keep();
     report_aloud(folder, {}, monitor);
     if (!arguments.quiet) {

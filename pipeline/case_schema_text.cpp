@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "pipeline/case_schema.h"
 
 namespace meniscus {
@@ -254,7 +255,7 @@ std::string json_schema() {
     }
   }
   schema["anyOf"] = {{{"required", for_parts}}, {{"required", {"walls"}}}};
-  return schema.dump(2) + "\n";
+  return json_text(schema, 2) + "\n";
 }
 
 std::string schema_markdown() {

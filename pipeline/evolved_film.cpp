@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "io/atomic_file.h"
 #include "pipeline/results.h"
 
@@ -105,7 +106,7 @@ void write_evolved_film(const EvolvedFilm& film,
   for (const FilmFrame& frame : frames) {
     json["frames"].push_back(settling_caption(frame));
   }
-  write_file(folder / "film.json", json.dump(1) + "\n");
+  write_file(folder / "film.json", json_text(json, 1) + "\n");
 }
 
 std::string settling_caption(const FilmFrame& frame) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/json.h"
 #include "evolve/grooming.h"
 #include "io/atomic_file.h"
 #include "pipeline/calculix_export.h"
@@ -251,7 +252,7 @@ void note_file(const fs::path& folder, const fs::path& file,
                       {"bytes", bytes},
                       {"written", inside}};
   try {
-    Json json = Json::parse(read_file(result));
+    Json json = require_json(read_file(result));
     Json& files = json.at("ledger").at("files");
     const auto same = std::find_if(
         files.begin(), files.end(),
@@ -261,7 +262,7 @@ void note_file(const fs::path& folder, const fs::path& file,
     } else {
       files.push_back(entry);
     }
-    write_file(result, json.dump(2) + "\n");
+    write_file(result, json_text(json, 2) + "\n");
   } catch (const Json::exception&) {
     return;  // of another version
   } catch (const IoError&) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "io/atomic_file.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
@@ -184,10 +185,10 @@ EvaluationRecord make_record(const Case& input, const Evaluation& evaluation) {
   record.response_names = response_names(input);
   record.responses = evaluation.responses;
   record.failure = evaluation.failure;
-  record.figures = Json{{"film", film_json(evaluation.film)},
-                        {"tet", tet_json(evaluation.tet)},
-                        {"fea", fea_json(evaluation.fea)}}
-                       .dump();
+  record.figures = json_text(Json{{"film", film_json(evaluation.film)},
+                                  {"tet", tet_json(evaluation.tet)},
+                                  {"fea", fea_json(evaluation.fea)}},
+                             -1);
   record.seconds = {{"evolve", evaluation.seconds.film},
                     {"mesh", evaluation.seconds.mesh},
                     {"fea", evaluation.seconds.fea}};
@@ -385,7 +386,7 @@ void write_summary(const Case& input, const RunResult& result,
                    const std::filesystem::path& folder) {
   write_file(folder / "history.csv", history_csv(records));
   write_file(folder / "result.json",
-             result_json(input, result, program_version).dump(2) + "\n");
+             json_text(result_json(input, result, program_version), 2) + "\n");
 }
 
 }  // namespace meniscus

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "io/atomic_file.h"
 #include "pipeline/family_table.h"
 #include "pipeline/results.h"
@@ -137,8 +138,7 @@ void StudyWatch::look_at_result(StudyGlance& glance) const {
   if (!fs::exists(folder_ / "result.json", code)) {
     return;
   }
-  const auto json =
-      nlohmann::json::parse(read_file(folder_ / "result.json"), nullptr, false);
+  const auto json = parse_json(read_file(folder_ / "result.json"));
   if (json.is_object()) {
     glance.status = json.value("status", "");
     glance.message = json.value("message", "");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
 #include "io/atomic_file.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
@@ -120,7 +121,8 @@ void write_wall(const Case& input, const CaseWall& made,
   write_vtp(folder / (name + ".vtp"), made.wall.surface, fields);
   write_stl(folder / (name + ".stl"), made.wall.surface,
             {.name = input.title, .unit = input.units.length});
-  write_file(folder / (name + ".json"), wall_json(input, made).dump(1) + "\n");
+  write_file(folder / (name + ".json"),
+             json_text(wall_json(input, made), 1) + "\n");
 }
 
 void refuse_walls(const Case& input) {
