@@ -21,6 +21,7 @@
 #include "pipeline/store/study_store.h"
 #include "pipeline/tables/text_table.h"
 #include "report/page/report_page.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -137,7 +138,7 @@ void compare(const CompareArguments& arguments, Surfaces& surfaces,
   }
   write_file(folder / "compare.csv", csv_text(table));
   write_file(folder / "compare.json",
-             comparison_json(parts, units, kProgramVersion).dump(2) + "\n");
+             json_text(comparison_json(parts, units, kProgramVersion), 2) + "\n");
   surfaces.keep();
   write_report_or_warn(folder, {.versions = version_text()}, &monitor,
                        [](const std::string& warning) { warn({warning}); });

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -87,9 +88,7 @@ bool JsonLog::write(const Json& fields) {
   }
   Json line = {{"time", timestamp()}};
   line.update(fields);
-  if (!write_all(
-          file_,
-          line.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n')) {
+  if (!write_all(file_, json_line(line) + '\n')) {
     problem_ = words(errno);
     close(file_);
     file_ = -1;

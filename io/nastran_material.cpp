@@ -1,7 +1,8 @@
 #include "io/nastran_material.h"
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 
+#include "core/math/dense.h"
 #include "io/nastran_bdf.h"
 #include "io/nastran_fields.h"
 
@@ -32,7 +33,7 @@ Mat6 stiffness(const DeckOrthotropic& m) {
   compliance(3, 3) = 1.0 / G[0];
   compliance(4, 4) = 1.0 / G[2];
   compliance(5, 5) = 1.0 / G[1];
-  const Mat6 inverse = compliance.inverse();
+  const Mat6 inverse = inverse_of(compliance);
   return 0.5 * (inverse + inverse.transpose());
 }
 

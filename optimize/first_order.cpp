@@ -4,9 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -88,7 +89,7 @@ VectorX solve_on(const Eigen::MatrixXd& A, const VectorX& b,
   for (std::size_t k = 0; k < used.size(); ++k) {
     part.col(static_cast<Eigen::Index>(k)) = A.col(used[k]);
   }
-  const VectorX found = part.colPivHouseholderQr().solve(b);
+  const VectorX found = least_squares(part, b).x;
   VectorX x = VectorX::Zero(A.cols());
   for (std::size_t k = 0; k < used.size(); ++k) {
     x[used[k]] = found[static_cast<Eigen::Index>(k)];

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "cad/solid/harmonic.h"
+#include "core/math/dense.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -201,12 +202,12 @@ Eigen::MatrixXd cube_measures(const FilmMesh& mesh) {
     throw MeshError(
         "a closed film is cut only where its middle sees all of it");
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
+  const auto axes = symmetric_eigen(spread);
   Eigen::MatrixXd measures(static_cast<Eigen::Index>(mesh.points.size()),
                            kClosedCells);
   for (int k = 0; k < 3; ++k) {
-    const Vec3 axis = axes.eigenvectors().col(k) /
-                      std::sqrt(std::max(axes.eigenvalues()[k], 1e-12 * area));
+    const Vec3 axis =
+        axes.vectors.col(k) / std::sqrt(std::max(axes.values[k], 1e-12 * area));
     for (std::size_t v = 0; v < mesh.points.size(); ++v) {
       const double along = axis.dot(mesh.points[v] - middle);
       measures(static_cast<Eigen::Index>(v), 2 * k) = along;

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "core/geometry/edge_key.h"
+#include "core/math/dense.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -64,11 +65,10 @@ Vec3 fitted_normal(const FilmMesh& mesh, const Vec3& p, const Vec3& normal,
     rows.row(k) *= weight;
     heights[k] = weight * d.dot(normal);
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(rows);
-  if (factor.rank() < 5) {
+  const auto [c, rank] = least_squares(rows, heights);
+  if (rank < 5) {
     return normal;
   }
-  const VectorX c = factor.solve(heights);
   return (normal - c[0] * x - c[1] * y).normalized();
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
+
+#include "core/math/dense.h"
 
 #include "core/geometry/edge_key.h"
 
@@ -122,7 +124,7 @@ Vec3 meeting_place(const Mat3& values) {
   system.row(0) = (values.col(0) - values.col(1)).transpose();
   system.row(1) = (values.col(1) - values.col(2)).transpose();
   system.row(2).setOnes();
-  Vec3 at = system.fullPivLu().solve(Vec3(0.0, 0.0, 1.0));
+  Vec3 at = solve_lu(system, Vec3(0.0, 0.0, 1.0));
   at = at.cwiseMax(0.1);
   return at / at.sum();
 }

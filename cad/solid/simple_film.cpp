@@ -4,9 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -150,7 +152,7 @@ bool fit_ball(const FilmMesh& mesh, Vec3& center, double& radius) {
     normal += row * row.transpose();
     right += d.squaredNorm() * row;
   }
-  const Eigen::Vector4d x = normal.ldlt().solve(right);
+  const Eigen::Vector4d x = solve_ldlt4(normal, right);
   const double square = x[3] + x.head<3>().squaredNorm();
   center = middle + x.head<3>();
   radius = std::sqrt(std::max(square, 0.0));

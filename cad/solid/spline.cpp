@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -145,7 +147,7 @@ SplineCurve fit_curve(const CurveFit& fit) {
   };
   hold(0, fit.start_normal, fit.start);
   hold(poles - 3, fit.end_normal, fit.end);
-  const VectorX solution = normal.ldlt().solve(right);
+  const VectorX solution = solve_ldlt(normal, right);
   SplineCurve curve{fit.knots, Points(poles)};
   curve.poles.front() = fit.start;
   curve.poles.back() = fit.end;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -34,11 +36,11 @@ struct RitzPair {
 /// of a Hessian's lowest eigenvalue.
 RitzPair pick(const Eigen::MatrixXd& upper, int negative) {
   const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
+  const auto eigen = symmetric_eigen(full);
   const Eigen::Index last = upper.cols() - 1;
   const Eigen::Index at =
       negative > 0 ? std::min<Eigen::Index>(negative - 1, last) : last;
-  return {eigen.eigenvalues()[at], eigen.eigenvectors().col(at)};
+  return {eigen.values[at], eigen.vectors.col(at)};
 }
 
 /// Lanczos with full orthogonalisation from a fixed start vector.
@@ -129,18 +131,18 @@ bool ConstrainedHessian::factorize(const SparseMatrix& hessian,
   if (!scaled.allFinite()) {
     return false;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  VectorX inverse = eigen.eigenvalues();
+  const auto eigen = symmetric_eigen(scaled);
+  VectorX inverse = eigen.values;
   const double largest = inverse.cwiseAbs().maxCoeff();
   int positive = 0;
   for (double& value : inverse) {
     positive += value > 0.0 ? 1 : 0;
     value = std::abs(value) > 1e-14 * largest ? 1.0 / value : 0.0;
   }
-  schur_inverse_ = scale.cwiseInverse().asDiagonal() *
-                   (eigen.eigenvectors() * inverse.asDiagonal() *
-                    eigen.eigenvectors().transpose()) *
-                   scale.cwiseInverse().asDiagonal();
+  schur_inverse_ =
+      scale.cwiseInverse().asDiagonal() *
+      (eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose()) *
+      scale.cwiseInverse().asDiagonal();
   index_ += positive - m;
   return true;
 }

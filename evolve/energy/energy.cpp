@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include "core/error.h"
 #include "core/operation_count.h"

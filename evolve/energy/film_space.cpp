@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -316,7 +317,7 @@ Vec3 FilmSpace::back_on(const Wall& wall, Vec3 at) const {
     const Vec3 move =
         count == 1
             ? Vec3(rows.row(0).transpose() * (gap[0] / rows.squaredNorm()))
-            : Vec3(rows.completeOrthogonalDecomposition().solve(gap));
+            : least_norm_move(rows, gap);
     at -= move;
     if (!(move.norm() > kOnWall * at.norm())) {
       break;
@@ -383,8 +384,7 @@ Eigen::Matrix3d FilmSpace::wall_curvature(int k, const Vec3& at,
   // With lambda the forces of the walls, d2E of the way along the walls is
   // that of E - sum lambda f.
   const Eigen::MatrixX3d rows = wall_normals(k, at);
-  const VectorX lambda =
-      rows.transpose().completeOrthogonalDecomposition().solve(gradient);
+  const VectorX lambda = least_norm_forces(rows, gradient);
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < wall.level_sets.size(); ++i) {
     sum -= lambda[static_cast<Eigen::Index>(i)] *

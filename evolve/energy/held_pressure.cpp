@@ -1,6 +1,8 @@
 #include "evolve/energy/held_pressure.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
+
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -20,7 +22,7 @@ VectorX guess_pressures(const FilmTargets& targets,
   const VectorX residual = gradient - slopes * pressure;
   const VectorX right = b.transpose() * weight.cwiseProduct(residual);
   const Eigen::MatrixXd normal = b.transpose() * weight.asDiagonal() * b;
-  const VectorX found = normal.completeOrthogonalDecomposition().solve(right);
+  const VectorX found = least_norm(normal, right);
   pressure(held) = found;
   return pressure;
 }

@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 #include "evolve/energy/constrained_hessian.h"
 
@@ -86,11 +87,10 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
         basis.leftCols(built).transpose() * block;
     const Eigen::MatrixXd upper = small.topLeftCorner(built, built);
     const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(full);
+    const auto ritz = symmetric_eigen(full);
     const Eigen::Index found = std::min(wanted, built);
-    const Eigen::MatrixXd y =
-        ritz.eigenvectors().rightCols(found).rowwise().reverse();
-    const VectorX theta = ritz.eigenvalues().tail(found).reverse();
+    const Eigen::MatrixXd y = ritz.vectors.rightCols(found).rowwise().reverse();
+    const VectorX theta = ritz.values.tail(found).reverse();
     const Eigen::MatrixXd modes = basis.leftCols(built) * y;
     const Eigen::MatrixXd left =
         image.leftCols(built) * y - modes * theta.asDiagonal();

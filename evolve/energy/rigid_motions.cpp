@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 #include "evolve/energy/energy.h"
 #include "evolve/energy/facet_terms.h"
@@ -96,15 +97,14 @@ Eigen::MatrixXd FilmEnergy::rigid_motions(const Points& points,
       resists.topLeftCorner<3, 3>() += g * g.transpose();
       resists.bottomRightCorner<3, 3>() += across;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(
-        resists);
-    const double most = std::max(1.0, eigen.eigenvalues()[5]);
+    const auto eigen = symmetric_eigen(resists);
+    const double most = std::max(1.0, eigen.values[5]);
     Eigen::MatrixXd found(n, 0);
     for (int m = 0; m < 6; ++m) {
-      if (eigen.eigenvalues()[m] > kFree * most) {
+      if (eigen.values[m] > kFree * most) {
         break;
       }
-      const Vector6 motion = eigen.eigenvectors().col(m);
+      const Vector6 motion = eigen.vectors.col(m);
       VectorX column = VectorX::Zero(n);
       for (int i = 0; i < n; ++i) {
         if (floating_[i] == part) {
@@ -123,11 +123,10 @@ Eigen::MatrixXd FilmEnergy::rigid_motions(const Points& points,
     // Motions that leave the film where it is (a sphere's rotations) are out.
     const Eigen::MatrixXd gram =
         found.transpose() * metric.asDiagonal() * found / weight;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> seen(gram);
+    const auto seen = symmetric_eigen(gram);
     for (Eigen::Index m = 0; m < gram.cols(); ++m) {
-      if (seen.eigenvalues()[m] > kVisible) {
-        columns.push_back(
-            metric.cwiseProduct(found * seen.eigenvectors().col(m)));
+      if (seen.values[m] > kVisible) {
+        columns.push_back(metric.cwiseProduct(found * seen.vectors.col(m)));
       }
     }
   }

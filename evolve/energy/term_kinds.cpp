@@ -6,9 +6,10 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include "evolve/energy/film_space.h"
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -51,11 +52,11 @@ std::vector<std::array<double, 2>> edge_rule(int points) {
   for (int k = 1; k < n; ++k) {
     jacobi(k, k - 1) = jacobi(k - 1, k) = k / std::sqrt(4.0 * k * k - 1.0);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobi);
+  const auto eigen = symmetric_eigen(jacobi);
   std::vector<std::array<double, 2>> rule;
   for (int k = 0; k < n; ++k) {
-    const double first = eigen.eigenvectors()(0, k);
-    rule.push_back({0.5 * (1.0 + eigen.eigenvalues()[k]), first * first});
+    const double first = eigen.vectors(0, k);
+    rule.push_back({0.5 * (1.0 + eigen.values[k]), first * first});
   }
   return rule;
 }

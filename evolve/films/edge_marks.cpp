@@ -5,10 +5,11 @@
 #include <limits>
 #include <numeric>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include "evolve/films/rims.h"
 #include "core/geometry/edge_key.h"
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -136,7 +137,7 @@ Vec3 onto_walls(const FilmComplex& complex, int set, bool held,
     if (gap.size() == 0) {
       break;
     }
-    const Vec3 move = rows.completeOrthogonalDecomposition().solve(gap);
+    const Vec3 move = least_norm_move(rows, gap);
     if (!move.allFinite()) {
       break;
     }

@@ -124,6 +124,14 @@ enum class VolumeRule {
 };
 
 struct FilmComplex {
+  // Compiled once, in film_complex.cpp: else in every source that holds one.
+  FilmComplex();
+  ~FilmComplex();
+  FilmComplex(const FilmComplex& other);
+  FilmComplex(FilmComplex&& other) noexcept;
+  FilmComplex& operator=(const FilmComplex& other);
+  FilmComplex& operator=(FilmComplex&& other) noexcept;
+
   SurfaceMesh mesh;                      // labels = surface names
   std::vector<ComplexVertex> vertices;   // one per point
   std::vector<ComplexEdge> edges;        // marked ones only

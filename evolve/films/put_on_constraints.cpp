@@ -1,8 +1,9 @@
 #include "evolve/films/put_on_constraints.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -62,7 +63,7 @@ Vec3 put_on_constraints(const FilmComplex& complex, int set, const Vec3& from) {
     if (off == 0.0) {
       return p;
     }
-    const Vec3 move = gradients.completeOrthogonalDecomposition().solve(f);
+    const Vec3 move = least_norm_move(gradients, f);
     p -= move;
     if (!p.allFinite() || move.norm() <= kStill * p.norm()) {
       break;

@@ -2,9 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 #include "evolve/energy/film_products.h"
 
@@ -68,7 +69,7 @@ class EigenvalueSlope {
     }
     const VectorX left = saddle_.hessian().selfadjointView<Eigen::Lower>() * v -
                          lambda * saddle_.metric().cwiseProduct(v);
-    const VectorX found = b.colPivHouseholderQr().solve(left);
+    const VectorX found = least_squares(b, left).x;
     for (std::size_t k = 0; k < saddle_.held().size(); ++k) {
       result[saddle_.held()[k]] = found[static_cast<Eigen::Index>(k)];
     }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -47,8 +49,7 @@ int update_contacts(FilmComplex& complex, const FilmEnergy& energy,
       rows.row(static_cast<Eigen::Index>(i)) = jet.gradient;
       value.push_back(jet.value / std::max(1e-300, jet.gradient.norm()));
     }
-    const VectorX push =
-        rows.transpose().completeOrthogonalDecomposition().solve(slope[v]);
+    const VectorX push = least_norm_forces(rows, slope[v]);
     bool through = false;
     bool pulled = false;
     for (std::size_t i = 0; i < set.size(); ++i) {

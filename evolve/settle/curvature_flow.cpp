@@ -4,8 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 #include "evolve/energy/laplacian.h"
 #include "evolve/films/triangle_shape.h"
@@ -206,8 +207,7 @@ class Flow {
       const Eigen::MatrixX3d normals =
           space.wall_normals(static_cast<int>(k), complex_.mesh.points[v]);
       const Vec3& force = slope[v];
-      const VectorX pull =
-          normals.transpose().completeOrthogonalDecomposition().solve(force);
+      const VectorX pull = least_norm_forces(normals, force);
       rows.row(unknown_of_[v]) = force - normals.transpose() * pull;
     }
     return rows;
@@ -269,8 +269,8 @@ class Flow {
       // pressure that holds it on its straight way.
       const Points& start = complex_.mesh.points;
       const Eigen::MatrixXd slopes = volume_slopes(start, dx);
-      pressure = slopes.rightCols(held).completeOrthogonalDecomposition().solve(
-          missing(start) - slopes.col(0));
+      pressure =
+          least_norm(slopes.rightCols(held), missing(start) - slopes.col(0));
     }
     Points x = moved(dx, pressure);
     bool reached = held == 0;
@@ -281,10 +281,7 @@ class Flow {
         reached = true;
         break;
       }
-      pressure += volume_slopes(x, dx)
-                      .rightCols(held)
-                      .completeOrthogonalDecomposition()
-                      .solve(gap);
+      pressure += least_norm(volume_slopes(x, dx).rightCols(held), gap);
       x = moved(dx, pressure);
     }
     if (!reached || !flat(x).allFinite()) {

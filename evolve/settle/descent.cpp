@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -67,9 +68,8 @@ class Descent {
     const Eigen::MatrixXd b = volume_slopes(x);
     const VectorX weight = metric_.cwiseInverse();
     if (b.cols() > 0) {
-      const VectorX y = (b.transpose() * weight.asDiagonal() * b)
-                            .ldlt()
-                            .solve(b.transpose() * weight.cwiseProduct(r));
+      const VectorX y = solve_ldlt(b.transpose() * weight.asDiagonal() * b,
+                                   b.transpose() * weight.cwiseProduct(r));
       r -= b * y;
       for (std::size_t k = 0; k < held_.size(); ++k) {
         pressure_[held_[k]] = y[static_cast<Eigen::Index>(k)];
@@ -167,7 +167,7 @@ class Descent {
   VectorX heights_for(const Points& x, const VectorX& gap) const {
     const Eigen::MatrixXd b = volume_slopes(x);
     const Eigen::MatrixXd wb = metric_.cwiseInverse().asDiagonal() * b;
-    return wb * (b.transpose() * wb).ldlt().solve(gap);
+    return wb * solve_ldlt(b.transpose() * wb, gap);
   }
   /// One step towards the volumes, which are then held where they are.
   void approach(double most) {

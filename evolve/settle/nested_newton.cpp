@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "core/math/dense.h"
 #include "core/operation_count.h"
 #include "evolve/energy/held_pressure.h"
 
@@ -81,7 +82,7 @@ double NestedNewton::residual_norm(const VectorX& r) const {
   }
   const auto t = constraints_.rightCols(rigid);
   const Eigen::MatrixXd gram = t.transpose() * t;
-  const VectorX part = gram.ldlt().solve(t.transpose() * r);
+  const VectorX part = solve_ldlt(gram, t.transpose() * r);
   return (r - t * part).cwiseAbs().maxCoeff();
 }
 
@@ -132,7 +133,7 @@ bool NestedNewton::refresh() {
         constraints_.transpose() * inverse_constraints_;
     // Not made symmetric: so the projection is exact in double precision,
     // whatever the preconditioner's rounding.
-    schur_inverse_ = schur.completeOrthogonalDecomposition().pseudoInverse();
+    schur_inverse_ = pseudo_inverse(schur);
   }
   return true;
 }
@@ -300,20 +301,20 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
     const VectorX scale =
         mass.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd unit = scale.asDiagonal() * mass * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(unit);
+    const auto gram = symmetric_eigen(unit);
     Eigen::Index drop = 0;
-    while (drop < s.cols() - k && gram.eigenvalues()[drop] < 1e-12) {
+    while (drop < s.cols() - k && gram.values[drop] < 1e-12) {
       ++drop;
     }
     const Eigen::Index m = s.cols() - drop;
     const Eigen::MatrixXd basis =
-        scale.asDiagonal() * gram.eigenvectors().rightCols(m) *
-        gram.eigenvalues().tail(m).cwiseSqrt().cwiseInverse().asDiagonal();
+        scale.asDiagonal() * gram.vectors.rightCols(m) *
+        gram.values.tail(m).cwiseSqrt().cwiseInverse().asDiagonal();
     const Eigen::MatrixXd stiff = s.transpose() * ks;
     const Eigen::MatrixXd small =
         basis.transpose() * (0.5 * (stiff + stiff.transpose())) * basis;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(small);
-    const Eigen::MatrixXd y = basis * ritz.eigenvectors().leftCols(k);
+    const auto ritz = symmetric_eigen(small);
+    const Eigen::MatrixXd y = basis * ritz.vectors.leftCols(k);
     Eigen::MatrixXd y_rest = y;
     y_rest.topRows(k).setZero();
     const Eigen::MatrixXd x_next = s * y;
@@ -324,7 +325,7 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
     }
     x = x_next;
     kx = kx_next;
-    const VectorX next = ritz.eigenvalues().head(k);
+    const VectorX next = ritz.values.head(k);
     const double change = (next - values).cwiseAbs().maxCoeff();
     values = next;
     if (step > 1 && change <= kModeAccuracy * next.cwiseAbs().maxCoeff()) {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "evolve/energy/held_pressure.h"
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -81,7 +82,7 @@ double FilmNewton::residual_norm() const {
       constraints_.cols() - static_cast<Eigen::Index>(held_.size());
   if (rigid > 0) {
     const Eigen::MatrixXd t = constraints_.rightCols(rigid);
-    const VectorX part = (t.transpose() * t).ldlt().solve(t.transpose() * r);
+    const VectorX part = solve_ldlt(t.transpose() * t, t.transpose() * r);
     r -= t * part;
   }
   const double norm = r.size() > 0 ? r.cwiseAbs().maxCoeff() : 0.0;

@@ -5,11 +5,12 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include "evolve/curves/curve.h"
 #include "evolve/start/disk_fill.h"
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -90,12 +91,12 @@ MeanPlane mean_plane(const Points& points) {
     spread += (p - plane.center) * (p - plane.center).transpose() /
               static_cast<double>(points.size());
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
-  plane.normal = axes.eigenvectors().col(0);
+  const auto axes = symmetric_eigen(spread);
+  plane.normal = axes.vectors.col(0);
   if (plane.normal.dot(polygon_area_vector(points)) < 0.0) {
     plane.normal = -plane.normal;
   }
-  plane.off = std::sqrt(std::max(axes.eigenvalues()[0], 0.0));
+  plane.off = std::sqrt(std::max(axes.values[0], 0.0));
   return plane;
 }
 

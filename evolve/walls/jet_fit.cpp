@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
+
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -117,9 +119,7 @@ class Fitter {
       a.row(i) *= weight;
       height[i] *= weight;
     }
-    const VectorX c =
-        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(a).solve(
-            height);
+    const VectorX c = least_norm(a, height);
     const double stretch = std::sqrt(1.0 + c[0] * c[0] + c[1] * c[1]);
     if (!c.allFinite() || 1.0 / stretch < kTrust) {
       return;

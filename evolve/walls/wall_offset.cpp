@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include "evolve/walls/facet_probe.h"
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -123,13 +123,13 @@ Points moved(const Sheet& sheet, const std::vector<Vec3>& direction,
 }  // namespace
 
 Mat3 mitre_inverse(const Mat3& matrix, double spanned) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(matrix);
-  const double least = spanned * eigen.eigenvalues()[2];
+  const auto eigen = symmetric_eigen(matrix);
+  const double least = spanned * eigen.values[2];
   Mat3 inverse = Mat3::Zero();
   for (int i = 0; i < 3; ++i) {
-    if (eigen.eigenvalues()[i] > least) {
-      const Vec3 e = eigen.eigenvectors().col(i);
-      inverse += e * e.transpose() / eigen.eigenvalues()[i];
+    if (eigen.values[i] > least) {
+      const Vec3 e = eigen.vectors.col(i);
+      inverse += e * e.transpose() / eigen.values[i];
     }
   }
   return inverse;
@@ -171,7 +171,7 @@ std::vector<Vec3> offset_directions(const Sheet& sheet,
         asked[v] * std::max(std::abs(jets[v].k1), std::abs(jets[v].k2));
     const double hold = matrix.trace() * (kFlatHold + bend * bend);
     matrix += hold * (Mat3::Identity() - n * n.transpose());
-    directions.push_back(matrix.ldlt().solve(right));
+    directions.push_back(solve_ldlt3(matrix, right));
   }
   return directions;
 }

@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include "core/math/dense.h"
+
 namespace meniscus {
 
 namespace {
@@ -61,7 +63,7 @@ Vec6 stress_components(const Mat3& t) {
 ElasticLaw::ElasticLaw(const Lame& constants)
     : lame(constants),
       stiffness(isotropic_stiffness(constants)),
-      compliance(stiffness.inverse()) {}
+      compliance(inverse_of(stiffness)) {}
 
 Mat3 ElasticLaw::stress(const Mat3& H) const {
   if (isotropic) {
@@ -91,7 +93,7 @@ ElasticLaw elastic_law(const Material& material) {
   law.expansion = stress_components(
       R * material.thermal_expansion.asDiagonal() * R.transpose());
   law.expansion.tail<3>() *= 2.0;
-  law.compliance = law.stiffness.inverse();
+  law.compliance = inverse_of(law.stiffness);
   law.heat_stress = law.stiffness * law.expansion;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {

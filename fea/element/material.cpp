@@ -2,9 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -43,9 +44,7 @@ void check_orthotropic(const Material& material) {
   S(0, 2) = S(2, 0) = -nu[1] * std::sqrt(E[2] / E[0]);
   S(1, 2) = S(2, 1) = -nu[2] * std::sqrt(E[2] / E[1]);
   const double least =
-      S.allFinite()
-          ? Eigen::SelfAdjointEigenSolver<Mat3>(S).eigenvalues().minCoeff()
-          : -1.0;
+      S.allFinite() ? symmetric_eigen(S).values.minCoeff() : -1.0;
   if (!(least > kLeastCompliance)) {
     refuse(fmt::format(
         "its stiffness is not positive definite (least relative eigenvalue of "

@@ -1,8 +1,4 @@
-<<<<<<<< HEAD:fea/element/nearest_point.cpp
-#include "fea/element/nearest_point.h"
-========
 #include "fea/element/point_grid.h"
->>>>>>>> help-a:fea/element/point_grid.cpp
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
+
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -30,11 +32,11 @@ Vec3 principal_stresses(const Stress& stress) {
 }
 
 PrincipalFrame principal_frame(const Stress& stress) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(tensor(stress));
+  const auto solver = symmetric_eigen(tensor(stress));
   PrincipalFrame frame;
-  frame.stress = solver.eigenvalues().reverse();
-  frame.direction.col(0) = solver.eigenvectors().col(2);
-  frame.direction.col(1) = solver.eigenvectors().col(1);
+  frame.stress = solver.values.reverse();
+  frame.direction.col(0) = solver.vectors.col(2);
+  frame.direction.col(1) = solver.vectors.col(1);
   frame.direction.col(2) = frame.direction.col(0).cross(frame.direction.col(1));
   return frame;
 }

@@ -1,9 +1,10 @@
 #include "fea/loads/remote_load.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -29,16 +30,15 @@ RemoteMoments remote_moments(const TetMesh& mesh, const SurfaceWeights& weights,
     inertia += weights.weights[static_cast<Eigen::Index>(k)] *
                (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
-  if (!(eigen.eigenvalues()[0] > kLine * eigen.eigenvalues()[2])) {
+  const auto eigen = symmetric_eigen(inertia);
+  if (!(eigen.values[0] > kLine * eigen.values[2])) {
     throw InvalidInput(fmt::format(
         "surface '{}': its nodes lie on a line and cannot carry the moment of "
         "a remote load",
         surface));
   }
-  result.inverse = eigen.eigenvectors() *
-                   eigen.eigenvalues().cwiseInverse().asDiagonal() *
-                   eigen.eigenvectors().transpose();
+  result.inverse = eigen.vectors * eigen.values.cwiseInverse().asDiagonal() *
+                   eigen.vectors.transpose();
   return result;
 }
 

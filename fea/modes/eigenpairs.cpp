@@ -4,10 +4,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "fea/solver/conjugate_gradients.h"
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -40,16 +41,16 @@ struct Basis {
 Basis orthonormal(const Eigen::MatrixXd& G) {
   const VectorX d = G.diagonal().unaryExpr(
       [](double g) { return g > 0.0 ? 1.0 / std::sqrt(g) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      d.asDiagonal() * G * d.asDiagonal());
-  const VectorX& values = eigen.eigenvalues();
+  const Eigen::MatrixXd scaled = d.asDiagonal() * G * d.asDiagonal();
+  const auto eigen = symmetric_eigen(scaled);
+  const VectorX& values = eigen.values;
   const Eigen::Index n = values.size();
   Eigen::Index dropped = 0;
   while (dropped < n && !(values[dropped] > kDependent)) {
     ++dropped;
   }
   const Eigen::Index kept = n - dropped;
-  return {.T = d.asDiagonal() * eigen.eigenvectors().rightCols(kept) *
+  return {.T = d.asDiagonal() * eigen.vectors.rightCols(kept) *
                values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal(),
           .positive = n == 0 || (values[0] > -kDependent &&
                                  G.diagonal().minCoeff() >= 0.0)};
@@ -168,12 +169,11 @@ bool EigenSearch::improve(Eigen::Index lead) {
     return false;
   }
   const Eigen::MatrixXd H = basis.T.transpose() * GA * basis.T;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      0.5 * (H + H.transpose()));
+  const Eigen::MatrixXd even = 0.5 * (H + H.transpose());
+  const auto eigen = symmetric_eigen(even);
   m_ = std::min(m_, H.rows());
-  theta_ = eigen.eigenvalues().reverse().head(m_);
-  Eigen::MatrixXd C =
-      basis.T * eigen.eigenvectors().rowwise().reverse().leftCols(m_);
+  theta_ = eigen.values.reverse().head(m_);
+  Eigen::MatrixXd C = basis.T * eigen.vectors.rowwise().reverse().leftCols(m_);
   p_ = 0;
   if (k > lead) {
     // What the step added, without its part along the new X.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
+
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -36,9 +38,7 @@ double lowest_ritz_value(const std::vector<double>& alpha,
       beside[k - 1] = std::sqrt(beta[k]) / alpha[k - 1];
     }
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[0];
+  return tridiagonal_eigenvalues(diagonal, beside)[0];
 }
 
 }  // namespace meniscus

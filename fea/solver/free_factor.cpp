@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 #include "fea/solver/block_kernels.h"
 
@@ -26,9 +27,9 @@ FreeBasis free_basis(const Mat3& projector) {
   Mat3 vectors = Mat3::Identity();
   Vec3 values = projector.diagonal();
   if (projector != diagonal) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(projector);
-    vectors = solver.eigenvectors();
-    values = solver.eigenvalues();
+    const auto solver = symmetric_eigen(projector);
+    vectors = solver.vectors;
+    values = solver.values;
   }
   basis.axes.setZero();
   for (int k = 0; k < 3; ++k) {

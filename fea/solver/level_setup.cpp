@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "fea/solver/smoothed_aggregation.h"
+#include "core/math/dense.h"
 
 namespace meniscus {
 
@@ -55,7 +56,8 @@ std::vector<double> inverse_blocks(const BlockMatrix<double>& matrix,
     for (int k = 0; k < 6; ++k) {
       none(k, k) = D(k, k) > 0.0 ? 0.0 : 1.0;
     }
-    Eigen::Map<RowMat6>(inverse.data() + 36L * i) = (D + none).inverse() - none;
+    Eigen::Map<RowMat6>(inverse.data() + 36L * i) =
+        inverse_of(RowMatrix6(D + none)) - none;
   }
   return inverse;
 }

@@ -1,10 +1,11 @@
 #include "fea/supports/held_check.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/math/dense.h"
 #include "core/error.h"
 #include "core/math/union_find.h"
 
@@ -69,12 +70,10 @@ std::string describe(const Eigen::MatrixXd& free, const RigidFrame& frame) {
   }
   constexpr double kNoTurn = 1e-6;
   std::vector<std::string> motions;
-  const Eigen::SelfAdjointEigenSolver<Mat3> shifts(
-      Mat3(free.topRows<3>() * free.topRows<3>().transpose()));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turns(
+  const auto turns = symmetric_eigen(
       Eigen::MatrixXd(free.bottomRows<3>().transpose() * free.bottomRows<3>()));
   for (Eigen::Index k = 0; k < free.cols(); ++k) {
-    const Vec6 motion = free * turns.eigenvectors().col(k);
+    const Vec6 motion = free * turns.vectors.col(k);
     const Vec3 t = motion.head<3>();
     const Vec3 w = motion.tail<3>();
     if (w.norm() < kNoTurn) {
@@ -189,13 +188,13 @@ std::vector<Eigen::MatrixXd> free_per_part(
   }
   std::vector<Eigen::MatrixXd> motions;
   for (const Resistance& resistance : resistances) {
-    const Eigen::SelfAdjointEigenSolver<Mat6> eigen(resistance.total());
-    const double bound = kFreeMotion * std::max(eigen.eigenvalues()[5], 1e-300);
+    const auto eigen = symmetric_eigen(resistance.total());
+    const double bound = kFreeMotion * std::max(eigen.values[5], 1e-300);
     int free = 0;
-    while (free < 6 && !(eigen.eigenvalues()[free] > bound)) {
+    while (free < 6 && !(eigen.values[free] > bound)) {
       ++free;
     }
-    motions.emplace_back(eigen.eigenvectors().leftCols(free));
+    motions.emplace_back(eigen.vectors.leftCols(free));
   }
   return motions;
 }

@@ -16,6 +16,21 @@
 
 namespace meniscus {
 
+Case::Case() = default;
+Case::~Case() = default;
+Case::Case(const Case& other) = default;
+Case::Case(Case&& other) noexcept = default;
+Case& Case::operator=(const Case& other) = default;
+Case& Case::operator=(Case&& other) noexcept = default;
+
+EvaluatedCase::EvaluatedCase() = default;
+EvaluatedCase::~EvaluatedCase() = default;
+EvaluatedCase::EvaluatedCase(const EvaluatedCase& other) = default;
+EvaluatedCase::EvaluatedCase(EvaluatedCase&& other) noexcept = default;
+EvaluatedCase& EvaluatedCase::operator=(const EvaluatedCase& other) = default;
+EvaluatedCase& EvaluatedCase::operator=(EvaluatedCase&& other) noexcept =
+    default;
+
 namespace {
 
 constexpr int kPlacesOnCurve = 16;

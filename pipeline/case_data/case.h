@@ -20,6 +20,14 @@ struct CaseFile {
 };
 
 struct Case {
+  // Compiled once, in case.cpp: else in every source that holds one.
+  Case();
+  ~Case();
+  Case(const Case& other);
+  Case(Case&& other) noexcept;
+  Case& operator=(const Case& other);
+  Case& operator=(Case&& other) noexcept;
+
   std::string path;
   std::string name;  // the file's, or its folder's for case.toml
   std::string title;
@@ -64,6 +72,14 @@ struct ResponseNumbers {
 
 /// The numbers of one design.
 struct EvaluatedCase {
+  // Compiled once, in case.cpp: else in every source that holds one.
+  EvaluatedCase();
+  ~EvaluatedCase();
+  EvaluatedCase(const EvaluatedCase& other);
+  EvaluatedCase(EvaluatedCase&& other) noexcept;
+  EvaluatedCase& operator=(const EvaluatedCase& other);
+  EvaluatedCase& operator=(EvaluatedCase&& other) noexcept;
+
   VectorX design;  // where
   FilmSystem film_system;
   std::vector<WallSpec> walls;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/json.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
 #include "pipeline/tables/place_json.h"
@@ -120,7 +121,8 @@ void write_wall(const Case& input, const CaseWall& made,
   write_vtp(folder / (name + ".vtp"), made.wall.surface, fields);
   write_stl(folder / (name + ".stl"), made.wall.surface,
             {.name = input.title, .unit = input.units.length});
-  write_file(folder / (name + ".json"), wall_json(input, made).dump(1) + "\n");
+  write_file(folder / (name + ".json"),
+             json_text(wall_json(input, made), 1) + "\n");
 }
 
 void refuse_walls(const Case& input) {

@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/results/results.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -106,7 +107,7 @@ void write_evolved_film(const EvolvedFilm& film,
   for (const FilmFrame& frame : frames) {
     json["frames"].push_back(settling_caption(frame));
   }
-  write_file(folder / "film.json", json.dump(1) + "\n");
+  write_file(folder / "film.json", json_text(json, 1) + "\n");
 }
 
 std::string settling_caption(const FilmFrame& frame) {

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/json.h"
 #include "core/timer.h"
 #include "optimize/family_tree.h"
 #include "pipeline/case_data/content_hash.h"
@@ -61,7 +62,7 @@ std::optional<Json> stored_result(const fs::path& folder) {
   if (!fs::exists(folder / "result.json")) {
     return std::nullopt;
   }
-  Json json = Json::parse(read_file(folder / "result.json"), nullptr, false);
+  Json json = parse_json(read_file(folder / "result.json"));
   if (!json.is_object()) {
     return std::nullopt;
   }
@@ -243,7 +244,7 @@ Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
        .listener = listener_of(k),
        .monitor = &monitor});
   json["member"] = own;
-  write_file(folder / "result.json", json.dump(2) + "\n");
+  write_file(folder / "result.json", json_text(json, 2) + "\n");
   const std::lock_guard<std::mutex> guard(mutex_);
   ++computed_;
   seconds_ += timer.seconds();
@@ -353,7 +354,8 @@ FamilyResult FamilyRun::run() {
   write_table();
   write_file(
       options_.folder / "result.json",
-      family_json(family_, result_, options_.program_version).dump(2) + "\n");
+      json_text(family_json(family_, result_, options_.program_version), 2) +
+          "\n");
   return std::move(result_);
 }
 

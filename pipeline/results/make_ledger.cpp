@@ -11,6 +11,7 @@
 #include "evolve/start/start_complex.h"
 #include "pipeline/results/calculix_export.h"
 #include "pipeline/results/results.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -212,7 +213,7 @@ void note_file(const fs::path& folder, const fs::path& file,
                       {"bytes", bytes},
                       {"written", inside}};
   try {
-    Json json = Json::parse(read_file(result));
+    Json json = require_json(read_file(result));
     Json& files = json.at("ledger").at("files");
     const auto same = std::find_if(
         files.begin(), files.end(),
@@ -222,7 +223,7 @@ void note_file(const fs::path& folder, const fs::path& file,
     } else {
       files.push_back(entry);
     }
-    write_file(result, json.dump(2) + "\n");
+    write_file(result, json_text(json, 2) + "\n");
   } catch (const Json::exception&) {
     return;  // of another version
   } catch (const IoError&) {

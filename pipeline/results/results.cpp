@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/json.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
 #include "pipeline/forward/figures_json.h"
@@ -291,7 +292,7 @@ void write_summary(const Case& input, const RunResult& result,
                    const std::filesystem::path& folder) {
   write_file(folder / "history.csv", history_csv(records));
   write_file(folder / "result.json",
-             result_json(input, result, program_version).dump(2) + "\n");
+             json_text(result_json(input, result, program_version), 2) + "\n");
 }
 
 }  // namespace meniscus

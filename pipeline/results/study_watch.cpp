@@ -13,6 +13,7 @@
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/study_records.h"
 #include "pipeline/tables/text_table.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -138,8 +139,7 @@ void StudyWatch::look_at_result(StudyGlance& glance) const {
   if (!fs::exists(folder_ / "result.json", code)) {
     return;
   }
-  const auto json =
-      nlohmann::json::parse(read_file(folder_ / "result.json"), nullptr, false);
+  const auto json = parse_json(read_file(folder_ / "result.json"));
   if (json.is_object()) {
     glance.status = json.value("status", "");
     glance.message = json.value("message", "");

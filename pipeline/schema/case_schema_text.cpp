@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/schema/case_schema.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -254,7 +255,7 @@ std::string json_schema() {
     }
   }
   schema["anyOf"] = {{{"required", for_parts}}, {{"required", {"walls"}}}};
-  return schema.dump(2) + "\n";
+  return json_text(schema, 2) + "\n";
 }
 
 std::string schema_markdown() {

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/json.h"
+
 namespace meniscus {
 
 namespace {
@@ -30,7 +32,7 @@ double distance(const Case& input, const VectorX& a, const VectorX& b) {
 }
 
 double min_dihedral_of(const EvaluationRecord& record) {
-  const auto figures = nlohmann::json::parse(record.figures, nullptr, false);
+  const auto figures = parse_json(record.figures);
   const nlohmann::json::json_pointer at("/tet/min_dihedral_deg");
   return figures.is_object() && figures.contains(at) ? figures[at].get<double>()
                                                      : 0.0;

@@ -9,6 +9,7 @@
 #include "pipeline/store/incumbent.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/runs_in.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -19,11 +20,11 @@ std::string stored_case(const Case& input) {
   for (const CaseFile& file : input.files) {
     stored["files"].push_back({{"path", file.path}, {"text", file.text}});
   }
-  return stored.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_line(stored);
 }
 
 Case restore_case(const StudyMeta& meta) {
-  const auto stored = nlohmann::json::parse(meta.case_text, nullptr, false);
+  const auto stored = parse_json(meta.case_text);
   if (!stored.is_object() || !stored.contains("text")) {
     throw IoError("the study holds no case that can be read; run it again");
   }
@@ -88,8 +89,7 @@ VectorX answer_of_run(const Case& input,
                       const std::vector<EvaluationRecord>& records,
                       const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder / "result.json")) {
-    const auto result = nlohmann::json::parse(read_file(folder / "result.json"),
-                                              nullptr, false);
+    const auto result = parse_json(read_file(folder / "result.json"));
     VectorX design = initial_design(input);
     for (std::size_t k = 0; k < input.design.size(); ++k) {
       const nlohmann::json::json_pointer at("/parameters/" +

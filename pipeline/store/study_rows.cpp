@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/case_data/content_hash.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -58,9 +59,7 @@ VectorX to_vector(const std::string& bytes) {
   return values;
 }
 
-std::string to_text(const Json& value) {
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string to_text(const Json& value) { return json_line(value); }
 
 std::string seal_of(const Row& row) {
   const std::string mismatch =
@@ -129,9 +128,9 @@ EvaluationRecord to_record(int number, const Row& row) {
   record.number = number;
   record.model = row.model;
   record.phase = row.phase;
-  record.input_names = Json::parse(row.input_names);
+  record.input_names = require_json(row.input_names);
   record.inputs = to_vector(row.inputs);
-  record.response_names = Json::parse(row.response_names);
+  record.response_names = require_json(row.response_names);
   record.responses = to_vector(row.responses);
   const VectorX gradient = to_vector(row.gradient);
   if (gradient.size() > 0 && record.inputs.size() > 0) {
@@ -144,7 +143,7 @@ EvaluationRecord to_record(int number, const Row& row) {
                              row.failure_message.value_or("")};
   }
   record.figures = row.figures;
-  const Json seconds = Json::parse(row.seconds);
+  const Json seconds = require_json(row.seconds);
   for (const auto& [stage, value] : seconds.items()) {
     record.seconds.emplace_back(stage,
                                 value.is_number() ? value.get<double>() : 0.0);

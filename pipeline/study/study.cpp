@@ -5,9 +5,10 @@
 #include <memory>
 #include <optional>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/math/dense.h"
 #include "core/timer.h"
 #include "pipeline/forward/part_warnings.h"
 #include "pipeline/study/film_frames.h"
@@ -340,10 +341,7 @@ void StudyRun::combine_errors(const VectorX& coarse) {
         });
   }
   if (stage_->targets() != nullptr && stage_->outcome().jacobian.size() > 0) {
-    const Eigen::MatrixXd inverse =
-        stage_->outcome()
-            .jacobian.completeOrthogonalDecomposition()
-            .pseudoInverse();
+    const Eigen::MatrixXd inverse = pseudo_inverse(stage_->outcome().jacobian);
     result_.design_errors =
         inverse.cwiseAbs() *
         stage_->targets()->residual_errors(result_.response_errors);

@@ -5,6 +5,7 @@
 
 #include "core/count_text.h"
 #include "pipeline/forward/figures_json.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -21,10 +22,9 @@ EvaluationRecord make_record(const Case& input, const Evaluation& evaluation) {
   record.response_names = response_names(input);
   record.responses = evaluation.responses;
   record.failure = evaluation.failure;
-  record.figures = Json{{"film", film_json(evaluation.film)},
+  record.figures = json_text(Json{{"film", film_json(evaluation.film)},
                         {"tet", tet_json(evaluation.tet)},
-                        {"fea", fea_json(evaluation.fea)}}
-                       .dump();
+                        {"fea", fea_json(evaluation.fea)}}, -1);
   record.seconds = {{"evolve", evaluation.seconds.film},
                     {"mesh", evaluation.seconds.mesh},
                     {"fea", evaluation.seconds.fea}};

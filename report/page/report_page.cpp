@@ -14,6 +14,7 @@
 #include "report/page/page_film.h"
 #include "report/page/page_mesh.h"
 #include "report/page/page_template.h"
+#include "core/json.h"
 
 namespace meniscus {
 
@@ -32,7 +33,7 @@ bool has_file(const fs::path& path) {
 }
 
 Json read_json(const fs::path& path) {
-  Json json = Json::parse(read_file(path), nullptr, false);
+  Json json = parse_json(read_file(path));
   if (!json.is_object() || !json.contains("schema_version")) {
     throw InvalidInput(fmt::format(
         "'{}' is damaged or none of this program's; run the case again",
@@ -53,8 +54,7 @@ class Room {
 };
 
 double bytes_of_json(const Json& json) {
-  return static_cast<double>(
-      json.dump(-1, ' ', false, Json::error_handler_t::replace).size());
+  return static_cast<double>(json_line(json).size());
 }
 
 /// The mesh thinned out until it takes at most `bytes`; what was done to it in
@@ -305,8 +305,7 @@ Json page_data(const fs::path& folder, const ReportOptions& options) {
 
 /// JSON that can stand in a page: no "</script>", no "<!--".
 std::string safe_text(const Json& page) {
-  const std::string json =
-      page.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string json = json_line(page);
   std::string text;
   text.reserve(json.size() + json.size() / 100);
   for (const char c : json) {
