@@ -15,6 +15,7 @@
 
 #include "core/units.h"
 #include "pipeline/case_entries.h"
+#include "pipeline/case_kinds.h"
 #include "pipeline/case_problems.h"
 #include "pipeline/case_schema.h"
 
@@ -44,12 +45,6 @@ struct CaseContext {
 
 /// "a table", "text 'abc'", "3.5": what was found, for messages.
 std::string described(const toml::node& node);
-
-/// The keys that one kind of entry has beside `kind`.
-struct KindKeys {
-  std::vector<std::string> needed;
-  std::vector<std::string> optional;
-};
 
 /// One table of the file, such as [curves.support], and its place.
 class CaseTable {

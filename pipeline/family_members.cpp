@@ -3,23 +3,13 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/study_kinds.h"
 
 namespace meniscus {
 
 namespace {
 
 constexpr std::size_t kMostProblems = 20;
-
-const char* name_of(StudyKind kind) {
-  switch (kind) {
-    case StudyKind::Match:
-      return "match";
-    case StudyKind::Minimize:
-      return "minimize";
-    default:  // what study.each allows
-      return "analyse";
-  }
-}
 
 /// A member's problem at the member's own place.
 std::string placed(const Case& family, const MemberEntry& member,
@@ -42,7 +32,8 @@ CaseReading read_family_member(const Case& family, const MemberEntry& member) {
   overrides.insert(overrides.end(), member.overrides.begin(),
                    member.overrides.end());
   // Last, so that a member is never a family itself.
-  overrides.push_back(fmt::format("study.kind={}", name_of(family.study.kind)));
+  overrides.push_back(
+      fmt::format("study.kind={}", row_of(family.study.kind).name));
   CaseReading reading =
       read_case_text(family.text, family.path, overrides, family.files);
   for (std::string& problem : reading.problems) {

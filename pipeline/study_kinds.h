@@ -1,5 +1,6 @@
-/// The kinds of study, each a function from a task to an outcome (internal to
-/// run_study()).
+/// The kinds of study, one row each: what a case says of one, what the rest of
+/// the program asks about it, and how it is done, a function from a task to an
+/// outcome (internal to run_study()).
 #pragma once
 
 #include <functional>
@@ -35,6 +36,27 @@ struct StudyOutcome {
   std::optional<FrontFigures> front;
   std::vector<std::string> warnings;
 };
+
+struct StudyRow {
+  const char* name;
+  StudyKind kind;
+  std::vector<std::string> keys;     // of [study], beside those of all kinds
+  std::vector<std::string> methods;  // in the order of messages
+  const char* usual_method;
+  const char* outer_stage;  // of the monitor, around the evaluations' own
+  StudyOutcome (*conduct)(const StudyTask& task);
+  /// As studied_responses(); null: none.
+  std::vector<int> (*responses)(const Case& input);
+  /// As asks_for_gradients(); null: never.
+  bool (*gradients)(const StudyEntry& study);
+  /// Evaluations that it asks for at most, where that is known; null: never.
+  int (*planned)(const StudyEntry& study);
+};
+
+/// All of them, in the order of the reference.
+const std::vector<StudyRow>& study_kinds();
+
+const StudyRow& row_of(StudyKind kind);
 
 /// What the case's study.kind says.
 StudyOutcome conduct(const StudyTask& task);
