@@ -157,7 +157,7 @@ TEST(CaseSchema, TheFileForEditorsIsCurrent) {
 /// Each row has its own name, and keys that the table knows.
 template <class Row>
 void expect_rows_of(const std::string& table, const std::vector<Row>& rows,
-                    const std::vector<std::string> (*keys)(const Row&)) {
+                    std::vector<std::string> (*keys)(const Row&)) {
   std::set<std::string> names;
   for (const Row& row : rows) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
@@ -172,7 +172,7 @@ void expect_rows_of(const std::string& table, const std::vector<Row>& rows,
 TEST(CaseKinds, HaveKeysThatTheirTableKnows) {
   expect_rows_of<ResponseRow>(
       "responses", response_kinds(),
-      [](const ResponseRow& row) -> const std::vector<std::string> {
+      [](const ResponseRow& row) -> std::vector<std::string> {
         std::vector<std::string> keys = row.keys.needed;
         keys.insert(keys.end(), row.keys.optional.begin(),
                     row.keys.optional.end());
@@ -180,9 +180,7 @@ TEST(CaseKinds, HaveKeysThatTheirTableKnows) {
       });
   expect_rows_of<StudyRow>(
       "study", study_kinds(),
-      [](const StudyRow& row) -> const std::vector<std::string> {
-        return row.keys;
-      });
+      [](const StudyRow& row) -> std::vector<std::string> { return row.keys; });
 }
 
 TEST(CaseKinds, NameTheirUsualMethod) {
