@@ -14,14 +14,14 @@
 #include "app/versions.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json.h"
+#include "pipeline/files/text_table.h"
 #include "pipeline/forward/part_file.h"
 #include "pipeline/results/imported_part.h"
 #include "pipeline/results/part_comparison.h"
 #include "pipeline/results/results.h"
 #include "pipeline/store/study_store.h"
-#include "pipeline/tables/text_table.h"
 #include "report/page/report_page.h"
-#include "core/json.h"
 
 namespace meniscus {
 
@@ -137,8 +137,9 @@ void compare(const CompareArguments& arguments, Surfaces& surfaces,
     std::fputs(for_people(table).c_str(), stdout);
   }
   write_file(folder / "compare.csv", csv_text(table));
-  write_file(folder / "compare.json",
-             json_text(comparison_json(parts, units, kProgramVersion), 2) + "\n");
+  write_file(
+      folder / "compare.json",
+      json_text(comparison_json(parts, units, kProgramVersion), 2) + "\n");
   surfaces.keep();
   write_report_or_warn(folder, {.versions = version_text()}, &monitor,
                        [](const std::string& warning) { warn({warning}); });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/case_data/study_kinds.h"
 #include "pipeline/results/results.h"
 #include "pipeline/study/study_records.h"
 
@@ -26,21 +27,7 @@ Json value_map(const std::vector<std::string>& names, const VectorX& values) {
 }
 
 const char* stage_name(const Case& input) {
-  switch (input.study.kind) {
-    case StudyKind::Match:
-      return "match";
-    case StudyKind::Minimize:
-      return "minimize";
-    case StudyKind::Sweep:
-      return "sweep";
-    case StudyKind::Tolerance:
-      return "tolerance";
-    case StudyKind::Pareto:
-      return "pareto";
-    case StudyKind::Analyse:
-      break;
-  }
-  return "analyse";
+  return row_of(input.study.kind).name;
 }
 
 Json best_json(const StudyNews& news) {
@@ -125,18 +112,7 @@ MonitorEvent end_event(RunStatus status, const std::string& message,
 }
 
 std::string outer_stage_of(const Case& input) {
-  switch (input.study.kind) {
-    case StudyKind::Minimize:
-    case StudyKind::Pareto:
-      return "minimize";
-    case StudyKind::Sweep:
-    case StudyKind::Tolerance:
-      return "study";
-    case StudyKind::Match:
-    case StudyKind::Analyse:
-      break;
-  }
-  return "match";
+  return row_of(input.study.kind).outer_stage;
 }
 
 }  // namespace meniscus

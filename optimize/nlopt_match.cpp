@@ -1,10 +1,11 @@
 #include "optimize/nlopt_match.h"
 
-#include <utility>
+#include <algorithm>
 
 #include <fmt/format.h>
 #include <nlopt.hpp>
 
+#include "optimize/nlopt_minimize.h"
 #include "optimize/nlopt_vector.h"
 
 namespace meniscus {
@@ -19,27 +20,10 @@ constexpr double kMatchCostTolerance = 1e-10;
 // A restart that leaves more than this part of the cost was the last.
 constexpr double kMatchGain = 0.99;
 
-struct Method {
-  std::string name;
-  nlopt::algorithm algorithm;
-  bool restarts;  // its simplex can collapse against a bound: begin it again
-};
-
-const std::vector<Method>& methods() {
-  static const std::vector<Method> table = {
-      {"bobyqa", nlopt::LN_BOBYQA, false},
-      {"cobyla", nlopt::LN_COBYLA, false},
-      {"direct_l", nlopt::GN_DIRECT_L, false},
-      {"neldermead", nlopt::LN_NELDERMEAD, true},
-      {"sbplx", nlopt::LN_SBPLX, true},
-  };
-  return table;
-}
-
-const Method& method_of(const std::string& name) {
-  for (const Method& method : methods()) {
-    if (method.name == name) {
-      return method;
+const NloptTraits& match_traits_of(const std::string& name) {
+  for (const NloptTraits& traits : nlopt_traits()) {
+    if (traits.of_match && traits.method.name == name) {
+      return traits;
     }
   }
   throw InvalidInput("match: NLopt method '" + name + "' is not known");
@@ -79,8 +63,8 @@ const char* nlopt_words(nlopt::result result) {
 }
 
 BackendResult run_once(MatchEvaluator& evaluator, const VectorX& start,
-                       const Method& method) {
-  nlopt::opt optimizer(method.algorithm,
+                       const NloptTraits& method) {
+  nlopt::opt optimizer(static_cast<nlopt::algorithm>(method.algorithm),
                        static_cast<unsigned>(evaluator.size()));
   Context context{&evaluator, &optimizer};
   optimizer.set_min_objective(objective, &context);
@@ -111,9 +95,12 @@ BackendResult run_once(MatchEvaluator& evaluator, const VectorX& start,
 const std::vector<std::string>& nlopt_match_methods() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> list;
-    for (const Method& method : methods()) {
-      list.push_back(method.name);
+    for (const NloptTraits& traits : nlopt_traits()) {
+      if (traits.of_match) {
+        list.push_back(traits.method.name);
+      }
     }
+    std::sort(list.begin(), list.end());
     return list;
   }();
   return names;
@@ -121,7 +108,7 @@ const std::vector<std::string>& nlopt_match_methods() {
 
 BackendResult nlopt_match(MatchEvaluator& evaluator, const VectorX& start,
                           const std::string& method_name) {
-  const Method& method = method_of(method_name);
+  const NloptTraits& method = match_traits_of(method_name);
   BackendResult result = run_once(evaluator, start, method);
   while (method.restarts && !evaluator.halted()) {
     const double before = cost_of(evaluator.best_answer());

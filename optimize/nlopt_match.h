@@ -5,7 +5,8 @@
 
 namespace meniscus {
 
-/// The names of the methods, as a case file writes them.
+/// The names of the methods, as a case file writes them, by alphabet; those of
+/// nlopt_traits() that serve a match.
 const std::vector<std::string>& nlopt_match_methods();
 
 /// Minimises |r|^2 / 2 until the evaluator halts or NLopt is done. A failed

@@ -34,27 +34,6 @@ constexpr double kWall = 0.01;
 // While a global method looks around, an equation is kept within this.
 constexpr double kLooseEquation = 1e-3;
 
-nlopt::algorithm algorithm_of(const std::string& name) {
-  static const std::vector<std::pair<std::string, nlopt::algorithm>> table = {
-      {"slsqp", nlopt::LD_SLSQP},
-      {"mma", nlopt::LD_MMA},
-      {"ccsa", nlopt::LD_CCSAQ},
-      {"bobyqa", nlopt::LN_BOBYQA},
-      {"cobyla", nlopt::LN_COBYLA},
-      {"sbplx", nlopt::LN_SBPLX},
-      {"neldermead", nlopt::LN_NELDERMEAD},
-      {"isres", nlopt::GN_ISRES},
-      {"crs2", nlopt::GN_CRS2_LM},
-      {"direct_l", nlopt::GN_DIRECT_L},
-  };
-  for (const auto& [known, algorithm] : table) {
-    if (known == name) {
-      return algorithm;
-    }
-  }
-  throw InvalidInput("minimize: NLopt method '" + name + "' is not known");
-}
-
 // NLopt sees s_j = x_j / unit_j, the units powers of two: of the size of the
 // ranges, and exact both ways.
 VectorX units_of(const VectorX& ranges) {
@@ -77,7 +56,7 @@ class Run {
                                         task.radius * evaluator.ranges())),
         high_(evaluator.upper().cwiseMin(task.start +
                                          task.radius * evaluator.ranges())),
-        optimizer_(algorithm_of(traits.method.name),
+        optimizer_(static_cast<nlopt::algorithm>(traits.algorithm),
                    static_cast<unsigned>(evaluator.size())) {
     const std::vector<ConstraintSide>& sides = evaluator.sides();
     for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -337,16 +316,53 @@ NloptResult Run::go() {
 const std::vector<NloptTraits>& nlopt_traits() {
   using Style = ConstraintStyle;
   static const std::vector<NloptTraits> table = {
-      {{"slsqp", true, false}, Style::Native, true, false},
-      {{"mma", true, false}, Style::NativeInequalities, true, false},
-      {{"ccsa", true, false}, Style::NativeInequalities, true, false},
-      {{"bobyqa", false, false}, Style::Lagrangian, false, false},
-      {{"cobyla", false, false}, Style::Native, false, false},
-      {{"sbplx", false, false}, Style::Lagrangian, false, true},
-      {{"neldermead", false, false}, Style::Lagrangian, false, true},
-      {{"isres", false, true}, Style::Native, false, false},
-      {{"crs2", false, true}, Style::FeasibleFirst, false, false},
-      {{"direct_l", false, true}, Style::FeasibleFirst, false, false},
+      {{"slsqp", true, false}, nlopt::LD_SLSQP, Style::Native, true, false},
+      {{"mma", true, false},
+       nlopt::LD_MMA,
+       Style::NativeInequalities,
+       true,
+       false},
+      {{"ccsa", true, false},
+       nlopt::LD_CCSAQ,
+       Style::NativeInequalities,
+       true,
+       false},
+      {{"bobyqa", false, false},
+       nlopt::LN_BOBYQA,
+       Style::Lagrangian,
+       false,
+       false,
+       true},
+      {{"cobyla", false, false},
+       nlopt::LN_COBYLA,
+       Style::Native,
+       false,
+       false,
+       true},
+      {{"sbplx", false, false},
+       nlopt::LN_SBPLX,
+       Style::Lagrangian,
+       false,
+       true,
+       true},
+      {{"neldermead", false, false},
+       nlopt::LN_NELDERMEAD,
+       Style::Lagrangian,
+       false,
+       true,
+       true},
+      {{"isres", false, true}, nlopt::GN_ISRES, Style::Native, false, false},
+      {{"crs2", false, true},
+       nlopt::GN_CRS2_LM,
+       Style::FeasibleFirst,
+       false,
+       false},
+      {{"direct_l", false, true},
+       nlopt::GN_DIRECT_L,
+       Style::FeasibleFirst,
+       false,
+       false,
+       true},
   };
   return table;
 }

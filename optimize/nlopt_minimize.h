@@ -16,12 +16,16 @@ enum class ConstraintStyle {
 
 struct NloptTraits {
   MinimizeMethod method;
+  int algorithm = 0;  // nlopt::algorithm
   ConstraintStyle style = ConstraintStyle::Native;
   /// What a point that cannot be evaluated looks like: +infinity where the
   /// algorithm steps back from it, else worse than anything seen.
   bool infinite_wall = false;
   bool restarts = false;  // its simplex can collapse: begin it again
+  bool of_match = false;  // serves a match too (optimize/nlopt_match.h)
 };
+
+/// All methods, in the order of the reference.
 const std::vector<NloptTraits>& nlopt_traits();
 
 /// f / unit + sum over the sides in the Lagrangian of

@@ -13,6 +13,7 @@
 #include "pipeline/case_data/case_responses.h"
 #include "pipeline/case_data/case_sides.h"
 #include "pipeline/case_data/case_values.h"
+#include "pipeline/case_data/response_kinds.h"
 
 namespace meniscus {
 
@@ -348,41 +349,7 @@ std::vector<std::string> response_names(const Case& input) {
   return names;
 }
 
-Dimension dimension_of(ResponseKind kind) {
-  switch (kind) {
-    case ResponseKind::MeanDisplacement:
-    case ResponseKind::DisplacementNorm:
-    case ResponseKind::CentreOfMass:
-    case ResponseKind::Radius:
-    case ResponseKind::Thickness:
-    case ResponseKind::Distance:
-    case ResponseKind::Gap:
-    case ResponseKind::ScanDistance:
-      return Dimension::Length;
-    case ResponseKind::Mass:
-      return Dimension::Mass;
-    case ResponseKind::Volume:
-      return Dimension::Volume;
-    case ResponseKind::MaxVonMises:
-    case ResponseKind::VonMisesNorm:
-    case ResponseKind::VonMisesKs:
-    case ResponseKind::Pressure:
-      return Dimension::Pressure;
-    case ResponseKind::Compliance:
-    case ResponseKind::StrainEnergy:
-    case ResponseKind::FilmEnergy:
-      return Dimension::Energy;
-    case ResponseKind::FilmArea:
-      return Dimension::Area;
-    case ResponseKind::Rotation:  // in radians
-    case ResponseKind::Uniformity:
-    case ResponseKind::EnergyUniformity:
-    case ResponseKind::CollapseMargin:  // force/length^3
-    case ResponseKind::Expression:      // not known
-      break;
-  }
-  return Dimension::None;
-}
+Dimension dimension_of(ResponseKind kind) { return row_of(kind).dimension; }
 
 std::string response_unit(const Case& input, int response) {
   return input.units.unit_of(

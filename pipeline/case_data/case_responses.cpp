@@ -4,15 +4,15 @@
 
 #include "core/error.h"
 #include "core/math/expression.h"
+#include "pipeline/case_data/response_kinds.h"
 
 namespace meniscus {
 
 namespace {
 
 bool has_direction(ResponseKind kind) {
-  return kind == ResponseKind::MeanDisplacement ||
-         kind == ResponseKind::DisplacementNorm ||
-         kind == ResponseKind::Rotation || kind == ResponseKind::CentreOfMass;
+  const ResponseRow& row = row_of(kind);
+  return needs_key(row, "direction") || needs_key(row, "axis");
 }
 
 /// `field` times `sign`; where it has no value, `what` and the place are told.

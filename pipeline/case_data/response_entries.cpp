@@ -3,13 +3,14 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "pipeline/case_data/response_kinds.h"
 
 namespace meniscus {
 
 bool has_derivatives(const Case& input, int response) {
   const ResponseEntry& entry = input.responses[response];
   if (entry.kind != ResponseKind::Expression) {
-    return entry.kind != ResponseKind::MaxVonMises;
+    return row_of(entry.kind).has_derivatives;
   }
   const std::vector<int> used = entry.value.expression.names_used();
   const auto names =

@@ -7,7 +7,7 @@
 #include "fea/loads/body_loads.h"
 #include "fea/stress/error_estimate.h"
 #include "pipeline/case_data/case_values.h"
-#include "pipeline/forward/responses.h"
+#include "pipeline/case_data/response_kinds.h"
 
 namespace meniscus {
 
@@ -84,23 +84,6 @@ class Shares {
   int count_ = 0;
 };
 
-/// Its partial derivative by the displacement makes a dual load.
-bool has_dual(const ResponseEntry& response) {
-  switch (response.kind) {
-    case ResponseKind::MeanDisplacement:
-    case ResponseKind::DisplacementNorm:
-    case ResponseKind::Rotation:
-    case ResponseKind::Compliance:
-    case ResponseKind::StrainEnergy:
-    case ResponseKind::VonMisesNorm:
-    case ResponseKind::Uniformity:
-    case ResponseKind::EnergyUniformity:
-      return true;
-    default:
-      return false;
-  }
-}
-
 struct Dual {
   std::size_t response = 0;
   VectorX by_displacement;
@@ -143,12 +126,11 @@ std::vector<std::vector<Dual>> ResponseErrors::duals() {
   std::vector<std::vector<Dual>> result(fields_.inputs.load_cases.size());
   for (std::size_t r = 0; r < input_.responses.size(); ++r) {
     const ResponseEntry& response = input_.responses[r];
-    // Of peaks, recovery and the dual solution miss the most.
-    if (response.kind == ResponseKind::MaxVonMises ||
-        response.kind == ResponseKind::VonMisesKs) {
+    const ErrorSource estimate = row_of(response.kind).error;
+    if (estimate == ErrorSource::Unknown) {
       error(r) = std::numeric_limits<double>::quiet_NaN();
     }
-    if (!has_dual(response)) {
+    if (estimate != ErrorSource::ByDual) {
       continue;
     }
     const auto k = static_cast<std::size_t>(response.load_case);

@@ -4,8 +4,10 @@
 #include <array>
 #include <cctype>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -22,6 +24,7 @@ struct PartReader {
   const char* ending;
   SurfaceMesh (*read)(const std::filesystem::path& path,
                       const ReadStepOptions& options);
+  bool named = true;  // in messages; else another ending of the one before
 };
 
 SurfaceMesh stl(const std::filesystem::path& path, const ReadStepOptions&) {
@@ -38,11 +41,24 @@ SurfaceMesh datafile(const std::filesystem::path& path,
   return complex_of(read_fe(read_file(path), path.filename().string())).mesh;
 }
 
-constexpr std::array<PartReader, 5> kReaders = {{{".stl", stl},
-                                                 {".obj", obj},
-                                                 {".fe", datafile},
-                                                 {".step", read_step_part},
-                                                 {".stp", read_step_part}}};
+constexpr std::array<PartReader, 5> kReaders = {
+    {{".stl", stl},
+     {".obj", obj},
+     {".step", read_step_part},
+     {".stp", read_step_part, false},
+     {".fe", datafile}}};
+
+std::string reader_endings() {
+  std::vector<std::string> endings;
+  for (const PartReader& reader : kReaders) {
+    if (reader.named) {
+      endings.emplace_back(reader.ending);
+    }
+  }
+  const std::string last = endings.back();
+  endings.pop_back();
+  return fmt::format("{} and {}", fmt::join(endings, ", "), last);
+}
 
 const PartReader* reader_of(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
@@ -65,9 +81,8 @@ SurfaceMesh read_part_file(const std::filesystem::path& path,
                            const ReadStepOptions& options) {
   const PartReader* reader = reader_of(path);
   if (reader == nullptr) {
-    throw InvalidInput(fmt::format(
-        "{}: no file of a part; there are .stl, .obj, .step and .fe",
-        path.string()));
+    throw InvalidInput(fmt::format("{}: no file of a part; there are {}",
+                                   path.string(), reader_endings()));
   }
   return reader->read(path, options);
 }

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pipeline/tables/place_json.h"
+#include "pipeline/files/place_json.h"
 
 namespace meniscus {
 

@@ -11,7 +11,7 @@
 #include "core/json.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
-#include "pipeline/tables/place_json.h"
+#include "pipeline/files/place_json.h"
 
 namespace meniscus {
 

@@ -12,16 +12,20 @@ namespace {
 /// More modes at once would take more memory than the part's own solve.
 constexpr int kMostModes = 50;
 
-/// After the eigenvalues that are asked for.
-void read_solver(CaseContext& context, const CaseTable& table,
-                 AnalysisEntry& analysis) {
-  static const std::map<std::string, SolverKind> kinds = {
+const std::vector<Named<SolverKind>>& solver_kinds() {
+  static const std::vector<Named<SolverKind>> kinds = {
       {"auto", SolverKind::Automatic},
       {"cholmod", SolverKind::Cholesky},
       {"p-multigrid", SolverKind::Multigrid},
       {"petsc", SolverKind::Distributed}};
+  return kinds;
+}
+
+/// After the eigenvalues that are asked for.
+void read_solver(CaseContext& context, const CaseTable& table,
+                 AnalysisEntry& analysis) {
   if (const auto kind = table.choice("solver")) {
-    analysis.solver = kinds.at(*kind);
+    analysis.solver = row_named(solver_kinds(), *kind).value;
   }
   if (analysis.solver != SolverKind::Distributed) {
     if (table.has("processes")) {
@@ -78,6 +82,40 @@ void read_analysis_table(CaseContext& context, const toml::table& root,
 }
 
 }  // namespace
+
+TableSpec analysis_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "analysis",
+      false,
+      TableNeed::Optional,
+      "How the part is analysed, what counts of it, vibration and buckling",
+      {{"adapt", K::Flag, D::None, false,
+        "one round of adaptive refinement of the frozen model: elements and "
+        "surface are halved where that should leave 40 % of the estimated "
+        "error at the initial design, with the fewest elements; false when "
+        "left out"},
+       {"exclude", K::Zones, D::None, false,
+        "zones that stress figures leave out: peaks, safety factors, "
+        "distributions and max_von_mises responses. Elements whose centre is "
+        "in one at the initial design, for every design"},
+       {"solver", K::Choice, D::None, false,
+        "of the linear systems: auto chooses by size between cholmod (a "
+        "factor) and p-multigrid (conjugate gradients); petsc: in processes "
+        "of its own, for parts that outgrow one machine; auto when left out",
+        choices_of(solver_kinds())},
+       {"processes", K::Integer, D::None, false,
+        "of solver = \"petsc\": how many share the part; 2 when left out"},
+       {"frequencies", K::Integer, D::None, false,
+        "how many natural frequencies, lowest first; none when left out"},
+       {"supports_of", K::Name, D::None, false,
+        "of frequencies: the load case whose supports and springs hold the "
+        "part, or free: not held; the first load case when left out"},
+       {"buckling", K::Integer, D::None, false,
+        "how many buckling factors per load case, smallest first; 0: none; "
+        "the first to three digits when left out"}}};
+}
 
 void read_analysis(CaseContext& context, const toml::table& root,
                    Case& result) {

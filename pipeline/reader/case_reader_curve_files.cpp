@@ -9,9 +9,9 @@
 #include "cad/step/step_edges.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "pipeline/files/curve_file.h"
+#include "pipeline/files/step_curve.h"
 #include "pipeline/reader/case_reader_tables.h"
-#include "pipeline/reader/step_curve.h"
-#include "pipeline/tables/curve_file.h"
 
 namespace meniscus {
 
@@ -43,9 +43,8 @@ void refuse_keys(CaseContext& context, const CaseTable& table,
 void read_points(CaseContext& context, const CaseTable& table,
                  const std::string& path, Case& result, CurveEntry& curve) {
   refuse_keys(context, table, {"edge", "face"}, "STEP files");
-  curve.kind = table.choice("as").value_or("spline") == "polygon"
-                   ? CurveKind::Polygon
-                   : CurveKind::Spline;
+  curve.kind =
+      row_named(point_curves(), table.choice("as").value_or("spline")).value;
   if (const std::string* text =
           file_text(context, table, path,
                     "a csv file with columns x, y, z or a STEP file", result)) {
@@ -220,6 +219,12 @@ std::string ending_of(const std::string& path) {
     return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   });
   return ending;
+}
+
+const std::vector<Named<CurveKind>>& point_curves() {
+  static const std::vector<Named<CurveKind>> kinds = {
+      {"spline", CurveKind::Spline}, {"polygon", CurveKind::Polygon}};
+  return kinds;
 }
 
 void read_curve_file(CaseContext& context, const CaseTable& table, Case& result,

@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <map>
-
 #include <fmt/format.h>
 
 #include "pipeline/reader/case_reader_tables.h"
@@ -9,33 +6,42 @@ namespace meniscus {
 
 namespace {
 
-const std::map<std::string, KindKeys>& curve_kinds() {
-  static const std::map<std::string, KindKeys> kinds = {
-      {"circle", {{"center", "normal", "radius"}, {}}},
-      {"ellipse", {{"center", "normal", "axis", "radius_1", "radius_2"}, {}}},
+struct CurveRow {
+  const char* name;
+  CurveKind kind;
+  KindKeys keys;
+  std::string_view doc;
+};
+
+const std::vector<CurveRow>& curve_kinds() {
+  using Kind = CurveKind;
+  static const std::vector<CurveRow> kinds = {
+      {"circle", Kind::Circle, {{"center", "normal", "radius"}, {}}, kWithNext},
+      {"ellipse",
+       Kind::Ellipse,
+       {{"center", "normal", "axis", "radius_1", "radius_2"}, {}},
+       kWithNext},
       {"rectangle",
-       {{"center", "normal", "axis", "width", "height"}, {"corner_radius"}}},
-      {"polygon", {{"points"}, {}}},
-      {"spline", {{"points"}, {}}},
-      {"polyline", {{"points"}, {}}},
-      {"file", {{"file"}, {"as", "edge", "face"}}},
+       Kind::Rectangle,
+       {{"center", "normal", "axis", "width", "height"}, {"corner_radius"}},
+       ""},
+      {"polygon", Kind::Polygon, {{"points"}, {}}, "straight sides"},
+      {"spline", Kind::Spline, {{"points"}, {}}, "smooth through points"},
+      {"polyline",
+       Kind::Polyline,
+       {{"points"}, {}},
+       "straight sides and circular arcs"},
+      {"file",
+       Kind::Spline,  // or what the file holds
+       {{"file"}, {"as", "edge", "face"}},
+       "points from a file"},
       {"copy",
+       Kind::Copy,
        {{"of"},
         {"offset", "scale", "scales", "mirror", "rotate", "axis", "about",
-         "move"}}}};
+         "move"}},
+       "another curve offset, scaled, mirrored, turned, moved"}};
   return kinds;
-}
-
-CurveKind curve_kind_of(const std::string& kind) {
-  static const std::map<std::string, CurveKind> kinds = {
-      {"circle", CurveKind::Circle},
-      {"ellipse", CurveKind::Ellipse},
-      {"rectangle", CurveKind::Rectangle},
-      {"polygon", CurveKind::Polygon},
-      {"spline", CurveKind::Spline},
-      {"polyline", CurveKind::Polyline},
-      {"copy", CurveKind::Copy}};
-  return kind == "file" ? CurveKind::Spline : kinds.at(kind);
 }
 
 Quantity fixed(const CaseTable& table, const char* key, double value) {
@@ -144,8 +150,9 @@ CurveEntry read_curve(CaseContext& context, const CaseTable& table,
   if (!kind) {
     return curve;
   }
-  table.check_kind(*kind, curve_kinds().at(*kind));
-  curve.kind = curve_kind_of(*kind);
+  const CurveRow& row = row_named(curve_kinds(), *kind);
+  table.check_kind(*kind, row.keys);
+  curve.kind = row.kind;
   if (*kind == "copy") {
     read_copy(context, table, root, result, curve);
     return curve;
@@ -169,6 +176,62 @@ CurveEntry read_curve(CaseContext& context, const CaseTable& table,
 }
 
 }  // namespace
+
+TableSpec curve_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "curves",
+      true,
+      TableNeed::Optional,
+      "A closed boundary curve, counter-clockwise seen from its normal's tip",
+      {{"kind", K::Choice, D::None, true,
+        "its shape: " + meanings_of(curve_kinds()), choices_of(curve_kinds()),
+        "arc"},
+       {"center", K::Vector, D::Length, false, "of circle, ellipse, rectangle"},
+       {"normal", K::Vector, D::None, false,
+        "of circle, ellipse, rectangle; any length but 0"},
+       {"axis", K::Vector, D::None, false,
+        "of ellipse, rectangle: direction of radius_1 or width; of copy: what "
+        "it is turned about"},
+       {"radius", K::Quantity, D::Length, false, "of circle"},
+       {"radius_1", K::Quantity, D::Length, false, "of ellipse, along axis"},
+       {"radius_2", K::Quantity, D::Length, false, "of ellipse, across axis"},
+       {"width", K::Quantity, D::Length, false, "of rectangle: along axis"},
+       {"height", K::Quantity, D::Length, false, "of rectangle: across it"},
+       {"corner_radius", K::Quantity, D::Length, false,
+        "of rectangle; 0 when left out"},
+       {"points", K::Path, D::Length, false,
+        "of polygon, spline, polyline, in order; they close by themselves. In "
+        "a polyline { through = [x, y, z] } makes the side between its "
+        "neighbours an arc"},
+       {"file", K::Text, D::None, false,
+        "of file: a csv file with a head row x,y,z, units if it likes (x "
+        "[in]), or a STEP file; relative to the case file"},
+       {"as", K::Choice, D::None, false,
+        "of a csv file: what the points make; spline when left out",
+        choices_of(point_curves())},
+       {"edge", K::NamesOrNumbers, D::None, false,
+        "of a STEP file: a closed edge, or several that close, by name or "
+        "number: 7, \"rim\", [3, 4]; or"},
+       {"face", K::NamesOrNumbers, D::None, false,
+        "of a STEP file: the face whose outer rim it is, by name or number"},
+       {"of", K::Name, D::None, false, "of copy: a curve that stands above"},
+       {"offset", K::Quantity, D::Length, false,
+        "of copy: outwards in the curve's plane, below 0 inwards; corners "
+        "stay sharp, arcs concentric. Not of a copy"},
+       {"scale", K::Quantity, D::None, false, "of copy: a factor above 0, or"},
+       {"scales", K::Vector, D::None, false,
+        "of copy: factors along x, y, z, above 0"},
+       {"mirror", K::Vector, D::None, false,
+        "of copy: normal of the mirror plane; any length but 0"},
+       {"rotate", K::Quantity, D::None, false,
+        "of copy: angle in radians, right-handed about axis"},
+       {"about", K::Vector, D::Length, false,
+        "of copy: the point that scaling, mirror plane and axis go through; "
+        "the origin when left out"},
+       {"move", K::Vector, D::Length, false, "of copy: added at the end"}}};
+}
 
 void read_curves(CaseContext& context, const toml::table& root, Case& result) {
   for (const CaseTable& table : named_tables(context, root, "curves")) {

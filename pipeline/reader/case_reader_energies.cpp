@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -10,23 +9,35 @@ namespace meniscus {
 
 namespace {
 
-struct PoleKeys {
+struct FieldRow {
+  const char* name;
   FieldKind kind;
   KindKeys keys;
 };
 
-const std::map<std::string, PoleKeys>& field_kinds() {
+const std::vector<FieldRow>& field_kinds() {
   const auto pole = [](std::vector<std::string> shape) {
     shape.insert(shape.end(), {"strength", "core"});
     return KindKeys{std::move(shape), {"power", "films", "body"}};
   };
-  static const std::map<std::string, PoleKeys> kinds = {
-      {"point", {FieldKind::Point, pole({"at"})}},
-      {"segment", {FieldKind::Segment, pole({"from", "to"})}},
-      {"polyline", {FieldKind::Polyline, pole({"points"})}},
-      {"plane", {FieldKind::Plane, pole({"at", "normal"})}},
-      {"pressure", {FieldKind::Pressure, {{"pressure", "body"}, {}}}}};
+  static const std::vector<FieldRow> kinds = {
+      {"point", FieldKind::Point, pole({"at"})},
+      {"segment", FieldKind::Segment, pole({"from", "to"})},
+      {"polyline", FieldKind::Polyline, pole({"points"})},
+      {"plane", FieldKind::Plane, pole({"at", "normal"})},
+      {"pressure", FieldKind::Pressure, {{"pressure", "body"}, {}}}};
   return kinds;
+}
+
+/// All but the pressure.
+std::string pole_names() {
+  std::string names;
+  for (const FieldRow& row : field_kinds()) {
+    if (row.kind != FieldKind::Pressure) {
+      names += (names.empty() ? "" : ", ") + std::string(row.name);
+    }
+  }
+  return names;
 }
 
 void read_field_targets(CaseContext& context, const CaseTable& table,
@@ -88,6 +99,41 @@ void require_frozen_field(CaseContext& context, const FieldEntry& field) {
 
 }  // namespace
 
+TableSpec field_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "fields",
+      true,
+      TableNeed::Optional,
+      "A field energy. Poles (" + pole_names() +
+          ") at distance d add -strength (1 + (d / core)^2)^(-power / 2) to "
+          "the energy per area of films or per volume of a body; a pressure "
+          "adds to a body's own. Part of the frozen film: no design variable "
+          "may move it",
+      {{"kind", K::Choice, D::None, true, "what acts",
+        choices_of(field_kinds())},
+       {"at", K::Vector, D::Length, false, "of point, plane"},
+       {"normal", K::Vector, D::None, false, "of plane; any length but 0"},
+       {"from", K::Vector, D::Length, false, "of segment"},
+       {"to", K::Vector, D::Length, false, "of segment"},
+       {"points", K::Vectors, D::Length, false,
+        "of polyline, in order; it closes where the last is the first"},
+       {"strength", K::Quantity, std::nullopt, false,
+        "of poles: energy on the pole per area or volume, above 0 attracts, "
+        "below repels. A film whose tension it exceeds crumples there"},
+       {"power", K::Quantity, D::None, false,
+        "of poles: falls as d^-power far away; 2 when left out"},
+       {"core", K::Quantity, D::Length, false,
+        "of poles: within it the field is soft"},
+       {"films", K::Names, D::None, false,
+        "of poles: acts per area of these, or"},
+       {"body", K::Name, D::None, false,
+        "of poles and pressure: acts per volume of this"},
+       {"pressure", K::Place, D::Pressure, false,
+        "of pressure: above 0 inflates"}}};
+}
+
 void read_fields(CaseContext& context, const toml::table& root, Case& result) {
   for (const CaseTable& table : named_tables(context, root, "fields")) {
     FieldEntry field;
@@ -97,8 +143,9 @@ void read_fields(CaseContext& context, const toml::table& root, Case& result) {
     if (!kind) {
       continue;
     }
-    field.kind = field_kinds().at(*kind).kind;
-    table.check_kind(*kind, field_kinds().at(*kind).keys);
+    const FieldRow& row = row_named(field_kinds(), *kind);
+    field.kind = row.kind;
+    table.check_kind(*kind, row.keys);
     field.at = table.vector_or_zero("at");
     field.normal = table.vector_or_zero("normal");
     field.from = table.vector_or_zero("from");

@@ -131,7 +131,7 @@ std::optional<std::string> CaseTable::choice(const char* key) const {
     return value;
   }
   const KeySpec& spec = *find_key(*spec_, key);
-  const auto among = [&](const char* list) {
+  const auto among = [&](const std::string& list) {
     const std::vector<std::string> choices = split_choices(list);
     return std::find(choices.begin(), choices.end(), *value) != choices.end();
   };

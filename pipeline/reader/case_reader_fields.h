@@ -1,5 +1,5 @@
 /// Typed access to the tables of a case file: each value is checked against
-/// the vocabulary (pipeline/schema/case_schema.h), and what is wrong is noted
+/// the vocabulary (pipeline/reader/case_schema.h), and what is wrong is noted
 /// with its line. Part of the case-file reader; nothing else sees TOML.
 #pragma once
 
@@ -15,8 +15,9 @@
 
 #include "core/units.h"
 #include "pipeline/case_data/case_entries.h"
+#include "pipeline/case_data/case_kinds.h"
 #include "pipeline/case_data/case_problems.h"
-#include "pipeline/schema/case_schema.h"
+#include "pipeline/reader/case_schema.h"
 
 namespace meniscus {
 
@@ -44,12 +45,6 @@ struct CaseContext {
 
 /// "a table", "text 'abc'", "3.5": what was found, for messages.
 std::string described(const toml::node& node);
-
-/// The keys that one kind of entry has beside `kind`.
-struct KindKeys {
-  std::vector<std::string> needed;
-  std::vector<std::string> optional;
-};
 
 /// One table of the file, such as [curves.support], and its place.
 class CaseTable {

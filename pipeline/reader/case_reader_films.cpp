@@ -1,6 +1,5 @@
 /// Films and solids: from curves, facets in the case, and files.
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -23,30 +22,70 @@ std::vector<std::string> curve_names(const Case& result) {
   return names;
 }
 
-struct FilmNeeds {
+struct FilmRow {
+  const char* name;
   FilmKind kind;
-  std::size_t least;
-  std::size_t most;
-  const char* text;
+  KindKeys keys;
+  std::string_view doc;
+  // Curves that it names, where their number is not free:
+  std::size_t least = 0;
+  std::size_t most = std::size_t(-1);
+  const char* needs = "";
 };
 
-const std::map<std::string, KindKeys>& film_kinds() {
-  static const std::map<std::string, KindKeys> kinds = {
-      {"branch", {{"curves"}, {"tension"}}},
-      {"loft", {{"curves"}, {"tension"}}},
-      {"disk", {{"curves"}, {"tension"}}},
-      {"facets", {{"vertices", "facets"}, {"curves", "within", "tension"}}},
+const std::vector<FilmRow>& film_kinds() {
+  static const std::vector<FilmRow> kinds = {
+      {"branch",
+       FilmKind::Branch,
+       {{"curves"}, {"tension"}},
+       "convex hull of any number of curves less their caps",
+       2,
+       std::size_t(-1),
+       "a branch needs two or more"},
+      {"loft",
+       FilmKind::Loft,
+       {{"curves"}, {"tension"}},
+       "band between two",
+       2,
+       2,
+       "a loft needs two"},
+      {"disk",
+       FilmKind::Disk,
+       {{"curves"}, {"tension"}},
+       "across one",
+       1,
+       1,
+       "a disk needs one"},
+      {"facets",
+       FilmKind::Facets,
+       {{"vertices", "facets"}, {"curves", "within", "tension"}},
+       "given here"},
       {"file",
-       {{"file"}, {"curves", "surface", "scale", "within", "tension"}}}};
+       FilmKind::Facets,
+       {{"file"}, {"curves", "surface", "scale", "within", "tension"}},
+       "facets of an STL, OBJ or Surface Evolver file"}};
   return kinds;
 }
 
-const std::map<std::string, KindKeys>& solid_kinds() {
-  static const std::map<std::string, KindKeys> kinds = {
-      {"cap", {{"curve"}, {"holes"}}},
-      {"ring", {{"curve", "inner"}, {}}},
-      {"sides", {{"curves"}, {}}},
-      {"file", {{"file"}, {"curves", "surface", "scale", "within"}}}};
+struct SolidRow {
+  const char* name;
+  KindKeys keys;
+  std::string_view doc;
+};
+
+const std::vector<SolidRow>& solid_kinds() {
+  static const std::vector<SolidRow> kinds = {
+      {"cap", {{"curve"}, {"holes"}}, "flat disk across a planar curve"},
+      {"ring",
+       {{"curve", "inner"}, {}},
+       "band between two curves, flat where they lie in one plane"},
+      {"sides",
+       {{"curves"}, {}},
+       "the plane faces between the sides of two polygons"},
+      {"file",
+       {{"file"}, {"curves", "surface", "scale", "within"}},
+       "facets of an STL, OBJ or Surface Evolver file, which stay as they "
+       "are"}};
   return kinds;
 }
 
@@ -67,19 +106,11 @@ void check_curves(CaseContext& context, const CaseTable& table,
 }
 
 void check_count(CaseContext& context, const CaseTable& table,
-                 const std::string& kind, std::size_t count) {
-  static const std::map<std::string, FilmNeeds> needs = {
-      {"branch",
-       {FilmKind::Branch, 2, std::size_t(-1), "a branch needs two or more"}},
-      {"loft", {FilmKind::Loft, 2, 2, "a loft needs two"}},
-      {"disk", {FilmKind::Disk, 1, 1, "a disk needs one"}}};
-  const auto at = needs.find(kind);
-  if (at != needs.end() && count > 0 &&
-      (count < at->second.least || count > at->second.most)) {
-    context.problems.add(
-        table.line("curves"),
-        fmt::format("{} names {} curve{}; {}", table.path(), count,
-                    count == 1 ? "" : "s", at->second.text));
+                 const FilmRow& row, std::size_t count) {
+  if (count > 0 && (count < row.least || count > row.most)) {
+    context.problems.add(table.line("curves"),
+                         fmt::format("{} names {} curve{}; {}", table.path(),
+                                     count, count == 1 ? "" : "s", row.needs));
   }
 }
 
@@ -123,22 +154,16 @@ double read_within(CaseContext& context, const CaseTable& table) {
   return within.value_or(0.0);
 }
 
-FilmKind film_kind_of(const std::string& kind) {
-  return kind == "branch" ? FilmKind::Branch
-         : kind == "loft" ? FilmKind::Loft
-         : kind == "disk" ? FilmKind::Disk
-                          : FilmKind::Facets;
-}
-
 FilmEntry read_film(CaseContext& context, const CaseTable& table,
                     const std::vector<std::string>& known, Case& result) {
   FilmEntry film{.line = table.line()};
   film.spec.name = table.name();
   film.spec.curves = table.names("curves");
   if (const auto kind = table.choice("kind")) {
-    table.check_kind(*kind, film_kinds().at(*kind));
-    film.spec.kind = film_kind_of(*kind);
-    check_count(context, table, *kind, film.spec.curves.size());
+    const FilmRow& row = row_named(film_kinds(), *kind);
+    table.check_kind(*kind, row.keys);
+    film.spec.kind = row.kind;
+    check_count(context, table, row, film.spec.curves.size());
     if (*kind == "facets") {
       film.vertices = table.vectors("vertices");
       film.facets = table.facets("facets", std::ssize(film.vertices));
@@ -249,7 +274,7 @@ CapEntry read_solid(CaseContext& context, const CaseTable& table,
   if (!kind) {
     return cap;
   }
-  table.check_kind(*kind, solid_kinds().at(*kind));
+  table.check_kind(*kind, row_named(solid_kinds(), *kind).keys);
   if (*kind == "file") {
     cap.is_file = true;
     cap.spec.rims = table.names("curves");
@@ -265,6 +290,64 @@ CapEntry read_solid(CaseContext& context, const CaseTable& table,
 }
 
 }  // namespace
+
+TableSpec film_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "films",
+      true,
+      TableNeed::Optional,
+      "A liquid film between curves",
+      {{"kind", K::Choice, D::None, true,
+        "how the liquid starts: " +
+            meanings_of(film_kinds(), {" (", ")", ", "}),
+        choices_of(film_kinds())},
+       {"curves", K::Names, D::None, false,
+        "the curves that hold it; of facets and file those that its rims lie "
+        "on, none where it is closed"},
+       {"tension", K::Place, D::Tension, false,
+        "energy per area of the film, above 0; 1 when left out. An expression "
+        "of x, y, z cannot depend on design variables"},
+       {"vertices", K::Vectors, D::Length, false,
+        "of facets: where its corners are at first"},
+       {"facets", K::Facets, D::None, false,
+        "of facets: three or more numbers of vertices each, from 0, all the "
+        "same way around"},
+       {"file", K::Text, D::None, false,
+        "of file: .stl, .obj or .fe, relative to the case file"},
+       {"surface", K::Name, D::None, false,
+        "of file: one of its surfaces (STL solid, OBJ group; film_1, film_2, "
+        "... of a datafile); all when left out"},
+       {"scale", K::Constant, D::None, false,
+        "of file: what its lengths are multiplied by; 1 when left out"},
+       {"within", K::Constant, D::Length, false,
+        "of facets and file: how far rims may lie off their curves; a quarter "
+        "of resolution.fea when left out"}}};
+}
+
+TableSpec solid_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "solids",
+      true,
+      TableNeed::Optional,
+      "A solid surface, named so that loads find it",
+      {{"kind", K::Choice, D::None, true, meanings_of(solid_kinds()),
+        choices_of(solid_kinds()), "plate|pad|faces"},
+       {"curve", K::Name, D::None, false, "of cap, ring: its rim"},
+       {"inner", K::Name, D::None, false, "of ring: the rim of its hole"},
+       {"holes", K::Names, D::None, false,
+        "of cap: curves in its plane that it leaves open"},
+       {"curves", K::Names, D::None, false,
+        "of sides: two polygons of as many corners; of file: those that its "
+        "rims lie on"},
+       {"file", K::Text, D::None, false, "of file: as of films"},
+       {"surface", K::Name, D::None, false, "of file: as of films"},
+       {"scale", K::Constant, D::None, false, "of file: as of films"},
+       {"within", K::Constant, D::Length, false, "of file: as of films"}}};
+}
 
 void read_films(CaseContext& context, const toml::table& root, Case& result) {
   const std::vector<std::string> known = curve_names(result);

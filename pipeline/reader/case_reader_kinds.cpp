@@ -6,64 +6,90 @@
 #include <fmt/ranges.h>
 
 #include "optimize/minimize.h"
-#include "optimize/problem.h"
+#include "pipeline/case_data/study_kinds.h"
 #include "pipeline/reader/case_reader_study.h"
 
 namespace meniscus {
 
 namespace {
 
-std::vector<std::string> methods_of(StudyKind kind) {
-  if (kind == StudyKind::Sweep) {
-    return sweep_methods();
+/// "slsqp (when left out), mma"; NLopt's in the order of their own table.
+std::string names_text(const StudyRow& row, std::vector<std::string> names) {
+  const std::vector<MinimizeMethod>& all = minimize_methods();
+  const auto order = [&](const std::string& name) {
+    const MinimizeMethod* method = find_minimize_method(name);
+    return method == nullptr ? -1 : static_cast<int>(method - all.data());
+  };
+  std::stable_sort(
+      names.begin(), names.end(),
+      [&](const auto& a, const auto& b) { return order(a) < order(b); });
+  for (std::string& name : names) {
+    name += name == row.usual_method ? " (when left out)" : "";
   }
-  if (kind == StudyKind::Tolerance) {
-    return {"latin_hypercube", "sobol"};
-  }
-  if (kind == StudyKind::Match) {
-    return match_methods();
-  }
-  std::vector<std::string> names;
-  for (const MinimizeMethod& method : minimize_methods()) {
-    names.push_back(method.name);
-  }
-  return names;
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
-const char* usual_method(StudyKind kind) {
-  switch (kind) {
-    case StudyKind::Minimize:
-    case StudyKind::Pareto:
-      return "slsqp";
-    case StudyKind::Sweep:
-      return "sobol";
-    case StudyKind::Tolerance:
-      return "latin_hypercube";
-    case StudyKind::Analyse:
-    case StudyKind::Match:
-      break;
+std::string minima_text(const StudyRow& row) {
+  std::vector<std::string> sloped;
+  std::vector<std::string> local;
+  std::vector<std::string> global;
+  for (const MinimizeMethod& method : minimize_methods()) {
+    (method.gradients ? sloped
+     : method.global  ? global
+                      : local)
+        .push_back(method.name);
   }
-  return "ceres";
+  return fmt::format("{} with exact gradients, {} without, {} globally",
+                     names_text(row, sloped), names_text(row, local),
+                     names_text(row, global));
+}
+
+/// "of match: ceres, ...; of minimize and pareto: ...".
+std::string all_methods_text() {
+  std::string text;
+  std::vector<const StudyRow*> rows;
+  for (const StudyRow& row : study_kinds()) {
+    if (row.kind != StudyKind::Analyse) {
+      rows.push_back(&row);
+    }
+  }
+  while (!rows.empty()) {
+    const StudyRow& first = *rows.front();
+    std::vector<std::string> alike;
+    std::erase_if(rows, [&](const StudyRow* row) {
+      const bool same = row->methods == first.methods;
+      if (same) {
+        alike.emplace_back(row->name);
+      }
+      return same;
+    });
+    text += fmt::format(
+        "{}of {}: {}", text.empty() ? "" : "; ", fmt::join(alike, " and "),
+        first.kind == StudyKind::Minimize ? minima_text(first)
+                                          : names_text(first, first.methods));
+  }
+  return text;
 }
 
 void check_method(CaseContext& context, const CaseTable& table,
                   const StudyEntry& study) {
-  std::vector<std::string> methods;
-  if (study.kind == StudyKind::Analyse) {  // the method waits, of any kind
-    for (const StudyKind kind :
-         {StudyKind::Match, StudyKind::Minimize, StudyKind::Sweep}) {
-      for (const std::string& name : methods_of(kind)) {
-        methods.push_back(name);
-      }
-    }
-  } else {
-    methods = methods_of(study.kind);
-  }
+  const std::vector<std::string>& methods = row_of(study.kind).methods;
   if (std::find(methods.begin(), methods.end(), study.method) ==
       methods.end()) {
     context.problems.unknown(table.line("method"), "method", study.method,
                              methods);
   }
+}
+
+/// Names of the kinds of study that each key of [study] belongs to.
+std::map<std::string, std::vector<std::string>> owners_of_keys() {
+  std::map<std::string, std::vector<std::string>> owners;
+  for (const StudyRow& row : study_kinds()) {
+    for (const std::string& key : row.keys) {
+      owners[key].emplace_back(row.name);
+    }
+  }
+  return owners;
 }
 
 /// What the file says of its own kind of study counts for nothing while --set
@@ -74,34 +100,93 @@ bool waits(const CaseTable& table, const char* key) {
 
 }  // namespace
 
+TableSpec study_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "study",
+      false,
+      TableNeed::Optional,
+      "What to do; analyse the initial design when left out",
+      {{"kind", K::Choice, D::None, true,
+        fmt::format("{}; family: one of these for each member",
+                    either_of(split_choices(choices_of(study_kinds())))),
+        choices_of(study_kinds()) + "|family"},
+       {"each", K::Choice, D::None, false,
+        "of family: what each member's own study is, with the keys of that "
+        "kind; minimize when left out",
+        "minimize|match|analyse"},
+       {"members", K::Members, D::None, false,
+        "of family: a table [study.members.NAME] of values by the names of "
+        "--set for each, or the path of a csv file, relative to the case"},
+       {"equal", K::Names, D::None, false,
+        "of match: responses to make equal; mismatch |a-b| / ((|a|+|b|)/2)"},
+       {"targets", K::ConstantMap, std::nullopt, false,
+        "of match: response = value; mismatch |a-v| / |v|, for v = 0 relative "
+        "to the initial response"},
+       {"fit", K::Name, D::None, false,
+        "of match, instead of equal and targets: a response of kind "
+        "scan_distance and measure rms; the films are brought as near to its "
+        "scan as the design variables can, in the sense of least squares"},
+       {"objective", K::Name, D::None, false,
+        "of minimize: the response to make small; of sweep: the one that "
+        "makes a design the best, the initial one when left out"},
+       {"objectives", K::Names, D::None, false,
+        "of pareto: the two responses to make small"},
+       {"constraints", K::Constraints, D::None, false,
+        "of minimize, sweep and pareto: responses to keep within bounds"},
+       {"levels", K::IntegerMap, D::None, false,
+        "of sweep by grid: design variable = number of values, ends of its "
+        "bounds included; one that is left out stays at its initial value"},
+       {"deviations", K::ConstantMap, std::nullopt, false,
+        "of tolerance: design variable = standard deviation"},
+       {"count", K::Integer, D::None, false,
+        "of sweep by latin_hypercube or sobol: number of designs; of "
+        "tolerance: samples that confirm it, none when left out; of pareto: "
+        "points of the front, 7 when left out"},
+       {"seed", K::Integer, D::None, false,
+        "of latin_hypercube: another seed is another sample; 1 when left "
+        "out"},
+       {"tolerance", K::Constant, D::None, false,
+        "of match: largest mismatch accepted, 1e-3 when left out, with fit "
+        "the distance that is near enough, as near as it gets when left out; "
+        "of minimize and pareto: first-order residual accepted, about the "
+        "relative gain "
+        "that is left, 1e-4 when left out"},
+       {"method", K::Text, D::None, false, all_methods_text()},
+       {"coarse_first", K::Constant, D::None, false,
+        "of match and minimize: the study is done first on a model with edges "
+        "so many times as long (above 1, 2 is usual), and its answer is where "
+        "the case's own model starts; no such stage when left out"},
+       {"max_evaluations", K::Integer, D::None, false,
+        "of match, minimize and each minimum of pareto: limit, "
+        "finite-difference ones included; 100 when left out"},
+       {"time_limit", K::Constant, D::Time, false,
+        "of the whole study, in seconds or as \"10 min\": it stops then and "
+        "keeps the best design; --time-limit counts too, the smaller of the "
+        "two; no limit when left out"},
+       {"refreeze", K::Flag, D::None, false,
+        "of match and minimize: where the frozen mesh no longer follows, "
+        "freeze a new model at the best design and go on from there, three "
+        "times at most; true when left out"}}};
+}
+
 void read_method(CaseContext& context, const CaseTable& table,
                  StudyEntry& study) {
-  study.method = table.text("method").value_or(usual_method(study.kind));
-  const std::vector<std::string> own = methods_of(study.kind);
+  const StudyRow& row = row_of(study.kind);
+  const std::vector<std::string>& own = row.methods;
+  study.method = table.text("method").value_or(row.usual_method);
   if (waits(table, "method") && study.kind != StudyKind::Analyse &&
       std::find(own.begin(), own.end(), study.method) == own.end()) {
-    study.method = usual_method(study.kind);
+    study.method = row.usual_method;
   }
   check_method(context, table, study);
 }
 
 void check_keys(CaseContext& context, const CaseTable& table,
                 const std::string& kind) {
-  static const std::map<std::string, std::vector<std::string>> owners = {
-      {"equal", {"match"}},
-      {"targets", {"match"}},
-      {"fit", {"match"}},
-      {"tolerance", {"match", "minimize", "pareto"}},
-      {"max_evaluations", {"match", "minimize", "pareto"}},
-      {"coarse_first", {"match", "minimize"}},
-      {"refreeze", {"match", "minimize"}},
-      {"objective", {"minimize", "sweep"}},
-      {"objectives", {"pareto"}},
-      {"constraints", {"minimize", "sweep", "pareto"}},
-      {"levels", {"sweep"}},
-      {"deviations", {"tolerance"}},
-      {"count", {"sweep", "tolerance", "pareto"}},
-      {"seed", {"sweep", "tolerance"}}};
+  static const std::map<std::string, std::vector<std::string>> owners =
+      owners_of_keys();
   std::vector<std::string> waiting;
   for (const auto& [key, owning] : owners) {
     if (!table.has(key.c_str()) || kind == "analyse" ||

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/reader/case_reader_tables.h"
@@ -84,65 +84,81 @@ void read_support(CaseContext& context, const CaseTable& table,
   }
 }
 
-/// What belongs to a load beside its own key.
-struct LoadKeys {
+/// A load has the key of its name, and what belongs to that.
+struct LoadRow {
+  const char* name;
   LoadKind kind;
   bool on_surface;
   std::vector<std::string> optional;
 };
 
-const std::map<std::string, LoadKeys>& load_keys() {
-  static const std::map<std::string, LoadKeys> keys = {
-      {"force", {LoadKind::Force, true, {"at", "moment"}}},
-      {"moment", {LoadKind::Remote, true, {"at", "force"}}},
-      {"pressure", {LoadKind::Pressure, true, {}}},
-      {"traction", {LoadKind::Traction, true, {}}},
-      {"gravity", {LoadKind::Gravity, false, {}}},
-      {"spin", {LoadKind::Spin, false, {"at", "axis"}}},
-      {"temperature", {LoadKind::Temperature, false, {"reference"}}}};
-  return keys;
+const std::vector<LoadRow>& load_kinds() {
+  static const std::vector<LoadRow> kinds = {
+      {"force", LoadKind::Force, true, {"at", "moment"}},
+      {"moment", LoadKind::Remote, true, {"at", "force"}},
+      {"pressure", LoadKind::Pressure, true, {}},
+      {"traction", LoadKind::Traction, true, {}},
+      {"gravity", LoadKind::Gravity, false, {}},
+      {"spin", LoadKind::Spin, false, {"at", "axis"}},
+      {"temperature", LoadKind::Temperature, false, {"reference"}}};
+  return kinds;
+}
+
+std::vector<std::string> load_names(bool on_surface) {
+  std::vector<std::string> names;
+  for (const LoadRow& row : load_kinds()) {
+    if (row.on_surface == on_surface) {
+      names.emplace_back(row.name);
+    }
+  }
+  return names;
 }
 
 /// The load's key: force before moment; empty, and a note, when it is not one.
 std::string load_key(CaseContext& context, const CaseTable& table,
                      const std::string& surface) {
   std::vector<std::string> found;
-  for (const auto& [key, keys] : load_keys()) {
-    if (table.has(key.c_str()) && !(key == "moment" && table.has("force"))) {
-      found.push_back(key);
+  for (const LoadRow& row : load_kinds()) {
+    if (table.has(row.name) &&
+        !(row.kind == LoadKind::Remote && table.has("force"))) {
+      found.emplace_back(row.name);
     }
   }
+  std::sort(found.begin(), found.end());
   if (found.size() == 1) {
     return found.front();
   }
   context.problems.add(
       table.line(),
-      fmt::format(
-          "{}{} has {}; expected one of force, moment, pressure, "
-          "traction, gravity, spin, temperature",
-          table.path(), surface.empty() ? "" : fmt::format(" on '{}'", surface),
-          found.empty() ? "no load"
-                        : fmt::format("{}", fmt::join(found, " and "))));
+      fmt::format("{}{} has {}; expected one of {}", table.path(),
+                  surface.empty() ? "" : fmt::format(" on '{}'", surface),
+                  found.empty() ? "no load"
+                                : fmt::format("{}", fmt::join(found, " and ")),
+                  fmt::join(split_choices(choices_of(load_kinds())), ", ")));
   return "";
 }
 
 void check_load_keys(CaseContext& context, const CaseTable& table,
                      const std::string& key) {
-  const LoadKeys& keys = load_keys().at(key);
-  if (keys.on_surface && !table.has("on")) {
+  const LoadRow& row = row_named(load_kinds(), key);
+  if (row.on_surface && !table.has("on")) {
     context.problems.add(table.line(),
                          fmt::format("{} is a {} and has no 'on' (the surface "
                                      "that is loaded); add it",
                                      table.path(), key));
   }
-  for (const char* other : {"on", "at", "axis", "reference"}) {
+  const auto is_kind = [](const std::string& name) {
+    return std::any_of(load_kinds().begin(), load_kinds().end(),
+                       [&](const LoadRow& kind) { return name == kind.name; });
+  };
+  for (const KeySpec& spec : load_table().keys) {
+    const std::string other = spec.key;
     const bool belongs =
-        std::string(other) == "on"
-            ? keys.on_surface
-            : std::find(keys.optional.begin(), keys.optional.end(), other) !=
-                  keys.optional.end();
-    if (table.has(other) && !belongs) {
-      note(context, table, other,
+        other == "on" ? row.on_surface
+                      : std::find(row.optional.begin(), row.optional.end(),
+                                  other) != row.optional.end();
+    if (!is_kind(other) && !belongs && table.has(spec.key)) {
+      note(context, table, spec.key,
            fmt::format("does not belong to a {}; take it out", key));
     }
   }
@@ -170,7 +186,7 @@ void read_load(CaseContext& context, const CaseTable& table, const Case& result,
     return;
   }
   check_load_keys(context, table, key);
-  load.kind = load_keys().at(key).kind;
+  load.kind = row_named(load_kinds(), key).kind;
   if (key == "force" && (table.has("at") || table.has("moment"))) {
     load.kind = LoadKind::Remote;
   }
@@ -193,6 +209,37 @@ void read_load(CaseContext& context, const CaseTable& table, const Case& result,
 }
 
 }  // namespace
+
+TableSpec load_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "load",
+      false,
+      TableNeed::Optional,
+      fmt::format("A load: {} on a surface, or {} of all bodies",
+                  either_of(load_names(true)), either_of(load_names(false))),
+      {{"on", K::Name, D::None, false,
+        fmt::format("of {}: the surface that is loaded",
+                    fmt::join(load_names(true), ", "))},
+       {"force", K::Vector, D::Force, false,
+        "total, spread as uniform traction; with `at` through that point"},
+       {"moment", K::Vector, D::Energy, false,
+        "total, beside that of the force"},
+       {"at", K::Vector, D::Length, false,
+        "of force and moment: the point they act through; of spin: on the "
+        "axis"},
+       {"pressure", K::Place, D::Pressure, false, "positive into the material"},
+       {"traction", K::PlaceVector, D::Pressure, false, "force per area"},
+       {"gravity", K::Vector, std::nullopt, false, "force per mass"},
+       {"spin", K::Quantity, std::nullopt, false,
+        "angular velocity in radians per time"},
+       {"axis", K::Vector, D::None, false, "of spin; any length but 0"},
+       {"temperature", K::Place, D::None, false,
+        "of all bodies; they expand from the reference"},
+       {"reference", K::Quantity, D::None, false,
+        "of temperature: where nothing has expanded; 0 when left out"}}};
+}
 
 std::string surface_on(CaseContext& context, const CaseTable& table,
                        const Case& result, const char* key) {

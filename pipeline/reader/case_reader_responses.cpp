@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/content_hash.h"
+#include "pipeline/case_data/response_kinds.h"
 #include "pipeline/case_data/scan_path.h"
 #include "pipeline/reader/case_reader_tables.h"
 
@@ -17,43 +16,13 @@ namespace meniscus {
 
 namespace {
 
-struct ResponseKeys {
-  ResponseKind kind;
-  KindKeys keys;
-};
-
-const std::map<std::string, ResponseKeys>& response_kinds() {
-  using Kind = ResponseKind;
-  static const std::map<std::string, ResponseKeys> kinds = {
-      {"mean_displacement",
-       {Kind::MeanDisplacement,
-        {{"on", "direction"}, {"load_case", "weight"}}}},
-      {"displacement_norm",
-       {Kind::DisplacementNorm, {{"on", "direction"}, {"load_case", "power"}}}},
-      {"rotation", {Kind::Rotation, {{"on", "axis"}, {"load_case"}}}},
-      {"compliance", {Kind::Compliance, {{}, {"load_case"}}}},
-      {"strain_energy", {Kind::StrainEnergy, {{}, {"load_case"}}}},
-      {"mass", {Kind::Mass, {}}},
-      {"volume", {Kind::Volume, {}}},
-      {"centre_of_mass", {Kind::CentreOfMass, {{"direction"}, {}}}},
-      {"max_von_mises", {Kind::MaxVonMises, {{}, {"load_case"}}}},
-      {"von_mises_norm", {Kind::VonMisesNorm, {{}, {"load_case", "power"}}}},
-      {"von_mises_ks",
-       {Kind::VonMisesKs, {{}, {"load_case", "sharpness", "scale"}}}},
-      {"uniformity", {Kind::Uniformity, {{}, {"load_case"}}}},
-      {"energy_uniformity", {Kind::EnergyUniformity, {{}, {"load_case"}}}},
-      {"film_area", {Kind::FilmArea, {{}, {"film"}}}},
-      {"film_energy", {Kind::FilmEnergy, {}}},
-      {"pressure", {Kind::Pressure, {{"body"}, {}}}},
-      {"collapse_margin", {Kind::CollapseMargin, {}}},
-      {"radius", {Kind::Radius, {{}, {"power"}}}},
-      {"thickness", {Kind::Thickness, {{}, {"smoothing"}}}},
-      {"distance",
-       {Kind::Distance, {{}, {"keep_out", "keep_in", "smoothing"}}}},
-      {"gap", {Kind::Gap, {{"films"}, {"smoothing"}}}},
-      {"scan_distance", {Kind::ScanDistance, {{"scan"}, {"films", "measure"}}}},
-      {"expression", {Kind::Expression, {{"value"}, {}}}}};
-  return kinds;
+const std::vector<Named<ScanMeasure>>& scan_measures() {
+  static const std::vector<Named<ScanMeasure>> measures = {
+      {"rms", ScanMeasure::Rms},
+      {"mean", ScanMeasure::Mean},
+      {"p95", ScanMeasure::P95},
+      {"largest", ScanMeasure::Largest}};
+  return measures;
 }
 
 /// A constant above `above`; `standard` without the key or when it is wrong.
@@ -230,43 +199,30 @@ void read_response_films(CaseContext& context, const CaseTable& table,
   }
 }
 
-ScanMeasure measure_of(const CaseTable& table) {
-  static const std::map<std::string, ScanMeasure> measures = {
-      {"rms", ScanMeasure::Rms},
-      {"mean", ScanMeasure::Mean},
-      {"p95", ScanMeasure::P95},
-      {"largest", ScanMeasure::Largest}};
-  return measures.at(table.choice("measure").value_or("rms"));
-}
-
 /// What only liquid has; parts of plane faces may have none.
 void require_films(CaseContext& context, const CaseTable& table,
-                   const std::string& kind, const Case& result) {
-  static const std::set<std::string> of_films = {
-      "film_area", "film_energy",     "pressure",     "radius",
-      "gap",       "collapse_margin", "scan_distance"};
-  if (result.films.empty() && of_films.contains(kind)) {
+                   const ResponseRow& row, const Case& result) {
+  if (result.films.empty() && row.of_films) {
     context.problems.add(
         table.line("kind"),
         fmt::format("{} is a {}, and the case has no films; take it out, or "
                     "add [films.NAME]",
-                    table.path(), kind));
+                    table.path(), row.name));
   }
 }
 
 ResponseEntry read_response(CaseContext& context, const CaseTable& table,
-                            const std::string& kind, const Case& result) {
+                            const ResponseRow& row, const Case& result) {
   ResponseEntry response;
   response.name = table.name();
   response.line = table.line();
-  response.kind = response_kinds().at(kind).kind;
-  table.check_kind(kind, response_kinds().at(kind).keys);
-  require_films(context, table, kind, result);
+  response.kind = row.kind;
+  table.check_kind(row.name, row.keys);
+  require_films(context, table, row, result);
   response.surface = surface_on(context, table, result);
-  response.direction = table.vector_or_zero(
-      response.kind == ResponseKind::Rotation ? "axis" : "direction");
-  const std::vector<std::string>& optional =
-      response_kinds().at(kind).keys.optional;
+  response.direction =
+      table.vector_or_zero(needs_key(row, "axis") ? "axis" : "direction");
+  const std::vector<std::string>& optional = row.keys.optional;
   if (std::find(optional.begin(), optional.end(), "load_case") !=
       optional.end()) {
     response.load_case = index_of_load_case(context, table, result);
@@ -282,7 +238,8 @@ ResponseEntry read_response(CaseContext& context, const CaseTable& table,
     index_among(context, table, "film", film_names(result));
   }
   read_response_films(context, table, result, response);
-  response.measure = measure_of(table);
+  response.measure =
+      row_named(scan_measures(), table.choice("measure").value_or("rms")).value;
   response.scan = table.text("scan").value_or("");
   response.body = index_among(context, table, "body", body_names(result));
   if (response.kind == ResponseKind::Expression) {
@@ -292,6 +249,61 @@ ResponseEntry read_response(CaseContext& context, const CaseTable& table,
 }
 
 }  // namespace
+
+TableSpec response_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "responses",
+      true,
+      TableNeed::ForParts,
+      "A number that the solver reports",
+      {{"kind", K::Choice, D::None, true, meanings_of(response_kinds()),
+        choices_of(response_kinds())},
+       {"on", K::Name, D::None, false,
+        "of displacements and rotations: the surface"},
+       {"direction", K::Vector, D::None, false,
+        "of displacements and centre_of_mass; any length but 0"},
+       {"axis", K::Vector, D::None, false,
+        "of rotation, right-handed; any length but 0"},
+       {"load_case", K::Name, D::None, false,
+        "of what depends on loads; the first when left out"},
+       {"weight", K::Place, D::None, false,
+        "of mean_displacement: what each place counts, an expression of x, y, "
+        "z; the mean is still by area, so that a weight may change its sign"},
+       {"power", K::Constant, D::None, false,
+        "of norms, above 1, of displacements 2 or above, 8 when left out; of "
+        "radius, even, 16 when left out"},
+       {"sharpness", K::Constant, D::None, false,
+        "of von_mises_ks; above 0; 50 when left out"},
+       {"scale", K::Constant, D::Pressure, false,
+        "of von_mises_ks: the stress that its sharpness is measured by; the "
+        "least yield strength when left out"},
+       {"keep_out", K::Place, D::Length, false,
+        "of distance: an expression of x, y, z: how deep a place lies in the "
+        "region, below 0 outside; or"},
+       {"keep_in", K::Place, D::Length, false,
+        "of distance: the same of a region that the solid must stay within"},
+       {"smoothing", K::Constant, D::Length, false,
+        "of thickness, distance, gap: all places within about as much of the "
+        "worst one count, and the value is on the safe side of it by no more "
+        "than this times the logarithm of their number; a tenth of "
+        "resolution.fea when left out, of gap a fiftieth"},
+       {"film", K::Name, D::None, false,
+        "of film_area: one film; all when left out"},
+       {"films", K::Names, D::None, false,
+        "of gap: the two; of scan_distance: all when left out"},
+       {"scan", K::Text, D::None, false,
+        "of scan_distance: an STL or OBJ file in the units and axes of the "
+        "case, its path relative to the case file"},
+       {"measure", K::Choice, D::None, false,
+        "of scan_distance: root of the mean square, mean, what 95 % of the "
+        "vertices do not exceed, largest; rms when left out",
+        choices_of(scan_measures())},
+       {"body", K::Name, D::None, false, "of pressure"},
+       {"value", K::Quantity, std::nullopt, false,
+        "of expression: over the case's names and the responses above"}}};
+}
 
 /// The load case that `key` names; the first when left out or wrong.
 int index_of_load_case(CaseContext& context, const CaseTable& table,
@@ -315,7 +327,8 @@ void read_responses(CaseContext& context, const toml::table& root,
                     Case& result) {
   for (const CaseTable& table : named_tables(context, root, "responses")) {
     if (const auto kind = table.choice("kind")) {
-      result.responses.push_back(read_response(context, table, *kind, result));
+      const ResponseRow& row = row_named(response_kinds(), *kind);
+      result.responses.push_back(read_response(context, table, row, result));
       if (const std::string& scan = result.responses.back().scan;
           !scan.empty()) {
         keep_scan(context, table, scan, result);

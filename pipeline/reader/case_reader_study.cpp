@@ -1,7 +1,6 @@
 #include "pipeline/reader/case_reader_study.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 #include "optimize/minimize.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/studied_responses.h"
+#include "pipeline/case_data/study_kinds.h"
 
 namespace meniscus {
 
@@ -113,17 +113,6 @@ void read_fit(CaseContext& context, const CaseTable& table, Case& result) {
   if (!table.has("tolerance")) {
     result.study.tolerance = 0.0;
   }
-}
-
-StudyKind study_kind_of(const std::string& name) {
-  static const std::map<std::string, StudyKind> kinds = {
-      {"match", StudyKind::Match},
-      {"minimize", StudyKind::Minimize},
-      {"sweep", StudyKind::Sweep},
-      {"tolerance", StudyKind::Tolerance},
-      {"pareto", StudyKind::Pareto}};
-  const auto at = kinds.find(name);
-  return at == kinds.end() ? StudyKind::Analyse : at->second;
 }
 
 /// A study that moves something needs something to move.
@@ -283,7 +272,7 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   const std::string asked = table->choice("kind").value_or("analyse");
   const std::string kind =
       asked == "family" ? read_members(context, *table, result) : asked;
-  study.kind = study_kind_of(kind);
+  study.kind = row_named(study_kinds(), kind).kind;
   const bool minimizes =
       study.kind == StudyKind::Minimize || study.kind == StudyKind::Pareto;
   const bool sweeps = study.kind == StudyKind::Sweep;

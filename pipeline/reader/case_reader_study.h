@@ -19,9 +19,6 @@ void read_method(CaseContext& context, const CaseTable& table,
 void check_keys(CaseContext& context, const CaseTable& table,
                 const std::string& kind);
 
-/// Methods of a sweep.
-std::vector<std::string> sweep_methods();
-
 /// What a sweep looks at; after the method.
 void read_sweep(CaseContext& context, const CaseTable& table, Case& result);
 

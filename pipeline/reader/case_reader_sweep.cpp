@@ -70,10 +70,6 @@ void refuse(CaseContext& context, const CaseTable& table, const char* key,
 
 }  // namespace
 
-std::vector<std::string> sweep_methods() {
-  return {"grid", "latin_hypercube", "sobol"};
-}
-
 void read_sweep(CaseContext& context, const CaseTable& table, Case& result) {
   StudyEntry& study = result.study;
   if (study.method == "grid") {

@@ -30,6 +30,9 @@ void read_curves(CaseContext& context, const toml::table& root, Case& result);
 void read_curve_file(CaseContext& context, const CaseTable& table, Case& result,
                      CurveEntry& curve);
 
+/// What the points of a csv file make.
+const std::vector<Named<CurveKind>>& point_curves();
+
 /// The text of the file that the key `file` names, from disk unless the case
 /// holds it, which it does from then on. Null with a problem noted; `expected`
 /// is for that.

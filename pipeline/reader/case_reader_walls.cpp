@@ -11,6 +11,14 @@ namespace meniscus {
 
 namespace {
 
+const std::vector<Named<WallSide>>& wall_sides() {
+  static const std::vector<Named<WallSide>> sides = {
+      {"both", WallSide::Both},
+      {"inside", WallSide::Inside},
+      {"outside", WallSide::Outside}};
+  return sides;
+}
+
 /// Films that the table's `films` names, each once.
 std::vector<std::string> wall_films(CaseContext& context,
                                     const CaseTable& table, const Case& result,
@@ -133,11 +141,33 @@ std::vector<std::string> wall_surface_names(const Case& input) {
   return names;
 }
 
+TableSpec wall_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "walls",
+      true,
+      TableNeed::Optional,
+      "Films made solid by thickness. `meniscus evolve` reports the largest "
+      "safe one and writes the closed surface",
+      {{"films", K::Names, D::None, true,
+        "the film, or several; where they share a curve they are joined"},
+       {"thickness", K::Place, D::Length, true,
+        "above 0; a number may follow the design, an expression of x, y, z "
+        "may not"},
+       {"material", K::Name, D::None, false,
+        "of the wall; a run needs it, and walls that meet have one"},
+       {"fillet", K::Constant, D::Length, false,
+        "radius where three or more films meet, 0: sharp; half the thickness "
+        "when left out"},
+       {"side", K::Choice, D::None, false,
+        "where the material lies: both sides of the film, all of it inside "
+        "(towards the middle of the film's curves) or outside; both when left "
+        "out",
+        choices_of(wall_sides())}}};
+}
+
 void read_walls(CaseContext& context, const toml::table& root, Case& result) {
-  static const std::map<std::string, WallSide> sides = {
-      {"both", WallSide::Both},
-      {"inside", WallSide::Inside},
-      {"outside", WallSide::Outside}};
   std::map<std::string, std::string> taken;
   for (const CaseTable& table : named_tables(context, root, "walls")) {
     WallEntry wall{.name = table.name(), .line = table.line()};
@@ -148,7 +178,8 @@ void read_walls(CaseContext& context, const toml::table& root, Case& result) {
       require_frozen(context, wall.thickness.quantity,
                      "a thickness of x, y, z");
     }
-    wall.side = sides.at(table.choice("side").value_or("both"));
+    wall.side =
+        row_named(wall_sides(), table.choice("side").value_or("both")).value;
     wall.fillet = table.constant("fillet");
     if (wall.fillet && !(*wall.fillet >= 0.0)) {
       context.problems.add(table.line("fillet"),

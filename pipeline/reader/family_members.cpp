@@ -3,22 +3,12 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/case_data/study_kinds.h"
 #include "pipeline/reader/member_file.h"
 
 namespace meniscus {
 
 namespace {
-
-const char* name_of(StudyKind kind) {
-  switch (kind) {
-    case StudyKind::Match:
-      return "match";
-    case StudyKind::Minimize:
-      return "minimize";
-    default:  // what study.each allows
-      return "analyse";
-  }
-}
 
 /// A member's problem at the member's own place.
 std::string placed(const Case& family, const MemberEntry& member,
@@ -41,7 +31,8 @@ CaseReading read_family_member(const Case& family, const MemberEntry& member) {
   overrides.insert(overrides.end(), member.overrides.begin(),
                    member.overrides.end());
   // Last, so that a member is never a family itself.
-  overrides.push_back(fmt::format("study.kind={}", name_of(family.study.kind)));
+  overrides.push_back(
+      fmt::format("study.kind={}", row_of(family.study.kind).name));
   CaseReading reading =
       read_case_text(family.text, family.path, overrides, family.files);
   for (std::string& problem : reading.problems) {

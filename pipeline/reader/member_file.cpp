@@ -8,7 +8,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "pipeline/tables/text_table.h"
+#include "pipeline/files/text_table.h"
 
 namespace meniscus {
 

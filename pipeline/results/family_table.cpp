@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/files/text_table.h"
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/results/results.h"
-#include "pipeline/tables/text_table.h"
 
 namespace meniscus {
 

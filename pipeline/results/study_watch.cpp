@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/json.h"
+#include "pipeline/files/text_table.h"
 #include "pipeline/results/family_table.h"
 #include "pipeline/results/results.h"
 #include "pipeline/store/run_lock.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/study_records.h"
-#include "pipeline/tables/text_table.h"
-#include "core/json.h"
 
 namespace meniscus {
 

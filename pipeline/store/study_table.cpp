@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/tables/text_table.h"
+#include "pipeline/files/text_table.h"
 
 namespace meniscus {
 namespace {

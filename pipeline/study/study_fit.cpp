@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "pipeline/forward/scans.h"
+#include "pipeline/study/run_kind.h"
 #include "pipeline/study/scan_match.h"
-#include "pipeline/study/study_kinds.h"
 
 namespace meniscus {
 

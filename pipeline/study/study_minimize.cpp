@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "pipeline/case_data/studied_responses.h"
-#include "pipeline/study/study_kinds.h"
+#include "pipeline/study/run_kind.h"
 
 namespace meniscus {
 

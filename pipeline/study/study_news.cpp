@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/count_text.h"
+#include "pipeline/case_data/study_kinds.h"
 #include "pipeline/store/incumbent.h"
 
 namespace meniscus {
@@ -14,26 +15,9 @@ namespace {
 
 /// Evaluations that the study asks for at most, where that is known.
 std::optional<int> planned_of(const Case& input) {
-  const StudyEntry& study = input.study;
-  switch (study.kind) {
-    case StudyKind::Analyse:
-      return 1;
-    case StudyKind::Match:
-    case StudyKind::Minimize:
-      return study.max_evaluations;
-    case StudyKind::Sweep: {
-      int designs = study.method == "grid" ? 1 : study.count;
-      for (const int level : study.levels) {
-        designs *= study.method == "grid" ? std::max(level, 1) : 1;
-      }
-      return designs + 1;  // the start
-    }
-    case StudyKind::Tolerance:
-      return study.count + 1;
-    case StudyKind::Pareto:
-      break;  // a chain of minimisations
-  }
-  return std::nullopt;
+  const auto planned = row_of(input.study.kind).planned;
+  return planned == nullptr ? std::nullopt
+                            : std::optional<int>(planned(input.study));
 }
 
 }  // namespace

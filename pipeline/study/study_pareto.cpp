@@ -4,7 +4,7 @@
 
 #include "core/timer.h"
 #include "optimize/pareto.h"
-#include "pipeline/study/study_kinds.h"
+#include "pipeline/study/run_kind.h"
 
 namespace meniscus {
 

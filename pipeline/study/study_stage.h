@@ -9,8 +9,8 @@
 #include "pipeline/store/refreeze.h"
 #include "pipeline/study/design_evaluator.h"
 #include "pipeline/study/match_targets.h"
+#include "pipeline/study/run_kind.h"
 #include "pipeline/study/study.h"
-#include "pipeline/study/study_kinds.h"
 
 namespace meniscus {
 

@@ -5,7 +5,7 @@
 
 #include "optimize/sampling.h"
 #include "pipeline/store/incumbent.h"
-#include "pipeline/study/study_kinds.h"
+#include "pipeline/study/run_kind.h"
 
 namespace meniscus {
 

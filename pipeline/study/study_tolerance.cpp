@@ -2,7 +2,7 @@
 
 #include "optimize/sampling.h"
 #include "pipeline/case_data/studied_responses.h"
-#include "pipeline/study/study_kinds.h"
+#include "pipeline/study/run_kind.h"
 
 namespace meniscus {
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "pipeline/case_data/study_kinds.h"
 #include "report/page/packed_array.h"
 
 namespace meniscus {
@@ -15,9 +16,6 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr int kCurvePoints = 96;
-// In StudyKind's order, as in case files.
-constexpr std::array<const char*, 6> kStudyKinds = {
-    "analyse", "match", "minimize", "sweep", "tolerance", "pareto"};
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -36,7 +34,7 @@ std::string load_case_of(const Case& input, const ResponseEntry& response) {
 Json study_json(const Case& input) {
   const StudyEntry& study = input.study;
   const std::vector<std::string> names = response_names(input);
-  Json json = {{"kind", kStudyKinds.at(static_cast<std::size_t>(study.kind))},
+  Json json = {{"kind", row_of(study.kind).name},
                {"method", study.method},
                {"equal", study.equal},
                {"targets", Json::object()},

@@ -18,7 +18,7 @@
 #include "optimize/sampling.h"
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/study/design_evaluator.h"
-#include "pipeline/study/study_kinds.h"
+#include "pipeline/study/run_kind.h"
 #include "tests/support/measured_child.h"
 #include "tests/support/temp_folder.h"
 

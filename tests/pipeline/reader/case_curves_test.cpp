@@ -9,9 +9,9 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "evolve/frozen/film_model.h"
+#include "pipeline/files/curve_file.h"
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/store/stored_case.h"
-#include "pipeline/tables/curve_file.h"
 #include "tests/support/temp_folder.h"
 
 namespace meniscus::case_curves_test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "pipeline/reader/new_case.h"
+#include "pipeline/results/new_case.h"
 #include "tests/support/case_text.h"
 
 namespace meniscus::case_reader_test {

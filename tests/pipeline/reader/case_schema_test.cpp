@@ -1,6 +1,7 @@
-#include "pipeline/schema/case_schema.h"
+#include "pipeline/reader/case_schema.h"
 
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -8,7 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <toml++/toml.h>
 
-#include "pipeline/reader/new_case.h"
+#include "pipeline/case_data/response_kinds.h"
+#include "pipeline/case_data/study_kinds.h"
+#include "pipeline/results/export_part.h"
+#include "pipeline/results/new_case.h"
 #include "tests/support/case_text.h"
 
 namespace meniscus::case_schema_test {
@@ -148,6 +152,75 @@ TEST(CaseSchema, TheReferenceIsCurrent) {
 TEST(CaseSchema, TheFileForEditorsIsCurrent) {
   EXPECT_EQ(file_text(MENISCUS_SOURCE_DIR "/docs/case.schema.json"),
             json_schema());
+}
+
+/// Each row has its own name, and keys that the table knows.
+template <class Row>
+void expect_rows_of(const std::string& table, const std::vector<Row>& rows,
+                    std::vector<std::string> (*keys)(const Row&)) {
+  std::set<std::string> names;
+  for (const Row& row : rows) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_EQ(&row_of(row.kind), &row) << row.name;
+    for (const std::string& key : keys(row)) {
+      EXPECT_NE(find_key(case_table(table), key), nullptr)
+          << table << ": " << row.name << " has " << key;
+    }
+  }
+}
+
+TEST(CaseKinds, HaveKeysThatTheirTableKnows) {
+  expect_rows_of<ResponseRow>(
+      "responses", response_kinds(),
+      [](const ResponseRow& row) -> std::vector<std::string> {
+        std::vector<std::string> keys = row.keys.needed;
+        keys.insert(keys.end(), row.keys.optional.begin(),
+                    row.keys.optional.end());
+        return keys;
+      });
+  expect_rows_of<StudyRow>(
+      "study", study_kinds(),
+      [](const StudyRow& row) -> std::vector<std::string> { return row.keys; });
+}
+
+TEST(CaseKinds, NameTheirUsualMethod) {
+  for (const StudyRow& row : study_kinds()) {
+    EXPECT_THAT(row.methods, testing::Contains(row.usual_method)) << row.name;
+  }
+  std::vector<std::string> names;
+  for (const StudyRow& row : study_kinds()) {
+    names.emplace_back(row.name);
+  }
+  EXPECT_THAT(names, testing::IsSupersetOf(split_choices(
+                         find_key(case_table("study"), "each")->choices)));
+}
+
+TEST(CaseKinds, AreToldAsTheReferenceTellsThem) {
+  struct Row {
+    const char* name;
+    std::string_view doc;
+  };
+  const std::vector<Row> rows = {{"a", kWithNext},
+                                 {"b", "both"},
+                                 {"c", kSaidElsewhere},
+                                 {"d", kWithNext},
+                                 {"e", ""}};
+  EXPECT_EQ(meanings_of(rows), "a, b: both; d, e");
+  EXPECT_EQ(meanings_of(rows, {" (", ")", ", "}), "a, b (both), d, e");
+  EXPECT_EQ(choices_of(rows), "a|b|c|d|e");
+  EXPECT_STREQ(row_named(rows, "c").name, "c");
+  EXPECT_EQ(either_of({"a", "b", "c"}), "a, b or c");
+}
+
+TEST(ExportFormats, StandInTheDocs) {
+  const std::string text = file_text(MENISCUS_SOURCE_DIR "/docs/files.md");
+  for (const ExportFormat& format : export_formats()) {
+    EXPECT_TRUE(text.find(std::string("| `") + format.name + "` |") !=
+                    std::string::npos ||
+                text.find(std::string("`--format ") + format.name + "`") !=
+                    std::string::npos)
+        << format.name;
+  }
 }
 
 }  // namespace

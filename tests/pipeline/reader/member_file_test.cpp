@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/tables/text_table.h"
+#include "pipeline/files/text_table.h"
 
 namespace meniscus::member_file_test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "core/atomic_file.h"
 #include "pipeline/reader/case_reader.h"
-#include "pipeline/reader/new_case.h"
 #include "pipeline/results/export_part.h"
+#include "pipeline/results/new_case.h"
 #include "pipeline/results/results.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/match_targets.h"

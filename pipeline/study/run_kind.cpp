@@ -1,4 +1,4 @@
-#include "pipeline/study/study_kinds.h"
+#include "pipeline/study/run_kind.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,6 +47,9 @@ JacobianFunction match_jacobian(const StudyTask& task) {
 
 StudyOutcome match(const StudyTask& task) {
   const StudyEntry& study = task.input.study;
+  if (study.fit) {
+    return fit_scan(task);
+  }
   std::string phase = "start";
   const MatchReport report = meniscus::match(
       variables_of(task.input, task.start),
@@ -105,8 +108,10 @@ std::function<void(const std::vector<VectorX>&)> prefetch_of(
 StudyOutcome conduct(const StudyTask& task) {
   task.evaluator.limit_time(task.options.time_limit);
   switch (task.input.study.kind) {
+    case StudyKind::Analyse:
+      return analyse(task);
     case StudyKind::Match:
-      return task.input.study.fit ? fit_scan(task) : match(task);
+      return match(task);
     case StudyKind::Minimize:
       return minimize(task);
     case StudyKind::Sweep:
@@ -115,10 +120,8 @@ StudyOutcome conduct(const StudyTask& task) {
       return tolerance(task);
     case StudyKind::Pareto:
       return pareto(task);
-    case StudyKind::Analyse:
-      break;
   }
-  return analyse(task);
+  return {};
 }
 
 bool uses_gradients(const Case& input) {

@@ -1,4 +1,4 @@
-#include "pipeline/reader/step_curve.h"
+#include "pipeline/files/step_curve.h"
 
 #include <algorithm>
 #include <bit>

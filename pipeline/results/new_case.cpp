@@ -1,4 +1,4 @@
-#include "pipeline/reader/new_case.h"
+#include "pipeline/results/new_case.h"
 
 namespace meniscus {
 

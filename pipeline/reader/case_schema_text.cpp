@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/schema/case_schema.h"
 #include "core/json.h"
+#include "pipeline/reader/case_schema.h"
 
 namespace meniscus {
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "pipeline/reader/step_curve.h"
+#include "pipeline/files/step_curve.h"
 
 namespace meniscus {
 

@@ -1,4 +1,4 @@
-#include "pipeline/tables/curve_file.h"
+#include "pipeline/files/curve_file.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "pipeline/tables/text_table.h"
+#include "pipeline/files/text_table.h"
 
 namespace meniscus {
 

@@ -1,8 +1,10 @@
-#include "pipeline/schema/case_schema.h"
+#include "pipeline/reader/case_schema.h"
 
 #include <algorithm>
 #include <array>
-#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace meniscus {
 
@@ -35,6 +37,9 @@ std::vector<TableSpec> make_tables() {
        {{"initial", K::Constant, std::nullopt, true,
          "value at which the model freezes and the study starts"},
         {"bounds", K::Bounds, std::nullopt, true, "[least, largest]"}}},
+      curve_table(),
+      film_table(),
+      solid_table(),
       {"bodies",
        true,
        N::ForParts,
@@ -47,35 +52,8 @@ std::vector<TableSpec> make_tables() {
         {"material", K::Name, D::None, true,
          "what fills it; \"void\": nothing, and only its surfaces shape the "
          "part"}}},
-      walls_table(),
-      {"fields",
-       true,
-       N::Optional,
-       "A field energy. Poles (point, segment, polyline, plane) at distance d "
-       "add -strength (1 + (d / core)^2)^(-power / 2) to the energy per area "
-       "of films or per volume of a body; a pressure adds to a body's own. "
-       "Part of the frozen film: no design variable may move it",
-       {{"kind", K::Choice, D::None, true, "what acts",
-         "point|segment|polyline|plane|pressure"},
-        {"at", K::Vector, D::Length, false, "of point, plane"},
-        {"normal", K::Vector, D::None, false, "of plane; any length but 0"},
-        {"from", K::Vector, D::Length, false, "of segment"},
-        {"to", K::Vector, D::Length, false, "of segment"},
-        {"points", K::Vectors, D::Length, false,
-         "of polyline, in order; it closes where the last is the first"},
-        {"strength", K::Quantity, std::nullopt, false,
-         "of poles: energy on the pole per area or volume, above 0 attracts, "
-         "below repels. A film whose tension it exceeds crumples there"},
-        {"power", K::Quantity, D::None, false,
-         "of poles: falls as d^-power far away; 2 when left out"},
-        {"core", K::Quantity, D::Length, false,
-         "of poles: within it the field is soft"},
-        {"films", K::Names, D::None, false,
-         "of poles: acts per area of these, or"},
-        {"body", K::Name, D::None, false,
-         "of poles and pressure: acts per volume of this"},
-        {"pressure", K::Place, D::Pressure, false,
-         "of pressure: above 0 inflates"}}},
+      wall_table(),
+      field_table(),
       {"resolution",
        false,
        N::Always,
@@ -148,59 +126,8 @@ std::vector<TableSpec> make_tables() {
          "area|total"},
         {"axes", K::Axes, D::None, false,
          "of components: x is along the first, y in the plane of both"}}},
-      {"load",
-       false,
-       N::Optional,
-       "A load: force, moment, pressure or traction on a surface, or gravity, "
-       "spin or temperature of all bodies",
-       {{"on", K::Name, D::None, false,
-         "of force, moment, pressure, traction: the surface that is loaded"},
-        {"force", K::Vector, D::Force, false,
-         "total, spread as uniform traction; with `at` through that point"},
-        {"moment", K::Vector, D::Energy, false,
-         "total, beside that of the force"},
-        {"at", K::Vector, D::Length, false,
-         "of force and moment: the point they act through; of spin: on the "
-         "axis"},
-        {"pressure", K::Place, D::Pressure, false,
-         "positive into the material"},
-        {"traction", K::PlaceVector, D::Pressure, false, "force per area"},
-        {"gravity", K::Vector, std::nullopt, false, "force per mass"},
-        {"spin", K::Quantity, std::nullopt, false,
-         "angular velocity in radians per time"},
-        {"axis", K::Vector, D::None, false, "of spin; any length but 0"},
-        {"temperature", K::Place, D::None, false,
-         "of all bodies; they expand from the reference"},
-        {"reference", K::Quantity, D::None, false,
-         "of temperature: where nothing has expanded; 0 when left out"}}},
-      {"analysis",
-       false,
-       N::Optional,
-       "How the part is analysed, what counts of it, vibration and buckling",
-       {{"adapt", K::Flag, D::None, false,
-         "one round of adaptive refinement of the frozen model: elements and "
-         "surface are halved where that should leave 40 % of the estimated "
-         "error at the initial design, with the fewest elements; false when "
-         "left out"},
-        {"exclude", K::Zones, D::None, false,
-         "zones that stress figures leave out: peaks, safety factors, "
-         "distributions and max_von_mises responses. Elements whose centre is "
-         "in one at the initial design, for every design"},
-        {"solver", K::Choice, D::None, false,
-         "of the linear systems: auto chooses by size between cholmod (a "
-         "factor) and p-multigrid (conjugate gradients); petsc: in processes "
-         "of its own, for parts that outgrow one machine; auto when left out",
-         "auto|cholmod|p-multigrid|petsc"},
-        {"processes", K::Integer, D::None, false,
-         "of solver = \"petsc\": how many share the part; 2 when left out"},
-        {"frequencies", K::Integer, D::None, false,
-         "how many natural frequencies, lowest first; none when left out"},
-        {"supports_of", K::Name, D::None, false,
-         "of frequencies: the load case whose supports and springs hold the "
-         "part, or free: not held; the first load case when left out"},
-        {"buckling", K::Integer, D::None, false,
-         "how many buckling factors per load case, smallest first; 0: none; "
-         "the first to three digits when left out"}}},
+      load_table(),
+      analysis_table(),
       {"exclude",
        false,
        N::Optional,
@@ -215,6 +142,16 @@ std::vector<TableSpec> make_tables() {
          "of a box along x, y, z: the least coordinates"},
         {"high", K::ConstantVector, D::Length, false,
          "of a box: the largest; above low"}}},
+      response_table(),
+      study_table(),
+      {"constraint",
+       false,
+       N::Optional,
+       "A bound on a response",
+       {{"response", K::Name, D::None, true, "its name"},
+        {"min", K::Constant, std::nullopt, false, "least value"},
+        {"max", K::Constant, std::nullopt, false,
+         "largest value; as min for an equation"}}},
   };
 }
 
@@ -237,17 +174,6 @@ KeySpec repeat_key() {
 const std::vector<TableSpec>& case_tables() {
   static const std::vector<TableSpec> tables = [] {
     std::vector<TableSpec> all = make_tables();
-    const auto bodies =
-        std::find_if(all.begin(), all.end(), [](const TableSpec& table) {
-          return std::string(table.name) == "bodies";
-        });
-    const std::vector<TableSpec> shapes = shape_tables();
-    all.insert(bodies, shapes.begin(), shapes.end());
-    for (auto* const more : {&response_tables, &study_tables}) {
-      for (TableSpec& table : more()) {
-        all.push_back(std::move(table));
-      }
-    }
     for (TableSpec& table : all) {
       if (can_repeat(table.name)) {
         table.keys.push_back(repeat_key());
@@ -270,7 +196,7 @@ const KeySpec* find_key(const TableSpec& table, const std::string& key) {
   return at == table.keys.end() ? nullptr : &*at;
 }
 
-std::vector<std::string> split_choices(const char* choices) {
+std::vector<std::string> split_choices(const std::string& choices) {
   std::vector<std::string> parts;
   std::string rest = choices;
   while (!rest.empty()) {
@@ -279,6 +205,12 @@ std::vector<std::string> split_choices(const char* choices) {
     rest = bar == std::string::npos ? "" : rest.substr(bar + 1);
   }
   return parts;
+}
+
+std::string either_of(std::vector<std::string> names) {
+  const std::string last = std::move(names.back());
+  names.pop_back();
+  return fmt::format("{} or {}", fmt::join(names, ", "), last);
 }
 
 bool is_entry_table(const std::string& name) {

@@ -46,8 +46,8 @@ struct KeySpec {
   KeyType type;
   std::optional<Dimension> dimension;  // none: any
   bool required;
-  const char* doc;
-  const char* choices = "";  // "a|b|c"
+  std::string doc;
+  std::string choices = "";  // "a|b|c"
   const char* later = "";    // choices of later versions, refused by name
 };
 
@@ -61,22 +61,24 @@ struct TableSpec {
   const char* name;    // "curves"; "" for the file's top
   bool named_entries;  // [curves.NAME]
   TableNeed need;
-  const char* doc;
+  std::string doc;
   std::vector<KeySpec> keys;
 };
 
 /// All tables, in the order of the reference.
 const std::vector<TableSpec>& case_tables();
 
-/// Those of them that the liquid starts from (case_schema_shapes.cpp).
-std::vector<TableSpec> shape_tables();
-/// [walls.NAME] (case_schema_walls.cpp).
-TableSpec walls_table();
-
-/// Those of them that say what is asked of the part
-/// (case_schema_responses.cpp), and what to do with it (case_schema_study.cpp).
-std::vector<TableSpec> response_tables();
-std::vector<TableSpec> study_tables();
+// Those of them that have kinds; each stands in the file that reads it, with
+// the kinds' rows (pipeline/case_data/case_kinds.h).
+TableSpec curve_table();     // case_reader_curves.cpp
+TableSpec film_table();      // case_reader_films.cpp
+TableSpec solid_table();     // case_reader_films.cpp
+TableSpec wall_table();      // case_reader_walls.cpp
+TableSpec field_table();     // case_reader_energies.cpp
+TableSpec load_table();      // case_reader_loads.cpp
+TableSpec analysis_table();  // case_reader_analysis.cpp
+TableSpec response_table();  // case_reader_responses.cpp
+TableSpec study_table();     // case_reader_kinds.cpp
 
 /// The table of that name; must exist.
 const TableSpec& case_table(const std::string& name);
@@ -85,7 +87,10 @@ const TableSpec& case_table(const std::string& name);
 const KeySpec* find_key(const TableSpec& table, const std::string& key);
 
 /// The parts of "a|b|c".
-std::vector<std::string> split_choices(const char* choices);
+std::vector<std::string> split_choices(const std::string& choices);
+
+/// "a, b or c".
+std::string either_of(std::vector<std::string> names);
 
 /// Tables of the entries of an array, not of the file's own.
 bool is_entry_table(const std::string& name);

@@ -1,5 +1,5 @@
-/// The kinds of study, each a function from a task to an outcome (internal to
-/// run_study()).
+/// How the kinds of study are done, a function each from a task to an outcome
+/// (internal to run_study()).
 #pragma once
 
 #include <functional>

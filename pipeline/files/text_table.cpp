@@ -1,4 +1,4 @@
-#include "pipeline/tables/text_table.h"
+#include "pipeline/files/text_table.h"
 
 #include <algorithm>
 

@@ -1,0 +1,41 @@
+/// Kinds of responses, one row each: what a case says of one and what the rest
+/// of the program asks about it; pipeline/forward/response_partials computes
+/// them.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "core/units.h"
+#include "pipeline/case_data/case.h"
+#include "pipeline/case_data/case_kinds.h"
+
+namespace meniscus {
+
+/// How the error that the mesh makes in a response is estimated.
+enum class ErrorSource {
+  Exact,   // none that counts
+  ByDual,  // by_displacement makes a dual load
+  Unknown  // of peaks: recovery and the dual solution miss the most
+};
+
+struct ResponseRow {
+  const char* name;
+  ResponseKind kind;
+  Dimension dimension;  // None also where it is not known
+  std::string_view doc;
+  KindKeys keys;
+  ErrorSource error = ErrorSource::Exact;
+  bool of_films = false;  // a case without films has none
+  bool has_derivatives = true;
+};
+
+/// All of them, in the order of the reference.
+const std::vector<ResponseRow>& response_kinds();
+
+const ResponseRow& row_of(ResponseKind kind);
+
+/// A key that each of its kind has.
+bool needs_key(const ResponseRow& row, const char* key);
+
+}  // namespace meniscus

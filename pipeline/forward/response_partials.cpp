@@ -1,0 +1,320 @@
+#include "pipeline/forward/response_partials.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "fea/functionals/displacement_functionals.h"
+#include "fea/functionals/energy_functionals.h"
+#include "fea/functionals/place_functionals.h"
+#include "fea/functionals/stress_functionals.h"
+#include "fea/functionals/volume_functionals.h"
+
+namespace meniscus {
+
+namespace {
+
+ResponsePartials taken(Functional functional) {
+  ResponsePartials result;
+  result.value = functional.value;
+  result.by_nodes = std::move(functional.by_nodes);
+  result.by_displacement = std::move(functional.by_displacement);
+  result.by_temperature = std::move(functional.by_temperature);
+  result.by_modulus = std::move(functional.by_modulus);
+  return result;
+}
+
+ResponsePartials taken(DirectedFunctional functional) {
+  const Vec3 by_direction = functional.by_direction;
+  ResponsePartials result = taken(static_cast<Functional&&>(functional));
+  result.by_direction = by_direction;
+  return result;
+}
+
+ResponsePartials taken(MassFunctional functional) {
+  std::vector<double> by_density = std::move(functional.by_density);
+  ResponsePartials result = taken(static_cast<Functional&&>(functional));
+  result.by_density = std::move(by_density);
+  return result;
+}
+
+ResponsePartials taken(FilmResponse film) {
+  ResponsePartials result;
+  result.value = film.value;
+  result.film = std::move(film.by);
+  return result;
+}
+
+/// Of its load case, 3 per node.
+const VectorX& displacement(const ResponseTask& task) {
+  return task.fields.solution.displacements[task.response.load_case];
+}
+
+const std::vector<Material>& materials(const ResponseTask& task) {
+  return task.fields.numbers.materials;
+}
+
+ResponsePartials mean_displacement(const ResponseTask& task) {
+  if (!task.response.weight) {
+    return taken(mean_displacement_functional(
+        task.fields.mesh, task.response.surface, task.numbers.direction,
+        displacement(task), task.derivatives));
+  }
+  return taken(weighted_displacement_functional(
+      task.fields.mesh, task.response.surface, task.numbers.direction,
+      {task.numbers.weight, task.numbers.weight_slope}, displacement(task),
+      task.derivatives));
+}
+
+ResponsePartials displacement_norm(const ResponseTask& task) {
+  return taken(displacement_norm_functional(
+      task.fields.mesh, task.response.surface, task.numbers.direction,
+      task.response.power, displacement(task), task.derivatives));
+}
+
+ResponsePartials rotation(const ResponseTask& task) {
+  return taken(rotation_functional(task.fields.mesh, task.response.surface,
+                                   task.numbers.direction, displacement(task),
+                                   task.derivatives));
+}
+
+/// Half the work of the loads is the strain energy where it all goes into the
+/// solid.
+ResponsePartials energy(const ResponseTask& task) {
+  const LoadCase& load_case =
+      task.fields.numbers.load_cases[task.response.load_case];
+  const VectorX& u = displacement(task);
+  const bool strain = task.response.kind == ResponseKind::StrainEnergy;
+  if (strain && (!load_case.springs.empty() || load_case.temperature)) {
+    return taken(strain_energy_functional(task.fields.mesh, materials(task),
+                                          load_case, u, task.derivatives));
+  }
+  const double share = strain ? 0.5 : 1.0;
+  ResponsePartials result = taken(compliance_functional(
+      task.fields.mesh, materials(task), load_case, u, task.derivatives));
+  result.value *= share;
+  for (Vec3& by_node : result.by_nodes) {
+    by_node *= share;
+  }
+  if (task.derivatives == Derivatives::All) {
+    result.self_adjoint = share;
+    result.by_forces = share * u;
+  }
+  return result;
+}
+
+ResponsePartials mass(const ResponseTask& task) {
+  return taken(
+      mass_functional(task.fields.mesh, materials(task), task.derivatives));
+}
+
+ResponsePartials volume(const ResponseTask& task) {
+  return taken(volume_functional(task.fields.mesh, task.derivatives));
+}
+
+/// Along a direction the centre of mass is a coordinate: of a unit vector.
+ResponsePartials centre_of_mass(const ResponseTask& task) {
+  const double length = task.numbers.direction.norm();
+  const Vec3 unit = task.numbers.direction / length;
+  ResponsePartials result = taken(centre_of_mass_functional(
+      task.fields.mesh, materials(task), unit, task.derivatives));
+  if (task.derivatives == Derivatives::All) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 across = (Vec3::Unit(k) - unit[k] * unit) / length;
+      if (!across.isZero(0.0)) {
+        result.by_direction[k] =
+            centre_of_mass_functional(task.fields.mesh, materials(task), across,
+                                      Derivatives::None)
+                .value;
+      }
+    }
+  }
+  return result;
+}
+
+ResponsePartials peak(const ResponseTask& task) {
+  if (task.derivatives == Derivatives::All) {
+    throw InvalidInput(fmt::format(
+        "response '{}' is a max_von_mises, which has no derivative: use "
+        "von_mises_norm or von_mises_ks",
+        task.response.name));
+  }
+  ResponsePartials result;
+  result.value = load_case_stress(task.fields.mesh, task.fields.numbers,
+                                  task.response.load_case, displacement(task),
+                                  task.fields.excluded)
+                     .max_von_mises;
+  return result;
+}
+
+StressFunctionalInput stress_input(const ResponseTask& task) {
+  return {task.fields.mesh,
+          materials(task),
+          task.fields.numbers.load_cases[task.response.load_case],
+          displacement(task),
+          task.fields.excluded,
+          task.derivatives};
+}
+
+ResponsePartials von_mises_norm(const ResponseTask& task) {
+  return taken(
+      von_mises_norm_functional(stress_input(task), task.response.power));
+}
+
+double least_yield(const std::vector<Material>& materials) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Material& material : materials) {
+    least = std::min(least, material.yield_strength.value_or(least));
+  }
+  return least;
+}
+
+ResponsePartials von_mises_ks(const ResponseTask& task) {
+  const double yield = least_yield(materials(task));
+  return taken(von_mises_ks_functional(
+      stress_input(task), {.sharpness = task.response.sharpness,
+                           .scale = task.response.scale.value_or(yield)}));
+}
+
+ResponsePartials uniformity(const ResponseTask& task) {
+  return taken(von_mises_variation_functional(stress_input(task)));
+}
+
+ResponsePartials energy_uniformity(const ResponseTask& task) {
+  return taken(energy_density_variation_functional(stress_input(task)));
+}
+
+ResponsePartials film_area(const ResponseTask& task) {
+  const FilmModel& film = *task.fields.film;
+  const VectorX areas = film.areas(task.fields.film_state->points);
+  const std::vector<std::string>& labels = film.labels();
+  ResponsePartials result;
+  result.film.areas = VectorX::Ones(areas.size());
+  if (!task.response.film.empty()) {
+    result.film.areas = VectorX::Unit(
+        areas.size(),
+        std::find(labels.begin(), labels.end(), task.response.film) -
+            labels.begin());
+  }
+  result.value = areas.dot(result.film.areas);
+  return result;
+}
+
+ResponsePartials film_energy(const ResponseTask& task) {
+  ResponsePartials result;
+  result.value = task.fields.film_state->report.energy;
+  result.film.energy = 1.0;
+  return result;
+}
+
+ResponsePartials body_pressure(const ResponseTask& task) {
+  const std::vector<BodyState>& bodies = task.fields.film_state->report.bodies;
+  ResponsePartials result;
+  result.value = bodies[task.response.body].pressure;
+  result.film.pressures = VectorX::Unit(
+      static_cast<Eigen::Index>(bodies.size()), task.response.body);
+  return result;
+}
+
+ResponsePartials collapse_margin(const ResponseTask& task) {
+  return taken(task.fields.film->margin(*task.fields.film_state,
+                                        task.fields.numbers.film_system));
+}
+
+ResponsePartials radius(const ResponseTask& task) {
+  return taken(task.fields.film->smallest_radius(
+      task.fields.film_state->points, static_cast<int>(task.response.power)));
+}
+
+ResponsePartials thickness(const ResponseTask& task) {
+  return taken(thickness_functional(task.fields.mesh, *task.fields.pairs,
+                                    sharpness_of(task.response, task.fields),
+                                    task.derivatives));
+}
+
+ResponsePartials distance(const ResponseTask& task) {
+  return taken(intrusion_functional(
+      task.fields.mesh, {task.numbers.level, task.numbers.level_slope},
+      sharpness_of(task.response, task.fields), task.derivatives));
+}
+
+ResponsePartials gap(const ResponseTask& task) {
+  // Films run beside each other over wide areas, and many vertices count.
+  constexpr double kGapPartOfEdge = 0.02;
+  const double usual = kGapPartOfEdge * task.fields.numbers.fea_edge;
+  return taken(task.fields.film->gap(
+      task.fields.film_state->points, task.response.films[0],
+      task.response.films[1], task.response.smoothing.value_or(usual)));
+}
+
+ResponsePartials scan_distance(const ResponseTask& task) {
+  const Points& points = task.fields.film_state->points;
+  return taken(measure(scan_distances(task.response, *task.fields.scans,
+                                      *task.fields.film, points),
+                       task.response.measure, points.size()));
+}
+
+}  // namespace
+
+ResponsePartials compute_partials(const ResponseTask& task) {
+  using Kind = ResponseKind;
+  switch (task.response.kind) {
+    case Kind::MeanDisplacement:
+      return mean_displacement(task);
+    case Kind::DisplacementNorm:
+      return displacement_norm(task);
+    case Kind::Rotation:
+      return rotation(task);
+    case Kind::Compliance:
+      return energy(task);
+    case Kind::StrainEnergy:
+      return energy(task);
+    case Kind::Mass:
+      return mass(task);
+    case Kind::Volume:
+      return volume(task);
+    case Kind::CentreOfMass:
+      return centre_of_mass(task);
+    case Kind::MaxVonMises:
+      return peak(task);
+    case Kind::VonMisesNorm:
+      return von_mises_norm(task);
+    case Kind::VonMisesKs:
+      return von_mises_ks(task);
+    case Kind::Uniformity:
+      return uniformity(task);
+    case Kind::EnergyUniformity:
+      return energy_uniformity(task);
+    case Kind::FilmArea:
+      return film_area(task);
+    case Kind::FilmEnergy:
+      return film_energy(task);
+    case Kind::Pressure:
+      return body_pressure(task);
+    case Kind::CollapseMargin:
+      return collapse_margin(task);
+    case Kind::Radius:
+      return radius(task);
+    case Kind::Thickness:
+      return thickness(task);
+    case Kind::Distance:
+      return distance(task);
+    case Kind::Gap:
+      return gap(task);
+    case Kind::ScanDistance:
+      return scan_distance(task);
+    case Kind::Expression:
+      break;  // of the responses above it
+  }
+  return {};
+}
+
+double sharpness_of(const ResponseEntry& response,
+                    const ResponseInput& fields) {
+  constexpr double kPartOfEdge = 0.1;
+  return 1.0 /
+         response.smoothing.value_or(kPartOfEdge * fields.numbers.fea_edge);
+}
+
+}  // namespace meniscus

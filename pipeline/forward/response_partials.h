@@ -1,0 +1,24 @@
+/// How each kind of response is computed, with its partial derivatives.
+#pragma once
+
+#include "pipeline/case_data/response_kinds.h"
+#include "pipeline/forward/responses.h"
+
+namespace meniscus {
+
+/// One response of one design, on loan.
+struct ResponseTask {
+  const ResponseEntry& response;
+  const ResponseNumbers& numbers;
+  const ResponseInput& fields;
+  Derivatives derivatives;
+};
+
+/// Of every kind but expressions of other responses.
+ResponsePartials compute_partials(const ResponseTask& task);
+
+/// Of extremes over the part's surface, where the case says nothing else: to a
+/// tenth of an edge [1/length].
+double sharpness_of(const ResponseEntry& response, const ResponseInput& fields);
+
+}  // namespace meniscus
