@@ -2,11 +2,13 @@
 /// place where exceptions become one of them and a message.
 #pragma once
 
-#include "pipeline/study/study.h"
 #include <exception>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
+
+#include "pipeline/study/study.h"
 
 namespace meniscus {
 
@@ -30,7 +32,11 @@ struct ErrorRule {
 template <class Exception>
 ErrorRule on(int exit_code, std::string prefix = {}) {
   return {[](const std::exception& error) {
-            return dynamic_cast<const Exception*>(&error) != nullptr;
+            if constexpr (std::is_same_v<Exception, std::exception>) {
+              return true;
+            } else {
+              return dynamic_cast<const Exception*>(&error) != nullptr;
+            }
           },
           exit_code, std::move(prefix)};
 }

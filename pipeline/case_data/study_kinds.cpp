@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "optimize/match.h"
+#include "optimize/problem.h"
 #include "optimize/minimize.h"
 #include "pipeline/case_data/response_entries.h"
 
