@@ -6,97 +6,15 @@
 #include <limits>
 #include <numeric>
 
+#include <boost/random/sobol.hpp>
 #include <fmt/format.h>
 
 namespace meniscus {
+
+static_assert(kMostSobolDimensions ==
+              boost::random::default_sobol_table::max_dimension);
+
 namespace {
-
-constexpr int kBits = 31;  // a Sobol coordinate is an integer over 2^31
-
-struct Direction {
-  unsigned polynomial = 0;  // its bits, the leading one included
-  std::array<unsigned, 8> first = {};
-};
-
-// Dimensions 2 to 40 of new-joe-kuo-6; dimension 1 is van der Corput's.
-constexpr std::array<Direction, kMostSobolDimensions - 1> kDirections = {{
-    {3, {1}},
-    {7, {1, 3}},
-    {11, {1, 3, 1}},
-    {13, {1, 1, 1}},
-    {19, {1, 1, 3, 3}},
-    {25, {1, 3, 5, 13}},
-    {37, {1, 1, 5, 5, 17}},
-    {41, {1, 1, 5, 5, 5}},
-    {47, {1, 1, 7, 11, 19}},
-    {55, {1, 1, 5, 1, 1}},
-    {59, {1, 1, 1, 3, 11}},
-    {61, {1, 3, 5, 5, 31}},
-    {67, {1, 3, 3, 9, 7, 49}},
-    {91, {1, 1, 1, 15, 21, 21}},
-    {97, {1, 3, 1, 13, 27, 49}},
-    {103, {1, 1, 1, 15, 7, 5}},
-    {109, {1, 3, 1, 15, 13, 25}},
-    {115, {1, 1, 5, 5, 19, 61}},
-    {131, {1, 3, 7, 11, 23, 15, 103}},
-    {137, {1, 3, 7, 13, 13, 15, 69}},
-    {143, {1, 1, 3, 13, 7, 35, 63}},
-    {145, {1, 3, 5, 9, 1, 25, 53}},
-    {157, {1, 3, 1, 13, 9, 35, 107}},
-    {167, {1, 3, 1, 5, 27, 61, 31}},
-    {171, {1, 1, 5, 11, 19, 41, 61}},
-    {185, {1, 3, 5, 3, 3, 13, 69}},
-    {191, {1, 1, 7, 13, 1, 19, 1}},
-    {193, {1, 3, 7, 5, 13, 19, 59}},
-    {203, {1, 1, 3, 9, 25, 29, 41}},
-    {211, {1, 3, 5, 13, 23, 1, 55}},
-    {213, {1, 3, 7, 3, 13, 59, 17}},
-    {229, {1, 3, 1, 3, 5, 53, 69}},
-    {239, {1, 1, 5, 5, 23, 33, 13}},
-    {241, {1, 1, 7, 7, 1, 61, 123}},
-    {247, {1, 1, 7, 9, 13, 61, 49}},
-    {253, {1, 3, 3, 5, 3, 55, 33}},
-    {285, {1, 3, 1, 15, 31, 13, 49, 245}},
-    {299, {1, 3, 5, 15, 31, 59, 63, 97}},
-    {301, {1, 3, 1, 11, 11, 11, 77, 249}},
-}};
-
-int degree_of(unsigned polynomial) {
-  int degree = 0;
-  for (unsigned rest = polynomial >> 1; rest != 0; rest >>= 1) {
-    ++degree;
-  }
-  return degree;
-}
-
-// The kBits direction numbers of one dimension, scaled by 2^31.
-std::array<std::uint32_t, kBits> direction_numbers(int dimension) {
-  std::array<std::uint32_t, kBits> v = {};
-  if (dimension == 0) {
-    for (int k = 0; k < kBits; ++k) {
-      v[static_cast<std::size_t>(k)] = 1U << (kBits - 1 - k);
-    }
-    return v;
-  }
-  const Direction& direction =
-      kDirections[static_cast<std::size_t>(dimension) - 1];
-  const int degree = degree_of(direction.polynomial);
-  for (int k = 0; k < kBits; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    if (k < degree) {
-      v[at] = direction.first[at] << (kBits - 1 - k);
-      continue;
-    }
-    const std::uint32_t oldest = v[static_cast<std::size_t>(k - degree)];
-    v[at] = oldest ^ (oldest >> degree);
-    for (int i = 1; i < degree; ++i) {
-      if ((direction.polynomial >> (degree - i) & 1U) != 0) {
-        v[at] ^= v[static_cast<std::size_t>(k - i)];
-      }
-    }
-  }
-  return v;
-}
 
 void check_count(const char* what, int dimension, int count) {
   if (dimension < 1 || count < 0 || count > kMostSamples) {
@@ -204,18 +122,17 @@ Samples sobol_samples(int dimension, int count, int first) {
         count, first));
   }
   Samples samples(static_cast<std::size_t>(count), VectorX(dimension));
-  for (int j = 0; j < dimension; ++j) {
-    const std::array<std::uint32_t, kBits> v = direction_numbers(j);
-    for (int k = 0; k < count; ++k) {
-      const auto index = static_cast<std::uint32_t>(first + k);
-      const std::uint32_t gray = index ^ (index >> 1U);
-      std::uint32_t bits = 0;
-      for (int b = 0; b < kBits; ++b) {
-        if ((gray >> b & 1U) != 0) {
-          bits ^= v[static_cast<std::size_t>(b)];
-        }
-      }
-      samples[static_cast<std::size_t>(k)][j] = bits * 0x1p-31;
+  auto sample = samples.begin();
+  if (first == 0 && count > 0) {  // Boost's sequence begins with point 1
+    sample->setZero();
+    ++sample;
+  }
+  boost::random::sobol engine(static_cast<std::size_t>(dimension));
+  engine.discard(static_cast<boost::uintmax_t>(std::max(first, 1) - 1) *
+                 static_cast<boost::uintmax_t>(dimension));
+  for (; sample != samples.end(); ++sample) {
+    for (double& t : *sample) {
+      t = static_cast<double>(engine()) * 0x1p-64;
     }
   }
   return samples;

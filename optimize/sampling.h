@@ -24,11 +24,11 @@ Samples latin_hypercube_samples(int dimension, int count, std::uint64_t seed);
 
 /// I. M. Sobol's sequence from point `first` on (point 0 is the origin), with
 /// the direction numbers of S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30,
-/// 2008 (new-joe-kuo-6). dimension <= kMostSobolDimensions, first + count <=
-/// 2^31. Longer sequences begin with shorter ones.
+/// 2008 (new-joe-kuo-6), Boost's. dimension <= kMostSobolDimensions, first +
+/// count < 2^31. Longer sequences begin with shorter ones.
 Samples sobol_samples(int dimension, int count, int first = 1);
 
-constexpr int kMostSobolDimensions = 40;
+constexpr int kMostSobolDimensions = 3667;
 constexpr int kMostSamples = 10'000'000;
 
 /// lower + t (upper - lower), t = 0 and 1 giving the bounds themselves.

@@ -6,7 +6,7 @@ build_packages=(
   libeigen3-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libcli11-dev
   libudunits2-dev libqhull-dev libsuitesparse-dev libmetis-dev libopenblas-dev
   libspectra-dev libtet1.5-dev libnlopt-dev libnlopt-cxx-dev libceres-dev
-  libsqlite3-dev libvtk9-dev lib3mf-dev
+  libboost-dev libsqlite3-dev libvtk9-dev lib3mf-dev
   libocct-data-exchange-dev libocct-ocaf-dev
   pybind11-dev python3-dev python3-numpy
 )

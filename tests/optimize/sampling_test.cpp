@@ -46,7 +46,7 @@ TEST(LatinHypercube, RepeatsBySeed) {
 }
 
 TEST(Sobol, FollowsJoeAndKuo) {
-  // Points 1 to 8 as boost::random::sobol gives them.
+  // Points 1 to 8 of new-joe-kuo-6.
   const Samples samples = sobol_samples(5, 8);
   EXPECT_EQ(samples[0], vector_of({0.5, 0.5, 0.5, 0.5, 0.5}));
   EXPECT_EQ(samples[1], vector_of({0.75, 0.25, 0.25, 0.25, 0.75}));
@@ -54,6 +54,14 @@ TEST(Sobol, FollowsJoeAndKuo) {
   EXPECT_EQ(samples[4], vector_of({0.875, 0.875, 0.125, 0.375, 0.875}));
   EXPECT_EQ(samples[7], vector_of({0.1875, 0.3125, 0.9375, 0.4375, 0.5625}));
   EXPECT_EQ(sobol_samples(5, 1, 0)[0], VectorX::Zero(5));
+}
+
+// Designs that users keep come from them, whichever library makes them.
+TEST(Sobol, KeepsItsBits) {
+  const VectorX t = sobol_samples(40, 1, 1000)[0];
+  EXPECT_EQ(t[5], 0.9072265625);
+  EXPECT_EQ(t[19], 0.7255859375);
+  EXPECT_EQ(t[39], 0.4794921875);
 }
 
 TEST(Sobol, IsEvenInEachDimensionAndContinues) {
@@ -84,7 +92,7 @@ TEST(Sobol, IntegratesBetterThanChance) {
 }
 
 TEST(Sobol, RefusesWhatItHasNot) {
-  EXPECT_THROW(sobol_samples(41, 1), InvalidInput);
+  EXPECT_THROW(sobol_samples(kMostSobolDimensions + 1, 1), InvalidInput);
   EXPECT_THROW(sobol_samples(0, 1), InvalidInput);
   EXPECT_THROW(sobol_samples(2, -1), InvalidInput);
   EXPECT_THROW(sobol_samples(2, 1, -1), InvalidInput);
