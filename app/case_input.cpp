@@ -9,11 +9,11 @@
 #include "core/error.h"
 #include "core/math/expression.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
-CaseReading read_case_aloud(const std::string& path,
-                            const CommonArguments& common) {
-  CaseReading reading = read_case_file(path, common.overrides);
+reader::CaseReading read_case_aloud(const std::string& path,
+                                    const CommonArguments& common) {
+  reader::CaseReading reading = reader::read_case_file(path, common.overrides);
   for (const std::string& problem : reading.problems) {
     std::fprintf(stderr, "%s\n", problem.c_str());
   }
@@ -25,7 +25,7 @@ CaseReading read_case_aloud(const std::string& path,
   return reading;
 }
 
-std::filesystem::path results_folder(const Case& input,
+std::filesystem::path results_folder(const case_data::Case& input,
                                      const std::string& out) {
   return out.empty() ? std::filesystem::path("results") / input.name
                      : std::filesystem::path(out);
@@ -59,4 +59,4 @@ TerminalMonitorOptions monitor_options(const CommonArguments& common) {
           .stop = [] { return stop_signal() != 0; }};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

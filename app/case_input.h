@@ -9,14 +9,15 @@
 #include "app/terminal_monitor.h"
 #include "pipeline/reader/case_reader.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 /// Reads a case and prints its problems and warnings on stderr.
-CaseReading read_case_aloud(const std::string& path,
-                            const CommonArguments& common);
+reader::CaseReading read_case_aloud(const std::string& path,
+                                    const CommonArguments& common);
 
 /// `out`, or results/<case name> below the working folder.
-std::filesystem::path results_folder(const Case& input, const std::string& out);
+std::filesystem::path results_folder(const case_data::Case& input,
+                                     const std::string& out);
 
 /// What stands before and behind the first '=' of the `text` that `option` was
 /// given. Throws InvalidInput with both and what is `expected` where there is
@@ -33,4 +34,4 @@ std::pair<std::string, double> named_number(const std::string& option,
 /// Options of a monitor that the stop signals stop.
 TerminalMonitorOptions monitor_options(const CommonArguments& common);
 
-}  // namespace meniscus
+}  // namespace meniscus::app

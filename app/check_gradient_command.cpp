@@ -11,14 +11,15 @@
 #include "core/nearest_name.h"
 #include "pipeline/forward/gradient_check.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
 /// The initial design with "name=value" put in.
-VectorX design_at(const Case& input, const std::vector<std::string>& places) {
-  VectorX design = initial_design(input);
-  const std::vector<std::string> known = design_names(input);
+VectorX design_at(const case_data::Case& input,
+                  const std::vector<std::string>& places) {
+  VectorX design = case_data::initial_design(input);
+  const std::vector<std::string> known = case_data::design_names(input);
   for (const std::string& text : places) {
     const auto [name, value] = named_number("--at", text);
     const auto at = std::find(known.begin(), known.end(), name);
@@ -28,7 +29,8 @@ VectorX design_at(const Case& input, const std::vector<std::string>& places) {
           "--at {}: expected NAME=VALUE of a design variable{}", text,
           near.empty() ? "" : "; did you mean '" + near + "'?"));
     }
-    const DesignVariable& variable = input.design[at - known.begin()];
+    const case_data::DesignVariable& variable =
+        input.design[at - known.begin()];
     if (!(value >= variable.lower && value <= variable.upper)) {
       throw InvalidInput(fmt::format("--at {}: outside the bounds {:g} to {:g}",
                                      text, variable.lower, variable.upper));
@@ -41,22 +43,22 @@ VectorX design_at(const Case& input, const std::vector<std::string>& places) {
 }  // namespace
 
 int check_gradient_command(const CheckGradientArguments& arguments) {
-  const CaseReading reading =
+  const reader::CaseReading reading =
       read_case_aloud(arguments.case_path, arguments.common);
   if (!reading.input) {
     return kExitWrongInput;
   }
-  const Case& input = *reading.input;
+  const case_data::Case& input = *reading.input;
   TerminalMonitor monitor(monitor_options(arguments.common));
   catch_stop_signals();
   return exit_code_of({on<SolverError>(kExitNoSolution, "failed: ")}, [&] {
-    const CaseGradientCheck check = check_case_gradient(
+    const forward::CaseGradientCheck check = forward::check_case_gradient(
         input, design_at(input, arguments.at), {.monitor = &monitor});
     if (!arguments.common.quiet || !check.report.passed) {
-      std::fputs(gradient_check_text(input, check).c_str(), stdout);
+      std::fputs(forward::gradient_check_text(input, check).c_str(), stdout);
     }
     return check.report.passed ? kExitDone : kExitError;
   });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::app {
 
 struct CommonArguments {
   std::vector<std::string> overrides;  // "name=value"
@@ -97,4 +97,4 @@ int study_watch_command(const WatchArguments& arguments);
 /// Name and version of the program and of every library in it.
 std::string version_text();
 
-}  // namespace meniscus
+}  // namespace meniscus::app

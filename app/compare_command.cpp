@@ -23,22 +23,22 @@
 #include "pipeline/store/study_store.h"
 #include "report/page/report_page.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
 namespace fs = std::filesystem;
 
 /// Labels flush left in a table whose columns are flush right.
-std::string for_people(std::vector<TextRow> table) {
+std::string for_people(std::vector<files::TextRow> table) {
   std::size_t width = 0;
-  for (const TextRow& row : table) {
+  for (const files::TextRow& row : table) {
     width = std::max(width, row[0].size());
   }
-  for (TextRow& row : table) {
+  for (files::TextRow& row : table) {
     row[0].resize(width, ' ');
   }
-  return aligned_text(table);
+  return files::aligned_text(table);
 }
 
 std::string surface_name(std::size_t part) {
@@ -67,14 +67,16 @@ class Surfaces {
 };
 
 /// Its surface with stresses beside compare.json, for the report page.
-void keep_surface(const Case& input, const EvaluationFields& fields,
-                  const fs::path& folder, std::vector<PartFigures>& parts) {
+void keep_surface(const case_data::Case& input,
+                  const forward::EvaluationFields& fields,
+                  const fs::path& folder,
+                  std::vector<results::PartFigures>& parts) {
   parts.back().surface = surface_name(parts.size());
-  write_part_surface(folder / parts.back().surface, input, fields);
+  results::write_part_surface(folder / parts.back().surface, input, fields);
 }
 
-FaceNames face_names(const std::vector<std::string>& texts) {
-  FaceNames names;
+results::FaceNames face_names(const std::vector<std::string>& texts) {
+  results::FaceNames names;
   for (const std::string& text : texts) {
     auto [name, face] = named_text(
         "--face", text, "NAME=FACE, the run's name and the file's surface");
@@ -84,36 +86,38 @@ FaceNames face_names(const std::vector<std::string>& texts) {
 }
 
 /// All runs, then the files, which take the first run's loads.
-std::vector<PartFigures> load_parts(const CompareArguments& arguments,
-                                    Monitor& monitor, UnitSystem& units) {
+std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
+                                             Monitor& monitor,
+                                             UnitSystem& units) {
   const fs::path folder = arguments.out;
-  const FaceNames names = face_names(arguments.faces);
-  std::vector<PartFigures> parts;
-  if (is_part_file(arguments.parts.front())) {
+  const results::FaceNames names = face_names(arguments.faces);
+  std::vector<results::PartFigures> parts;
+  if (forward::is_part_file(arguments.parts.front())) {
     throw InvalidInput(
         "the first part must be a run: a file takes material, supports and "
         "loads from it");
   }
   for (const std::string& part : arguments.parts) {
-    if (!is_part_file(part)) {
-      StudyStore::read(part);  // refused before the others are computed
+    if (!forward::is_part_file(part)) {
+      store::StudyStore::read(part);  // refused before the others are computed
     }
   }
   make_folder(folder);
-  RunPart first = load_run_part(arguments.parts.front(), &monitor);
+  results::RunPart first =
+      results::load_run_part(arguments.parts.front(), &monitor);
   units = first.input.units;
   parts.push_back(first.figures);
   keep_surface(first.input, first.fields, folder, parts);
   for (std::size_t k = 1; k < arguments.parts.size(); ++k) {
     const fs::path path = arguments.parts[k];
-    if (is_part_file(path)) {
-      EvaluationFields fields;
-      parts.push_back(
-          imported_part_figures(path, first, names, &monitor, &fields));
+    if (forward::is_part_file(path)) {
+      forward::EvaluationFields fields;
+      parts.push_back(results::imported_part_figures(path, first, names,
+                                                     &monitor, &fields));
       keep_surface(first.input, fields, folder, parts);
       continue;
     }
-    const RunPart run = load_run_part(path, &monitor);
+    const results::RunPart run = results::load_run_part(path, &monitor);
     if (run.input.units.name != units.name) {
       throw InvalidInput(fmt::format(
           "{} is in {} and {} in {}; only parts in the same units can be "
@@ -131,18 +135,22 @@ void compare(const CompareArguments& arguments, Surfaces& surfaces,
              Monitor& monitor) {
   const fs::path folder = arguments.out;
   UnitSystem units;
-  const std::vector<PartFigures> parts = load_parts(arguments, monitor, units);
-  const std::vector<TextRow> table = comparison_table(parts, units);
+  const std::vector<results::PartFigures> parts =
+      load_parts(arguments, monitor, units);
+  const std::vector<files::TextRow> table =
+      results::comparison_table(parts, units);
   if (!arguments.quiet) {
     std::fputs(for_people(table).c_str(), stdout);
   }
-  write_file(folder / "compare.csv", csv_text(table));
+  write_file(folder / "compare.csv", files::csv_text(table));
   write_file(
       folder / "compare.json",
-      json_text(comparison_json(parts, units, kProgramVersion), 2) + "\n");
+      json_text(results::comparison_json(parts, units, kProgramVersion), 2) +
+          "\n");
   surfaces.keep();
-  write_report_or_warn(folder, {.versions = version_text()}, &monitor,
-                       [](const std::string& warning) { warn({warning}); });
+  page::write_report_or_warn(
+      folder, {.versions = version_text()}, &monitor,
+      [](const std::string& warning) { warn({warning}); });
   if (!arguments.quiet) {
     std::printf("written to %s\n", (folder / "compare.json").c_str());
   }
@@ -165,4 +173,4 @@ int compare_command(const CompareArguments& arguments) {
       });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

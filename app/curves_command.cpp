@@ -8,16 +8,16 @@
 #include "core/error.h"
 #include "pipeline/results/scan_curves.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 int curves_command(const CurvesArguments& arguments) {
   std::string text;
   // Until then nothing is written: whatever is wrong is wrong with the scan.
   const int no_curves = exit_code_of({on<Error>(kExitWrongInput)}, [&] {
-    const ScanRimReport report =
-        rims_of_scan(arguments.scan, {.angle = arguments.angle,
-                                      .radius = arguments.radius,
-                                      .points = arguments.points});
+    const scan::ScanRimReport report =
+        results::rims_of_scan(arguments.scan, {.angle = arguments.angle,
+                                               .radius = arguments.radius,
+                                               .points = arguments.points});
     if (report.rims.empty()) {
       std::fprintf(stderr,
                    "%s: no closed line turns by %g degrees within %.3g; try a "
@@ -26,7 +26,7 @@ int curves_command(const CurvesArguments& arguments) {
                    2.0 * report.radius);
       return kExitNoSolution;
     }
-    text = curves_text(report, arguments.scan);
+    text = results::curves_text(report, arguments.scan);
     return kExitDone;
   });
   if (no_curves != kExitDone) {
@@ -41,4 +41,4 @@ int curves_command(const CurvesArguments& arguments) {
   return kExitDone;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
@@ -18,17 +18,17 @@ const char* message_of(const std::exception& error) {
 
 }  // namespace
 
-int exit_code_of(RunStatus status) {
+int exit_code_of(study::RunStatus status) {
   switch (status) {
-    case RunStatus::Converged:
+    case study::RunStatus::Converged:
       return kExitDone;
-    case RunStatus::Infeasible:
-    case RunStatus::Stopped:
-    case RunStatus::Failed:
+    case study::RunStatus::Infeasible:
+    case study::RunStatus::Stopped:
+    case study::RunStatus::Failed:
       return kExitNoSolution;
-    case RunStatus::Error:
+    case study::RunStatus::Error:
       return kExitError;
-    case RunStatus::Interrupted:
+    case study::RunStatus::Interrupted:
       return kExitInterrupted;
   }
   return kExitError;
@@ -54,4 +54,4 @@ int exit_code_of(const std::vector<ErrorRule>& rules,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

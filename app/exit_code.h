@@ -10,7 +10,7 @@
 
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitWrongInput = 2;  // found before work starts
@@ -19,7 +19,7 @@ inline constexpr int kExitError = 4;       // internal error, full disk
 inline constexpr int kExitInterrupted = 130;
 
 /// Of result.json's status.
-int exit_code_of(RunStatus status);
+int exit_code_of(study::RunStatus status);
 
 /// What an exception of one type means where the rule holds.
 struct ErrorRule {
@@ -51,4 +51,4 @@ std::vector<ErrorRule> program_rules();
 int exit_code_of(const std::vector<ErrorRule>& rules,
                  const std::function<int()>& work);
 
-}  // namespace meniscus
+}  // namespace meniscus::app

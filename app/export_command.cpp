@@ -13,21 +13,21 @@
 #include "pipeline/results/export_part.h"
 #include "pipeline/store/runs_in.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
 namespace fs = std::filesystem;
 
 /// One run; what goes wrong with it is told. Returns the exit code.
-int export_run(const fs::path& run, const ExportOptions& options) {
+int export_run(const fs::path& run, const results::ExportOptions& options) {
   const std::string prefix = run.string() + ": ";
   return exit_code_of(
       {on<IoError>(kExitWrongInput), on<InvalidInput>(kExitWrongInput, prefix),
        on<MeshError>(kExitNoSolution, prefix),
        on<SolverError>(kExitNoSolution, prefix)},
       [&] {
-        const fs::path file = export_part(run, options);
+        const fs::path file = results::export_part(run, options);
         std::printf("%s\n", file.string().c_str());
         return kExitDone;
       });
@@ -41,7 +41,7 @@ int export_command(const ExportArguments& arguments) {
   const fs::path folder = arguments.run_folder;
   std::vector<fs::path> runs;
   const int no_runs = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
-    runs = runs_in(folder);
+    runs = store::runs_in(folder);
     return kExitDone;
   });
   if (no_runs != kExitDone) {
@@ -65,4 +65,4 @@ int export_command(const ExportArguments& arguments) {
   return code;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

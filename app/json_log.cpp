@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "core/json.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
@@ -97,4 +97,4 @@ bool JsonLog::write(const Json& fields) {
   return true;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

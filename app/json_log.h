@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace meniscus {
+namespace meniscus::app {
 
 /// Appends lines to a file, each with one write: a reader or a kill meets
 /// whole lines. Not for several threads at once.
@@ -30,4 +30,4 @@ class JsonLog {
   int file_ = -1;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::app

@@ -15,7 +15,7 @@
 
 namespace {
 
-using meniscus::CommonArguments;
+using meniscus::app::CommonArguments;
 
 void add_case(CLI::App& command, std::string& path) {
   command.add_option("CASE", path, "case file (TOML)")->required();
@@ -67,26 +67,29 @@ CLI::Validator positive() {
 /// A line for each format.
 std::string formats_text() {
   std::string text = "one of";
-  for (const meniscus::ExportFormat& format : meniscus::export_formats()) {
+  for (const meniscus::results::ExportFormat& format :
+       meniscus::results::export_formats()) {
     text += fmt::format("\n{}: {}", format.name, format.what);
   }
   return text;
 }
 
 std::string no_export_format(const std::string& name) {
-  for (const meniscus::ExportFormat& format : meniscus::export_formats()) {
+  for (const meniscus::results::ExportFormat& format :
+       meniscus::results::export_formats()) {
     if (format.name == name) {
       return "";
     }
   }
   return fmt::format("'{}' is no format; there are {}", name,
-                     meniscus::export_format_names());
+                     meniscus::results::export_format_names());
 }
 
 int run_program(int argc, char** argv) {
   CLI::App app("Designs load-carrying parts with liquid films.", "meniscus");
   app.require_subcommand(1);
-  app.set_version_flag("--version", [] { return meniscus::version_text(); });
+  app.set_version_flag("--version",
+                       [] { return meniscus::app::version_text(); });
   app.failure_message(usage_error);
   std::function<int()> command;
 
@@ -95,7 +98,7 @@ int run_program(int argc, char** argv) {
   create->add_option("NAME", name, "folder to make, with NAME/case.toml")
       ->required();
   create->callback(
-      [&] { command = [&] { return meniscus::new_command(name); }; });
+      [&] { command = [&] { return meniscus::app::new_command(name); }; });
 
   std::string case_path;
   CommonArguments common;
@@ -104,10 +107,10 @@ int run_program(int argc, char** argv) {
   add_case(*check, case_path);
   add_overrides(*check, common);
   check->callback([&] {
-    command = [&] { return meniscus::check_command(case_path, common); };
+    command = [&] { return meniscus::app::check_command(case_path, common); };
   });
 
-  meniscus::RunArguments run_arguments;
+  meniscus::app::RunArguments run_arguments;
   CLI::App* run = app.add_subcommand("run", "run a case's study");
   add_case(*run, run_arguments.case_path);
   add_common(*run, run_arguments.common);
@@ -134,14 +137,15 @@ int run_program(int argc, char** argv) {
                   "designs, or members of a family, worked on side by side "
                   "where a study knows several ahead, each with its share of "
                   "the threads; results do not depend on it")
-      ->check(CLI::Range(1, meniscus::kMostJobs));
+      ->check(CLI::Range(1, meniscus::study::kMostJobs));
   run->add_option("--time-limit", run_arguments.time_limit,
                   "stop after so many seconds and keep the best point")
       ->check(positive());
-  run->callback(
-      [&] { command = [&] { return meniscus::run_command(run_arguments); }; });
+  run->callback([&] {
+    command = [&] { return meniscus::app::run_command(run_arguments); };
+  });
 
-  meniscus::CheckGradientArguments gradient_arguments;
+  meniscus::app::CheckGradientArguments gradient_arguments;
   CLI::App* gradient =
       app.add_subcommand("check-gradient",
                          "compare the exact gradient of all responses with "
@@ -156,11 +160,11 @@ int run_program(int argc, char** argv) {
                      "tell only what differs");
   gradient->callback([&] {
     command = [&] {
-      return meniscus::check_gradient_command(gradient_arguments);
+      return meniscus::app::check_gradient_command(gradient_arguments);
     };
   });
 
-  meniscus::EvolveArguments evolve_arguments;
+  meniscus::app::EvolveArguments evolve_arguments;
   CLI::App* evolve = app.add_subcommand(
       "evolve", "film equilibrium only, of a case or a Surface Evolver file");
   evolve
@@ -203,10 +207,10 @@ int run_program(int argc, char** argv) {
     if (script->count() > 0 && evolve_arguments.macro.empty()) {
       evolve_arguments.macro = "gogo";
     }
-    command = [&] { return meniscus::evolve_command(evolve_arguments); };
+    command = [&] { return meniscus::app::evolve_command(evolve_arguments); };
   });
 
-  meniscus::ExportArguments export_arguments;
+  meniscus::app::ExportArguments export_arguments;
   CLI::App* write =
       app.add_subcommand("export", "write a run's part for another program");
   write
@@ -224,10 +228,10 @@ int run_program(int argc, char** argv) {
   write->add_option("--out", export_arguments.out,
                     "file (default: into the run's folder)");
   write->callback([&] {
-    command = [&] { return meniscus::export_command(export_arguments); };
+    command = [&] { return meniscus::app::export_command(export_arguments); };
   });
 
-  meniscus::CompareArguments compare_arguments;
+  meniscus::app::CompareArguments compare_arguments;
   CLI::App* compare = app.add_subcommand(
       "compare", "parts side by side: mass, stiffness, stress, uniformity");
   compare
@@ -247,10 +251,10 @@ int run_program(int argc, char** argv) {
                       "folder of compare.json and compare.csv");
   compare->add_flag("--quiet", compare_arguments.quiet, "errors only");
   compare->callback([&] {
-    command = [&] { return meniscus::compare_command(compare_arguments); };
+    command = [&] { return meniscus::app::compare_command(compare_arguments); };
   });
 
-  meniscus::CurvesArguments curves_arguments;
+  meniscus::app::CurvesArguments curves_arguments;
   CLI::App* curves = app.add_subcommand(
       "curves", "propose curves: the lines along which a scan bends most");
   curves->add_option("SCAN", curves_arguments.scan, "STL or OBJ file")
@@ -268,10 +272,10 @@ int run_program(int argc, char** argv) {
   curves->add_option("--out", curves_arguments.out,
                      "write the curves into this file");
   curves->callback([&] {
-    command = [&] { return meniscus::curves_command(curves_arguments); };
+    command = [&] { return meniscus::app::curves_command(curves_arguments); };
   });
 
-  meniscus::ReportArguments report_arguments;
+  meniscus::app::ReportArguments report_arguments;
   CLI::App* report = app.add_subcommand(
       "report", "make report.html and the pictures of a run again");
   report
@@ -281,7 +285,7 @@ int run_program(int argc, char** argv) {
   report->add_flag("!--no-pictures", report_arguments.pictures,
                    "leave the pictures out");
   report->callback([&] {
-    command = [&] { return meniscus::report_command(report_arguments); };
+    command = [&] { return meniscus::app::report_command(report_arguments); };
   });
 
   std::string folder;
@@ -293,24 +297,26 @@ int run_program(int argc, char** argv) {
   show->add_option("DIR", folder, "results folder")->required();
   show->add_option("--csv", csv, "write the table as CSV into this file");
   show->callback([&] {
-    command = [&] { return meniscus::study_show_command(folder, csv); };
+    command = [&] { return meniscus::app::study_show_command(folder, csv); };
   });
 
-  meniscus::WatchArguments watch_arguments;
+  meniscus::app::WatchArguments watch_arguments;
   CLI::App* watch = study->add_subcommand(
       "watch", "the figures of a running study, each second, until it ends");
   watch->add_option("DIR", watch_arguments.folder, "results folder")
       ->required();
   watch->add_flag("--once", watch_arguments.once, "look once and end");
   watch->callback([&] {
-    command = [&] { return meniscus::study_watch_command(watch_arguments); };
+    command = [&] {
+      return meniscus::app::study_watch_command(watch_arguments);
+    };
   });
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
-    return code == 0 ? 0 : meniscus::kExitWrongInput;
+    return code == 0 ? 0 : meniscus::app::kExitWrongInput;
   }
   return command();
 }
@@ -321,6 +327,6 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   meniscus::wait_asleep(argv);
   meniscus::keep_freed_memory();
-  return meniscus::exit_code_of(meniscus::program_rules(),
-                                [&] { return run_program(argc, argv); });
+  return meniscus::app::exit_code_of(meniscus::app::program_rules(),
+                                     [&] { return run_program(argc, argv); });
 }

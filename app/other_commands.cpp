@@ -26,7 +26,7 @@
 #include "pipeline/study/film_frames.h"
 #include "report/output/run_pictures.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace fs = std::filesystem;
 
@@ -40,7 +40,7 @@ int new_command(const std::string& name) {
   }
   return exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     make_folder(folder);
-    write_file(file, new_case_text(folder.filename().string()));
+    write_file(file, results::new_case_text(folder.filename().string()));
     std::printf("%s is written; run it with: meniscus run %s\n",
                 file.string().c_str(), file.string().c_str());
     return kExitDone;
@@ -48,11 +48,11 @@ int new_command(const std::string& name) {
 }
 
 int check_command(const std::string& case_path, const CommonArguments& common) {
-  const CaseReading reading = read_case_aloud(case_path, common);
+  const reader::CaseReading reading = read_case_aloud(case_path, common);
   if (!reading.input) {
     return kExitWrongInput;
   }
-  const Case& input = *reading.input;
+  const case_data::Case& input = *reading.input;
   for (const std::string& remark : input.remarks) {
     std::printf("%s\n", remark.c_str());
   }
@@ -72,18 +72,19 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
 
 namespace {
 
-DatafileOptions datafile_options(const EvolveArguments& arguments,
-                                 Monitor& monitor) {
-  DatafileOptions options;
+results::DatafileOptions datafile_options(const EvolveArguments& arguments,
+                                          Monitor& monitor) {
+  results::DatafileOptions options;
   options.refinements = arguments.refinements;
   for (const std::string& text : arguments.common.overrides) {
     const auto [name, value] = named_number("--set", text);
     options.parameters[name] = value;
   }
-  options.method = arguments.method == "gradient" ? DatafileMethod::Gradient
+  options.method = arguments.method == "gradient"
+                       ? results::DatafileMethod::Gradient
                    : arguments.method == "conjugate_gradients"
-                       ? DatafileMethod::ConjugateGradients
-                       : DatafileMethod::Newton;
+                       ? results::DatafileMethod::ConjugateGradients
+                       : results::DatafileMethod::Newton;
   if (!arguments.macro.empty()) {
     options.macro = arguments.macro;
   }
@@ -97,26 +98,28 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
   const fs::path path = arguments.path;
   const fs::path folder = common.out.empty() ? fs::path("results") / path.stem()
                                              : fs::path(common.out);
-  DatafileResult result;
+  results::DatafileResult result;
   TerminalMonitor monitor(monitor_options(common));
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
-    const DatafileOptions options = datafile_options(arguments, monitor);
+    const results::DatafileOptions options =
+        datafile_options(arguments, monitor);
     make_folder(folder);
     catch_stop_signals();
-    result = evolve_datafile(path, options);
+    result = results::evolve_datafile(path, options);
     return kExitDone;
   });
   if (refused != kExitDone) {
     return refused;
   }
   const std::string title = path.filename().string();
-  const std::string warning = write_datafile_result(result, title, folder);
+  const std::string warning =
+      results::write_datafile_result(result, title, folder);
   if (arguments.pictures) {
-    warn(draw_film(title, solids_of(result.complex), arguments.hidden, folder,
-                   monitor));
+    warn(output::draw_film(title, results::solids_of(result.complex),
+                           arguments.hidden, folder, monitor));
   }
   if (!common.quiet) {
-    std::fputs(datafile_text(result).c_str(), stdout);
+    std::fputs(results::datafile_text(result).c_str(), stdout);
     std::printf("  written to %s\n", folder.string().c_str());
   }
   if (!warning.empty()) {
@@ -137,13 +140,14 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
 }
 
 /// A wall beyond its safe thickness is written too, to be looked at.
-int write_walls(const Case& input, const std::vector<CaseWall>& walls,
+int write_walls(const case_data::Case& input,
+                const std::vector<forward::CaseWall>& walls,
                 const fs::path& folder, const CommonArguments& common) {
   int code = kExitDone;
-  for (const CaseWall& wall : walls) {
-    write_wall(input, wall, folder);
+  for (const forward::CaseWall& wall : walls) {
+    forward::write_wall(input, wall, folder);
     if (!common.quiet) {
-      std::fputs(wall_text(input, wall).c_str(), stdout);
+      std::fputs(forward::wall_text(input, wall).c_str(), stdout);
     }
     if (!wall.wall.findings.empty()) {
       std::fprintf(stderr, "failed: wall %s cannot be meshed: %s\n",
@@ -155,11 +159,11 @@ int write_walls(const Case& input, const std::vector<CaseWall>& walls,
 }
 
 /// What --hide names that is neither film nor solid of the case; or nothing.
-std::string not_there(const FilmSystem& system,
+std::string not_there(const films::FilmSystem& system,
                       const std::vector<std::string>& hidden) {
   for (const std::string& name : hidden) {
     const auto named = [&](const auto& surface) {
-      return is_hidden(surface.name, {name});
+      return picture::is_hidden(surface.name, {name});
     };
     if (std::none_of(system.films.begin(), system.films.end(), named) &&
         std::none_of(system.caps.begin(), system.caps.end(), named)) {
@@ -171,38 +175,42 @@ std::string not_there(const FilmSystem& system,
 
 /// film.vtp, film.json and, where they are wanted, the film's way to rest and
 /// pictures.
-void write_evolved(const Case& input, const EvaluatedCase& numbers,
-                   const FilmModel& model, const fs::path& folder,
+void write_evolved(const case_data::Case& input,
+                   const case_data::EvaluatedCase& numbers,
+                   const frozen::FilmModel& model, const fs::path& folder,
                    const EvolveArguments& arguments, Monitor& monitor) {
-  const FilmState& film = model.reference();
+  const settle::FilmState& film = model.reference();
   std::vector<std::string> solids;
-  for (const CapSpec& cap : numbers.film_system.caps) {
+  for (const films::CapSpec& cap : numbers.film_system.caps) {
     solids.push_back(cap.name);
   }
-  write_film(input, model.fine_mesh(film.points), folder);
-  std::vector<FilmFrame> frames;
+  results::write_film(input, model.fine_mesh(film.points), folder);
+  std::vector<forward::FilmFrame> frames;
   if (arguments.frames) {
-    frames = settling_frames(numbers, model, monitor);
-    write_frames(input, frames, folder);
+    frames = study::settling_frames(numbers, model, monitor);
+    study::write_frames(input, frames, folder);
   }
-  write_evolved_film({.title = input.title,
-                      .units = input.units,
-                      .report = film.report,
-                      .failure = film.failure,
-                      .solids = solids,
-                      .areas = areas_of_films(input, model),
-                      .curves = pieces_of_curves(numbers.film_system.curves)},
-                     frames, folder);
+  results::write_evolved_film(
+      {.title = input.title,
+       .units = input.units,
+       .report = film.report,
+       .failure = film.failure,
+       .solids = solids,
+       .areas = results::areas_of_films(input, model),
+       .curves = results::pieces_of_curves(numbers.film_system.curves)},
+      frames, folder);
   if (!arguments.pictures) {
     return;
   }
-  warn(draw_film(input.title, solids, arguments.hidden, folder, monitor));
+  warn(output::draw_film(input.title, solids, arguments.hidden, folder,
+                         monitor));
   std::vector<std::string> captions;
   captions.reserve(frames.size());
-  for (const FilmFrame& frame : frames) {
-    captions.push_back(settling_caption(frame));
+  for (const forward::FilmFrame& frame : frames) {
+    captions.push_back(results::settling_caption(frame));
   }
-  warn(draw_frames(input.title, solids, frames, captions, folder, monitor));
+  warn(output::draw_frames(input.title, solids, frames, captions, folder,
+                           monitor));
 }
 
 }  // namespace
@@ -212,11 +220,11 @@ int evolve_command(const EvolveArguments& arguments) {
     return evolve_datafile_command(arguments);
   }
   const CommonArguments& common = arguments.common;
-  const CaseReading reading = read_case_aloud(arguments.path, common);
+  const reader::CaseReading reading = read_case_aloud(arguments.path, common);
   if (!reading.input) {
     return kExitWrongInput;
   }
-  const Case& input = *reading.input;
+  const case_data::Case& input = *reading.input;
   const fs::path folder = results_folder(input, common.out);
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     make_folder(folder);
@@ -227,7 +235,8 @@ int evolve_command(const EvolveArguments& arguments) {
   }
   catch_stop_signals();
   TerminalMonitor monitor(monitor_options(common));
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
   if (const std::string name = not_there(numbers.film_system, arguments.hidden);
       !name.empty()) {
     std::fprintf(stderr,
@@ -236,22 +245,22 @@ int evolve_command(const EvolveArguments& arguments) {
                  name.c_str());
     return kExitWrongInput;
   }
-  const FilmModel model =
-      freeze_films(input, numbers,
-                   {.edge = numbers.fea_edge,
-                    .refinements = input.resolution.refinements,
-                    .monitor = &monitor});
-  const FilmState& film = model.reference();
+  const frozen::FilmModel model =
+      case_data::freeze_films(input, numbers,
+                              {.edge = numbers.fea_edge,
+                               .refinements = input.resolution.refinements,
+                               .monitor = &monitor});
+  const settle::FilmState& film = model.reference();
   write_evolved(input, numbers, model, folder, arguments, monitor);
   if (!common.quiet) {
-    std::fputs(film_text(input, film.report).c_str(), stdout);
+    std::fputs(results::film_text(input, film.report).c_str(), stdout);
   }
   if (film.failure) {
     std::fprintf(stderr, "failed: %s\n", film.failure->message.c_str());
     return kExitNoSolution;
   }
-  return write_walls(input, make_walls(numbers, model, film.points), folder,
-                     common);
+  return write_walls(input, forward::make_walls(numbers, model, film.points),
+                     folder, common);
 }
 
 int study_show_command(const std::string& folder, const std::string& csv) {
@@ -260,20 +269,23 @@ int study_show_command(const std::string& folder, const std::string& csv) {
     if (fs::exists(family)) {
       const std::string table = read_file(family);
       if (csv.empty()) {
-        std::fputs(family_table_text(table, stored_units(folder)).c_str(),
-                   stdout);
+        std::fputs(
+            results::family_table_text(table, store::stored_units(folder))
+                .c_str(),
+            stdout);
       } else {
         write_file(csv, table);
       }
       return kExitDone;
     }
-    const StudyStore store = StudyStore::read(folder);
-    const std::vector<EvaluationRecord> records = store.all();
+    const store::StudyStore store = store::StudyStore::read(folder);
+    const std::vector<store::EvaluationRecord> records = store.all();
     if (csv.empty()) {
-      std::fputs(study_table_text(records, stored_units(folder)).c_str(),
-                 stdout);
+      std::fputs(
+          store::study_table_text(records, store::stored_units(folder)).c_str(),
+          stdout);
     } else {
-      write_file(csv, history_csv(records));
+      write_file(csv, store::history_csv(records));
     }
     return kExitDone;
   });
@@ -283,4 +295,4 @@ std::string version_text() {
   return fmt::format("meniscus {}\n{}", kProgramVersion, kLibraryVersions);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

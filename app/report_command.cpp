@@ -14,7 +14,7 @@
 #include "report/page/report_page.h"
 #include "report/picture/picture.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
@@ -26,12 +26,13 @@ void draw_again(const fs::path& folder, Monitor& monitor) {
       !fs::exists(folder / "study.sqlite")) {
     return;
   }
-  const StudyStore store = StudyStore::read(folder.string());
-  const Case input = restore_case(store.meta());
-  const EvaluatedCase numbers =
-      evaluate(input, answer_of_run(input, store.all(), folder));
-  warn(render_pictures(stored_run_pictures(input, numbers, folder),
-                       {.monitor = &monitor}));
+  const store::StudyStore store = store::StudyStore::read(folder.string());
+  const case_data::Case input = store::restore_case(store.meta());
+  const case_data::EvaluatedCase numbers = case_data::evaluate(
+      input, store::answer_of_run(input, store.all(), folder));
+  warn(picture::render_pictures(
+      output::stored_run_pictures(input, numbers, folder),
+      {.monitor = &monitor}));
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ int report_command(const ReportArguments& arguments) {
   TerminalMonitor monitor({.stop = [] { return stop_signal() != 0; }});
   const fs::path folder = arguments.folder;
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
-    warn(write_report(folder, {.versions = version_text()}));
+    warn(page::write_report(folder, {.versions = version_text()}));
     if (arguments.pictures) {
       draw_again(folder, monitor);
     }
@@ -56,4 +57,4 @@ int report_command(const ReportArguments& arguments) {
   return kExitDone;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

@@ -10,19 +10,20 @@
 #include "app/study_events.h"
 #include "app/terminal.h"
 #include "app/versions.h"
-#include "pipeline/results/results.h"
 #include "core/error.h"
+#include "pipeline/results/results.h"
 #include "pipeline/store/stored_case.h"
 #include "report/output/folder_run.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-FolderRunOptions run_options(const RunArguments& arguments, fs::path folder,
-                             const std::vector<std::string>& warnings) {
+output::FolderRunOptions run_options(const RunArguments& arguments,
+                                     fs::path folder,
+                                     const std::vector<std::string>& warnings) {
   return {.folder = std::move(folder),
           .program_version = kProgramVersion,
           .page_versions = version_text(),
@@ -39,22 +40,23 @@ FolderRunOptions run_options(const RunArguments& arguments, fs::path folder,
 }
 
 /// Events for terminal and log, warnings on stderr.
-FolderRunListener run_listener(const Case& input, TerminalMonitor& monitor) {
+output::FolderRunListener run_listener(const case_data::Case& input,
+                                       TerminalMonitor& monitor) {
   return {.monitor = &monitor,
           .evaluated =
-              [&](const StudyNews& news) {
+              [&](const study::StudyNews& news) {
                 monitor.tell(evaluation_event(input, news));
               },
           .finished =
-              [&](const RunResult& result) {
+              [&](const study::RunResult& result) {
                 monitor.tell(end_event(result.status, result.message,
                                        result.total_seconds));
               },
           .ended_early =
-              [&](const RunResult& result) {
+              [&](const study::RunResult& result) {
                 monitor.tell(end_event(result.status, result.message,
                                        result.total_seconds));
-                std::fprintf(stderr, "%s: %s\n", name_of(result.status),
+                std::fprintf(stderr, "%s: %s\n", study::name_of(result.status),
                              result.message.c_str());
               },
           .page_warning = [](const std::string& warning) { warn({warning}); },
@@ -66,21 +68,22 @@ FolderRunListener run_listener(const Case& input, TerminalMonitor& monitor) {
 }
 
 /// Status and message, on stderr unless all is good; with `quiet` only then.
-void explain_end(RunStatus status, const std::string& message, bool quiet) {
-  const bool good = status == RunStatus::Converged;
+void explain_end(study::RunStatus status, const std::string& message,
+                 bool quiet) {
+  const bool good = status == study::RunStatus::Converged;
   if (!good || !quiet) {
-    std::fprintf(good ? stdout : stderr, "%s: %s\n", name_of(status),
+    std::fprintf(good ? stdout : stderr, "%s: %s\n", study::name_of(status),
                  message.c_str());
   }
 }
 
-void explain(const Case& input, const RunResult& result, const fs::path& folder,
-             bool quiet) {
+void explain(const case_data::Case& input, const study::RunResult& result,
+             const fs::path& folder, bool quiet) {
   explain_end(result.status, result.message, quiet);
   if (quiet) {
     return;
   }
-  std::fputs(result_text(input, result).c_str(), stdout);
+  std::fputs(results::result_text(input, result).c_str(), stdout);
   std::printf("  results in %s\n", folder.string().c_str());
   std::fflush(stdout);
   for (const std::string& warning : result.warnings) {
@@ -90,16 +93,16 @@ void explain(const Case& input, const RunResult& result, const fs::path& folder,
   }
 }
 
-void explain(const FamilyResult& result, const FolderRunOptions& options,
-             bool quiet) {
+void explain(const results::FamilyResult& result,
+             const output::FolderRunOptions& options, bool quiet) {
   explain_end(result.status, result.message, quiet);
   if (quiet) {
     return;
   }
-  std::fputs(
-      family_table_text(family_csv(result.rows), stored_units(options.folder))
-          .c_str(),
-      stdout);
+  std::fputs(results::family_table_text(results::family_csv(result.rows),
+                                        store::stored_units(options.folder))
+                 .c_str(),
+             stdout);
   std::printf("  %zu members in %.1f s\n  results in %s\n", result.rows.size(),
               result.total_seconds, options.folder.string().c_str());
   std::fflush(stdout);
@@ -107,9 +110,10 @@ void explain(const FamilyResult& result, const FolderRunOptions& options,
   warn(result.warnings);
 }
 
-int run_one(const Case& input, const FolderRunOptions& options, bool quiet,
+int run_one(const case_data::Case& input,
+            const output::FolderRunOptions& options, bool quiet,
             TerminalMonitorOptions monitor_options) {
-  std::optional<FolderRun> run;
+  std::optional<output::FolderRun> run;
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     run.emplace(input, options);
     return kExitDone;
@@ -119,28 +123,30 @@ int run_one(const Case& input, const FolderRunOptions& options, bool quiet,
   }
   monitor_options.outer_stage = outer_stage_of(input);
   TerminalMonitor monitor(std::move(monitor_options));
-  const FolderRunResult end = run->run(run_listener(input, monitor));
+  const output::FolderRunResult end = run->run(run_listener(input, monitor));
   if (!end.error) {
     explain(input, end.result, options.folder, quiet);
   }
   return exit_code_of(end.result.status);
 }
 
-int run_members(const Case& input, const FolderRunOptions& options, bool quiet,
+int run_members(const case_data::Case& input,
+                const output::FolderRunOptions& options, bool quiet,
                 TerminalMonitorOptions monitor_options) {
   monitor_options.outer_stage = "family";
   TerminalMonitor monitor(std::move(monitor_options));
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
-    prepare_run_folder(input, options.folder);
+    output::prepare_run_folder(input, options.folder);
     fs::remove(options.folder / "report.html");
     return kExitDone;
   });
   if (refused != kExitDone) {
     return refused;
   }
-  const FolderRunListener listener = run_listener(input, monitor);
-  const FamilyResult result = run_family_into_folder(input, options, listener);
-  write_family_pages(result, options, listener);
+  const output::FolderRunListener listener = run_listener(input, monitor);
+  const results::FamilyResult result =
+      output::run_family_into_folder(input, options, listener);
+  output::write_family_pages(result, options, listener);
   monitor.tell(end_event(result.status, result.message, result.total_seconds));
   explain(result, options, quiet);
   return exit_code_of(result.status);
@@ -153,16 +159,17 @@ int run_command(const RunArguments& arguments) {
     omp_set_num_threads(arguments.threads);
   }
   const CommonArguments& common = arguments.common;
-  const CaseReading reading = read_case_aloud(arguments.case_path, common);
+  const reader::CaseReading reading =
+      read_case_aloud(arguments.case_path, common);
   if (!reading.input) {
     return kExitWrongInput;
   }
-  const Case& input = *reading.input;
-  const FolderRunOptions options = run_options(
+  const case_data::Case& input = *reading.input;
+  const output::FolderRunOptions options = run_options(
       arguments, results_folder(input, common.out), reading.warnings);
   catch_stop_signals();
   const auto run = input.study.members.empty() ? run_one : run_members;
   return run(input, options, common.quiet, monitor_options(common));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

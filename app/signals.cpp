@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <unistd.h>
 
-namespace meniscus {
+namespace meniscus::app {
 namespace {
 
 constexpr int kInterrupted = 130;
@@ -54,4 +54,4 @@ const char* name_of_signal(int signal) noexcept {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

@@ -1,7 +1,7 @@
 /// Ctrl-C and its relatives ask the program to stop; a second one ends it.
 #pragma once
 
-namespace meniscus {
+namespace meniscus::app {
 
 /// From now on SIGINT, SIGTERM and SIGHUP set a flag that stop_signal() shows,
 /// and the second of them ends the process at once with exit code 130. A
@@ -16,4 +16,4 @@ int stop_signal() noexcept;
 /// "Ctrl-C", "SIGTERM", "SIGHUP".
 const char* name_of_signal(int signal) noexcept;
 
-}  // namespace meniscus
+}  // namespace meniscus::app

@@ -7,7 +7,7 @@
 #include "pipeline/results/results.h"
 #include "pipeline/study/study_records.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
@@ -26,11 +26,11 @@ Json value_map(const std::vector<std::string>& names, const VectorX& values) {
   return map;
 }
 
-const char* stage_name(const Case& input) {
-  return row_of(input.study.kind).name;
+const char* stage_name(const case_data::Case& input) {
+  return case_data::row_of(input.study.kind).name;
 }
 
-Json best_json(const StudyNews& news) {
+Json best_json(const study::StudyNews& news) {
   if (!news.best) {
     return {};
   }
@@ -39,8 +39,9 @@ Json best_json(const StudyNews& news) {
           {"violation", or_null(news.best->violation)}};
 }
 
-Json evaluation_json(const Case& input, const StudyNews& news) {
-  const EvaluationRecord& record = *news.record;
+Json evaluation_json(const case_data::Case& input,
+                     const study::StudyNews& news) {
+  const store::EvaluationRecord& record = *news.record;
   double seconds = 0.0;
   for (const auto& [stage, value] : record.seconds) {
     seconds += value;
@@ -72,7 +73,8 @@ Json evaluation_json(const Case& input, const StudyNews& news) {
 
 /// "minimize: evaluation 12 of at most 300, mass = 0.0123 t, violation 0.02,
 /// best so far mass = 0.012 t (evaluation 9), at most 3 min left".
-std::string status_text(const Case& input, const StudyNews& news) {
+std::string status_text(const case_data::Case& input,
+                        const study::StudyNews& news) {
   std::string text =
       fmt::format("{}: evaluation {}", stage_name(input), news.evaluations);
   if (news.planned && *news.planned > 1) {
@@ -83,36 +85,37 @@ std::string status_text(const Case& input, const StudyNews& news) {
         ", {} = {:.6g}{}{}", news.objective_name, *news.standing.objective,
         news.objective_unit.empty() ? "" : " ", news.objective_unit);
   }
-  const std::string standing = standing_text(news);
+  const std::string standing = study::standing_text(news);
   return standing.empty() ? text : text + ", " + standing;
 }
 
 }  // namespace
 
-MonitorEvent evaluation_event(const Case& input, const StudyNews& news) {
+MonitorEvent evaluation_event(const case_data::Case& input,
+                              const study::StudyNews& news) {
   const std::string member =
       news.member.empty() ? std::string() : news.member + ": ";
-  const std::string standing = standing_text(news);
-  return {.line = member + describe(input, *news.record) +
+  const std::string standing = study::standing_text(news);
+  return {.line = member + study::describe(input, *news.record) +
                   (standing.empty() ? "" : "; " + standing),
           // Members side by side have one line of status: the family's.
           .status = member.empty() ? status_text(input, news) : std::string(),
           .fields = evaluation_json(input, news)};
 }
 
-MonitorEvent end_event(RunStatus status, const std::string& message,
+MonitorEvent end_event(study::RunStatus status, const std::string& message,
                        double seconds) {
   return {.line = {},
           .status = {},
           .fields = {{"event", "end"},
                      {"stage", "run"},
-                     {"status", name_of(status)},
+                     {"status", study::name_of(status)},
                      {"message", message},
                      {"total_seconds", seconds}}};
 }
 
-std::string outer_stage_of(const Case& input) {
-  return row_of(input.study.kind).outer_stage;
+std::string outer_stage_of(const case_data::Case& input) {
+  return case_data::row_of(input.study.kind).outer_stage;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

@@ -6,16 +6,17 @@
 #include "app/terminal_monitor.h"
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 /// Of an evaluation that has ended.
-MonitorEvent evaluation_event(const Case& input, const StudyNews& news);
+MonitorEvent evaluation_event(const case_data::Case& input,
+                              const study::StudyNews& news);
 
 /// Of a run, for the log only. `seconds`: it took.
-MonitorEvent end_event(RunStatus status, const std::string& message,
+MonitorEvent end_event(study::RunStatus status, const std::string& message,
                        double seconds);
 
 /// The stage whose progress the events of a study tell in more words.
-std::string outer_stage_of(const Case& input);
+std::string outer_stage_of(const case_data::Case& input);
 
-}  // namespace meniscus
+}  // namespace meniscus::app

@@ -6,7 +6,7 @@
 
 #include <sys/ioctl.h>
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
@@ -47,4 +47,4 @@ void warn(const std::vector<std::string>& warnings) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

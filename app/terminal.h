@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::app {
 
 /// A stream that understands cursor movements (TERM is not "dumb").
 bool is_terminal(std::FILE* stream);
@@ -19,4 +19,4 @@ std::string fitted(const std::string& text, int columns);
 /// A line each, to stderr.
 void warn(const std::vector<std::string>& warnings);
 
-}  // namespace meniscus
+}  // namespace meniscus::app

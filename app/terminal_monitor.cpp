@@ -10,7 +10,7 @@
 
 #include "app/terminal.h"
 
-namespace meniscus {
+namespace meniscus::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -223,4 +223,4 @@ double TerminalMonitor::now() const {
       .count();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

@@ -15,7 +15,7 @@
 #include "app/json_log.h"
 #include "core/monitor.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 enum class MonitorStyle {
   Automatic,  // Terminal when the stream is one (and TERM is not "dumb")
@@ -86,4 +86,4 @@ class TerminalMonitor : public Monitor {
   std::map<std::string, double> logged_;  // last line per stage in the log [s]
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::app

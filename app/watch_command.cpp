@@ -12,13 +12,13 @@
 #include "core/error.h"
 #include "pipeline/results/study_watch.h"
 
-namespace meniscus {
+namespace meniscus::app {
 
 namespace {
 
 constexpr auto kRefresh = std::chrono::seconds(1);
 
-std::string head_of(const StudyGlance& glance) {
+std::string head_of(const results::StudyGlance& glance) {
   return fmt::format(
       "{}{}\n", glance.title.empty() ? "" : glance.title + ": ",
       glance.at_work ? "running (" + glance.holder + ")" : "no run is at work");
@@ -44,17 +44,18 @@ class Screen {
 };
 
 int exit_code_of_status(const std::string& status) {
-  for (const RunStatus known :
-       {RunStatus::Converged, RunStatus::Infeasible, RunStatus::Stopped,
-        RunStatus::Failed, RunStatus::Error, RunStatus::Interrupted}) {
-    if (status == name_of(known)) {
+  for (const study::RunStatus known :
+       {study::RunStatus::Converged, study::RunStatus::Infeasible,
+        study::RunStatus::Stopped, study::RunStatus::Failed,
+        study::RunStatus::Error, study::RunStatus::Interrupted}) {
+    if (status == study::name_of(known)) {
       return exit_code_of(known);
     }
   }
   return kExitError;
 }
 
-int tell_end(const StudyGlance& glance) {
+int tell_end(const results::StudyGlance& glance) {
   if (glance.status.empty()) {
     std::printf(
         "the run has ended without a result: it was killed or never began to "
@@ -67,12 +68,12 @@ int tell_end(const StudyGlance& glance) {
 }
 
 int watch(const WatchArguments& arguments) {
-  StudyWatch study(arguments.folder);
+  results::StudyWatch study(arguments.folder);
   const bool redraws = is_terminal(stdout) && !arguments.once;
   Screen screen;
   bool first = true;
   while (true) {
-    const StudyGlance glance = study.look();
+    const results::StudyGlance glance = study.look();
     if (redraws) {
       screen.show(head_of(glance) + glance.text);
     } else if (arguments.once) {
@@ -104,4 +105,4 @@ int study_watch_command(const WatchArguments& arguments) {
                       [&] { return watch(arguments); });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::app

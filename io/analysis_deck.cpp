@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -156,4 +156,4 @@ int corner_off_face(const TetMesh& mesh, int face) {
   return off;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -8,7 +8,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// Engineering constants in axes of their own: axis 1, and one in the plane of
 /// 1 and 2.
@@ -112,4 +112,4 @@ std::vector<int> supported_nodes(const TetMesh& mesh,
 /// that the face has not. Throws MeshError for a face of another element.
 int corner_off_face(const TetMesh& mesh, int face);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 std::vector<BodyFacets> facets_by_body(const SurfaceMesh& mesh) {
   const auto bodies = static_cast<std::size_t>(body_count(mesh));
@@ -67,4 +67,4 @@ void check_for_file(const SurfaceMesh& mesh, const std::filesystem::path& path,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -8,7 +8,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// Facets out of each body, by label, then in the mesh's order: those behind
 /// which it is as they are, those in front of which it is turned around.
@@ -30,4 +30,4 @@ std::string body_name(const std::vector<std::string>& names, std::size_t body);
 void check_for_file(const SurfaceMesh& mesh, const std::filesystem::path& path,
                     double limit);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

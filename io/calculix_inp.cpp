@@ -13,7 +13,7 @@
 #include "io/calculix_springs.h"
 #include "io/file_notes.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -296,4 +296,4 @@ void write_calculix_inp(const std::filesystem::path& path, const TetMesh& mesh,
   write_file(path, calculix_deck(mesh, deck));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -15,7 +15,7 @@
 
 #include "io/analysis_deck.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 enum class DeckOutput {
   Viewer,  // .frd: displacement, reaction, stress
@@ -42,4 +42,4 @@ void write_calculix_inp(const std::filesystem::path& path, const TetMesh& mesh,
 /// 0 to 3: faces are 1-2-3, 1-4-2, 2-4-3, 3-4-1.
 int calculix_face(int opposite_corner);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

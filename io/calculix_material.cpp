@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::string material_text(const DeckMaterial& material, const std::string& name,
                             region, name, oriented);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

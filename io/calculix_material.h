@@ -5,11 +5,11 @@
 
 #include "io/calculix_inp.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// *MATERIAL with its constants, orientation if it has one, and the section of
 /// element set REGION_<region>. `name`: as CalculiX takes it.
 std::string material_text(const DeckMaterial& material, const std::string& name,
                           std::size_t region);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

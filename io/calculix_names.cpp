@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -42,4 +42,4 @@ std::vector<std::string> deck_names(const std::vector<std::string>& names) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

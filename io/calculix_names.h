@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::io {
 
 using Out = std::back_insert_iterator<fmt::memory_buffer>;
 
 /// Distinct deck names for the given ones, in order: capitals, digits and '_'.
 std::vector<std::string> deck_names(const std::vector<std::string>& names);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

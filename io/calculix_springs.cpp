@@ -6,7 +6,7 @@
 
 #include "io/calculix_names.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -72,4 +72,4 @@ std::string springs_boundary_text(const std::vector<DeckSprings>& springs,
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -5,7 +5,7 @@
 
 #include "io/calculix_inp.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// Nodes, elements, stiffnesses and equations. Springs' nodes and elements are
 /// numbered after the mesh's. The springs went through check_deck().
@@ -16,4 +16,4 @@ std::string springs_text(const TetMesh& mesh,
 std::string springs_boundary_text(const std::vector<DeckSprings>& springs,
                                   std::size_t step);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace meniscus {
+namespace meniscus::io {
 
 std::string one_line(std::string text) {
   std::replace_if(
@@ -39,4 +39,4 @@ std::vector<std::string> comment_lines(const FileNotes& notes) {
   return lines;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::io {
 
 struct FileNotes {
   std::string program;             // with its version: "Meniscus 0.1.0"
@@ -25,4 +25,4 @@ std::string one_line(std::string text);
 /// '_' for those within; "unnamed" for nothing.
 std::string one_word(const std::string& name);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

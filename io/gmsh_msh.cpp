@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "io/body_surfaces.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -276,4 +276,4 @@ void write_msh(const std::filesystem::path& path, const TetMesh& mesh,
   write_file(path, MshWriter(mesh, options).text());
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

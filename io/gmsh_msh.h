@@ -9,7 +9,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "io/file_notes.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// Values at all nodes, which Gmsh shows as a view. `values`: all components
 /// of a node before the next node's.
@@ -33,4 +33,4 @@ struct MshOptions {
 void write_msh(const std::filesystem::path& path, const TetMesh& mesh,
                const MshOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::io

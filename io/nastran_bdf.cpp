@@ -10,7 +10,7 @@
 #include "io/nastran_fields.h"
 #include "io/nastran_material.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -323,4 +323,4 @@ void write_nastran_bdf(const std::filesystem::path& path, const TetMesh& mesh,
   write_file(path, nastran_bdf(mesh, deck));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -13,7 +13,7 @@
 
 #include "io/analysis_deck.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// The file's text. Pressures become PLOAD4, nodal forces FORCE, weight GRAV,
 /// spin RFORCE about a held grid point on the axis, temperatures TEMP against
@@ -31,4 +31,4 @@ void write_nastran_bdf(const std::filesystem::path& path, const TetMesh& mesh,
 /// digits as these hold: 11 or more, 10 beyond 1e99 and below 1e-99.
 std::string nastran_real(double value);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

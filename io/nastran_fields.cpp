@@ -8,7 +8,7 @@
 
 #include "io/nastran_bdf.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -127,4 +127,4 @@ std::string plain_text(const std::string& text) {
   return plain;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// What stands on a card after its name, a text each.
 using Fields = std::vector<std::string>;
@@ -24,4 +24,4 @@ std::string case_set(int number, const std::vector<int>& members);
 /// Printable ASCII, for titles and comments; at most 70 characters.
 std::string plain_text(const std::string& text);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -6,7 +6,7 @@
 #include "io/nastran_bdf.h"
 #include "io/nastran_fields.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -98,4 +98,4 @@ std::string nastran_material(const DeckMaterial& material, int id) {
                             unless_zero(material.thermal_expansion[0])});
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

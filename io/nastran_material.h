@@ -5,9 +5,9 @@
 
 #include "io/analysis_deck.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// PSOLID and MAT1, or MAT9 with its axes in CORD2R, all of number `id`.
 std::string nastran_material(const DeckMaterial& material, int id);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -8,7 +8,7 @@
 #include "core/atomic_file.h"
 #include "io/body_surfaces.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 void write_obj(const std::filesystem::path& path, const SurfaceMesh& mesh,
                const ObjOptions& options) {
@@ -36,4 +36,4 @@ void write_obj(const std::filesystem::path& path, const SurfaceMesh& mesh,
   write_file(path, {text.data(), text.size()});
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

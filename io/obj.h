@@ -8,7 +8,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "io/file_notes.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 struct ObjOptions {
   FileNotes notes;                  // into comments at the head; no unit else
@@ -33,4 +33,4 @@ SurfaceMesh read_obj(const std::filesystem::path& path);
 /// The same from text; `path` for messages.
 SurfaceMesh read_obj_text(const std::string& text, const std::string& path);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "io/obj.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -198,4 +198,4 @@ SurfaceMesh read_obj(const std::filesystem::path& path) {
   return read_obj_text(read_file(path), path.string());
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "io/stl.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -236,4 +236,4 @@ SurfaceMesh read_stl(const std::filesystem::path& path) {
   return read_stl_text(read_file(path), path.string());
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -6,7 +6,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// ASCII: each `solid NAME ... endsolid` becomes one named surface, the blocks
 /// together one body. Binary (84 bytes and 50 a facet): all one surface,
@@ -22,4 +22,4 @@ SurfaceMesh read_stl(const std::filesystem::path& path);
 /// The same from text; `path` for messages.
 SurfaceMesh read_stl_text(const std::string& text, const std::string& path);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -11,7 +11,7 @@
 #include "core/atomic_file.h"
 #include "io/body_surfaces.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -69,4 +69,4 @@ void write_stl(const std::filesystem::path& path, const SurfaceMesh& mesh,
   write_file(path, bytes);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

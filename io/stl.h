@@ -6,7 +6,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// Of binary files, each: normal, corners, two bytes more.
 inline constexpr std::size_t kStlFacetBytes = 50;
@@ -22,4 +22,4 @@ struct StlOptions {
 void write_stl(const std::filesystem::path& path, const SurfaceMesh& mesh,
                const StlOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::io

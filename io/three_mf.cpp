@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "io/body_surfaces.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace {
 
@@ -171,4 +171,4 @@ void write_3mf(const std::filesystem::path& path, const SurfaceMesh& mesh,
   write_file(path, ThreeMfWriter(mesh, options, path).bytes());
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

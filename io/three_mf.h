@@ -8,7 +8,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "io/file_notes.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 struct ThreeMfOptions {
   FileNotes notes;                  // metadata; its unit is the file's own
@@ -24,4 +24,4 @@ struct ThreeMfOptions {
 void write_3mf(const std::filesystem::path& path, const SurfaceMesh& mesh,
                const ThreeMfOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -23,7 +23,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 namespace fs = std::filesystem;
 
@@ -323,4 +323,4 @@ void write_findings_vtp(const fs::path& path, const SurfaceMesh& mesh,
   write<vtkXMLPolyDataWriter>(path, data);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::io

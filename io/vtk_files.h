@@ -12,7 +12,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::io {
 
 /// Values on points or cells, all components of one before the next. Six
 /// components are a symmetric tensor in VTK's order: xx yy zz xy yz xz.
@@ -63,4 +63,4 @@ void write_findings_vtp(const std::filesystem::path& path,
                         const SurfaceMesh& mesh,
                         const std::vector<Finding>& findings);
 
-}  // namespace meniscus
+}  // namespace meniscus::io

@@ -8,7 +8,7 @@
 #include "mesh_tet/tet_cavity.h"
 #include "mesh_tet/tet_editor.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -392,4 +392,4 @@ ImproveReport improve_tets(TetMesh& mesh, int fixed,
   return report;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -3,7 +3,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 struct ImproveOptions {
   double below_deg = 10.0;  // elements with a smaller dihedral angle, or one
@@ -29,4 +29,4 @@ struct ImproveReport {
 ImproveReport improve_tets(TetMesh& mesh, int fixed,
                            const ImproveOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -115,4 +115,4 @@ bool determinant_above(const CornerJacobians& jacobians, double bound,
   });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -5,7 +5,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 /// Jacobian matrices at the corners. The matrix is linear in the barycentric
 /// coordinates, its determinant a cubic polynomial.
@@ -22,4 +22,4 @@ double mean_determinant(const CornerJacobians& jacobians);
 bool determinant_above(const CornerJacobians& jacobians, double bound,
                        int depth = 3);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -9,7 +9,7 @@
 #include "core/math/linear_solve.h"
 #include "mesh_tet/tet_quality.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -152,4 +152,4 @@ Points MeshMotion::transpose(const Points& node_gradient) const {
   return surface;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -6,7 +6,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 /// Harmonic motion on the reference tetrahedra: inner displacements solve
 /// K u = 0 for given surface displacements, where K is the Laplacian's
@@ -40,4 +40,4 @@ class MeshMotion {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

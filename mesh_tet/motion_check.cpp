@@ -4,7 +4,7 @@
 
 #include "mesh_tet/quadratic.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -38,4 +38,4 @@ std::optional<Failure> check_moved(const TetMesh& mesh,
   return std::nullopt;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -7,7 +7,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "mesh_tet/tet_quality.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 struct MotionBounds {
   QualityBounds corners = {.min_dihedral_deg = 0.2, .max_dihedral_deg = 179.7};
@@ -22,4 +22,4 @@ std::optional<Failure> check_moved(const TetMesh& mesh,
                                    const MotionBounds& bounds = {},
                                    TetQuality* quality = nullptr);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

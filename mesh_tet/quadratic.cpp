@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "mesh_tet/jacobian.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -264,4 +264,4 @@ double jacobian_ratio(const TetMesh& mesh, int element) {
   return low;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -6,7 +6,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 /// A curved element is kept while its Jacobian determinant stays above this
 /// part of its mean, with room for later designs; else it is straightened.
@@ -53,4 +53,4 @@ int find_inverted(const TetMesh& mesh, double least = 1e-3);
 /// determinant's mean, to within about 1 % from below. 1 for straight sides.
 double jacobian_ratio(const TetMesh& mesh, int element);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -9,7 +9,7 @@
 
 #include "core/geometry/chambers.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -92,4 +92,4 @@ SurfaceFit fit_surface(const SurfaceMesh& surface) {
   return fit;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

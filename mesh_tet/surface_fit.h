@@ -6,7 +6,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 struct SurfaceFit {
   std::vector<double> volumes;  // per body, cavities taken off [length^3]
@@ -18,4 +18,4 @@ struct SurfaceFit {
 /// `surface` must have no finding of check_surface. O(n log n).
 SurfaceFit fit_surface(const SurfaceMesh& surface);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

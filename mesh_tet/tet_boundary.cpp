@@ -10,7 +10,7 @@
 #include "core/math/union_find.h"
 #include "mesh_tet/tet_quality.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -243,4 +243,4 @@ std::string attach_surface(const SurfaceMesh& surface, TetMesh& mesh) {
   return problem;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -6,7 +6,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 /// Fills the faces of `mesh` (order 1, elements of positive volume) with the
 /// facets of `surface`, facet f as face f, with their labels and the elements
@@ -16,4 +16,4 @@ namespace meniscus {
 /// overlap, or facets that put an element into two bodies. Linear time.
 std::string attach_surface(const SurfaceMesh& surface, TetMesh& mesh);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::optional<Cavity> grow_cavity(const TetEditor& tets,
   return cavity;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -7,7 +7,7 @@
 
 #include "mesh_tet/tet_editor.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 struct Cavity {
   std::vector<int> elements;
@@ -27,4 +27,4 @@ std::optional<Cavity> grow_cavity(const TetEditor& tets,
                                   std::span<const int> seeds, const Vec3& place,
                                   double floor, std::size_t most = 40);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

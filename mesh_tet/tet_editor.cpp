@@ -7,7 +7,7 @@
 
 #include "core/geometry/edge_key.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -252,4 +252,4 @@ void TetEditor::finish() {
   mesh_.corner_count = static_cast<int>(mesh_.nodes.size());
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -10,7 +10,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "mesh_tet/tet_quality.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 /// Squared sine of the dihedral angle farthest from 90 degrees, from 0 to 8/9:
 /// small for needle angles and for angles near 180 degrees alike. Below -1 for
@@ -83,4 +83,4 @@ class TetEditor {
   std::vector<std::array<int, 3>> surface_faces_;  // sorted, corners too
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

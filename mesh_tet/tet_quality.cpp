@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -218,4 +218,4 @@ std::string place_of(const TetMesh& mesh, int element) {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

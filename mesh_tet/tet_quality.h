@@ -7,7 +7,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 /// The worst of all elements, and which they are.
 struct TetQuality {
@@ -62,4 +62,4 @@ double tet_volume(const TetCorners& x);
 /// has no area. Of the unsigned angles: look at the volume's sign first.
 std::array<double, 6> dihedral_cosines(const TetCorners& x);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

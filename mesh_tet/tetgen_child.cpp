@@ -9,7 +9,7 @@
 #include "core/find_program.h"
 #include "mesh_tet/tetgen_protocol.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -179,4 +179,4 @@ TetgenOutput run_tetgen(const TetgenInput& input, const TetgenLimits& limits) {
   return output;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

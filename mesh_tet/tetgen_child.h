@@ -8,7 +8,7 @@
 #include "core/monitor.h"
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 struct TetgenInput {
   const Points* points = nullptr;  // finite
@@ -40,4 +40,4 @@ struct TetgenOutput {
 /// Thread safe.
 TetgenOutput run_tetgen(const TetgenInput& input, const TetgenLimits& limits);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -10,7 +10,7 @@
 #include "core/timer.h"
 #include "mesh_tet/tet_quality.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -245,4 +245,4 @@ TetgenOutput split_elements(const SurfaceMesh& surface, const Frame& frame,
                      expected, limits_left(options, Timer()));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -8,7 +8,7 @@
 #include "mesh_tet/tetgen_child.h"
 #include "mesh_tet/tetrahedralize.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 /// Maps the surface to an edge of about 1 around the origin, by a power of
 /// two: TetGen's absolute constants then suit any unit of length.
@@ -46,4 +46,4 @@ TetgenOutput split_elements(const SurfaceMesh& surface, const Frame& frame,
                             const std::vector<double>& edge,
                             const TetrahedralizeOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

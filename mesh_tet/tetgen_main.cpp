@@ -18,7 +18,7 @@
 
 namespace {
 
-using namespace meniscus::tetgen;
+using namespace meniscus::mesh_tet::tetgen;
 
 constexpr std::int64_t kMostItems = 200'000'000;
 

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace meniscus::tetgen {
+namespace meniscus::mesh_tet::tetgen {
 
 inline constexpr std::uint64_t kMagic = 0x4d45'4e54'4554'0002;  // last: version
 inline constexpr std::uint64_t kEndMark = 0x454e'444d'4152'4b21;
@@ -40,4 +40,4 @@ inline constexpr int kOutOfMemory = 4;
 inline constexpr int kNotDelivered = 5;
 inline constexpr int kTetgenCode = 20;
 
-}  // namespace meniscus::tetgen
+}  // namespace meniscus::mesh_tet::tetgen

@@ -12,7 +12,7 @@
 #include "mesh_tet/tet_boundary.h"
 #include "mesh_tet/tetgen_fill.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 namespace {
 
@@ -290,4 +290,4 @@ Tetrahedralization refine_tets(const SurfaceMesh& surface, const TetMesh& mesh,
   });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -14,7 +14,7 @@
 #include "core/monitor.h"
 #include "mesh_tet/tet_quality.h"
 
-namespace meniscus {
+namespace meniscus::mesh_tet {
 
 /// Largest volume of an element over that of the regular tetrahedron of the
 /// target edge, edge^3 / (6 sqrt 2). Elements stay below the bound, on the
@@ -68,4 +68,4 @@ Tetrahedralization refine_tets(const SurfaceMesh& surface, const TetMesh& mesh,
                                const std::vector<double>& node_edge,
                                const TetrahedralizeOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::mesh_tet

@@ -6,7 +6,7 @@
 
 #include "optimize/differences.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // A step that leaves at most this part of |r| shows that the Jacobian is good:
@@ -222,4 +222,4 @@ BackendResult ceres_match(MatchEvaluator& evaluator, const VectorX& start) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -3,7 +3,7 @@
 
 #include "optimize/match_evaluator.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 struct BackendResult {
   int iterations = 0;
@@ -18,4 +18,4 @@ struct BackendResult {
 /// step reduces the residual well.
 BackendResult ceres_match(MatchEvaluator& evaluator, const VectorX& start);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -97,16 +97,28 @@ void check_input(const std::vector<Variable>& variables,
   }
 }
 
-// The plateau: where two neighbours of the sweep differ least.
-void choose_step(const std::vector<double>& steps, double range,
-                 GradientCheckRow& row) {
+double size_of(double derivative, double value, double range) {
+  return std::max(std::abs(derivative), std::abs(value) / range);
+}
+
+// The plateau: two neighbours of the sweep that agree well within the
+// tolerance, those of the smallest steps first. Truncation and kinks of the
+// function fade with the step; rounding grows, and shows as disagreement. Where
+// no two agree so well, those that differ least.
+void choose_step(double value, double range,
+                 const GradientCheckOptions& options, GradientCheckRow& row) {
+  constexpr double kWellWithin = 0.1;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k + 1 < row.differences.size(); ++k) {
-    const double gap = std::abs(row.differences[k] - row.differences[k + 1]);
+  for (std::size_t k = row.differences.size() - 1; k-- > 0;) {
+    const double fine = row.differences[k + 1];
+    const double gap = std::abs(row.differences[k] - fine);
     if (gap < least) {  // false for NaN
       least = gap;
-      row.difference = row.differences[k + 1];
-      row.step = steps[k + 1] * range;
+      row.difference = fine;
+      row.step = options.steps[k + 1] * range;
+    }
+    if (gap <= kWellWithin * options.tolerance * size_of(fine, value, range)) {
+      return;
     }
   }
 }
@@ -114,8 +126,7 @@ void choose_step(const std::vector<double>& steps, double range,
 void judge(double value, double range, double tolerance,
            GradientCheckRow& row) {
   row.error = std::abs(row.given - row.difference);
-  row.allowed =
-      tolerance * std::max(std::abs(row.given), std::abs(value) / range);
+  row.allowed = tolerance * size_of(row.given, value, range);
   row.passed = row.error <= row.allowed;  // false for NaN
 }
 
@@ -179,7 +190,7 @@ GradientCheckReport check_gradient(const std::vector<Variable>& variables,
       for (const VectorX& values : sweep_values) {
         row.differences.push_back(values[line]);
       }
-      choose_step(options.steps, range, row);
+      choose_step(sweep.centre()[line], range, options, row);
       judge(sweep.centre()[line], range, options.tolerance, row);
     }
   }
@@ -188,4 +199,4 @@ GradientCheckReport check_gradient(const std::vector<Variable>& variables,
   return report;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -9,7 +9,7 @@
 
 #include "optimize/problem.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 struct GradientCheckOptions {
   /// Steps of the sweep x (upper - lower), from large to small; at least two.
@@ -26,7 +26,8 @@ struct GradientCheckRow {
   double given = 0.0;
   /// By central differences, one per step; NaN where a neighbour failed.
   std::vector<double> differences;
-  /// The one that agrees best with its neighbour in the sweep, found without
+  /// The one of the smallest step that agrees with its neighbour in the sweep
+  /// well within the tolerance, else the one that agrees best, found without
   /// looking at `given`; NaN when fewer than two steps could be evaluated.
   double difference = std::numeric_limits<double>::quiet_NaN();
   double step = 0.0;     // of `difference` [the variable's unit]
@@ -52,4 +53,4 @@ GradientCheckReport check_gradient(const std::vector<Variable>& variables,
                                    const Eigen::MatrixXd& given,
                                    const GradientCheckOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // The neighbours to try along variable j, best first, inside the bounds.
@@ -60,4 +60,4 @@ std::optional<Eigen::MatrixXd> one_sided_differences(const EvaluatorCore& core,
   return jacobian;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

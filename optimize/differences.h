@@ -4,7 +4,7 @@
 
 #include "optimize/evaluator_core.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 struct Neighbour {
   bool halted = false;              // the search is over
@@ -21,4 +21,4 @@ std::optional<Eigen::MatrixXd> one_sided_differences(const EvaluatorCore& core,
                                                      const VectorX& values,
                                                      const AskNeighbour& ask);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 namespace {
 
@@ -20,4 +20,4 @@ namespace {
 
 }  // namespace
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // A variable this close to a bound, x range, counts as being there.
@@ -185,4 +185,4 @@ std::string EvaluatorCore::failures() const {
                      last_failure_.message);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

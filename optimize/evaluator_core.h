@@ -13,7 +13,7 @@
 #include "core/timer.h"
 #include "optimize/problem.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// Throws InvalidInput, naming it, for a variable with bounds or an initial
 /// value that cannot be, and when there is none; equal bounds pass.
@@ -143,4 +143,4 @@ auto EvaluatorCore::guarded(const Work& work) noexcept -> decltype(work()) {
   return {};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 void check_members(const std::vector<VectorX>& members) {
@@ -94,4 +94,4 @@ std::vector<std::vector<int>> family_waves(
   return waves;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

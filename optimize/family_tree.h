@@ -8,7 +8,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 struct FamilyStep {
   int member = 0;
@@ -29,4 +29,4 @@ std::vector<FamilyStep> family_tree(const std::vector<VectorX>& members);
 std::vector<std::vector<int>> family_waves(
     const std::vector<FamilyStep>& steps);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

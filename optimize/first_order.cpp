@@ -7,10 +7,10 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // A gradient entry below this x the largest one is rounding.
@@ -203,4 +203,4 @@ FirstOrderReport first_order(const FirstOrderInput& input) {
   return report;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

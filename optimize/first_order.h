@@ -4,7 +4,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// All at one point x.
 struct FirstOrderInput {
@@ -47,4 +47,4 @@ FirstOrderReport first_order(const FirstOrderInput& input);
 /// x >= 0 that minimises |A x - b|. Same input, same bits.
 VectorX nonnegative_least_squares(const Eigen::MatrixXd& A, const VectorX& b);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

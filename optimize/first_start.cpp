@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // Points tried when the initial one fails: enough to find a region that is a
@@ -62,4 +62,4 @@ std::string no_start_message(const EvaluatorCore& core) {
       name_of(core.last_failure().kind), core.last_failure().message);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

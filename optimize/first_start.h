@@ -3,7 +3,7 @@
 
 #include "optimize/evaluator_core.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// Point `index` of those tried in place of a failed initial one: 1 is the
 /// middle of the box, the others spread over it (J. H. Halton, Numer. Math. 2,
@@ -22,4 +22,4 @@ std::optional<VectorX> find_start(const EvaluatorCore& core,
 /// "no design could be evaluated: ...", with what to change.
 std::string no_start_message(const EvaluatorCore& core);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 FreeVariables::FreeVariables(const std::vector<Variable>& all)
     : values_(static_cast<Eigen::Index>(all.size())) {
@@ -66,4 +66,4 @@ std::string FreeVariables::held_message() const {
       first_held_, size() > 1 ? " and of every other" : "");
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

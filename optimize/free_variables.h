@@ -4,7 +4,7 @@
 
 #include "optimize/problem.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 class FreeVariables {
  public:
@@ -33,4 +33,4 @@ class FreeVariables {
   std::string first_held_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

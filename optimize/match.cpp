@@ -10,7 +10,7 @@
 #include "optimize/nlopt_match.h"
 #include "optimize/problem.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 constexpr const char* kCeres = "ceres";
@@ -274,4 +274,4 @@ std::vector<std::string> match_methods() {
   return names;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

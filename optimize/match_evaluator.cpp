@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 EvaluationLimits match_limits(const MatchOptions& options) {
@@ -140,4 +140,4 @@ void MatchEvaluator::account(const VectorX& x, const ResidualAnswer& answer) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

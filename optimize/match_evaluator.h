@@ -4,7 +4,7 @@
 
 #include "optimize/evaluator_core.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 class MatchEvaluator : public EvaluatorCore {
  public:
@@ -51,4 +51,4 @@ class MatchEvaluator : public EvaluatorCore {
 double cost_of(const ResidualAnswer& answer);         // |r|^2 / 2
 double worst_mismatch(const ResidualAnswer& answer);  // largest |mismatch|
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -11,7 +11,7 @@
 #include "optimize/minimize_search.h"
 #include "optimize/nlopt_minimize.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 constexpr const char* kStudy = "minimize";
@@ -176,4 +176,4 @@ MinimizeReport minimize(const MinimizeProblem& problem,
                          : minimize_all(problem, options);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -10,7 +10,7 @@
 #include "optimize/first_order.h"
 #include "optimize/problem.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// lower <= response <= upper; equal bounds make it an equation.
 struct ResponseBounds {
@@ -125,4 +125,4 @@ std::string precision_note(const MinimizeProblem& problem,
                            double optimality_tolerance,
                            const VectorX& value_error);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

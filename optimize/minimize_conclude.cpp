@@ -8,7 +8,7 @@
 #include "optimize/first_start.h"
 #include "optimize/nlopt_minimize.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // So many missed constraints are named.
@@ -286,4 +286,4 @@ std::string precision_note(const MinimizeProblem& problem,
   return note.empty() ? "" : note + ". Shorten the edges to trust more digits";
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

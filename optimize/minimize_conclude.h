@@ -3,11 +3,11 @@
 
 #include "optimize/minimize_search.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// Fills everything of the report; `constant`: probes found the objective to
 /// be the same everywhere.
 MinimizeReport conclude(MinimizeEvaluator& evaluator,
                         const SearchResult& search, bool constant);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

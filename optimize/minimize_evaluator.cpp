@@ -7,7 +7,7 @@
 
 #include "optimize/differences.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // An objective that had the same bits at this many feasible points, and two
@@ -308,4 +308,4 @@ FirstOrderReport MinimizeEvaluator::conditions(const VectorX& x,
   return first_order(input);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -5,7 +5,7 @@
 #include "optimize/evaluator_core.h"
 #include "optimize/minimize.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// One side of a constraint: sign (value[row] - bound) / scale <= 0, or = 0.
 struct ConstraintSide {
@@ -101,4 +101,4 @@ class MinimizeEvaluator : public EvaluatorCore {
   bool scaled_ = false;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -6,7 +6,7 @@
 
 #include "optimize/nlopt_minimize.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // Part of the evaluations that a global method may spend before its best point
@@ -357,4 +357,4 @@ SearchResult search(MinimizeEvaluator& evaluator, const VectorX& start,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -4,7 +4,7 @@
 
 #include "optimize/minimize_evaluator.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 struct SearchResult {
   int iterations = 0;
@@ -20,4 +20,4 @@ struct SearchResult {
 SearchResult search(MinimizeEvaluator& evaluator, const VectorX& start,
                     const std::string& method);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

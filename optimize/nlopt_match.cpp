@@ -8,7 +8,7 @@
 #include "optimize/nlopt_minimize.h"
 #include "optimize/nlopt_vector.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // A first step of a tenth of the range sees past rounding and stays well
@@ -121,4 +121,4 @@ BackendResult nlopt_match(MatchEvaluator& evaluator, const VectorX& start,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -3,7 +3,7 @@
 
 #include "optimize/ceres_match.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// The names of the methods, as a case file writes them, by alphabet; those of
 /// nlopt_traits() that serve a match.
@@ -15,4 +15,4 @@ const std::vector<std::string>& nlopt_match_methods();
 BackendResult nlopt_match(MatchEvaluator& evaluator, const VectorX& start,
                           const std::string& method);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

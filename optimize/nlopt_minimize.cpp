@@ -9,7 +9,7 @@
 
 #include "optimize/nlopt_vector.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // With derivatives the first-order residual ends a search; below these, x
@@ -377,4 +377,4 @@ NloptResult run_nlopt(MinimizeEvaluator& evaluator, const NloptTraits& traits,
   return Run(evaluator, traits, task).go();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -3,7 +3,7 @@
 
 #include "optimize/minimize_evaluator.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// Who keeps the constraints.
 enum class ConstraintStyle {
@@ -64,4 +64,4 @@ NloptResult run_nlopt(MinimizeEvaluator& evaluator, const NloptTraits& traits,
 /// True for a side that no one-sided view serves and the method does not keep.
 bool in_lagrangian(const NloptTraits& traits, const ConstraintSide& side);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

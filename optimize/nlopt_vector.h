@@ -5,10 +5,10 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 inline std::vector<double> to_vector(const VectorX& x) {
   return {x.data(), x.data() + x.size()};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

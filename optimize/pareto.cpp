@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 // a is at least as good everywhere, and better somewhere or earlier.
@@ -92,4 +92,4 @@ MinimizeProblem exchanged(const MinimizeProblem& problem, int index) {
   return other;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

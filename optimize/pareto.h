@@ -6,7 +6,7 @@
 
 #include "optimize/minimize.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// The indices, ascending, of the points that no other point is at least as
 /// good as in every objective and better in one; all are minimised. Of equal
@@ -27,4 +27,4 @@ MinimizeProblem with_upper_bound(const MinimizeProblem& problem, int index,
 /// objective unbounded: its minimum is the other end of the front.
 MinimizeProblem exchanged(const MinimizeProblem& problem, int index);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

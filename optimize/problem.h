@@ -12,7 +12,7 @@
 #include "core/monitor.h"
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 struct Variable {
   std::string name;
@@ -120,4 +120,4 @@ MatchReport match(const std::vector<Variable>& variables,
                   const ResidualFunction& function,
                   const MatchOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

@@ -9,7 +9,7 @@
 #include <boost/random/sobol.hpp>
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 static_assert(kMostSobolDimensions ==
               boost::random::default_sobol_table::max_dimension);
@@ -218,4 +218,4 @@ double normal_quantile(double p) {
   return q < 0.0 ? -tail : tail;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

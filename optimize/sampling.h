@@ -7,7 +7,7 @@
 
 #include "optimize/problem.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 
 /// Each point is a VectorX of the dimension's length, entries in [0, 1].
 using Samples = std::vector<VectorX>;
@@ -39,4 +39,4 @@ std::vector<VectorX> designs_of(const std::vector<Variable>& variables,
 /// relative (M. J. Wichura, Applied Statistics 37, 1988, algorithm AS 241).
 double normal_quantile(double p);
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

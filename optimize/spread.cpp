@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "optimize/sampling.h"
 
-namespace meniscus {
+namespace meniscus::optimize {
 namespace {
 
 constexpr double kInside = 0x1p-33;
@@ -105,4 +105,4 @@ SampledSpread sampled_spread(const std::vector<VectorX>& values) {
   return spread;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::optimize

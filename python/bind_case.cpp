@@ -12,11 +12,11 @@ namespace meniscus::python {
 
 namespace {
 
-ReadCase checked(CaseReading reading) {
+ReadCase checked(reader::CaseReading reading) {
   if (!reading.input) {
     throw InvalidInput(fmt::format("{}", fmt::join(reading.problems, "\n")));
   }
-  return {std::make_shared<const Case>(std::move(*reading.input)),
+  return {std::make_shared<const case_data::Case>(std::move(*reading.input)),
           std::move(reading.warnings)};
 }
 
@@ -26,17 +26,19 @@ struct ResponseInfo {
   bool has_gradient = false;
 };
 
-std::vector<ResponseInfo> responses_of(const Case& input) {
+std::vector<ResponseInfo> responses_of(const case_data::Case& input) {
   std::vector<ResponseInfo> all;
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const auto index = static_cast<int>(k);
-    all.push_back({input.responses[k].name, response_unit(input, index),
-                   has_derivatives(input, index)});
+    all.push_back({input.responses[k].name,
+                   case_data::response_unit(input, index),
+                   case_data::has_derivatives(input, index)});
   }
   return all;
 }
 
-py::array bounds_of(const Case& input, double DesignVariable::*end) {
+py::array bounds_of(const case_data::Case& input,
+                    double case_data::DesignVariable::*end) {
   py::array_t<double> values(static_cast<py::ssize_t>(input.design.size()));
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     values.mutable_at(static_cast<py::ssize_t>(k)) = input.design[k].*end;
@@ -45,14 +47,16 @@ py::array bounds_of(const Case& input, double DesignVariable::*end) {
 }
 
 void bind_entries(py::module_& module) {
-  py::class_<DesignVariable>(module, "DesignVariable",
-                             "A number of the case that a study may move.")
-      .def_readonly("name", &DesignVariable::name, "Its name.")
-      .def_readonly("initial", &DesignVariable::initial,
+  py::class_<case_data::DesignVariable>(
+      module, "DesignVariable", "A number of the case that a study may move.")
+      .def_readonly("name", &case_data::DesignVariable::name, "Its name.")
+      .def_readonly("initial", &case_data::DesignVariable::initial,
                     "Where models are frozen, in the case's units.")
-      .def_readonly("lower", &DesignVariable::lower, "Its lower bound.")
-      .def_readonly("upper", &DesignVariable::upper, "Its upper bound.")
-      .def("__repr__", [](const DesignVariable& self) {
+      .def_readonly("lower", &case_data::DesignVariable::lower,
+                    "Its lower bound.")
+      .def_readonly("upper", &case_data::DesignVariable::upper,
+                    "Its upper bound.")
+      .def("__repr__", [](const case_data::DesignVariable& self) {
         return fmt::format(
             "<meniscus.DesignVariable {} = {:g} in [{:g}, {:g}]>", self.name,
             self.initial, self.lower, self.upper);
@@ -109,7 +113,8 @@ void bind_names(py::class_<ReadCase>& type) {
           "members",
           [](const ReadCase& self) {
             std::vector<std::string> names;
-            for (const MemberEntry& member : self.input->study.members) {
+            for (const case_data::MemberEntry& member :
+                 self.input->study.members) {
               names.push_back(member.name);
             }
             return names;
@@ -119,7 +124,8 @@ void bind_names(py::class_<ReadCase>& type) {
           "load_cases",
           [](const ReadCase& self) {
             std::vector<std::string> names;
-            for (const LoadCaseEntry& load_case : self.input->load_cases) {
+            for (const case_data::LoadCaseEntry& load_case :
+                 self.input->load_cases) {
               names.push_back(load_case.name);
             }
             return names;
@@ -134,19 +140,19 @@ void bind_case_numbers(py::class_<ReadCase>& type) {
       .def_property_readonly(
           "initial_design",
           [](const ReadCase& self) {
-            return bounds_of(*self.input, &DesignVariable::initial);
+            return bounds_of(*self.input, &case_data::DesignVariable::initial);
           },
           "Initial values, float64 of shape (design variables,); a new array.")
       .def_property_readonly(
           "lower_bounds",
           [](const ReadCase& self) {
-            return bounds_of(*self.input, &DesignVariable::lower);
+            return bounds_of(*self.input, &case_data::DesignVariable::lower);
           },
           "Lower bounds, float64 of shape (design variables,); a new array.")
       .def_property_readonly(
           "upper_bounds",
           [](const ReadCase& self) {
-            return bounds_of(*self.input, &DesignVariable::upper);
+            return bounds_of(*self.input, &case_data::DesignVariable::upper);
           },
           "Upper bounds, float64 of shape (design variables,); a new array.")
       .def_property_readonly(
@@ -158,7 +164,7 @@ void bind_case_numbers(py::class_<ReadCase>& type) {
           "parameters",
           [](const ReadCase& self, const py::object& design) {
             py::dict values;
-            for (const auto& [name, value] : parameter_values(
+            for (const auto& [name, value] : case_data::parameter_values(
                      *self.input, to_design(*self.input, design))) {
               values[py::str(name)] = value;
             }
@@ -185,14 +191,14 @@ void bind_case(py::module_& module) {
   module.def(
       "_read_case_file",
       [](const std::string& path, const std::vector<std::string>& overrides) {
-        return checked(read_case_file(path, overrides));
+        return checked(reader::read_case_file(path, overrides));
       },
       py::arg("path"), py::arg("overrides"), "A case from its file.");
   module.def(
       "_read_case_text",
       [](const std::string& text, const std::string& path,
          const std::vector<std::string>& overrides) {
-        return checked(read_case_text(text, path, overrides));
+        return checked(reader::read_case_text(text, path, overrides));
       },
       py::arg("text"), py::arg("path"), py::arg("overrides"),
       "A case from text; `path` for messages and files beside it.");

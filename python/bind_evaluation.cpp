@@ -20,7 +20,7 @@ double response_of(const EvaluationStage& self, const std::string& name) {
 }
 
 py::dict seconds_of(const EvaluationStage& self) {
-  const StageSeconds& seconds = self.work->staged().evaluation.seconds;
+  const forward::StageSeconds& seconds = self.work->staged().evaluation.seconds;
   py::dict out;
   out["film"] = seconds.film;
   out["mesh"] = seconds.mesh;
@@ -28,7 +28,8 @@ py::dict seconds_of(const EvaluationStage& self) {
   return out;
 }
 
-std::vector<int> wanted_of(const Case& input, const py::object& names) {
+std::vector<int> wanted_of(const case_data::Case& input,
+                           const py::object& names) {
   std::vector<int> wanted;
   if (names.is_none()) {
     for (std::size_t k = 0; k < input.responses.size(); ++k) {
@@ -42,7 +43,7 @@ std::vector<int> wanted_of(const Case& input, const py::object& names) {
     }
   }
   for (const int k : wanted) {
-    if (!has_derivatives(input, k)) {
+    if (!case_data::has_derivatives(input, k)) {
       throw InvalidInput(fmt::format(
           "response '{}' has no derivatives (a peak of nodal stress, or made "
           "of one); ask for the gradients of others by name, or use the "
@@ -62,7 +63,7 @@ py::array gradient_of(const EvaluationStage& self, const py::object& names) {
         "this design was evaluated without its stiffness; evaluate it with "
         "keep='all' for gradients");
   }
-  DesignGradient gradient;
+  forward::DesignGradient gradient;
   Call().run([&] { gradient = work.gradient(wanted); });
   refuse_failed(gradient.failure);
   const Eigen::MatrixXd& jacobian = gradient.jacobian;
@@ -119,7 +120,7 @@ void bind_evaluation_numbers(py::class_<EvaluationStage>& type) {
       .def_property_readonly(
           "names",
           [](const EvaluationStage& self) {
-            return response_names(self.work->input());
+            return case_data::response_names(self.work->input());
           },
           "Names of the responses, in order.")
       .def("__getitem__", &response_of, py::arg("name"),
@@ -159,7 +160,7 @@ void bind_evaluation(py::module_& module) {
         }
         std::string text = "<meniscus.Evaluation";
         const std::vector<std::string> names =
-            response_names(self.work->input());
+            case_data::response_names(self.work->input());
         for (std::size_t k = 0; k < names.size(); ++k) {
           text +=
               fmt::format("{} {} = {:.6g}", k == 0 ? "" : ",", names[k],

@@ -21,9 +21,10 @@ const SurfaceMesh& film_of(const FilmStage& self) {
       [&]() -> const SurfaceMesh& { return self.work->fine_film(); });
 }
 
-py::dict volumes_of(const FilmReport& report, double BodyState::*number) {
+py::dict volumes_of(const settle::FilmReport& report,
+                    double settle::BodyState::*number) {
   py::dict values;
-  for (const BodyState& body : report.bodies) {
+  for (const settle::BodyState& body : report.bodies) {
     values[py::str(body.name)] = body.*number;
   }
   return values;
@@ -79,7 +80,7 @@ void bind_film_arrays(py::class_<FilmStage>& type) {
 }
 
 template <class Number>
-auto film_figure(Number FilmReport::*number) {
+auto film_figure(Number settle::FilmReport::*number) {
   return [number](const FilmStage& self) {
     return self.work->staged().evaluation.film.*number;
   };
@@ -93,47 +94,50 @@ void bind_film(py::module_& module) {
                              "none; its figures are there in both cases.");
   bind_failure<FilmStage, Stage::Film>(type);
   bind_film_arrays(type);
-  type.def_property_readonly("verdict", film_figure(&FilmReport::verdict),
+  type.def_property_readonly("verdict",
+                             film_figure(&settle::FilmReport::verdict),
                              "'stable', 'unstable: ...' or 'pinching: ...'.")
-      .def_property_readonly("residual", film_figure(&FilmReport::residual),
+      .def_property_readonly("residual",
+                             film_figure(&settle::FilmReport::residual),
                              "Largest out-of-balance force at a free vertex "
                              "[force].")
       .def_property_readonly("residual_bound",
-                             film_figure(&FilmReport::residual_bound),
+                             film_figure(&settle::FilmReport::residual_bound),
                              "What the residual is held below [force].")
       .def_property_readonly(
-          "min_eigenvalue", film_figure(&FilmReport::min_eigenvalue),
+          "min_eigenvalue", film_figure(&settle::FilmReport::min_eigenvalue),
           "Smallest eigenvalue of the constrained Hessian in the metric of "
           "vertex areas [force/length^3]; above 0: stable.")
-      .def_property_readonly("index", film_figure(&FilmReport::index),
+      .def_property_readonly("index", film_figure(&settle::FilmReport::index),
                              "Number of negative eigenvalues.")
-      .def_property_readonly("iterations", film_figure(&FilmReport::iterations),
+      .def_property_readonly("iterations",
+                             film_figure(&settle::FilmReport::iterations),
                              "Of Newton's method.")
-      .def_property_readonly("energy", film_figure(&FilmReport::energy),
+      .def_property_readonly("energy", film_figure(&settle::FilmReport::energy),
                              "Tension times area, and fields [force length].")
-      .def_property_readonly("area", film_figure(&FilmReport::area),
+      .def_property_readonly("area", film_figure(&settle::FilmReport::area),
                              "Of films, caps not counted [length^2].")
       .def_property_readonly(
-          "smallest_neck", film_figure(&FilmReport::smallest_neck),
+          "smallest_neck", film_figure(&settle::FilmReport::smallest_neck),
           "Shortest way through the inside from film to film [length]; 0: "
           "none.")
       .def_property_readonly(
           "volumes",
           [](const FilmStage& self) {
             return volumes_of(self.work->staged().evaluation.film,
-                              &BodyState::volume);
+                              &settle::BodyState::volume);
           },
           "Volume of each body by name [length^3].")
       .def_property_readonly(
           "pressures",
           [](const FilmStage& self) {
             return volumes_of(self.work->staged().evaluation.film,
-                              &BodyState::pressure);
+                              &settle::BodyState::pressure);
           },
           "Pressure of each body by name, inside minus outside "
           "[force/length^2].")
       .def("__repr__", [](const FilmStage& self) {
-        const FilmReport& film = self.work->staged().evaluation.film;
+        const settle::FilmReport& film = self.work->staged().evaluation.film;
         return fmt::format("<meniscus.Film {}, {} facets>", film.verdict,
                            film.facets);
       });

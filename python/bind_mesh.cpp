@@ -88,7 +88,7 @@ void bind_mesh(py::module_& module) {
           "Displacements under all load cases (Solution). Raises DesignFailed "
           "where there is no mesh.")
       .def("__repr__", [](const MeshStage& self) {
-        const TetFigures& tet = self.work->staged().evaluation.tet;
+        const forward::TetFigures& tet = self.work->staged().evaluation.tet;
         return fmt::format("<meniscus.Mesh {} nodes, {} elements>", tet.nodes,
                            tet.elements);
       });

@@ -41,7 +41,8 @@ Kind freeze(const ReadCase& input, double edge_factor,
 template <class Kind>
 FilmStage settle(const Kind& self, const py::object& design) {
   const auto work = std::make_shared<DesignWork>(
-      self.frozen, to_design(*self.frozen->input, design), KeepStiffness::Yes);
+      self.frozen, to_design(*self.frozen->input, design),
+      forward::KeepStiffness::Yes);
   Call().run([&] { work->advance(Stage::Film); });
   return {work};
 }
@@ -55,7 +56,7 @@ EvaluationStage evaluate_design(const WholeModel& self,
   }
   const auto work = std::make_shared<DesignWork>(
       self.frozen, to_design(*self.frozen->input, design),
-      keep == "all" ? KeepStiffness::Yes : KeepStiffness::No);
+      keep == "all" ? forward::KeepStiffness::Yes : forward::KeepStiffness::No);
   Call().run([&] {
     work->advance(Stage::Responses);
     if (keep == "responses") {

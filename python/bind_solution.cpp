@@ -9,13 +9,14 @@ namespace meniscus::python {
 
 namespace {
 
-const ElasticSolution& solution_of(const SolutionStage& self) {
+const equations::ElasticSolution& solution_of(const SolutionStage& self) {
   self.work->require(Stage::Solution);
   return self.work->staged().fields.solution;
 }
 
-py::array nodal_vectors(const py::object& self, const py::object& load_case,
-                        std::vector<VectorX> ElasticSolution::*vectors) {
+py::array nodal_vectors(
+    const py::object& self, const py::object& load_case,
+    std::vector<VectorX> equations::ElasticSolution::*vectors) {
   const auto& stage = self.cast<const SolutionStage&>();
   const int index = to_load_case(stage.work->input(), load_case);
   return view((solution_of(stage).*vectors)[static_cast<std::size_t>(index)], 3,
@@ -23,7 +24,7 @@ py::array nodal_vectors(const py::object& self, const py::object& load_case,
 }
 
 template <class Number>
-auto solution_figure(Number ElasticReport::*number) {
+auto solution_figure(Number equations::ElasticReport::*number) {
   return [number](const SolutionStage& self) {
     return self.work->staged().evaluation.fea.*number;
   };
@@ -41,7 +42,7 @@ void bind_solution_fields(py::class_<SolutionStage>& type) {
           "displacement",
           [](const py::object& self, const py::object& load_case) {
             return nodal_vectors(self, load_case,
-                                 &ElasticSolution::displacements);
+                                 &equations::ElasticSolution::displacements);
           },
           py::arg("load_case") = py::none(),
           "Displacement of each node under a load case (the first), float64 "
@@ -49,7 +50,8 @@ void bind_solution_fields(py::class_<SolutionStage>& type) {
       .def(
           "reactions",
           [](const py::object& self, const py::object& load_case) {
-            return nodal_vectors(self, load_case, &ElasticSolution::reactions);
+            return nodal_vectors(self, load_case,
+                                 &equations::ElasticSolution::reactions);
           },
           py::arg("load_case") = py::none(),
           "Forces of the supports on each node under a load case (the first), "
@@ -118,25 +120,29 @@ void bind_solution(py::module_& module) {
                                  "cases, and what follows from them.");
   bind_failure<SolutionStage, Stage::Solution>(type);
   bind_solution_fields(type);
-  type.def_property_readonly("dofs", solution_figure(&ElasticReport::dofs),
+  type.def_property_readonly("dofs",
+                             solution_figure(&equations::ElasticReport::dofs),
                              "Free unknowns of the first load case.")
-      .def_property_readonly("solver", solution_figure(&ElasticReport::solver),
+      .def_property_readonly("solver",
+                             solution_figure(&equations::ElasticReport::solver),
                              "'p-multigrid', 'cholmod' or 'petsc'.")
-      .def_property_readonly("iterations",
-                             solution_figure(&ElasticReport::iterations),
-                             "Of the last load case.")
-      .def_property_readonly("residual",
-                             solution_figure(&ElasticReport::residual),
-                             "Relative, the largest over load cases.")
-      .def_property_readonly("strain_energy",
-                             solution_figure(&ElasticReport::strain_energy),
-                             "Of the first load case [force length].")
+      .def_property_readonly(
+          "iterations", solution_figure(&equations::ElasticReport::iterations),
+          "Of the last load case.")
+      .def_property_readonly(
+          "residual", solution_figure(&equations::ElasticReport::residual),
+          "Relative, the largest over load cases.")
+      .def_property_readonly(
+          "strain_energy",
+          solution_figure(&equations::ElasticReport::strain_energy),
+          "Of the first load case [force length].")
       .def_property_readonly(
           "reaction_imbalance",
-          solution_figure(&ElasticReport::reaction_imbalance),
+          solution_figure(&equations::ElasticReport::reaction_imbalance),
           "|reactions + loads| / |loads|.")
       .def("__repr__", [](const SolutionStage& self) {
-        const ElasticReport& fea = self.work->staged().evaluation.fea;
+        const equations::ElasticReport& fea =
+            self.work->staged().evaluation.fea;
         return fmt::format("<meniscus.Solution {} unknowns, {}>", fea.dofs,
                            fea.solver);
       });

@@ -19,22 +19,22 @@ namespace {
 
 /// The evaluations of a study, from its database.
 struct StudyTable {
-  StudyMeta meta;
-  std::vector<EvaluationRecord> records;
+  store::StudyMeta meta;
+  std::vector<store::EvaluationRecord> records;
   std::vector<std::string> design_names, response_names;
   std::vector<double> designs, responses;  // by row; NaN: failed
   std::vector<double> answer;
-  Case input;
+  case_data::Case input;
 };
 
 StudyTable read_table(const std::string& folder) {
-  const StudyStore store = StudyStore::read(folder);
+  const store::StudyStore store = store::StudyStore::read(folder);
   StudyTable table{.meta = store.meta(), .records = store.all()};
-  table.input = restore_case(table.meta);
-  table.design_names = design_names(table.input);
-  table.response_names = response_names(table.input);
+  table.input = store::restore_case(table.meta);
+  table.design_names = case_data::design_names(table.input);
+  table.response_names = case_data::response_names(table.input);
   const auto nothing = std::numeric_limits<double>::quiet_NaN();
-  for (const EvaluationRecord& record : table.records) {
+  for (const store::EvaluationRecord& record : table.records) {
     table.designs.insert(table.designs.end(), record.inputs.begin(),
                          record.inputs.end());
     for (std::size_t k = 0; k < table.response_names.size(); ++k) {
@@ -43,13 +43,14 @@ StudyTable read_table(const std::string& folder) {
           at < record.responses.size() ? record.responses[at] : nothing);
     }
   }
-  const bool some =
-      std::any_of(table.records.begin(), table.records.end(),
-                  [](const EvaluationRecord& record) {
-                    return !record.failure && record.model == kStudyModel;
-                  });
+  const bool some = std::any_of(table.records.begin(), table.records.end(),
+                                [](const store::EvaluationRecord& record) {
+                                  return !record.failure &&
+                                         record.model == store::kStudyModel;
+                                });
   if (some) {
-    const VectorX answer = answer_of_run(table.input, table.records, folder);
+    const VectorX answer =
+        store::answer_of_run(table.input, table.records, folder);
     table.answer.assign(answer.begin(), answer.end());
   }
   return table;
@@ -68,7 +69,7 @@ template <class Value, class Get>
 std::vector<Value> column(const StudyTable& table, const Get& get) {
   std::vector<Value> values;
   values.reserve(table.records.size());
-  for (const EvaluationRecord& record : table.records) {
+  for (const store::EvaluationRecord& record : table.records) {
     values.push_back(get(record));
   }
   return values;
@@ -95,14 +96,17 @@ void bind_columns(py::class_<StudyTable>& type) {
           "failures",
           [](const StudyTable& self) {
             return column<std::optional<Failure>>(
-                self, [](const EvaluationRecord& r) { return r.failure; });
+                self,
+                [](const store::EvaluationRecord& r) { return r.failure; });
           },
           "Per evaluation why it failed (Failure), or None.")
       .def_property_readonly(
           "phases",
           [](const StudyTable& self) {
-            return column<std::string>(
-                self, [](const EvaluationRecord& r) { return purpose_of(r); });
+            return column<std::string>(self,
+                                       [](const store::EvaluationRecord& r) {
+                                         return store::purpose_of(r);
+                                       });
           },
           "Per evaluation what it was for: 'start', 'step', 'difference', ...")
       .def_readonly("design_names", &StudyTable::design_names,
@@ -115,9 +119,10 @@ void bind_columns(py::class_<StudyTable>& type) {
 }
 
 /// What ended it early passes on, once the folder's result.json tells of it.
-void run_into_folder(const Case& input, const FolderRunOptions& options,
+void run_into_folder(const case_data::Case& input,
+                     const output::FolderRunOptions& options,
                      Monitor& monitor) {
-  const FolderRunListener listener{
+  const output::FolderRunListener listener{
       .monitor = &monitor,
       .page_warning =
           [&](const std::string& warning) {
@@ -125,25 +130,27 @@ void run_into_folder(const Case& input, const FolderRunOptions& options,
           },
       .stop_reason = [] { return std::string("stopped on request"); }};
   if (input.study.members.empty()) {
-    const FolderRunResult end = FolderRun(input, options).run(listener);
+    const output::FolderRunResult end =
+        output::FolderRun(input, options).run(listener);
     if (end.error) {
       std::rethrow_exception(end.error);
     }
     return;
   }
-  prepare_run_folder(input, options.folder);
-  const FamilyResult result = run_family_into_folder(input, options, listener);
-  if (result.status == RunStatus::Interrupted) {
+  output::prepare_run_folder(input, options.folder);
+  const results::FamilyResult result =
+      output::run_family_into_folder(input, options, listener);
+  if (result.status == study::RunStatus::Interrupted) {
     throw Interrupted(result.message);
   }
-  write_family_pages(result, options, listener);
+  output::write_family_pages(result, options, listener);
 }
 
-void run_study_in(const ReadCase& input, FolderRunOptions options,
+void run_study_in(const ReadCase& input, output::FolderRunOptions options,
                   const py::object& progress) {
-  if (options.jobs < 1 || options.jobs > kMostJobs) {
+  if (options.jobs < 1 || options.jobs > study::kMostJobs) {
     throw InvalidInput(fmt::format("jobs: found {}, expected 1 to {}",
-                                   options.jobs, kMostJobs));
+                                   options.jobs, study::kMostJobs));
   }
   if (!std::isfinite(options.time_limit) || options.time_limit < 0.0) {
     throw InvalidInput(
@@ -173,7 +180,8 @@ void bind_study(py::module_& module) {
   table.def_property_readonly(
       "_case",
       [](const StudyTable& self) {
-        return ReadCase{std::make_shared<const Case>(self.input), {}};
+        return ReadCase{std::make_shared<const case_data::Case>(self.input),
+                        {}};
       },
       "The case as the study keeps it.");
   module.def("_read_study", &read_table, py::arg("folder"),

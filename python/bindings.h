@@ -21,7 +21,7 @@ struct SolutionStage {
 struct StressStage {
   std::shared_ptr<DesignWork> work;
   int load_case = 0;
-  const StressField* field = nullptr;  // in `work`
+  const stress::StressField* field = nullptr;  // in `work`
 };
 struct EvaluationStage {
   std::shared_ptr<DesignWork> work;

@@ -14,9 +14,9 @@ namespace meniscus::python {
 
 namespace {
 
-VectorX from_mapping(const Case& input, const py::dict& values) {
-  VectorX design = initial_design(input);
-  const std::vector<std::string> names = design_names(input);
+VectorX from_mapping(const case_data::Case& input, const py::dict& values) {
+  VectorX design = case_data::initial_design(input);
+  const std::vector<std::string> names = case_data::design_names(input);
   for (const auto& [key, value] : values) {
     design[position_of(py::str(key).cast<std::string>(), names,
                        "design variable")] = value.cast<double>();
@@ -24,7 +24,7 @@ VectorX from_mapping(const Case& input, const py::dict& values) {
   return design;
 }
 
-VectorX from_numbers(const Case& input, const py::object& values) {
+VectorX from_numbers(const case_data::Case& input, const py::object& values) {
   using Numbers =
       py::array_t<double, py::array::c_style | py::array::forcecast>;
   const Numbers numbers = Numbers::ensure(values);
@@ -38,7 +38,7 @@ VectorX from_numbers(const Case& input, const py::object& values) {
     throw InvalidInput(
         fmt::format("design: found an array of shape {}, expected ({},): {}",
                     py::repr(numbers.attr("shape")).cast<std::string>(), wanted,
-                    fmt::join(design_names(input), ", ")));
+                    fmt::join(case_data::design_names(input), ", ")));
   }
   return Eigen::Map<const VectorX>(numbers.data(), wanted);
 }
@@ -58,9 +58,9 @@ int position_of(const std::string& found, const std::vector<std::string>& names,
   return static_cast<int>(at - names.begin());
 }
 
-VectorX to_design(const Case& input, const py::object& design) {
+VectorX to_design(const case_data::Case& input, const py::object& design) {
   if (design.is_none()) {
-    return initial_design(input);
+    return case_data::initial_design(input);
   }
   const VectorX values = py::isinstance<py::dict>(design)
                              ? from_mapping(input, design)
@@ -75,17 +75,17 @@ VectorX to_design(const Case& input, const py::object& design) {
   return values;
 }
 
-int to_response(const Case& input, const std::string& name) {
-  return position_of(name, response_names(input), "response");
+int to_response(const case_data::Case& input, const std::string& name) {
+  return position_of(name, case_data::response_names(input), "response");
 }
 
-int to_load_case(const Case& input, const py::object& name) {
+int to_load_case(const case_data::Case& input, const py::object& name) {
   if (name.is_none()) {
     return 0;
   }
   std::vector<std::string> names;
   names.reserve(input.load_cases.size());
-  for (const LoadCaseEntry& load_case : input.load_cases) {
+  for (const case_data::LoadCaseEntry& load_case : input.load_cases) {
     names.push_back(load_case.name);
   }
   return position_of(py::str(name).cast<std::string>(), names, "load case");

@@ -14,20 +14,20 @@ namespace py = pybind11;
 
 /// A case with what its reader warned of.
 struct ReadCase {
-  std::shared_ptr<const Case> input;
+  std::shared_ptr<const case_data::Case> input;
   std::vector<std::string> warnings;
 };
 
 /// A number per design variable in their order, or a mapping of names, those
 /// left out at their initial values; None: the initial design. Throws
 /// InvalidInput for anything else and for numbers that are not finite.
-VectorX to_design(const Case& input, const py::object& design);
+VectorX to_design(const case_data::Case& input, const py::object& design);
 
 /// Position of a response. Throws InvalidInput with the nearest name.
-int to_response(const Case& input, const std::string& name);
+int to_response(const case_data::Case& input, const std::string& name);
 
 /// Position of a load case; None: the first.
-int to_load_case(const Case& input, const py::object& name);
+int to_load_case(const case_data::Case& input, const py::object& name);
 
 /// `found` among `names`; throws InvalidInput for "WHAT 'found'".
 int position_of(const std::string& found, const std::vector<std::string>& names,

@@ -25,36 +25,38 @@ const std::optional<Failure>& FrozenModel::failure() const {
   return whole ? whole->failure() : film_alone->reference().failure;
 }
 
-const FilmModel& FrozenModel::film() const {
+const frozen::FilmModel& FrozenModel::film() const {
   return whole ? whole->film() : *film_alone;
 }
 
 std::shared_ptr<const FrozenModel> freeze_whole(
-    const std::shared_ptr<const Case>& input, double edge_factor,
+    const std::shared_ptr<const case_data::Case>& input, double edge_factor,
     Monitor& monitor) {
   auto model = std::make_shared<FrozenModel>();
   model->input = input;
-  model->whole.emplace(*input, ForwardModelOptions{.edge_factor = edge_factor,
-                                                   .monitor = &monitor});
+  model->whole.emplace(*input,
+                       forward::ForwardModelOptions{.edge_factor = edge_factor,
+                                                    .monitor = &monitor});
   return model;
 }
 
 std::shared_ptr<const FrozenModel> freeze_film(
-    const std::shared_ptr<const Case>& input, double edge_factor,
+    const std::shared_ptr<const case_data::Case>& input, double edge_factor,
     Monitor& monitor) {
   auto model = std::make_shared<FrozenModel>();
   model->input = input;
-  const EvaluatedCase numbers = evaluate(*input, initial_design(*input));
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(*input, case_data::initial_design(*input));
   model->film_alone.emplace(
-      freeze_films(*input, numbers,
-                   {.edge = numbers.fea_edge * edge_factor,
-                    .refinements = input->resolution.refinements,
-                    .monitor = &monitor}));
+      case_data::freeze_films(*input, numbers,
+                              {.edge = numbers.fea_edge * edge_factor,
+                               .refinements = input->resolution.refinements,
+                               .monitor = &monitor}));
   return model;
 }
 
 DesignWork::DesignWork(std::shared_ptr<const FrozenModel> model, VectorX design,
-                       KeepStiffness keep)
+                       forward::KeepStiffness keep)
     : model_(std::move(model)), design_(std::move(design)), keep_(keep) {
   responses_ = VectorX::Constant(
       static_cast<Eigen::Index>(input().responses.size()), kNothing);
@@ -63,14 +65,14 @@ DesignWork::DesignWork(std::shared_ptr<const FrozenModel> model, VectorX design,
 }
 
 void DesignWork::settle_alone() {
-  Evaluation& result = staged_.evaluation;
+  forward::Evaluation& result = staged_.evaluation;
   try {
-    staged_.fields.inputs = evaluate(input(), design_);
+    staged_.fields.inputs = case_data::evaluate(input(), design_);
   } catch (const InvalidInput& error) {
     result.failure = Failure{FailureKind::NotANumber, error.what()};
     return;
   }
-  FilmState& film = staged_.adjoint.film;
+  settle::FilmState& film = staged_.adjoint.film;
   film = model_->film().settle(staged_.fields.inputs.film_system,
                                {.monitor = &Call::of_this_thread()});
   result.film = film.report;
@@ -86,7 +88,7 @@ bool DesignWork::run(Stage stage) {
     settle_alone();
     return !staged_.evaluation.failure;
   }
-  const DesignStages stages(*model_->whole);
+  const forward::DesignStages stages(*model_->whole);
   switch (stage) {
     case Stage::Film:
       return stages.settle(design_, staged_);
@@ -149,24 +151,24 @@ const QuadraticSurface& DesignWork::surface() {
   return *surface_;
 }
 
-const std::vector<PartStress>& DesignWork::stresses() {
+const std::vector<forward::PartStress>& DesignWork::stresses() {
   require(Stage::Solution);
   const std::lock_guard lock(mutex_);
   if (!stresses_) {
-    stresses_ = part_stresses(staged_.fields.mesh, staged_.fields.inputs,
-                              staged_.fields.solution);
+    stresses_ = forward::part_stresses(
+        staged_.fields.mesh, staged_.fields.inputs, staged_.fields.solution);
     nodal_.resize(stresses_->size());
   }
   return *stresses_;
 }
 
-const StressField& DesignWork::stress(int load_case) {
-  const PartStress& part = stresses()[load_case];
+const stress::StressField& DesignWork::stress(int load_case) {
+  const forward::PartStress& part = stresses()[load_case];
   const std::lock_guard lock(mutex_);
-  std::unique_ptr<StressField>& nodal = nodal_[load_case];
+  std::unique_ptr<stress::StressField>& nodal = nodal_[load_case];
   if (nodal == nullptr) {
-    nodal = std::make_unique<StressField>(
-        nodal_stress(staged_.fields.mesh, part.recovered));
+    nodal = std::make_unique<stress::StressField>(
+        stress::nodal_stress(staged_.fields.mesh, part.recovered));
   }
   return *nodal;
 }
@@ -177,7 +179,8 @@ void DesignWork::drop_fields() {
   staged_.adjoint = {};
 }
 
-DesignGradient DesignWork::gradient(const std::vector<int>& wanted) const {
+forward::DesignGradient DesignWork::gradient(
+    const std::vector<int>& wanted) const {
   return model_->whole->gradient(staged_.evaluation, staged_.fields,
                                  staged_.adjoint, wanted);
 }

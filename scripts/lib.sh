@@ -23,6 +23,25 @@ test_packages=(
 gallery_packages=(python3 python3-pil)
 fuzz_packages=(clang libclang-rt-14-dev)
 
+# step COMMAND...: runs it and notes its wall clock and processor time for
+# print_times().
+step_times=()
+step() {
+  local began=$SECONDS used
+  used=$(cpu_seconds)
+  "$@"
+  step_times+=("$(printf '%6d s  %6d s  %s' $((SECONDS - began)) \
+    $(($(cpu_seconds) - used)) "$(printf '%s ' "$@" | cut -c1-60)")")
+}
+# Of this shell's finished children, whole seconds.
+cpu_seconds() {
+  awk '{printf "%d", ($16 + $17) / 100}' /proc/$$/stat
+}
+print_times() {
+  say "Times: wall clock, processor, step"
+  printf '%s\n' "${step_times[@]}"
+}
+
 say() { printf '\n== %s\n' "$*"; }
 
 # need PACKAGE...: installs those that are missing, as root or with sudo.

@@ -9,7 +9,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 using Vec2 = Eigen::Vector2d;
 
@@ -105,4 +105,4 @@ struct Brep {
   std::vector<BrepFace> faces;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -2,7 +2,7 @@
 
 #include "cad/solid/film_mesh.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 std::vector<double> bulge_volumes(const SurfaceMesh& mesh,
                                   const std::vector<char>& flat) {
@@ -38,4 +38,4 @@ std::vector<double> bulge_volumes(const SurfaceMesh& mesh,
   return volumes;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -5,7 +5,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// Per label, the volume between the smooth film (cad/solid/film_mesh.h) and
 /// its flat facets, positive outside of these [length^3]; 0 for the labels that
@@ -13,4 +13,4 @@ namespace meniscus {
 std::vector<double> bulge_volumes(const SurfaceMesh& mesh,
                                   const std::vector<char>& flat);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

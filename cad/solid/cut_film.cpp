@@ -11,7 +11,7 @@
 #include "cad/solid/harmonic.h"
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -326,4 +326,4 @@ CutFilm cut_film(FilmMesh mesh, const std::vector<FilmRim>& rims) {
   return std::move(split.film);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

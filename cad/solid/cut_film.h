@@ -12,7 +12,7 @@
 #include "cad/solid/film_mesh.h"
 #include "cad/solid/rim_curve.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// One of a film's boundary loops and the curve that it lies on.
 struct FilmRim {
@@ -44,4 +44,4 @@ struct CutFilm {
 /// not see all of itself from its middle.
 CutFilm cut_film(FilmMesh mesh, const std::vector<FilmRim>& rims);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

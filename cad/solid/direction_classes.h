@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// Directions a and b of patches in classes, each direction along its class or
 /// against it.
@@ -41,4 +41,4 @@ class DirectionClasses {
   std::vector<Member> parents_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

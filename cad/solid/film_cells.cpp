@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 
 #include "cad/solid/harmonic.h"
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -234,4 +234,4 @@ SplitFilm film_cells(FilmMesh mesh, const std::vector<FilmRim>& rims) {
   return split;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

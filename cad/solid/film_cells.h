@@ -3,7 +3,7 @@
 
 #include "cad/solid/film_splitter.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 constexpr int kDiskCells = 5;
 constexpr int kClosedCells = 6;
@@ -16,4 +16,4 @@ constexpr int kClosedCells = 6;
 /// that its middle does not see all of.
 SplitFilm film_cells(FilmMesh mesh, const std::vector<FilmRim>& rims);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -9,7 +9,7 @@
 #include "cad/solid/patch_knots.h"
 #include "cad/solid/rim_side.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -382,4 +382,4 @@ FilmFaces add_faces(const FilmPiece& film, const std::vector<RimEdges>& rims,
   return FaceBuilder(film, rims, span, brep).build();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -8,7 +8,7 @@
 #include "cad/solid/fit_patch.h"
 #include "cad/solid/rim_edges.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// A film that has been cut; the solid's rims that its own rims are.
 struct FilmPiece {
@@ -36,4 +36,4 @@ FilmFaces add_faces(const FilmPiece& film, const std::vector<RimEdges>& rims,
 /// b, counter-clockwise from the bottom.
 Vec2 on_side(int side, double share);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -6,11 +6,11 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "core/geometry/edge_key.h"
 #include "core/math/dense.h"
-#include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -170,4 +170,4 @@ std::vector<std::vector<int>> boundary_loops(
   return loops;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -7,7 +7,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 struct FilmMesh {
   Points points;                 // [length]
@@ -38,4 +38,4 @@ Vec3 mixed_normal(const FilmMesh& mesh, int a, int b, double t);
 std::vector<std::vector<int>> boundary_loops(
     const std::vector<Triangle>& facets);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -11,11 +11,11 @@
 #include "cad/solid/film_faces.h"
 #include "cad/solid/measure_solid.h"
 #include "cad/solid/turned_face.h"
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "core/geometry/facet_tree.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -342,4 +342,4 @@ Brep faceted_solid(const SurfaceMesh& mesh) {
   return brep;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

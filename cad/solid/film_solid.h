@@ -9,7 +9,7 @@
 #include "cad/solid/rim_curve.h"
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 struct NamedRim {
   std::string name;
@@ -58,4 +58,4 @@ FilmSolid film_solid(const FilmSolidInput& input);
 /// Each facet a planar face, named by its label.
 Brep faceted_solid(const SurfaceMesh& mesh);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -5,11 +5,10 @@
 
 #include <Eigen/Core>
 
+#include "core/geometry/edge_key.h"
 #include "core/math/dense.h"
 
-#include "core/geometry/edge_key.h"
-
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -366,4 +365,4 @@ void split_by_level(SplitFilm& split, int cell, double level,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

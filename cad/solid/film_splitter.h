@@ -5,7 +5,7 @@
 
 #include "cad/solid/cut_film.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// What is cut, with the tube and the sector of each facet and the values of
 /// a function at its corners.
@@ -36,4 +36,4 @@ std::vector<int> split_by_greatest(SplitFilm& split,
 void split_by_level(SplitFilm& split, int cell, double level,
                     const std::vector<char>& kept);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -9,7 +9,7 @@
 #include "cad/solid/harmonic.h"
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 std::vector<int> facets_of(const SplitFilm& split, int cell) {
   std::vector<int> facets;
@@ -189,4 +189,4 @@ Tubes film_tubes(FilmMesh mesh, const std::vector<FilmRim>& rims) {
   return tubes;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

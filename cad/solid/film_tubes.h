@@ -3,7 +3,7 @@
 
 #include "cad/solid/film_splitter.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// A tube's loops: on its rim, and the other.
 struct Tube {
@@ -26,4 +26,4 @@ int count_in(const std::vector<int>& some, const std::vector<int>& all);
 /// between two rims, else one to each. Throws MeshError.
 Tubes film_tubes(FilmMesh mesh, const std::vector<FilmRim>& rims);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

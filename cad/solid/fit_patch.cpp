@@ -9,7 +9,7 @@
 #include "cad/solid/harmonic.h"
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -299,4 +299,4 @@ FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
   return fitted;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -7,7 +7,7 @@
 #include "cad/solid/cut_film.h"
 #include "cad/solid/spline.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 struct PatchSides {
   // Bottom, right, top, left, along growing a or b; opposite ones have the
@@ -38,4 +38,4 @@ FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
 /// The curve run backwards.
 SplineCurve reversed(const SplineCurve& curve);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/math/linear_solve.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -204,4 +204,4 @@ TubeCut cut_tube(const FilmMesh& mesh, const std::vector<int>& facets,
   return cut;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -8,7 +8,7 @@
 
 #include "cad/solid/film_mesh.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 struct HarmonicProblem {
   const FilmMesh& mesh;
@@ -34,4 +34,4 @@ struct TubeCut {
 TubeCut cut_tube(const FilmMesh& mesh, const std::vector<int>& facets,
                  const std::vector<int>& first, const std::vector<int>& second);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

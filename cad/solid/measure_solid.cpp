@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -154,4 +154,4 @@ void measure_film(const FilmPiece& film, const FilmFaces& faces,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -5,7 +5,7 @@
 #include "cad/solid/film_solid.h"
 #include "core/geometry/facet_tree.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// Adds a film's distances and tangent breaks to the report. `tree`: of the
 /// film's own facets in the whole mesh.
@@ -13,4 +13,4 @@ void measure_film(const FilmPiece& film, const FilmFaces& faces,
                   const Brep& brep, const FacetTree& tree, double edge,
                   FilmSolidReport& report);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -7,7 +7,7 @@
 
 #include "cad/solid/spline.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -93,4 +93,4 @@ std::vector<double> common_knots(const std::vector<SideDemand>& sides,
   return clamped_knots(inner);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -5,7 +5,7 @@
 
 #include "cad/solid/rim_edges.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// A side that the knots along it must serve.
 struct SideDemand {
@@ -21,4 +21,4 @@ struct SideDemand {
 std::vector<double> common_knots(const std::vector<SideDemand>& sides,
                                  double span);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

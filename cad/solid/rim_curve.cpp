@@ -10,7 +10,7 @@
 #include "cad/solid/spline.h"
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -212,4 +212,4 @@ RimCurve rim_through(const Points& points, double sharp) {
   return RimCurve(std::move(pieces));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

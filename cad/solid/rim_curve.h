@@ -5,7 +5,7 @@
 
 #include "cad/solid/brep.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 struct RimPiece {
   EdgeCurve curve;
@@ -54,4 +54,4 @@ Vec3 slope_of(const EdgeCurve& curve, double t);
 /// than three points.
 RimCurve rim_through(const Points& points, double sharp = 0.5);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

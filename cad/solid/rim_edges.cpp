@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -95,4 +95,4 @@ std::vector<RimEdges::Step> RimEdges::between(double from, double to,
   return steps;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

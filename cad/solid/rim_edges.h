@@ -6,7 +6,7 @@
 #include "cad/solid/brep.h"
 #include "cad/solid/rim_curve.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 class RimEdges {
  public:
@@ -50,4 +50,4 @@ class RimEdges {
   std::vector<int> edges_;  // from each place to the next
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

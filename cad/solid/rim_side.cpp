@@ -4,7 +4,7 @@
 
 #include "cad/solid/spline.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 SideDemand demand(const RimSide& side, bool backwards) {
   SideDemand result{side.rim->way(side.from, side.to, side.growing), side.rim,
@@ -38,4 +38,4 @@ SplineCurve fit_rim(const RimSide& side, const std::vector<double>& knots,
   return fit_curve(fit);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

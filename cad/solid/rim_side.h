@@ -6,7 +6,7 @@
 #include "cad/solid/patch_knots.h"
 #include "cad/solid/rim_edges.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// From one place of the rim to another.
 struct RimSide {
@@ -23,4 +23,4 @@ SideDemand demand(const RimSide& side, bool backwards);
 SplineCurve fit_rim(const RimSide& side, const std::vector<double>& knots,
                     const Brep& brep);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -10,7 +10,7 @@
 
 #include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -296,4 +296,4 @@ std::string name_of(const SimpleFilm& film) {
   return "plane";
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

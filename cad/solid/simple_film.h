@@ -10,7 +10,7 @@
 #include "cad/solid/brep.h"
 #include "cad/solid/cut_film.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// A closed film has no rim, then the sphere's poles are its ends.
 struct SimpleFilm {
@@ -36,4 +36,4 @@ std::optional<SimpleFilm> simple_film(const FilmMesh& mesh,
 /// "plane", "cylinder of radius 12", "sphere of radius 30".
 std::string name_of(const SimpleFilm& film);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

@@ -6,7 +6,7 @@
 
 #include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -157,4 +157,4 @@ SplineCurve fit_curve(const CurveFit& fit) {
   return curve;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

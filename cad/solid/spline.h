@@ -7,7 +7,7 @@
 
 #include "cad/solid/brep.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 /// Of the smoothing by third differences, beside 1 for each point fitted.
 inline constexpr double kThirdDifferenceWeight = 1e-7;
@@ -54,4 +54,4 @@ struct CurveFit {
 /// where points are few.
 SplineCurve fit_curve(const CurveFit& fit);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

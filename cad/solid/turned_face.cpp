@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-namespace meniscus {
+namespace meniscus::solid {
 
 namespace {
 
@@ -162,4 +162,4 @@ void measure_turned(const TurnedFilm& film, FilmSolidReport& report) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

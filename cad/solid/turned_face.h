@@ -9,7 +9,7 @@
 #include "cad/solid/rim_edges.h"
 #include "cad/solid/simple_film.h"
 
-namespace meniscus {
+namespace meniscus::solid {
 
 struct TurnedFilm {
   std::string name;
@@ -28,4 +28,4 @@ void add_turned_face(const TurnedFilm& film, const std::vector<RimEdges>& rims,
 /// Adds its distances, both ways, to the report.
 void measure_turned(const TurnedFilm& film, FilmSolidReport& report);
 
-}  // namespace meniscus
+}  // namespace meniscus::solid

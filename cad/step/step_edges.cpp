@@ -28,7 +28,7 @@
 #include "core/error.h"
 #include "core/nearest_name.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 namespace {
 
@@ -114,8 +114,9 @@ struct StepEdges::Impl {
     return file.point(p.X(), p.Y(), p.Z());
   }
   StepPiece piece(int edge) const;
-  std::optional<EllipseCurve> conic(int edge) const;
-  std::optional<EllipseCurve> whole(const std::vector<StepPiece>& pieces) const;
+  std::optional<solid::EllipseCurve> conic(int edge) const;
+  std::optional<solid::EllipseCurve> whole(
+      const std::vector<StepPiece>& pieces) const;
   std::string described(int edge) const;
   int find(const std::string& edge) const;
   int find_face(const std::string& face) const;
@@ -150,7 +151,7 @@ StepPiece StepEdges::Impl::piece(int edge) const {
 }
 
 /// The circle or ellipse that an edge lies on.
-std::optional<EllipseCurve> StepEdges::Impl::conic(int edge) const {
+std::optional<solid::EllipseCurve> StepEdges::Impl::conic(int edge) const {
   const BRepAdaptor_Curve shape = curve(edge);
   gp_Ax2 axes;
   double u = 0.0;
@@ -167,13 +168,13 @@ std::optional<EllipseCurve> StepEdges::Impl::conic(int edge) const {
   }
   const gp_Dir x = axes.XDirection();
   const gp_Dir y = axes.YDirection();
-  return EllipseCurve{to_point(axes.Location()),
-                      u * file.point(x.X(), x.Y(), x.Z()),
-                      v * file.point(y.X(), y.Y(), y.Z())};
+  return solid::EllipseCurve{to_point(axes.Location()),
+                             u * file.point(x.X(), x.Y(), x.Z()),
+                             v * file.point(y.X(), y.Y(), y.Z())};
 }
 
 /// The circle or ellipse that all pieces lie on, when they go around it once.
-std::optional<EllipseCurve> StepEdges::Impl::whole(
+std::optional<solid::EllipseCurve> StepEdges::Impl::whole(
     const std::vector<StepPiece>& pieces) const {
   auto first = conic(pieces.front().edge);
   if (!first) {
@@ -393,4 +394,4 @@ StepLoop StepEdges::rim(const std::string& face) const {
   return loop;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::step

@@ -9,7 +9,7 @@
 
 #include "cad/solid/brep.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 /// One edge of a loop, in the loop's direction.
 struct StepPiece {
@@ -26,8 +26,9 @@ struct StepPiece {
 /// A closed curve of edges; a planar face's rim runs counter-clockwise seen
 /// from outside.
 struct StepLoop {
-  std::optional<EllipseCurve> whole;  // all of it is this circle or ellipse
-  std::vector<StepPiece> pieces;      // each starts where the last one ended
+  std::optional<solid::EllipseCurve>
+      whole;                      // all of it is this circle or ellipse
+  std::vector<StepPiece> pieces;  // each starts where the last one ended
 };
 
 /// The edges of one file. Throws what open_step() throws. One at a time:
@@ -57,4 +58,4 @@ class StepEdges {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::step

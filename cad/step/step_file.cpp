@@ -10,7 +10,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 std::string StepFile::name_of(const TopoDS_Shape& part) const {
   const auto item = Handle(StepRepr_RepresentationItem)::DownCast(
@@ -38,4 +38,4 @@ void open_step(StepFile& file, const std::filesystem::path& path,
   file.shape = file.reader.OneShape();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::step

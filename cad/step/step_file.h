@@ -9,7 +9,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 /// In millimetres, whatever the file's own unit.
 struct StepFile {
@@ -30,4 +30,4 @@ struct StepFile {
 void open_step(StepFile& file, const std::filesystem::path& path,
                const std::string& unit);
 
-}  // namespace meniscus
+}  // namespace meniscus::step

@@ -17,7 +17,7 @@
 #include "cad/step/step_session.h"
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 namespace {
 
@@ -176,4 +176,4 @@ SurfaceMesh read_step_part(const std::filesystem::path& path,
   return mesh;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::step

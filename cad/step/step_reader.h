@@ -7,7 +7,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 struct ReadStepOptions {
   std::string unit = "mm";  // that lengths are wanted in: mm, m, in
@@ -25,4 +25,4 @@ struct ReadStepOptions {
 SurfaceMesh read_step_part(const std::filesystem::path& path,
                            const ReadStepOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::step

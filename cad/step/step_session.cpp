@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 StepUnit step_unit(const std::string& unit) {
   if (unit == "mm") {
@@ -31,4 +31,4 @@ StepSilence::~StepSilence() {
   Message::DefaultMessenger()->ChangePrinters() = printers_;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::step

@@ -26,7 +26,7 @@
 #include "core/error.h"
 #include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 namespace {
 
@@ -63,23 +63,24 @@ Knots to_knots(const std::vector<double>& knots) {
 
 class ShapeBuilder {
  public:
-  ShapeBuilder(const Brep& brep, double scale) : brep_(brep), scale_(scale) {}
+  ShapeBuilder(const solid::Brep& brep, double scale)
+      : brep_(brep), scale_(scale) {}
   StepShape build();
 
  private:
   void add_vertices();
   void add_edges();
   Handle(Geom_Curve)
-      curve_of(const BrepEdge& edge, double& first, double& last) const;
-  Handle(Geom_Surface) surface_of(const BrepFace& face) const;
-  void add_line(const BrepFace& face, const BrepUse& use,
+      curve_of(const solid::BrepEdge& edge, double& first, double& last) const;
+  Handle(Geom_Surface) surface_of(const solid::BrepFace& face) const;
+  void add_line(const solid::BrepFace& face, const solid::BrepUse& use,
                 const TopoDS_Face& shape);
-  TopoDS_Edge pole_edge(const BrepUse& use, int vertex,
+  TopoDS_Edge pole_edge(const solid::BrepUse& use, int vertex,
                         const TopoDS_Face& shape);
-  TopoDS_Face face_of(const BrepFace& face);
+  TopoDS_Face face_of(const solid::BrepFace& face);
   std::vector<int> shells_of_faces() const;
 
-  const Brep& brep_;
+  const solid::Brep& brep_;
   double scale_;
   BRep_Builder builder_;
   std::vector<TopoDS_Vertex> vertices_;
@@ -94,17 +95,17 @@ void ShapeBuilder::add_vertices() {
   }
 }
 
-Handle(Geom_Curve) ShapeBuilder::curve_of(const BrepEdge& edge, double& first,
-                                          double& last) const {
+Handle(Geom_Curve) ShapeBuilder::curve_of(const solid::BrepEdge& edge,
+                                          double& first, double& last) const {
   first = edge.first;
   last = edge.last;
-  if (const auto* line = std::get_if<StraightLine>(&edge.curve)) {
+  if (const auto* line = std::get_if<solid::StraightLine>(&edge.curve)) {
     first *= scale_;
     last *= scale_;
     return new Geom_Line(to_point(scale_ * line->start),
                          to_direction(line->direction));
   }
-  if (const auto* arc = std::get_if<EllipseCurve>(&edge.curve)) {
+  if (const auto* arc = std::get_if<solid::EllipseCurve>(&edge.curve)) {
     Vec3 u = scale_ * arc->u;
     Vec3 v = scale_ * arc->v;
     if (v.norm() > u.norm() * (1.0 + kRound)) {  // the long axis comes first
@@ -121,7 +122,7 @@ Handle(Geom_Curve) ShapeBuilder::curve_of(const BrepEdge& edge, double& first,
     }
     return new Geom_Ellipse(frame, u.norm(), v.norm());
   }
-  const auto& spline = std::get<SplineCurve>(edge.curve);
+  const auto& spline = std::get<solid::SplineCurve>(edge.curve);
   const int count = static_cast<int>(spline.poles.size());
   TColgp_Array1OfPnt poles(1, count);
   for (int k = 0; k < count; ++k) {
@@ -132,7 +133,7 @@ Handle(Geom_Curve) ShapeBuilder::curve_of(const BrepEdge& edge, double& first,
 }
 
 void ShapeBuilder::add_edges() {
-  for (const BrepEdge& edge : brep_.edges) {
+  for (const solid::BrepEdge& edge : brep_.edges) {
     double first = 0.0;
     double last = 1.0;
     const Handle(Geom_Curve) curve = curve_of(edge, first, last);
@@ -150,8 +151,9 @@ void ShapeBuilder::add_edges() {
   }
 }
 
-Handle(Geom_Surface) ShapeBuilder::surface_of(const BrepFace& face) const {
-  if (const auto* plane = std::get_if<PlaneSurface>(&face.surface)) {
+Handle(Geom_Surface)
+    ShapeBuilder::surface_of(const solid::BrepFace& face) const {
+  if (const auto* plane = std::get_if<solid::PlaneSurface>(&face.surface)) {
     return new Geom_Plane(to_point(scale_ * plane->point),
                           to_direction(plane->normal));
   }
@@ -159,13 +161,13 @@ Handle(Geom_Surface) ShapeBuilder::surface_of(const BrepFace& face) const {
     return gp_Ax3(to_point(scale_ * turned.center), to_direction(turned.axis),
                   to_direction(turned.zero));
   };
-  if (const auto* tube = std::get_if<CylinderSurface>(&face.surface)) {
+  if (const auto* tube = std::get_if<solid::CylinderSurface>(&face.surface)) {
     return new Geom_CylindricalSurface(frame(*tube), scale_ * tube->radius);
   }
-  if (const auto* ball = std::get_if<SphereSurface>(&face.surface)) {
+  if (const auto* ball = std::get_if<solid::SphereSurface>(&face.surface)) {
     return new Geom_SphericalSurface(frame(*ball), scale_ * ball->radius);
   }
-  const auto& spline = std::get<SplineSurface>(face.surface);
+  const auto& spline = std::get<solid::SplineSurface>(face.surface);
   const int columns = static_cast<int>(spline.knots_b.size()) - 4;
   const int rows = static_cast<int>(spline.knots_a.size()) - 4;
   TColgp_Array2OfPnt poles(1, rows, 1, columns);
@@ -183,7 +185,7 @@ Handle(Geom_Surface) ShapeBuilder::surface_of(const BrepFace& face) const {
 
 /// A straight line in the surface's parameters, run from `first` to `last`.
 /// `b_scale`: of the second parameter, where that is a length.
-Handle(Geom2d_Curve) parameter_line(const BrepUse& use, double first,
+Handle(Geom2d_Curve) parameter_line(const solid::BrepUse& use, double first,
                                     double last, double b_scale) {
   TColgp_Array1OfPnt2d poles(1, 2);
   poles.SetValue(1, gp_Pnt2d(use.at_first[0], b_scale * use.at_first[1]));
@@ -196,24 +198,26 @@ Handle(Geom2d_Curve) parameter_line(const BrepUse& use, double first,
   return new Geom2d_BSplineCurve(poles, knots, multiplicities, 1);
 }
 
-bool is_inward(const BrepFace& face) {
-  const auto* tube = std::get_if<CylinderSurface>(&face.surface);
-  const auto* ball = std::get_if<SphereSurface>(&face.surface);
+bool is_inward(const solid::BrepFace& face) {
+  const auto* tube = std::get_if<solid::CylinderSurface>(&face.surface);
+  const auto* ball = std::get_if<solid::SphereSurface>(&face.surface);
   return (tube != nullptr && tube->inward) || (ball != nullptr && ball->inward);
 }
 
 /// The use's edge with its line in the surface's parameters; of a seam, used
 /// both ways, with both.
-void ShapeBuilder::add_line(const BrepFace& face, const BrepUse& use,
+void ShapeBuilder::add_line(const solid::BrepFace& face,
+                            const solid::BrepUse& use,
                             const TopoDS_Face& shape) {
   const double b_scale =
-      std::holds_alternative<CylinderSurface>(face.surface) ? scale_ : 1.0;
+      std::holds_alternative<solid::CylinderSurface>(face.surface) ? scale_
+                                                                   : 1.0;
   double first = 0.0;
   double last = 1.0;
   curve_of(brep_.edges[use.edge], first, last);
-  const BrepUse* back = nullptr;
-  for (const std::vector<BrepUse>& loop : face.loops) {
-    for (const BrepUse& other : loop) {
+  const solid::BrepUse* back = nullptr;
+  for (const std::vector<solid::BrepUse>& loop : face.loops) {
+    for (const solid::BrepUse& other : loop) {
       if (other.edge == use.edge && other.forward != use.forward) {
         back = &other;
       }
@@ -230,7 +234,7 @@ void ShapeBuilder::add_line(const BrepFace& face, const BrepUse& use,
 }
 
 /// The edge without length at a sphere's pole.
-TopoDS_Edge ShapeBuilder::pole_edge(const BrepUse& use, int vertex,
+TopoDS_Edge ShapeBuilder::pole_edge(const solid::BrepUse& use, int vertex,
                                     const TopoDS_Face& shape) {
   TopoDS_Edge edge;
   builder_.MakeEdge(edge);
@@ -244,27 +248,28 @@ TopoDS_Edge ShapeBuilder::pole_edge(const BrepUse& use, int vertex,
   return edge;
 }
 
-TopoDS_Face ShapeBuilder::face_of(const BrepFace& face) {
+TopoDS_Face ShapeBuilder::face_of(const solid::BrepFace& face) {
   TopoDS_Face shape;
   builder_.MakeFace(shape, surface_of(face), kPrecision);
   // Wires lie about the surface's own normal; against it the whole face is
   // turned.
   const bool inward = is_inward(face);
-  for (const std::vector<BrepUse>& loop : face.loops) {
+  for (const std::vector<solid::BrepUse>& loop : face.loops) {
     TopoDS_Wire wire;
     builder_.MakeWire(wire);
     for (std::size_t k = 0; k < loop.size(); ++k) {
-      const BrepUse& use = loop[k];
-      if (use.edge == kPole) {
-        const BrepUse& before = loop[(k + loop.size() - 1) % loop.size()];
-        const BrepEdge& end = brep_.edges[before.edge];
+      const solid::BrepUse& use = loop[k];
+      if (use.edge == solid::kPole) {
+        const solid::BrepUse& before =
+            loop[(k + loop.size() - 1) % loop.size()];
+        const solid::BrepEdge& end = brep_.edges[before.edge];
         const int vertex = before.forward ? end.to : end.from;
         builder_.Add(wire,
                      pole_edge(use, vertex, shape)
                          .Oriented(inward ? TopAbs_REVERSED : TopAbs_FORWARD));
         continue;
       }
-      if (!std::holds_alternative<PlaneSurface>(face.surface)) {
+      if (!std::holds_alternative<solid::PlaneSurface>(face.surface)) {
         add_line(face, use, shape);
       }
       builder_.Add(wire, edges_[use.edge].Oriented(use.forward != inward
@@ -283,8 +288,8 @@ std::vector<int> ShapeBuilder::shells_of_faces() const {
   std::vector<std::vector<std::pair<int, bool>>> users(brep_.edges.size());
   for (std::size_t f = 0; f < brep_.faces.size(); ++f) {
     for (const auto& loop : brep_.faces[f].loops) {
-      for (const BrepUse& use : loop) {
-        if (use.edge != kPole) {
+      for (const solid::BrepUse& use : loop) {
+        if (use.edge != solid::kPole) {
           users[use.edge].emplace_back(static_cast<int>(f), use.forward);
         }
       }
@@ -308,7 +313,7 @@ StepShape ShapeBuilder::build() {
   add_vertices();
   add_edges();
   StepShape result;
-  for (const BrepFace& face : brep_.faces) {
+  for (const solid::BrepFace& face : brep_.faces) {
     result.faces.push_back(face_of(face));
   }
   for (const TopoDS_Edge& edge : edges_) {
@@ -346,8 +351,8 @@ StepShape ShapeBuilder::build() {
 
 }  // namespace
 
-StepShape step_shape(const Brep& brep, double scale) {
+StepShape step_shape(const solid::Brep& brep, double scale) {
   return ShapeBuilder(brep, scale).build();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::step

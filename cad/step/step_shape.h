@@ -8,7 +8,7 @@
 
 #include "cad/solid/brep.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 struct StepShape {
   TopoDS_Shape solid;
@@ -18,6 +18,6 @@ struct StepShape {
 
 /// Lengths are multiplied by `scale`. Throws MeshError for faces that are not
 /// closed or enclose nothing.
-StepShape step_shape(const Brep& brep, double scale);
+StepShape step_shape(const solid::Brep& brep, double scale);
 
-}  // namespace meniscus
+}  // namespace meniscus::step

@@ -32,12 +32,12 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 namespace {
 
 /// What BRepCheck_Analyzer finds first; empty for a valid shape.
-std::string fault_of(const StepShape& shape, const Brep& brep) {
+std::string fault_of(const StepShape& shape, const solid::Brep& brep) {
   const BRepCheck_Analyzer check(shape.solid);
   if (check.IsValid()) {
     return {};
@@ -98,8 +98,8 @@ std::string ascii(const std::string& text) {
 
 }  // namespace
 
-StepReport write_step(const std::filesystem::path& path, const Brep& brep,
-                      const StepOptions& options) {
+StepReport write_step(const std::filesystem::path& path,
+                      const solid::Brep& brep, const StepOptions& options) {
   const StepUnit unit = step_unit(options.unit);
   const StepSilence silence;
   const StepShape shape = step_shape(brep, unit.millimetres);
@@ -159,4 +159,4 @@ StepReport write_step(const std::filesystem::path& path, const Brep& brep,
   return report;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::step

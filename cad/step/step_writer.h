@@ -8,7 +8,7 @@
 
 #include "cad/solid/brep.h"
 
-namespace meniscus {
+namespace meniscus::step {
 
 struct StepOptions {
   std::string name;         // of the part
@@ -28,7 +28,7 @@ struct StepReport {
 /// (BRepCheck_Analyzer's first finding is in the message), InvalidInput for an
 /// unknown unit, IoError. One call at a time: OpenCASCADE's settings are the
 /// process's own.
-StepReport write_step(const std::filesystem::path& path, const Brep& brep,
-                      const StepOptions& options = {});
+StepReport write_step(const std::filesystem::path& path,
+                      const solid::Brep& brep, const StepOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::step

@@ -6,7 +6,7 @@
 
 #include "evolve/curves/curve_shape.h"
 
-namespace meniscus::curve_shape {
+namespace meniscus::curves::curve_shape {
 
 template <class Scalar>
 struct Arc {
@@ -49,4 +49,4 @@ Arc<Scalar> arc_through(const Vector<Scalar>& a, const Vector<Scalar>& m,
   return arc;
 }
 
-}  // namespace meniscus::curve_shape
+}  // namespace meniscus::curves::curve_shape

@@ -11,7 +11,7 @@
 #include "evolve/curves/curve_copy.h"
 #include "evolve/curves/spline_curve.h"
 
-namespace meniscus {
+namespace meniscus::curves {
 
 namespace {
 
@@ -177,4 +177,4 @@ Points points_at(const CurveShape& shape, const std::vector<double>& t) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::curves

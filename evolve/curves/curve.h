@@ -12,7 +12,7 @@
 #include "core/math/expression.h"
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::curves {
 
 /// All closed shapes run counter-clockwise seen from the tip of `normal`
 /// (which need not be of unit length, but not zero). Lengths in case units.
@@ -137,4 +137,4 @@ double length_of(const CurveShape& shape);
 std::vector<double> sample_parameters(const CurveShape& shape, double edge,
                                       int least = 12);
 
-}  // namespace meniscus
+}  // namespace meniscus::curves

@@ -8,7 +8,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "evolve/curves/curve_place.h"
 
-namespace meniscus {
+namespace meniscus::curves {
 
 namespace {
 
@@ -219,4 +219,4 @@ std::optional<double> lie_on_each_other(const CurveShape& a,
   return most;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::curves

@@ -5,7 +5,7 @@
 
 #include "evolve/curves/curve.h"
 
-namespace meniscus {
+namespace meniscus::curves {
 
 /// A place where a closed curve comes within `gap` x its size of itself, other
 /// than along itself: it crosses or touches itself. Judged on at least 128
@@ -28,4 +28,4 @@ std::vector<CurveMeeting> meetings_of(
 std::optional<double> lie_on_each_other(const CurveShape& a,
                                         const CurveShape& b, double gap = 1e-4);
 
-}  // namespace meniscus
+}  // namespace meniscus::curves

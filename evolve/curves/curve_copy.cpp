@@ -6,7 +6,7 @@
 #include "evolve/curves/arc_side.h"
 #include "evolve/curves/spline_curve.h"
 
-namespace meniscus::curve_shape {
+namespace meniscus::curves::curve_shape {
 
 namespace {
 
@@ -299,4 +299,4 @@ Points rates_on(const CurveCopy& copy, const CurveCopy& rate,
   return result;
 }
 
-}  // namespace meniscus::curve_shape
+}  // namespace meniscus::curves::curve_shape

@@ -3,7 +3,7 @@
 
 #include "evolve/curves/curve_shape.h"
 
-namespace meniscus::curve_shape {
+namespace meniscus::curves::curve_shape {
 
 /// A shape, and its rates as a shape of the same kind.
 struct Drift {
@@ -25,4 +25,4 @@ Points points_on(const CurveCopy& copy, const std::vector<double>& t);
 Points rates_on(const CurveCopy& copy, const CurveCopy& rate,
                 const std::vector<double>& t);
 
-}  // namespace meniscus::curve_shape
+}  // namespace meniscus::curves::curve_shape

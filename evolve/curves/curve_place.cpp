@@ -8,7 +8,7 @@
 
 #include "evolve/curves/curve_shape.h"
 
-namespace meniscus {
+namespace meniscus::curves {
 
 namespace {
 
@@ -81,4 +81,4 @@ std::vector<double> corner_parameters(const CurveShape& shape) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::curves

@@ -5,7 +5,7 @@
 
 #include "evolve/curves/curve.h"
 
-namespace meniscus {
+namespace meniscus::curves {
 
 struct CurvePlace {
   double t = 0.0;         // in [0, 1)
@@ -28,4 +28,4 @@ std::vector<CurvePlace> nearest_between(const CurveShape& shape,
 /// smooth all around.
 std::vector<double> corner_parameters(const CurveShape& shape);
 
-}  // namespace meniscus
+}  // namespace meniscus::curves

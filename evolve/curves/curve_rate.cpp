@@ -8,7 +8,7 @@
 #include "evolve/curves/curve_copy.h"
 #include "evolve/curves/spline_curve.h"
 
-namespace meniscus {
+namespace meniscus::curves {
 
 namespace {
 
@@ -170,4 +170,4 @@ Vec3 point_rate(const CurveShape& shape, const CurveShape& rate, double t) {
   return point_rates(shape, rate, {t}).front();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::curves

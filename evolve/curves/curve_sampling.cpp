@@ -10,7 +10,7 @@
 #include "evolve/curves/arc_side.h"
 #include "evolve/curves/curve_copy.h"
 
-namespace meniscus {
+namespace meniscus::curves {
 
 namespace {
 
@@ -214,4 +214,4 @@ std::vector<double> sample_parameters(const CurveShape& shape, double edge,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::curves

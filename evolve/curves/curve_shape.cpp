@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace meniscus::curve_shape {
+namespace meniscus::curves::curve_shape {
 
 int part_count(const CurveShape& shape) {
   if (const auto* r = std::get_if<Rectangle>(&shape)) {
@@ -45,4 +45,4 @@ InPlane in_plane(const Rectangle& r, const Rectangle& kind, Place at) {
           py + r.corner_radius * std::sin(angle)};
 }
 
-}  // namespace meniscus::curve_shape
+}  // namespace meniscus::curves::curve_shape

@@ -12,7 +12,7 @@
 #include "core/math/dual.h"
 #include "evolve/curves/curve.h"
 
-namespace meniscus::curve_shape {
+namespace meniscus::curves::curve_shape {
 
 template <class Scalar>
 using Vector = Eigen::Matrix<Scalar, 3, 1>;
@@ -109,4 +109,4 @@ inline InPlane in_plane(const Ellipse& e, const Ellipse& /*kind*/, Place at) {
 /// radius only the sides.
 InPlane in_plane(const Rectangle& r, const Rectangle& kind, Place at);
 
-}  // namespace meniscus::curve_shape
+}  // namespace meniscus::curves::curve_shape

@@ -9,7 +9,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "evolve/curves/curve_copy.h"
 
-namespace meniscus {
+namespace meniscus::curves {
 
 namespace {
 
@@ -185,4 +185,4 @@ void validate(const Curve& curve) {
              curve.shape);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::curves

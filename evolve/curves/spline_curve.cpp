@@ -4,7 +4,7 @@
 
 #include "evolve/curves/arc_side.h"
 
-namespace meniscus::curve_shape {
+namespace meniscus::curves::curve_shape {
 
 namespace {
 
@@ -109,4 +109,4 @@ Vector<Scalar> SplineCurve<Scalar>::slope(int k) const {
 template class SplineCurve<double>;
 template class SplineCurve<Dual1>;
 
-}  // namespace meniscus::curve_shape
+}  // namespace meniscus::curves::curve_shape

@@ -6,7 +6,7 @@
 
 #include "evolve/curves/curve_shape.h"
 
-namespace meniscus::curve_shape {
+namespace meniscus::curves::curve_shape {
 
 /// On the span from knot k to the next, x from 0 to h_k:
 ///   P_k (h - x) / h + P_k+1 x / h + M_k ((h - x)^3 / h - h (h - x)) / 6
@@ -30,4 +30,4 @@ class SplineCurve {
   std::vector<Vector<Scalar>> bends_;  // second derivatives
 };
 
-}  // namespace meniscus::curve_shape
+}  // namespace meniscus::curves::curve_shape

@@ -7,7 +7,7 @@
 
 #include "evolve/datafile/fe_formulas.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -68,4 +68,4 @@ void check_fe_bodies(const FeFile& file) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -3,7 +3,7 @@
 
 #include "evolve/datafile/fe_file.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 /// Throws InvalidInput with the body's place where two of its faces run along
 /// their edge the same way, so that one is turned inside out, and where it ends
@@ -12,4 +12,4 @@ namespace meniscus {
 /// boundaries, as by a wall or a mirror.
 void check_fe_bodies(const FeFile& file);
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -1,6 +1,6 @@
 #include "evolve/datafile/fe_command_words.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 const CommandWords& command_words() {
   static const CommandWords known = {"convert_to_quantities",
@@ -46,4 +46,4 @@ const CommandWords& element_commands() {
   return known;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

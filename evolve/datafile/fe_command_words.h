@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 using CommandWords = std::set<std::string, std::less<>>;
 
@@ -12,4 +12,4 @@ const CommandWords& command_words();     // with a number behind, or without
 const CommandWords& command_toggles();   // with on or off behind, or without
 const CommandWords& element_commands();  // with elements behind
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

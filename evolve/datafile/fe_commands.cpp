@@ -7,7 +7,7 @@
 #include "core/nearest_name.h"
 #include "evolve/datafile/fe_command_words.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -405,4 +405,4 @@ std::vector<FeStatement> parse_commands(std::string_view text,
   return CommandParser(text, name, first_line).parse();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

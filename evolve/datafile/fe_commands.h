@@ -8,7 +8,7 @@
 
 #include "evolve/datafile/fe_expression.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 /// "vertex vv where on_constraint 1": elements, one after the other.
 struct FeElements {
@@ -57,4 +57,4 @@ std::vector<FeStatement> parse_commands(std::string_view text,
                                         const std::string& name,
                                         int first_line = 1);
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

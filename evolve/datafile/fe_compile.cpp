@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "evolve/datafile/fe_expression.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -383,4 +383,4 @@ std::string fe_expression_text(const Expression& expression) {
   return piece.number ? number_text(*piece.number).text : piece.text.text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "evolve/datafile/fe_formulas.h"
 #include "evolve/films/put_on_constraints.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -40,7 +40,7 @@ class ComplexBuilder {
                  const std::map<std::string, double>& parameters)
       : file_(file), values_(fe_values(file, parameters)) {}
 
-  FilmComplex build() {
+  films::FilmComplex build() {
     integrals_ = fe_formulas(file_, values_, complex_);
     for (std::size_t c = 0; c < file_.constraints.size(); ++c) {
       if (file_.constraints[c].global) {
@@ -58,8 +58,8 @@ class ComplexBuilder {
     complex_.gravity = Vec3(0.0, 0.0, -values_.at("g"));
     complex_.line_points = file_.line_order / 2 + 1;
     set_gap_constant();
-    complex_.volume_rule =
-        file_.symmetric_content ? VolumeRule::Cone : VolumeRule::Column;
+    complex_.volume_rule = file_.symmetric_content ? films::VolumeRule::Cone
+                                                   : films::VolumeRule::Column;
     return std::move(complex_);
   }
 
@@ -92,11 +92,12 @@ class ComplexBuilder {
     return static_cast<int>(sets.size()) - 1;
   }
 
-  static VertexKind kind_of(const FeMarks& marks) {
+  static films::VertexKind kind_of(const FeMarks& marks) {
     if (marks.boundary >= 0) {
-      return marks.fixed ? VertexKind::OnCurve : VertexKind::Slides;
+      return marks.fixed ? films::VertexKind::OnCurve
+                         : films::VertexKind::Slides;
     }
-    return marks.fixed ? VertexKind::Fixed : VertexKind::Free;
+    return marks.fixed ? films::VertexKind::Fixed : films::VertexKind::Free;
   }
 
   // Vertices that a face uses, in the order of the file.
@@ -121,14 +122,14 @@ class ComplexBuilder {
   }
 
   void vertex(const FeVertex& vertex) {
-    ComplexVertex made;
+    films::ComplexVertex made;
     made.kind = kind_of(vertex.marks);
     Vec3 p;
     if (vertex.marks.boundary >= 0) {
       made.curve = vertex.marks.boundary;
       made.t = number(vertex.coordinates[0]);
       try {
-        p = point_at(complex_.curves[made.curve].shape, made.t);
+        p = curves::point_at(complex_.curves[made.curve].shape, made.t);
       } catch (const ExpressionError& error) {
         fe_fail(file_, vertex.marks.place, error.what());
       }
@@ -137,7 +138,7 @@ class ComplexBuilder {
                number(vertex.coordinates[2]));
       const int set = constraint_set(vertex.marks);
       p = projected(p, set, vertex.marks.place);
-      made.constraints = made.kind == VertexKind::Free ? set : -1;
+      made.constraints = made.kind == films::VertexKind::Free ? set : -1;
     }
     if (!p.allFinite()) {
       fe_fail(file_, vertex.marks.place,
@@ -149,7 +150,7 @@ class ComplexBuilder {
 
   Vec3 projected(const Vec3& from, int set, const FePlace& place) const {
     try {
-      return put_on_constraints(complex_, set, from);
+      return films::put_on_constraints(complex_, set, from);
     } catch (const InvalidInput& error) {
       fe_fail(file_, place, error.what());
     }
@@ -184,18 +185,18 @@ class ComplexBuilder {
   }
 
   void mark(int a, int b, const FeMarks& marks, int integrals) {
-    ComplexEdge made;
+    films::ComplexEdge made;
     made.a = a;
     made.b = b;
     made.kind = kind_of(marks);
     made.curve = marks.boundary;
     made.constraints =
-        made.kind == VertexKind::Free && !marks.constraints.empty()
+        made.kind == films::VertexKind::Free && !marks.constraints.empty()
             ? constraint_set(marks)
             : -1;
     made.refine = !marks.no_refine;
     made.integrals = integrals;
-    if (made.kind != VertexKind::Free || made.constraints >= 0 ||
+    if (made.kind != films::VertexKind::Free || made.constraints >= 0 ||
         !made.refine || integrals >= 0) {
       complex_.edges.push_back(made);
     }
@@ -237,7 +238,7 @@ class ComplexBuilder {
     const auto [found, added] =
         surface_.emplace(key, static_cast<int>(complex_.surfaces.size()));
     if (added) {
-      ComplexSurface made;
+      films::ComplexSurface made;
       int& count = key.fixed ? solids_ : films_;
       made.name = fmt::format("{}_{}", key.fixed ? "solid" : "film", ++count);
       made.liquid = !key.fixed;
@@ -258,9 +259,9 @@ class ComplexBuilder {
     for (const int signed_edge : face.edges) {
       const FeEdge& edge = file_.edges[std::abs(signed_edge) - 1];
       const int v = signed_edge > 0 ? edge.tail : edge.head;
-      const VertexKind kind = complex_.vertices[point_[v]].kind;
-      if (face.marks.fixed &&
-          (kind == VertexKind::Free || kind == VertexKind::Slides)) {
+      const films::VertexKind kind = complex_.vertices[point_[v]].kind;
+      if (face.marks.fixed && (kind == films::VertexKind::Free ||
+                               kind == films::VertexKind::Slides)) {
         fe_fail(file_, face.marks.place,
                 fmt::format("face {} is fixed but its vertex {} moves: fix "
                             "the vertex or free the face",
@@ -291,9 +292,9 @@ class ComplexBuilder {
       sum += complex_.mesh.points[v];
     }
     const int set = constraint_set(face.marks);
-    ComplexVertex made;
+    films::ComplexVertex made;
     made.kind = kind_of(face.marks);
-    made.constraints = made.kind == VertexKind::Free ? set : -1;
+    made.constraints = made.kind == films::VertexKind::Free ? set : -1;
     complex_.mesh.points.push_back(projected(
         sum / static_cast<double>(loop.size()), set, face.marks.place));
     complex_.vertices.push_back(made);
@@ -303,7 +304,7 @@ class ComplexBuilder {
   void bodies() {
     for (std::size_t b = 0; b < file_.bodies.size(); ++b) {
       const FeBody& body = file_.bodies[b];
-      ComplexBody made;
+      films::ComplexBody made;
       made.name = fmt::format("body_{}", body.id);
       for (std::size_t s = 0; s < keys_.size(); ++s) {
         for (const auto& [owner, sign] : keys_[s].sides) {
@@ -328,7 +329,7 @@ class ComplexBuilder {
     std::size_t next = 0;
     for (std::size_t q = 0; q < file_.quantities.size(); ++q) {
       for (const FeMethod& method : file_.quantities[q].methods) {
-        FilmQuantity& quantity = complex_.quantities[next++];
+        films::FilmQuantity& quantity = complex_.quantities[next++];
         if (method.global) {
           continue;
         }
@@ -369,7 +370,7 @@ class ComplexBuilder {
 
   const FeFile& file_;
   FeValues values_;
-  FilmComplex complex_;
+  films::FilmComplex complex_;
   std::vector<int> global_;  // constraints
   std::vector<std::vector<int>> integrals_;
   std::vector<char> used_;  // edges in a face
@@ -383,14 +384,14 @@ class ComplexBuilder {
 
 }  // namespace
 
-FilmComplex complex_of(const FeFile& file,
-                       const std::map<std::string, double>& parameters) {
+films::FilmComplex complex_of(const FeFile& file,
+                              const std::map<std::string, double>& parameters) {
   return ComplexBuilder(file, parameters).build();
 }
 
-void recalculate(FilmComplex& complex, const FeFile& file,
+void recalculate(films::FilmComplex& complex, const FeFile& file,
                  const std::map<std::string, double>& parameters) {
-  FilmComplex fresh;
+  films::FilmComplex fresh;
   fe_formulas(file, fe_values(file, parameters), fresh);
   if (fresh.integrals.size() != complex.integrals.size() ||
       fresh.quantities.size() != complex.quantities.size() ||
@@ -406,4 +407,4 @@ void recalculate(FilmComplex& complex, const FeFile& file,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

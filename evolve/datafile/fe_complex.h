@@ -7,7 +7,7 @@
 #include "evolve/datafile/fe_file.h"
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 /// The complex that the file describes when its parameters have their values
 /// in the file, those named in `parameters` (any case) others; "G" there is
@@ -26,14 +26,14 @@ namespace meniscus {
 /// formula without finite value, a vertex that cannot be put onto its
 /// constraints, two edges between the same vertices, a fixed face with free
 /// vertices, a face twice on one side, a quantity on no face.
-FilmComplex complex_of(const FeFile& file,
-                       const std::map<std::string, double>& parameters = {});
+films::FilmComplex complex_of(
+    const FeFile& file, const std::map<std::string, double>& parameters = {});
 
 /// Puts the file's formulas with other parameter values into a complex made
 /// from it by complex_of(), perhaps refined since: curves, level sets, line
 /// integrals, integrands. Neither moves vertices nor changes tensions,
 /// targets and gravity, which Evolver evaluates once, on reading.
-void recalculate(FilmComplex& complex, const FeFile& file,
+void recalculate(films::FilmComplex& complex, const FeFile& file,
                  const std::map<std::string, double>& parameters);
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

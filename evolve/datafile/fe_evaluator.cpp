@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 void FeEvaluator::fail(const FePlace& place, const std::string& what) const {
   throw InvalidInput(
@@ -213,4 +213,4 @@ double FeEvaluator::aggregate(const FeExpression& expression,
                               : most;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

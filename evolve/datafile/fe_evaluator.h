@@ -8,7 +8,7 @@
 #include "evolve/datafile/fe_commands.h"
 #include "evolve/datafile/fe_session.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 /// All functions throw InvalidInput "file:line:column: what".
 class FeEvaluator {
@@ -59,4 +59,4 @@ class FeEvaluator {
   std::vector<AtHand> scopes_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

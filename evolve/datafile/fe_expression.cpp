@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -393,4 +393,4 @@ FeExpression parse_path(FeLexer& lexer) {
   return Parser(lexer, FeDialect::Commands).parse_path();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -10,7 +10,7 @@
 #include "core/math/expression.h"
 #include "evolve/datafile/fe_lexer.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 enum class FeOperator {
   Number,
@@ -105,4 +105,4 @@ std::string fe_expression_text(const Expression& expression);
 /// As the language counts what holds.
 inline double truth(bool holds) { return holds ? 1.0 : 0.0; }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

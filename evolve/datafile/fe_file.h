@@ -12,7 +12,7 @@
 
 #include "evolve/datafile/fe_expression.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 using FeField = std::array<FeExpression, 3>;
 
@@ -149,4 +149,4 @@ struct FeFile {
 /// with the text; memory with what it declares.
 FeFile read_fe(std::string_view text, const std::string& name);
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdio>
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -66,4 +66,4 @@ std::string lower(std::string text) {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

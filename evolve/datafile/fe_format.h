@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 /// `format` as printf would say it, escapes included; conversions d i f F e E
 /// g G with flags, width and precision. Nothing when a conversion is another
@@ -16,4 +16,4 @@ std::optional<std::string> fe_formatted(const std::string& format,
 /// In small letters, A to Z alone.
 std::string lower(std::string text);
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -11,7 +11,7 @@
 #include "core/nearest_name.h"
 #include "evolve/datafile/fe_format.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -19,7 +19,7 @@ namespace {
 struct IntegralKey {
   bool boundary = false;
   int owner = 0;
-  LineIntegral::Role role = LineIntegral::Role::Energy;
+  films::LineIntegral::Role role = films::LineIntegral::Role::Energy;
   bool reversed = false;
   std::vector<double> attributes;
 
@@ -37,8 +37,8 @@ const FeIntegrals& owner_of(const FeFile& file, const IntegralKey& key) {
 
 const FeField& field_of(const FeFile& file, const IntegralKey& key) {
   const FeIntegrals& owner = owner_of(file, key);
-  return key.role == LineIntegral::Role::Energy ? *owner.energy
-                                                : *owner.content;
+  return key.role == films::LineIntegral::Role::Energy ? *owner.energy
+                                                       : *owner.content;
 }
 
 // Edge attributes that a field names, by index.
@@ -61,14 +61,15 @@ std::vector<IntegralKey> keys_of(const FeFile& file, const FeValues& values,
                                  const FeEdge& edge) {
   std::vector<IntegralKey> keys;
   const auto add = [&](bool boundary, int owner, bool reversed) {
-    IntegralKey key{boundary, owner, LineIntegral::Role::Energy, reversed, {}};
+    IntegralKey key{
+        boundary, owner, films::LineIntegral::Role::Energy, reversed, {}};
     const FeIntegrals& integrals = owner_of(file, key);
     for (const bool energy : {true, false}) {
       if (!(energy ? integrals.energy : integrals.content)) {
         continue;
       }
-      key.role =
-          energy ? LineIntegral::Role::Energy : LineIntegral::Role::Content;
+      key.role = energy ? films::LineIntegral::Role::Energy
+                        : films::LineIntegral::Role::Content;
       key.attributes.clear();
       for (const int attribute : attributes_in(file, field_of(file, key))) {
         double value = 0.0;
@@ -108,9 +109,9 @@ std::map<IntegralKey, int> all_integrals(const FeFile& file,
   return integrals;
 }
 
-VectorField compiled_field(const FeField& field, const FeValues& values,
-                           const FeFile& file) {
-  VectorField made;
+films::VectorField compiled_field(const FeField& field, const FeValues& values,
+                                  const FeFile& file) {
+  films::VectorField made;
   for (std::size_t k = 0; k < made.size(); ++k) {
     made[k] = compiled(field[k], values, place_names(), file.name);
   }
@@ -124,25 +125,25 @@ Expression negative(const Expression& expression) {
                                  {"x", "y", "z"});
 }
 
-LineIntegral line_integral(const FeFile& file, FeValues values,
-                           const IntegralKey& key) {
+films::LineIntegral line_integral(const FeFile& file, FeValues values,
+                                  const IntegralKey& key) {
   const FeField& field = field_of(file, key);
   std::size_t next = 0;
   for (const int attribute : attributes_in(file, field)) {
     values[file.attributes[attribute].name] = key.attributes[next++];
   }
-  LineIntegral made;
-  made.name =
-      fmt::format("{} of {} {}",
-                  key.role == LineIntegral::Role::Energy ? "energy" : "content",
-                  key.boundary ? "boundary" : "constraint",
-                  key.boundary ? file.boundaries[key.owner].name
-                               : file.constraints[key.owner].name);
+  films::LineIntegral made;
+  made.name = fmt::format(
+      "{} of {} {}",
+      key.role == films::LineIntegral::Role::Energy ? "energy" : "content",
+      key.boundary ? "boundary" : "constraint",
+      key.boundary ? file.boundaries[key.owner].name
+                   : file.constraints[key.owner].name);
   made.role = key.role;
   made.field = compiled_field(field, values, file);
   // Evolver adds content of boundaries with the other sign.
   if (key.reversed !=
-      (key.boundary && key.role == LineIntegral::Role::Content)) {
+      (key.boundary && key.role == films::LineIntegral::Role::Content)) {
     for (Expression& component : made.field) {
       component = negative(component);
     }
@@ -150,17 +151,19 @@ LineIntegral line_integral(const FeFile& file, FeValues values,
   return made;
 }
 
-FilmQuantity film_quantity(const FeFile& file, const FeValues& values,
-                           const FeQuantity& quantity, const FeMethod& method) {
-  FilmQuantity made;
+films::FilmQuantity film_quantity(const FeFile& file, const FeValues& values,
+                                  const FeQuantity& quantity,
+                                  const FeMethod& method) {
+  films::FilmQuantity made;
   made.name = quantity.name;
-  made.role =
-      quantity.role == FeQuantity::Role::Energy  ? FilmQuantity::Role::Energy
-      : quantity.role == FeQuantity::Role::Fixed ? FilmQuantity::Role::Held
-                                                 : FilmQuantity::Role::Info;
+  made.role = quantity.role == FeQuantity::Role::Energy
+                  ? films::FilmQuantity::Role::Energy
+              : quantity.role == FeQuantity::Role::Fixed
+                  ? films::FilmQuantity::Role::Held
+                  : films::FilmQuantity::Role::Info;
   made.modulus = number_of(quantity.modulus, values, file.name) *
                  number_of(method.modulus, values, file.name);
-  if (made.role != FilmQuantity::Role::Energy && made.modulus != 1.0) {
+  if (made.role != films::FilmQuantity::Role::Energy && made.modulus != 1.0) {
     fe_fail(file, quantity.place,
             fmt::format("quantity '{}': a modulus other than 1 is supported "
                         "for energies only, found {}",
@@ -172,11 +175,11 @@ FilmQuantity film_quantity(const FeFile& file, const FeValues& values,
       made.field = compiled_field(method.vector, values, file);
       break;
     case FeMethod::Kind::ScalarIntegral:
-      made.kind = FilmQuantity::Kind::ScalarIntegral;
+      made.kind = films::FilmQuantity::Kind::ScalarIntegral;
       made.scalar = compiled(method.scalar, values, place_names(), file.name);
       break;
     case FeMethod::Kind::Area:
-      made.kind = FilmQuantity::Kind::Area;
+      made.kind = films::FilmQuantity::Kind::Area;
       break;
     case FeMethod::Kind::Volume: {
       const std::vector<std::string> names = {"x", "y", "z"};
@@ -239,9 +242,9 @@ FeValues fe_values(const FeFile& file,
 
 std::vector<std::vector<int>> fe_formulas(const FeFile& file,
                                           const FeValues& values,
-                                          FilmComplex& complex) {
+                                          films::FilmComplex& complex) {
   for (const FeBoundary& boundary : file.boundaries) {
-    ParametricCurve shape;
+    curves::ParametricCurve shape;
     for (std::size_t k = 0; k < shape.coordinates.size(); ++k) {
       shape.coordinates[k] = compiled(boundary.coordinates[k], values,
                                       parameter_names(), file.name);
@@ -249,14 +252,15 @@ std::vector<std::vector<int>> fe_formulas(const FeFile& file,
     complex.curves.push_back({"boundary_" + boundary.name, std::move(shape)});
   }
   for (const FeConstraint& constraint : file.constraints) {
-    LevelSet made;
+    films::LevelSet made;
     made.name = "constraint_" + constraint.name;
     made.formula =
         compiled(constraint.formula, values, place_names(), file.name);
-    made.side = constraint.side == FeConstraint::Side::On ? LevelSet::Side::On
+    made.side = constraint.side == FeConstraint::Side::On
+                    ? films::LevelSet::Side::On
                 : constraint.side == FeConstraint::Side::Nonnegative
-                    ? LevelSet::Side::AtLeast
-                    : LevelSet::Side::AtMost;
+                    ? films::LevelSet::Side::AtLeast
+                    : films::LevelSet::Side::AtMost;
     made.convex = constraint.integrals.convex;
     complex.level_sets.push_back(std::move(made));
   }
@@ -287,4 +291,4 @@ std::vector<std::vector<int>> fe_formulas(const FeFile& file,
   return of_edge;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -3,7 +3,7 @@
 
 #include "evolve/datafile/fe_complex.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 [[noreturn]] void fe_fail(const FeFile& file, const FePlace& place,
                           const std::string& what);
@@ -17,6 +17,6 @@ FeValues fe_values(const FeFile& file,
 /// the file what is integrated along it: ascending indices into integrals.
 std::vector<std::vector<int>> fe_formulas(const FeFile& file,
                                           const FeValues& values,
-                                          FilmComplex& complex);
+                                          films::FilmComplex& complex);
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

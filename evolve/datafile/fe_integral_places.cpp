@@ -1,25 +1,26 @@
 #include "evolve/datafile/fe_integral_places.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
-bool fe_is_boundary(const FilmComplex& complex, int curve) {
-  const CurveShape& shape = complex.curves[curve].shape;
-  return std::holds_alternative<Circle>(shape) ||
-         std::holds_alternative<Ellipse>(shape) ||
-         std::holds_alternative<ParametricCurve>(shape);
+bool fe_is_boundary(const films::FilmComplex& complex, int curve) {
+  const curves::CurveShape& shape = complex.curves[curve].shape;
+  return std::holds_alternative<curves::Circle>(shape) ||
+         std::holds_alternative<curves::Ellipse>(shape) ||
+         std::holds_alternative<curves::ParametricCurve>(shape);
 }
 
-bool fe_on_boundary(const FilmComplex& complex, const ComplexEdge& edge) {
-  return (edge.kind == VertexKind::OnCurve ||
-          edge.kind == VertexKind::Slides) &&
+bool fe_on_boundary(const films::FilmComplex& complex,
+                    const films::ComplexEdge& edge) {
+  return (edge.kind == films::VertexKind::OnCurve ||
+          edge.kind == films::VertexKind::Slides) &&
          fe_is_boundary(complex, edge.curve);
 }
 
-bool fe_has_levels(const ComplexEdge& edge) {
-  return edge.kind == VertexKind::Free && edge.constraints >= 0;
+bool fe_has_levels(const films::ComplexEdge& edge) {
+  return edge.kind == films::VertexKind::Free && edge.constraints >= 0;
 }
 
-FeIntegralPlaces::FeIntegralPlaces(const FilmComplex& complex) {
+FeIntegralPlaces::FeIntegralPlaces(const films::FilmComplex& complex) {
   constexpr int kNone = -1;
   constexpr int kUnseen = -2;
   of_curve.assign(complex.curves.size(), kUnseen);
@@ -27,7 +28,7 @@ FeIntegralPlaces::FeIntegralPlaces(const FilmComplex& complex) {
   const auto see = [](int& of, int set) {
     of = of == kUnseen || of == set ? set : kNone;
   };
-  for (const ComplexEdge& edge : complex.edges) {
+  for (const films::ComplexEdge& edge : complex.edges) {
     if (fe_on_boundary(complex, edge)) {
       see(of_curve[edge.curve], edge.integrals);
     } else if (fe_has_levels(edge)) {
@@ -39,7 +40,7 @@ FeIntegralPlaces::FeIntegralPlaces(const FilmComplex& complex) {
     }
   }
   int next = static_cast<int>(complex.level_sets.size()) + 1;
-  for (const ComplexEdge& edge : complex.edges) {
+  for (const films::ComplexEdge& edge : complex.edges) {
     if (needs_carrier(complex, edge) &&
         carriers.emplace(key_of(complex, edge), next).second) {
       ++next;
@@ -47,8 +48,8 @@ FeIntegralPlaces::FeIntegralPlaces(const FilmComplex& complex) {
   }
 }
 
-bool FeIntegralPlaces::needs_carrier(const FilmComplex& complex,
-                                     const ComplexEdge& edge) const {
+bool FeIntegralPlaces::needs_carrier(const films::FilmComplex& complex,
+                                     const films::ComplexEdge& edge) const {
   if (edge.integrals < 0) {
     return false;
   }
@@ -60,11 +61,11 @@ bool FeIntegralPlaces::needs_carrier(const FilmComplex& complex,
              edge.integrals;
 }
 
-std::array<int, 2> FeIntegralPlaces::key_of(const FilmComplex& complex,
-                                            const ComplexEdge& edge) {
+std::array<int, 2> FeIntegralPlaces::key_of(const films::FilmComplex& complex,
+                                            const films::ComplexEdge& edge) {
   return {
       fe_has_levels(edge) ? complex.constraint_sets[edge.constraints][0] : -1,
       edge.integrals};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

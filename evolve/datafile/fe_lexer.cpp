@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -373,4 +373,4 @@ void FeLexer::symbol(FeToken& token) {
   ++at_;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 /// Where something stands in a file, counted from 1.
 struct FePlace {
@@ -94,4 +94,4 @@ class FeLexer {
   std::size_t expanded_ = 0;  // macro tokens so far
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

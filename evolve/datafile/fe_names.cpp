@@ -1,7 +1,7 @@
 // What names mean in the formulas of datafiles.
 #include "evolve/datafile/fe_expression.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 int function_arguments(std::string_view name) {
   static const std::map<std::string, int, std::less<>> known = {
@@ -37,4 +37,4 @@ std::vector<const FeNode*> names_in(const FeExpression& expression) {
   return names;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

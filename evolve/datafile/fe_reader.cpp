@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/nearest_name.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -389,4 +389,4 @@ FeFile read_fe(std::string_view text, const std::string& name) {
   return FeReader(text, name).read();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -6,7 +6,7 @@
 
 #include "evolve/datafile/fe_file.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 class FeReader {
  public:
@@ -87,4 +87,4 @@ class FeReader {
   std::set<int> body_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

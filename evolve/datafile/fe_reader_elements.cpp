@@ -6,7 +6,7 @@
 #include "core/nearest_name.h"
 #include "evolve/datafile/fe_reader.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -380,4 +380,4 @@ void FeReader::skip_separators() {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

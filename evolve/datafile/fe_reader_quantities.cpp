@@ -2,7 +2,7 @@
 
 #include "evolve/datafile/fe_reader.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -156,4 +156,4 @@ void FeReader::integrand(FeMethod& method) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

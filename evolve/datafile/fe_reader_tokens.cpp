@@ -7,7 +7,7 @@
 #include "core/nearest_name.h"
 #include "evolve/datafile/fe_reader.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -117,4 +117,4 @@ int FeReader::attribute_index(FeElement element,
   return -1;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -13,7 +13,7 @@
 #include "evolve/datafile/fe_format.h"
 #include "evolve/datafile/fe_session.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -441,4 +441,4 @@ FeScriptResult run_fe_script(const FeFile& file,
   return {session.complex(), std::move(runner.output), session.iterations()};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

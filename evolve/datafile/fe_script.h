@@ -20,7 +20,7 @@
 #include "core/monitor.h"
 #include "evolve/datafile/fe_complex.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 struct FeScriptOptions {
   std::optional<std::string> macro;  // none: the `read` section only
@@ -30,7 +30,7 @@ struct FeScriptOptions {
 };
 
 struct FeScriptResult {
-  FilmComplex complex;
+  films::FilmComplex complex;
   std::string output;  // of printf
   int iterations = 0;  // of g and hessian
 };
@@ -43,4 +43,4 @@ FeScriptResult run_fe_script(const FeFile& file,
                              const std::map<std::string, double>& parameters,
                              const FeScriptOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -5,15 +5,15 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/edge_key.h"
 #include "evolve/datafile/fe_format.h"
 #include "evolve/groom/flip_average.h"
 #include "evolve/groom/pop.h"
 #include "evolve/groom/refine.h"
 #include "evolve/settle/descent.h"
 #include "evolve/settle/newton.h"
-#include "core/geometry/edge_key.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -45,7 +45,7 @@ FeSession::FeSession(const FeFile& file,
 void FeSession::changed() {
   edges_.clear();
   edge_mark_.clear();
-  const FilmTargets targets = targets_of(complex_);
+  const films::FilmTargets targets = energy::targets_of(complex_);
   pressure_.resize(targets.bodies.size(), 0.0);
 }
 
@@ -55,7 +55,7 @@ const std::vector<Edge>& FeSession::edges() const {
     list_edges(complex_.mesh.facets, edges_, facet_edges);
     std::map<Edge, int> marks;
     for (std::size_t m = 0; m < complex_.edges.size(); ++m) {
-      const ComplexEdge& e = complex_.edges[m];
+      const films::ComplexEdge& e = complex_.edges[m];
       marks[edge_key(e.a, e.b)] = static_cast<int>(m);
     }
     for (const Edge& e : edges_) {
@@ -72,17 +72,17 @@ int FeSession::mark_of(int edge) const {
 }
 
 void FeSession::descend_steps(int count) {
-  const FilmEnergy energy(complex_, FilmMotion::Anywhere);
-  const FilmTargets targets = targets_of(complex_);
+  const energy::FilmEnergy energy(complex_, energy::FilmMotion::Anywhere);
+  const films::FilmTargets targets = energy::targets_of(complex_);
   for (int step = 0; step < count;) {
     // Directions follow the film: anew every few steps.
     const int few = std::min(conjugate_ ? kConjugate : 1, count - step);
-    const DescentReport report = descend(
+    const settle::DescentReport report = settle::descend(
         energy, targets, energy.space().directions(complex_.mesh.points),
         complex_.mesh.points,
-        {.method = conjugate_ ? DescentMethod::ConjugateGradients
-                              : DescentMethod::Gradient,
-         .metric = DescentMetric::Unit,
+        {.method = conjugate_ ? settle::DescentMethod::ConjugateGradients
+                              : settle::DescentMethod::Gradient,
+         .metric = settle::DescentMetric::Unit,
          .max_steps = few,
          .most_restore = kMostRestore * energy.mean_edge(complex_.mesh.points),
          .monitor = monitor_});
@@ -98,14 +98,14 @@ void FeSession::descend_steps(int count) {
 }
 
 void FeSession::newton_step() {
-  const FilmEnergy energy(complex_);
-  const FilmTargets targets = targets_of(complex_);
+  const energy::FilmEnergy energy(complex_);
+  const films::FilmTargets targets = energy::targets_of(complex_);
   const Points& points = complex_.mesh.points;
-  FilmNewton newton(energy, targets,
-                    {.rule = DirectionRule::CurrentNormals,
-                     .max_iterations = 1,
-                     .monitor = monitor_});
-  const NewtonResult result =
+  settle::FilmNewton newton(energy, targets,
+                            {.rule = settle::DirectionRule::CurrentNormals,
+                             .max_iterations = 1,
+                             .monitor = monitor_});
+  const settle::NewtonResult result =
       newton.run(points, energy.space().directions(points), {});
   ++iterations_;
   complex_.mesh.points = result.points;
@@ -115,21 +115,21 @@ void FeSession::newton_step() {
 }
 
 void FeSession::refine_all() {
-  complex_ = refine(complex_).complex;
+  complex_ = groom::refine(complex_).complex;
   changed();
 }
 
 void FeSession::refine_edges(const Filter& chosen) {
   // Every other edge stays whole: marked so, and unmarked afterwards.
   const std::vector<Edge> all = edges();
-  FilmComplex work = complex_;
+  films::FilmComplex work = complex_;
   std::vector<bool> split;  // per mark
   std::vector<bool> allowed;
-  for (const ComplexEdge& e : complex_.edges) {
+  for (const films::ComplexEdge& e : complex_.edges) {
     split.push_back(false);
     allowed.push_back(e.refine);
   }
-  for (ComplexEdge& e : work.edges) {
+  for (films::ComplexEdge& e : work.edges) {
     e.refine = false;
   }
   for (int e = 0; e < static_cast<int>(all.size()); ++e) {
@@ -138,15 +138,15 @@ void FeSession::refine_edges(const Filter& chosen) {
       split[m] = halved;
       work.edges[m].refine = halved;
     } else if (!halved) {
-      ComplexEdge whole;
+      films::ComplexEdge whole;
       whole.a = all[e][0];
       whole.b = all[e][1];
       whole.refine = false;
       work.edges.push_back(whole);
     }
   }
-  work = refine(work).complex;
-  std::vector<ComplexEdge> kept;
+  work = groom::refine(work).complex;
+  std::vector<films::ComplexEdge> kept;
   std::size_t at = 0;
   for (std::size_t m = 0; m < split.size(); ++m) {
     for (int half = 0; half < (split[m] ? 2 : 1); ++half) {
@@ -160,21 +160,21 @@ void FeSession::refine_edges(const Filter& chosen) {
 }
 
 void FeSession::flip() {
-  equiangulate(complex_, FlipRule::AnglesOnly);
+  groom::equiangulate(complex_, groom::FlipRule::AnglesOnly);
   changed();
 }
 
-void FeSession::average() { average_vertices(complex_); }
+void FeSession::average() { groom::average_vertices(complex_); }
 
 int FeSession::remove_tiny(double length) {
-  const int removed = collapse_tiny_edges(complex_, length);
+  const int removed = groom::collapse_tiny_edges(complex_, length);
   changed();
   return removed;
 }
 
 void FeSession::pop_all() {
-  pop_edges(complex_);
-  pop_vertices(complex_);
+  groom::pop_edges(complex_);
+  groom::pop_vertices(complex_);
   changed();
 }
 
@@ -185,14 +185,14 @@ void FeSession::gravity(double constant) {
 void FeSession::recalculate_all() {
   recalculate(complex_, file_, parameters_);
   for (std::size_t v = 0; v < complex_.vertices.size(); ++v) {
-    const ComplexVertex& vertex = complex_.vertices[v];
-    if (vertex.kind == VertexKind::OnCurve ||
-        vertex.kind == VertexKind::Slides) {
+    const films::ComplexVertex& vertex = complex_.vertices[v];
+    if (vertex.kind == films::VertexKind::OnCurve ||
+        vertex.kind == films::VertexKind::Slides) {
       complex_.mesh.points[v] =
-          point_at(complex_.curves[vertex.curve].shape, vertex.t);
+          curves::point_at(complex_.curves[vertex.curve].shape, vertex.t);
     }
   }
-  FilmSpace(complex_).project(complex_.mesh.points);
+  energy::FilmSpace(complex_).project(complex_.mesh.points);
 }
 
 void FeSession::assign(const std::string& name, double value) {
@@ -205,4 +205,4 @@ void FeSession::assign(const std::string& name, double value) {
   recalculate_all();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

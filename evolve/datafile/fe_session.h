@@ -11,7 +11,7 @@
 #include "core/monitor.h"
 #include "evolve/datafile/fe_complex.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 enum class FeKind { Vertices, Edges, Facets, Bodies };
 
@@ -65,7 +65,7 @@ class FeSession {
   /// By the number in the file; nothing where there is none.
   std::optional<FeElementRef> element(FeKind kind, int id) const;
 
-  const FilmComplex& complex() const { return complex_; }
+  const films::FilmComplex& complex() const { return complex_; }
   int iterations() const { return iterations_; }
 
  private:
@@ -85,7 +85,7 @@ class FeSession {
   void release_edge(int e, const std::string& what);
 
   const FeFile& file_;
-  FilmComplex complex_;
+  films::FilmComplex complex_;
   std::map<std::string, double> parameters_;
   std::map<std::string, double> variables_;
   std::vector<double> pressure_;  // one per functional
@@ -96,4 +96,4 @@ class FeSession {
   mutable std::vector<int> edge_mark_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

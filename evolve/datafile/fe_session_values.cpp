@@ -8,7 +8,7 @@
 #include "evolve/datafile/fe_session.h"
 #include "evolve/energy/energy.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -18,9 +18,9 @@ int number_of_name(const std::string& name) {
   return at == std::string::npos ? -1 : std::atoi(name.c_str() + at + 1);
 }
 
-bool is_ordinary(const ComplexEdge& e) {
-  return e.kind == VertexKind::Free && e.curve < 0 && e.constraints < 0 &&
-         e.integrals < 0 && e.refine;
+bool is_ordinary(const films::ComplexEdge& e) {
+  return e.kind == films::VertexKind::Free && e.curve < 0 &&
+         e.constraints < 0 && e.integrals < 0 && e.refine;
 }
 
 // x, y, z or x1, x2, x3.
@@ -43,11 +43,11 @@ std::optional<double> FeSession::value(const std::string& name) const {
     }
   }
   if (name == "total_area") {
-    return FilmEnergy(complex_).area(complex_.mesh.points);
+    return energy::FilmEnergy(complex_).area(complex_.mesh.points);
   }
   if (name == "total_energy") {
-    return FilmEnergy(complex_).value(complex_.mesh.points,
-                                      targets_of(complex_));
+    return energy::FilmEnergy(complex_).value(complex_.mesh.points,
+                                              energy::targets_of(complex_));
   }
   static const std::map<std::string, double> kNumbers = {
       {"pi", std::numbers::pi}, {"e", std::numbers::e}};
@@ -69,20 +69,20 @@ std::optional<double> FeSession::quantity(const std::string& name,
                                           const std::string& attribute) const {
   int held = static_cast<int>(complex_.bodies.size());
   for (std::size_t q = 0; q < complex_.quantities.size(); ++q) {
-    const FilmQuantity& quantity = complex_.quantities[q];
+    const films::FilmQuantity& quantity = complex_.quantities[q];
     if (quantity.name == name) {
       if (attribute == "value") {
-        return FilmEnergy(complex_).quantities(
+        return energy::FilmEnergy(complex_).quantities(
             complex_.mesh.points)[static_cast<Eigen::Index>(q)];
       }
-      const bool is_held = quantity.role == FilmQuantity::Role::Held;
+      const bool is_held = quantity.role == films::FilmQuantity::Role::Held;
       return attribute == "target" && is_held ? std::optional(quantity.target)
              : attribute == "modulus"         ? std::optional(quantity.modulus)
              : attribute == "pressure" && is_held
                  ? std::optional(pressure_[held])
                  : std::nullopt;
     }
-    held += quantity.role == FilmQuantity::Role::Held ? 1 : 0;
+    held += quantity.role == films::FilmQuantity::Role::Held ? 1 : 0;
   }
   return std::nullopt;
 }
@@ -149,13 +149,13 @@ std::optional<double> FeSession::attribute(const FeElementRef& element,
 std::optional<double> FeSession::vertex_attribute(int v,
                                                   const std::string& name,
                                                   int number) const {
-  const ComplexVertex& vertex = complex_.vertices[v];
+  const films::ComplexVertex& vertex = complex_.vertices[v];
   if (const int axis = axis_of(name); axis >= 0) {
     return complex_.mesh.points[v][axis];
   }
   if (name == "fixed") {
-    return truth(vertex.kind != VertexKind::Free &&
-                 vertex.kind != VertexKind::Slides);
+    return truth(vertex.kind != films::VertexKind::Free &&
+                 vertex.kind != films::VertexKind::Slides);
   }
   if (name == "on_constraint") {
     return truth(on_wall(vertex.constraints, number));
@@ -179,8 +179,9 @@ std::optional<double> FeSession::edge_attribute(int e, const std::string& name,
     return along[axis];
   }
   if (name == "fixed") {
-    return truth(m >= 0 && (complex_.edges[m].kind == VertexKind::Fixed ||
-                            complex_.edges[m].kind == VertexKind::OnCurve));
+    return truth(m >= 0 &&
+                 (complex_.edges[m].kind == films::VertexKind::Fixed ||
+                  complex_.edges[m].kind == films::VertexKind::OnCurve));
   }
   if (name == "on_constraint") {
     return truth(m >= 0 && on_wall(complex_.edges[m].constraints, number));
@@ -193,7 +194,7 @@ std::optional<double> FeSession::edge_attribute(int e, const std::string& name,
 
 std::optional<double> FeSession::facet_attribute(
     int f, const std::string& name) const {
-  const ComplexSurface& surface =
+  const films::ComplexSurface& surface =
       complex_.surfaces[complex_.mesh.facet_label[f]];
   if (name == "area") {
     return 0.5 * area_vector2(complex_.mesh, f).norm();
@@ -209,7 +210,7 @@ std::optional<double> FeSession::facet_attribute(
 
 std::optional<double> FeSession::body_attribute(int b,
                                                 const std::string& name) const {
-  const ComplexBody& body = complex_.bodies[b];
+  const films::ComplexBody& body = complex_.bodies[b];
   if (name == "target") {
     return body.volume.value_or(0.0);
   }
@@ -220,7 +221,7 @@ std::optional<double> FeSession::body_attribute(int b,
     return body.density;
   }
   if (name == "volume") {
-    return FilmEnergy(complex_).volumes(complex_.mesh.points)[b];
+    return energy::FilmEnergy(complex_).volumes(complex_.mesh.points)[b];
   }
   return std::nullopt;
 }
@@ -228,27 +229,27 @@ std::optional<double> FeSession::body_attribute(int b,
 int FeSession::surface_with_tension(int surface, double tension) {
   const std::string origin = complex_.surfaces[surface].name + "/";
   for (std::size_t s = 0; s < complex_.surfaces.size(); ++s) {
-    const ComplexSurface& other = complex_.surfaces[s];
+    const films::ComplexSurface& other = complex_.surfaces[s];
     if (other.tension == tension && !other.tension_field &&
         other.name.rfind(origin, 0) == 0) {
       return static_cast<int>(s);
     }
   }
   const auto added = static_cast<int>(complex_.surfaces.size());
-  ComplexSurface made = complex_.surfaces[surface];
+  films::ComplexSurface made = complex_.surfaces[surface];
   made.tension = tension;
   made.tension_field.reset();
   made.name = origin + std::to_string(added);
   complex_.mesh.labels.push_back(made.name);
   complex_.surfaces.push_back(std::move(made));
-  for (ComplexBody& body : complex_.bodies) {
+  for (films::ComplexBody& body : complex_.bodies) {
     for (std::size_t k = 0, n = body.sides.size(); k < n; ++k) {
       if (body.sides[k].surface == surface) {
         body.sides.push_back({added, body.sides[k].sign});
       }
     }
   }
-  for (FilmQuantity& quantity : complex_.quantities) {
+  for (films::FilmQuantity& quantity : complex_.quantities) {
     if (std::find(quantity.surfaces.begin(), quantity.surfaces.end(),
                   surface) != quantity.surfaces.end()) {
       quantity.surfaces.push_back(added);
@@ -277,7 +278,7 @@ bool FeSession::set_attribute(const FeElementRef& element,
   if (element.kind != FeKind::Bodies) {
     return false;
   }
-  ComplexBody& body = complex_.bodies[element.index];
+  films::ComplexBody& body = complex_.bodies[element.index];
   if (name == "target" || name == "volume") {
     body.volume = value;
     body.pressure.reset();
@@ -296,24 +297,24 @@ bool FeSession::fix(const FeElementRef& element) {
   if (element.kind != FeKind::Vertices) {
     return false;
   }
-  complex_.vertices[element.index].kind = VertexKind::Fixed;
+  complex_.vertices[element.index].kind = films::VertexKind::Fixed;
   return true;
 }
 
 bool FeSession::unfix(const FeElementRef& element) {
   if (element.kind == FeKind::Vertices) {
-    VertexKind& kind = complex_.vertices[element.index].kind;
-    kind = kind == VertexKind::Fixed     ? VertexKind::Free
-           : kind == VertexKind::OnCurve ? VertexKind::Slides
-                                         : kind;
+    films::VertexKind& kind = complex_.vertices[element.index].kind;
+    kind = kind == films::VertexKind::Fixed     ? films::VertexKind::Free
+           : kind == films::VertexKind::OnCurve ? films::VertexKind::Slides
+                                                : kind;
     return true;
   }
   if (element.kind == FeKind::Edges) {
     if (const int m = mark_of(element.index); m >= 0) {
-      VertexKind& kind = complex_.edges[m].kind;
-      kind = kind == VertexKind::Fixed     ? VertexKind::Free
-             : kind == VertexKind::OnCurve ? VertexKind::Slides
-                                           : kind;
+      films::VertexKind& kind = complex_.edges[m].kind;
+      kind = kind == films::VertexKind::Fixed     ? films::VertexKind::Free
+             : kind == films::VertexKind::OnCurve ? films::VertexKind::Slides
+                                                  : kind;
     }
     return true;
   }
@@ -337,9 +338,9 @@ bool FeSession::release(const FeElementRef& element, const std::string& what,
 }
 
 void FeSession::release_vertex(int v, const std::string& what, int number) {
-  ComplexVertex& vertex = complex_.vertices[v];
+  films::ComplexVertex& vertex = complex_.vertices[v];
   if (what == "boundary") {
-    vertex.kind = VertexKind::Free;
+    vertex.kind = films::VertexKind::Free;
     vertex.curve = -1;
     return;
   }
@@ -358,9 +359,9 @@ void FeSession::release_vertex(int v, const std::string& what, int number) {
 
 void FeSession::release_edge(int e, const std::string& what) {
   const int m = mark_of(e);
-  ComplexEdge& edge = complex_.edges[m];
+  films::ComplexEdge& edge = complex_.edges[m];
   if (what == "boundary") {
-    edge.kind = VertexKind::Free;
+    edge.kind = films::VertexKind::Free;
     edge.curve = -1;
   } else {
     edge.constraints = -1;
@@ -373,4 +374,4 @@ void FeSession::release_edge(int e, const std::string& what) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

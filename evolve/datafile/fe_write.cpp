@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "evolve/curves/curve.h"
 #include "evolve/datafile/fe_expression.h"
 #include "evolve/datafile/fe_integral_places.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 namespace {
 
@@ -20,7 +20,8 @@ constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
 
 class FeWriter {
  public:
-  FeWriter(const FilmComplex& complex, const std::vector<std::string>& comments)
+  FeWriter(const films::FilmComplex& complex,
+           const std::vector<std::string>& comments)
       : complex_(complex), places_(complex) {
     if (comments.empty()) {
       add("// written by Meniscus\n");
@@ -81,7 +82,7 @@ class FeWriter {
     }
     mark_.assign(edges_.size(), -1);
     for (std::size_t m = 0; m < complex_.edges.size(); ++m) {
-      const ComplexEdge& edge = complex_.edges[m];
+      const films::ComplexEdge& edge = complex_.edges[m];
       const auto found = number.find(edge_key(edge.a, edge.b));
       if (found == number.end()) {
         throw InvalidInput(fmt::format("marked edge {}-{} belongs to no facet",
@@ -95,7 +96,7 @@ class FeWriter {
   void top() {
     const bool heavy = std::any_of(
         complex_.bodies.begin(), complex_.bodies.end(),
-        [](const ComplexBody& body) { return body.density != 0.0; });
+        [](const films::ComplexBody& body) { return body.density != 0.0; });
     if (heavy && (complex_.gravity.x() != 0.0 || complex_.gravity.y() != 0.0)) {
       throw InvalidInput(fmt::format(
           "gravity is ({}, {}, {}); a datafile has it along z only",
@@ -104,16 +105,16 @@ class FeWriter {
     add("gravity_constant {}\n", -complex_.gravity.z());
     add("integral_order_1d {}\n", 2 * complex_.line_points - 1);
     add("gap_constant {}\n", complex_.gap_constant);
-    if (complex_.volume_rule == VolumeRule::Cone) {
+    if (complex_.volume_rule == films::VolumeRule::Cone) {
       add("symmetric_content\n");
     }
   }
 
   void curve(int index) {
-    const CurveShape& shape = complex_.curves[index].shape;
+    const curves::CurveShape& shape = complex_.curves[index].shape;
     add("\nboundary {} parameters 1  // {}\n", index + 1,
         one_line(complex_.curves[index].name));
-    if (const auto* own = std::get_if<ParametricCurve>(&shape)) {
+    if (const auto* own = std::get_if<curves::ParametricCurve>(&shape)) {
       for (int k = 0; k < 3; ++k) {
         add("x{}: {}\n", k + 1, text(own->coordinates[k]));
       }
@@ -124,12 +125,12 @@ class FeWriter {
     integral_set(places_.of_curve[index], Sign::ContentOpposite);
   }
 
-  void round(const CurveShape& shape) {
+  void round(const curves::CurveShape& shape) {
     // Circles and ellipses: center + u cos + v sin.
-    const Vec3 start = point_at(shape, 0.0);
-    const Vec3 center = 0.5 * (start + point_at(shape, 0.5));
+    const Vec3 start = curves::point_at(shape, 0.0);
+    const Vec3 center = 0.5 * (start + curves::point_at(shape, 0.5));
     const Vec3 u = start - center;
-    const Vec3 v = point_at(shape, 0.25) - center;
+    const Vec3 v = curves::point_at(shape, 0.25) - center;
     for (int k = 0; k < 3; ++k) {
       add("x{0}: ({1}) + ({2})*cos({4}*p1) + ({3})*sin({4}*p1)\n", k + 1,
           center[k], u[k], v[k], kTwoPi);
@@ -137,12 +138,12 @@ class FeWriter {
   }
 
   void level_set(int index) {
-    const LevelSet& level = complex_.level_sets[index];
+    const films::LevelSet& level = complex_.level_sets[index];
     add("\nconstraint {}{}{}  // {}\nformula: {}\n", index + 1,
         level.convex ? " convex" : "",
-        level.side == LevelSet::Side::AtLeast  ? " nonnegative"
-        : level.side == LevelSet::Side::AtMost ? " nonpositive"
-                                               : "",
+        level.side == films::LevelSet::Side::AtLeast  ? " nonnegative"
+        : level.side == films::LevelSet::Side::AtMost ? " nonpositive"
+                                                      : "",
         one_line(level.name), text(level.formula));
     integral_set(places_.of_level[index], Sign::Same);
   }
@@ -154,9 +155,9 @@ class FeWriter {
     if (set < 0) {
       return;
     }
-    for (const auto role :
-         {LineIntegral::Role::Energy, LineIntegral::Role::Content}) {
-      const bool energy = role == LineIntegral::Role::Energy;
+    for (const auto role : {films::LineIntegral::Role::Energy,
+                            films::LineIntegral::Role::Content}) {
+      const bool energy = role == films::LineIntegral::Role::Energy;
       const char* minus = !energy && sign == Sign::ContentOpposite ? "-" : "";
       std::array<std::string, 3> sum;
       for (const int i : complex_.integral_sets[set]) {
@@ -178,35 +179,35 @@ class FeWriter {
   }
 
   void quantity(int index) {
-    const FilmQuantity& quantity = complex_.quantities[index];
+    const films::FilmQuantity& quantity = complex_.quantities[index];
     std::string role = "info_only";
-    if (quantity.role == FilmQuantity::Role::Energy) {
+    if (quantity.role == films::FilmQuantity::Role::Energy) {
       role = fmt::format("energy modulus {}", quantity.modulus);
-    } else if (quantity.role == FilmQuantity::Role::Held) {
+    } else if (quantity.role == films::FilmQuantity::Role::Held) {
       role = fmt::format("fixed = {}", quantity.target);
     }
     add("\nquantity quantity_{} {} method ", index + 1, role);
     const char* where = quantity.surfaces.empty() ? " global" : "";
     switch (quantity.kind) {
-      case FilmQuantity::Kind::VectorIntegral:
+      case films::FilmQuantity::Kind::VectorIntegral:
         add("facet_vector_integral{}\nvector_integrand:\n", where);
         for (int k = 0; k < 3; ++k) {
           add("q{}: {}\n", k + 1, text(quantity.field[k]));
         }
         break;
-      case FilmQuantity::Kind::ScalarIntegral:
+      case films::FilmQuantity::Kind::ScalarIntegral:
         add("facet_scalar_integral{}\nscalar_integrand: {}\n", where,
             text(quantity.scalar));
         break;
-      case FilmQuantity::Kind::Area:
+      case films::FilmQuantity::Kind::Area:
         add("facet_area{}\n", where);
         break;
-      case FilmQuantity::Kind::BodyScalarIntegral:
+      case films::FilmQuantity::Kind::BodyScalarIntegral:
         throw InvalidInput(fmt::format(
             "quantity '{}' is an integral over a body, which datafiles have "
             "not",
             quantity.name));
-      case FilmQuantity::Kind::BodyVolume:
+      case films::FilmQuantity::Kind::BodyVolume:
         throw InvalidInput(fmt::format(
             "quantity '{}' is a body's volume, which a datafile says as the "
             "body's own",
@@ -246,20 +247,20 @@ class FeWriter {
   }
 
   void vertex(int index) {
-    const ComplexVertex& vertex = complex_.vertices[index];
+    const films::ComplexVertex& vertex = complex_.vertices[index];
     const Vec3& p = complex_.mesh.points[index];
-    const bool on_curve =
-        vertex.kind == VertexKind::OnCurve || vertex.kind == VertexKind::Slides;
+    const bool on_curve = vertex.kind == films::VertexKind::OnCurve ||
+                          vertex.kind == films::VertexKind::Slides;
     if (on_curve && fe_is_boundary(complex_, vertex.curve)) {
       add("{} {} boundary {}{}\n", index + 1, vertex.t, vertex.curve + 1,
-          vertex.kind == VertexKind::OnCurve ? " fixed" : "");
+          vertex.kind == films::VertexKind::OnCurve ? " fixed" : "");
       return;
     }
-    if (vertex.kind == VertexKind::Slides) {
+    if (vertex.kind == films::VertexKind::Slides) {
       refuse_sliding(vertex.curve);
     }
     add("{} {} {} {}", index + 1, p.x(), p.y(), p.z());
-    if (vertex.kind != VertexKind::Free) {
+    if (vertex.kind != films::VertexKind::Free) {
       add(" fixed");
     } else {
       constraints(vertex.constraints);
@@ -284,16 +285,17 @@ class FeWriter {
     }
   }
 
-  void marks(const ComplexEdge& edge) {
+  void marks(const films::ComplexEdge& edge) {
     const bool carried = places_.needs_carrier(complex_, edge);
-    if (edge.kind == VertexKind::Slides &&
+    if (edge.kind == films::VertexKind::Slides &&
         (carried || !fe_is_boundary(complex_, edge.curve))) {
       refuse_sliding(edge.curve);
     }
     if (fe_on_boundary(complex_, edge) && !carried) {
       add(" boundary {}", edge.curve + 1);
     }
-    if (edge.kind != VertexKind::Free && edge.kind != VertexKind::Slides) {
+    if (edge.kind != films::VertexKind::Free &&
+        edge.kind != films::VertexKind::Slides) {
       add(" fixed");
     }
     const std::vector<int> none;
@@ -321,7 +323,7 @@ class FeWriter {
       add(" {}{}", forward ? "" : "-", e + 1);
     }
     const int label = complex_.mesh.facet_label[index];
-    const ComplexSurface& surface = complex_.surfaces[label];
+    const films::ComplexSurface& surface = complex_.surfaces[label];
     const double tension = surface.tension_field ? 0.0 : surface.tension;
     if (tension != 1.0) {
       add(" tension {}", tension);
@@ -346,9 +348,9 @@ class FeWriter {
   }
 
   void body(int index) {
-    const ComplexBody& body = complex_.bodies[index];
+    const films::ComplexBody& body = complex_.bodies[index];
     std::vector<int> sign(complex_.surfaces.size(), 0);
-    for (const BodySide& side : body.sides) {
+    for (const films::BodySide& side : body.sides) {
       sign[side.surface] += side.sign;
     }
     add("{}", index + 1);
@@ -376,7 +378,7 @@ class FeWriter {
     add("  // {}\n", one_line(body.name));
   }
 
-  const FilmComplex& complex_;
+  const films::FilmComplex& complex_;
   std::string out_;
   std::vector<Edge> edges_;
   std::vector<Triangle> facet_edges_;
@@ -386,9 +388,9 @@ class FeWriter {
 
 }  // namespace
 
-std::string fe_text(const FilmComplex& complex,
+std::string fe_text(const films::FilmComplex& complex,
                     const std::vector<std::string>& comments) {
   return FeWriter(complex, comments).write();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -6,7 +6,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::datafile {
 
 /// Text that Surface Evolver 2.70 loads with the same counts and the same
 /// energy (12 digits), and read_fe() too. Elements are numbered from 1 in the
@@ -19,7 +19,7 @@ namespace meniscus {
 /// Throws InvalidInput for what a datafile cannot say: gravity that does not
 /// point down, vertices that slide on rectangles or polygons, a held quantity
 /// over one body's volume, an expression nested too deep.
-std::string fe_text(const FilmComplex& complex,
+std::string fe_text(const films::FilmComplex& complex,
                     const std::vector<std::string>& comments = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::datafile

@@ -7,7 +7,7 @@
 
 #include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -204,4 +204,4 @@ LowestMode ConstrainedHessian::lowest_mode(const VectorX& metric) const {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

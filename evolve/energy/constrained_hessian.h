@@ -13,7 +13,7 @@
 
 #include "core/math/linear_solve.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 struct LowestMode {
   double eigenvalue = 0.0;  // in the metric given [1/metric of H]
@@ -69,4 +69,4 @@ class ConstrainedHessian {
   int index_ = 0;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -4,7 +4,7 @@
 #include "evolve/energy/facet_terms.h"
 #include "evolve/energy/film_space.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -139,4 +139,4 @@ Points FilmSpace::direction_rates(const Points& points,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

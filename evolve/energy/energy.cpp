@@ -10,7 +10,7 @@
 #include "core/operation_count.h"
 #include "evolve/energy/facet_terms.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -24,34 +24,20 @@ constexpr double kCosineWork = 48.0;
 
 }  // namespace
 
-FilmTargets targets_of(const FilmComplex& complex) {
-  FilmTargets targets;
-  for (const ComplexSurface& surface : complex.surfaces) {
-    targets.tension.push_back(surface.liquid ? surface.tension : 0.0);
-  }
-  targets.bodies = complex.bodies;
-  for (const int q : held_quantities(complex)) {
-    ComplexBody held;
-    held.name = complex.quantities[q].name;
-    held.volume = complex.quantities[q].target;
-    targets.bodies.push_back(std::move(held));
-  }
-  return targets;
-}
-
 FilmEnergy::~FilmEnergy() = default;
 FilmEnergy::FilmEnergy(FilmEnergy&&) noexcept = default;
 FilmEnergy& FilmEnergy::operator=(FilmEnergy&&) noexcept = default;
 
-FilmEnergy::FilmEnergy(const FilmComplex& complex, FilmMotion motion)
+FilmEnergy::FilmEnergy(const films::FilmComplex& complex, FilmMotion motion)
     : space_(complex, motion),
       facets_(complex.mesh.facets),
       label_(complex.mesh.facet_label),
       terms_(film_terms(complex)),
       body_count_(static_cast<int>(complex.bodies.size())),
       quantity_count_(static_cast<int>(complex.quantities.size())) {
-  if (std::any_of(complex.bodies.begin(), complex.bodies.end(),
-                  [](const ComplexBody& b) { return b.density != 0.0; })) {
+  if (std::any_of(
+          complex.bodies.begin(), complex.bodies.end(),
+          [](const films::ComplexBody& b) { return b.density != 0.0; })) {
     gravity_ = complex.gravity;
   }
   functional_count_ =
@@ -59,27 +45,27 @@ FilmEnergy::FilmEnergy(const FilmComplex& complex, FilmMotion motion)
   volume_offset_ = VectorX::Zero(functional_count_);
   for (int b = 0; b < body_count_; ++b) {
     const bool closed = closed_by_facets(complex, b);
-    cone_.push_back(closed || complex.volume_rule == VolumeRule::Cone);
+    cone_.push_back(closed || complex.volume_rule == films::VolumeRule::Cone);
     open_cones_ = open_cones_ || (cone_.back() != 0 && !closed);
     volume_offset_[b] = complex.bodies[b].volume_offset;
   }
-  for (const ComplexSurface& surface : complex.surfaces) {
+  for (const films::ComplexSurface& surface : complex.surfaces) {
     liquid_.push_back(surface.liquid ? 1 : 0);
     plain_.push_back(surface.liquid && !surface.tension_field ? 1 : 0);
     resisted_ = resisted_ || surface.tension_field;
     std::vector<int> sides(body_count_, 0);
     const int s = static_cast<int>(side_.size());
     for (int b = 0; b < body_count_; ++b) {
-      for (const BodySide& side : complex.bodies[b].sides) {
+      for (const films::BodySide& side : complex.bodies[b].sides) {
         sides[b] += side.surface == s ? side.sign : 0;
       }
     }
     side_.push_back(std::move(sides));
   }
-  for (const FilmQuantity& quantity : complex.quantities) {
-    const bool energy = quantity.role == FilmQuantity::Role::Energy;
+  for (const films::FilmQuantity& quantity : complex.quantities) {
+    const bool energy = quantity.role == films::FilmQuantity::Role::Energy;
     modulus_.push_back(energy ? quantity.modulus : 1.0);
-    resisted_ = resisted_ || quantity.role != FilmQuantity::Role::Info;
+    resisted_ = resisted_ || quantity.role != films::FilmQuantity::Role::Info;
   }
   corner_start_.reserve(facets_.size() + 1);
   corner_start_.push_back(0);
@@ -97,7 +83,7 @@ FilmEnergy::FilmEnergy(const FilmComplex& complex, FilmMotion motion)
 }
 
 double FilmEnergy::value(const Points& points,
-                         const FilmTargets& targets) const {
+                         const films::FilmTargets& targets) const {
   double sum = 0.0;
   count_operations(kAreaWork * static_cast<double>(facets_.size()));
   for (std::size_t f = 0; f < facets_.size(); ++f) {
@@ -188,7 +174,7 @@ VectorX FilmEnergy::quantities(const Points& points) const {
 }
 
 Points FilmEnergy::gradient(const Points& points,
-                            const FilmTargets& targets) const {
+                            const films::FilmTargets& targets) const {
   VectorX weight(static_cast<Eigen::Index>(plain_.size()));
   for (std::size_t s = 0; s < plain_.size(); ++s) {
     weight[static_cast<Eigen::Index>(s)] =
@@ -349,4 +335,4 @@ double FilmEnergy::mean_edge(const Points& points) const {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -14,14 +14,14 @@
 #include "evolve/films/film_complex.h"
 #include "evolve/films/film_targets.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 class FilmEnergy {
  public:
   /// Takes the topology of `complex` (facets, kinds, sides of bodies), its
   /// walls and its terms, no positions. Throws MeshError for a facet corner
   /// out of range.
-  explicit FilmEnergy(const FilmComplex& complex,
+  explicit FilmEnergy(const films::FilmComplex& complex,
                       FilmMotion motion = FilmMotion::NormalSpace);
   ~FilmEnergy();
   FilmEnergy(FilmEnergy&&) noexcept;
@@ -41,7 +41,7 @@ class FilmEnergy {
   }
 
   /// Energy: tension x area and every other term [force length].
-  double value(const Points& points, const FilmTargets& targets) const;
+  double value(const Points& points, const films::FilmTargets& targets) const;
   /// Area of the films [length^2].
   double area(const Points& points) const;
   /// Signed volumes of the bodies [length^3], then the held quantities.
@@ -50,7 +50,8 @@ class FilmEnergy {
   VectorX quantities(const Points& points) const;
 
   /// dE/dx, one per vertex [force]; boundary vertices included.
-  Points gradient(const Points& points, const FilmTargets& targets) const;
+  Points gradient(const Points& points,
+                  const films::FilmTargets& targets) const;
   /// dF/dx of one functional, one per vertex.
   Points functional_gradient(const Points& points, int functional) const;
 
@@ -67,13 +68,13 @@ class FilmEnergy {
   /// per facet the lower triangle over its corners' unknowns. `gradient`: of
   /// that Lagrangian, for the walls' bending.
   void elements(const Points& points, const Points& directions,
-                const FilmTargets& targets, const VectorX& pressure,
+                const films::FilmTargets& targets, const VectorX& pressure,
                 const Points& gradient, std::vector<double>& out) const;
   /// Scatters elements into `out`, which must come from pattern().
   void assemble(const std::vector<double>& elements, SparseMatrix& out) const;
   /// Lower triangle of the Hessian [force/length].
   void hessian(const Points& points, const Points& directions,
-               const FilmTargets& targets, const VectorX& pressure,
+               const films::FilmTargets& targets, const VectorX& pressure,
                SparseMatrix& out) const;
   const SparseMatrix& pattern() const { return pattern_; }
   /// Fill-reducing order of pattern(), found at the first call.
@@ -107,7 +108,7 @@ class FilmEnergy {
   std::vector<double> pressure_jumps(const VectorX& pressure) const;
   void add_term_gradients(const Points& points, int functional,
                           Points& sum) const;
-  void find_floating(const FilmComplex& complex);
+  void find_floating(const films::FilmComplex& complex);
   void build_pattern();
   void add_terms(const Points& points, const VectorX& pressure,
                  const Points& directions, std::vector<double>& out) const;
@@ -144,4 +145,4 @@ class FilmEnergy {
   mutable std::vector<int> order_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -10,7 +10,7 @@
 #include "evolve/energy/energy.h"
 #include "evolve/energy/facet_terms.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -112,8 +112,8 @@ std::vector<double> FilmEnergy::pressure_jumps(const VectorX& pressure) const {
 }
 
 void FilmEnergy::elements(const Points& points, const Points& directions,
-                          const FilmTargets& targets, const VectorX& pressure,
-                          const Points& gradient,
+                          const films::FilmTargets& targets,
+                          const VectorX& pressure, const Points& gradient,
                           std::vector<double>& out) const {
   out.assign(element_start_.back(), 0.0);
   count_operations(hessian_work(corner_start_));
@@ -226,8 +226,8 @@ void FilmEnergy::assemble(const std::vector<double>& elements,
 }
 
 void FilmEnergy::hessian(const Points& points, const Points& directions,
-                         const FilmTargets& targets, const VectorX& pressure,
-                         SparseMatrix& out) const {
+                         const films::FilmTargets& targets,
+                         const VectorX& pressure, SparseMatrix& out) const {
   Points slope;
   if (space_.has_walls()) {
     slope = gradient(points, targets);
@@ -243,4 +243,4 @@ void FilmEnergy::hessian(const Points& points, const Points& directions,
   assemble(entries, out);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -16,7 +16,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 inline std::array<Vec3, 3> corners_of(const Points& points, const Triangle& t) {
   return {points[t[0]], points[t[1]], points[t[2]]};
@@ -72,4 +72,4 @@ struct FacetFrame {
   }
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

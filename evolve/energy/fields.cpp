@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/nearest_name.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -41,16 +41,16 @@ std::string square_from_segment(const Vec3& from, const Vec3& to) {
 }
 
 struct SquareDistance {
-  const FieldSpec& field;
+  const films::FieldSpec& field;
 
-  std::string operator()(const PointPole& pole) const {
+  std::string operator()(const films::PointPole& pole) const {
     check(pole.at);
     return square_from(pole.at);
   }
-  std::string operator()(const SegmentPole& pole) const {
+  std::string operator()(const films::SegmentPole& pole) const {
     return segment(pole.from, pole.to);
   }
-  std::string operator()(const PolylinePole& pole) const {
+  std::string operator()(const films::PolylinePole& pole) const {
     require(pole.points.size() >= 2,
             fmt::format("field '{}': a polyline needs two points or more, "
                         "found {}",
@@ -62,7 +62,7 @@ struct SquareDistance {
     }
     return text;
   }
-  std::string operator()(const PlanePole& pole) const {
+  std::string operator()(const films::PlanePole& pole) const {
     check(pole.at);
     check(pole.normal);
     require(
@@ -107,24 +107,25 @@ int find_name(const std::vector<Named>& all, const std::string& name,
 
 /// Where rays to a body's surface best start.
 struct PoleOrigin {
-  Vec3 operator()(const PointPole& pole) const { return pole.at; }
-  Vec3 operator()(const SegmentPole& pole) const {
+  Vec3 operator()(const films::PointPole& pole) const { return pole.at; }
+  Vec3 operator()(const films::SegmentPole& pole) const {
     return 0.5 * (pole.from + pole.to);
   }
-  Vec3 operator()(const PolylinePole& pole) const {
+  Vec3 operator()(const films::PolylinePole& pole) const {
     Vec3 sum = Vec3::Zero();
     for (const Vec3& p : pole.points) {
       sum += p;
     }
     return sum / static_cast<double>(pole.points.size());
   }
-  Vec3 operator()(const PlanePole& pole) const { return pole.at; }
+  Vec3 operator()(const films::PlanePole& pole) const { return pole.at; }
 };
 
-FilmQuantity body_integral(const FilmComplex& complex, const std::string& name,
-                           const std::string& body) {
-  FilmQuantity quantity{name, FilmQuantity::Role::Energy,
-                        FilmQuantity::Kind::BodyScalarIntegral};
+films::FilmQuantity body_integral(const films::FilmComplex& complex,
+                                  const std::string& name,
+                                  const std::string& body) {
+  films::FilmQuantity quantity{name, films::FilmQuantity::Role::Energy,
+                               films::FilmQuantity::Kind::BodyScalarIntegral};
   require(!complex.bodies.empty(),
           fmt::format("field '{}' acts per volume, but there is no body; "
                       "name the surfaces of one or act per area",
@@ -162,7 +163,7 @@ Expression place_expression(const std::string& text) {
   }
 }
 
-Expression field_expression(const FieldSpec& field) {
+Expression field_expression(const films::FieldSpec& field) {
   require(std::isfinite(field.strength),
           fmt::format("field '{}': its strength {} is not finite", field.name,
                       field.strength));
@@ -186,25 +187,26 @@ Expression field_expression(const FieldSpec& field) {
   }
 }
 
-FilmQuantity field_quantity(const FilmComplex& complex,
-                            const FieldSpec& field) {
+films::FilmQuantity field_quantity(const films::FilmComplex& complex,
+                                   const films::FieldSpec& field) {
   const Expression phi = field_expression(field);
-  if (const auto* per = std::get_if<PerVolume>(&field.per)) {
-    FilmQuantity quantity = body_integral(complex, field.name, per->body);
+  if (const auto* per = std::get_if<films::PerVolume>(&field.per)) {
+    films::FilmQuantity quantity =
+        body_integral(complex, field.name, per->body);
     quantity.scalar = phi;
     quantity.origin = std::visit(PoleOrigin{}, field.shape);
     return quantity;
   }
-  FilmQuantity quantity{field.name, FilmQuantity::Role::Energy,
-                        FilmQuantity::Kind::ScalarIntegral};
+  films::FilmQuantity quantity{field.name, films::FilmQuantity::Role::Energy,
+                               films::FilmQuantity::Kind::ScalarIntegral};
   quantity.scalar = phi;
-  for (const std::string& name : std::get<PerArea>(field.per).surfaces) {
+  for (const std::string& name : std::get<films::PerArea>(field.per).surfaces) {
     quantity.surfaces.push_back(
         find_name(complex.surfaces, name,
                   fmt::format("field '{}': surface", field.name)));
   }
   for (std::size_t s = 0; s < complex.surfaces.size() &&
-                          std::get<PerArea>(field.per).surfaces.empty();
+                          std::get<films::PerArea>(field.per).surfaces.empty();
        ++s) {
     if (complex.surfaces[s].liquid) {
       quantity.surfaces.push_back(static_cast<int>(s));
@@ -216,10 +218,11 @@ FilmQuantity field_quantity(const FilmComplex& complex,
   return quantity;
 }
 
-FilmQuantity pressure_quantity(const FilmComplex& complex,
-                               const std::string& name, const std::string& body,
-                               const Expression& pressure) {
-  FilmQuantity quantity = body_integral(complex, name, body);
+films::FilmQuantity pressure_quantity(const films::FilmComplex& complex,
+                                      const std::string& name,
+                                      const std::string& body,
+                                      const Expression& pressure) {
+  films::FilmQuantity quantity = body_integral(complex, name, body);
   quantity.scalar = pressure;
   quantity.modulus = -1.0;
   return quantity;
@@ -247,4 +250,4 @@ std::string smooth_macaulay(const Vec3& direction, double offset, double power,
                      0.5 * square, root, s, power);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

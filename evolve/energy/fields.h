@@ -9,23 +9,25 @@
 #include "evolve/films/field_spec.h"
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 /// phi as an expression over x, y, z. Throws InvalidInput: numbers that are
 /// not finite or out of range, a shape without length or normal, a polyline
 /// whose formula grows longer than expressions may be (about 35 segments).
-Expression field_expression(const FieldSpec& field);
+Expression field_expression(const films::FieldSpec& field);
 
 /// The field's energy, to be put into complex.quantities. Throws InvalidInput
 /// also for surfaces and bodies that the complex has not.
-FilmQuantity field_quantity(const FilmComplex& complex, const FieldSpec& field);
+films::FilmQuantity field_quantity(const films::FilmComplex& complex,
+                                   const films::FieldSpec& field);
 
 /// The work of a pressure [force/length^2] that is an expression over x, y, z:
 /// minus its integral over the body (empty: over every body), on top of the
 /// body's own pressure. Positive: inflates. Throws InvalidInput.
-FilmQuantity pressure_quantity(const FilmComplex& complex,
-                               const std::string& name, const std::string& body,
-                               const Expression& pressure);
+films::FilmQuantity pressure_quantity(const films::FilmComplex& complex,
+                                      const std::string& name,
+                                      const std::string& body,
+                                      const Expression& pressure);
 
 /// Text of the Macaulay bracket <s - offset>^power over x, y, z, s the
 /// distance along `direction` from the origin: 0 where s < offset. Power 0
@@ -43,4 +45,4 @@ std::string smooth_macaulay(const Vec3& direction, double offset, double power,
 /// An expression over x, y, z. Throws InvalidInput with text and column.
 Expression place_expression(const std::string& text);
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -5,7 +5,7 @@
 
 #include "evolve/energy/facet_terms.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -39,8 +39,8 @@ struct FacetMotion {
 
 }  // namespace
 
-FilmProducts::FilmProducts(const FilmEnergy& energy, const FilmTargets& targets,
-                           VectorX pressure)
+FilmProducts::FilmProducts(const FilmEnergy& energy,
+                           const films::FilmTargets& targets, VectorX pressure)
     : energy_(energy),
       tension_(VectorX::Zero(static_cast<Eigen::Index>(energy.plain_.size()))),
       energies_(1.0),
@@ -241,4 +241,4 @@ Points FilmProducts::metric_gradient(const Points& points,
   return sum;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -4,12 +4,12 @@
 
 #include "evolve/energy/energy.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 class FilmProducts {
  public:
   /// `pressure`: one per functional. `energy` must outlive this.
-  FilmProducts(const FilmEnergy& energy, const FilmTargets& targets,
+  FilmProducts(const FilmEnergy& energy, const films::FilmTargets& targets,
                VectorX pressure);
   /// Of - sum pressure F alone.
   FilmProducts(const FilmEnergy& energy, VectorX pressure);
@@ -49,4 +49,4 @@ class FilmProducts {
   VectorX pressure_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -6,10 +6,10 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -50,7 +50,7 @@ PlaceJet jet_at(const Expression& expression, const Vec3& at) {
   return jet;
 }
 
-FilmSpace::FilmSpace(const FilmComplex& complex, FilmMotion motion)
+FilmSpace::FilmSpace(const films::FilmComplex& complex, FilmMotion motion)
     : facets_(complex.mesh.facets),
       level_sets_(complex.level_sets),
       curves_(complex.curves) {
@@ -96,9 +96,9 @@ FilmSpace::FilmSpace(const FilmComplex& complex, FilmMotion motion)
   first_.reserve(points + 1);
   for (int v = 0; v < points; ++v) {
     first_.push_back(unknowns());
-    const ComplexVertex& vertex = complex.vertices[v];
-    const bool slides = vertex.kind == VertexKind::Slides;
-    if ((vertex.kind != VertexKind::Free && !slides) || used[v] == 0) {
+    const films::ComplexVertex& vertex = complex.vertices[v];
+    const bool slides = vertex.kind == films::VertexKind::Slides;
+    if ((vertex.kind != films::VertexKind::Free && !slides) || used[v] == 0) {
       continue;
     }
     if (lines[v] == 2) {
@@ -109,10 +109,11 @@ FilmSpace::FilmSpace(const FilmComplex& complex, FilmMotion motion)
     if (slides) {
       wall.curve = vertex.curve;
       wall.t = vertex.t;
-      static_cast<void>(jet_at(curves_[wall.curve].shape, wall.t));
+      static_cast<void>(curves::jet_at(curves_[wall.curve].shape, wall.t));
     } else if (vertex.constraints >= 0) {
       for (const int wall_set : complex.constraint_sets[vertex.constraints]) {
-        if (vertex.held || level_sets_[wall_set].side == LevelSet::Side::On) {
+        if (vertex.held ||
+            level_sets_[wall_set].side == films::LevelSet::Side::On) {
           wall.level_sets.push_back(wall_set);
         }
       }
@@ -253,7 +254,8 @@ void FilmSpace::wall_directions(int k, const Points& points, const Vec3& normal,
   const Wall& wall = walls_[k];
   if (wall.curve >= 0) {
     result[at] =
-        unit(jet_at(curves_[wall.curve].shape, nearest(wall, points[v])).first);
+        unit(curves::jet_at(curves_[wall.curve].shape, nearest(wall, points[v]))
+                 .first);
     return;
   }
   const Eigen::MatrixX3d rows = wall_normals(k, points[v]);
@@ -303,7 +305,7 @@ void FilmSpace::project(Points& points) const {
 
 Vec3 FilmSpace::back_on(const Wall& wall, Vec3 at) const {
   if (wall.curve >= 0) {
-    return point_at(curves_[wall.curve].shape, nearest(wall, at));
+    return curves::point_at(curves_[wall.curve].shape, nearest(wall, at));
   }
   const auto count = static_cast<Eigen::Index>(wall.level_sets.size());
   Eigen::MatrixX3d rows(count, 3);
@@ -327,10 +329,10 @@ Vec3 FilmSpace::back_on(const Wall& wall, Vec3 at) const {
 }
 
 double FilmSpace::nearest(const Wall& wall, const Vec3& at) const {
-  const CurveShape& shape = curves_[wall.curve].shape;
+  const curves::CurveShape& shape = curves_[wall.curve].shape;
   double t = wall.t;
   for (int step = 0; step < kWallSteps; ++step) {
-    const CurveJet jet = jet_at(shape, t);
+    const curves::CurveJet jet = curves::jet_at(shape, t);
     const Vec3 gap = jet.point - at;
     const double speed2 = jet.first.squaredNorm();
     const double bend = speed2 + gap.dot(jet.second);
@@ -355,8 +357,8 @@ double FilmSpace::parameter(int vertex, const Vec3& at) const {
 Eigen::MatrixX3d FilmSpace::wall_normals(int k, const Vec3& at) const {
   const Wall& wall = walls_[k];
   if (wall.curve >= 0) {
-    const Vec3 t =
-        unit(jet_at(curves_[wall.curve].shape, nearest(wall, at)).first);
+    const Vec3 t = unit(
+        curves::jet_at(curves_[wall.curve].shape, nearest(wall, at)).first);
     Eigen::MatrixX3d rows(2, 3);
     rows.row(0) = any_normal(t);
     rows.row(1) = t.cross(any_normal(t));
@@ -374,7 +376,8 @@ Eigen::Matrix3d FilmSpace::wall_curvature(int k, const Vec3& at,
                                           const Vec3& gradient) const {
   const Wall& wall = walls_[k];
   if (wall.curve >= 0) {
-    const CurveJet jet = jet_at(curves_[wall.curve].shape, nearest(wall, at));
+    const curves::CurveJet jet =
+        curves::jet_at(curves_[wall.curve].shape, nearest(wall, at));
     const double speed2 = jet.first.squaredNorm();
     const Vec3 t = jet.first / std::sqrt(speed2);
     // moved() goes back to the nearest point: only the normal part counts.
@@ -393,4 +396,4 @@ Eigen::Matrix3d FilmSpace::wall_curvature(int k, const Vec3& at,
   return sum;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -9,7 +9,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 enum class FilmMotion {
   NormalSpace,
@@ -22,7 +22,7 @@ class FilmSpace {
   /// Takes topology, kinds and constraints, no positions. Throws MeshError for
   /// a facet corner out of range, InvalidInput for a curve that films cannot
   /// slide along.
-  explicit FilmSpace(const FilmComplex& complex,
+  explicit FilmSpace(const films::FilmComplex& complex,
                      FilmMotion motion = FilmMotion::NormalSpace);
 
   /// An unknown is a pair (vertex, direction); those of one vertex follow each
@@ -101,8 +101,8 @@ class FilmSpace {
   std::vector<int> walled_;   // vertices
   std::vector<int> wall_of_;  // per vertex: into walls_, or -1; may be empty
   std::vector<Wall> walls_;
-  std::vector<LevelSet> level_sets_;
-  std::vector<Curve> curves_;
+  std::vector<films::LevelSet> level_sets_;
+  std::vector<curves::Curve> curves_;
 };
 
 /// The axis that is farthest from a line's unit tangent t: t x axis is the
@@ -118,4 +118,4 @@ struct PlaceJet {
 /// An expression of x, y, z. Throws ExpressionError where it has no value.
 PlaceJet jet_at(const Expression& expression, const Vec3& at);
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

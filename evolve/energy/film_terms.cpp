@@ -6,16 +6,17 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "evolve/energy/term_kinds.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 /// Collects terms; keeps their order fixed.
 class FilmTermBuilder {
  public:
-  explicit FilmTermBuilder(const FilmComplex& complex) : complex_(complex) {}
+  explicit FilmTermBuilder(const films::FilmComplex& complex)
+      : complex_(complex) {}
 
   void add(std::unique_ptr<FilmTerm> term,
            std::vector<FilmTerm::Element> elements, int functional,
@@ -55,7 +56,7 @@ class FilmTermBuilder {
 
   void add_tension() {
     for (std::size_t s = 0; s < complex_.surfaces.size(); ++s) {
-      const ComplexSurface& surface = complex_.surfaces[s];
+      const films::ComplexSurface& surface = complex_.surfaces[s];
       if (surface.liquid && surface.tension_field) {
         add(scalar_term(*surface.tension_field),
             facets_of({static_cast<int>(s)}, 1.0), -1);
@@ -71,7 +72,7 @@ class FilmTermBuilder {
         add(flux_term(weight_field(density, complex_.gravity)),
             facets_of_body(body, 1.0), -1);
       }
-      if (complex_.volume_rule == VolumeRule::Column &&
+      if (complex_.volume_rule == films::VolumeRule::Column &&
           !closed_by_facets(complex_, body)) {
         add(flux_term(column_field), facets_of_body(body, 1.0), body);
       }
@@ -82,7 +83,7 @@ class FilmTermBuilder {
     const bool gaps =
         complex_.gap_constant != 0.0 &&
         std::any_of(complex_.level_sets.begin(), complex_.level_sets.end(),
-                    [](const LevelSet& wall) { return wall.convex; });
+                    [](const films::LevelSet& wall) { return wall.convex; });
     if (complex_.edges.empty() || (complex_.integrals.empty() && !gaps)) {
       return;
     }
@@ -94,12 +95,12 @@ class FilmTermBuilder {
       }
     }
     for (std::size_t i = 0; i < complex_.integrals.size(); ++i) {
-      const LineIntegral& integral = complex_.integrals[i];
+      const films::LineIntegral& integral = complex_.integrals[i];
       const auto add_line = [&](const auto& elements, int functional) {
         add(line_term(expression_field(integral.field), complex_.line_points),
             elements, functional);
       };
-      if (integral.role == LineIntegral::Role::Energy) {
+      if (integral.role == films::LineIntegral::Role::Energy) {
         add_line(energy_elements(static_cast<int>(i), around), -1);
         continue;
       }
@@ -113,34 +114,35 @@ class FilmTermBuilder {
   void add_quantities() {
     int held = static_cast<int>(complex_.bodies.size());
     for (std::size_t q = 0; q < complex_.quantities.size(); ++q) {
-      const FilmQuantity& quantity = complex_.quantities[q];
-      const bool energy = quantity.role == FilmQuantity::Role::Energy;
+      const films::FilmQuantity& quantity = complex_.quantities[q];
+      const bool energy = quantity.role == films::FilmQuantity::Role::Energy;
       const int functional =
           energy ? -1
-                 : (quantity.role == FilmQuantity::Role::Held ? held++ : -2);
+                 : (quantity.role == films::FilmQuantity::Role::Held ? held++
+                                                                     : -2);
       const double factor = energy ? quantity.modulus : 1.0;
       const auto number = static_cast<int>(q);
       switch (quantity.kind) {
-        case FilmQuantity::Kind::VectorIntegral:
+        case films::FilmQuantity::Kind::VectorIntegral:
           add(flux_term(expression_field(quantity.field)),
               facets_of(quantity.surfaces, factor), functional, number);
           break;
-        case FilmQuantity::Kind::ScalarIntegral:
+        case films::FilmQuantity::Kind::ScalarIntegral:
           add(scalar_term(quantity.scalar),
               facets_of(quantity.surfaces, factor), functional, number);
           break;
-        case FilmQuantity::Kind::Area:
+        case films::FilmQuantity::Kind::Area:
           add(scalar_term(Expression(1.0)),
               facets_of(quantity.surfaces, factor), functional, number);
           break;
-        case FilmQuantity::Kind::BodyVolume:
+        case films::FilmQuantity::Kind::BodyVolume:
           add_body_quantity(quantity,
-                            complex_.volume_rule == VolumeRule::Column
+                            complex_.volume_rule == films::VolumeRule::Column
                                 ? FieldFunction(column_field)
                                 : FieldFunction(cone_field),
                             factor, functional, number);
           break;
-        case FilmQuantity::Kind::BodyScalarIntegral:
+        case films::FilmQuantity::Kind::BodyScalarIntegral:
           add_body_quantity(quantity, body_field(quantity), factor, functional,
                             number);
           break;
@@ -153,14 +155,15 @@ class FilmTermBuilder {
  private:
   int side(int surface, int body) const {
     int sign = 0;
-    for (const BodySide& s : complex_.bodies[body].sides) {
+    for (const films::BodySide& s : complex_.bodies[body].sides) {
       sign += s.surface == surface ? s.sign : 0;
     }
     return sign;
   }
 
-  void add_body_quantity(const FilmQuantity& quantity, FieldFunction field,
-                         double factor, int functional, int number) {
+  void add_body_quantity(const films::FilmQuantity& quantity,
+                         FieldFunction field, double factor, int functional,
+                         int number) {
     std::vector<FilmTerm::Element> elements;
     for (std::size_t b = 0; b < complex_.bodies.size(); ++b) {
       if (quantity.body < 0 || quantity.body == static_cast<int>(b)) {
@@ -173,7 +176,7 @@ class FilmTermBuilder {
 
   std::map<Edge, std::vector<int>> facets_at_marked_edges() const {
     std::map<Edge, std::vector<int>> around;
-    for (const ComplexEdge& e : complex_.edges) {
+    for (const films::ComplexEdge& e : complex_.edges) {
       if (e.integrals >= 0 || e.constraints >= 0) {
         around[edge_key(e.a, e.b)];
       }
@@ -192,7 +195,7 @@ class FilmTermBuilder {
     return around;
   }
 
-  bool has(const ComplexEdge& e, int integral) const {
+  bool has(const films::ComplexEdge& e, int integral) const {
     if (e.integrals < 0) {
       return false;
     }
@@ -201,7 +204,7 @@ class FilmTermBuilder {
   }
 
   /// Corner of `facet` where the edge a-b starts, and +1 when it runs a to b.
-  FilmTerm::Element on_facet(const ComplexEdge& e, int facet) const {
+  FilmTerm::Element on_facet(const films::ComplexEdge& e, int facet) const {
     const Triangle& t = complex_.mesh.facets[facet];
     for (int k = 0; k < 3; ++k) {
       const int from = t[k];
@@ -219,7 +222,7 @@ class FilmTermBuilder {
   std::vector<FilmTerm::Element> energy_elements(
       int integral, const std::map<Edge, std::vector<int>>& around) const {
     std::vector<FilmTerm::Element> result;
-    for (const ComplexEdge& e : complex_.edges) {
+    for (const films::ComplexEdge& e : complex_.edges) {
       if (!has(e, integral)) {
         continue;
       }
@@ -234,8 +237,8 @@ class FilmTermBuilder {
   std::vector<FilmTerm::Element> gap_elements(
       int wall, const std::map<Edge, std::vector<int>>& around) const {
     std::vector<FilmTerm::Element> result;
-    for (const ComplexEdge& e : complex_.edges) {
-      if (e.constraints < 0 || e.kind != VertexKind::Free) {
+    for (const films::ComplexEdge& e : complex_.edges) {
+      if (e.constraints < 0 || e.kind != films::VertexKind::Free) {
         continue;
       }
       const auto& set = complex_.constraint_sets[e.constraints];
@@ -254,7 +257,7 @@ class FilmTermBuilder {
       int integral, int body,
       const std::map<Edge, std::vector<int>>& around) const {
     std::vector<FilmTerm::Element> result;
-    for (const ComplexEdge& e : complex_.edges) {
+    for (const films::ComplexEdge& e : complex_.edges) {
       if (!has(e, integral)) {
         continue;
       }
@@ -271,11 +274,12 @@ class FilmTermBuilder {
     return result;
   }
 
-  const FilmComplex& complex_;
+  const films::FilmComplex& complex_;
   std::vector<std::unique_ptr<FilmTerm>> terms_;
 };
 
-std::vector<std::unique_ptr<FilmTerm>> film_terms(const FilmComplex& complex) {
+std::vector<std::unique_ptr<FilmTerm>> film_terms(
+    const films::FilmComplex& complex) {
   FilmTermBuilder builder(complex);
   builder.add_tension();
   builder.add_bodies();
@@ -284,9 +288,9 @@ std::vector<std::unique_ptr<FilmTerm>> film_terms(const FilmComplex& complex) {
   return builder.take();
 }
 
-bool closed_by_facets(const FilmComplex& complex, int body) {
+bool closed_by_facets(const films::FilmComplex& complex, int body) {
   std::vector<int> sign(complex.surfaces.size(), 0);
-  for (const BodySide& s : complex.bodies[body].sides) {
+  for (const films::BodySide& s : complex.bodies[body].sides) {
     sign[s.surface] += s.sign;
   }
   // Every edge must be run as often each way.
@@ -304,14 +308,29 @@ bool closed_by_facets(const FilmComplex& complex, int body) {
   return std::all_of(runs.begin(), runs.end(), [](int n) { return n == 0; });
 }
 
-std::vector<int> held_quantities(const FilmComplex& complex) {
+std::vector<int> held_quantities(const films::FilmComplex& complex) {
   std::vector<int> result;
   for (std::size_t q = 0; q < complex.quantities.size(); ++q) {
-    if (complex.quantities[q].role == FilmQuantity::Role::Held) {
+    if (complex.quantities[q].role == films::FilmQuantity::Role::Held) {
       result.push_back(static_cast<int>(q));
     }
   }
   return result;
 }
 
-}  // namespace meniscus
+films::FilmTargets targets_of(const films::FilmComplex& complex) {
+  films::FilmTargets targets;
+  for (const films::ComplexSurface& surface : complex.surfaces) {
+    targets.tension.push_back(surface.liquid ? surface.tension : 0.0);
+  }
+  targets.bodies = complex.bodies;
+  for (const int q : held_quantities(complex)) {
+    films::ComplexBody held;
+    held.name = complex.quantities[q].name;
+    held.volume = complex.quantities[q].target;
+    targets.bodies.push_back(std::move(held));
+  }
+  return targets;
+}
+
+}  // namespace meniscus::energy

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "evolve/films/film_complex.h"
+#include "evolve/films/film_targets.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 /// Derivatives of one element, the nine coordinates of its facet's corners.
 struct FacetJet {
@@ -49,13 +50,17 @@ class FilmTerm {
 
 /// The terms of a complex, in a fixed order. Throws InvalidInput for a held
 /// functional over nothing.
-std::vector<std::unique_ptr<FilmTerm>> film_terms(const FilmComplex& complex);
+std::vector<std::unique_ptr<FilmTerm>> film_terms(
+    const films::FilmComplex& complex);
 
 /// True where the body's facets close it, so that cones measure its volume
 /// whatever the rule.
-bool closed_by_facets(const FilmComplex& complex, int body);
+bool closed_by_facets(const films::FilmComplex& complex, int body);
 
 /// Quantities that are held, in order: functional bodies + k.
-std::vector<int> held_quantities(const FilmComplex& complex);
+std::vector<int> held_quantities(const films::FilmComplex& complex);
 
-}  // namespace meniscus
+/// What a complex asks of its liquid.
+films::FilmTargets targets_of(const films::FilmComplex& complex);
+
+}  // namespace meniscus::energy

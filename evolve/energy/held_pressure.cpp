@@ -4,9 +4,9 @@
 
 #include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
-VectorX guess_pressures(const FilmTargets& targets,
+VectorX guess_pressures(const films::FilmTargets& targets,
                         const std::vector<int>& held, const VectorX& gradient,
                         const Eigen::MatrixXd& slopes, const VectorX& metric) {
   VectorX pressure = VectorX::Zero(slopes.cols());
@@ -27,4 +27,4 @@ VectorX guess_pressures(const FilmTargets& targets,
   return pressure;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

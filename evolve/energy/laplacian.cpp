@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -90,4 +90,4 @@ LaplaceSystem cotan_laplacian(const SurfaceMesh& mesh,
   return system;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -4,7 +4,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/math/linear_solve.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 enum class CotanWeights {
   Exact,   // reproduces linear functions on planar meshes
@@ -26,4 +26,4 @@ LaplaceSystem cotan_laplacian(const SurfaceMesh& mesh,
                               const std::vector<int>& unknown_of, int unknowns,
                               CotanWeights weights);
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

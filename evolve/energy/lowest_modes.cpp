@@ -5,11 +5,11 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 #include "evolve/energy/constrained_hessian.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -111,4 +111,4 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -5,7 +5,7 @@
 
 #include "evolve/energy/film_space.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -65,4 +65,4 @@ FieldJet radial_field(const Expression& phi, const Vec3& origin,
   return jet;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

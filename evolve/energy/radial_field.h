@@ -8,7 +8,7 @@
 #include "core/math/expression.h"
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 /// F, its derivative and the second derivatives of its components.
 struct FieldJet {
@@ -25,4 +25,4 @@ struct FieldJet {
 FieldJet radial_field(const Expression& phi, const Vec3& origin,
                       const Vec3& at);
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -4,15 +4,15 @@
 
 #include <Eigen/Geometry>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
+#include "core/math/union_find.h"
 #include "evolve/energy/energy.h"
 #include "evolve/energy/facet_terms.h"
-#include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
-void FilmEnergy::find_floating(const FilmComplex& complex) {
+void FilmEnergy::find_floating(const films::FilmComplex& complex) {
   floating_.assign(unknowns(), -1);
   if (resisted_) {
     return;
@@ -21,7 +21,7 @@ void FilmEnergy::find_floating(const FilmComplex& complex) {
   std::vector<char> held(points, 0);
   bool any_free = false;
   for (int v = 0; v < points; ++v) {
-    held[v] = complex.vertices[v].kind != VertexKind::Free ||
+    held[v] = complex.vertices[v].kind != films::VertexKind::Free ||
               (space_.rank(v) == 0 && space_.vertex_count() > v);
     any_free = any_free || held[v] == 0;
   }
@@ -137,4 +137,4 @@ Eigen::MatrixXd FilmEnergy::rigid_motions(const Points& points,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

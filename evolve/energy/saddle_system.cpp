@@ -1,6 +1,6 @@
 #include "evolve/energy/saddle_system.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -9,7 +9,8 @@ constexpr double kAccuracy = 1e-13;  // of the right sides, relative
 
 }  // namespace
 
-SaddleSystem::SaddleSystem(const FilmEnergy& energy, const FilmTargets& targets,
+SaddleSystem::SaddleSystem(const FilmEnergy& energy,
+                           const films::FilmTargets& targets,
                            const Points& points, const Points& directions,
                            const VectorX& pressure)
     : metric_(energy.lumped_area(points)),
@@ -54,4 +55,4 @@ ConstrainedHessian::Step SaddleSystem::solve(const VectorX& residual,
   return step;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

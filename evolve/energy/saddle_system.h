@@ -7,13 +7,13 @@
 #include "evolve/energy/constrained_hessian.h"
 #include "evolve/energy/energy.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 class SaddleSystem {
  public:
   /// At `points`, along `directions` (one per unknown), under `pressure` (one
   /// per functional). `energy` must outlive this.
-  SaddleSystem(const FilmEnergy& energy, const FilmTargets& targets,
+  SaddleSystem(const FilmEnergy& energy, const films::FilmTargets& targets,
                const Points& points, const Points& directions,
                const VectorX& pressure);
 
@@ -44,4 +44,4 @@ class SaddleSystem {
   bool factored_ = false;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

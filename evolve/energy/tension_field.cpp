@@ -6,11 +6,11 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
-double tension_at(const ComplexSurface& film, const Vec3& p) {
+double tension_at(const films::ComplexSurface& film, const Vec3& p) {
   const auto refuse = [&](const std::string& found) {
     throw InvalidInput(
         fmt::format("film '{}': its tension {} at ({:.6g}, {:.6g}, {:.6g}); it "
@@ -30,7 +30,7 @@ double tension_at(const ComplexSurface& film, const Vec3& p) {
   return tension;
 }
 
-double mean_tension(const FilmComplex& complex, int surface,
+double mean_tension(const films::FilmComplex& complex, int surface,
                     const Points& points) {
   std::vector<char> on_film(points.size(), 0);
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
@@ -53,11 +53,11 @@ double mean_tension(const FilmComplex& complex, int surface,
 
 }  // namespace
 
-std::vector<double> tensions_at(const FilmComplex& complex,
+std::vector<double> tensions_at(const films::FilmComplex& complex,
                                 const Points& points) {
   std::vector<double> result;
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
-    const ComplexSurface& surface = complex.surfaces[s];
+    const films::ComplexSurface& surface = complex.surfaces[s];
     result.push_back(surface.liquid && surface.tension_field
                          ? mean_tension(complex, static_cast<int>(s), points)
                          : surface.tension);
@@ -70,4 +70,4 @@ Expression positive_only(const Expression& field) {
                            {"x", "y", "z"});
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

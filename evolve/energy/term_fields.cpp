@@ -4,9 +4,9 @@
 
 #include "evolve/energy/film_space.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
-FieldFunction expression_field(const VectorField& field) {
+FieldFunction expression_field(const films::VectorField& field) {
   return [field](const Vec3& at, JetOrder order) {
     FieldJet jet;
     for (int m = 0; m < 3; ++m) {
@@ -53,11 +53,11 @@ FieldJet cone_field(const Vec3& at, JetOrder /*order*/) {
   return jet;
 }
 
-FieldFunction body_field(const FilmQuantity& quantity) {
+FieldFunction body_field(const films::FilmQuantity& quantity) {
   return [phi = quantity.scalar, origin = quantity.origin](const Vec3& at,
                                                            JetOrder /*order*/) {
     return radial_field(phi, origin, at);
   };
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -6,12 +6,12 @@
 #include "evolve/energy/film_terms.h"
 #include "evolve/energy/radial_field.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 /// F at a place with its first and second derivatives, up to the order asked.
 using FieldFunction = std::function<FieldJet(const Vec3&, JetOrder)>;
 
-FieldFunction expression_field(const VectorField& field);
+FieldFunction expression_field(const films::VectorField& field);
 
 /// Weight: F = -rho (g.x)^2 / (2 |g|^2) g has divergence -rho g.x.
 FieldFunction weight_field(double density, const Vec3& g);
@@ -24,6 +24,6 @@ FieldJet cone_field(const Vec3& at, JetOrder order);
 
 /// Its flux through a body's facets is the integral of a
 /// BodyScalarIntegral's scalar.
-FieldFunction body_field(const FilmQuantity& quantity);
+FieldFunction body_field(const films::FilmQuantity& quantity);
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

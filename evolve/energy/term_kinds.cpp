@@ -8,10 +8,10 @@
 
 #include <Eigen/Geometry>
 
-#include "evolve/energy/film_space.h"
 #include "core/math/dense.h"
+#include "evolve/energy/film_space.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 namespace {
 
@@ -338,4 +338,4 @@ std::unique_ptr<FilmTerm> gap_term(Expression formula, double constant) {
   return std::make_unique<GapTerm>(std::move(formula), constant);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -5,7 +5,7 @@
 
 #include "evolve/energy/term_fields.h"
 
-namespace meniscus {
+namespace meniscus::energy {
 
 /// Integral of F . n over facets.
 std::unique_ptr<FilmTerm> flux_term(FieldFunction field);
@@ -20,4 +20,4 @@ std::unique_ptr<FilmTerm> line_term(FieldFunction field, int points);
 /// gap_constant).
 std::unique_ptr<FilmTerm> gap_term(Expression formula, double constant);
 
-}  // namespace meniscus
+}  // namespace meniscus::energy

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 namespace {
 
@@ -307,4 +307,4 @@ SurfaceMesh body_surface(const FilmComplex& complex, const ComplexBody& body) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -4,7 +4,7 @@
 #include "evolve/films/film_complex.h"
 #include "evolve/films/film_system.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// A body of surfaces by their number among the mesh's labels, all signs 1.
 /// Throws InvalidInput that names what is wrong with its volume, its pressure
@@ -23,4 +23,4 @@ void orient_bodies(FilmComplex& complex);
 /// The closed, outward surface of one body, with the complex's labels.
 SurfaceMesh body_surface(const FilmComplex& complex, const ComplexBody& body);
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -7,11 +7,11 @@
 
 #include <Eigen/Core>
 
-#include "evolve/films/rims.h"
 #include "core/geometry/edge_key.h"
 #include "core/math/dense.h"
+#include "evolve/films/rims.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 namespace {
 
@@ -56,7 +56,7 @@ double golden_section(double low, double high, const Distance& distance) {
 }
 
 /// In closed form: samples may miss the near one of two sides close together.
-double nearest_on(const Polygon& polygon, const Vec3& at) {
+double nearest_on(const curves::Polygon& polygon, const Vec3& at) {
   const auto sides = static_cast<double>(polygon.points.size());
   double best = 0.0;
   double least = std::numeric_limits<double>::infinity();
@@ -76,14 +76,15 @@ double nearest_on(const Polygon& polygon, const Vec3& at) {
 
 }  // namespace
 
-double nearest_parameter(const CurveShape& shape, const Vec3& at, double near) {
+double nearest_parameter(const curves::CurveShape& shape, const Vec3& at,
+                         double near) {
   const auto distance = [&](double t) {
-    return (point_at(shape, t) - at).squaredNorm();
+    return (curves::point_at(shape, t) - at).squaredNorm();
   };
-  if (const auto* polygon = std::get_if<Polygon>(&shape)) {
+  if (const auto* polygon = std::get_if<curves::Polygon>(&shape)) {
     return nearest_on(*polygon, at);
   }
-  if (!std::holds_alternative<ParametricCurve>(shape)) {
+  if (!std::holds_alternative<curves::ParametricCurve>(shape)) {
     double best = 0.0;
     for (int i = 1; i < kCurveSamples; ++i) {
       const double t = static_cast<double>(i) / kCurveSamples;
@@ -94,7 +95,7 @@ double nearest_parameter(const CurveShape& shape, const Vec3& at, double near) {
     const double wrapped = t - std::floor(t);
     return wrapped < 1.0 ? wrapped : 0.0;
   }
-  const double speed = jet_at(shape, near).first.norm();
+  const double speed = curves::jet_at(shape, near).first.norm();
   double step = speed > 0.0 ? 0.1 * std::sqrt(distance(near)) / speed : 1e-3;
   if (!(step > 0.0)) {
     return near;
@@ -190,17 +191,17 @@ PlacedVertex born_on(const FilmComplex& complex, const ComplexEdge& mark,
   made.vertex.kind = mark.kind;
   made.place = 0.5 * (a.place + b.place);
   if (along_curve(mark)) {
-    const CurveShape& shape = complex.curves[mark.curve].shape;
+    const curves::CurveShape& shape = complex.curves[mark.curve].shape;
     const bool from_a = on_curve_of(mark, a.vertex);
     const bool from_b = on_curve_of(mark, b.vertex);
     made.vertex.curve = mark.curve;
     made.vertex.t =
         from_a && from_b
-            ? middle_parameter(shape, a.vertex.t, b.vertex.t)
+            ? curves::middle_parameter(shape, a.vertex.t, b.vertex.t)
             : nearest_parameter(
                   shape, made.place,
                   from_a ? a.vertex.t : (from_b ? b.vertex.t : 0.0));
-    made.place = point_at(shape, made.vertex.t);
+    made.place = curves::point_at(shape, made.vertex.t);
   } else if (mark.constraints >= 0) {
     const auto left = [](const ComplexVertex& v) {
       return v.kind == VertexKind::Free && v.constraints >= 0 && !v.held;
@@ -215,4 +216,4 @@ PlacedVertex born_on(const FilmComplex& complex, const ComplexEdge& mark,
   return made;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

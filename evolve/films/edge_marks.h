@@ -6,7 +6,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// Built once, asked often. Refers to nothing.
 class EdgeMarks {
@@ -52,6 +52,7 @@ Vec3 onto_walls(const FilmComplex& complex, int set, bool held, const Vec3& at);
 
 /// Parameter of the curve's point nearest to `at`; parametric curves are
 /// searched from `near`, closed ones all around.
-double nearest_parameter(const CurveShape& shape, const Vec3& at, double near);
+double nearest_parameter(const curves::CurveShape& shape, const Vec3& at,
+                         double near);
 
-}  // namespace meniscus
+}  // namespace meniscus::films

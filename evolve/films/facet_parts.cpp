@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 namespace {
 
@@ -191,4 +191,4 @@ FacetParts facet_parts(const FilmSystem& system) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

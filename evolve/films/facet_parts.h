@@ -7,7 +7,7 @@
 #include "core/types.h"
 #include "evolve/films/film_system.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 struct FacetPart {
   std::string what;  // "film 'skin'", for messages
@@ -42,4 +42,4 @@ FacetParts facet_parts(const FilmSystem& system);
 
 std::string text_of_place(const Vec3& p);
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -9,7 +9,7 @@
 #include "core/math/expression.h"
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 struct PointPole {
   Vec3 at = Vec3::Zero();
@@ -64,4 +64,4 @@ struct PressureSpec {
   Expression pressure;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -1,6 +1,6 @@
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 FilmComplex::FilmComplex() = default;
 FilmComplex::~FilmComplex() = default;
@@ -9,4 +9,4 @@ FilmComplex::FilmComplex(FilmComplex&& other) noexcept = default;
 FilmComplex& FilmComplex::operator=(const FilmComplex& other) = default;
 FilmComplex& FilmComplex::operator=(FilmComplex&& other) noexcept = default;
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -12,7 +12,7 @@
 #include "core/math/expression.h"
 #include "evolve/films/film_system.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 enum class VertexKind {
   Free,     // liquid: moves with its films, within its constraints
@@ -137,7 +137,7 @@ struct FilmComplex {
   std::vector<ComplexEdge> edges;        // marked ones only
   std::vector<ComplexSurface> surfaces;  // one per label
   std::vector<ComplexBody> bodies;
-  std::vector<Curve> curves;
+  std::vector<curves::Curve> curves;
   std::vector<LevelSet> level_sets;
   std::vector<std::vector<int>> constraint_sets;  // of indices of level_sets
   std::vector<LineIntegral> integrals;
@@ -152,4 +152,4 @@ struct FilmComplex {
   double gap_constant = 0.0;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::films

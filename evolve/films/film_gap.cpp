@@ -6,10 +6,10 @@
 
 #include <Eigen/Geometry>
 
-#include "core/geometry/facet_tree.h"
 #include "core/geometry/box_tree.h"
+#include "core/geometry/facet_tree.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 namespace {
 
@@ -120,4 +120,4 @@ ShortestLine shortest_line(const SurfaceMesh& mesh,
   return best;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -5,7 +5,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 struct ShortestLine {
   double length = 0.0;
@@ -24,4 +24,4 @@ ShortestLine shortest_line(const SurfaceMesh& mesh,
                            const std::vector<int>& from,
                            const std::vector<int>& to);
 
-}  // namespace meniscus
+}  // namespace meniscus::films

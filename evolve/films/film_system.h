@@ -13,7 +13,7 @@
 #include "evolve/curves/curve.h"
 #include "evolve/films/field_spec.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 enum class FilmKind {
   Branch,  // convex hull of any number of closed curves, less their caps
@@ -80,7 +80,7 @@ struct BodySpec {
 };
 
 struct FilmSystem {
-  std::vector<Curve> curves;
+  std::vector<curves::Curve> curves;
   std::vector<FilmSpec> films;
   std::vector<CapSpec> caps;
   std::vector<BodySpec> bodies;
@@ -92,4 +92,4 @@ struct FilmSystem {
   bool keep_facets = false;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::films

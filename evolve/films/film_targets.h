@@ -5,7 +5,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// What is asked of the liquid.
 struct FilmTargets {
@@ -14,6 +14,4 @@ struct FilmTargets {
                                     // per held quantity, its target as volume
 };
 
-FilmTargets targets_of(const FilmComplex& complex);
-
-}  // namespace meniscus
+}  // namespace meniscus::films

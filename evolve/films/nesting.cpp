@@ -9,13 +9,13 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "core/geometry/facet_pairs.h"
-#include "evolve/films/film_gap.h"
 #include "core/math/union_find.h"
+#include "evolve/films/film_gap.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 namespace {
 
@@ -311,4 +311,4 @@ NestingReport check_nesting(const FilmComplex& complex,
   return check_nesting(complex.mesh, films, options);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

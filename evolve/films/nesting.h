@@ -6,7 +6,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// Two facets that cross; film and other may be the same.
 struct FilmCrossing {
@@ -64,4 +64,4 @@ NestingReport check_nesting(const SurfaceMesh& mesh,
 NestingReport check_nesting(const FilmComplex& complex,
                             const NestingOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 namespace {
 
@@ -78,4 +78,4 @@ Vec3 put_on_constraints(const FilmComplex& complex, int set, const Vec3& from) {
   return p;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

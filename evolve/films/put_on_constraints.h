@@ -3,7 +3,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// A point near `from` that satisfies the level sets of constraint_sets[set],
 /// by Newton's method with least-norm steps, to 1e-10 in each formula's unit
@@ -12,4 +12,4 @@ namespace meniscus {
 /// nearby or a formula cannot be evaluated.
 Vec3 put_on_constraints(const FilmComplex& complex, int set, const Vec3& from);
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -9,7 +9,7 @@
 #include "evolve/curves/curve_shape.h"
 #include "evolve/films/rims.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 namespace {
 
@@ -88,10 +88,10 @@ std::function<double(const Vec3&)> graded(const Points& points,
 
 }  // namespace
 
-bool has_many_sides(const CurveShape& shape) {
+bool has_many_sides(const curves::CurveShape& shape) {
   // Rims of fewer pieces than this are cut finer for the sake of roundness.
   constexpr int kRound = 12;
-  return curve_shape::part_count(shape) > kRound;
+  return curves::curve_shape::part_count(shape) > kRound;
 }
 
 std::function<double(const Vec3&)> graded_edge(const Points& rim, double edge) {
@@ -116,14 +116,16 @@ std::function<double(const Vec3&)> graded_edge(const FilmComplex& complex,
 
 bool halving_is_too_fine(const FilmSystem& system, double edge) {
   return std::any_of(
-      system.curves.begin(), system.curves.end(), [&](const Curve& curve) {
+      system.curves.begin(), system.curves.end(),
+      [&](const curves::Curve& curve) {
         return has_many_sides(curve.shape) &&
                2.0 * static_cast<double>(
-                         sample_parameters(curve.shape, 2.0 * edge).size()) >
+                         curves::sample_parameters(curve.shape, 2.0 * edge)
+                             .size()) >
                    kMuchFiner *
                        static_cast<double>(
-                           sample_parameters(curve.shape, edge).size());
+                           curves::sample_parameters(curve.shape, edge).size());
       });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -6,11 +6,11 @@
 #include "evolve/films/film_complex.h"
 #include "evolve/films/film_system.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// A curve of so many corners that they, not the edge length, may decide how
 /// finely it is cut.
-bool has_many_sides(const CurveShape& shape);
+bool has_many_sides(const curves::CurveShape& shape);
 
 /// The length wanted at a place inside the closed polygon `rim`: `edge` far
 /// from it, and beside a point of it the length of its own two pieces, growing
@@ -26,4 +26,4 @@ std::function<double(const Vec3&)> graded_edge(const FilmComplex& complex,
 /// shorter than edges.
 bool halving_is_too_fine(const FilmSystem& system, double edge);
 
-}  // namespace meniscus
+}  // namespace meniscus::films

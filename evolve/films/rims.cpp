@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace meniscus {
+namespace meniscus::films {
 
 std::vector<int> rim_neighbours(const FilmComplex& complex) {
   const auto& vertices = complex.vertices;
@@ -38,4 +38,4 @@ std::vector<int> rim_neighbours(const FilmComplex& complex) {
   return next;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

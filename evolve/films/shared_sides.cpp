@@ -4,21 +4,21 @@
 
 #include "core/geometry/edge_key.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 namespace {
 
 constexpr double kSame = 1e-9;  // x the size of all polygons
 
-const Points& corners_of(const Curve& curve) {
+const Points& corners_of(const curves::Curve& curve) {
   static const Points none;
-  const auto* polygon = std::get_if<Polygon>(&curve.shape);
+  const auto* polygon = std::get_if<curves::Polygon>(&curve.shape);
   return polygon != nullptr ? polygon->points : none;
 }
 
-double reach_of(const std::vector<Curve>& curves) {
+double reach_of(const std::vector<curves::Curve>& curves) {
   Points all;
-  for (const Curve& curve : curves) {
+  for (const curves::Curve& curve : curves) {
     const Points& corners = corners_of(curve);
     all.insert(all.end(), corners.begin(), corners.end());
   }
@@ -27,7 +27,7 @@ double reach_of(const std::vector<Curve>& curves) {
 
 }  // namespace
 
-std::vector<SharedSide> shared_sides(const std::vector<Curve>& curves) {
+std::vector<SharedSide> shared_sides(const std::vector<curves::Curve>& curves) {
   const double reach = reach_of(curves);
   struct Side {
     int curve;
@@ -63,7 +63,7 @@ std::vector<SharedSide> shared_sides(const std::vector<Curve>& curves) {
   return result;
 }
 
-SharedRims::SharedRims(const std::vector<Curve>& curves)
+SharedRims::SharedRims(const std::vector<curves::Curve>& curves)
     : shares_(curves.size(), 0), reach_(reach_of(curves)) {
   for (const SharedSide& side : shared_sides(curves)) {
     shares_[static_cast<std::size_t>(side.first_curve)] = 1;
@@ -89,7 +89,7 @@ int SharedRims::corner(int curve, int k, FilmComplex& complex) {
 
 std::vector<int> SharedRims::rim(int curve, const std::vector<double>& t,
                                  FilmComplex& complex) {
-  const CurveShape shape = complex.curves[curve].shape;
+  const curves::CurveShape shape = complex.curves[curve].shape;
   const auto n = static_cast<int>(corners_of(complex.curves[curve]).size());
   std::vector<int> corners;
   for (int k = 0; k < n; ++k) {
@@ -112,7 +112,7 @@ std::vector<int> SharedRims::rim(int curve, const std::vector<double>& t,
       chain.from = {a};
       for (const double at : inner) {
         chain.from.push_back(static_cast<int>(complex.mesh.points.size()));
-        complex.mesh.points.push_back(point_at(shape, at));
+        complex.mesh.points.push_back(curves::point_at(shape, at));
         complex.vertices.push_back({VertexKind::OnCurve, curve, at});
       }
       chain.from.push_back(b);
@@ -142,4 +142,4 @@ void SharedRims::mark_edges(FilmComplex& complex) const {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

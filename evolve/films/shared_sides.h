@@ -7,7 +7,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// A side of two polygons that both run between the same two corners.
 struct SharedSide {
@@ -20,7 +20,7 @@ struct SharedSide {
 
 /// All of them, in order of the curves; corners may be 1e-9 x the polygons'
 /// size apart. Curves of other kinds share none.
-std::vector<SharedSide> shared_sides(const std::vector<Curve>& curves);
+std::vector<SharedSide> shared_sides(const std::vector<curves::Curve>& curves);
 
 /// Makes the rims of polygons with shared sides out of one set of vertices: a
 /// corner is one vertex, a side one chain, for all polygons that have it. Each
@@ -28,7 +28,7 @@ std::vector<SharedSide> shared_sides(const std::vector<Curve>& curves);
 /// and grooming, which otherwise find rims by their curves.
 class SharedRims {
  public:
-  explicit SharedRims(const std::vector<Curve>& curves);
+  explicit SharedRims(const std::vector<curves::Curve>& curves);
 
   /// Has the curve a side that another one has too?
   bool shares(int curve) const {
@@ -56,4 +56,4 @@ class SharedRims {
   std::map<Edge, Chain> sides_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::films

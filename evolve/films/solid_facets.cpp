@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace meniscus {
+namespace meniscus::films {
 
 std::vector<int> regions_of(const std::vector<BodySpec>& bodies) {
   std::vector<int> regions;
@@ -83,4 +83,4 @@ void drop_unused(SurfaceMesh& mesh, std::vector<int>& corner) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

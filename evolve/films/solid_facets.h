@@ -5,7 +5,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// Regions of material: per body its number from 0 in the bodies' order, or -1
 /// for a void.
@@ -26,4 +26,4 @@ void drop_interfaces(SurfaceMesh& mesh);
 /// keeps the others' entries.
 void drop_unused(SurfaceMesh& mesh, std::vector<int>& corner);
 
-}  // namespace meniscus
+}  // namespace meniscus::films

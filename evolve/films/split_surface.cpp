@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "core/nearest_name.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 namespace {
 
@@ -175,4 +175,4 @@ int split_surface(FilmComplex& complex, const std::string& surface,
   return label;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -5,7 +5,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// What a region of a film becomes.
 struct Region {
@@ -28,4 +28,4 @@ struct Region {
 int split_surface(FilmComplex& complex, const std::string& surface,
                   const Expression& where, const Region& region);
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -8,7 +8,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::films {
 
 /// Tangent of a triangle's smallest angle (at most 60 degrees); 0 when
 /// degenerate. Orders shapes as the angle does, for less work.
@@ -28,4 +28,4 @@ inline double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return std::atan(smallest_tangent(a, b, c));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::films

@@ -3,15 +3,15 @@
 #include "core/error.h"
 #include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 namespace {
 
 /// Vertices of a kind that facets link to a rim; others, of parts that float,
 /// stay where they are.
-std::vector<char> carried_vertices(const FilmComplex& reference,
-                                   VertexKind kind) {
-  const bool film = kind == VertexKind::Free;
+std::vector<char> carried_vertices(const films::FilmComplex& reference,
+                                   films::VertexKind kind) {
+  const bool film = kind == films::VertexKind::Free;
   UnionFind parts(reference.vertices.size());
   const SurfaceMesh& mesh = reference.mesh;
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
@@ -39,7 +39,8 @@ std::vector<char> carried_vertices(const FilmComplex& reference,
 
 }  // namespace
 
-Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind,
+Carry::Extension Carry::extend(const films::FilmComplex& reference,
+                               films::VertexKind kind,
                                const std::vector<int>& order) {
   Extension extension;
   std::vector<int> unknown_of(reference.vertices.size(), -1);
@@ -53,15 +54,15 @@ Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind,
   if (extension.vertices.empty()) {
     return extension;
   }
-  const bool film = kind == VertexKind::Free;
+  const bool film = kind == films::VertexKind::Free;
   std::vector<double> weight;
   for (const int label : reference.mesh.facet_label) {
     weight.push_back(reference.surfaces[label].liquid == film ? 1.0 : 0.0);
   }
   const auto count = static_cast<int>(extension.vertices.size());
-  LaplaceSystem laplace =
-      cotan_laplacian(reference.mesh, weight, unknown_of, count,
-                      film ? CotanWeights::Clamped : CotanWeights::Exact);
+  energy::LaplaceSystem laplace = energy::cotan_laplacian(
+      reference.mesh, weight, unknown_of, count,
+      film ? energy::CotanWeights::Clamped : energy::CotanWeights::Exact);
   extension.outer.swap(laplace.outer);
   laplace.inner.makeCompressed();
   // Films with triple lines have more unknowns than vertices: no order then.
@@ -77,25 +78,26 @@ Carry::Extension Carry::extend(const FilmComplex& reference, VertexKind kind,
   return extension;
 }
 
-Carry::Carry(const FilmComplex& reference, const std::vector<int>& film_order)
+Carry::Carry(const films::FilmComplex& reference,
+             const std::vector<int>& film_order)
     : reference_(reference.mesh.points),
       kinds_(reference.vertices),
-      films_(extend(reference, VertexKind::Free, film_order)),
-      caps_(extend(reference, VertexKind::InCap, {})) {}
+      films_(extend(reference, films::VertexKind::Free, film_order)),
+      caps_(extend(reference, films::VertexKind::InCap, {})) {}
 
-Points Carry::rim_moves(const std::vector<Curve>& curves) const {
+Points Carry::rim_moves(const std::vector<curves::Curve>& curves) const {
   Points moves(reference_.size(), Vec3::Zero());
   std::vector<std::vector<std::size_t>> rims(curves.size());
   std::vector<std::vector<double>> parameters(curves.size());
   for (std::size_t v = 0; v < kinds_.size(); ++v) {
-    if (kinds_[v].kind == VertexKind::OnCurve) {
+    if (kinds_[v].kind == films::VertexKind::OnCurve) {
       const auto c = static_cast<std::size_t>(kinds_[v].curve);
       rims[c].push_back(v);
       parameters[c].push_back(kinds_[v].t);
     }
   }
   for (std::size_t c = 0; c < curves.size(); ++c) {
-    const Points places = points_at(curves[c].shape, parameters[c]);
+    const Points places = curves::points_at(curves[c].shape, parameters[c]);
     for (std::size_t k = 0; k < places.size(); ++k) {
       moves[rims[c][k]] = places[k] - reference_[rims[c][k]];
     }
@@ -144,7 +146,7 @@ Points Carry::transpose(const Points& by_points) const {
   add_transposed(films_, by_points, result);
   add_transposed(caps_, by_points, result);
   for (std::size_t v = 0; v < kinds_.size(); ++v) {
-    if (kinds_[v].kind != VertexKind::OnCurve) {
+    if (kinds_[v].kind != films::VertexKind::OnCurve) {
       result[v].setZero();
     }
   }
@@ -165,7 +167,7 @@ Points Carry::at(const Points& rim_moves, double fraction) const {
   }
   Points result = reference_;
   for (std::size_t v = 0; v < kinds_.size(); ++v) {
-    if (kinds_[v].kind == VertexKind::OnCurve) {
+    if (kinds_[v].kind == films::VertexKind::OnCurve) {
       result[v] += moves[v];
     }
   }
@@ -174,4 +176,4 @@ Points Carry::at(const Points& rim_moves, double fraction) const {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

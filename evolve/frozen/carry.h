@@ -6,7 +6,7 @@
 #include "evolve/energy/energy.h"
 #include "evolve/energy/laplacian.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 /// X(p) = X(p0) + C (r(p) - r(p0)): every vertex moves by a fixed mean of the
 /// moves of the rim vertices, with rows of C that sum to one. On films C is
@@ -18,11 +18,12 @@ class Carry {
  public:
   /// `film_order`: elimination order of the free vertices, as FilmEnergy has
   /// found it. Throws MeshError for a film whose Laplacian is singular.
-  Carry(const FilmComplex& reference, const std::vector<int>& film_order);
+  Carry(const films::FilmComplex& reference,
+        const std::vector<int>& film_order);
 
   /// Moves of the rim vertices from the reference to `curves` (same order as
   /// the complex's curves); zero at all other vertices.
-  Points rim_moves(const std::vector<Curve>& curves) const;
+  Points rim_moves(const std::vector<curves::Curve>& curves) const;
 
   /// X for `fraction` of the rim moves. The reference itself, bit for bit,
   /// when all moves are zero.
@@ -41,7 +42,8 @@ class Carry {
     SparseMatrix outer;
     std::optional<SymmetricFactor> factor;
   };
-  static Extension extend(const FilmComplex& reference, VertexKind kind,
+  static Extension extend(const films::FilmComplex& reference,
+                          films::VertexKind kind,
                           const std::vector<int>& order);
   static void apply(const Extension& extension, const Points& moves,
                     Points& result);
@@ -49,9 +51,9 @@ class Carry {
                              const Points& by_points, Points& result);
 
   Points reference_;
-  std::vector<ComplexVertex> kinds_;
+  std::vector<films::ComplexVertex> kinds_;
   Extension films_;
   Extension caps_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 namespace {
 
@@ -18,10 +18,10 @@ double entry(const VectorX& values, Eigen::Index at) {
 
 }  // namespace
 
-FilmAdjoint::FilmAdjoint(const FilmEnergy& energy, const FilmTargets& targets,
-                         const Points& base, const Points& directions,
-                         const Points& points, const VectorX& heights,
-                         const VectorX& pressure)
+FilmAdjoint::FilmAdjoint(const energy::FilmEnergy& energy,
+                         const films::FilmTargets& targets, const Points& base,
+                         const Points& directions, const Points& points,
+                         const VectorX& heights, const VectorX& pressure)
     : energy_(energy),
       targets_(targets),
       base_(base),
@@ -65,7 +65,7 @@ FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
     by_pressure[static_cast<Eigen::Index>(k)] =
         entry(response.pressures, held[k]);
   }
-  const ConstrainedHessian::Step step =
+  const energy::ConstrainedHessian::Step step =
       saddle_.solve(energy_.along(result.base, directions_), by_pressure);
   const VectorX& mu = step.dh;
   Points motion(points_.size(), Vec3::Zero());  // sum mu n
@@ -134,11 +134,12 @@ Points FilmAdjoint::tangent(const Rates& rates) const {
   for (int i = 0; i < energy_.unknowns(); ++i) {
     residual[i] += turning[i].dot(slope_[energy_.vertices()[i]]);
   }
-  const ConstrainedHessian::Step step = saddle_.solve(residual, missing);
+  const energy::ConstrainedHessian::Step step =
+      saddle_.solve(residual, missing);
   for (int i = 0; i < energy_.unknowns(); ++i) {
     motion[energy_.vertices()[i]] += step.dh[i] * directions_[i];
   }
   return motion;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -10,7 +10,7 @@
 #include "evolve/energy/saddle_system.h"
 #include "evolve/frozen/film_gradient.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 /// A film at rest, factored once for any number of responses.
 class FilmAdjoint {
@@ -18,10 +18,10 @@ class FilmAdjoint {
   /// `base`, `directions`: X and n(X); `points`: the film at `heights`, at
   /// rest under `pressure` (one per functional). References must outlive
   /// this. Throws SolverError for a Hessian that is not finite.
-  FilmAdjoint(const FilmEnergy& energy, const FilmTargets& targets,
-              const Points& base, const Points& directions,
-              const Points& points, const VectorX& heights,
-              const VectorX& pressure);
+  FilmAdjoint(const energy::FilmEnergy& energy,
+              const films::FilmTargets& targets, const Points& base,
+              const Points& directions, const Points& points,
+              const VectorX& heights, const VectorX& pressure);
 
   struct Result {
     Points base;        // dJ/dX, one per vertex
@@ -46,17 +46,17 @@ class FilmAdjoint {
  private:
   Points direct(const FilmCovector& response) const;
 
-  const FilmEnergy& energy_;
-  const FilmTargets& targets_;
+  const energy::FilmEnergy& energy_;
+  const films::FilmTargets& targets_;
   const Points& base_;
   const Points& directions_;
   const Points& points_;
   const VectorX& heights_;
   const VectorX& pressure_;
-  FilmProducts products_;
-  SaddleSystem saddle_;
+  energy::FilmProducts products_;
+  energy::SaddleSystem saddle_;
   Points energy_slope_;  // dE/dx
   Points slope_;         // dE/dx - sum p dV/dx
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

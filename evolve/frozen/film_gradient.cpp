@@ -11,7 +11,7 @@
 #include "evolve/frozen/film_model_impl.h"
 #include "evolve/frozen/film_radius.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 namespace {
 
@@ -56,7 +56,7 @@ void FilmModel::Impl::check_response(const FilmCovector& response) const {
 }
 
 FilmModel::Impl::AtRest FilmModel::Impl::at_rest(
-    const FilmState& state, const FilmSystem& system) const {
+    const settle::FilmState& state, const films::FilmSystem& system) const {
   if (!carry || state.failure) {
     throw InvalidInput("a film that was not found has no gradient: " +
                        state.report.verdict);
@@ -95,8 +95,8 @@ std::vector<RimGradient> FilmModel::Impl::rim_gradients(
     result[c].curve = complex.curves[c].name;
   }
   for (std::size_t v = 0; v < by_rim.size(); ++v) {
-    const ComplexVertex& vertex = complex.vertices[v];
-    if (vertex.kind == VertexKind::OnCurve) {
+    const films::ComplexVertex& vertex = complex.vertices[v];
+    if (vertex.kind == films::VertexKind::OnCurve) {
       result[vertex.curve].parameters.push_back(vertex.t);
       result[vertex.curve].by_points.push_back(by_rim[v]);
     }
@@ -105,7 +105,7 @@ std::vector<RimGradient> FilmModel::Impl::rim_gradients(
 }
 
 std::vector<FilmGradient> FilmModel::transpose(
-    const FilmState& state, const FilmSystem& system,
+    const settle::FilmState& state, const films::FilmSystem& system,
     const std::vector<FilmCovector>& responses) const {
   const Impl::AtRest film = impl_->at_rest(state, system);
   for (const FilmCovector& response : responses) {
@@ -128,13 +128,13 @@ std::vector<FilmGradient> FilmModel::transpose(
 }
 
 std::vector<Points> FilmModel::tangents(
-    const FilmState& state, const FilmSystem& system,
-    const std::vector<FilmSystem>& rates) const {
+    const settle::FilmState& state, const films::FilmSystem& system,
+    const std::vector<films::FilmSystem>& rates) const {
   const Impl::AtRest film = impl_->at_rest(state, system);
   std::vector<Points> result;
   result.reserve(rates.size());
   if (impl_->energy->unknowns() == 0) {
-    for (const FilmSystem& moving : rates) {
+    for (const films::FilmSystem& moving : rates) {
       result.push_back(impl_->rates_of(system, moving).base);
     }
     return result;
@@ -142,14 +142,14 @@ std::vector<Points> FilmModel::tangents(
   const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
                             film.directions, state.points, state.heights,
                             film.pressure);
-  for (const FilmSystem& moving : rates) {
+  for (const films::FilmSystem& moving : rates) {
     result.push_back(adjoint.tangent(impl_->rates_of(system, moving)));
   }
   return result;
 }
 
-FilmAdjoint::Rates FilmModel::Impl::rates_of(const FilmSystem& system,
-                                             const FilmSystem& rates) const {
+FilmAdjoint::Rates FilmModel::Impl::rates_of(
+    const films::FilmSystem& system, const films::FilmSystem& rates) const {
   const auto bodies = static_cast<Eigen::Index>(complex.bodies.size());
   FilmAdjoint::Rates result{
       .base = Points(complex.vertices.size(), Vec3::Zero()),
@@ -159,17 +159,17 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(const FilmSystem& system,
       .pressures = VectorX::Zero(energy->functionals())};
   const Points still(complex.vertices.size(), Vec3::Zero());
   for (const RimGradient& rim : rim_gradients(still)) {
-    const Curve* curve = find_named(system.curves, rim.curve);
-    const Curve* moving = find_named(rates.curves, rim.curve);
+    const curves::Curve* curve = find_named(system.curves, rim.curve);
+    const curves::Curve* moving = find_named(rates.curves, rim.curve);
     if (curve == nullptr || moving == nullptr) {
       throw InvalidInput(no_curve(rim.curve));
     }
     const Points moves =
-        point_rates(curve->shape, moving->shape, rim.parameters);
+        curves::point_rates(curve->shape, moving->shape, rim.parameters);
     std::size_t next = 0;
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-      const ComplexVertex& vertex = complex.vertices[v];
-      if (vertex.kind == VertexKind::OnCurve &&
+      const films::ComplexVertex& vertex = complex.vertices[v];
+      if (vertex.kind == films::VertexKind::OnCurve &&
           complex.curves[vertex.curve].name == rim.curve) {
         result.base[v] = moves[next++];
       }
@@ -177,13 +177,14 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(const FilmSystem& system,
   }
   result.base = carry->rates(result.base);
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
-    const FilmSpec* film = find_named(rates.films, complex.surfaces[s].name);
+    const films::FilmSpec* film =
+        find_named(rates.films, complex.surfaces[s].name);
     if (film != nullptr && complex.surfaces[s].liquid) {
       result.tensions[static_cast<Eigen::Index>(s)] = film->tension;
     }
   }
   for (Eigen::Index b = 0; b < bodies; ++b) {
-    const BodySpec* body = find_named(
+    const films::BodySpec* body = find_named(
         rates.bodies, complex.bodies[static_cast<std::size_t>(b)].name);
     if (body != nullptr) {
       result.volumes[b] = body->volume.value_or(0.0);
@@ -193,28 +194,29 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(const FilmSystem& system,
   return result;
 }
 
-double FilmModel::rate(const FilmGradient& gradient, const FilmSystem& system,
-                       const FilmSystem& rates) const {
+double FilmModel::rate(const FilmGradient& gradient,
+                       const films::FilmSystem& system,
+                       const films::FilmSystem& rates) const {
   double sum = 0.0;
   for (const RimGradient& rim : gradient.rims) {
-    const Curve* curve = find_named(system.curves, rim.curve);
-    const Curve* moving = find_named(rates.curves, rim.curve);
+    const curves::Curve* curve = find_named(system.curves, rim.curve);
+    const curves::Curve* moving = find_named(rates.curves, rim.curve);
     if (curve == nullptr || moving == nullptr) {
       throw InvalidInput(no_curve(rim.curve));
     }
     const Points moves =
-        point_rates(curve->shape, moving->shape, rim.parameters);
+        curves::point_rates(curve->shape, moving->shape, rim.parameters);
     sum += flat(moves).dot(flat(rim.by_points));
   }
   for (std::size_t s = 0; s < impl_->complex.surfaces.size(); ++s) {
-    const FilmSpec* film =
+    const films::FilmSpec* film =
         find_named(rates.films, impl_->complex.surfaces[s].name);
     if (film != nullptr && impl_->complex.surfaces[s].liquid) {
       sum += gradient.tensions[static_cast<Eigen::Index>(s)] * film->tension;
     }
   }
   for (std::size_t b = 0; b < impl_->complex.bodies.size(); ++b) {
-    const BodySpec* body =
+    const films::BodySpec* body =
         find_named(rates.bodies, impl_->complex.bodies[b].name);
     if (body != nullptr) {
       const auto at = static_cast<Eigen::Index>(b);
@@ -225,11 +227,12 @@ double FilmModel::rate(const FilmGradient& gradient, const FilmSystem& system,
   return sum;
 }
 
-FilmResponse FilmModel::margin(const FilmState& state, const FilmSystem& system,
+FilmResponse FilmModel::margin(const settle::FilmState& state,
+                               const films::FilmSystem& system,
                                const MarginOptions& options) const {
   const Impl::AtRest film = impl_->at_rest(state, system);
-  const SaddleSystem saddle(*impl_->energy, film.targets, state.points,
-                            film.directions, film.pressure);
+  const energy::SaddleSystem saddle(*impl_->energy, film.targets, state.points,
+                                    film.directions, film.pressure);
   return film_margin(*impl_->energy, film.targets, state.points,
                      film.directions, film.pressure, saddle,
                      std::abs(impl_->reference.report.min_eigenvalue), options);
@@ -253,4 +256,4 @@ Points FilmModel::transpose_surface(const Points& by_corners,
                                 impl_->complex.vertices.size());
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -8,7 +8,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 /// Derivatives of a response J by what a settled film shows, each at fixed
 /// others. What is empty is zero; a list of another length is refused.
@@ -53,4 +53,4 @@ struct MarginOptions {
   double sharpness = 20.0;  // > 0; more: nearer to lambda_1, less smooth
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -5,11 +5,11 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 #include "evolve/energy/film_products.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 namespace {
 
@@ -21,9 +21,10 @@ constexpr double kNoWeight = 1e-14;
 /// with H v = lambda M v + B kappa, v' M v = 1.
 class EigenvalueSlope {
  public:
-  EigenvalueSlope(const FilmEnergy& energy, const FilmTargets& targets,
-                  const Points& points, const Points& directions,
-                  const VectorX& pressure, const SaddleSystem& saddle)
+  EigenvalueSlope(const energy::FilmEnergy& energy,
+                  const films::FilmTargets& targets, const Points& points,
+                  const Points& directions, const VectorX& pressure,
+                  const energy::SaddleSystem& saddle)
       : energy_(energy),
         points_(points),
         directions_(directions),
@@ -40,7 +41,7 @@ class EigenvalueSlope {
     const VectorX kappa = multipliers(lambda, v);
     // H v less what holds the volumes, in all directions.
     Points pull = products_.hessian_times(points_, motion);
-    const FilmProducts holding(energy_, -kappa);
+    const energy::FilmProducts holding(energy_, -kappa);
     flat(by.points) +=
         weight *
         (flat(products_.third_times(points_, motion)) -
@@ -48,7 +49,8 @@ class EigenvalueSlope {
          2.0 * flat(holding.hessian_times(points_, motion)));
     for (int b = 0; b < energy_.functionals(); ++b) {
       flat(pull) -= kappa[b] * flat(saddle_.functional_slopes()[b]);
-      const FilmProducts one(energy_, VectorX::Unit(energy_.functionals(), b));
+      const energy::FilmProducts one(energy_,
+                                     VectorX::Unit(energy_.functionals(), b));
       // L = E - p V: by the pressure, minus the volume's bend.
       by.pressures[b] +=
           weight * flat(one.hessian_times(points_, motion)).dot(flat(motion));
@@ -76,19 +78,21 @@ class EigenvalueSlope {
     return result;
   }
 
-  const FilmEnergy& energy_;
+  const energy::FilmEnergy& energy_;
   const Points& points_;
   const Points& directions_;
-  const SaddleSystem& saddle_;
-  FilmProducts products_;
+  const energy::SaddleSystem& saddle_;
+  energy::FilmProducts products_;
 };
 
 }  // namespace
 
-FilmResponse film_margin(const FilmEnergy& energy, const FilmTargets& targets,
+FilmResponse film_margin(const energy::FilmEnergy& energy,
+                         const films::FilmTargets& targets,
                          const Points& points, const Points& directions,
-                         const VectorX& pressure, const SaddleSystem& saddle,
-                         double scale, const MarginOptions& options) {
+                         const VectorX& pressure,
+                         const energy::SaddleSystem& saddle, double scale,
+                         const MarginOptions& options) {
   if (options.modes < 1 || !(options.sharpness > 0.0) || !(scale > 0.0)) {
     throw InvalidInput(fmt::format(
         "a film's margin needs modes, sharpness and scale above 0, found {}, "
@@ -98,7 +102,7 @@ FilmResponse film_margin(const FilmEnergy& energy, const FilmTargets& targets,
   if (!saddle.factored() || saddle.system().index() != 0) {
     throw SolverError("the margin of an unstable film is not defined");
   }
-  const LowestModes lowest =
+  const energy::LowestModes lowest =
       saddle.system().lowest_modes(saddle.metric(), options.modes);
   const VectorX& lambda = lowest.eigenvalues;
   if (lambda.size() == 0) {
@@ -122,4 +126,4 @@ FilmResponse film_margin(const FilmEnergy& energy, const FilmTargets& targets,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

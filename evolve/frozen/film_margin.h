@@ -6,15 +6,17 @@
 #include "evolve/energy/saddle_system.h"
 #include "evolve/frozen/film_gradient.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 /// Of the film at `points` along `directions`, in the metric of lumped area
 /// [force/length^3]; `pressure` and `saddle` are of that film, `scale` > 0 an
 /// eigenvalue [force/length^3] that must not depend on the design. Throws
 /// InvalidInput for options out of range, SolverError for an unstable film.
-FilmResponse film_margin(const FilmEnergy& energy, const FilmTargets& targets,
+FilmResponse film_margin(const energy::FilmEnergy& energy,
+                         const films::FilmTargets& targets,
                          const Points& points, const Points& directions,
-                         const VectorX& pressure, const SaddleSystem& saddle,
-                         double scale, const MarginOptions& options);
+                         const VectorX& pressure,
+                         const energy::SaddleSystem& saddle, double scale,
+                         const MarginOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

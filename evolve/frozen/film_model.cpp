@@ -18,7 +18,7 @@
 #include "evolve/start/start_complex.h"
 #include "evolve/start/start_edge.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 namespace {
 
@@ -29,8 +29,9 @@ constexpr std::array<int, 2> kParts = {1, 4};
 /// the film may have slid to another equilibrium.
 constexpr int kManyIterations = 15;
 
-FilmTargets blend(const FilmTargets& from, const FilmTargets& to, double t) {
-  FilmTargets result = to;
+films::FilmTargets blend(const films::FilmTargets& from,
+                         const films::FilmTargets& to, double t) {
+  films::FilmTargets result = to;
   const auto mix = [t](double a, double b) { return a + t * (b - a); };
   for (std::size_t s = 0; s < to.tension.size(); ++s) {
     result.tension[s] = mix(from.tension[s], to.tension[s]);
@@ -49,15 +50,15 @@ FilmTargets blend(const FilmTargets& from, const FilmTargets& to, double t) {
 }
 
 /// Throws InvalidInput for numbers that no liquid can follow.
-void check_numbers(const FilmSystem& system) {
-  for (const FilmSpec& film : system.films) {
+void check_numbers(const films::FilmSystem& system) {
+  for (const films::FilmSpec& film : system.films) {
     if (!(film.tension > 0.0) || !std::isfinite(film.tension)) {
       throw InvalidInput(
           fmt::format("the tension of film '{}' must be above 0, found {}",
                       film.name, film.tension));
     }
   }
-  for (const BodySpec& body : system.bodies) {
+  for (const films::BodySpec& body : system.bodies) {
     const double volume = body.volume.value_or(1.0);
     if (!(volume > 0.0) || !std::isfinite(volume)) {
       throw InvalidInput(
@@ -81,15 +82,17 @@ std::string no_value(const ExpressionError& error) {
 
 }  // namespace
 
-FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
-  FilmTargets result = targets;
+films::FilmTargets FilmModel::Impl::targets_of_system(
+    const films::FilmSystem& system) const {
+  films::FilmTargets result = targets;
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
     if (!complex.surfaces[s].liquid) {
       continue;
     }
-    const auto film = std::find_if(
-        system.films.begin(), system.films.end(),
-        [&](const FilmSpec& f) { return f.name == complex.surfaces[s].name; });
+    const auto film = std::find_if(system.films.begin(), system.films.end(),
+                                   [&](const films::FilmSpec& f) {
+                                     return f.name == complex.surfaces[s].name;
+                                   });
     if (film == system.films.end()) {
       throw InvalidInput(
           fmt::format("the design has no film '{}', which its model has",
@@ -98,7 +101,7 @@ FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
     const std::optional<Expression>& field = complex.surfaces[s].tension_field;
     if (film->tension_field.has_value() != field.has_value() ||
         (field &&
-         positive_only(*film->tension_field).text() != field->text())) {
+         energy::positive_only(*film->tension_field).text() != field->text())) {
       throw InvalidInput(fmt::format(
           "the design changes the tension field of film '{}'; it belongs to "
           "the frozen model: freeze another one",
@@ -109,10 +112,10 @@ FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
     }
   }
   check_fields(system);
-  for (ComplexBody& body : result.bodies) {
-    const auto spec =
-        std::find_if(system.bodies.begin(), system.bodies.end(),
-                     [&](const BodySpec& b) { return b.name == body.name; });
+  for (films::ComplexBody& body : result.bodies) {
+    const auto spec = std::find_if(
+        system.bodies.begin(), system.bodies.end(),
+        [&](const films::BodySpec& b) { return b.name == body.name; });
     if (spec == system.bodies.end() ||
         spec->volume.has_value() != body.volume.has_value()) {
       throw InvalidInput(
@@ -126,20 +129,20 @@ FilmTargets FilmModel::Impl::targets_of_system(const FilmSystem& system) const {
 }
 
 /// The fields of the design are those that were frozen.
-void FilmModel::Impl::check_fields(const FilmSystem& system) const {
+void FilmModel::Impl::check_fields(const films::FilmSystem& system) const {
   std::vector<std::string> formulas;
-  for (const FieldSpec& field : system.fields) {
-    formulas.push_back(field_expression(field).text());
+  for (const films::FieldSpec& field : system.fields) {
+    formulas.push_back(energy::field_expression(field).text());
   }
-  for (const PressureSpec& spec : system.pressures) {
+  for (const films::PressureSpec& spec : system.pressures) {
     formulas.push_back(spec.pressure.text());
   }
-  const bool same =
-      std::equal(formulas.begin(), formulas.end(), complex.quantities.begin(),
-                 complex.quantities.end(),
-                 [](const std::string& formula, const FilmQuantity& quantity) {
-                   return formula == quantity.scalar.text();
-                 });
+  const bool same = std::equal(
+      formulas.begin(), formulas.end(), complex.quantities.begin(),
+      complex.quantities.end(),
+      [](const std::string& formula, const films::FilmQuantity& quantity) {
+        return formula == quantity.scalar.text();
+      });
   if (!same) {
     throw InvalidInput(
         "the design changes the field energies; they belong to the frozen "
@@ -147,19 +150,19 @@ void FilmModel::Impl::check_fields(const FilmSystem& system) const {
   }
 }
 
-std::vector<Curve> FilmModel::Impl::curves_of_system(
-    const FilmSystem& system) const {
-  std::vector<Curve> result;
-  for (const Curve& curve : complex.curves) {
-    const auto same =
-        std::find_if(system.curves.begin(), system.curves.end(),
-                     [&](const Curve& c) { return c.name == curve.name; });
+std::vector<curves::Curve> FilmModel::Impl::curves_of_system(
+    const films::FilmSystem& system) const {
+  std::vector<curves::Curve> result;
+  for (const curves::Curve& curve : complex.curves) {
+    const auto same = std::find_if(
+        system.curves.begin(), system.curves.end(),
+        [&](const curves::Curve& c) { return c.name == curve.name; });
     if (same == system.curves.end() ||
         same->shape.index() != curve.shape.index()) {
       throw InvalidInput(fmt::format(
           "the design has no curve '{}' of its model's kind", curve.name));
     }
-    validate(*same);
+    curves::validate(*same);
     result.push_back(*same);
   }
   return result;
@@ -177,20 +180,20 @@ EdgeMiddles FilmModel::Impl::middles(std::size_t count) const {
 
 std::vector<char> FilmModel::Impl::straight() const {
   std::vector<char> result;
-  for (const ComplexVertex& vertex : complex.vertices) {
-    result.push_back(vertex.kind == VertexKind::InCap ? 1 : 0);
+  for (const films::ComplexVertex& vertex : complex.vertices) {
+    result.push_back(vertex.kind == films::VertexKind::InCap ? 1 : 0);
   }
   return result;
 }
 
-void FilmModel::Impl::find_reference(const FilmSystem& initial,
+void FilmModel::Impl::find_reference(const films::FilmSystem& initial,
                                      const FilmModelOptions& options,
-                                     const SettleOptions& settle) {
+                                     const settle::SettleOptions& settle) {
   if (initial.films.empty()) {
     build_rigid(initial, options);
     return;
   }
-  const int halvings = start_halvings(initial, options.edge);
+  const int halvings = start::start_halvings(initial, options.edge);
   find_reference_from(halvings, initial, options, settle);
   const auto tears = [this] {
     return reference.failure &&
@@ -201,11 +204,11 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
   }
   // Coarse facets may fold where rims are not much larger than they: once more
   // without them.
-  const FilmComplex coarse = complex;
+  const films::FilmComplex coarse = complex;
   const SurfaceMesh coarse_mesh = meshed;
   const std::vector<Edge> coarse_parents = parents;
   const std::size_t coarse_near = near_parents;
-  const FilmState failed = reference;
+  const settle::FilmState failed = reference;
   const double coarse_edge = start_edge;
   find_reference_from(0, initial, options, settle);
   if (tears()) {
@@ -220,59 +223,61 @@ void FilmModel::Impl::find_reference(const FilmSystem& initial,
 }
 
 void FilmModel::Impl::find_reference_from(int halvings,
-                                          const FilmSystem& initial,
+                                          const films::FilmSystem& initial,
                                           const FilmModelOptions& options,
-                                          const SettleOptions& settle) {
+                                          const settle::SettleOptions& settle) {
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   monitor.progress({"film", "building the start", 0.0});
   start_edge = std::ldexp(options.edge, halvings);
-  complex = build_start(initial, start_edge);
+  complex = start::build_start(initial, start_edge);
   parents.clear();
   near_parents = 0;
   refinements = 0;
   energy.reset();
   monitor.progress({"film", "settling the raw start", 0.1});
-  FindOptions find{
+  settle::FindOptions find{
       .edge = options.edge, .halvings = halvings, .settle = settle};
   if (initial.keep_facets) {
     find.edge.reset();
     find.refinements = halvings;
   }
-  reference = find_equilibrium(complex, find);
+  reference = settle::find_equilibrium(complex, find);
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
     refine_once(level);
     if (!reference.failure) {
       energy.emplace(complex);
-      reference = settle_in_normals(*energy, complex, targets_of(complex),
-                                    complex.mesh.points, settle);
+      reference = settle::settle_in_normals(*energy, complex,
+                                            energy::targets_of(complex),
+                                            complex.mesh.points, settle);
       complex.mesh.points = reference.points;
     }
   }
 }
 
-FilmState FilmModel::Impl::settle_in_parts(const Points& moves,
-                                           const FilmTargets& goal, int parts,
-                                           const SettleOptions& options) const {
+settle::FilmState FilmModel::Impl::settle_in_parts(
+    const Points& moves, const films::FilmTargets& goal, int parts,
+    const settle::SettleOptions& options) const {
   if (energy->unknowns() == 0) {
     return rigid_state(carry->at(moves, 1.0), goal);
   }
-  FilmState state;
+  settle::FilmState state;
   int iterations = 0;
   try {
     for (int part = 1; part <= parts && !state.failure; ++part) {
       const double t = static_cast<double>(part) / parts;
       const Points base = carry->at(moves, t);
-      state = settle_along(*energy, complex,
-                           part == parts ? goal : blend(targets, goal, t), base,
-                           energy->space().directions(base), state.heights,
-                           usual_neck, options);
+      state = settle::settle_along(
+          *energy, complex, part == parts ? goal : blend(targets, goal, t),
+          base, energy->space().directions(base), state.heights, usual_neck,
+          options);
       iterations += state.report.iterations;
     }
     if (!state.failure) {
-      tensions_at(complex, state.points);  // throws where one is not above 0
+      energy::tensions_at(complex,
+                          state.points);  // throws where one is not above 0
     }
   } catch (const ExpressionError& error) {
     state = reference;
@@ -292,7 +297,7 @@ FilmModel::FilmModel(FilmModel&&) noexcept = default;
 FilmModel& FilmModel::operator=(FilmModel&&) noexcept = default;
 FilmModel::~FilmModel() = default;
 
-FilmModel FilmModel::freeze(const FilmSystem& initial,
+FilmModel FilmModel::freeze(const films::FilmSystem& initial,
                             const FilmModelOptions& options) {
   if (!(options.edge > 0.0) || !std::isfinite(options.edge)) {
     throw InvalidInput(fmt::format(
@@ -306,7 +311,7 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   check_numbers(initial);
   const Timer timer;
   auto impl = std::make_unique<Impl>();
-  SettleOptions settle{.monitor = options.monitor};
+  settle::SettleOptions settle{.monitor = options.monitor};
   try {
     impl->find_reference(initial, options, settle);
   } catch (const ExpressionError& error) {
@@ -316,16 +321,16 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   std::iota(corner.begin(), corner.end(), 0);
   SurfaceMesh topology = impl->meshed;
   topology.points.clear();
-  impl->regions = regions_of(initial.bodies);
-  keep_solids(impl->complex, impl->regions, topology);
-  drop_unused(topology, corner);
+  impl->regions = films::regions_of(initial.bodies);
+  films::keep_solids(impl->complex, impl->regions, topology);
+  films::drop_unused(topology, corner);
   impl->nodes =
       surface_nodes(std::move(topology), std::move(corner),
                     impl->middles(impl->near_parents), impl->straight());
   if (impl->reference.failure || !impl->energy) {
     impl->energy.emplace(impl->complex);
   }
-  impl->targets = targets_of(impl->complex);
+  impl->targets = energy::targets_of(impl->complex);
   FilmModel model(std::move(impl));
   if (!model.impl_->reference.failure) {
     model.impl_->carry.emplace(model.impl_->complex,
@@ -342,11 +347,14 @@ FilmModel FilmModel::freeze(const FilmSystem& initial,
   return model;
 }
 
-const FilmState& FilmModel::reference() const { return impl_->reference; }
+const settle::FilmState& FilmModel::reference() const {
+  return impl_->reference;
+}
 double FilmModel::start_edge() const { return impl_->start_edge; }
 
-FilmState FilmModel::settle(const FilmSystem& system,
-                            const SettleOptions& options) const {
+settle::FilmState FilmModel::settle(
+    const films::FilmSystem& system,
+    const settle::SettleOptions& options) const {
   const Timer timer;
   check_numbers(system);
   if (!impl_->carry) {
@@ -355,12 +363,13 @@ FilmState FilmModel::settle(const FilmSystem& system,
         "design (" +
         impl_->reference.report.verdict + ")");
   }
-  const FilmTargets goal = impl_->targets_of_system(system);
+  const films::FilmTargets goal = impl_->targets_of_system(system);
   const Points moves = impl_->carry->rim_moves(impl_->curves_of_system(system));
-  FilmState state;
+  settle::FilmState state;
   int iterations = 0;
   for (const int parts : kParts) {
-    FilmState found = impl_->settle_in_parts(moves, goal, parts, options);
+    settle::FilmState found =
+        impl_->settle_in_parts(moves, goal, parts, options);
     iterations += found.report.iterations;
     if (parts == kParts.front() || !found.failure) {
       state = std::move(found);
@@ -400,13 +409,13 @@ SurfaceMesh FilmModel::fine_mesh(const Points& points) const {
 
 SurfaceMesh FilmModel::solids(const Points& points) const {
   SurfaceMesh mesh = fine_mesh(points);
-  keep_solids(impl_->complex, impl_->regions, mesh);
+  films::keep_solids(impl_->complex, impl_->regions, mesh);
   return mesh;
 }
 
 SurfaceMesh FilmModel::boundary(const Points& points) const {
   SurfaceMesh mesh = solids(points);
-  drop_interfaces(mesh);
+  films::drop_interfaces(mesh);
   return mesh;
 }
 
@@ -425,8 +434,8 @@ int FilmModel::refinements() const { return impl_->refinements; }
 std::vector<int> FilmModel::rim(const std::string& curve) const {
   std::vector<int> result;
   for (std::size_t v = 0; v < impl_->complex.vertices.size(); ++v) {
-    const ComplexVertex& vertex = impl_->complex.vertices[v];
-    if (vertex.kind == VertexKind::OnCurve &&
+    const films::ComplexVertex& vertex = impl_->complex.vertices[v];
+    if (vertex.kind == films::VertexKind::OnCurve &&
         impl_->complex.curves[vertex.curve].name == curve) {
       result.push_back(static_cast<int>(v));
     }
@@ -434,4 +443,26 @@ std::vector<int> FilmModel::rim(const std::string& curve) const {
   return result;
 }
 
-}  // namespace meniscus
+films::FilmComplex FilmModel::complex_at(
+    const settle::FilmState& state, const films::FilmSystem& system) const {
+  if (state.failure) {
+    throw InvalidInput("there is no film: " + state.failure->message);
+  }
+  films::FilmComplex complex = impl_->complex;
+  if (state.points.size() != complex.mesh.points.size()) {
+    throw InvalidInput("the film's state is not of this model");
+  }
+  complex.mesh.points = state.points;
+  complex.curves = impl_->curves_of_system(system);
+  const films::FilmTargets targets = impl_->targets_of_system(system);
+  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    complex.surfaces[s].tension = targets.tension[s];
+  }
+  for (std::size_t b = 0; b < complex.bodies.size(); ++b) {
+    complex.bodies[b].volume = targets.bodies[b].volume;
+    complex.bodies[b].pressure = targets.bodies[b].pressure;
+  }
+  return complex;
+}
+
+}  // namespace meniscus::frozen

@@ -20,11 +20,12 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/geometry/surface_nodes.h"
 #include "core/monitor.h"
+#include "evolve/films/film_complex.h"
 #include "evolve/films/film_system.h"
 #include "evolve/frozen/film_gradient.h"
 #include "evolve/settle/film_state.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 struct FilmModelOptions {
   double edge = 0.0;    // target edge of the meshed film [length], > 0
@@ -38,11 +39,11 @@ class FilmModel {
   /// cannot be built (open body, unknown curve, curve off the hull). A film
   /// that cannot be found or is unstable is reported by reference().failure,
   /// and the model must then not be used further.
-  static FilmModel freeze(const FilmSystem& initial,
+  static FilmModel freeze(const films::FilmSystem& initial,
                           const FilmModelOptions& options);
 
   /// The settled film at the initial design.
-  const FilmState& reference() const;
+  const settle::FilmState& reference() const;
 
   /// Edge length of the start that the reference was found from [length].
   double start_edge() const;
@@ -53,8 +54,8 @@ class FilmModel {
   /// names, kinds and fields that are not the model's, for numbers that no film
   /// can follow (radius, tension or volume not above 0, anything not finite),
   /// and for a model that has no film at its initial design.
-  FilmState settle(const FilmSystem& system,
-                   const SettleOptions& options = {}) const;
+  settle::FilmState settle(const films::FilmSystem& system,
+                           const settle::SettleOptions& options = {}) const;
 
   /// The closed surface for meshing, from any state's points: corners at the
   /// meshed resolution, mid-sides from the finer film (on straight edges when
@@ -82,22 +83,23 @@ class FilmModel {
   /// threads. Throws InvalidInput for a state that failed or is not this
   /// model's, and for lists that do not fit.
   std::vector<FilmGradient> transpose(
-      const FilmState& state, const FilmSystem& system,
+      const settle::FilmState& state, const films::FilmSystem& system,
       const std::vector<FilmCovector>& responses) const;
 
   /// How fast the film's points move with design variables, `rates` of each as
   /// rate() wants them: settle() differentiated forwards. Worth it where many
   /// responses meet few variables; one factorisation, and a solve for each.
   /// Throws as transpose() and rate().
-  std::vector<Points> tangents(const FilmState& state, const FilmSystem& system,
-                               const std::vector<FilmSystem>& rates) const;
+  std::vector<Points> tangents(
+      const settle::FilmState& state, const films::FilmSystem& system,
+      const std::vector<films::FilmSystem>& rates) const;
 
   /// dJ along one design variable: `rates` is `system` with each number's
   /// derivative in its place (curves of the same kinds, tensions, volumes,
   /// pressures; fields and tension fields are the model's and not read). A
   /// parametric curve's rates are expressions of t.
-  double rate(const FilmGradient& gradient, const FilmSystem& system,
-              const FilmSystem& rates) const;
+  double rate(const FilmGradient& gradient, const films::FilmSystem& system,
+              const films::FilmSystem& rates) const;
 
   /// Area per label of fine_mesh(); 0 for caps [length^2].
   VectorX areas(const Points& points) const;
@@ -106,7 +108,8 @@ class FilmModel {
   /// Margin to collapse of a state of settle(system) [force/length^3], with
   /// its derivatives for transpose(). Throws as that does, and InvalidInput for
   /// options out of range.
-  FilmResponse margin(const FilmState& state, const FilmSystem& system,
+  FilmResponse margin(const settle::FilmState& state,
+                      const films::FilmSystem& system,
                       const MarginOptions& options = {}) const;
 
   /// Smallest radius of curvature of the films (evolve/frozen/film_radius.h)
@@ -129,12 +132,11 @@ class FilmModel {
   /// The same without interfaces between regions: closed surfaces.
   SurfaceMesh boundary(const Points& points) const;
 
-  /// A state of settle(system) as a Surface Evolver datafile: the fine mesh on
-  /// the design's curves, its tensions, volumes, pressures and fields, caps as
-  /// fixed facets of tension 0. `comments`: lines at its head. Throws as
-  /// transpose() does for the state, and as fe_text().
-  std::string datafile(const FilmState& state, const FilmSystem& system,
-                       const std::vector<std::string>& comments = {}) const;
+  /// The finest complex at a state of settle(system): its points, on the
+  /// design's curves, with its tensions, volumes and pressures. Throws
+  /// InvalidInput for a state that failed or is not this model's.
+  films::FilmComplex complex_at(const settle::FilmState& state,
+                                const films::FilmSystem& system) const;
 
   /// Facets of the meshed level, caps and voids included: for what else is
   /// made of the films. It has no points; corners are vertices of the film.
@@ -159,4 +161,4 @@ class FilmModel {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

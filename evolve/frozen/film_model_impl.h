@@ -11,18 +11,18 @@
 #include "evolve/frozen/film_adjoint.h"
 #include "evolve/frozen/film_model.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 struct FilmModel::Impl {
-  FilmComplex complex;           // finest level, at the reference film
+  films::FilmComplex complex;    // finest level, at the reference film
   std::vector<Edge> parents;     // of the refinements' new vertices
   std::size_t near_parents = 0;  // of the first two refinements
   int refinements = 0;
   SurfaceMesh meshed;  // the meshed level at the reference film
-  std::optional<FilmEnergy> energy;
+  std::optional<energy::FilmEnergy> energy;
   std::optional<Carry> carry;
-  FilmTargets targets;
-  FilmState reference;
+  films::FilmTargets targets;
+  settle::FilmState reference;
   double usual_neck = 0.0;   // of the reference [length]
   double start_edge = 0.0;   // of the start that it was found from [length]
   std::vector<int> regions;  // per body, -1: void
@@ -30,38 +30,43 @@ struct FilmModel::Impl {
 
   /// What a film rests on, beside its points and heights.
   struct AtRest {
-    FilmTargets targets;
+    films::FilmTargets targets;
     Points base;        // X
     Points directions;  // n(X)
     VectorX pressure;   // one per functional
   };
 
-  FilmTargets targets_of_system(const FilmSystem& system) const;
-  void check_fields(const FilmSystem& system) const;
-  std::vector<Curve> curves_of_system(const FilmSystem& system) const;
-  void find_reference(const FilmSystem& initial,
+  films::FilmTargets targets_of_system(const films::FilmSystem& system) const;
+  void check_fields(const films::FilmSystem& system) const;
+  std::vector<curves::Curve> curves_of_system(
+      const films::FilmSystem& system) const;
+  void find_reference(const films::FilmSystem& initial,
                       const FilmModelOptions& options,
-                      const SettleOptions& settle);
+                      const settle::SettleOptions& settle);
   /// The same, from a start whose edges are options.edge x 2^halvings.
-  void find_reference_from(int halvings, const FilmSystem& initial,
+  void find_reference_from(int halvings, const films::FilmSystem& initial,
                            const FilmModelOptions& options,
-                           const SettleOptions& settle);
-  void build_rigid(const FilmSystem& initial, const FilmModelOptions& options);
+                           const settle::SettleOptions& settle);
+  void build_rigid(const films::FilmSystem& initial,
+                   const FilmModelOptions& options);
   /// One level finer; keeps the new vertices' parents.
   void refine_once(int level);
-  FilmState rigid_state(const Points& points, const FilmTargets& goal) const;
+  settle::FilmState rigid_state(const Points& points,
+                                const films::FilmTargets& goal) const;
   EdgeMiddles middles(std::size_t count) const;
   std::vector<char> straight() const;
   /// A state that settle() gave for `system`. Throws InvalidInput for others.
-  AtRest at_rest(const FilmState& state, const FilmSystem& system) const;
+  AtRest at_rest(const settle::FilmState& state,
+                 const films::FilmSystem& system) const;
   void check_response(const FilmCovector& response) const;
   std::vector<RimGradient> rim_gradients(const Points& by_base) const;
   std::vector<FilmGradient> rigid_gradients(
       const std::vector<FilmCovector>& responses) const;
-  FilmAdjoint::Rates rates_of(const FilmSystem& system,
-                              const FilmSystem& rates) const;
-  FilmState settle_in_parts(const Points& moves, const FilmTargets& goal,
-                            int parts, const SettleOptions& options) const;
+  FilmAdjoint::Rates rates_of(const films::FilmSystem& system,
+                              const films::FilmSystem& rates) const;
+  settle::FilmState settle_in_parts(const Points& moves,
+                                    const films::FilmTargets& goal, int parts,
+                                    const settle::SettleOptions& options) const;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "evolve/energy/facet_terms.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr int kMostPower = 64;
 
 /// How the unit normals at a facet's corners vary over it.
 struct FacetBend {
-  FacetFrame frame;
+  energy::FacetFrame frame;
   std::array<Vec3, 3> normal;  // n_i
   std::array<Vec3, 3> slope;   // g_i
   Mat3 bend = Mat3::Zero();    // G [1/length]
@@ -60,8 +60,8 @@ Mat3 power_of(const Mat3& m, int n) {
 }
 
 /// Facets of films whose corners are all smooth and free.
-std::vector<int> smooth_facets(const FilmEnergy& energy) {
-  const FilmSpace& space = energy.space();
+std::vector<int> smooth_facets(const energy::FilmEnergy& energy) {
+  const energy::FilmSpace& space = energy.space();
   std::vector<int> result;
   for (std::size_t f = 0; f < energy.facets().size(); ++f) {
     const Triangle& t = energy.facets()[f];
@@ -88,9 +88,9 @@ struct Bends {
   Mat3 scaled(std::size_t k) const { return bends[k].bend / most; }
 };
 
-Bends bends_of(const FilmEnergy& energy, const Points& points,
+Bends bends_of(const energy::FilmEnergy& energy, const Points& points,
                const Points& normals, int power) {
-  const FilmSpace& space = energy.space();
+  const energy::FilmSpace& space = energy.space();
   Bends result{.facets = smooth_facets(energy)};
   result.bends.reserve(result.facets.size());
   for (const int f : result.facets) {
@@ -120,7 +120,7 @@ Bends bends_of(const FilmEnergy& energy, const Points& points,
 
 }  // namespace
 
-FilmResponse film_radius(const FilmEnergy& energy, const Points& points,
+FilmResponse film_radius(const energy::FilmEnergy& energy, const Points& points,
                          int power) {
   if (power < kLeastPower || power > kMostPower || power % 2 != 0) {
     throw InvalidInput(
@@ -128,7 +128,7 @@ FilmResponse film_radius(const FilmEnergy& energy, const Points& points,
                     "found {}",
                     kLeastPower, kMostPower, power));
   }
-  const FilmSpace& space = energy.space();
+  const energy::FilmSpace& space = energy.space();
   const Points normals = space.directions(points);
   const Bends all = bends_of(energy, points, normals, power);
   FilmResponse result;
@@ -160,4 +160,4 @@ FilmResponse film_radius(const FilmEnergy& energy, const Points& points,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -5,7 +5,7 @@
 #include "evolve/energy/energy.h"
 #include "evolve/frozen/film_gradient.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 /// p-mean over the films' facets away from rims and lines of the principal
 /// curvatures k1, k2, turned over [length]:
@@ -16,7 +16,7 @@ namespace meniscus {
 /// as `power` grows, where the tightest place is a small part of the film; on
 /// a sphere below it by 2^(1/p). `power`: even, 2 to 64. Throws InvalidInput
 /// for others, for films on walls and for a film without such a facet, or flat.
-FilmResponse film_radius(const FilmEnergy& energy, const Points& points,
+FilmResponse film_radius(const energy::FilmEnergy& energy, const Points& points,
                          int power);
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

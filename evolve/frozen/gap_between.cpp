@@ -11,7 +11,7 @@
 #include "core/geometry/facet_tree.h"
 #include "evolve/frozen/film_model_impl.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 namespace {
 
@@ -148,4 +148,4 @@ FilmResponse FilmModel::gap(const Points& points, const std::string& film,
                      smoothing);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -4,7 +4,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "evolve/frozen/film_gradient.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 /// -(1/k) ln sum exp(-k d) [length] over the vertices of both films, d being
 /// the distance of a vertex to the nearest point of the other film, k = 1 /
@@ -20,4 +20,4 @@ namespace meniscus {
 FilmResponse gap_between(const SurfaceMesh& mesh, int film, int other,
                          double smoothing);
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -11,14 +11,14 @@
 #include "evolve/groom/refine.h"
 #include "evolve/settle/find_equilibrium.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 namespace {
 
 constexpr double kMostFacets = 1e7;
 
 /// Halvings after which edges of `from` are nearest to `edge` in ratio.
-int halvings_to(const FilmComplex& settled, double from, double edge) {
+int halvings_to(const films::FilmComplex& settled, double from, double edge) {
   if (!std::isfinite(edge) || edge <= 0.0) {
     throw InvalidInput(fmt::format("edge length is {}, must be above 0", edge));
   }
@@ -36,25 +36,26 @@ int halvings_to(const FilmComplex& settled, double from, double edge) {
 
 }  // namespace
 
-FilmResolution at_edge(const FilmComplex& settled, double edge,
-                       const SettleOptions& options) {
+FilmResolution at_edge(const films::FilmComplex& settled, double edge,
+                       const settle::SettleOptions& options) {
   FilmResolution result{.edge = edge, .complex = settled, .state = {}};
-  FilmComplex& complex = result.complex;
+  films::FilmComplex& complex = result.complex;
   const int halvings =
       halvings_to(settled, mean_edge_length(settled.mesh), edge);
   for (int k = 0; k < halvings; ++k) {
-    Refinement finer = refine(complex);
-    bend_midpoints(FilmSpace(complex), complex.mesh.points, finer);
+    groom::Refinement finer = groom::refine(complex);
+    groom::bend_midpoints(energy::FilmSpace(complex), complex.mesh.points,
+                          finer);
     complex = std::move(finer.complex);
   }
-  result.state = find_equilibrium(
+  result.state = settle::find_equilibrium(
       complex, {.edge = edge, .halvings = 0, .settle = options});
   return result;
 }
 
-std::vector<FilmResolution> at_edges(const FilmComplex& settled,
+std::vector<FilmResolution> at_edges(const films::FilmComplex& settled,
                                      const std::vector<double>& edges,
-                                     const SettleOptions& options) {
+                                     const settle::SettleOptions& options) {
   std::vector<FilmResolution> films;
   films.reserve(edges.size());
   for (const double edge : edges) {
@@ -63,4 +64,4 @@ std::vector<FilmResolution> at_edges(const FilmComplex& settled,
   return films;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -7,12 +7,13 @@
 #include "evolve/films/film_complex.h"
 #include "evolve/frozen/film_model.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 struct FilmResolution {
-  double edge = 0.0;    // asked for [length]
-  FilmComplex complex;  // its film, settled
-  FilmState state;      // report and verdict; failure when it did not settle
+  double edge = 0.0;           // asked for [length]
+  films::FilmComplex complex;  // its film, settled
+  settle::FilmState
+      state;  // report and verdict; failure when it did not settle
 };
 
 /// The film at another edge length [length, > 0]: refined until its edges are
@@ -22,12 +23,12 @@ struct FilmResolution {
 /// where `edge` is longer. A pure function of its arguments. Throws
 /// InvalidInput for an edge that is not above 0, or so short that more than
 /// 10^7 facets would come out, and Interrupted.
-FilmResolution at_edge(const FilmComplex& settled, double edge,
-                       const SettleOptions& options = {});
+FilmResolution at_edge(const films::FilmComplex& settled, double edge,
+                       const settle::SettleOptions& options = {});
 
 /// The same for each of `edges`, independent of each other.
-std::vector<FilmResolution> at_edges(const FilmComplex& settled,
+std::vector<FilmResolution> at_edges(const films::FilmComplex& settled,
                                      const std::vector<double>& edges,
-                                     const SettleOptions& options = {});
+                                     const settle::SettleOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

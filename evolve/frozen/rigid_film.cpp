@@ -4,7 +4,7 @@
 #include "evolve/settle/equilibrium.h"
 #include "evolve/start/start_complex.h"
 
-namespace meniscus {
+namespace meniscus::frozen {
 
 namespace {
 
@@ -14,21 +14,21 @@ constexpr int kMeshedLevels = 2;
 
 }  // namespace
 
-void FilmModel::Impl::build_rigid(const FilmSystem& initial,
+void FilmModel::Impl::build_rigid(const films::FilmSystem& initial,
                                   const FilmModelOptions& options) {
   start_edge = options.edge;
-  complex = build_start(initial, start_edge);
+  complex = start::build_start(initial, start_edge);
   meshed = complex.mesh;
   for (int level = 0; level < options.refinements; ++level) {
     refine_once(level);
   }
   energy.emplace(complex);
-  targets = targets_of(complex);
+  targets = energy::targets_of(complex);
   reference = rigid_state(complex.mesh.points, targets);
 }
 
 void FilmModel::Impl::refine_once(int level) {
-  Refinement finer = refine(complex);
+  groom::Refinement finer = groom::refine(complex);
   complex = std::move(finer.complex);
   parents.insert(parents.end(), finer.parents.begin(), finer.parents.end());
   if (level < kMeshedLevels) {
@@ -38,13 +38,13 @@ void FilmModel::Impl::refine_once(int level) {
 }
 
 /// Of a part without liquid: nothing settles.
-FilmState FilmModel::Impl::rigid_state(const Points& points,
-                                       const FilmTargets& goal) const {
-  FilmState state;
+settle::FilmState FilmModel::Impl::rigid_state(
+    const Points& points, const films::FilmTargets& goal) const {
+  settle::FilmState state;
   state.points = points;
   state.heights = VectorX::Zero(0);
-  state.report =
-      figures_of(*energy, goal, points, VectorX::Zero(energy->functionals()));
+  state.report = settle::figures_of(*energy, goal, points,
+                                    VectorX::Zero(energy->functionals()));
   state.report.verdict = "no films, plane faces only";
   return state;
 }
@@ -66,4 +66,4 @@ std::vector<FilmGradient> FilmModel::Impl::rigid_gradients(
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::frozen

@@ -1,16 +1,17 @@
 #include "evolve/groom/bend_midpoints.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 namespace {
 
-bool runs_to(const FilmSpace& space, int a, int b) {
+bool runs_to(const energy::FilmSpace& space, int a, int b) {
   const Edge& ends = space.line_ends(a);
   return ends[0] == b || ends[1] == b;
 }
 
 /// Unit tangent at `a` of the line through it, pointing to its neighbour b.
-Vec3 tangent(const FilmSpace& space, const Points& points, int a, int b) {
+Vec3 tangent(const energy::FilmSpace& space, const Points& points, int a,
+             int b) {
   const Edge& ends = space.line_ends(a);
   const int other = ends[0] == b ? ends[1] : ends[0];
   return (points[b] - points[other]).normalized();
@@ -18,8 +19,8 @@ Vec3 tangent(const FilmSpace& space, const Points& points, int a, int b) {
 
 }  // namespace
 
-void bend_midpoints(const FilmSpace& coarse, const Points& coarse_points,
-                    Refinement& refinement) {
+void bend_midpoints(const energy::FilmSpace& coarse,
+                    const Points& coarse_points, Refinement& refinement) {
   const Points directions = coarse.directions(coarse_points);
   std::vector<char> walled(coarse.vertex_count(), 0);
   for (const int v : coarse.walled()) {
@@ -30,11 +31,11 @@ void bend_midpoints(const FilmSpace& coarse, const Points& coarse_points,
     const Vec3& n = directions[coarse.first(v)];
     return way.dot(n) * n;
   };
-  FilmComplex& fine = refinement.complex;
+  films::FilmComplex& fine = refinement.complex;
   const int old = coarse.vertex_count();
   for (std::size_t e = 0; e < refinement.parents.size(); ++e) {
     const int made = old + static_cast<int>(e);
-    if (fine.vertices[made].kind != VertexKind::Free) {
+    if (fine.vertices[made].kind != films::VertexKind::Free) {
       continue;
     }
     const auto [a, b] = refinement.parents[e];
@@ -65,4 +66,4 @@ void bend_midpoints(const FilmSpace& coarse, const Points& coarse_points,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

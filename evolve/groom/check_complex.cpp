@@ -9,11 +9,11 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "evolve/films/edge_marks.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 namespace {
 
@@ -33,11 +33,12 @@ void check_index(int index, std::size_t count, MayBeNone none,
   }
 }
 
-bool along_curve(VertexKind kind) {
-  return kind == VertexKind::OnCurve || kind == VertexKind::Slides;
+bool along_curve(films::VertexKind kind) {
+  return kind == films::VertexKind::OnCurve ||
+         kind == films::VertexKind::Slides;
 }
 
-void check_sizes(const FilmComplex& complex) {
+void check_sizes(const films::FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
   const auto equal = [](std::size_t a, std::size_t b, const char* what) {
     if (a != b) {
@@ -58,7 +59,7 @@ void check_sizes(const FilmComplex& complex) {
   }
 }
 
-void check_facets(const FilmComplex& complex) {
+void check_facets(const films::FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
   const int points = static_cast<int>(mesh.points.size());
   std::vector<char> used(mesh.points.size(), 0);
@@ -75,9 +76,10 @@ void check_facets(const FilmComplex& complex) {
             fmt::format("facet {} names point {} of {}", f, v, points));
       }
       used[v] = 1;
-      const VertexKind kind = complex.vertices[v].kind;
+      const films::VertexKind kind = complex.vertices[v].kind;
       const bool liquid = complex.surfaces[label].liquid;
-      if (liquid ? kind == VertexKind::InCap : kind == VertexKind::Free) {
+      if (liquid ? kind == films::VertexKind::InCap
+                 : kind == films::VertexKind::Free) {
         throw MeshError(fmt::format(
             "facet {} of '{}' has vertex {}, which is {}", f,
             complex.surfaces[label].name, v,
@@ -89,7 +91,7 @@ void check_facets(const FilmComplex& complex) {
                                   t[1], t[2]));
     }
   }
-  for (const ComplexEdge& edge : complex.edges) {
+  for (const films::ComplexEdge& edge : complex.edges) {
     used[edge.a] = 1;
     used[edge.b] = 1;
   }
@@ -122,7 +124,7 @@ void check_same_facets(const SurfaceMesh& mesh) {
   }
 }
 
-void check_sets(const FilmComplex& complex) {
+void check_sets(const films::FilmComplex& complex) {
   for (const auto& set : complex.constraint_sets) {
     for (const int wall : set) {
       check_index(wall, complex.level_sets.size(), MayBeNone::No,
@@ -135,7 +137,7 @@ void check_sets(const FilmComplex& complex) {
                   "an integral set names line integral");
     }
   }
-  for (const FilmQuantity& quantity : complex.quantities) {
+  for (const films::FilmQuantity& quantity : complex.quantities) {
     check_index(quantity.body, complex.bodies.size(), MayBeNone::Yes,
                 fmt::format("quantity '{}' is of body", quantity.name));
     for (const int surface : quantity.surfaces) {
@@ -145,16 +147,16 @@ void check_sets(const FilmComplex& complex) {
   }
 }
 
-void check_marks(const FilmComplex& complex) {
+void check_marks(const films::FilmComplex& complex) {
   std::vector<Edge> ends;
   for (std::size_t m = 0; m < complex.edges.size(); ++m) {
-    const ComplexEdge& edge = complex.edges[m];
+    const films::ComplexEdge& edge = complex.edges[m];
     const std::string name = fmt::format("marked edge {}", m);
     for (const int v : {edge.a, edge.b}) {
       check_index(v, complex.mesh.points.size(), MayBeNone::No,
                   name + " ends at point");
     }
-    if (edge.a == edge.b || edge.kind == VertexKind::InCap) {
+    if (edge.a == edge.b || edge.kind == films::VertexKind::InCap) {
       throw MeshError(
           fmt::format("{} from {} to {} {}", name, edge.a, edge.b,
                       edge.a == edge.b ? "has no length" : "is inside a cap"));
@@ -177,20 +179,21 @@ void check_marks(const FilmComplex& complex) {
   }
 }
 
-void check_on_curve(const FilmComplex& complex, std::size_t v, double bound) {
-  const ComplexVertex& vertex = complex.vertices[v];
+void check_on_curve(const films::FilmComplex& complex, std::size_t v,
+                    double bound) {
+  const films::ComplexVertex& vertex = complex.vertices[v];
   const bool known = vertex.curve >= 0 &&
                      vertex.curve < static_cast<int>(complex.curves.size());
-  const bool closed = known && !std::holds_alternative<ParametricCurve>(
+  const bool closed = known && !std::holds_alternative<curves::ParametricCurve>(
                                    complex.curves[vertex.curve].shape);
   if (!known || !std::isfinite(vertex.t) ||
       (closed && !(vertex.t >= 0.0 && vertex.t < 1.0))) {
     throw MeshError(fmt::format("vertex {} is on curve {} of {} at t = {}", v,
                                 vertex.curve, complex.curves.size(), vertex.t));
   }
-  const Curve& curve = complex.curves[vertex.curve];
+  const curves::Curve& curve = complex.curves[vertex.curve];
   const double off =
-      (point_at(curve.shape, vertex.t) - complex.mesh.points[v]).norm();
+      (curves::point_at(curve.shape, vertex.t) - complex.mesh.points[v]).norm();
   if (!(off <= kOnCurve * bound)) {
     throw MeshError(
         fmt::format("vertex {} is {:.3g} off its curve '{}' at t = {}", v, off,
@@ -199,10 +202,12 @@ void check_on_curve(const FilmComplex& complex, std::size_t v, double bound) {
 }
 
 // Off its level sets by how far the next point of them is.
-void check_on_walls(const FilmComplex& complex, std::size_t v, double bound) {
-  const ComplexVertex& vertex = complex.vertices[v];
+void check_on_walls(const films::FilmComplex& complex, std::size_t v,
+                    double bound) {
+  const films::ComplexVertex& vertex = complex.vertices[v];
   const Vec3& p = complex.mesh.points[v];
-  const Vec3 foot = onto_walls(complex, vertex.constraints, vertex.held, p);
+  const Vec3 foot =
+      films::onto_walls(complex, vertex.constraints, vertex.held, p);
   if (!((foot - p).norm() <= kOnWall * bound)) {
     const int first = complex.constraint_sets[vertex.constraints].front();
     throw MeshError(fmt::format(
@@ -214,10 +219,10 @@ void check_on_walls(const FilmComplex& complex, std::size_t v, double bound) {
   }
 }
 
-void check_vertices(const FilmComplex& complex) {
+void check_vertices(const films::FilmComplex& complex) {
   const double size = bounding_diagonal(complex.mesh.points);
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    const ComplexVertex& vertex = complex.vertices[v];
+    const films::ComplexVertex& vertex = complex.vertices[v];
     const Vec3& p = complex.mesh.points[v];
     if (!p.allFinite()) {
       throw MeshError(
@@ -229,7 +234,7 @@ void check_vertices(const FilmComplex& complex) {
     }
     check_index(vertex.constraints, complex.constraint_sets.size(),
                 MayBeNone::Yes, fmt::format("vertex {} is on set", v));
-    if (vertex.kind == VertexKind::Free && vertex.constraints >= 0) {
+    if (vertex.kind == films::VertexKind::Free && vertex.constraints >= 0) {
       check_on_walls(complex, v, size);
     }
   }
@@ -237,7 +242,7 @@ void check_vertices(const FilmComplex& complex) {
 
 // Two facets of one surface run opposite ways along their edge; an edge with
 // one facet is marked, or has both ends on a curve.
-void check_edges(const FilmComplex& complex) {
+void check_edges(const films::FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
   std::vector<Edge> edges;
   std::vector<Triangle> facet_edges;
@@ -248,7 +253,7 @@ void check_edges(const FilmComplex& complex) {
     int label = -1;
     bool mixed = false;
   };
-  const EdgeMarks marks(complex);
+  const films::EdgeMarks marks(complex);
   std::vector<Count> counts(edges.size());
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     for (int k = 0; k < 3; ++k) {
@@ -265,8 +270,9 @@ void check_edges(const FilmComplex& complex) {
     const auto [a, b] = edges[e];
     const Count& count = counts[e];
     const Vec3 p = 0.5 * (mesh.points[a] + mesh.points[b]);
-    const bool on_curve = complex.vertices[a].kind == VertexKind::OnCurve &&
-                          complex.vertices[b].kind == VertexKind::OnCurve;
+    const bool on_curve =
+        complex.vertices[a].kind == films::VertexKind::OnCurve &&
+        complex.vertices[b].kind == films::VertexKind::OnCurve;
     if (!on_curve && count.facets == 1 && marks.find(a, b) < 0) {
       throw MeshError(fmt::format(
           "edge {}-{} of '{}' at ({:.6g}, {:.6g}, {:.6g}) has one facet, but "
@@ -284,10 +290,11 @@ void check_edges(const FilmComplex& complex) {
 
 // A body's facets use every edge as often one way as the other; they may end
 // on walls, and on any marked edge where columns measure volumes.
-void check_closed(const FilmComplex& complex, const ComplexBody& body,
-                  const EdgeMarks& marks) {
+void check_closed(const films::FilmComplex& complex,
+                  const films::ComplexBody& body,
+                  const films::EdgeMarks& marks) {
   std::vector<int> signs(complex.surfaces.size(), 0);
-  for (const BodySide& side : body.sides) {
+  for (const films::BodySide& side : body.sides) {
     signs[side.surface] += side.sign;
   }
   SurfaceMesh shell;
@@ -320,7 +327,7 @@ void check_closed(const FilmComplex& complex, const ComplexBody& body,
     closed = false;
     const int mark = marks.find(edges[e][0], edges[e][1]);
     const bool may_end =
-        mark >= 0 && (complex.volume_rule == VolumeRule::Column ||
+        mark >= 0 && (complex.volume_rule == films::VolumeRule::Column ||
                       marks.all()[mark].constraints >= 0 ||
                       marks.all()[mark].integrals >= 0);
     if (!may_end) {
@@ -337,10 +344,10 @@ void check_closed(const FilmComplex& complex, const ComplexBody& body,
   }
 }
 
-void check_bodies(const FilmComplex& complex) {
-  const EdgeMarks marks(complex);
-  for (const ComplexBody& body : complex.bodies) {
-    for (const BodySide& side : body.sides) {
+void check_bodies(const films::FilmComplex& complex) {
+  const films::EdgeMarks marks(complex);
+  for (const films::ComplexBody& body : complex.bodies) {
+    for (const films::BodySide& side : body.sides) {
       if (side.surface < 0 ||
           side.surface >= static_cast<int>(complex.surfaces.size()) ||
           (side.sign != 1 && side.sign != -1)) {
@@ -354,7 +361,7 @@ void check_bodies(const FilmComplex& complex) {
 
 }  // namespace
 
-void check_complex(const FilmComplex& complex) {
+void check_complex(const films::FilmComplex& complex) {
   check_sizes(complex);
   check_sets(complex);
   check_marks(complex);
@@ -365,4 +372,4 @@ void check_complex(const FilmComplex& complex) {
   check_bodies(complex);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

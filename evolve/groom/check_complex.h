@@ -3,7 +3,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 /// Throws MeshError, naming ids, unless every invariant of a complex holds:
 /// indices, labels and kinds consistent, no facet twice, vertices on their
@@ -11,6 +11,6 @@ namespace meniscus {
 /// on a curve, two facets of one surface running opposite ways, and each
 /// body's facets using every edge as often each way (but for marked edges on
 /// walls or above columns, where the rest is integrals), outward.
-void check_complex(const FilmComplex& complex);
+void check_complex(const films::FilmComplex& complex);
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

@@ -5,22 +5,22 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
+#include "core/math/union_find.h"
 #include "evolve/groom/film_cutter.h"
 #include "evolve/groom/pop.h"
-#include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 namespace {
 
 // How bound a vertex is: the looser end goes.
-int bound_of(const FilmCutter& cut, const FilmComplex& complex, int v) {
+int bound_of(const FilmCutter& cut, const films::FilmComplex& complex, int v) {
   if (cut.is_loose(v)) {
     return 0;
   }
-  return complex.vertices[v].kind == VertexKind::Free ? 1 : 2;
+  return complex.vertices[v].kind == films::VertexKind::Free ? 1 : 2;
 }
 
 // Would a facet of `gone` be there twice?
@@ -45,7 +45,7 @@ bool doubles(const FilmCutter& cut, int gone, int kept) {
 }
 
 bool collapse(FilmCutter& cut, int a, int b) {
-  FilmComplex& complex = cut.complex();
+  films::FilmComplex& complex = cut.complex();
   const int bound_a = bound_of(cut, complex, a);
   const int bound_b = bound_of(cut, complex, b);
   const int kept = bound_a >= bound_b ? a : b;
@@ -73,7 +73,7 @@ bool collapse(FilmCutter& cut, int a, int b) {
 
 }  // namespace
 
-int collapse_tiny_edges(FilmComplex& complex, double length) {
+int collapse_tiny_edges(films::FilmComplex& complex, double length) {
   if (!(std::isfinite(length) && length >= 0.0)) {
     throw InvalidInput(fmt::format(
         "edges shorter than {} are to go; must be 0 or more", length));
@@ -106,4 +106,4 @@ int collapse_tiny_edges(FilmComplex& complex, double length) {
   return count;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

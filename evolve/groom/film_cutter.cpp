@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::groom {
 
-FilmCutter::FilmCutter(FilmComplex& complex)
+FilmCutter::FilmCutter(films::FilmComplex& complex)
     : complex_(complex),
       marks_(complex),
       star_(complex.mesh.points.size()),
@@ -16,7 +16,7 @@ FilmCutter::FilmCutter(FilmComplex& complex)
       star_[v].push_back(f);
     }
   }
-  for (const ComplexEdge& mark : marks_.all()) {
+  for (const films::ComplexEdge& mark : marks_.all()) {
     on_mark_[mark.a] = 1;
     on_mark_[mark.b] = 1;
   }
@@ -55,8 +55,8 @@ int FilmCutter::corner_off(int f, int a, int b) const {
 }
 
 bool FilmCutter::is_loose(int v) const {
-  const ComplexVertex& vertex = complex_.vertices[v];
-  return vertex.kind == VertexKind::Free && vertex.constraints < 0 &&
+  const films::ComplexVertex& vertex = complex_.vertices[v];
+  return vertex.kind == films::VertexKind::Free && vertex.constraints < 0 &&
          on_mark_[v] == 0 &&
          std::all_of(star_[v].begin(), star_[v].end(),
                      [&](int f) { return is_liquid(f); });
@@ -65,7 +65,7 @@ bool FilmCutter::is_loose(int v) const {
 int FilmCutter::body_at(int f, Side side) const {
   const int sign = side == Side::Behind ? 1 : -1;
   for (std::size_t b = 0; b < complex_.bodies.size(); ++b) {
-    for (const BodySide& part : complex_.bodies[b].sides) {
+    for (const films::BodySide& part : complex_.bodies[b].sides) {
       if (part.surface == label(f) && part.sign == sign) {
         return static_cast<int>(b);
       }
@@ -109,7 +109,7 @@ void FilmCutter::remove(int f) {
 
 int FilmCutter::add_surface(int like, int ahead, int behind) {
   const int id = static_cast<int>(complex_.surfaces.size());
-  ComplexSurface surface = complex_.surfaces[like];
+  films::ComplexSurface surface = complex_.surfaces[like];
   int number = 1;
   do {
     surface.name = fmt::format("popped{}", number++);
@@ -130,10 +130,11 @@ int FilmCutter::add_surface(int like, int ahead, int behind) {
 void FilmCutter::tidy() {
   SurfaceMesh& mesh = complex_.mesh;
   auto& edges = complex_.edges;
-  edges.erase(
-      std::remove_if(edges.begin(), edges.end(),
-                     [](const ComplexEdge& edge) { return edge.a == edge.b; }),
-      edges.end());
+  edges.erase(std::remove_if(edges.begin(), edges.end(),
+                             [](const films::ComplexEdge& edge) {
+                               return edge.a == edge.b;
+                             }),
+              edges.end());
   std::vector<int> number(mesh.points.size(), -1);
   for (const Triangle& t : mesh.facets) {
     for (const int v : t) {
@@ -142,7 +143,7 @@ void FilmCutter::tidy() {
       }
     }
   }
-  for (const ComplexEdge& edge : edges) {
+  for (const films::ComplexEdge& edge : edges) {
     number[edge.a] = 0;
     number[edge.b] = 0;
   }
@@ -156,7 +157,7 @@ void FilmCutter::tidy() {
   }
   mesh.points.resize(points);
   complex_.vertices.resize(points);
-  for (ComplexEdge& edge : edges) {
+  for (films::ComplexEdge& edge : edges) {
     edge.a = number[edge.a];
     edge.b = number[edge.b];
   }
@@ -172,4 +173,4 @@ void FilmCutter::tidy() {
   mesh.facet_label.resize(kept);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

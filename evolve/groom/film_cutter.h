@@ -7,13 +7,13 @@
 #include "evolve/films/edge_marks.h"
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 class FilmCutter {
  public:
-  explicit FilmCutter(FilmComplex& complex);
+  explicit FilmCutter(films::FilmComplex& complex);
 
-  FilmComplex& complex() { return complex_; }
+  films::FilmComplex& complex() { return complex_; }
   const Points& points() const { return complex_.mesh.points; }
   const Triangle& facet(int f) const { return complex_.mesh.facets[f]; }
   int label(int f) const { return complex_.mesh.facet_label[f]; }
@@ -22,7 +22,7 @@ class FilmCutter {
   std::vector<int> along(int a, int b) const;  // facets of an edge
   int corner_off(int f, int a, int b) const;
   bool is_liquid(int f) const {  // and may be changed
-    const ComplexSurface& surface = complex_.surfaces[label(f)];
+    const films::ComplexSurface& surface = complex_.surfaces[label(f)];
     return surface.liquid && surface.refine;
   }
   /// True when the vertex is liquid, free of walls and marked edges, and on
@@ -48,10 +48,10 @@ class FilmCutter {
   void tidy();
 
  private:
-  FilmComplex& complex_;
-  EdgeMarks marks_;
+  films::FilmComplex& complex_;
+  films::EdgeMarks marks_;
   std::vector<std::vector<int>> star_;
   std::vector<char> on_mark_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

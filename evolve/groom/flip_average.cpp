@@ -2,10 +2,10 @@
 #include <cmath>
 #include <queue>
 
-#include "evolve/groom/surface_editor.h"
 #include "core/geometry/edge_key.h"
+#include "evolve/groom/surface_editor.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 namespace {
 
@@ -28,10 +28,10 @@ bool SurfaceEditor::should_flip(int a, int b, int c, int d,
   const Vec3& pb = mesh_.points[b];
   const Vec3& pc = mesh_.points[c];
   const Vec3& pd = mesh_.points[d];
-  const double now =
-      std::min(smallest_tangent(pa, pb, pc), smallest_tangent(pb, pa, pd));
-  const double then =
-      std::min(smallest_tangent(pc, pd, pb), smallest_tangent(pd, pc, pa));
+  const double now = std::min(films::smallest_tangent(pa, pb, pc),
+                              films::smallest_tangent(pb, pa, pd));
+  const double then = std::min(films::smallest_tangent(pc, pd, pb),
+                               films::smallest_tangent(pd, pc, pa));
   if (!(then > now + kLeastGain) || line(c, d) != nullptr || has_edge(c, d)) {
     return false;
   }
@@ -163,16 +163,17 @@ Vec3 SurfaceEditor::line_move(int v, const EdgeTarget& target) const {
   return chord.dot(aim - p) / chord.squaredNorm() * chord;
 }
 
-PlacedVertex SurfaceEditor::moved(int v, const Vec3& move) const {
-  PlacedVertex result = placed(v);
+films::PlacedVertex SurfaceEditor::moved(int v, const Vec3& move) const {
+  films::PlacedVertex result = placed(v);
   const Vec3 aim = result.place + move;
-  if (result.vertex.kind == VertexKind::Slides) {
-    const CurveShape& shape = complex_.curves[result.vertex.curve].shape;
-    result.vertex.t = nearest_parameter(shape, aim, result.vertex.t);
-    result.place = point_at(shape, result.vertex.t);
+  if (result.vertex.kind == films::VertexKind::Slides) {
+    const curves::CurveShape& shape =
+        complex_.curves[result.vertex.curve].shape;
+    result.vertex.t = films::nearest_parameter(shape, aim, result.vertex.t);
+    result.place = curves::point_at(shape, result.vertex.t);
   } else if (result.vertex.constraints >= 0) {
-    result.place = onto_walls(complex_, result.vertex.constraints,
-                              result.vertex.held, aim);
+    result.place = films::onto_walls(complex_, result.vertex.constraints,
+                                     result.vertex.held, aim);
   } else {
     result.place = aim;
   }
@@ -187,9 +188,9 @@ double SurfaceEditor::worst_shape(int v,
   for (std::size_t i = 0; i < star_[v].size(); ++i) {
     const int f = star_[v][i];
     const Triangle& t = mesh_.facets[f];
-    least =
-        std::min(least, smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
-                                         mesh_.points[t[2]]));
+    least = std::min(
+        least, films::smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
+                                       mesh_.points[t[2]]));
     if (!(normal2(f).dot(normals[normals.size() > 1 ? i : 0]) > 0.0)) {
       return -1.0;
     }
@@ -217,10 +218,10 @@ void SurfaceEditor::average(const EdgeTarget& target) {
     if (!(move.squaredNorm() > 0.0)) {
       continue;
     }
-    const PlacedVertex old = placed(v);
+    const films::PlacedVertex old = placed(v);
     const double before = std::min(worst_shape(v, normals), kGoodTangent);
     for (int trial = 0; trial < kMoveTrials; ++trial) {
-      const PlacedVertex now = moved(v, move);
+      const films::PlacedVertex now = moved(v, move);
       mesh_.points[v] = now.place;
       complex_.vertices[v] = now.vertex;
       if (worst_shape(v, normals) >= before) {
@@ -263,4 +264,4 @@ void make_isotropic(SurfaceEditor& editor, const EdgeTarget& target,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

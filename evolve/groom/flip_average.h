@@ -3,7 +3,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 /// Flips edges of the films where that increases the smallest angle
 /// (equiangulation). Returns the number of flips.
@@ -11,11 +11,12 @@ enum class FlipRule {
   KeepShape,  // never where the film's shape would change much
   AnglesOnly  // wherever the angles ask for it, as Surface Evolver's `u` does
 };
-int equiangulate(FilmComplex& complex, FlipRule rule = FlipRule::KeepShape);
+int equiangulate(films::FilmComplex& complex,
+                 FlipRule rule = FlipRule::KeepShape);
 
 /// One step of vertex averaging: liquid vertices move to the area-weighted
 /// centre of their facets, along the film only; on lines to the middle of
 /// their neighbours, along the line only.
-void average_vertices(FilmComplex& complex);
+void average_vertices(films::FilmComplex& complex);
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

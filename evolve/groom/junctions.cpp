@@ -4,11 +4,11 @@
 
 #include "evolve/groom/pop.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 namespace {
 
-bool has_lines(const FilmComplex& complex) {
+bool has_lines(const films::FilmComplex& complex) {
   std::vector<Edge> edges;
   std::vector<Triangle> facet_edges;
   list_edges(complex.mesh.facets, edges, facet_edges);
@@ -25,11 +25,12 @@ bool has_lines(const FilmComplex& complex) {
 
 }  // namespace
 
-std::optional<UnstableJunction> unstable_junction(const FilmComplex& complex) {
+std::optional<UnstableJunction> unstable_junction(
+    const films::FilmComplex& complex) {
   if (!has_lines(complex)) {
     return std::nullopt;
   }
-  FilmComplex trial = complex;
+  films::FilmComplex trial = complex;
   const PopReport edges = pop_edges(trial);
   if (edges.popped > 0) {
     return UnstableJunction{edges.places.front(), true};
@@ -42,4 +43,4 @@ std::optional<UnstableJunction> unstable_junction(const FilmComplex& complex) {
   return std::nullopt;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

@@ -5,7 +5,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 /// Films that are free to part meet three along a line and in four lines at a
 /// point (Plateau; Taylor 1976). Any other junction is a saddle, however well
@@ -17,6 +17,7 @@ struct UnstableJunction {
 
 /// The first junction that pop_edges() or pop_vertices() would split; none in
 /// a complex where at most two films meet along every edge.
-std::optional<UnstableJunction> unstable_junction(const FilmComplex& complex);
+std::optional<UnstableJunction> unstable_junction(
+    const films::FilmComplex& complex);
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

@@ -8,7 +8,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 struct PopReport {
   int popped = 0;
@@ -23,18 +23,18 @@ struct PopReport {
 /// films meet along each. The new film is a new surface ("popped1", ...) with
 /// the tension of one that was pulled, between the bodies that it parts. Ends
 /// of a line stay as they are.
-PopReport pop_edges(FilmComplex& complex);
+PopReport pop_edges(films::FilmComplex& complex);
 
 /// Pops vertices whose cone is none of the minimal ones (a disk, three half
 /// disks, six sectors). Where sheets touch in the vertex only, as a pinched
 /// neck does, each gets a vertex of its own. Otherwise a small ball around it
 /// is given to the region with the largest solid angle: films then part that
 /// from every other region. Lines of more than three films: pop_edges first.
-PopReport pop_vertices(FilmComplex& complex);
+PopReport pop_vertices(films::FilmComplex& complex);
 
 /// Removes edges shorter than `length` [length, >= 0], the shortest first,
 /// with their facets, even where that pinches a neck; not where a facet would
 /// be there twice or something held would move. Returns how many.
-int collapse_tiny_edges(FilmComplex& complex, double length);
+int collapse_tiny_edges(films::FilmComplex& complex, double length);
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

@@ -7,11 +7,11 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/edge_key.h"
 #include "evolve/groom/film_cutter.h"
 #include "evolve/groom/pop.h"
-#include "core/geometry/edge_key.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 namespace {
 
@@ -31,7 +31,7 @@ struct Chain {
 
 class EdgePopper {
  public:
-  explicit EdgePopper(FilmComplex& complex) : cut_(complex) {}
+  explicit EdgePopper(films::FilmComplex& complex) : cut_(complex) {}
 
   PopReport run() {
     for (int v = 0; v < static_cast<int>(cut_.points().size()); ++v) {
@@ -322,6 +322,8 @@ class EdgePopper {
 
 }  // namespace
 
-PopReport pop_edges(FilmComplex& complex) { return EdgePopper(complex).run(); }
+PopReport pop_edges(films::FilmComplex& complex) {
+  return EdgePopper(complex).run();
+}
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

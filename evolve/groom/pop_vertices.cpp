@@ -10,7 +10,7 @@
 #include "evolve/groom/film_cutter.h"
 #include "evolve/groom/pop.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 namespace {
 
@@ -29,7 +29,7 @@ struct Link {
 
 class VertexPopper {
  public:
-  explicit VertexPopper(FilmComplex& complex) : cut_(complex) {}
+  explicit VertexPopper(films::FilmComplex& complex) : cut_(complex) {}
 
   PopReport run() {
     const int count = static_cast<int>(cut_.points().size());
@@ -329,8 +329,8 @@ class VertexPopper {
 
 }  // namespace
 
-PopReport pop_vertices(FilmComplex& complex) {
+PopReport pop_vertices(films::FilmComplex& complex) {
   return VertexPopper(complex).run();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "evolve/films/edge_marks.h"
 #include "core/geometry/edge_key.h"
+#include "evolve/films/edge_marks.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 namespace {
 
@@ -21,14 +21,15 @@ struct EdgePlan {
   std::vector<int> obstacle;  // constraint set of its films, or -1
 };
 
-EdgePlan plan_edges(const FilmComplex& complex, const EdgeMarks& marks) {
+EdgePlan plan_edges(const films::FilmComplex& complex,
+                    const films::EdgeMarks& marks) {
   EdgePlan plan;
   list_edges(complex.mesh.facets, plan.edges, plan.facet_edges);
   plan.in_film.assign(plan.edges.size(), 0);
   plan.obstacle.assign(plan.edges.size(), -1);
   std::vector<char> whole(plan.edges.size(), 0);
   for (std::size_t f = 0; f < plan.facet_edges.size(); ++f) {
-    const ComplexSurface& surface =
+    const films::ComplexSurface& surface =
         complex.surfaces[complex.mesh.facet_label[f]];
     for (const int e : plan.facet_edges[f]) {
       plan.in_film[e] |= surface.liquid ? 1 : 0;
@@ -47,7 +48,7 @@ EdgePlan plan_edges(const FilmComplex& complex, const EdgeMarks& marks) {
   // Wires: marked edges that no facet has.
   for (std::size_t m = 0; m < complex.edges.size(); ++m) {
     if (seen[m] == 0) {
-      const ComplexEdge& wire = complex.edges[m];
+      const films::ComplexEdge& wire = complex.edges[m];
       plan.edges.push_back(edge_key(wire.a, wire.b));
       plan.mark.push_back(static_cast<int>(m));
       plan.in_film.push_back(0);
@@ -66,31 +67,34 @@ EdgePlan plan_edges(const FilmComplex& complex, const EdgeMarks& marks) {
   return plan;
 }
 
-PlacedVertex middle_of(const FilmComplex& complex, const EdgeMarks& marks,
-                       const EdgePlan& plan, std::size_t e) {
+films::PlacedVertex middle_of(const films::FilmComplex& complex,
+                              const films::EdgeMarks& marks,
+                              const EdgePlan& plan, std::size_t e) {
   const auto [a, b] = plan.edges[e];
-  const ComplexVertex& va = complex.vertices[a];
-  const ComplexVertex& vb = complex.vertices[b];
+  const films::ComplexVertex& va = complex.vertices[a];
+  const films::ComplexVertex& vb = complex.vertices[b];
   const Vec3& pa = complex.mesh.points[a];
   const Vec3& pb = complex.mesh.points[b];
   if (plan.mark[e] >= 0) {
-    return born_on(complex, marks.all()[plan.mark[e]], {va, pa}, {vb, pb});
+    return films::born_on(complex, marks.all()[plan.mark[e]], {va, pa},
+                          {vb, pb});
   }
-  PlacedVertex made;
+  films::PlacedVertex made;
   made.place = 0.5 * (pa + pb);
   if (plan.in_film[e] != 0 && plan.obstacle[e] >= 0) {
-    const auto touches = [](const ComplexVertex& v) {
+    const auto touches = [](const films::ComplexVertex& v) {
       return v.constraints < 0 || v.held;
     };
     made.vertex.constraints = plan.obstacle[e];
     made.vertex.held = touches(va) && touches(vb);
-    made.place =
-        onto_walls(complex, plan.obstacle[e], made.vertex.held, made.place);
+    made.place = films::onto_walls(complex, plan.obstacle[e], made.vertex.held,
+                                   made.place);
   }
   if (plan.in_film[e] == 0) {
-    const bool solid =
-        va.kind == VertexKind::Fixed && vb.kind == VertexKind::Fixed;
-    made.vertex.kind = solid ? VertexKind::Fixed : VertexKind::InCap;
+    const bool solid = va.kind == films::VertexKind::Fixed &&
+                       vb.kind == films::VertexKind::Fixed;
+    made.vertex.kind =
+        solid ? films::VertexKind::Fixed : films::VertexKind::InCap;
   }
   return made;
 }
@@ -131,8 +135,8 @@ void add_partial(const Points& points, const Triangle& t, const Triangle& m,
   }
 }
 
-void refine_marks(const FilmComplex& complex, const EdgePlan& plan,
-                  FilmComplex& fine) {
+void refine_marks(const films::FilmComplex& complex, const EdgePlan& plan,
+                  films::FilmComplex& fine) {
   std::vector<int> middle(complex.edges.size(), -1);
   for (std::size_t e = 0; e < plan.edges.size(); ++e) {
     const int m = plan.mark[e];
@@ -143,7 +147,7 @@ void refine_marks(const FilmComplex& complex, const EdgePlan& plan,
   fine.edges.clear();
   fine.edges.reserve(2 * complex.edges.size());
   for (std::size_t m = 0; m < complex.edges.size(); ++m) {
-    ComplexEdge half = complex.edges[m];
+    films::ComplexEdge half = complex.edges[m];
     if (middle[m] >= 0) {
       half.b = middle[m];
       fine.edges.push_back(half);
@@ -156,11 +160,11 @@ void refine_marks(const FilmComplex& complex, const EdgePlan& plan,
 
 }  // namespace
 
-Refinement refine(const FilmComplex& complex) {
-  const EdgeMarks marks(complex);
+Refinement refine(const films::FilmComplex& complex) {
+  const films::EdgeMarks marks(complex);
   const EdgePlan plan = plan_edges(complex, marks);
   Refinement result;
-  FilmComplex& fine = result.complex;
+  films::FilmComplex& fine = result.complex;
   fine = complex;
   const std::size_t points = complex.mesh.points.size();
   fine.mesh.points.reserve(points + plan.edges.size());
@@ -168,7 +172,7 @@ Refinement refine(const FilmComplex& complex) {
   result.parents.reserve(plan.edges.size());
   for (std::size_t e = 0; e < plan.edges.size(); ++e) {
     if (plan.middle[e] >= 0) {
-      const PlacedVertex made = middle_of(complex, marks, plan, e);
+      const films::PlacedVertex made = middle_of(complex, marks, plan, e);
       fine.mesh.points.push_back(made.place);
       fine.vertices.push_back(made.vertex);
       result.parents.push_back(plan.edges[e]);
@@ -198,4 +202,4 @@ Refinement refine(const FilmComplex& complex) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

@@ -5,7 +5,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 /// Nested refinement: every facet into four, by the middles of its edges.
 /// Vertices on marked edges and rims are born as the mark says: on curves at
@@ -21,9 +21,9 @@ namespace meniscus {
 /// (01, 1, 12), (20, 12, 2) and (01, 12, 20). Linear in time: 245,760 facets
 /// in about 0.1 s.
 struct Refinement {
-  FilmComplex complex;
+  films::FilmComplex complex;
   std::vector<Edge> parents;  // one per new vertex
 };
-Refinement refine(const FilmComplex& complex);
+Refinement refine(const films::FilmComplex& complex);
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

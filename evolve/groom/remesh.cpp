@@ -9,9 +9,9 @@
 #include "evolve/groom/flip_average.h"
 #include "evolve/groom/surface_editor.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
-void remesh_films(FilmComplex& complex, const RemeshOptions& options) {
+void remesh_films(films::FilmComplex& complex, const RemeshOptions& options) {
   if (!options.edge_field &&
       (!std::isfinite(options.edge) || options.edge <= 0.0)) {
     throw InvalidInput(
@@ -22,17 +22,17 @@ void remesh_films(FilmComplex& complex, const RemeshOptions& options) {
   complex = std::move(editor).finish();
 }
 
-int equiangulate(FilmComplex& complex, FlipRule rule) {
+int equiangulate(films::FilmComplex& complex, FlipRule rule) {
   SurfaceEditor editor(std::move(complex));
   const int flips = editor.flip_all(rule);
   complex = std::move(editor).finish();
   return flips;
 }
 
-void average_vertices(FilmComplex& complex) {
+void average_vertices(films::FilmComplex& complex) {
   SurfaceEditor editor(std::move(complex));
   editor.average({});
   complex = std::move(editor).finish();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

@@ -6,7 +6,7 @@
 #include "core/types.h"
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 /// Isotropic remeshing of the films towards an edge length: split above 4/3,
 /// collapse below 4/5, flip towards Delaunay, vertex averaging along the film.
@@ -22,6 +22,6 @@ struct RemeshOptions {
   /// change by less than about half its value within its value.
   std::function<double(const Vec3&)> edge_field = {};
 };
-void remesh_films(FilmComplex& complex, const RemeshOptions& options);
+void remesh_films(films::FilmComplex& complex, const RemeshOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

@@ -5,7 +5,7 @@
 
 #include "evolve/groom/surface_editor.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 namespace {
 
@@ -50,7 +50,7 @@ double SurfaceEditor::longest(const EdgeTarget& target) const {
   return result;
 }
 
-void SurfaceEditor::split(int a, int b, const PlacedVertex& made) {
+void SurfaceEditor::split(int a, int b, const films::PlacedVertex& made) {
   const LineEnd* found = line(a, b);
   const bool on_line = found != nullptr;
   const int m = add_vertex(made, on_line ? Rank::Line : Rank::Film);
@@ -59,7 +59,7 @@ void SurfaceEditor::split(int a, int b, const PlacedVertex& made) {
     int born = -1;
     if (mark >= 0) {
       born = static_cast<int>(marks_.size());
-      ComplexEdge half = marks_[mark];
+      films::ComplexEdge half = marks_[mark];
       (half.a == b ? half.b : half.a) = m;
       marks_.push_back(half);
       (marks_[mark].a == b ? marks_[mark].a : marks_[mark].b) = m;
@@ -101,7 +101,7 @@ void SurfaceEditor::split_above(double factor, const EdgeTarget& target) {
       longest = std::max({longest, ratio(a, wing.corner, target),
                           ratio(b, wing.corner, target)});
     }
-    const PlacedVertex made = middle(a, b, line(a, b));
+    const films::PlacedVertex made = middle(a, b, line(a, b));
     const double half = kHalf * (mesh_.points[a] - mesh_.points[b]).norm();
     if (longest > (1.0 + 1e-12) * r ||
         (made.place - mesh_.points[a]).norm() > half ||
@@ -171,9 +171,9 @@ bool SurfaceEditor::can_collapse(int gone, int kept, const Vec3& place,
           return false;
         }
       }
-      before = std::min(before,
-                        smallest_tangent(mesh_.points[t[0]], mesh_.points[t[1]],
-                                         mesh_.points[t[2]]));
+      before = std::min(before, films::smallest_tangent(mesh_.points[t[0]],
+                                                        mesh_.points[t[1]],
+                                                        mesh_.points[t[2]]));
       if (dies) {
         continue;
       }
@@ -183,7 +183,7 @@ bool SurfaceEditor::can_collapse(int gone, int kept, const Vec3& place,
       if (!(old.dot(now) > kTurnCosine * bound)) {
         return false;
       }
-      after = std::min(after, smallest_tangent(p[0], p[1], p[2]));
+      after = std::min(after, films::smallest_tangent(p[0], p[1], p[2]));
     }
   }
   return after >= before;
@@ -203,14 +203,15 @@ void SurfaceEditor::move_lines(int gone, int kept) {
     line_end(end.to, gone).to = kept;
     lines_[kept].push_back(end);
     if (end.mark >= 0) {
-      ComplexEdge& mark = marks_[end.mark];
+      films::ComplexEdge& mark = marks_[end.mark];
       (mark.a == gone ? mark.a : mark.b) = kept;
     }
   }
   lines_[gone].clear();
 }
 
-void SurfaceEditor::collapse(int gone, int kept, const PlacedVertex& place) {
+void SurfaceEditor::collapse(int gone, int kept,
+                             const films::PlacedVertex& place) {
   for (const Wing& wing : wings_) {
     for (const int v : Triangle(mesh_.facets[wing.facet])) {
       drop_from_star(v, wing.facet);
@@ -234,21 +235,21 @@ bool SurfaceEditor::try_collapse(int a, int b, double longest,
   kept = rank_[a] >= rank_[b] ? a : b;
   const int gone = kept == a ? b : a;
   const LineEnd* on = line(a, b);
-  const ComplexVertex& goes = complex_.vertices[gone];
-  const ComplexVertex& stays = complex_.vertices[kept];
+  const films::ComplexVertex& goes = complex_.vertices[gone];
+  const films::ComplexVertex& stays = complex_.vertices[kept];
   if (rank_[gone] == Rank::Held ||
       (rank_[gone] == Rank::Line && on == nullptr) ||
       (rank_[gone] == Rank::Wall && goes.constraints != stays.constraints)) {
     return false;
   }
-  PlacedVertex place = placed(kept);
+  films::PlacedVertex place = placed(kept);
   if (rank_[gone] == rank_[kept]) {
     place = middle(a, b, on);
     if (rank_[gone] == Rank::Wall) {
       place.vertex = stays;
       place.vertex.held = goes.held && stays.held;
-      place.place = onto_walls(complex_, stays.constraints, place.vertex.held,
-                               place.place);
+      place.place = films::onto_walls(complex_, stays.constraints,
+                                      place.vertex.held, place.place);
     }
   }
   if (!link_allows(gone, kept) ||
@@ -289,4 +290,4 @@ void SurfaceEditor::collapse_below(double factor, double longest,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 double EdgeTarget::field_at(const Vec3& place) const {
   const double value = field(place);
@@ -22,7 +22,7 @@ double EdgeTarget::field_at(const Vec3& place) const {
   return value;
 }
 
-SurfaceEditor::SurfaceEditor(FilmComplex complex)
+SurfaceEditor::SurfaceEditor(films::FilmComplex complex)
     : complex_(std::move(complex)),
       mesh_(std::move(complex_.mesh)),
       frozen_(mesh_.facets.size(), 0),
@@ -30,7 +30,8 @@ SurfaceEditor::SurfaceEditor(FilmComplex complex)
       lines_(mesh_.points.size()),
       star_(mesh_.points.size()) {
   for (int f = 0; f < static_cast<int>(mesh_.facets.size()); ++f) {
-    const ComplexSurface& surface = complex_.surfaces[mesh_.facet_label[f]];
+    const films::ComplexSurface& surface =
+        complex_.surfaces[mesh_.facet_label[f]];
     frozen_[f] = surface.liquid && surface.refine ? 0 : 1;
     for (const int v : mesh_.facets[f]) {
       star_[v].push_back(f);
@@ -41,7 +42,7 @@ SurfaceEditor::SurfaceEditor(FilmComplex complex)
 }
 
 void SurfaceEditor::find_lines() {
-  const EdgeMarks marks(complex_);
+  const films::EdgeMarks marks(complex_);
   marks_ = marks.all();
   old_marks_ = complex_.edges.size();
   old_and_rim_marks_ = marks_.size();
@@ -77,10 +78,10 @@ void SurfaceEditor::find_lines() {
       continue;
     }
     const bool liquid =
-        mark < 0
-            ? use.facets > 2 || use.mixed
-            : marks_[mark].refine && (marks_[mark].kind == VertexKind::Free ||
-                                      marks_[mark].kind == VertexKind::Slides);
+        mark < 0 ? use.facets > 2 || use.mixed
+                 : marks_[mark].refine &&
+                       (marks_[mark].kind == films::VertexKind::Free ||
+                        marks_[mark].kind == films::VertexKind::Slides);
     const bool moves = liquid && use.frozen == 0;
     lines_[a].push_back({b, mark, moves});
     lines_[b].push_back({a, mark, moves});
@@ -92,7 +93,7 @@ void SurfaceEditor::rank_vertices() {
   for (int v = 0; v < static_cast<int>(rank_.size()); ++v) {
     rank_[v] = rank_of(v);
   }
-  for (const ComplexEdge& mark : marks_) {
+  for (const films::ComplexEdge& mark : marks_) {
     if (line(mark.a, mark.b) == nullptr) {  // a wire, or on solid facets
       rank_[mark.a] = Rank::Held;
       rank_[mark.b] = Rank::Held;
@@ -101,10 +102,10 @@ void SurfaceEditor::rank_vertices() {
 }
 
 SurfaceEditor::Rank SurfaceEditor::rank_of(int v) const {
-  const ComplexVertex& vertex = complex_.vertices[v];
-  const bool slides = vertex.kind == VertexKind::Slides;
+  const films::ComplexVertex& vertex = complex_.vertices[v];
+  const bool slides = vertex.kind == films::VertexKind::Slides;
   const auto is_frozen = [&](int f) { return frozen_[f] != 0; };
-  if ((vertex.kind != VertexKind::Free && !slides) ||
+  if ((vertex.kind != films::VertexKind::Free && !slides) ||
       std::any_of(star_[v].begin(), star_[v].end(), is_frozen) ||
       !link_is_connected(v)) {
     return Rank::Held;
@@ -124,20 +125,21 @@ bool SurfaceEditor::same_line(int v) const {
   if (!one.moves || !two.moves || (one.mark < 0) != (two.mark < 0)) {
     return false;
   }
-  const ComplexVertex& vertex = complex_.vertices[v];
+  const films::ComplexVertex& vertex = complex_.vertices[v];
   if (one.mark < 0) {
-    if (vertex.kind != VertexKind::Free || vertex.constraints >= 0) {
+    if (vertex.kind != films::VertexKind::Free || vertex.constraints >= 0) {
       return false;
     }
   } else {
-    const ComplexEdge& p = marks_[one.mark];
-    const ComplexEdge& q = marks_[two.mark];
+    const films::ComplexEdge& p = marks_[one.mark];
+    const films::ComplexEdge& q = marks_[two.mark];
     const bool through = (p.b == v) == (q.a == v);
     if (p.kind != q.kind || p.curve != q.curve ||
         p.constraints != q.constraints || p.integrals != q.integrals ||
         (p.integrals >= 0 && !through) || vertex.kind != p.kind ||
-        (p.kind == VertexKind::Slides ? vertex.curve != p.curve
-                                      : vertex.constraints != p.constraints)) {
+        (p.kind == films::VertexKind::Slides
+             ? vertex.curve != p.curve
+             : vertex.constraints != p.constraints)) {
       return false;
     }
   }
@@ -238,11 +240,12 @@ bool SurfaceEditor::gather(int a, int b) {
 }
 
 // The vertex in the middle of an edge, as split and collapse make it.
-PlacedVertex SurfaceEditor::middle(int a, int b, const LineEnd* on) const {
+films::PlacedVertex SurfaceEditor::middle(int a, int b,
+                                          const LineEnd* on) const {
   if (on != nullptr && on->mark >= 0) {
-    return born_on(complex_, marks_[on->mark], placed(a), placed(b));
+    return films::born_on(complex_, marks_[on->mark], placed(a), placed(b));
   }
-  PlacedVertex made;
+  films::PlacedVertex made;
   made.place = 0.5 * (mesh_.points[a] + mesh_.points[b]);
   return made;
 }
@@ -270,7 +273,7 @@ void SurfaceEditor::add_facet(const Triangle& corners, int label) {
   }
 }
 
-int SurfaceEditor::add_vertex(const PlacedVertex& made, Rank rank) {
+int SurfaceEditor::add_vertex(const films::PlacedVertex& made, Rank rank) {
   const int v = static_cast<int>(mesh_.points.size());
   mesh_.points.push_back(made.place);
   complex_.vertices.push_back(made.vertex);
@@ -287,12 +290,12 @@ double SurfaceEditor::ratio(int a, int b, const EdgeTarget& target) const {
   return (p - q).norm() / target.at(0.5 * (p + q));
 }
 
-FilmComplex SurfaceEditor::finish() && {
+films::FilmComplex SurfaceEditor::finish() && {
   std::vector<int> number(mesh_.points.size(), -1);
   for (std::size_t v = 0; v < number.size(); ++v) {
     number[v] = star_[v].empty() ? -1 : 0;
   }
-  std::vector<ComplexEdge> edges;
+  std::vector<films::ComplexEdge> edges;
   for (std::size_t m = 0; m < marks_.size(); ++m) {
     const bool rim = m >= old_marks_ && m < old_and_rim_marks_;
     if (!rim && marks_[m].a >= 0) {
@@ -311,7 +314,7 @@ FilmComplex SurfaceEditor::finish() && {
   }
   mesh_.points.resize(count);
   complex_.vertices.resize(count);
-  for (ComplexEdge& edge : edges) {
+  for (films::ComplexEdge& edge : edges) {
     edge.a = number[edge.a];
     edge.b = number[edge.b];
   }
@@ -330,4 +333,4 @@ FilmComplex SurfaceEditor::finish() && {
   return std::move(complex_);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

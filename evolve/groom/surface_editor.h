@@ -20,7 +20,7 @@
 #include "evolve/films/triangle_shape.h"
 #include "evolve/groom/flip_average.h"
 
-namespace meniscus {
+namespace meniscus::groom {
 
 /// The edge length wanted, [length], > 0: `field` at a place, or `edge`.
 struct EdgeTarget {
@@ -35,7 +35,7 @@ struct EdgeTarget {
 
 class SurfaceEditor {
  public:
-  explicit SurfaceEditor(FilmComplex complex);
+  explicit SurfaceEditor(films::FilmComplex complex);
 
   /// The longest edge that may be changed, x target.
   double longest(const EdgeTarget& target) const;
@@ -59,7 +59,7 @@ class SurfaceEditor {
 
   /// The result: points that are still used, survivors first in their old
   /// order; marks likewise.
-  FilmComplex finish() &&;
+  films::FilmComplex finish() &&;
 
  private:
   // An edge collapses into the end of higher rank.
@@ -87,22 +87,22 @@ class SurfaceEditor {
   const LineEnd* line(int a, int b) const;
   LineEnd& line_end(int from, int to);
   bool gather(int a, int b);
-  PlacedVertex placed(int v) const {
+  films::PlacedVertex placed(int v) const {
     return {complex_.vertices[v], mesh_.points[v]};
   }
-  PlacedVertex middle(int a, int b, const LineEnd* line) const;
+  films::PlacedVertex middle(int a, int b, const LineEnd* line) const;
   void replace_corner(int facet, int from, int to);
   void drop_from_star(int vertex, int facet);
   void add_facet(const Triangle& corners, int label);
-  int add_vertex(const PlacedVertex& made, Rank rank);
+  int add_vertex(const films::PlacedVertex& made, Rank rank);
 
-  void split(int a, int b, const PlacedVertex& made);
+  void split(int a, int b, const films::PlacedVertex& made);
   bool try_collapse(int a, int b, double longest, const EdgeTarget& target,
                     int& kept);
   bool can_collapse(int gone, int kept, const Vec3& place, double longest,
                     const EdgeTarget& target) const;
   bool link_allows(int gone, int kept) const;
-  void collapse(int gone, int kept, const PlacedVertex& place);
+  void collapse(int gone, int kept, const films::PlacedVertex& place);
   void move_lines(int gone, int kept);
 
   bool should_flip(int a, int b, int c, int d, FlipRule rule) const;
@@ -110,7 +110,7 @@ class SurfaceEditor {
 
   Vec3 film_move(int v, const EdgeTarget& target, Vec3& normal) const;
   Vec3 line_move(int v, const EdgeTarget& target) const;
-  PlacedVertex moved(int v, const Vec3& move) const;
+  films::PlacedVertex moved(int v, const Vec3& move) const;
   double worst_shape(int v, const std::vector<Vec3>& normals) const;
 
   Vec3 normal2(int facet) const { return area_vector2(mesh_, facet); }
@@ -118,10 +118,10 @@ class SurfaceEditor {
   template <typename Visit>
   void for_each_edge(const Visit& visit) const;
 
-  FilmComplex complex_;  // without its mesh, which is:
+  films::FilmComplex complex_;  // without its mesh, which is:
   SurfaceMesh mesh_;
-  std::vector<ComplexEdge> marks_;  // those of the complex, then of rims, then
-                                    // born ones; a = -1: gone
+  std::vector<films::ComplexEdge> marks_;  // those of the complex, then of
+                                           // rims, then born ones; a = -1: gone
   std::size_t old_marks_ = 0;
   std::size_t old_and_rim_marks_ = 0;
   std::vector<char> frozen_;                 // per facet: is not changed
@@ -137,4 +137,4 @@ class SurfaceEditor {
 void make_isotropic(SurfaceEditor& editor, const EdgeTarget& target,
                     int passes);
 
-}  // namespace meniscus
+}  // namespace meniscus::groom

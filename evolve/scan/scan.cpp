@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::scan {
 
 namespace {
 
@@ -116,12 +116,12 @@ ScanDistances distances_to(const Scan& scan, const SurfaceMesh& film,
   return result;
 }
 
-FilmResponse measure(const ScanDistances& distances, ScanMeasure measure,
-                     std::size_t vertices) {
+frozen::FilmResponse measure(const ScanDistances& distances,
+                             ScanMeasure measure, std::size_t vertices) {
   const VectorX& values = distances.values;
   const auto count = static_cast<double>(values.size());
   VectorX by = VectorX::Zero(values.size());
-  FilmResponse result;
+  frozen::FilmResponse result;
   switch (measure) {
     case ScanMeasure::Rms:
       result.value = std::sqrt(values.squaredNorm() / count);
@@ -150,4 +150,4 @@ FilmResponse measure(const ScanDistances& distances, ScanMeasure measure,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::scan

@@ -7,7 +7,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "evolve/frozen/film_gradient.h"
 
-namespace meniscus {
+namespace meniscus::scan {
 
 /// The nearest place of a scan.
 struct ScanPlace {
@@ -58,7 +58,7 @@ enum class ScanMeasure {
 /// A measure of `distances` (not none), with its derivatives by the film's
 /// `vertices` points at fixed nearest places: exact, for the nearest place
 /// moves across the distance. P95 and Largest are one vertex's distance.
-FilmResponse measure(const ScanDistances& distances, ScanMeasure measure,
-                     std::size_t vertices);
+frozen::FilmResponse measure(const ScanDistances& distances,
+                             ScanMeasure measure, std::size_t vertices);
 
-}  // namespace meniscus
+}  // namespace meniscus::scan

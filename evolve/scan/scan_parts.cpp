@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::scan {
 
 namespace {
 
@@ -216,4 +216,4 @@ PartBorder ScanParts::walk(Steps& steps, int start,
   return border;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::scan

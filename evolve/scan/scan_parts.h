@@ -7,7 +7,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::scan {
 
 /// A closed border of a part, along edges of the scan.
 struct PartBorder {
@@ -53,4 +53,4 @@ class ScanParts {
   std::vector<double> turn_;               // per edge [radian]
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::scan

@@ -14,7 +14,7 @@
 #include "evolve/scan/scan_parts.h"
 #include "evolve/start/closed_line.h"
 
-namespace meniscus {
+namespace meniscus::scan {
 
 namespace {
 
@@ -42,7 +42,7 @@ void check(const ScanRimOptions& options) {
   }
 }
 
-ScanRim rim_along(const ClosedLine& line, const ScanRimOptions& options,
+ScanRim rim_along(const start::ClosedLine& line, const ScanRimOptions& options,
                   double within) {
   ScanRim rim;
   const auto take = [&](int count) {
@@ -59,7 +59,7 @@ ScanRim rim_along(const ClosedLine& line, const ScanRimOptions& options,
       }
     }
   }
-  const MeanPlane plane = mean_plane(rim.points);
+  const start::MeanPlane plane = start::mean_plane(rim.points);
   rim.center = plane.center;
   rim.normal = plane.normal;
   rim.off_plane = plane.off;
@@ -86,7 +86,7 @@ ScanRimReport find_rims(const SurfaceMesh& scan,
   report.parts =
       static_cast<int>(std::set<int>(part.begin(), part.end()).size());
   for (const PartBorder& border : parts.borders(part)) {
-    const ClosedLine line(border.points);
+    const start::ClosedLine line(border.points);
     if (line.length() < 2.0 * std::numbers::pi * report.radius) {
       continue;
     }
@@ -100,4 +100,4 @@ ScanRimReport find_rims(const SurfaceMesh& scan,
   return report;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::scan

@@ -7,7 +7,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::scan {
 
 struct ScanRimOptions {
   /// A line counts where the surface turns by so much more than about it
@@ -52,4 +52,4 @@ struct ScanRimReport {
 ScanRimReport find_rims(const SurfaceMesh& scan,
                         const ScanRimOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::scan

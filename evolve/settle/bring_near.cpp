@@ -6,7 +6,7 @@
 #include "evolve/groom/remesh.h"
 #include "evolve/settle/neck.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -15,10 +15,10 @@ constexpr int kLookAt = 2;            // steps between looks at the neck
 constexpr double kMostGrowth = 50.0;  // of the area
 
 /// The area beyond which a film is taken to grow without end.
-double most_area(const FilmComplex& complex) {
-  const FilmEnergy energy(complex);
+double most_area(const films::FilmComplex& complex) {
+  const energy::FilmEnergy energy(complex);
   double sum = energy.area(complex.mesh.points);
-  for (const ComplexBody& body : complex.bodies) {
+  for (const films::ComplexBody& body : complex.bodies) {
     sum += std::pow(std::abs(body.volume.value_or(0.0)), 2.0 / 3.0);
   }
   return kMostGrowth * sum;
@@ -26,11 +26,11 @@ double most_area(const FilmComplex& complex) {
 
 }  // namespace
 
-std::string bring_near(FilmComplex& complex, std::optional<double> edge,
+std::string bring_near(films::FilmComplex& complex, std::optional<double> edge,
                        int rounds, int& steps, FlowOptions flow) {
   flow.max_steps = kFlowSteps;
   int asked = 0;
-  flow.torn = [&](const FilmEnergy& energy, const Points& points) {
+  flow.torn = [&](const energy::FilmEnergy& energy, const Points& points) {
     if (flow.most_motion == 0.0 && ++asked % kLookAt != 0) {
       return false;
     }
@@ -42,15 +42,16 @@ std::string bring_near(FilmComplex& complex, std::optional<double> edge,
   for (int round = 0; round < rounds; ++round) {
     const FlowReport report = flow_to_rest(complex, flow);
     steps += report.steps;
-    if (!(FilmEnergy(complex).area(complex.mesh.points) < limit)) {
+    if (!(energy::FilmEnergy(complex).area(complex.mesh.points) < limit)) {
       return kFilmGrows;
     }
     if (report.torn) {
       return kFilmTears;
     }
     if (edge) {
-      remesh_films(complex,
-                   {.edge = *edge, .edge_field = graded_edge(complex, *edge)});
+      groom::remesh_films(
+          complex,
+          {.edge = *edge, .edge_field = films::graded_edge(complex, *edge)});
     }
     if (report.settled || report.steps == 0) {
       break;
@@ -59,4 +60,4 @@ std::string bring_near(FilmComplex& complex, std::optional<double> edge,
   return "";
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

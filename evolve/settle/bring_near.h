@@ -6,7 +6,7 @@
 
 #include "evolve/settle/curvature_flow.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 inline constexpr const char* kFilmTears = "the film pinched while it flowed";
 inline constexpr const char* kFilmGrows =
@@ -17,7 +17,7 @@ inline constexpr const char* kFilmGrows =
 /// adds its steps to `steps`. Empty when the film came near rest; else why
 /// not: one of the two above. With flow.most_motion the neck is
 /// looked at after every step.
-std::string bring_near(FilmComplex& complex, std::optional<double> edge,
+std::string bring_near(films::FilmComplex& complex, std::optional<double> edge,
                        int rounds, int& steps, FlowOptions flow);
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

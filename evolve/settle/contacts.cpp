@@ -6,27 +6,29 @@
 
 #include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
 constexpr double kThrough = 1e-10;  // of the film's size, still on the wall
 
-double side_sign(const LevelSet& wall) {
-  return wall.side == LevelSet::Side::AtLeast ? 1.0 : -1.0;
+double side_sign(const films::LevelSet& wall) {
+  return wall.side == films::LevelSet::Side::AtLeast ? 1.0 : -1.0;
 }
 
 }  // namespace
 
-bool has_contacts(const FilmComplex& complex) {
-  return std::any_of(
-      complex.level_sets.begin(), complex.level_sets.end(),
-      [](const LevelSet& wall) { return wall.side != LevelSet::Side::On; });
+bool has_contacts(const films::FilmComplex& complex) {
+  return std::any_of(complex.level_sets.begin(), complex.level_sets.end(),
+                     [](const films::LevelSet& wall) {
+                       return wall.side != films::LevelSet::Side::On;
+                     });
 }
 
-int update_contacts(FilmComplex& complex, const FilmEnergy& energy,
-                    const VectorX& pressure) {
-  Points slope = energy.gradient(complex.mesh.points, targets_of(complex));
+int update_contacts(films::FilmComplex& complex,
+                    const energy::FilmEnergy& energy, const VectorX& pressure) {
+  Points slope =
+      energy.gradient(complex.mesh.points, energy::targets_of(complex));
   for (int b = 0; b < energy.functionals(); ++b) {
     const Points more = energy.functional_gradient(complex.mesh.points, b);
     for (std::size_t v = 0; v < slope.size(); ++v) {
@@ -36,16 +38,16 @@ int update_contacts(FilmComplex& complex, const FilmEnergy& energy,
   const double size = bounding_diagonal(complex.mesh.points);
   int changed = 0;
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    ComplexVertex& vertex = complex.vertices[v];
-    if (vertex.kind != VertexKind::Free || vertex.constraints < 0) {
+    films::ComplexVertex& vertex = complex.vertices[v];
+    if (vertex.kind != films::VertexKind::Free || vertex.constraints < 0) {
       continue;
     }
     const auto& set = complex.constraint_sets[vertex.constraints];
     Eigen::MatrixX3d rows(static_cast<Eigen::Index>(set.size()), 3);
     std::vector<double> value;
     for (std::size_t i = 0; i < set.size(); ++i) {
-      const PlaceJet jet =
-          jet_at(complex.level_sets[set[i]].formula, complex.mesh.points[v]);
+      const energy::PlaceJet jet = energy::jet_at(
+          complex.level_sets[set[i]].formula, complex.mesh.points[v]);
       rows.row(static_cast<Eigen::Index>(i)) = jet.gradient;
       value.push_back(jet.value / std::max(1e-300, jet.gradient.norm()));
     }
@@ -53,8 +55,8 @@ int update_contacts(FilmComplex& complex, const FilmEnergy& energy,
     bool through = false;
     bool pulled = false;
     for (std::size_t i = 0; i < set.size(); ++i) {
-      const LevelSet& wall = complex.level_sets[set[i]];
-      if (wall.side == LevelSet::Side::On) {
+      const films::LevelSet& wall = complex.level_sets[set[i]];
+      if (wall.side == films::LevelSet::Side::On) {
         continue;
       }
       const double sign = side_sign(wall);
@@ -70,9 +72,9 @@ int update_contacts(FilmComplex& complex, const FilmEnergy& energy,
     }
   }
   if (changed > 0) {
-    FilmSpace(complex).project(complex.mesh.points);
+    energy::FilmSpace(complex).project(complex.mesh.points);
   }
   return changed;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

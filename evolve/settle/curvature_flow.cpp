@@ -6,13 +6,13 @@
 
 #include <Eigen/Core>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 #include "evolve/energy/laplacian.h"
 #include "evolve/films/triangle_shape.h"
 #include "evolve/groom/flip_average.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -26,12 +26,12 @@ constexpr double kThin = 10.0 * std::numbers::pi / 180.0;
 constexpr double kJunctionsRest = 1e-3;  // way in a step, over the mean edge
 constexpr int kPasses = 10;              // of averaging, a step at most
 
-bool has_thin_facet(const FilmComplex& complex) {
+bool has_thin_facet(const films::FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     const auto [a, b, c] = mesh.facets[f];
     if (complex.surfaces[mesh.facet_label[f]].liquid &&
-        smallest_angle(mesh.points[a], mesh.points[b], mesh.points[c]) <
+        films::smallest_angle(mesh.points[a], mesh.points[b], mesh.points[c]) <
             kThin) {
       return true;
     }
@@ -41,10 +41,10 @@ bool has_thin_facet(const FilmComplex& complex) {
 
 class Flow {
  public:
-  Flow(FilmComplex& complex, const FlowOptions& options)
+  Flow(films::FilmComplex& complex, const FlowOptions& options)
       : complex_(complex),
         energy_(complex),
-        targets_(targets_of(complex)),
+        targets_(energy::targets_of(complex)),
         most_motion_(options.most_motion) {
     const std::size_t count = complex.mesh.points.size();
     unknown_of_.assign(count, -1);
@@ -73,7 +73,7 @@ class Flow {
     }
   }
 
-  const FilmEnergy& film() const { return energy_; }
+  const energy::FilmEnergy& film() const { return energy_; }
 
   /// Largest way of a place where lines meet since `old`, over the mean edge.
   /// Newton keeps a line's other vertices where they are along it, so it moves
@@ -153,8 +153,9 @@ class Flow {
     Points& x = complex_.mesh.points;
     const auto n = static_cast<int>(movers_.size());
     const auto held = static_cast<int>(held_.size());
-    LaplaceSystem laplace = cotan_laplacian(
-        complex_.mesh, facet_weight_, unknown_of_, n, CotanWeights::Exact);
+    energy::LaplaceSystem laplace =
+        energy::cotan_laplacian(complex_.mesh, facet_weight_, unknown_of_, n,
+                                energy::CotanWeights::Exact);
     const VectorX mass = lumped_area();
     for (int i = 0; i < n; ++i) {
       laplace.inner.coeffRef(i, i) += mass[i] / tau_;
@@ -198,7 +199,7 @@ class Flow {
     for (std::size_t i = 0; i < movers_.size(); ++i) {
       rows.row(static_cast<Eigen::Index>(i)) = slope[movers_[i]];
     }
-    const FilmSpace& space = energy_.space();
+    const energy::FilmSpace& space = energy_.space();
     for (std::size_t k = 0; k < space.walled().size(); ++k) {
       const int v = space.walled()[k];
       if (unknown_of_[v] < 0) {
@@ -291,9 +292,9 @@ class Flow {
     return true;
   }
 
-  FilmComplex& complex_;
-  FilmEnergy energy_;
-  FilmTargets targets_;
+  films::FilmComplex& complex_;
+  energy::FilmEnergy energy_;
+  films::FilmTargets targets_;
   std::vector<int> unknown_of_;  // per vertex: its mover, or -1
   std::vector<int> movers_;      // vertices
   std::vector<double> facet_weight_;
@@ -306,7 +307,8 @@ class Flow {
 
 }  // namespace
 
-FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
+FlowReport flow_to_rest(films::FilmComplex& complex,
+                        const FlowOptions& options) {
   Flow flow(complex, options);
   FlowReport report;
   if (!flow.has_unknowns()) {
@@ -329,7 +331,7 @@ FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
     }
     const bool junctions_rest = flow.junction_motion(before) <= kJunctionsRest;
     for (int pass = 0; pass < kPasses && has_thin_facet(complex); ++pass) {
-      average_vertices(complex);
+      groom::average_vertices(complex);
     }
     const double next = flow.energy();
     if (hold && junctions_rest &&
@@ -342,4 +344,4 @@ FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options) {
   return report;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -7,7 +7,7 @@
 #include "core/monitor.h"
 #include "evolve/energy/energy.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 struct FlowOptions {
   int max_steps = 30;
@@ -16,7 +16,7 @@ struct FlowOptions {
                                 // once places where lines meet are at rest too
   double most_motion = 0.0;     // of a vertex per step [length]; 0: no bound
   /// Asked after every step; true stops: the film tears.
-  std::function<bool(const FilmEnergy&, const Points&)> torn = {};
+  std::function<bool(const energy::FilmEnergy&, const Points&)> torn = {};
   Monitor* monitor = nullptr;
 };
 
@@ -32,6 +32,7 @@ struct FlowReport {
 /// most 15 % a step. tau grows while the energy falls and shrinks otherwise.
 /// Vertices move in all directions; facets that thin below 10 degrees are
 /// averaged; remesh afterwards. Deterministic.
-FlowReport flow_to_rest(FilmComplex& complex, const FlowOptions& options);
+FlowReport flow_to_rest(films::FilmComplex& complex,
+                        const FlowOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

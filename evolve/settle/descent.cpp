@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -19,7 +19,7 @@ constexpr double kEnergyRounding = 1e-15;  // of the energy, relative
 
 class Descent {
  public:
-  Descent(const FilmEnergy& energy, const FilmTargets& targets,
+  Descent(const energy::FilmEnergy& energy, const films::FilmTargets& targets,
           const Points& directions, const Points& base,
           const DescentOptions& options)
       : energy_(energy),
@@ -249,8 +249,8 @@ class Descent {
     return true;
   }
 
-  const FilmEnergy& energy_;
-  const FilmTargets& targets_;
+  const energy::FilmEnergy& energy_;
+  const films::FilmTargets& targets_;
   const Points& directions_;
   Points base_;
   const DescentOptions& options_;
@@ -269,7 +269,8 @@ class Descent {
 
 }  // namespace
 
-DescentReport descend(const FilmEnergy& energy, const FilmTargets& targets,
+DescentReport descend(const energy::FilmEnergy& energy,
+                      const films::FilmTargets& targets,
                       const Points& directions, Points& points,
                       const DescentOptions& options) {
   Descent descent(energy, targets, directions, points, options);
@@ -310,4 +311,4 @@ DescentReport descend(const FilmEnergy& energy, const FilmTargets& targets,
   return report;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

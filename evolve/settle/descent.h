@@ -9,7 +9,7 @@
 #include "core/monitor.h"
 #include "evolve/energy/energy.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 enum class DescentMethod {
   Gradient,           // along minus the gradient in the metric
@@ -49,8 +49,9 @@ struct DescentReport {
 /// doubled or halved until the energy is bracketed, then taken at the minimum
 /// of the parabola through three points. Stops where no scale lowers the
 /// energy beyond rounding.
-DescentReport descend(const FilmEnergy& energy, const FilmTargets& targets,
+DescentReport descend(const energy::FilmEnergy& energy,
+                      const films::FilmTargets& targets,
                       const Points& directions, Points& points,
                       const DescentOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -9,7 +9,7 @@
 #include "evolve/energy/saddle_system.h"
 #include "evolve/settle/newton.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -28,8 +28,8 @@ constexpr const char* kAdvice =
 /// Normals that turn at every step make Newton's steps shrink by a factor only,
 /// and on a coarse film that may be near 1. From near rest it goes on along the
 /// normals as they are, where it converges quadratically.
-NewtonResult along_its_normals(const FilmEnergy& energy,
-                               const FilmTargets& targets,
+NewtonResult along_its_normals(const energy::FilmEnergy& energy,
+                               const films::FilmTargets& targets,
                                NewtonOptions options, NewtonResult near) {
   options.rule = DirectionRule::Fixed;
   NewtonResult found =
@@ -42,8 +42,9 @@ NewtonResult along_its_normals(const FilmEnergy& energy,
   return found;
 }
 
-FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
-                 const FilmTargets& targets, const Points& base,
+FilmState settle(const energy::FilmEnergy& energy,
+                 const films::FilmComplex& complex,
+                 const films::FilmTargets& targets, const Points& base,
                  const Points& directions, const VectorX& start,
                  double usual_neck, const SettleOptions& options,
                  DirectionRule rule) {
@@ -94,8 +95,9 @@ FilmState settle(const FilmEnergy& energy, const FilmComplex& complex,
 
 }  // namespace
 
-FilmReport figures_of(const FilmEnergy& energy, const FilmTargets& targets,
-                      const Points& points, const VectorX& pressure) {
+FilmReport figures_of(const energy::FilmEnergy& energy,
+                      const films::FilmTargets& targets, const Points& points,
+                      const VectorX& pressure) {
   FilmReport report;
   report.vertices = static_cast<int>(points.size());
   report.facets = static_cast<int>(energy.facets().size());
@@ -103,14 +105,14 @@ FilmReport figures_of(const FilmEnergy& energy, const FilmTargets& targets,
   report.area = energy.area(points);
   const VectorX volumes = energy.volumes(points);
   for (int b = 0; b < energy.functionals(); ++b) {
-    const ComplexBody& body = targets.bodies[b];
+    const films::ComplexBody& body = targets.bodies[b];
     report.bodies.push_back(
         {body.name, volumes[b], body.volume.value_or(volumes[b]), pressure[b]});
   }
   return report;
 }
 
-void judge(const FilmEnergy& energy, const FilmComplex& complex,
+void judge(const energy::FilmEnergy& energy, const films::FilmComplex& complex,
            const Judgement& judgement, FilmState& state) {
   const std::string& reason = judgement.reason;
   FilmReport& report = state.report;
@@ -166,13 +168,15 @@ void judge(const FilmEnergy& energy, const FilmComplex& complex,
   }
 }
 
-LowestMode lowest_mode_of(const FilmEnergy& energy, const FilmTargets& targets,
-                          const Points& points, const VectorX& pressure) {
+energy::LowestMode lowest_mode_of(const energy::FilmEnergy& energy,
+                                  const films::FilmTargets& targets,
+                                  const Points& points,
+                                  const VectorX& pressure) {
   const Points own(points.begin(),
                    points.begin() + energy.space().vertex_count());
   const Points directions = energy.space().directions(own);
-  const SaddleSystem saddle(energy, targets, own, directions, pressure);
-  LowestMode result;
+  const energy::SaddleSystem saddle(energy, targets, own, directions, pressure);
+  energy::LowestMode result;
   result.mode = VectorX::Ones(energy.unknowns());
   if (saddle.factored()) {
     result = saddle.system().lowest_mode(saddle.metric());
@@ -180,18 +184,20 @@ LowestMode lowest_mode_of(const FilmEnergy& energy, const FilmTargets& targets,
   return result;
 }
 
-FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,
-                       const FilmTargets& targets, const Points& base,
+FilmState settle_along(const energy::FilmEnergy& energy,
+                       const films::FilmComplex& complex,
+                       const films::FilmTargets& targets, const Points& base,
                        const Points& directions, const VectorX& start,
                        double usual_neck, const SettleOptions& options) {
   return settle(energy, complex, targets, base, directions, start, usual_neck,
                 options, DirectionRule::Fixed);
 }
 
-FilmState settle_in_normals(const FilmEnergy& energy,
-                            const FilmComplex& complex,
-                            const FilmTargets& targets, const Points& start,
-                            const SettleOptions& options, double usual_neck) {
+FilmState settle_in_normals(const energy::FilmEnergy& energy,
+                            const films::FilmComplex& complex,
+                            const films::FilmTargets& targets,
+                            const Points& start, const SettleOptions& options,
+                            double usual_neck) {
   FilmState state =
       settle(energy, complex, targets, start, energy.space().directions(start),
              {}, usual_neck, options, DirectionRule::CurrentNormals);
@@ -199,4 +205,4 @@ FilmState settle_in_normals(const FilmEnergy& energy,
   return state;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

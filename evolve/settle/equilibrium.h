@@ -7,7 +7,7 @@
 #include "evolve/settle/film_state.h"
 #include "evolve/settle/neck.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 /// Equilibrium over heights h, each free vertex at base + h d. A pure function
 /// of its arguments. The film is a minimum wherever one is found from `start`
@@ -18,28 +18,32 @@ namespace meniscus {
 /// a film that is known to be sound, against which necks are judged; 0 for
 /// none. state.failure: FilmUnstable, FilmPinched or FilmNotFound. Throws
 /// Interrupted only.
-FilmState settle_along(const FilmEnergy& energy, const FilmComplex& complex,
-                       const FilmTargets& targets, const Points& base,
+FilmState settle_along(const energy::FilmEnergy& energy,
+                       const films::FilmComplex& complex,
+                       const films::FilmTargets& targets, const Points& base,
                        const Points& directions, const VectorX& start,
                        double usual_neck, const SettleOptions& options);
 
 /// The same along the current vertex normals, which are taken anew at every
 /// step; `start` is the whole film. heights of the result are zero.
-FilmState settle_in_normals(const FilmEnergy& energy,
-                            const FilmComplex& complex,
-                            const FilmTargets& targets, const Points& start,
-                            const SettleOptions& options,
+FilmState settle_in_normals(const energy::FilmEnergy& energy,
+                            const films::FilmComplex& complex,
+                            const films::FilmTargets& targets,
+                            const Points& start, const SettleOptions& options,
                             double usual_neck = 0.0);
 
 /// Lowest mode of a film at `points` (more may follow its vertices: only the
 /// first are read) under the given pressures, by a factorisation.
-LowestMode lowest_mode_of(const FilmEnergy& energy, const FilmTargets& targets,
-                          const Points& points, const VectorX& pressure);
+energy::LowestMode lowest_mode_of(const energy::FilmEnergy& energy,
+                                  const films::FilmTargets& targets,
+                                  const Points& points,
+                                  const VectorX& pressure);
 
 /// What can be read from a film at `points`: counts, energy, area, and per
 /// functional its value and `pressure`. The rest is left at its defaults.
-FilmReport figures_of(const FilmEnergy& energy, const FilmTargets& targets,
-                      const Points& points, const VectorX& pressure);
+FilmReport figures_of(const energy::FilmEnergy& energy,
+                      const films::FilmTargets& targets, const Points& points,
+                      const VectorX& pressure);
 
 struct Judgement {
   std::string reason;  // why no equilibrium was reached; empty: it was
@@ -54,7 +58,7 @@ struct Judgement {
 /// called pinching when its neck is under two edges, or under a fifth of the
 /// usual one: such a film can end at a perfect residual and a positive
 /// definite Hessian.
-void judge(const FilmEnergy& energy, const FilmComplex& complex,
+void judge(const energy::FilmEnergy& energy, const films::FilmComplex& complex,
            const Judgement& judgement, FilmState& state);
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

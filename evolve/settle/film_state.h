@@ -10,7 +10,7 @@
 #include "core/monitor.h"
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 struct SettleOptions {
   double residual_factor = 1e-9;    // stop: residual <= factor x tension x edge
@@ -54,4 +54,4 @@ struct FilmState {
   std::optional<Failure> failure;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

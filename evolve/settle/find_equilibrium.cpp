@@ -18,7 +18,7 @@
 #include "evolve/settle/neck.h"
 #include "evolve/settle/nested_newton.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -35,20 +35,20 @@ constexpr std::size_t kDirect = 6000;
 constexpr int kContactRounds = 40;
 constexpr double kLooseReduction = 1e-2;  // on levels that are refined further
 
-bool has_free_vertex(const FilmComplex& complex) {
+bool has_free_vertex(const films::FilmComplex& complex) {
   return std::any_of(complex.vertices.begin(), complex.vertices.end(),
-                     [](const ComplexVertex& vertex) {
-                       return vertex.kind == VertexKind::Free;
+                     [](const films::ComplexVertex& vertex) {
+                       return vertex.kind == films::VertexKind::Free;
                      });
 }
 
-FilmState given_up(const FilmComplex& complex, const std::string& reason,
+FilmState given_up(const films::FilmComplex& complex, const std::string& reason,
                    int steps) {
-  const FilmEnergy energy(complex);
+  const energy::FilmEnergy energy(complex);
   FilmState state;
   state.points = complex.mesh.points;
   state.heights = VectorX::Zero(energy.unknowns());
-  const FilmTargets targets = targets_of(complex);
+  const films::FilmTargets targets = energy::targets_of(complex);
   VectorX pressure(energy.functionals());
   for (int b = 0; b < energy.functionals(); ++b) {
     pressure[b] = targets.bodies[b].pressure.value_or(0.0);
@@ -65,7 +65,7 @@ FilmState given_up(const FilmComplex& complex, const std::string& reason,
 
 /// Coarse to fine over the edges edge x 2^k, k = levels..0. Empty when the
 /// film came near rest; else why not.
-std::string bring_near_by_levels(FilmComplex& complex,
+std::string bring_near_by_levels(films::FilmComplex& complex,
                                  const FindOptions& options, int levels,
                                  int& steps) {
   for (int level = levels; level >= 0; --level) {
@@ -73,10 +73,11 @@ std::string bring_near_by_levels(FilmComplex& complex,
     if (options.edge) {
       edge = *options.edge * std::exp2(level);
       if (level < levels) {
-        complex = refine(complex).complex;
+        complex = groom::refine(complex).complex;
       }
-      remesh_films(complex,
-                   {.edge = *edge, .edge_field = graded_edge(complex, *edge)});
+      groom::remesh_films(
+          complex,
+          {.edge = *edge, .edge_field = films::graded_edge(complex, *edge)});
     }
     std::string reason = bring_near(complex, edge, options.max_rounds, steps,
                                     {.monitor = options.settle.monitor});
@@ -97,12 +98,12 @@ bool is_settled(const FilmState& state) {
 }
 
 /// Newton, and again with other contacts while one-sided walls ask for it.
-FilmState settle_with_contacts(FilmComplex& complex, double usual_neck,
+FilmState settle_with_contacts(films::FilmComplex& complex, double usual_neck,
                                const SettleOptions& options, int& steps) {
   for (int round = 0;; ++round) {
-    const FilmEnergy energy(complex);
+    const energy::FilmEnergy energy(complex);
     FilmState state =
-        settle_in_normals(energy, complex, targets_of(complex),
+        settle_in_normals(energy, complex, energy::targets_of(complex),
                           complex.mesh.points, options, usual_neck);
     steps += state.report.iterations;
     complex.mesh.points = state.points;
@@ -120,7 +121,7 @@ FilmState settle_with_contacts(FilmComplex& complex, double usual_neck,
 }
 
 /// The same; where it finds no film, flow tells whether one is there.
-FilmState settle_or_follow(FilmComplex& complex, double usual_neck,
+FilmState settle_or_follow(films::FilmComplex& complex, double usual_neck,
                            const SettleOptions& options, int& steps) {
   const Points before = complex.mesh.points;
   FilmState state = settle_with_contacts(complex, usual_neck, options, steps);
@@ -140,8 +141,8 @@ FilmState settle_or_follow(FilmComplex& complex, double usual_neck,
 }
 
 /// Newton, and vertex averaging so that facets are good where the film is.
-FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
-                            int& steps) {
+FilmState settle_and_polish(films::FilmComplex& complex,
+                            const FindOptions& options, int& steps) {
   if (!has_free_vertex(complex)) {
     throw InvalidInput(fmt::format(
         "the film has no vertex between its curves at a mean edge of {:.4g}; "
@@ -151,8 +152,8 @@ FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
   FilmState state;
   for (int round = 0; round <= kPolishRounds; ++round) {
     if (round > 0) {
-      equiangulate(complex);
-      average_vertices(complex);
+      groom::equiangulate(complex);
+      groom::average_vertices(complex);
     }
     state = settle_or_follow(complex, 0.0, options.settle, steps);
     if (!is_settled(state) || (!options.edge && options.refinements == 0)) {
@@ -164,12 +165,12 @@ FilmState settle_and_polish(FilmComplex& complex, const FindOptions& options,
 
 /// The chain of nested levels; the coarsest was groomed and settled.
 struct Chain {
-  std::vector<std::unique_ptr<FilmEnergy>> energies;
+  std::vector<std::unique_ptr<energy::FilmEnergy>> energies;
   std::vector<FilmLevel> levels;
   Neck neck;  // of the finest level that was factored
 
-  void add(const FilmComplex& complex, std::vector<Edge> parents) {
-    energies.push_back(std::make_unique<FilmEnergy>(complex));
+  void add(const films::FilmComplex& complex, std::vector<Edge> parents) {
+    energies.push_back(std::make_unique<energy::FilmEnergy>(complex));
     if (!levels.empty() &&
         !is_nested(*levels.back().energy, *energies.back(), parents)) {
       // Parts that stay unrefined break the chain: start anew from here.
@@ -179,22 +180,23 @@ struct Chain {
     levels.push_back({energies.back().get(), std::move(parents)});
   }
 
-  void measure_neck(const FilmComplex& complex) {
+  void measure_neck(const films::FilmComplex& complex) {
     neck = narrowest_neck(*energies.back(), complex.mesh.points,
                           complex.mesh.facet_label);
   }
 };
 
 /// One level finer. `last`: to the stop criterion, with the verdict.
-FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
-                       const FindOptions& options, bool last, int& steps) {
-  const FilmEnergy& coarse = *chain.energies.back();
-  Refinement finer = refine(complex);
-  bend_midpoints(coarse.space(), complex.mesh.points, finer);
+FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
+                       FilmState state, const FindOptions& options, bool last,
+                       int& steps) {
+  const energy::FilmEnergy& coarse = *chain.energies.back();
+  groom::Refinement finer = groom::refine(complex);
+  groom::bend_midpoints(coarse.space(), complex.mesh.points, finer);
   complex = std::move(finer.complex);
   chain.add(complex, std::move(finer.parents));
-  const FilmEnergy& energy = *chain.energies.back();
-  const FilmTargets targets = targets_of(complex);
+  const energy::FilmEnergy& energy = *chain.energies.back();
+  const films::FilmTargets targets = energy::targets_of(complex);
   const bool direct =
       complex.mesh.facets.size() <= kDirect || chain.levels.size() < 2;
   const auto settle_directly = [&] {
@@ -240,8 +242,9 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
     state.failure.reset();  // a thin neck is judged at the end
     return state;
   }
-  const LowestMode guess = lowest_mode_of(*chain.levels.front().energy, targets,
-                                          complex.mesh.points, found.pressure);
+  const energy::LowestMode guess =
+      lowest_mode_of(*chain.levels.front().energy, targets, complex.mesh.points,
+                     found.pressure);
   const NestedModes modes = newton.lowest_modes(guess.mode);
   state.report.min_eigenvalue = modes.eigenvalues[0];
   state.report.index = modes.eigenvalues[0] < 0.0 ? 1 : 0;
@@ -257,8 +260,9 @@ FilmState settle_finer(Chain& chain, FilmComplex& complex, FilmState state,
 /// Flow on the start and its refinements until the film is near rest at
 /// kGroomed facets, each level groomed; `blind` of them without flow, for films
 /// that the coarse levels tear. What stays undone is left in `left`.
-std::string bring_near_nested(FilmComplex& complex, const FindOptions& options,
-                              int blind, int& left, int& steps) {
+std::string bring_near_nested(films::FilmComplex& complex,
+                              const FindOptions& options, int blind, int& left,
+                              int& steps) {
   const auto flow = [&] {
     return bring_near(complex, {}, options.max_rounds, steps,
                       {.monitor = options.settle.monitor});
@@ -266,11 +270,11 @@ std::string bring_near_nested(FilmComplex& complex, const FindOptions& options,
   std::string reason = blind > 0 ? "" : flow();
   while (reason.empty() && left > 0 &&
          4 * complex.mesh.facets.size() <= kGroomed) {
-    complex = refine(complex).complex;
+    complex = groom::refine(complex).complex;
     --left;
     if (--blind <= 0) {
-      equiangulate(complex);
-      average_vertices(complex);
+      groom::equiangulate(complex);
+      groom::average_vertices(complex);
       reason = flow();
     }
   }
@@ -279,7 +283,7 @@ std::string bring_near_nested(FilmComplex& complex, const FindOptions& options,
 
 /// A film with a junction that no film keeps is no minimum, however well it
 /// settled.
-void judge_junctions(const std::optional<UnstableJunction>& junction,
+void judge_junctions(const std::optional<groom::UnstableJunction>& junction,
                      FilmState& state) {
   if (!junction || state.failure) {
     return;
@@ -295,9 +299,9 @@ void judge_junctions(const std::optional<UnstableJunction>& junction,
 }
 
 /// Nested refinements of a start: groomed and settled while it is coarse.
-FilmState find_nested(FilmComplex& complex, const FindOptions& options,
+FilmState find_nested(films::FilmComplex& complex, const FindOptions& options,
                       int& steps) {
-  const FilmComplex raw = complex;
+  const films::FilmComplex raw = complex;
   FilmState state;
   int left = 0;
   for (const int blind : {0, 1, 2, 3}) {
@@ -305,7 +309,7 @@ FilmState find_nested(FilmComplex& complex, const FindOptions& options,
         (blind > 1 && raw.mesh.facets.size() << (2 * blind) > kGroomed)) {
       break;
     }
-    FilmComplex attempt = raw;
+    films::FilmComplex attempt = raw;
     int rest = options.refinements;
     const std::string reason =
         bring_near_nested(attempt, options, blind, rest, steps);
@@ -322,7 +326,7 @@ FilmState find_nested(FilmComplex& complex, const FindOptions& options,
     }
   }
   // Refinement keeps junctions: looked for while they are few.
-  const auto junction = unstable_junction(complex);
+  const auto junction = groom::unstable_junction(complex);
   Chain chain;
   chain.add(complex, {});
   if (left > 0) {
@@ -338,7 +342,8 @@ FilmState find_nested(FilmComplex& complex, const FindOptions& options,
 
 }  // namespace
 
-FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options) {
+FilmState find_equilibrium(films::FilmComplex& complex,
+                           const FindOptions& options) {
   const Timer timer;
   int steps = 0;
   if (!options.edge && options.refinements > 0) {
@@ -348,22 +353,22 @@ FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options) {
     return state;
   }
   const int levels = options.edge ? options.halvings : 0;
-  FilmComplex raw = complex;
+  films::FilmComplex raw = complex;
   std::string reason = bring_near_by_levels(complex, options, levels, steps);
   if (!reason.empty() && levels > 0) {
     // A coarse film pinches earlier: the same without the coarse levels.
     for (int level = 0; level < levels; ++level) {
-      raw = refine(raw).complex;
+      raw = groom::refine(raw).complex;
     }
     complex = std::move(raw);
     reason = bring_near_by_levels(complex, options, 0, steps);
   }
   FilmState state = reason.empty() ? settle_and_polish(complex, options, steps)
                                    : given_up(complex, reason, steps);
-  judge_junctions(unstable_junction(complex), state);
+  judge_junctions(groom::unstable_junction(complex), state);
   state.report.iterations = steps;
   state.report.seconds = timer.seconds();
   return state;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -3,7 +3,7 @@
 
 #include "evolve/settle/equilibrium.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 struct FindOptions {
   /// Edge of the film that comes out [length], > 0. Empty: the start's
@@ -23,6 +23,7 @@ struct FindOptions {
 /// state's failure tells when there is none: FilmPinched, FilmUnstable,
 /// FilmNotFound, in a bounded number of steps. Throws InvalidInput when the
 /// edge is so long that no vertex is free, and Interrupted.
-FilmState find_equilibrium(FilmComplex& complex, const FindOptions& options);
+FilmState find_equilibrium(films::FilmComplex& complex,
+                           const FindOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -5,7 +5,7 @@
 
 #include "core/operation_count.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -36,7 +36,7 @@ double gather_work(const std::vector<int>& coarse,
 
 }  // namespace
 
-bool is_nested(const FilmEnergy& coarse, const FilmEnergy& fine,
+bool is_nested(const energy::FilmEnergy& coarse, const energy::FilmEnergy& fine,
                const std::vector<Edge>& parents) {
   if (fine.facets().size() != 4 * coarse.facets().size()) {
     return false;
@@ -88,13 +88,13 @@ struct FilmMultigrid::Level {
   mutable std::vector<float> x;
   mutable std::vector<float> right;
 
-  explicit Level(const FilmEnergy& energy);
+  explicit Level(const energy::FilmEnergy& energy);
   void take(const SparseMatrix& lower, double shift, std::vector<double>* full);
   void sweep_down(bool from_zero) const;
   void sweep_up() const;
 };
 
-FilmMultigrid::Level::Level(const FilmEnergy& energy) {
+FilmMultigrid::Level::Level(const energy::FilmEnergy& energy) {
   const SparseMatrix& lower = energy.pattern();
   const int n = energy.unknowns();
   const int* outer = lower.outerIndexPtr();
@@ -206,8 +206,8 @@ FilmMultigrid::~FilmMultigrid() = default;
 void FilmMultigrid::transfer_weights(std::size_t fine) {
   Level& level = *levels_[fine];
   Level& below = *levels_[fine - 1];
-  const FilmSpace& space = chain_[fine].energy->space();
-  const FilmSpace& coarse = chain_[fine - 1].energy->space();
+  const energy::FilmSpace& space = chain_[fine].energy->space();
+  const energy::FilmSpace& coarse = chain_[fine - 1].energy->space();
   const int old = coarse.vertex_count();
   below.directions.resize(coarse.unknowns());
   for (int v = 0; v < old; ++v) {
@@ -252,8 +252,8 @@ void FilmMultigrid::transfer_weights(std::size_t fine) {
 void FilmMultigrid::gather(std::size_t fine,
                            const std::vector<double>& fine_elements,
                            std::vector<double>& coarse_elements) const {
-  const FilmEnergy& coarse = *chain_[fine - 1].energy;
-  const FilmEnergy& above = *chain_[fine].energy;
+  const energy::FilmEnergy& coarse = *chain_[fine - 1].energy;
+  const energy::FilmEnergy& above = *chain_[fine].energy;
   const Points& d_coarse = levels_[fine - 1]->directions;
   const Points& d_fine = levels_[fine]->directions;
   coarse_elements.assign(coarse.element_start().back(), 0.0);
@@ -272,10 +272,10 @@ void FilmMultigrid::gather(std::size_t fine,
       const int f0 = above.corner_start()[g];
       const int nf = above.corner_start()[g + 1] - f0;
       for (int j = 0; j < nf; ++j) {
-        const FilmEnergy::Corner& at = above.corners()[f0 + j];
+        const energy::FilmEnergy::Corner& at = above.corners()[f0 + j];
         const auto [a, b] = kChildren[child][at.corner];
         for (int i = 0; i < nc; ++i) {
-          const FilmEnergy::Corner& from = coarse.corners()[c0 + i];
+          const energy::FilmEnergy::Corner& from = coarse.corners()[c0 + i];
           const double w = 0.5 * (from.corner == a) + 0.5 * (from.corner == b);
           p[j][i] = w == 0.0
                         ? 0.0
@@ -349,7 +349,7 @@ bool FilmMultigrid::refresh(const Points& directions,
   std::vector<SparseMatrix> matrices(levels_.size());
   std::vector<double> now = elements;
   for (std::size_t l = finest;; --l) {
-    const FilmEnergy& energy = *chain_[l].energy;
+    const energy::FilmEnergy& energy = *chain_[l].energy;
     matrices[l] = energy.pattern();
     energy.assemble(now, matrices[l]);
     if (l == 0) {
@@ -468,4 +468,4 @@ VectorX FilmMultigrid::prolong(const VectorX& coarse) const {
   return now;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

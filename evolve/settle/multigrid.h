@@ -11,17 +11,17 @@
 #include "core/math/linear_solve.h"
 #include "evolve/energy/energy.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 /// One step of the chain: the energy of a level, and the ends of the edges on
 /// which its vertices beyond the coarser level's were born.
 struct FilmLevel {
-  const FilmEnergy* energy = nullptr;
+  const energy::FilmEnergy* energy = nullptr;
   std::vector<Edge> parents;  // empty on the coarsest level
 };
 
 /// True where facets 4f..4f+3 of `fine` replace facet f of `coarse`.
-bool is_nested(const FilmEnergy& coarse, const FilmEnergy& fine,
+bool is_nested(const energy::FilmEnergy& coarse, const energy::FilmEnergy& fine,
                const std::vector<Edge>& parents);
 
 class FilmMultigrid {
@@ -60,4 +60,4 @@ class FilmMultigrid {
   double shift_ = 0.0;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

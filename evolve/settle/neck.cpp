@@ -11,7 +11,7 @@
 #include "core/geometry/box_tree.h"
 #include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -119,7 +119,7 @@ class SightLines {
 };
 
 /// Do two facets look into one chamber? Films without a body share the outside.
-bool share_body(const FilmEnergy& energy, int f, int g) {
+bool share_body(const energy::FilmEnergy& energy, int f, int g) {
   bool any = false;
   for (int b = 0; b < energy.bodies(); ++b) {
     const bool of_f = energy.side(f, b) != 0;
@@ -140,7 +140,7 @@ struct Outlook {
   int facet = -1;
 };
 
-std::vector<Outlook> outlooks(const FilmEnergy& energy,
+std::vector<Outlook> outlooks(const energy::FilmEnergy& energy,
                               std::size_t point_count) {
   std::vector<Outlook> of_vertex(point_count);
   for (int f = 0; f < static_cast<int>(energy.facets().size()); ++f) {
@@ -166,7 +166,8 @@ std::vector<Outlook> outlooks(const FilmEnergy& energy,
 
 /// Vertices near a line, rim or junction: films that meet there come near to
 /// each other without being a neck.
-std::vector<char> near_lines(const FilmEnergy& energy, std::size_t count) {
+std::vector<char> near_lines(const energy::FilmEnergy& energy,
+                             std::size_t count) {
   std::vector<char> near(count, 0);
   for (std::size_t f = 0; f < energy.facets().size(); ++f) {
     for (const int v : energy.facets()[f]) {
@@ -250,7 +251,8 @@ class Corners {
 };
 
 /// A number per point that is the same for points of films that hang together.
-std::vector<int> joined_films(const FilmEnergy& energy, std::size_t count) {
+std::vector<int> joined_films(const energy::FilmEnergy& energy,
+                              std::size_t count) {
   UnionFind films(count);
   for (std::size_t f = 0; f < energy.facets().size(); ++f) {
     const Triangle& t = energy.facets()[f];
@@ -263,7 +265,7 @@ std::vector<int> joined_films(const FilmEnergy& energy, std::size_t count) {
 
 }  // namespace
 
-Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
+Neck narrowest_neck(const energy::FilmEnergy& energy, const Points& points,
                     const std::vector<int>& facet_label) {
   const std::vector<Triangle>& facets = energy.facets();
   const SightLines lines(facets, points);
@@ -311,4 +313,4 @@ Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
   return neck;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -3,7 +3,7 @@
 
 #include "evolve/energy/energy.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 struct Neck {
   double width = 0.0;            // [length]; 0 when no ray hits a film
@@ -18,7 +18,7 @@ struct Neck {
 /// solid cap do not count, nor those from a film to another that it hangs
 /// together with nowhere: nested films have a gap
 /// (evolve/frozen/gap_between.h), and do not pinch. O(n log n); deterministic.
-Neck narrowest_neck(const FilmEnergy& energy, const Points& points,
+Neck narrowest_neck(const energy::FilmEnergy& energy, const Points& points,
                     const std::vector<int>& facet_label);
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -9,7 +9,7 @@
 #include "core/operation_count.h"
 #include "evolve/energy/held_pressure.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -30,7 +30,7 @@ double bounding_diagonal2(const Points& points) {
 }  // namespace
 
 NestedNewton::NestedNewton(const std::vector<FilmLevel>& levels,
-                           const FilmTargets& targets)
+                           const films::FilmTargets& targets)
     : energy_(*levels.back().energy), targets_(targets), multigrid_(levels) {
   for (int b = 0; b < energy_.functionals(); ++b) {
     if (targets.bodies[b].volume) {
@@ -194,8 +194,8 @@ NestedResult NestedNewton::run(const Points& start, const VectorX& pressure,
   if (pressure.size() == energy_.functionals()) {
     pressure_ = pressure;
   } else {
-    pressure_ =
-        guess_pressures(targets_, held_, gradient_, functional_, metric_);
+    pressure_ = energy::guess_pressures(targets_, held_, gradient_, functional_,
+                                        metric_);
   }
   double before = std::numeric_limits<double>::infinity();
   double first = 0.0;
@@ -340,4 +340,4 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

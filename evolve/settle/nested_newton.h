@@ -9,7 +9,7 @@
 #include "core/monitor.h"
 #include "evolve/settle/multigrid.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 struct NestedOptions {
   double residual_bound = 0.0;      // [force], max norm in the normal space
@@ -40,7 +40,7 @@ class NestedNewton {
  public:
   /// `levels` as for FilmMultigrid; the finest is the film's.
   NestedNewton(const std::vector<FilmLevel>& levels,
-               const FilmTargets& targets);
+               const films::FilmTargets& targets);
 
   /// From `start` to a minimum near it. `pressure`: guess for the held
   /// functionals, may be empty. Not converged where it meets negative
@@ -68,8 +68,8 @@ class NestedNewton {
   VectorX project(VectorX& right, VectorX& multipliers) const;
   Step solve(const VectorX& residual, const VectorX& missing, double factor);
 
-  const FilmEnergy& energy_;
-  const FilmTargets& targets_;
+  const energy::FilmEnergy& energy_;
+  const films::FilmTargets& targets_;
   FilmMultigrid multigrid_;
   std::vector<int> held_;
   Points points_;
@@ -86,4 +86,4 @@ class NestedNewton {
   VectorX values_;  // of the functionals
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

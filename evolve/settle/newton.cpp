@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "evolve/energy/held_pressure.h"
 #include "core/math/dense.h"
+#include "evolve/energy/held_pressure.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -21,7 +21,8 @@ constexpr int kMostShortSteps = 6;  // in a row, before giving up
 
 }  // namespace
 
-FilmNewton::FilmNewton(const FilmEnergy& energy, const FilmTargets& targets,
+FilmNewton::FilmNewton(const energy::FilmEnergy& energy,
+                       const films::FilmTargets& targets,
                        const NewtonOptions& options)
     : energy_(energy),
       targets_(targets),
@@ -145,7 +146,7 @@ void FilmNewton::accept(Trial&& trial) {
   evaluate();
 }
 
-bool FilmNewton::search_down(const ConstrainedHessian::Step& step,
+bool FilmNewton::search_down(const energy::ConstrainedHessian::Step& step,
                              const VectorX& residual) {
   VectorX pressure = pressure_;
   for (std::size_t k = 0; k < held_.size(); ++k) {
@@ -186,7 +187,7 @@ bool FilmNewton::search_down(const ConstrainedHessian::Step& step,
   return false;
 }
 
-bool FilmNewton::search_residual(const ConstrainedHessian::Step& step) {
+bool FilmNewton::search_residual(const energy::ConstrainedHessian::Step& step) {
   const double before = residual_norm();
   const double gap = missing(now_.volume).norm();
   const VectorX pressure = pressure_;
@@ -253,7 +254,7 @@ void FilmNewton::polish(NewtonResult& result) {
   }
   const auto step = system_.solve(residual_of(pressure_), missing(now_.volume));
   result.index = system_.index();
-  const LowestMode lowest = system_.lowest_mode(metric_);
+  const energy::LowestMode lowest = system_.lowest_mode(metric_);
   result.min_eigenvalue = lowest.eigenvalue;
   Eigen::Index at = 0;
   if (lowest.mode.size() > 0) {
@@ -280,7 +281,8 @@ NewtonResult FilmNewton::run(const Points& base, const Points& directions,
   shift_ = 0.0;
   accept(
       trial_at(start.size() > 0 ? start : VectorX::Zero(energy_.unknowns())));
-  pressure_ = guess_pressures(targets_, held_, gradient_, volumes_dh_, metric_);
+  pressure_ =
+      energy::guess_pressures(targets_, held_, gradient_, volumes_dh_, metric_);
   NewtonResult result;
   int short_steps = 0;
   for (;; ++result.iterations) {
@@ -313,4 +315,4 @@ NewtonResult FilmNewton::run(const Points& base, const Points& directions,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -5,7 +5,7 @@
 #include "evolve/energy/constrained_hessian.h"
 #include "evolve/energy/energy.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 enum class DirectionRule {
   Fixed,          // heights along given directions
@@ -41,8 +41,8 @@ struct NewtonResult {
 
 class FilmNewton {
  public:
-  FilmNewton(const FilmEnergy& energy, const FilmTargets& targets,
-             const NewtonOptions& options);
+  FilmNewton(const energy::FilmEnergy& energy,
+             const films::FilmTargets& targets, const NewtonOptions& options);
 
   NewtonResult run(const Points& base, const Points& directions,
                    const VectorX& start);
@@ -64,18 +64,18 @@ class FilmNewton {
   Trial trial_at(const VectorX& heights) const;
   bool factorize();
   bool advance();
-  bool search_down(const ConstrainedHessian::Step& step,
+  bool search_down(const energy::ConstrainedHessian::Step& step,
                    const VectorX& residual);
-  bool search_residual(const ConstrainedHessian::Step& step);
+  bool search_residual(const energy::ConstrainedHessian::Step& step);
   void accept(Trial&& trial);
   void polish(NewtonResult& result);
   double rounding() const;
 
-  const FilmEnergy& energy_;
-  const FilmTargets& targets_;
+  const energy::FilmEnergy& energy_;
+  const films::FilmTargets& targets_;
   NewtonOptions options_;
   std::vector<int> held_;  // functionals whose value is given
-  ConstrainedHessian system_;
+  energy::ConstrainedHessian system_;
   SparseMatrix hessian_;
   Points base_;
   Points directions_;
@@ -90,4 +90,4 @@ class FilmNewton {
   double last_step_ = 1.0;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -10,7 +10,7 @@
 #include "evolve/groom/pop.h"
 #include "evolve/settle/descent.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 namespace {
 
@@ -24,27 +24,28 @@ struct Candidate {
   double mean_edge = 0.0;  // of the start [length]
 };
 
-double mean_edge_of(const FilmComplex& complex) {
-  return FilmEnergy(complex, FilmMotion::Anywhere)
+double mean_edge_of(const films::FilmComplex& complex) {
+  return energy::FilmEnergy(complex, energy::FilmMotion::Anywhere)
       .mean_edge(complex.mesh.points);
 }
 
-int pop_all(FilmComplex& complex) {
-  const int edges = pop_edges(complex).popped;
-  return edges + pop_vertices(complex).popped;
+int pop_all(films::FilmComplex& complex) {
+  const int edges = groom::pop_edges(complex).popped;
+  return edges + groom::pop_vertices(complex).popped;
 }
 
 /// Pops and relaxes `candidate`.
 void advance(Candidate& candidate, const PopSearchOptions& options) {
-  FilmComplex& complex = candidate.film.complex;
+  films::FilmComplex& complex = candidate.film.complex;
   candidate.film.popped += pop_all(complex);
-  const FilmEnergy energy(complex, FilmMotion::Anywhere);
+  const energy::FilmEnergy energy(complex, energy::FilmMotion::Anywhere);
   Points& points = complex.mesh.points;
-  const DescentReport down = descend(
-      energy, targets_of(complex), energy.space().directions(points), points,
-      {.method = DescentMethod::ConjugateGradients,
-       .max_steps = options.steps,
-       .monitor = options.monitor});
+  const DescentReport down =
+      descend(energy, energy::targets_of(complex),
+              energy.space().directions(points), points,
+              {.method = DescentMethod::ConjugateGradients,
+               .max_steps = options.steps,
+               .monitor = options.monitor});
   candidate.film.energy = down.energies.back();
 }
 
@@ -69,12 +70,12 @@ std::vector<Candidate> children_of(const Candidate& parent,
   for (const double collapsed : kCollapsed) {
     for (const bool flipped : {false, true}) {
       Candidate child = parent;
-      FilmComplex& complex = child.film.complex;
+      films::FilmComplex& complex = child.film.complex;
       if (collapsed > 0.0) {
-        collapse_tiny_edges(complex, collapsed * parent.mean_edge);
+        groom::collapse_tiny_edges(complex, collapsed * parent.mean_edge);
       }
       if (flipped) {
-        equiangulate(complex);
+        groom::equiangulate(complex);
       }
       try {
         advance(child, options);
@@ -99,10 +100,11 @@ std::size_t width_of(const std::vector<Candidate>& films,
 
 }  // namespace
 
-std::vector<PoppedFilm> search_pops(const std::vector<FilmComplex>& starts,
-                                    const PopSearchOptions& options) {
+std::vector<PoppedFilm> search_pops(
+    const std::vector<films::FilmComplex>& starts,
+    const PopSearchOptions& options) {
   std::vector<Candidate> films;
-  for (const FilmComplex& start : starts) {
+  for (const films::FilmComplex& start : starts) {
     Candidate candidate{.film = {.complex = start},
                         .mean_edge = mean_edge_of(start)};
     advance(candidate, options);
@@ -124,7 +126,7 @@ std::vector<PoppedFilm> search_pops(const std::vector<FilmComplex>& starts,
     films = std::move(next);
     const double before = found.empty() ? INFINITY : found[0].film.energy;
     for (const Candidate& film : films) {
-      FilmComplex copy = film.film.complex;
+      films::FilmComplex copy = film.film.complex;
       if (pop_all(copy) == 0) {
         found.push_back(film);
       }
@@ -143,4 +145,4 @@ std::vector<PoppedFilm> search_pops(const std::vector<FilmComplex>& starts,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -8,7 +8,7 @@
 #include "core/monitor.h"
 #include "evolve/films/film_complex.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 struct PopSearchOptions {
   int width = 8;         // films kept from round to round, >= 1
@@ -22,7 +22,7 @@ struct PopSearchOptions {
 };
 
 struct PoppedFilm {
-  FilmComplex complex;
+  films::FilmComplex complex;
   double energy = 0.0;  // near rest, at the targets' volumes
   int popped = 0;       // junctions
 };
@@ -33,7 +33,8 @@ struct PoppedFilm {
 /// search over such histories that keeps the lowest films. Deterministic.
 /// Returns the lowest few with nothing left to pop, the lowest first; none
 /// where no history ends. Throws Interrupted.
-std::vector<PoppedFilm> search_pops(const std::vector<FilmComplex>& starts,
-                                    const PopSearchOptions& options);
+std::vector<PoppedFilm> search_pops(
+    const std::vector<films::FilmComplex>& starts,
+    const PopSearchOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -2,18 +2,19 @@
 
 #include "evolve/settle/descent.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
-FilmState slide_vertices(FilmComplex& complex, const SlideOptions& options) {
-  const FilmTargets targets = targets_of(complex);
+FilmState slide_vertices(films::FilmComplex& complex,
+                         const SlideOptions& options) {
+  const films::FilmTargets targets = energy::targets_of(complex);
   Points points = complex.mesh.points;
-  const FilmEnergy anywhere(complex, FilmMotion::Anywhere);
+  const energy::FilmEnergy anywhere(complex, energy::FilmMotion::Anywhere);
   const DescentReport slid =
       descend(anywhere, targets, anywhere.space().directions(points), points,
               {.method = DescentMethod::ConjugateGradients,
                .max_steps = options.steps,
                .monitor = options.settle.monitor});
-  const FilmEnergy energy(complex);
+  const energy::FilmEnergy energy(complex);
   FilmState state =
       settle_in_normals(energy, complex, targets, points, options.settle);
   state.report.iterations += slid.steps;
@@ -23,4 +24,4 @@ FilmState slide_vertices(FilmComplex& complex, const SlideOptions& options) {
   return state;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

@@ -4,7 +4,7 @@
 
 #include "evolve/settle/equilibrium.h"
 
-namespace meniscus {
+namespace meniscus::settle {
 
 struct SlideOptions {
   int steps = 200;  // of conjugate gradients
@@ -18,6 +18,7 @@ struct SlideOptions {
 /// at the most; the facets' shapes are not looked after. `complex` becomes the
 /// film that comes out; it stays as it was where that is none (the state's
 /// failure). Throws Interrupted.
-FilmState slide_vertices(FilmComplex& complex, const SlideOptions& options);
+FilmState slide_vertices(films::FilmComplex& complex,
+                         const SlideOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::settle

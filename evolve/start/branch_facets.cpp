@@ -8,14 +8,15 @@
 #include "evolve/start/hull.h"
 #include "evolve/start/rim_stitcher.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
 // How far the points sink, over the size of all of them.
 constexpr double kSink = 1e-6;
 
-std::vector<Triangle> hull_of(const FilmSpec& film, const Points& points) {
+std::vector<Triangle> hull_of(const films::FilmSpec& film,
+                              const Points& points) {
   try {
     return convex_hull(points);
   } catch (const MeshError& error) {
@@ -83,7 +84,8 @@ Points sunk(const Points& points) {
 
 }  // namespace
 
-std::vector<Triangle> branch_facets(const FilmSpec& film, const Points& points,
+std::vector<Triangle> branch_facets(const films::FilmSpec& film,
+                                    const Points& points,
                                     const std::vector<int>& counts) {
   std::vector<Triangle> facets = hull_of(film, points);
   const std::optional<Misfit> misfit = fit_rims(points, counts, facets);
@@ -109,4 +111,4 @@ std::vector<Triangle> branch_facets(const FilmSpec& film, const Points& points,
       film.name, film.curves[misfit->curve], p.x(), p.y(), p.z()));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

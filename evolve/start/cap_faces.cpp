@@ -12,7 +12,7 @@
 #include "evolve/films/rim_grading.h"
 #include "evolve/start/disk_fill.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
@@ -59,7 +59,7 @@ std::function<double(const Vec3&)> graded_beside(
     const std::vector<Points>& loops, double edge) {
   std::vector<std::function<double(const Vec3&)>> fields;
   for (const Points& loop : loops) {
-    if (auto field = graded_edge(loop, edge)) {
+    if (auto field = films::graded_edge(loop, edge)) {
       fields.push_back(std::move(field));
     }
   }
@@ -133,4 +133,4 @@ SurfaceMesh fill_face(const std::vector<Points>& loops, double edge,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

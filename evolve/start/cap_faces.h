@@ -6,7 +6,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 /// Throws InvalidInput, naming cap, curve and place, for a rim that is not
 /// plane within 1e-9 of its size.
@@ -25,4 +25,4 @@ std::vector<std::vector<int>> faces_with_holes(
 SurfaceMesh fill_face(const std::vector<Points>& loops, double edge,
                       bool graded, const std::string& curve);
 
-}  // namespace meniscus
+}  // namespace meniscus::start

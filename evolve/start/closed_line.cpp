@@ -8,11 +8,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "core/math/dense.h"
 #include "evolve/curves/curve.h"
 #include "evolve/start/disk_fill.h"
-#include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
@@ -58,14 +58,14 @@ Points ClosedLine::smoothed(int count) const {
 }
 
 double ClosedLine::deviation(const Points& points) const {
-  const CurveShape curve = Spline{points};
+  const curves::CurveShape curve = curves::Spline{points};
   const int samples = kSamplesPerPoint * static_cast<int>(points.size());
   std::vector<double> t;
   t.reserve(static_cast<std::size_t>(samples));
   for (int i = 0; i < samples; ++i) {
     t.push_back(static_cast<double>(i) / samples);
   }
-  const Points on_curve = points_at(curve, t);
+  const Points on_curve = curves::points_at(curve, t);
   double sum = 0.0;
   for (const Vec3& p : points_) {
     double least = std::numeric_limits<double>::infinity();
@@ -100,4 +100,4 @@ MeanPlane mean_plane(const Points& points) {
   return plane;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

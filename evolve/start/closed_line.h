@@ -3,7 +3,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 class ClosedLine {
  public:
@@ -33,4 +33,4 @@ struct MeanPlane {
 };
 MeanPlane mean_plane(const Points& points);
 
-}  // namespace meniscus
+}  // namespace meniscus::start

@@ -12,7 +12,7 @@
 #include "evolve/groom/surface_editor.h"
 #include "evolve/start/loft.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
@@ -106,8 +106,8 @@ class EarClipper {
         return 0.0;
       }
     }
-    return smallest_angle(points_[ring_[a]], points_[ring_[i]],
-                          points_[ring_[b]]);
+    return films::smallest_angle(points_[ring_[a]], points_[ring_[i]],
+                                 points_[ring_[b]]);
   }
 
   const Points& points_;
@@ -230,15 +230,15 @@ double mean_piece(const Points& rim) {
 }
 
 SurfaceMesh remeshed(const Points& points, std::vector<Triangle> facets,
-                     const EdgeTarget& target) {
-  FilmComplex disk;
+                     const groom::EdgeTarget& target) {
+  films::FilmComplex disk;
   disk.mesh.points = points;
   disk.mesh.facets = std::move(facets);
   disk.mesh.facet_label.assign(disk.mesh.facets.size(), 0);
   disk.surfaces.resize(1);
-  disk.vertices.assign(points.size(), {.kind = VertexKind::Fixed});
-  SurfaceEditor editor(std::move(disk));
-  make_isotropic(editor, target, kPasses);
+  disk.vertices.assign(points.size(), {.kind = films::VertexKind::Fixed});
+  groom::SurfaceEditor editor(std::move(disk));
+  groom::make_isotropic(editor, target, kPasses);
   return std::move(editor).finish().mesh;
 }
 
@@ -290,4 +290,4 @@ SurfaceMesh fill_ring(const Points& outer, const Points& inner, double edge) {
       {.edge = std::min({edge, mean_piece(outer), mean_piece(inner)})});
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

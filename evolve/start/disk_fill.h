@@ -5,7 +5,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 /// Newell's area vector of a closed polygon: its area times its normal,
 /// counter-clockwise seen from the tip; of the shadow when not planar.
@@ -34,4 +34,4 @@ SurfaceMesh fill_disk(
 /// (evolve/start/loft.h), then remeshed along itself.
 SurfaceMesh fill_ring(const Points& outer, const Points& inner, double edge);
 
-}  // namespace meniscus
+}  // namespace meniscus::start

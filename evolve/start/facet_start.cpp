@@ -14,7 +14,7 @@
 #include "evolve/curves/curve_place.h"
 #include "evolve/films/facet_parts.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
@@ -39,8 +39,11 @@ double way(double a, double b) {
 
 class Builder {
  public:
-  Builder(const FilmSystem& system, double edge, bool keep)
-      : system_(system), edge_(edge), keep_(keep), all_(facet_parts(system)) {}
+  Builder(const films::FilmSystem& system, double edge, bool keep)
+      : system_(system),
+        edge_(edge),
+        keep_(keep),
+        all_(films::facet_parts(system)) {}
 
   FacetStart build() {
     result_.points = all_.points;
@@ -60,12 +63,12 @@ class Builder {
   void add_cuts(int curve, std::vector<double>& cuts) const;
   void add_sheet(int part);
 
-  [[noreturn]] void refuse_rim(const FacetRim& rim) const;
+  [[noreturn]] void refuse_rim(const films::FacetRim& rim) const;
 
-  const FilmSystem& system_;
+  const films::FilmSystem& system_;
   double edge_;
   bool keep_;
-  FacetParts all_;
+  films::FacetParts all_;
   FacetStart result_;
   std::vector<Held> held_;  // per point
 };
@@ -75,7 +78,7 @@ void Builder::find_places() {
   held_.resize(result_.points.size());
   for (std::size_t c = 0; c < system_.curves.size(); ++c) {
     std::set<int> points;
-    for (const FacetRim& rim : all_.rims) {
+    for (const films::FacetRim& rim : all_.rims) {
       const std::vector<int>& curves = all_.parts[rim.part].curves;
       if (std::find(curves.begin(), curves.end(), static_cast<int>(c)) !=
           curves.end()) {
@@ -89,8 +92,8 @@ void Builder::find_places() {
     for (const int v : points) {
       at.push_back(all_.points[v]);
     }
-    const std::vector<CurvePlace> places =
-        nearest_places(system_.curves[c].shape, at);
+    const std::vector<curves::CurvePlace> places =
+        curves::nearest_places(system_.curves[c].shape, at);
     std::size_t k = 0;
     for (const int v : points) {
       if (places[k].distance < held_[v].distance) {
@@ -103,9 +106,9 @@ void Builder::find_places() {
   }
 }
 
-void Builder::refuse_rim(const FacetRim& rim) const {
-  const FacetPart& part = all_.parts[rim.part];
-  const std::string at = text_of_place(all_.middle(rim));
+void Builder::refuse_rim(const films::FacetRim& rim) const {
+  const films::FacetPart& part = all_.parts[rim.part];
+  const std::string at = films::text_of_place(all_.middle(rim));
   if (part.curves.empty()) {
     throw InvalidInput(fmt::format(
         "{} is open at {} and names no curve; name the curves that hold "
@@ -126,18 +129,18 @@ void Builder::refuse_rim(const FacetRim& rim) const {
 
 void Builder::put_on_curves() {
   std::map<std::pair<int, int>, double> covered;  // part, curve: share
-  for (FacetRim& rim : all_.rims) {
-    const FacetPart& part = all_.parts[rim.part];
+  for (films::FacetRim& rim : all_.rims) {
+    const films::FacetPart& part = all_.parts[rim.part];
     Held& a = held_[rim.a];
     Held& b = held_[rim.b];
     const bool near = a.curve >= 0 && a.curve == b.curve &&
                       a.distance <= part.within && b.distance <= part.within &&
                       std::find(part.curves.begin(), part.curves.end(),
                                 a.curve) != part.curves.end();
-    const bool across =
-        near && rim.shared &&
-        nearest_places(system_.curves[a.curve].shape, {all_.middle(rim)})[0]
-                .distance > std::abs(part.within);
+    const bool across = near && rim.shared &&
+                        curves::nearest_places(system_.curves[a.curve].shape,
+                                               {all_.middle(rim)})[0]
+                                .distance > std::abs(part.within);
     if (!near || across) {
       if (!rim.shared) {
         refuse_rim(rim);
@@ -157,7 +160,7 @@ void Builder::put_on_curves() {
           fmt::format("{}: its rim folds back on the curve '{}' near {}; a rim "
                       "follows its curve once around",
                       part.what, system_.curves[rim.curve].name,
-                      text_of_place(all_.middle(rim))));
+                      films::text_of_place(all_.middle(rim))));
     }
   }
   for (std::size_t p = 0; p < all_.parts.size(); ++p) {
@@ -175,8 +178,8 @@ void Builder::put_on_curves() {
 
 /// Corners, and the middles of long pieces.
 void Builder::add_cuts(int curve, std::vector<double>& cuts) const {
-  const CurveShape& shape = system_.curves[curve].shape;
-  for (const double corner : corner_parameters(shape)) {
+  const curves::CurveShape& shape = system_.curves[curve].shape;
+  for (const double corner : curves::corner_parameters(shape)) {
     if (std::find(cuts.begin(), cuts.end(), corner) == cuts.end()) {
       cuts.push_back(corner);
     }
@@ -191,9 +194,9 @@ void Builder::add_cuts(int curve, std::vector<double>& cuts) const {
     const double next = k + 1 < before.size() ? before[k + 1] : before[0] + 1.0;
     const double gap = next - before[k];
     double length = 0.0;
-    Vec3 last = point_at(shape, before[k]);
+    Vec3 last = curves::point_at(shape, before[k]);
     for (int i = 1; i <= kChords; ++i) {
-      const Vec3 at = point_at(shape, before[k] + gap * i / kChords);
+      const Vec3 at = curves::point_at(shape, before[k] + gap * i / kChords);
       length += (at - last).norm();
       last = at;
     }
@@ -218,8 +221,8 @@ void Builder::cut_curves() {
     if (on.empty()) {
       continue;
     }
-    const CurveShape& shape = system_.curves[c].shape;
-    for (const double corner : corner_parameters(shape)) {
+    const curves::CurveShape& shape = system_.curves[c].shape;
+    for (const double corner : curves::corner_parameters(shape)) {
       const int near =
           *std::min_element(on.begin(), on.end(), [&](int a, int b) {
             return std::abs(way(held_[a].t, corner)) <
@@ -312,16 +315,16 @@ void Builder::add_sheet(int part) {
       throw InvalidInput(fmt::format(
           "{}: its facet at {} shrinks to nothing on its curve; other "
           "films' rims there have other vertices, give them the same",
-          all_.parts[part].what, text_of_place(all_.points[t[0]])));
+          all_.parts[part].what, films::text_of_place(all_.points[t[0]])));
     }
   }
   Cutter cutter(std::move(facets));
-  for (const FacetRim& rim : all_.rims) {
+  for (const films::FacetRim& rim : all_.rims) {
     if (rim.part == part && rim.curve >= 0) {
       cutter.note(rim.facet, id_of(rim.a), id_of(rim.b));
     }
   }
-  for (const FacetRim& rim : all_.rims) {
+  for (const films::FacetRim& rim : all_.rims) {
     if (rim.part != part || rim.curve < 0) {
       continue;
     }
@@ -343,14 +346,15 @@ void Builder::add_sheet(int part) {
 
 }  // namespace
 
-FacetStart start_from_facets(const FilmSystem& system, double edge, bool keep) {
+FacetStart start_from_facets(const films::FilmSystem& system, double edge,
+                             bool keep) {
   return Builder(system, edge, keep).build();
 }
 
-double mean_facet_edge(const FilmSystem& system) {
+double mean_facet_edge(const films::FilmSystem& system) {
   double sum = 0.0;
   double count = 0.0;
-  for (const FilmSpec& film : system.films) {
+  for (const films::FilmSpec& film : system.films) {
     if (!film.start) {
       continue;
     }
@@ -365,4 +369,4 @@ double mean_facet_edge(const FilmSystem& system) {
   return count > 0.0 ? sum / count : 0.0;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

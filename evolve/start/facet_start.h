@@ -9,7 +9,7 @@
 
 #include "evolve/films/film_system.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 /// Where a facet's corner is: a cut of a curve, or else a point.
 struct FacetCorner {
@@ -40,9 +40,10 @@ struct FacetStart {
 /// facet without area, three facets at an edge of one film, a rim that lies on
 /// no curve (how far the nearest is), a curve without a rim, a rim that folds
 /// back.
-FacetStart start_from_facets(const FilmSystem& system, double edge, bool keep);
+FacetStart start_from_facets(const films::FilmSystem& system, double edge,
+                             bool keep);
 
 /// The mean edge of those facets [length]; 0 where there are none.
-double mean_facet_edge(const FilmSystem& system);
+double mean_facet_edge(const films::FilmSystem& system);
 
-}  // namespace meniscus
+}  // namespace meniscus::start

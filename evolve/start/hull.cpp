@@ -15,7 +15,7 @@ extern "C" {
 #include <libqhull_r/qhull_ra.h>
 }
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
@@ -151,4 +151,4 @@ std::vector<Triangle> convex_hull(const Points& points) {
   return facets;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

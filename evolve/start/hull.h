@@ -5,7 +5,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 /// Facets of the hull, outward, every corner in `points`, lowest id first and
 /// sorted, so that qhull's own order does not matter. Points inside flat faces
@@ -13,4 +13,4 @@ namespace meniscus {
 /// when there is no solid hull (fewer than four points, all in one plane).
 std::vector<Triangle> convex_hull(const Points& points);
 
-}  // namespace meniscus
+}  // namespace meniscus::start

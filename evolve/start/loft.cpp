@@ -7,7 +7,7 @@
 
 #include "evolve/start/disk_fill.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
@@ -137,4 +137,4 @@ std::vector<Triangle> loft_band(const Points& low, const Points& high) {
   return facets;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

@@ -9,7 +9,7 @@
 
 #include "evolve/start/disk_fill.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
@@ -23,16 +23,16 @@ struct Filling {
 };
 
 std::map<std::string, std::vector<Filling>> fillings_of(
-    const FilmSystem& system, const BodySpec& body) {
+    const films::FilmSystem& system, const films::BodySpec& body) {
   std::map<std::string, std::vector<Filling>> result;
   for (const std::string& name : body.enclosed_by) {
-    for (const FilmSpec& film : system.films) {
-      if (film.name == name && film.kind == FilmKind::Disk &&
+    for (const films::FilmSpec& film : system.films) {
+      if (film.name == name && film.kind == films::FilmKind::Disk &&
           film.curves.size() == 1) {
         result[film.curves[0]].push_back({name, true});
       }
     }
-    for (const CapSpec& cap : system.caps) {
+    for (const films::CapSpec& cap : system.caps) {
       if (cap.name == name && !cap.start) {
         result[cap.curve].push_back({name, false});
       }
@@ -45,7 +45,7 @@ std::map<std::string, std::vector<Filling>> fillings_of(
 /// middle, with a slope at the rim.
 class Bulge {
  public:
-  Bulge(const FilmComplex& complex, int label) : complex_(complex) {
+  Bulge(const films::FilmComplex& complex, int label) : complex_(complex) {
     std::set<int> inner;
     Points rim;
     for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
@@ -54,7 +54,7 @@ class Bulge {
       }
       facets_.push_back(complex.mesh.facets[f]);
       for (const int v : facets_.back()) {
-        if (complex.vertices[v].kind == VertexKind::Free) {
+        if (complex.vertices[v].kind == films::VertexKind::Free) {
           inner.insert(v);
         } else {
           rim.push_back(complex.mesh.points[v]);
@@ -94,24 +94,24 @@ class Bulge {
     return sum;
   }
 
-  void raise(const Vec3& by, FilmComplex& complex) const {
+  void raise(const Vec3& by, films::FilmComplex& complex) const {
     for (const auto& [v, height] : height_) {
       complex.mesh.points[v] += height * by;
     }
   }
 
  private:
-  const FilmComplex& complex_;
+  const films::FilmComplex& complex_;
   std::vector<Triangle> facets_;
   std::map<int, double> height_;
   double width_ = 0.0;
 };
 
-Points rim_of(const FilmComplex& complex, const std::string& curve) {
+Points rim_of(const films::FilmComplex& complex, const std::string& curve) {
   Points rim;
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    const ComplexVertex& vertex = complex.vertices[v];
-    if (vertex.kind == VertexKind::OnCurve &&
+    const films::ComplexVertex& vertex = complex.vertices[v];
+    if (vertex.kind == films::VertexKind::OnCurve &&
         complex.curves[vertex.curve].name == curve) {
       rim.push_back(complex.mesh.points[v]);
     }
@@ -121,9 +121,9 @@ Points rim_of(const FilmComplex& complex, const std::string& curve) {
 
 }  // namespace
 
-void raise_disks(const FilmSystem& system, FilmComplex& complex) {
+void raise_disks(const films::FilmSystem& system, films::FilmComplex& complex) {
   std::set<std::string> raised;
-  for (const BodySpec& body : system.bodies) {
+  for (const films::BodySpec& body : system.bodies) {
     for (const auto& [curve, fillings] : fillings_of(system, body)) {
       if (fillings.size() != 2) {
         continue;
@@ -152,4 +152,4 @@ void raise_disks(const FilmSystem& system, FilmComplex& complex) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

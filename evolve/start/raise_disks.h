@@ -5,12 +5,12 @@
 #include "evolve/films/film_complex.h"
 #include "evolve/films/film_system.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 /// Bulges such disks of a start complex: beside a cap towards the tip of the
 /// curve's normal, of two disks the first in the body's list that way and the
 /// other against it. As high as the body's volume wants, at most as the curve
 /// is wide; an eighth of its width where the body has none.
-void raise_disks(const FilmSystem& system, FilmComplex& complex);
+void raise_disks(const films::FilmSystem& system, films::FilmComplex& complex);
 
-}  // namespace meniscus
+}  // namespace meniscus::start

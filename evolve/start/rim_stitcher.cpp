@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
@@ -95,4 +95,4 @@ int RimStitcher::stitch_side(const std::vector<int>& chain) {
   return -1;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

@@ -7,7 +7,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 /// The hull knows only corners: the points inside straight sides are put back
 /// into the facets along them.
@@ -33,4 +33,4 @@ class RimStitcher {
   std::map<Edge, int> side_;  // directed edge -> facet
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::start

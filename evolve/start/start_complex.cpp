@@ -22,7 +22,7 @@
 #include "evolve/start/loft.h"
 #include "evolve/start/raise_disks.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 namespace {
 
@@ -35,47 +35,47 @@ struct Rim {
 
 class StartBuilder {
  public:
-  StartBuilder(const FilmSystem& system, double edge)
+  StartBuilder(const films::FilmSystem& system, double edge)
       : system_(system), edge_(edge), shared_(system.curves) {}
 
-  FilmComplex build() {
+  films::FilmComplex build() {
     check_names();
     result_.curves = system_.curves;
     facets_ = start_from_facets(system_, edge_, system_.keep_facets);
     facet_points_.assign(facets_.points.size(), -1);
-    for (const FilmSpec& film : system_.films) {
+    for (const films::FilmSpec& film : system_.films) {
       for (const std::string& name : film.curves) {
         rim_of(name, film.name);
       }
     }
-    for (const CapSpec& cap : system_.caps) {
+    for (const films::CapSpec& cap : system_.caps) {
       for (const std::string& name : cap.curves()) {
         rim_of(name, cap.name);
       }
     }
     shared_.mark_edges(result_);
-    for (const FilmSpec& film : system_.films) {
+    for (const films::FilmSpec& film : system_.films) {
       add_film(film);
     }
-    for (const CapSpec& cap : system_.caps) {
+    for (const films::CapSpec& cap : system_.caps) {
       add_cap(cap);
     }
     raise_disks(system_, result_);
-    for (const BodySpec& body : system_.bodies) {
-      result_.bodies.push_back(make_body(body, result_.mesh));
+    for (const films::BodySpec& body : system_.bodies) {
+      result_.bodies.push_back(films::make_body(body, result_.mesh));
     }
-    for (const CapSpec& cap : system_.caps) {
-      require_body(system_, cap.name);
+    for (const films::CapSpec& cap : system_.caps) {
+      films::require_body(system_, cap.name);
     }
-    orient_bodies(result_);
+    films::orient_bodies(result_);
     add_fields();
     const std::vector<double> tensions =
-        tensions_at(result_, result_.mesh.points);
+        energy::tensions_at(result_, result_.mesh.points);
     for (std::size_t s = 0; s < tensions.size(); ++s) {
-      ComplexSurface& surface = result_.surfaces[s];
+      films::ComplexSurface& surface = result_.surfaces[s];
       surface.tension = tensions[s];
       if (surface.tension_field) {
-        surface.tension_field = positive_only(*surface.tension_field);
+        surface.tension_field = energy::positive_only(*surface.tension_field);
       }
     }
     return std::move(result_);
@@ -84,8 +84,8 @@ class StartBuilder {
  private:
   void check_names() const {
     std::set<std::string> names;
-    for (const Curve& curve : system_.curves) {
-      validate(curve);
+    for (const curves::Curve& curve : system_.curves) {
+      curves::validate(curve);
       if (!names.insert(curve.name).second) {
         throw InvalidInput(
             fmt::format("two curves are named '{}'; rename one", curve.name));
@@ -98,7 +98,7 @@ class StartBuilder {
             fmt::format("two surfaces are named '{}'; rename one", name));
       }
     };
-    for (const FilmSpec& film : system_.films) {
+    for (const films::FilmSpec& film : system_.films) {
       add(film.name);
       if (!std::isfinite(film.tension) || film.tension <= 0.0) {
         throw InvalidInput(
@@ -106,7 +106,7 @@ class StartBuilder {
                         film.tension));
       }
     }
-    for (const CapSpec& cap : system_.caps) {
+    for (const films::CapSpec& cap : system_.caps) {
       add(cap.name);
     }
   }
@@ -117,9 +117,9 @@ class StartBuilder {
     if (known != rims_.end()) {
       return known->second;
     }
-    const auto found =
-        std::find_if(system_.curves.begin(), system_.curves.end(),
-                     [&](const Curve& c) { return c.name == curve_name; });
+    const auto found = std::find_if(
+        system_.curves.begin(), system_.curves.end(),
+        [&](const curves::Curve& c) { return c.name == curve_name; });
     if (found == system_.curves.end()) {
       throw InvalidInput(
           fmt::format("surface '{}' names the curve '{}', which does not exist",
@@ -130,7 +130,7 @@ class StartBuilder {
     const auto cuts = facets_.cuts.find(rim.curve);
     const bool is_cut = cuts != facets_.cuts.end();
     const std::vector<double> t =
-        is_cut ? cuts->second : sample_parameters(found->shape, edge_);
+        is_cut ? cuts->second : curves::sample_parameters(found->shape, edge_);
     if (shared_.shares(rim.curve)) {
       rim.ids = shared_.rim(rim.curve, t, result_);
       if (is_cut && rim.ids.size() != t.size()) {
@@ -145,11 +145,11 @@ class StartBuilder {
     rim.ids.resize(t.size());
     std::iota(rim.ids.begin(), rim.ids.end(),
               static_cast<int>(result_.mesh.points.size()));
-    const Points points = points_at(found->shape, t);
+    const Points points = curves::points_at(found->shape, t);
     result_.mesh.points.insert(result_.mesh.points.end(), points.begin(),
                                points.end());
     for (const double at : t) {
-      result_.vertices.push_back({VertexKind::OnCurve, rim.curve, at});
+      result_.vertices.push_back({films::VertexKind::OnCurve, rim.curve, at});
     }
     return rims_.emplace(curve_name, rim).first->second;
   }
@@ -163,7 +163,7 @@ class StartBuilder {
     return points;
   }
 
-  int add_surface(const ComplexSurface& surface) {
+  int add_surface(const films::ComplexSurface& surface) {
     result_.surfaces.push_back(surface);
     result_.mesh.labels.push_back(surface.name);
     return static_cast<int>(result_.surfaces.size()) - 1;
@@ -174,7 +174,7 @@ class StartBuilder {
     result_.mesh.facet_label.push_back(label);
   }
 
-  void add_film(const FilmSpec& film) {
+  void add_film(const films::FilmSpec& film) {
     const int label =
         add_surface({film.name, true, film.tension, film.tension_field});
     std::set<std::string> used;
@@ -185,23 +185,24 @@ class StartBuilder {
       }
     }
     switch (film.kind) {
-      case FilmKind::Branch:
+      case films::FilmKind::Branch:
         add_branch(film, label);
         break;
-      case FilmKind::Loft:
+      case films::FilmKind::Loft:
         add_loft(film, label);
         break;
-      case FilmKind::Disk:
+      case films::FilmKind::Disk:
         require_curves(film, 1);
-        fill({rim_of(film.curves[0], film.name)}, label, VertexKind::Free);
+        fill({rim_of(film.curves[0], film.name)}, label,
+             films::VertexKind::Free);
         break;
-      case FilmKind::Facets:
-        add_sheet(film.name, label, VertexKind::Free);
+      case films::FilmKind::Facets:
+        add_sheet(film.name, label, films::VertexKind::Free);
         break;
     }
   }
 
-  static void require_curves(const FilmSpec& film, std::size_t count) {
+  static void require_curves(const films::FilmSpec& film, std::size_t count) {
     if (film.curves.size() != count) {
       throw InvalidInput(
           fmt::format("film '{}' has {} curves, its kind needs {}", film.name,
@@ -209,7 +210,7 @@ class StartBuilder {
     }
   }
 
-  void add_loft(const FilmSpec& film, int label) {
+  void add_loft(const films::FilmSpec& film, int label) {
     require_curves(film, 2);
     const Rim low = rim_of(film.curves[0], film.name);
     const Rim high = rim_of(film.curves[1], film.name);
@@ -222,13 +223,13 @@ class StartBuilder {
   }
 
   /// The first of the rims filled, the others left open.
-  void fill(const std::vector<Rim>& rims, int label, VertexKind kind) {
+  void fill(const std::vector<Rim>& rims, int label, films::VertexKind kind) {
     std::vector<Points> loops;
     bool graded = false;
     for (const Rim& rim : rims) {
       loops.push_back(points_of(rim));
       graded = graded || shared_.shares(rim.curve) ||
-               has_many_sides(system_.curves[rim.curve].shape);
+               films::has_many_sides(system_.curves[rim.curve].shape);
     }
     add_filling(
         fill_face(loops, edge_, graded, system_.curves[rims[0].curve].name),
@@ -237,7 +238,7 @@ class StartBuilder {
 
   // `disk`: the points of the rims come first, in their order.
   void add_filling(const SurfaceMesh& disk, const std::vector<Rim>& rims,
-                   int label, VertexKind kind) {
+                   int label, films::VertexKind kind) {
     std::vector<int> ids;
     for (const Rim& rim : rims) {
       ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
@@ -253,7 +254,7 @@ class StartBuilder {
   }
 
   /// Facets of the system's own.
-  void add_sheet(const std::string& name, int label, VertexKind kind) {
+  void add_sheet(const std::string& name, int label, films::VertexKind kind) {
     const auto sheet =
         std::find_if(facets_.sheets.begin(), facets_.sheets.end(),
                      [&](const FacetSheet& s) { return s.name == name; });
@@ -288,10 +289,10 @@ class StartBuilder {
     }
   }
 
-  void add_cap(const CapSpec& cap) {
+  void add_cap(const films::CapSpec& cap) {
     const int label = add_surface({cap.name, false, 0.0});
     if (cap.start) {
-      add_sheet(cap.name, label, VertexKind::InCap);
+      add_sheet(cap.name, label, films::VertexKind::InCap);
       return;
     }
     std::vector<Rim> rims;
@@ -302,7 +303,7 @@ class StartBuilder {
     }
     if (!cap.inner.empty()) {
       add_filling(fill_ring(loops[0], loops[1], edge_), rims, label,
-                  VertexKind::InCap);
+                  films::VertexKind::InCap);
       return;
     }
     for (std::size_t k = 0; k < loops.size(); ++k) {
@@ -314,32 +315,32 @@ class StartBuilder {
       for (const int k : face) {
         bounds.push_back(rims[k]);
       }
-      fill(bounds, label, VertexKind::InCap);
+      fill(bounds, label, films::VertexKind::InCap);
     }
   }
 
-  void add_branch(const FilmSpec& film, int label);
+  void add_branch(const films::FilmSpec& film, int label);
 
   void add_fields() {
-    for (const FieldSpec& field : system_.fields) {
-      result_.quantities.push_back(field_quantity(result_, field));
+    for (const films::FieldSpec& field : system_.fields) {
+      result_.quantities.push_back(energy::field_quantity(result_, field));
     }
-    for (const PressureSpec& spec : system_.pressures) {
-      result_.quantities.push_back(
-          pressure_quantity(result_, spec.name, spec.body, spec.pressure));
+    for (const films::PressureSpec& spec : system_.pressures) {
+      result_.quantities.push_back(energy::pressure_quantity(
+          result_, spec.name, spec.body, spec.pressure));
     }
   }
 
-  const FilmSystem& system_;
+  const films::FilmSystem& system_;
   double edge_;
-  FilmComplex result_;
+  films::FilmComplex result_;
   std::map<std::string, Rim> rims_;
-  SharedRims shared_;
+  films::SharedRims shared_;
   FacetStart facets_;
   std::vector<int> facet_points_;  // ids of its points; -1: not yet
 };
 
-void StartBuilder::add_branch(const FilmSpec& film, int label) {
+void StartBuilder::add_branch(const films::FilmSpec& film, int label) {
   if (film.curves.size() < 2) {
     throw InvalidInput(
         fmt::format("film '{}' has {} curves, a branch needs 2 "
@@ -363,11 +364,11 @@ void StartBuilder::add_branch(const FilmSpec& film, int label) {
 
 }  // namespace
 
-FilmComplex build_start(const FilmSystem& system, double edge) {
+films::FilmComplex build_start(const films::FilmSystem& system, double edge) {
   if (!std::isfinite(edge) || edge <= 0.0) {
     throw InvalidInput(fmt::format("edge length is {}, must be above 0", edge));
   }
   return StartBuilder(system, edge).build();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::start

@@ -4,7 +4,7 @@
 #include "evolve/films/film_complex.h"
 #include "evolve/films/film_system.h"
 
-namespace meniscus {
+namespace meniscus::start {
 
 /// The start complex: curves cut into edges of about `edge`, films as their
 /// kind says, caps triangulated in their plane, facets oriented outward of the
@@ -12,6 +12,6 @@ namespace meniscus {
 /// that is not planar, a branch curve that is off the convex hull (which one),
 /// a body that its surfaces do not close (names the open edges' surfaces and
 /// position), a surface that encloses nothing.
-FilmComplex build_start(const FilmSystem& system, double edge);
+films::FilmComplex build_start(const films::FilmSystem& system, double edge);
 
-}  // namespace meniscus
+}  // namespace meniscus::start

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-namespace meniscus {
+namespace meniscus::walls {
 
 FacetProbe::FacetProbe(const Points& points,
                        const std::vector<Triangle>& facets)
@@ -190,4 +190,4 @@ FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
   return ball;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

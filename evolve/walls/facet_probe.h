@@ -7,7 +7,7 @@
 
 #include "core/geometry/box_tree.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// Its questions are not FacetTree's: they come with a bound or a ball, which
 /// the planes of facets cut short. O(n log n) to build, about O(log n) a
@@ -64,4 +64,4 @@ class FacetProbe {
   std::vector<Plane> planes_;  // of the facets in the tree's order
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -8,7 +8,7 @@
 
 #include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -159,4 +159,4 @@ std::vector<Jet> fit_jets(const Sheet& sheet) {
   return jets;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -5,7 +5,7 @@
 
 #include "evolve/walls/sheet.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// Principal curvatures [1/length], positive where the sheet bends away from
 /// its normal: a sphere of outward normals has both 1/R. k1 >= k2.
@@ -23,4 +23,4 @@ struct Jet {
 /// curvatures 0.
 std::vector<Jet> fit_jets(const Sheet& sheet);
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -8,11 +8,11 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -231,4 +231,4 @@ Sheet make_sheet(const SurfaceMesh& film) {
   return sheet;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -6,7 +6,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// What every question about a sheet starts from. Lists by vertex are rows of
 /// a compressed table: those of v are list[start[v]] .. list[start[v + 1]].
@@ -34,4 +34,4 @@ inline constexpr double kCreaseCosine = 0.6427876096865394;
 /// opposite ways, and a vertex at which parts touch in one point only.
 Sheet make_sheet(const SurfaceMesh& film);
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

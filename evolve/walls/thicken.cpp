@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "evolve/walls/wall_offset.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -290,4 +290,4 @@ ThickWall thicken(const SurfaceMesh& film, const ThickenOptions& options) {
   return wall;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

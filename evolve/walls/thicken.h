@@ -9,7 +9,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/math/expression.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// Where the wall's material lies. Outside is where the facet normals point.
 enum class WallSide {
@@ -105,4 +105,4 @@ struct ThickWall {
 /// naming the vertex, for bad options, and what make_sheet() (sheet.h) throws.
 ThickWall thicken(const SurfaceMesh& film, const ThickenOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

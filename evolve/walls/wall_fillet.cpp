@@ -10,11 +10,11 @@
 
 #include <Eigen/Geometry>
 
-#include "evolve/walls/wall_offset.h"
 #include "core/geometry/edge_key.h"
 #include "core/math/union_find.h"
+#include "evolve/walls/wall_offset.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -332,4 +332,4 @@ class Fillets {
 
 Points fillet_moves(const FilletInput& input) { return Fillets(input).find(); }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

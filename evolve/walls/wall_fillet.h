@@ -7,7 +7,7 @@
 #include "evolve/walls/wall_spec.h"
 #include "evolve/walls/wall_topology.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// Films cut along their junctions.
 struct WallSheets {
@@ -33,4 +33,4 @@ struct FilletInput {
 /// (weights 1 / distance^4). Sectors of 180 degrees and more have no fillet.
 Points fillet_moves(const FilletInput& input);
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -33,11 +33,11 @@ void turn_outward(SurfaceMesh& mesh, int label, const Vec3& middle) {
   }
 }
 
-Vec3 middle_of_rim(const FilmSystem& system, const std::string& film,
-                   const FilmModel& model, const Points& points) {
+Vec3 middle_of_rim(const films::FilmSystem& system, const std::string& film,
+                   const frozen::FilmModel& model, const Points& points) {
   Vec3 sum = Vec3::Zero();
   int count = 0;
-  for (const FilmSpec& spec : system.films) {
+  for (const films::FilmSpec& spec : system.films) {
     for (const std::string& curve : spec.curves) {
       for (const int v :
            spec.name == film ? model.rim(curve) : std::vector<int>()) {
@@ -51,8 +51,9 @@ Vec3 middle_of_rim(const FilmSystem& system, const std::string& film,
 
 }  // namespace
 
-WallFilms wall_films(const FilmModel& model, const FilmSystem& system,
-                     const Points& points, const std::vector<WallSpec>& walls) {
+WallFilms wall_films(const frozen::FilmModel& model,
+                     const films::FilmSystem& system, const Points& points,
+                     const std::vector<WallSpec>& walls) {
   const SurfaceMesh all = model.meshed_facets();
   WallFilms films;
   films.middles = model.middles();
@@ -80,10 +81,10 @@ WallFilms wall_films(const FilmModel& model, const FilmSystem& system,
     turn_outward(mesh, static_cast<int>(label),
                  middle_of_rim(system, mesh.labels[label], model, points));
   }
-  for (const Curve& curve : system.curves) {
+  for (const curves::Curve& curve : system.curves) {
     films.rims.push_back({curve.name, model.rim(curve.name)});
   }
   return films;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -10,7 +10,7 @@
 #include "evolve/walls/facet_probe.h"
 #include "evolve/walls/wall_offset.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -218,4 +218,4 @@ SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
   return safe;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

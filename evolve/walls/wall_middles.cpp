@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 int WallMiddles::add_point(WallPoint point) {
   walls_.points.push_back(std::move(point));
@@ -101,4 +101,4 @@ StripCorner WallMiddles::cap_middle(const StripCorner& a,
   return {id, id, 1.0};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -6,7 +6,7 @@
 
 #include "evolve/walls/wall_topology.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// A place in a rim strip: between the front and the back point of a column.
 /// Inside a cap both are the point itself.
@@ -44,4 +44,4 @@ class WallMiddles {
   std::map<std::tuple<int, int, double>, int> strip_points_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

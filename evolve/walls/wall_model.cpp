@@ -10,7 +10,7 @@
 #include "evolve/walls/wall_films.h"
 #include "evolve/walls/wall_offset.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -18,7 +18,8 @@ constexpr double kSpannedByEdges = 1e-4;  // of the largest eigenvalue
 
 }  // namespace
 
-WallModel WallModel::freeze(const FilmModel& film, const FilmSystem& system,
+WallModel WallModel::freeze(const frozen::FilmModel& film,
+                            const films::FilmSystem& system,
                             const Points& points,
                             const std::vector<WallSpec>& walls,
                             SafePlaces places) {
@@ -314,4 +315,4 @@ void WallModel::report() {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

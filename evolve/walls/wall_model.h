@@ -24,7 +24,7 @@
 #include "evolve/walls/wall_spec.h"
 #include "evolve/walls/wall_topology.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// A response's derivatives by what walls are made of.
 struct WallGradient {
@@ -37,8 +37,8 @@ class WallModel {
   /// On the film `points` of a state of `film`; `system`: its own. A film's
   /// normals point away from the middle of its rim (of a flat film along its
   /// curve's normal). Throws InvalidInput and MeshError as wall_reference().
-  static WallModel freeze(const FilmModel& film, const FilmSystem& system,
-                          const Points& points,
+  static WallModel freeze(const frozen::FilmModel& film,
+                          const films::FilmSystem& system, const Points& points,
                           const std::vector<WallSpec>& walls,
                           SafePlaces places = SafePlaces::Worst);
 
@@ -108,4 +108,4 @@ class WallModel {
   std::vector<ThickWall> walls_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "evolve/walls/facet_probe.h"
 #include "core/math/dense.h"
+#include "evolve/walls/facet_probe.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -210,4 +210,4 @@ OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
   return best;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

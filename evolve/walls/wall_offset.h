@@ -7,7 +7,7 @@
 #include "evolve/walls/sheet.h"
 #include "evolve/walls/thicken.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// Parts of the thickness that lie in front of the film and behind it.
 struct WallShares {
@@ -57,4 +57,4 @@ SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
                              const std::vector<double>& asked, WallSide side,
                              const SafeOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -15,7 +15,7 @@
 #include "evolve/walls/wall_offset.h"
 #include "evolve/walls/wall_sheets.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -330,4 +330,4 @@ WallReference wall_reference(const WallTopology& topology,
   return Reference(topology, films, walls, places).find();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -7,7 +7,7 @@
 #include "evolve/walls/wall_spec.h"
 #include "evolve/walls/wall_topology.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// What one wall's thickness moves a point by.
 struct WallMove {
@@ -40,4 +40,4 @@ WallReference wall_reference(const WallTopology& topology,
                              const std::vector<WallSpec>& walls,
                              SafePlaces places = SafePlaces::Worst);
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -10,7 +10,7 @@
 #include "core/geometry/edge_key.h"
 #include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -131,4 +131,4 @@ class Finder {
 
 Sectors find_sectors(const SurfaceMesh& mesh) { return Finder(mesh).find(); }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -5,7 +5,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// An edge of a facet: it runs from this corner to the next.
 struct Incidence {
@@ -25,4 +25,4 @@ struct Sectors {
 /// Nothing joins the two sides of a film at a rim.
 Sectors find_sectors(const SurfaceMesh& mesh);
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

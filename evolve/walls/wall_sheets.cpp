@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -102,4 +102,4 @@ std::vector<SheetFacets> cut_into_sheets(const WallTopology& topology,
   return Sheets(topology, films).cut();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

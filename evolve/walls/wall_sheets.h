@@ -5,7 +5,7 @@
 
 #include "evolve/walls/wall_topology.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// Film facets joined by edges that no third facet has.
 struct SheetFacets {
@@ -19,4 +19,4 @@ struct SheetFacets {
 std::vector<SheetFacets> cut_into_sheets(const WallTopology& topology,
                                          const WallFilms& films);
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

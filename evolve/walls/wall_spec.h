@@ -8,7 +8,7 @@
 #include "core/math/expression.h"
 #include "evolve/walls/thicken.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// Films made solid by thickness.
 struct WallSpec {
@@ -25,4 +25,4 @@ struct WallSpec {
   int region = 0;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

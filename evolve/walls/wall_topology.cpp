@@ -5,12 +5,12 @@
 #include <cmath>
 #include <map>
 
-#include "evolve/walls/wall_middles.h"
-#include "evolve/walls/wall_sectors.h"
 #include "core/geometry/edge_key.h"
 #include "core/math/union_find.h"
+#include "evolve/walls/wall_middles.h"
+#include "evolve/walls/wall_sectors.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 namespace {
 
@@ -381,4 +381,4 @@ WallTopology wall_topology(const WallFilms& films) {
   return Builder(films).build();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

@@ -11,7 +11,7 @@
 #include "core/geometry/surface_nodes.h"
 #include "evolve/walls/thicken.h"
 
-namespace meniscus {
+namespace meniscus::walls {
 
 /// Films with thickness, meshed coarsely; finer meshes are nested in that.
 struct WallFilms {
@@ -63,4 +63,4 @@ struct WallTopology {
 /// middle where levels ask for it.
 WallTopology wall_topology(const WallFilms& films);
 
-}  // namespace meniscus
+}  // namespace meniscus::walls

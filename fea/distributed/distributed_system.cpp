@@ -9,7 +9,7 @@
 #include "fea/equations/elastic_operator.h"
 #include "fea/loads/body_loads.h"
 
-namespace meniscus {
+namespace meniscus::distributed {
 
 namespace {
 
@@ -20,8 +20,8 @@ constexpr int kLeastNodes = 100;
 /// tolerance reactions miss the loads by 1e-9, where 1e-10 is to be expected.
 constexpr double kStricter = 0.01;
 
-double time_limit(const ElasticOptions& options, std::size_t unknowns,
-                  std::size_t load_cases) {
+double time_limit(const equations::ElasticOptions& options,
+                  std::size_t unknowns, std::size_t load_cases) {
   constexpr double kStart = 600.0;   // [s]
   constexpr double kUnknown = 1e-3;  // about thirty times what was measured
   return options.time_limit.value_or(kStart +
@@ -31,21 +31,22 @@ double time_limit(const ElasticOptions& options, std::size_t unknowns,
 
 }  // namespace
 
-DistributedSystem::DistributedSystem(const TetMesh& base,
-                                     const std::vector<Material>& materials,
-                                     const std::vector<LoadCase>& load_cases,
-                                     const ElasticOptions& options)
+DistributedSystem::DistributedSystem(
+    const TetMesh& base, const std::vector<element::Material>& materials,
+    const std::vector<loads::LoadCase>& load_cases,
+    const equations::ElasticOptions& options)
     : base_(base, materials, load_cases, options) {
-  if (options.processes < 1 || options.processes > kMostProcesses) {
+  if (options.processes < 1 || options.processes > equations::kMostProcesses) {
     throw InvalidInput(fmt::format("elasticity: {} processes; 1 to {} can work",
-                                   options.processes, kMostProcesses));
+                                   options.processes,
+                                   equations::kMostProcesses));
   }
   require_petsc();
-  base_.order = curve_order(base);
-  table_ = make_element_list(base_.order.chunks, base.nodes_per_element(),
-                             base_.solver_elements(base),
-                             base_.solver_regions(base));
-  groups_ = group_alike(base, load_cases, base_.order);
+  base_.order = solver::curve_order(base);
+  table_ = solver::make_element_list(
+      base_.order.chunks, base.nodes_per_element(), base_.solver_elements(base),
+      base_.solver_regions(base));
+  groups_ = equations::group_alike(base, load_cases, base_.order);
   if (const auto failure = bad_design(base, base_.solver_points(base))) {
     throw MeshError(failure->message);
   }
@@ -56,7 +57,7 @@ std::optional<Failure> DistributedSystem::bad_design(const TetMesh& mesh,
   if (auto failure = base_.bad_node(mesh)) {
     return failure;
   }
-  const auto bad = first_bad_element(table_, x);
+  const auto bad = solver::first_bad_element(table_, x);
   return bad ? std::optional<Failure>(base_.inverted(mesh, *bad))
              : std::nullopt;
 }
@@ -67,22 +68,23 @@ int DistributedSystem::processes() const {
 }
 
 std::optional<Failure> DistributedSystem::hold(
-    const TetMesh& mesh, const std::vector<LoadCase>& load_cases, bool is_base,
-    std::vector<Holding>& holdings) const {
-  for (const HeldCases& group : groups_) {
-    const LoadCase& first = load_cases[group.cases.front()];
-    holdings.push_back(is_base ? group.holding
-                               : make_holding(mesh, first, base_.order));
-    if (!alike(holdings.back(), group.holding)) {
-      return ElasticBase::turned(first);
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    bool is_base, std::vector<supports::Holding>& holdings) const {
+  for (const equations::HeldCases& group : groups_) {
+    const loads::LoadCase& first = load_cases[group.cases.front()];
+    holdings.push_back(is_base
+                           ? group.holding
+                           : supports::make_holding(mesh, first, base_.order));
+    if (!supports::alike(holdings.back(), group.holding)) {
+      return equations::ElasticBase::turned(first);
     }
   }
   return std::nullopt;
 }
 
 std::vector<PetscGroup> DistributedSystem::grouped(
-    const std::vector<Holding>& holdings, const std::vector<VectorX>& f,
-    const std::vector<VectorX>& start) const {
+    const std::vector<supports::Holding>& holdings,
+    const std::vector<VectorX>& f, const std::vector<VectorX>& start) const {
   std::vector<PetscGroup> groups;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     PetscGroup group{.holding = &holdings[g], .f = {}, .start = {}};
@@ -97,15 +99,16 @@ std::vector<PetscGroup> DistributedSystem::grouped(
   return groups;
 }
 
-ElasticSolution DistributedSystem::solve(
-    const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
-    const RegionMaterials& regions, const ElasticSolution* start) const {
+equations::ElasticSolution DistributedSystem::solve(
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    const equations::RegionMaterials& regions,
+    const equations::ElasticSolution* start) const {
   const Timer timer;
-  ElasticSolution result;
+  equations::ElasticSolution result;
   result.displacements.resize(load_cases.size());
   result.reactions.resize(load_cases.size());
   result.report.solver = "petsc";
-  result.report.dofs = free_unknowns(groups_.front().holding);
+  result.report.dofs = supports::free_unknowns(groups_.front().holding);
   const Points x = base_.solver_points(mesh);
   if ((result.failure = bad_design(mesh, x))) {
     return result;
@@ -115,9 +118,9 @@ ElasticSolution DistributedSystem::solve(
   std::vector<VectorX> begin;
   for (std::size_t c = 0; start != nullptr && !start->failure && c < f.size();
        ++c) {
-    begin.push_back(to_solver(base_.order, start->displacements[c]));
+    begin.push_back(equations::to_solver(base_.order, start->displacements[c]));
   }
-  std::vector<Holding> holdings;
+  std::vector<supports::Holding> holdings;
   if ((result.failure = hold(mesh, load_cases, start == nullptr, holdings))) {
     return result;
   }
@@ -136,27 +139,27 @@ ElasticSolution DistributedSystem::solve(
     const PetscGroupSolution& group = solved.groups[g];
     for (std::size_t k = 0; k < group.u.size(); ++k) {
       const int c = groups_[g].cases[k];
-      conclude(base_, table_,
-               {.load_case = c,
-                .name = load_cases[c].name,
-                .x = x,
-                .f = f[c],
-                .u = group.u[k],
-                .diagonal = group.diagonal,
-                .laws = regions.laws,
-                .holding = holdings[g],
-                .column = group.columns[k]},
-               result);
+      equations::conclude(base_, table_,
+                          {.load_case = c,
+                           .name = load_cases[c].name,
+                           .x = x,
+                           .f = f[c],
+                           .u = group.u[k],
+                           .diagonal = group.diagonal,
+                           .laws = regions.laws,
+                           .holding = holdings[g],
+                           .column = group.columns[k]},
+                          result);
     }
   }
   if (!result.failure && load_cases[0].temperature) {
     result.report.strain_energy =
-        strain_energy(mesh, regions.materials, result.displacements[0],
-                      temperature_change(mesh, load_cases[0]));
+        loads::strain_energy(mesh, regions.materials, result.displacements[0],
+                             loads::temperature_change(mesh, load_cases[0]));
   }
   result.report.setup_seconds = solved.setup_seconds;
   result.report.solve_seconds = timer.seconds() - solved.setup_seconds;
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::distributed

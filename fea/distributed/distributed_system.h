@@ -9,41 +9,42 @@
 #include "fea/equations/elastic_base.h"
 #include "fea/solver/assembly.h"
 
-namespace meniscus {
+namespace meniscus::distributed {
 
 class DistributedSystem {
  public:
   /// Checks the input, orders the mesh, groups load cases that are held alike.
   /// Throws what ElasticModel throws.
-  DistributedSystem(const TetMesh& base, const std::vector<Material>& materials,
-                    const std::vector<LoadCase>& load_cases,
-                    const ElasticOptions& options);
+  DistributedSystem(const TetMesh& base,
+                    const std::vector<element::Material>& materials,
+                    const std::vector<loads::LoadCase>& load_cases,
+                    const equations::ElasticOptions& options);
 
-  const ElasticBase& base() const { return base_; }
+  const equations::ElasticBase& base() const { return base_; }
 
   /// Solves all load cases in processes of their own; `start`: a solution to
   /// begin from, or null (the base itself).
-  ElasticSolution solve(const TetMesh& mesh,
-                        const std::vector<LoadCase>& load_cases,
-                        const RegionMaterials& regions,
-                        const ElasticSolution* start) const;
+  equations::ElasticSolution solve(
+      const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+      const equations::RegionMaterials& regions,
+      const equations::ElasticSolution* start) const;
 
  private:
   std::optional<Failure> bad_design(const TetMesh& mesh, const Points& x) const;
   int processes() const;
   /// What holds each group; the base's own where `mesh` is the base.
   std::optional<Failure> hold(const TetMesh& mesh,
-                              const std::vector<LoadCase>& load_cases,
+                              const std::vector<loads::LoadCase>& load_cases,
                               bool is_base,
-                              std::vector<Holding>& holdings) const;
+                              std::vector<supports::Holding>& holdings) const;
   /// Points into its arguments.
-  std::vector<PetscGroup> grouped(const std::vector<Holding>& holdings,
-                                  const std::vector<VectorX>& f,
-                                  const std::vector<VectorX>& start) const;
+  std::vector<PetscGroup> grouped(
+      const std::vector<supports::Holding>& holdings,
+      const std::vector<VectorX>& f, const std::vector<VectorX>& start) const;
 
-  ElasticBase base_;
-  ElementTable table_;
-  std::vector<HeldCases> groups_;
+  equations::ElasticBase base_;
+  solver::ElementTable table_;
+  std::vector<equations::HeldCases> groups_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::distributed

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/find_program.h"
 
-namespace meniscus {
+namespace meniscus::distributed {
 
 namespace {
 
@@ -150,4 +150,4 @@ PetscSolution run_petsc(const PetscSystem& system, const PetscRun& run) {
   return read_results(system, run.processes, folder.path());
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::distributed

@@ -6,7 +6,7 @@
 #include "core/monitor.h"
 #include "fea/distributed/petsc_cut.h"
 
-namespace meniscus {
+namespace meniscus::distributed {
 
 struct PetscRun {
   int processes = 2;
@@ -27,4 +27,4 @@ void require_petsc();
 /// dies or the time is over, with the end of what it said, and Interrupted.
 PetscSolution run_petsc(const PetscSystem& system, const PetscRun& run);
 
-}  // namespace meniscus
+}  // namespace meniscus::distributed

@@ -7,7 +7,7 @@
 
 #include "fea/distributed/petsc_protocol.h"
 
-namespace meniscus {
+namespace meniscus::distributed {
 
 namespace {
 
@@ -62,7 +62,7 @@ class Writer {
   std::ofstream out_;
 };
 
-petsc::Law law_record(const ElasticLaw& law) {
+petsc::Law law_record(const element::ElasticLaw& law) {
   petsc::Law record;
   record.isotropic = law.isotropic ? 1.0 : 0.0;
   record.lambda = law.lame.lambda;
@@ -78,7 +78,7 @@ class Cut {
  public:
   Cut(const PetscSystem& system, Range own, std::vector<int>& local)
       : system_(system), own_(own), local_(local) {
-    const BlockPattern& p = system.table.pattern;
+    const solver::BlockPattern& p = system.table.pattern;
     const auto width = static_cast<std::size_t>(p.nodes_per_element);
     for (int e = 0; e < p.element_count(); ++e) {
       const int* ids = p.element_nodes.data() + e * width;  // ascending
@@ -112,7 +112,7 @@ class Cut {
   Cut& operator=(const Cut&) = delete;
 
   void write(int process, int processes, Writer& out) const {
-    const BlockPattern& p = system_.table.pattern;
+    const solver::BlockPattern& p = system_.table.pattern;
     petsc::PieceHeader header;
     header.process = process;
     header.processes = processes;
@@ -129,7 +129,7 @@ class Cut {
     out.one(header);
     out.list(ghosts_);
     write_mesh(out);
-    for (const ElasticLaw& law : system_.laws) {
+    for (const element::ElasticLaw& law : system_.laws) {
       out.one(law_record(law));
     }
     for (const PetscGroup& group : system_.groups) {
@@ -146,7 +146,7 @@ class Cut {
     for (const int node : ghosts_) {
       out.one(system_.x[node]);
     }
-    const ElementTable& table = system_.table;
+    const solver::ElementTable& table = system_.table;
     const auto width =
         static_cast<std::size_t>(table.pattern.nodes_per_element);
     for (const int e : elements_) {
@@ -162,8 +162,8 @@ class Cut {
   }
 
   void write_group(const PetscGroup& group, Writer& out) const {
-    const NodeFreedom& freedom = group.holding->freedom;
-    const SpringBlocks& springs = group.holding->springs;
+    const solver::NodeFreedom& freedom = group.holding->freedom;
+    const supports::SpringBlocks& springs = group.holding->springs;
     std::vector<int> held;
     std::vector<double> projectors;
     for (std::size_t h = 0; h < freedom.held.size(); ++h) {
@@ -243,22 +243,22 @@ class ResultReader {
   std::ifstream in_;
 };
 
-CgColumn column_of(const petsc::CaseResult& result) {
-  CgColumn column;
+solver::CgColumn column_of(const petsc::CaseResult& result) {
+  solver::CgColumn column;
   column.iterations = static_cast<int>(result.iterations);
   column.error = result.error;
   switch (result.end) {
     case petsc::CaseEnd::Converged:
-      column.end = CgEnd::Converged;
+      column.end = solver::CgEnd::Converged;
       break;
     case petsc::CaseEnd::TooManyIterations:
-      column.end = CgEnd::TooManyIterations;
+      column.end = solver::CgEnd::TooManyIterations;
       break;
     case petsc::CaseEnd::NotPositive:
-      column.end = CgEnd::NotPositive;
+      column.end = solver::CgEnd::NotPositive;
       break;
     default:
-      column.end = CgEnd::NotFinite;
+      column.end = solver::CgEnd::NotFinite;
   }
   return column;
 }
@@ -309,4 +309,4 @@ PetscSolution read_results(const PetscSystem& system, int processes,
   return solution;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::distributed

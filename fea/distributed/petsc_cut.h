@@ -9,11 +9,11 @@
 #include "fea/solver/assembly.h"
 #include "fea/solver/conjugate_gradients.h"
 
-namespace meniscus {
+namespace meniscus::distributed {
 
 /// Load cases that are held alike, in the solver's numbering.
 struct PetscGroup {
-  const Holding* holding = nullptr;
+  const supports::Holding* holding = nullptr;
   std::vector<const VectorX*> f;      // per load case [force]
   std::vector<const VectorX*> start;  // the same, or none [length]
 };
@@ -21,9 +21,9 @@ struct PetscGroup {
 /// Not owned. Nodes must lie along a curve (curve_order), elements ascend by
 /// their lowest node.
 struct PetscSystem {
-  const ElementTable& table;
+  const solver::ElementTable& table;
   const Points& x;
-  const std::vector<ElasticLaw>& laws;
+  const std::vector<element::ElasticLaw>& laws;
   std::vector<PetscGroup> groups;
   double tolerance = 1e-10;
   int max_iterations = 400;
@@ -38,7 +38,7 @@ void write_pieces(const PetscSystem& system, int processes,
 struct PetscGroupSolution {
   VectorX diagonal;  // of the stiffness [force/length]
   std::vector<VectorX> u;
-  std::vector<CgColumn> columns;
+  std::vector<solver::CgColumn> columns;
 };
 
 struct PetscSolution {
@@ -52,4 +52,4 @@ struct PetscSolution {
 PetscSolution read_results(const PetscSystem& system, int processes,
                            const std::filesystem::path& folder);
 
-}  // namespace meniscus
+}  // namespace meniscus::distributed

@@ -17,7 +17,7 @@
 
 namespace {
 
-using namespace meniscus::petsc;
+using namespace meniscus::distributed::petsc;
 
 double peak_bytes() {
   rusage usage{};

@@ -7,7 +7,7 @@
 
 #include "fea/element/element_stiffness.h"
 
-namespace meniscus::petsc {
+namespace meniscus::distributed::petsc {
 
 namespace {
 
@@ -126,8 +126,8 @@ void StiffnessMatrix::add_elements() {
     const auto place = [&](int a, int b) {
       return lower.data() + 9L * (a * (a + 1) / 2 + b);
     };
-    add_element_stiffness<Nodes>(x, slot.data(), piece_.law[piece_.region[e]],
-                                 place);
+    element::add_element_stiffness<Nodes>(x, slot.data(),
+                                          piece_.law[piece_.region[e]], place);
     for (int a = 0; a < Nodes; ++a) {
       const int p = held_[ids[a]];
       for (int b = 0; b <= a; ++b) {
@@ -190,4 +190,4 @@ void StiffnessMatrix::add_held(const PieceGroup& group) {
   }
 }
 
-}  // namespace meniscus::petsc
+}  // namespace meniscus::distributed::petsc

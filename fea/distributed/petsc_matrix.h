@@ -6,7 +6,7 @@
 
 #include "fea/distributed/petsc_piece.h"
 
-namespace meniscus::petsc {
+namespace meniscus::distributed::petsc {
 
 /// Throws std::runtime_error unless `error` is none; PETSc has printed it.
 void check(PetscErrorCode error);
@@ -40,4 +40,4 @@ class StiffnessMatrix {
   std::vector<double> own_stiffness_;  // per held node
 };
 
-}  // namespace meniscus::petsc
+}  // namespace meniscus::distributed::petsc

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace meniscus::petsc {
+namespace meniscus::distributed::petsc {
 
 namespace {
 
@@ -61,8 +61,8 @@ class Reader {
   std::string name_;
 };
 
-ElasticLaw law_of(const Law& given) {
-  ElasticLaw law;
+element::ElasticLaw law_of(const Law& given) {
+  element::ElasticLaw law;
   law.isotropic = given.isotropic != 0.0;
   law.lame.lambda = given.lambda;
   law.lame.mu = given.mu;
@@ -115,4 +115,4 @@ Piece read_piece(const std::filesystem::path& path) {
   return piece;
 }
 
-}  // namespace meniscus::petsc
+}  // namespace meniscus::distributed::petsc

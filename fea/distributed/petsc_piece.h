@@ -8,7 +8,7 @@
 #include "fea/distributed/petsc_protocol.h"
 #include "fea/element/elastic_law.h"
 
-namespace meniscus::petsc {
+namespace meniscus::distributed::petsc {
 
 /// Held directions and springs, by local node.
 struct PieceGroup {
@@ -23,11 +23,11 @@ struct PieceGroup {
 
 struct Piece {
   PieceHeader header;
-  std::vector<int> ghost;       // ids of nodes, ascending
-  std::vector<double> x;        // 3 per local node
-  std::vector<int> elements;    // local ids
-  std::vector<int> region;      // per element
-  std::vector<ElasticLaw> law;  // per region; what elements need of it
+  std::vector<int> ghost;                // ids of nodes, ascending
+  std::vector<double> x;                 // 3 per local node
+  std::vector<int> elements;             // local ids
+  std::vector<int> region;               // per element
+  std::vector<element::ElasticLaw> law;  // per region; what elements need of it
   std::vector<PieceGroup> groups;
 
   int local_nodes() const {
@@ -42,4 +42,4 @@ struct Piece {
 
 Piece read_piece(const std::filesystem::path& path);
 
-}  // namespace meniscus::petsc
+}  // namespace meniscus::distributed::petsc

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <string>
 
-namespace meniscus::petsc {
+namespace meniscus::distributed::petsc {
 
 inline constexpr std::uint64_t kMagic = 0x4d45'4e50'4554'0001;  // last: version
 inline constexpr std::uint64_t kEndMark = 0x454e'444d'4152'4b21;
@@ -88,4 +88,4 @@ inline std::string result_name(int process) {
   return "result_" + std::to_string(process);
 }
 
-}  // namespace meniscus::petsc
+}  // namespace meniscus::distributed::petsc

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <petscksp.h>
 
-namespace meniscus::petsc {
+namespace meniscus::distributed::petsc {
 
 namespace {
 
@@ -220,4 +220,4 @@ SolvedPiece Solver::run() {
 
 SolvedPiece solve_piece(const Piece& piece) { return Solver(piece).run(); }
 
-}  // namespace meniscus::petsc
+}  // namespace meniscus::distributed::petsc

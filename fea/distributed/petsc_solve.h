@@ -6,7 +6,7 @@
 
 #include "fea/distributed/petsc_matrix.h"
 
-namespace meniscus::petsc {
+namespace meniscus::distributed::petsc {
 
 struct SolvedColumn {
   CaseResult result;
@@ -29,4 +29,4 @@ struct SolvedPiece {
 /// / u . f). Options of PETSc's (PETSC_OPTIONS) go before those chosen here.
 SolvedPiece solve_piece(const Piece& piece);
 
-}  // namespace meniscus::petsc
+}  // namespace meniscus::distributed::petsc

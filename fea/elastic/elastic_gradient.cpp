@@ -9,11 +9,11 @@
 #include "fea/supports/support_gradient.h"
 #include "fea/supports/surface_load_gradient.h"
 
-namespace meniscus {
+namespace meniscus::elastic {
 
 namespace {
 
-void check_size(const TetMesh& mesh, const LoadCase& load_case,
+void check_size(const TetMesh& mesh, const loads::LoadCase& load_case,
                 const char* what, const VectorX& v) {
   if (v.size() != static_cast<Eigen::Index>(3 * mesh.nodes.size())) {
     throw InvalidInput(
@@ -25,14 +25,18 @@ void check_size(const TetMesh& mesh, const LoadCase& load_case,
 /// -lambda . K u: with H_u, H_l the two gradients, s_u, s_l their stresses and
 /// dx_i/dx_j = D of a change, dH = -H D and dV = V tr D.
 void add_stiffness_gradient(const TetMesh& mesh,
-                            const std::vector<Material>& materials,
+                            const std::vector<element::Material>& materials,
                             const VectorX& u, const VectorX& lambda,
                             VectorX& sum) {
-  const std::vector<ElasticLaw> laws = elastic_laws(materials);
-  const SweepTargets<2, 1> targets{.fields = {&u, &lambda}, .outputs = {&sum}};
-  sweep_stiffness_points(
-      mesh, targets, [&](const SweepPoint<2>& point, SweepFlux<1>& flux) {
-        const ElasticLaw& law = laws[mesh.element_region[point.element]];
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws(materials);
+  const element::SweepTargets<2, 1> targets{.fields = {&u, &lambda},
+                                            .outputs = {&sum}};
+  element::sweep_stiffness_points(
+      mesh, targets,
+      [&](const element::SweepPoint<2>& point, element::SweepFlux<1>& flux) {
+        const element::ElasticLaw& law =
+            laws[mesh.element_region[point.element]];
         const auto& [H_u, H_l] = point.gradient;
         const Mat3 s_u = law.stress(H_u);
         const Mat3 s_l = law.stress(H_l);
@@ -45,21 +49,21 @@ void add_stiffness_gradient(const TetMesh& mesh,
 }
 
 void add_force_gradient(const TetMesh& mesh,
-                        const std::vector<Material>& materials,
-                        const LoadCase& load_case, const VectorX& v,
+                        const std::vector<element::Material>& materials,
+                        const loads::LoadCase& load_case, const VectorX& v,
                         Points& gradient) {
-  add_surface_load_gradient(mesh, load_case, v, gradient);
+  supports::add_surface_load_gradient(mesh, load_case, v, gradient);
   if (load_case.spin || load_case.temperature ||
       !load_case.gravity.isZero(0.0)) {
-    add_body_load_gradient(mesh, materials, load_case, v, gradient);
+    loads::add_body_load_gradient(mesh, materials, load_case, v, gradient);
   }
 }
 
 }  // namespace
 
 Points force_gradient(const TetMesh& mesh,
-                      const std::vector<Material>& materials,
-                      const LoadCase& load_case, const VectorX& v) {
+                      const std::vector<element::Material>& materials,
+                      const loads::LoadCase& load_case, const VectorX& v) {
   check_size(mesh, load_case, "a vector", v);
   Points gradient(mesh.nodes.size(), Vec3::Zero());
   add_force_gradient(mesh, materials, load_case, v, gradient);
@@ -67,21 +71,22 @@ Points force_gradient(const TetMesh& mesh,
 }
 
 Points residual_gradient(const TetMesh& mesh,
-                         const std::vector<Material>& materials,
-                         const LoadCase& load_case, const AdjointPair& pair) {
-  check_materials(mesh, materials);
+                         const std::vector<element::Material>& materials,
+                         const loads::LoadCase& load_case,
+                         const loads::AdjointPair& pair) {
+  element::check_materials(mesh, materials);
   check_size(mesh, load_case, "a displacement", pair.displacement);
   check_size(mesh, load_case, "an adjoint", pair.lambda);
   check_size(mesh, load_case, "reactions", pair.reactions);
   check_size(mesh, load_case, "an adjoint's reactions", pair.adjoint_reactions);
-  VectorX sum = nodal_zeros(mesh);
+  VectorX sum = element::nodal_zeros(mesh);
   add_stiffness_gradient(mesh, materials, pair.displacement, pair.lambda, sum);
-  Points gradient = as_points(sum);
+  Points gradient = element::as_points(sum);
   add_force_gradient(mesh, materials, load_case, pair.lambda, gradient);
-  add_spring_gradient(mesh, load_case, pair.displacement, pair.lambda,
-                      gradient);
-  add_support_gradient(mesh, load_case, pair, gradient);
+  supports::add_spring_gradient(mesh, load_case, pair.displacement, pair.lambda,
+                                gradient);
+  supports::add_support_gradient(mesh, load_case, pair, gradient);
   return gradient;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::elastic

@@ -9,7 +9,7 @@
 #include "fea/loads/adjoint_pair.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::elastic {
 
 /// Gradient by node positions, displacement and adjoint held, of
 ///   lambda . (f(x) - K(x) u - S(x) u)
@@ -19,13 +19,14 @@ namespace meniscus {
 /// InvalidInput, naming load case and surface, for a field without a slope
 /// (load_case.h) and as nodal_forces() does.
 Points residual_gradient(const TetMesh& mesh,
-                         const std::vector<Material>& materials,
-                         const LoadCase& load_case, const AdjointPair& pair);
+                         const std::vector<element::Material>& materials,
+                         const loads::LoadCase& load_case,
+                         const loads::AdjointPair& pair);
 
 /// Gradient of v . f(x) by node positions, f the nodal_forces() of the load
 /// case and v (3 per node) held. Throws as residual_gradient().
 Points force_gradient(const TetMesh& mesh,
-                      const std::vector<Material>& materials,
-                      const LoadCase& load_case, const VectorX& v);
+                      const std::vector<element::Material>& materials,
+                      const loads::LoadCase& load_case, const VectorX& v);
 
-}  // namespace meniscus
+}  // namespace meniscus::elastic

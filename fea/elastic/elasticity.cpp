@@ -8,35 +8,35 @@
 #include "fea/distributed/distributed_system.h"
 #include "fea/equations/elastic_system.h"
 
-namespace meniscus {
+namespace meniscus::elastic {
 
 struct ElasticModel::Impl {
-  std::optional<ElasticSystem> system;  // one of the two
-  std::optional<DistributedSystem> distributed;
-  std::vector<LoadCase> load_cases;
-  ElasticSolution base;
+  std::optional<equations::ElasticSystem> system;  // one of the two
+  std::optional<distributed::DistributedSystem> distributed;
+  std::vector<loads::LoadCase> load_cases;
+  equations::ElasticSolution base;
 
-  const ElasticBase& input() const {
+  const equations::ElasticBase& input() const {
     return system ? system->base() : distributed->base();
   }
 };
 
 ElasticModel::ElasticModel(const TetMesh& base,
-                           const std::vector<Material>& materials,
-                           std::vector<LoadCase> load_cases,
-                           const ElasticOptions& options)
+                           const std::vector<element::Material>& materials,
+                           std::vector<loads::LoadCase> load_cases,
+                           const equations::ElasticOptions& options)
     : impl_(std::make_unique<Impl>()) {
   const Timer timer;
   impl_->load_cases = std::move(load_cases);
-  const std::vector<LoadCase>& cases = impl_->load_cases;
+  const std::vector<loads::LoadCase>& cases = impl_->load_cases;
   double seconds = 0.0;
-  if (options.solver == SolverKind::Distributed) {
+  if (options.solver == equations::SolverKind::Distributed) {
     impl_->distributed.emplace(base, materials, cases, options);
     seconds = timer.seconds();
     impl_->base = impl_->distributed->solve(
         base, cases, impl_->distributed->base().regions, nullptr);
   } else {
-    BlockMatrix<double> matrix;
+    solver::BlockMatrix<double> matrix;
     impl_->system.emplace(base, materials, cases, options, matrix);
     seconds = timer.seconds();
     impl_->base = impl_->system->solve(
@@ -49,35 +49,36 @@ ElasticModel::~ElasticModel() = default;
 ElasticModel::ElasticModel(ElasticModel&&) noexcept = default;
 ElasticModel& ElasticModel::operator=(ElasticModel&&) noexcept = default;
 
-const ElasticSolution& ElasticModel::base_solution() const {
+const equations::ElasticSolution& ElasticModel::base_solution() const {
   return impl_->base;
 }
 
-ElasticSolution ElasticModel::solve(const TetMesh& mesh) const {
+equations::ElasticSolution ElasticModel::solve(const TetMesh& mesh) const {
   return solve(mesh, impl_->load_cases);
 }
 
-ElasticSolution ElasticModel::solve(
-    const TetMesh& mesh, const std::vector<LoadCase>& load_cases) const {
+equations::ElasticSolution ElasticModel::solve(
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases) const {
   return solve(mesh, load_cases, nullptr);
 }
 
-ElasticSolution ElasticModel::solve(const TetMesh& mesh,
-                                    const std::vector<LoadCase>& load_cases,
-                                    ElasticState* keep) const {
+equations::ElasticSolution ElasticModel::solve(
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    equations::ElasticState* keep) const {
   return solve(mesh, load_cases, impl_->input().regions.materials, keep);
 }
 
-ElasticSolution ElasticModel::solve(const TetMesh& mesh,
-                                    const std::vector<LoadCase>& load_cases,
-                                    const std::vector<Material>& materials,
-                                    ElasticState* keep) const {
+equations::ElasticSolution ElasticModel::solve(
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    const std::vector<element::Material>& materials,
+    equations::ElasticState* keep) const {
   const Timer timer;
   if (keep != nullptr) {
     keep->kept_.reset();
   }
   impl_->input().check_same(mesh, load_cases);
-  RegionMaterials regions = impl_->input().of_design(mesh, materials);
+  equations::RegionMaterials regions =
+      impl_->input().of_design(mesh, materials);
   if (impl_->distributed) {
     if (keep != nullptr) {
       throw InvalidInput(
@@ -86,9 +87,9 @@ ElasticSolution ElasticModel::solve(const TetMesh& mesh,
     }
     return impl_->distributed->solve(mesh, load_cases, regions, &impl_->base);
   }
-  const ElasticSystem& system = *impl_->system;
-  BlockMatrix<double> matrix;
-  ElasticSolution result;
+  const equations::ElasticSystem& system = *impl_->system;
+  solver::BlockMatrix<double> matrix;
+  equations::ElasticSolution result;
   if (auto failure = system.assemble(mesh, regions.laws, matrix)) {
     result.report = impl_->base.report;
     result.failure = std::move(failure);
@@ -98,26 +99,27 @@ ElasticSolution ElasticModel::solve(const TetMesh& mesh,
   result = system.solve(mesh, load_cases, regions, matrix, &impl_->base);
   result.report.setup_seconds += seconds;
   if (keep != nullptr && !result.failure) {
-    keep->kept_ = std::make_unique<KeptState>(system.keep(
+    keep->kept_ = std::make_unique<equations::KeptState>(system.keep(
         mesh, load_cases, std::move(regions.laws), std::move(matrix)));
   }
   return result;
 }
 
-AdjointSolution ElasticModel::solve_adjoint(
-    const ElasticState& state, int load_case,
+equations::AdjointSolution ElasticModel::solve_adjoint(
+    const equations::ElasticState& state, int load_case,
     const std::vector<VectorX>& right_hand_sides) const {
   if (state.empty()) {
     throw InvalidInput(
         "adjoint of elasticity: the state is empty; keep that of a solve that "
         "did not fail");
   }
-  return meniscus::solve_adjoint(*state.kept_, load_case, right_hand_sides);
+  return meniscus::equations::solve_adjoint(*state.kept_, load_case,
+                                            right_hand_sides);
 }
 
-ElasticOperator ElasticModel::operator_at(
-    const TetMesh& mesh, const std::vector<LoadCase>& load_cases, int load_case,
-    const std::vector<Material>* materials) const {
+equations::ElasticOperator ElasticModel::operator_at(
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    int load_case, const std::vector<element::Material>* materials) const {
   impl_->input().check_same(mesh, load_cases);
   if (impl_->distributed) {
     throw InvalidInput(
@@ -127,4 +129,4 @@ ElasticOperator ElasticModel::operator_at(
   return impl_->system->operator_at(mesh, load_cases, load_case, materials);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::elastic

@@ -11,9 +11,11 @@
 #include "fea/loads/loads.h"
 #include "fea/stress/stress.h"
 
-namespace meniscus {
-
+namespace meniscus::equations {
 struct ElasticOperator;
+}
+
+namespace meniscus::elastic {
 
 /// The elasticity of one mesh topology. Built once at the base design:
 /// sparsity, orderings, factors and smoother. solve() then assembles the
@@ -32,43 +34,45 @@ class ElasticModel {
   /// unknown surface, no support, no load), MeshError (inverted element) and
   /// SolverError (supports too weak: names the free motion; memory). A base
   /// that does not converge is told in base_solution().failure.
-  ElasticModel(const TetMesh& base, const std::vector<Material>& materials,
-               std::vector<LoadCase> load_cases,
-               const ElasticOptions& options = {});
+  ElasticModel(const TetMesh& base,
+               const std::vector<element::Material>& materials,
+               std::vector<loads::LoadCase> load_cases,
+               const equations::ElasticOptions& options = {});
   ~ElasticModel();
   ElasticModel(ElasticModel&&) noexcept;
   ElasticModel& operator=(ElasticModel&&) noexcept;
 
   /// The base mesh's own solution.
-  const ElasticSolution& base_solution() const;
+  const equations::ElasticSolution& base_solution() const;
 
   /// A mesh with the base's elements and other node positions. Throws
   /// InvalidInput when elements, faces or names differ from the base's.
-  ElasticSolution solve(const TetMesh& mesh) const;
+  equations::ElasticSolution solve(const TetMesh& mesh) const;
 
   /// The same under other loads; names and supports must be the base's.
-  ElasticSolution solve(const TetMesh& mesh,
-                        const std::vector<LoadCase>& load_cases) const;
+  equations::ElasticSolution solve(
+      const TetMesh& mesh,
+      const std::vector<loads::LoadCase>& load_cases) const;
 
   /// The same, and `keep` (not null) is given what solve_adjoint() needs of
   /// this design; it is left empty when the solve fails.
-  ElasticSolution solve(const TetMesh& mesh,
-                        const std::vector<LoadCase>& load_cases,
-                        ElasticState* keep) const;
+  equations::ElasticSolution solve(
+      const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+      equations::ElasticState* keep) const;
 
   /// The same of other materials, one per region; the preconditioner stays the
   /// base's. Throws InvalidInput for another number of them, too.
-  ElasticSolution solve(const TetMesh& mesh,
-                        const std::vector<LoadCase>& load_cases,
-                        const std::vector<Material>& materials,
-                        ElasticState* keep) const;
+  equations::ElasticSolution solve(
+      const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+      const std::vector<element::Material>& materials,
+      equations::ElasticState* keep) const;
 
   /// Adjoints of load case `load_case` (index), several at once: K lambda = g
   /// for each right-hand side g, 3 per node of the mesh, by the solver and to
   /// the tolerance of solve(). Not to converge is a failure. Throws
   /// InvalidInput for an empty state and sizes that do not fit.
-  AdjointSolution solve_adjoint(
-      const ElasticState& state, int load_case,
+  equations::AdjointSolution solve_adjoint(
+      const equations::ElasticState& state, int load_case,
       const std::vector<VectorX>& right_hand_sides) const;
 
   /// The stiffness of `mesh`, held as in load case `load_case` (index), for
@@ -76,14 +80,13 @@ class ElasticModel {
   /// solve() does or for a distributed model, MeshError (inverted element) and
   /// SolverError (supports that turned against each other). `materials`: one
   /// per region; null: the base's.
-  ElasticOperator operator_at(const TetMesh& mesh,
-                              const std::vector<LoadCase>& load_cases,
-                              int load_case,
-                              const std::vector<Material>* materials) const;
+  equations::ElasticOperator operator_at(
+      const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+      int load_case, const std::vector<element::Material>* materials) const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::elastic

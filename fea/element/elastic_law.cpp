@@ -4,7 +4,7 @@
 
 #include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -142,4 +142,4 @@ std::vector<ElasticLaw> elastic_laws(const std::vector<Material>& materials) {
   return laws;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -6,7 +6,7 @@
 #include "fea/element/material.h"
 #include "fea/element/stress_measures.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// Components xx yy zz xy yz zx; shear strains are doubled (gamma).
 using Vec6 = Eigen::Matrix<double, 6, 1>;
@@ -47,4 +47,4 @@ double complementary_product(const Stress& a, const Stress& b,
 Mat3 stress_tensor(const Vec6& stress);
 Vec6 stress_components(const Mat3& stress);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -7,7 +7,7 @@
 #include "fea/element/elastic_law.h"
 #include "fea/element/tet_element.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace element {
 
@@ -116,4 +116,4 @@ bool add_element_stiffness(const std::array<Vec3, Nodes>& x,
   return true;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

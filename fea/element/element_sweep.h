@@ -9,7 +9,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "fea/element/sweep_element.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// work(point, flux) for every point of every element, side by side; it must
 /// not throw. Nodes add their elements in the elements' order, whatever the
@@ -71,4 +71,4 @@ inline Points as_points(const VectorX& v) {
   return points;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -108,4 +108,4 @@ void FaceQuadrature::pull_back(const TetMesh& mesh, int face, int point,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -6,7 +6,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 enum class FaceRule {
   Three,  // exact to degree 2; CalculiX's for C3D10
@@ -95,4 +95,4 @@ inline Vec3 value_at(const TetMesh& mesh, int face, const FacePoint& point,
   return value;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

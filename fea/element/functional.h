@@ -6,7 +6,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 enum class Derivatives { None, All };
 
@@ -32,4 +32,4 @@ struct DirectedFunctional : Functional {
   Vec3 by_direction = Vec3::Zero();  // by the direction as given [value/length]
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::element

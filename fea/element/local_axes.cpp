@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-namespace meniscus {
+namespace meniscus::element {
 
 bool span_a_plane(const LocalAxes& axes) {
   constexpr double kParallel = 1e-6;  // sine between two axes
@@ -21,4 +21,4 @@ Mat3 unit_axes(const LocalAxes& axes) {
   return R;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -3,7 +3,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// A local frame: `first`, the part of `second` across it, and their cross
 /// product.
@@ -20,4 +20,4 @@ bool span_a_plane(const LocalAxes& axes);
 /// The frame's unit vectors as columns, right-handed; span_a_plane must hold.
 Mat3 unit_axes(const LocalAxes& axes);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

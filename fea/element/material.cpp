@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -125,4 +125,4 @@ void check_materials(const TetMesh& mesh,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

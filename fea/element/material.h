@@ -8,7 +8,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "fea/element/local_axes.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// Three planes of symmetry. Poisson's ratio 12 is the contraction along axis
 /// 2 under a pull along axis 1: nu12 / E1 = nu21 / E2 (as CalculiX and Abaqus
@@ -49,4 +49,4 @@ void check_material(const Material& material);
 void check_materials(const TetMesh& mesh,
                      const std::vector<Material>& materials);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

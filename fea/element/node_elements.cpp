@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace meniscus {
+namespace meniscus::element {
 
 NodeElements node_elements(std::span<const int> elements, int nodes_per_element,
                            int used, int node_count) {
@@ -27,4 +27,4 @@ NodeElements node_elements(std::span<const int> elements, int nodes_per_element,
   return around;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

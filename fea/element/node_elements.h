@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// Elements around each node, ascending; owns its lists.
 struct NodeElements {
@@ -20,4 +20,4 @@ struct NodeElements {
 NodeElements node_elements(std::span<const int> elements, int nodes_per_element,
                            int used, int node_count);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace meniscus {
+namespace meniscus::element {
 
 PointGrid::PointGrid(Points points) : points_(std::move(points)) {
   Vec3 high = points_.front();
@@ -92,4 +92,4 @@ int PointGrid::of(const Vec3& x) const {
   return best;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -7,7 +7,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// Points sorted into equal boxes, about one a box. Owns copies; safe to ask
 /// from several threads.
@@ -30,4 +30,4 @@ class PointGrid {
   std::vector<int> sorted_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::element

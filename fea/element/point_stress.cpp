@@ -7,7 +7,7 @@
 #include "fea/element/tet_element.h"
 #include "fea/element/tet_shape.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -99,4 +99,4 @@ PointStress point_stress(const TetMesh& mesh,
   return out;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -9,7 +9,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "fea/element/stress_measures.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// Point q of element e stands at index e * points_per_element + q.
 struct PointStress {
@@ -31,4 +31,4 @@ PointStress point_stress(const TetMesh& mesh,
                          const VectorX& displacement,
                          const VectorX& temperature_change = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::vector<char> surrounded_corners(const RegionNodes& nodes) {
   return is_corner;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -7,7 +7,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// Copy 0..n-1 of a mesh's n nodes belong to the lowest region there; further
 /// copies of nodes on interfaces follow.
@@ -31,4 +31,4 @@ RegionNodes region_nodes(const TetMesh& mesh);
 /// when the elements close around it.
 std::vector<char> surrounded_corners(const RegionNodes& nodes);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -7,7 +7,7 @@
 
 #include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -66,4 +66,4 @@ double strain_energy_density(const Stress& stress, const Lame& material) {
   return 0.5 * complementary_product(stress, stress, material);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

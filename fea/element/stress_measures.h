@@ -8,7 +8,7 @@
 #include "core/types.h"
 #include "fea/element/material.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 using Stress = std::array<double, 6>;
 using Strain = std::array<double, 6>;
@@ -40,4 +40,4 @@ double complementary_product(const Stress& a, const Stress& b,
 /// (stress : strain) / 2 [pressure].
 double strain_energy_density(const Stress& stress, const Lame& material);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 int surface_label(const TetMesh& mesh, const std::string& surface) {
   const int label = mesh.label_of(surface);
@@ -39,4 +39,4 @@ std::vector<int> surface_nodes(const TetMesh& mesh, int label) {
   return nodes;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

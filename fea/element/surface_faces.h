@@ -6,7 +6,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// Index of a surface's label. Throws InvalidInput, listing the names there
 /// are, for an unknown name, and for a surface without faces.
@@ -15,4 +15,4 @@ int surface_label(const TetMesh& mesh, const std::string& surface);
 /// Nodes of the faces of `label`, ascending.
 std::vector<int> surface_nodes(const TetMesh& mesh, int label);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -8,7 +8,7 @@
 #include "fea/element/face_points.h"
 #include "fea/element/surface_faces.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -144,4 +144,4 @@ Vec3 plane_normal(const TetMesh& mesh, const std::string& surface) {
   return normal;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

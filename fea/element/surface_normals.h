@@ -6,7 +6,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 struct SurfaceNormals {
   std::vector<int> nodes;      // ascending
@@ -23,4 +23,4 @@ SurfaceNormals surface_normals(const TetMesh& mesh, const std::string& surface);
 /// the worst node, where nodes are off the plane by more than 1e-6 of its size.
 Vec3 plane_normal(const TetMesh& mesh, const std::string& surface);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

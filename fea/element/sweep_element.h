@@ -10,7 +10,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "fea/element/tet_rules.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 template <std::size_t Fields>
 struct SweepPoint {
@@ -127,4 +127,4 @@ void add_element(const TetMesh& mesh, const TetRule<Nodes>& rule,
 
 }  // namespace element_sweep
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -4,7 +4,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -100,4 +100,4 @@ double quadratic_volume(const std::array<Vec3, 10>& x) {
   return sum / 6.0;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -6,7 +6,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 template <int Nodes>
 inline constexpr int kTetPoints = Nodes == 4 ? 1 : 4;
@@ -32,4 +32,4 @@ bool tet_gradients(const std::array<Vec3, Nodes>& x, TetGradients<Nodes>& out);
 /// polynomial and the five-point rule has degree 3 [length^3].
 double quadratic_volume(const std::array<Vec3, 10>& x);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -2,7 +2,7 @@
 
 #include "fea/element/tet_shape.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -90,4 +90,4 @@ template const TetRule<10>& volume_rule<10>();
 template const TetRule<4>& moment_rule<4>();
 template const TetRule<10>& moment_rule<10>();
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// Points in a tetrahedron and what they weigh of the reference determinant.
 template <int Nodes>
@@ -30,4 +30,4 @@ const TetRule<Nodes>& volume_rule();
 template <int Nodes>
 const TetRule<Nodes>& moment_rule();
 
-}  // namespace meniscus
+}  // namespace meniscus::element

@@ -4,7 +4,7 @@
 
 #include "core/geometry/tet_mesh.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 namespace {
 
@@ -97,4 +97,4 @@ template GradientAt<10> gradient_at<10>(const std::array<Vec3, 10>&,
                                         const std::array<Vec3, 10>&,
                                         const Barycentric&);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

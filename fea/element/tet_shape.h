@@ -6,7 +6,7 @@
 #include "core/types.h"
 #include "fea/element/tet_element.h"
 
-namespace meniscus {
+namespace meniscus::element {
 
 /// Barycentric coordinates; their sum is 1.
 using Barycentric = std::array<double, 4>;
@@ -53,4 +53,4 @@ GradientAt<Nodes> gradient_at(const std::array<Vec3, Nodes>& x,
                               const std::array<Vec3, Nodes>& u,
                               const Barycentric& L);
 
-}  // namespace meniscus
+}  // namespace meniscus::element

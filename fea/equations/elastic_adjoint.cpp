@@ -11,7 +11,7 @@
 #include "fea/equations/kept_state.h"
 #include "fea/solver/conjugate_gradients.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 namespace {
 
@@ -41,40 +41,41 @@ void check_right_hand_sides(const KeptState& state, const std::string& name,
 
 /// Of up to kMostColumns right-hand sides, by a factor in double precision
 /// where the preconditioner in single precision is lost.
-std::vector<CgColumn> solve_columns(const KeptState& state,
-                                    const KeptState::Group& group,
-                                    const BlockMatrix<double>& matrix,
-                                    const std::vector<VectorX>& right,
-                                    std::vector<VectorX>& lambda) {
-  const auto solve_with = [&](const Preconditioner& preconditioner) {
+std::vector<solver::CgColumn> solve_columns(
+    const KeptState& state, const KeptState::Group& group,
+    const solver::BlockMatrix<double>& matrix,
+    const std::vector<VectorX>& right, std::vector<VectorX>& lambda) {
+  const auto solve_with = [&](const solver::Preconditioner& preconditioner) {
     lambda.assign(right.size(), VectorX::Zero(right.front().size()));
-    return conjugate_gradients({.pattern = state.table->pattern,
-                                .matrix = matrix,
-                                .preconditioner = preconditioner,
-                                .freedom = group.holding.freedom,
-                                .tolerance = state.tolerance,
-                                .max_iterations = state.max_iterations,
-                                .monitor = *state.monitor},
-                               right, lambda);
+    return solver::conjugate_gradients({.pattern = state.table->pattern,
+                                        .matrix = matrix,
+                                        .preconditioner = preconditioner,
+                                        .freedom = group.holding.freedom,
+                                        .tolerance = state.tolerance,
+                                        .max_iterations = state.max_iterations,
+                                        .monitor = *state.monitor},
+                                       right, lambda);
   };
-  std::vector<CgColumn> columns = solve_with(*group.preconditioner);
+  std::vector<solver::CgColumn> columns = solve_with(*group.preconditioner);
   const bool lost = std::any_of(
-      columns.begin(), columns.end(),
-      [](const CgColumn& column) { return column.end == CgEnd::NotPositive; });
-  if (lost && free_unknowns(group.holding) <= kSecondChance) {
-    columns = solve_with(
-        *make_direct(state.table->pattern, matrix, group.holding.freedom));
+      columns.begin(), columns.end(), [](const solver::CgColumn& column) {
+        return column.end == solver::CgEnd::NotPositive;
+      });
+  if (lost && supports::free_unknowns(group.holding) <= solver::kSecondChance) {
+    columns = solve_with(*solver::make_direct(state.table->pattern, matrix,
+                                              group.holding.freedom));
   }
   return columns;
 }
 
 void conclude(const KeptState& state, const KeptState::Group& group,
               const std::string& name, const VectorX& diagonal,
-              const VectorX& g, const VectorX& lambda, const CgColumn& column,
-              AdjointSolution& result) {
+              const VectorX& g, const VectorX& lambda,
+              const solver::CgColumn& column, AdjointSolution& result) {
   const Equilibrium equilibrium = check_equilibrium(
-      {state.x, g, internal_forces(*state.table, state.x, state.laws, lambda),
-       spring_forces(group.holding.springs, lambda), lambda,
+      {state.x, g,
+       solver::internal_forces(*state.table, state.x, state.laws, lambda),
+       supports::spring_forces(group.holding.springs, lambda), lambda,
        group.holding.freedom, diagonal});
   result.lambda.push_back(to_mesh(*state.order, lambda));
   result.reactions.push_back(to_mesh(*state.order, equilibrium.reactions));
@@ -83,7 +84,7 @@ void conclude(const KeptState& state, const KeptState::Group& group,
   if (result.failure || g.isZero(0.0)) {
     return;
   }
-  if (column.end != CgEnd::Converged) {
+  if (column.end != solver::CgEnd::Converged) {
     result.failure = Failure{
         FailureKind::SolverFailed,
         fmt::format("load case '{}': its adjoint does not converge in {} "
@@ -102,9 +103,9 @@ ElasticState::ElasticState(ElasticState&&) noexcept = default;
 ElasticState& ElasticState::operator=(ElasticState&&) noexcept = default;
 
 KeptState ElasticSystem::keep(const TetMesh& mesh,
-                              const std::vector<LoadCase>& load_cases,
-                              std::vector<ElasticLaw> laws,
-                              BlockMatrix<double> matrix) const {
+                              const std::vector<loads::LoadCase>& load_cases,
+                              std::vector<element::ElasticLaw> laws,
+                              solver::BlockMatrix<double> matrix) const {
   KeptState state{.table = &shared_->table,
                   .order = &base_.order,
                   .monitor = base_.options.monitor != nullptr
@@ -121,12 +122,12 @@ KeptState ElasticSystem::keep(const TetMesh& mesh,
   for (const Group& group : groups_) {
     state.groups.push_back(
         {.cases = group.cases,
-         .holding =
-             make_holding(mesh, load_cases[group.cases.front()], base_.order),
+         .holding = supports::make_holding(
+             mesh, load_cases[group.cases.front()], base_.order),
          .preconditioner = group.preconditioner.get()});
   }
   state.names.reserve(load_cases.size());
-  for (const LoadCase& load_case : load_cases) {
+  for (const loads::LoadCase& load_case : load_cases) {
     state.names.push_back(load_case.name);
   }
   return state;
@@ -138,24 +139,25 @@ AdjointSolution solve_adjoint(const KeptState& state, int load_case,
   const KeptState::Group& group = group_of(state, load_case);
   const std::string& name = state.names[static_cast<std::size_t>(load_case)];
   check_right_hand_sides(state, name, right_hand_sides);
-  const SpringBlocks& springs = group.holding.springs;
+  const supports::SpringBlocks& springs = group.holding.springs;
   const bool plain = springs.at.empty();
-  const BlockMatrix<double> sprung =
-      plain ? BlockMatrix<double>{}
-            : sprung_matrix(state.table->pattern, state.matrix, springs);
-  const BlockMatrix<double>& matrix = plain ? state.matrix : sprung;
-  const VectorX diagonal = diagonal_of(matrix);
+  const solver::BlockMatrix<double> sprung =
+      plain ? solver::BlockMatrix<double>{}
+            : supports::sprung_matrix(state.table->pattern, state.matrix,
+                                      springs);
+  const solver::BlockMatrix<double>& matrix = plain ? state.matrix : sprung;
+  const VectorX diagonal = solver::diagonal_of(matrix);
   AdjointSolution result;
   const std::size_t count = right_hand_sides.size();
-  for (std::size_t first = 0; first < count; first += kMostColumns) {
+  for (std::size_t first = 0; first < count; first += solver::kMostColumns) {
     std::vector<VectorX> right;
-    right.reserve(kMostColumns);
-    for (std::size_t k = first; k < std::min(first + kMostColumns, count);
-         ++k) {
+    right.reserve(solver::kMostColumns);
+    for (std::size_t k = first;
+         k < std::min(first + solver::kMostColumns, count); ++k) {
       right.push_back(to_solver(*state.order, right_hand_sides[k]));
     }
     std::vector<VectorX> lambda;
-    const std::vector<CgColumn> columns =
+    const std::vector<solver::CgColumn> columns =
         solve_columns(state, group, matrix, right, lambda);
     for (std::size_t k = 0; k < right.size(); ++k) {
       conclude(state, group, name, diagonal, right[k], lambda[k], columns[k],
@@ -166,4 +168,4 @@ AdjointSolution solve_adjoint(const KeptState& state, int load_case,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -8,7 +8,11 @@
 #include "core/error.h"
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::elastic {
+class ElasticModel;
+}
+
+namespace meniscus::equations {
 
 struct KeptState;
 
@@ -25,7 +29,7 @@ class ElasticState {
   bool empty() const { return kept_ == nullptr; }
 
  private:
-  friend class ElasticModel;
+  friend class elastic::ElasticModel;
   std::unique_ptr<KeptState> kept_;
 };
 
@@ -40,4 +44,4 @@ struct AdjointSolution {
   std::optional<Failure> failure;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -8,19 +8,19 @@
 #include "fea/equations/elastic_operator.h"
 #include "fea/equations/equilibrium_check.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 namespace {
 
-std::string cause(CgEnd end, const CgColumn& column, int most) {
+std::string cause(solver::CgEnd end, const solver::CgColumn& column, int most) {
   switch (end) {
-    case CgEnd::TooManyIterations:
+    case solver::CgEnd::TooManyIterations:
       return fmt::format(
           "no convergence in {} iterations (relative error {:.2e}): the "
           "design is too far from the base design, the material too nearly "
           "incompressible, or elements are badly shaped",
           most, column.error);
-    case CgEnd::NotPositive:
+    case solver::CgEnd::NotPositive:
       return "the stiffness matrix is not positive definite: the supports are "
              "too weak or an element is inverted";
     default:
@@ -32,13 +32,13 @@ std::string cause(CgEnd end, const CgColumn& column, int most) {
 }  // namespace
 
 ElasticBase::ElasticBase(const TetMesh& mesh,
-                         const std::vector<Material>& given,
-                         const std::vector<LoadCase>& load_cases,
+                         const std::vector<element::Material>& given,
+                         const std::vector<loads::LoadCase>& load_cases,
                          const ElasticOptions& chosen)
     : options(chosen), elements(mesh.elements), faces(mesh.faces) {
   check_arrays(mesh);
   check_memory(mesh, options.solver);
-  check_materials(mesh, given);
+  element::check_materials(mesh, given);
   if (load_cases.empty()) {
     throw InvalidInput("elasticity: no load case is given");
   }
@@ -48,20 +48,20 @@ ElasticBase::ElasticBase(const TetMesh& mesh,
         "0",
         options.tolerance, options.max_iterations));
   }
-  regions = {given, elastic_laws(given)};
+  regions = {given, element::elastic_laws(given)};
   if (!std::all_of(mesh.nodes.begin(), mesh.nodes.end(),
                    [](const Vec3& x) { return x.allFinite(); })) {
     throw MeshError("elasticity: a node position of the mesh is not finite");
   }
-  for (const LoadCase& load_case : load_cases) {
+  for (const loads::LoadCase& load_case : load_cases) {
     supports.push_back(load_case.supports);
     springs.push_back(load_case.springs);
     checked_forces(mesh, load_case, given);
   }
 }
 
-void ElasticBase::check_same(const TetMesh& mesh,
-                             const std::vector<LoadCase>& load_cases) const {
+void ElasticBase::check_same(
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases) const {
   if (mesh.elements != elements || mesh.faces != faces ||
       mesh.nodes.size() != order.to_mesh.size()) {
     throw InvalidInput(fmt::format(
@@ -95,25 +95,26 @@ Points ElasticBase::solver_points(const TetMesh& mesh) const {
 }
 
 std::vector<VectorX> ElasticBase::solver_forces(
-    const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
-    const std::vector<Material>& materials) const {
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    const std::vector<element::Material>& materials) const {
   std::vector<VectorX> f;
   f.reserve(load_cases.size());
-  for (const LoadCase& load_case : load_cases) {
+  for (const loads::LoadCase& load_case : load_cases) {
     f.push_back(to_solver(order, checked_forces(mesh, load_case, materials)));
   }
   return f;
 }
 
 RegionMaterials ElasticBase::of_design(
-    const TetMesh& mesh, const std::vector<Material>& materials) const {
-  check_materials(mesh, materials);
+    const TetMesh& mesh,
+    const std::vector<element::Material>& materials) const {
+  element::check_materials(mesh, materials);
   if (materials.size() != regions.materials.size()) {
     throw InvalidInput(
         fmt::format("elasticity: {} materials, but the base design has {}",
                     materials.size(), regions.materials.size()));
   }
-  return {materials, elastic_laws(materials)};
+  return {materials, element::elastic_laws(materials)};
 }
 
 std::vector<int> ElasticBase::solver_elements(const TetMesh& mesh) const {
@@ -157,7 +158,7 @@ Failure ElasticBase::inverted(const TetMesh& mesh, int element) const {
                   e, at.x(), at.y(), at.z())};
 }
 
-Failure ElasticBase::turned(const LoadCase& load_case) {
+Failure ElasticBase::turned(const loads::LoadCase& load_case) {
   return {FailureKind::SolverFailed,
           fmt::format("load case '{}': the directions in which its supports "
                       "hold the nodes are no longer the base design's: the "
@@ -165,13 +166,14 @@ Failure ElasticBase::turned(const LoadCase& load_case) {
                       load_case.name)};
 }
 
-std::vector<HeldCases> group_alike(const TetMesh& mesh,
-                                   const std::vector<LoadCase>& load_cases,
-                                   const NodeOrder& order) {
+std::vector<HeldCases> group_alike(
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    const solver::NodeOrder& order) {
   std::vector<HeldCases> groups;
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
-    check_holding(mesh, load_cases[c]);
-    Holding holding = make_holding(mesh, load_cases[c], order);
+    supports::check_holding(mesh, load_cases[c]);
+    supports::Holding holding =
+        supports::make_holding(mesh, load_cases[c], order);
     const auto found =
         std::find_if(groups.begin(), groups.end(),
                      [&](const HeldCases& g) { return g.holding == holding; });
@@ -184,16 +186,16 @@ std::vector<HeldCases> group_alike(const TetMesh& mesh,
   return groups;
 }
 
-void conclude(const ElasticBase& base, const ElementTable& table,
+void conclude(const ElasticBase& base, const solver::ElementTable& table,
               const SolvedCase& solved, ElasticSolution& result) {
   const int c = solved.load_case;
   const ElasticOptions& options = base.options;
   const VectorX internal =
-      internal_forces(table, solved.x, solved.laws, solved.u);
-  const Equilibrium equilibrium =
-      check_equilibrium({solved.x, solved.f, internal,
-                         spring_forces(solved.holding.springs, solved.u),
-                         solved.u, solved.holding.freedom, solved.diagonal});
+      solver::internal_forces(table, solved.x, solved.laws, solved.u);
+  const Equilibrium equilibrium = check_equilibrium(
+      {solved.x, solved.f, internal,
+       supports::spring_forces(solved.holding.springs, solved.u), solved.u,
+       solved.holding.freedom, solved.diagonal});
   result.displacements[c] = to_mesh(base.order, solved.u);
   result.reactions[c] = to_mesh(base.order, equilibrium.reactions);
   ElasticReport& report = result.report;
@@ -207,7 +209,7 @@ void conclude(const ElasticBase& base, const ElementTable& table,
   if (result.failure) {
     return;
   }
-  if (solved.column.end != CgEnd::Converged) {
+  if (solved.column.end != solver::CgEnd::Converged) {
     result.failure = Failure{FailureKind::SolverFailed,
                              fmt::format("load case '{}': {}", solved.name,
                                          cause(solved.column.end, solved.column,
@@ -217,4 +219,4 @@ void conclude(const ElasticBase& base, const ElementTable& table,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

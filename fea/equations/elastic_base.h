@@ -11,35 +11,36 @@
 #include "fea/solver/node_order.h"
 #include "fea/supports/holding.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 /// What the regions of a mesh are made of, and the laws of that.
 struct RegionMaterials {
-  std::vector<Material> materials;
-  std::vector<ElasticLaw> laws;
+  std::vector<element::Material> materials;
+  std::vector<element::ElasticLaw> laws;
 };
 
 struct ElasticBase {
   /// Checks the input as ElasticModel states. `order`: of `mesh`, to be set
   /// once the mesh has been checked.
-  ElasticBase(const TetMesh& mesh, const std::vector<Material>& given,
-              const std::vector<LoadCase>& load_cases,
+  ElasticBase(const TetMesh& mesh, const std::vector<element::Material>& given,
+              const std::vector<loads::LoadCase>& load_cases,
               const ElasticOptions& chosen);
 
   /// Throws InvalidInput unless elements, faces, names and supports are the
   /// base's.
   void check_same(const TetMesh& mesh,
-                  const std::vector<LoadCase>& load_cases) const;
+                  const std::vector<loads::LoadCase>& load_cases) const;
 
   /// Nodes in the solver's order.
   Points solver_points(const TetMesh& mesh) const;
   /// Nodal forces of every load case, in the solver's order [force].
   std::vector<VectorX> solver_forces(
-      const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
-      const std::vector<Material>& materials) const;
+      const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+      const std::vector<element::Material>& materials) const;
   /// Checks materials of a design; as many as the base's.
-  RegionMaterials of_design(const TetMesh& mesh,
-                            const std::vector<Material>& materials) const;
+  RegionMaterials of_design(
+      const TetMesh& mesh,
+      const std::vector<element::Material>& materials) const;
   /// Elements and regions in the solver's order, as make_element_table and
   /// make_element_list take them.
   std::vector<int> solver_elements(const TetMesh& mesh) const;
@@ -50,27 +51,27 @@ struct ElasticBase {
   /// Of an element (solver's) with a Jacobian that is not positive.
   Failure inverted(const TetMesh& mesh, int element) const;
   /// The holding of `load_case` turned against the base's.
-  static Failure turned(const LoadCase& load_case);
+  static Failure turned(const loads::LoadCase& load_case);
 
   ElasticOptions options;
   RegionMaterials regions;
   std::vector<int> elements;  // the base's, to compare
   std::vector<int> faces;
-  std::vector<std::vector<Support>> supports;
-  std::vector<std::vector<SpringBed>> springs;
-  NodeOrder order;
+  std::vector<std::vector<loads::Support>> supports;
+  std::vector<std::vector<loads::SpringBed>> springs;
+  solver::NodeOrder order;
 };
 
 /// Load cases that are held alike, by index.
 struct HeldCases {
   std::vector<int> cases;
-  Holding holding;
+  supports::Holding holding;
 };
 
 /// Throws what check_holding throws.
-std::vector<HeldCases> group_alike(const TetMesh& mesh,
-                                   const std::vector<LoadCase>& load_cases,
-                                   const NodeOrder& order);
+std::vector<HeldCases> group_alike(
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    const solver::NodeOrder& order);
 
 /// One solution, in the solver's numbering, 3 per node.
 struct SolvedCase {
@@ -80,14 +81,14 @@ struct SolvedCase {
   const VectorX& f;         // loads [force]
   const VectorX& u;         // [length]
   const VectorX& diagonal;  // of the stiffness [force/length]
-  const std::vector<ElasticLaw>& laws;
-  const Holding& holding;
-  const CgColumn& column;
+  const std::vector<element::ElasticLaw>& laws;
+  const supports::Holding& holding;
+  const solver::CgColumn& column;
 };
 
 /// Puts displacement, reactions and figures into `result`; where the solver
 /// did not converge, or loads are not carried, a failure if it has none yet.
-void conclude(const ElasticBase& base, const ElementTable& table,
+void conclude(const ElasticBase& base, const solver::ElementTable& table,
               const SolvedCase& solved, ElasticSolution& result);
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 void check_arrays(const TetMesh& mesh) {
   const int n = static_cast<int>(mesh.nodes.size());
@@ -52,9 +52,9 @@ void check_memory(const TetMesh& mesh, SolverKind solver) {
                  "eighth");
 }
 
-VectorX checked_forces(const TetMesh& mesh, const LoadCase& load_case,
-                       const std::vector<Material>& materials) {
-  VectorX f = nodal_forces(mesh, load_case, materials);
+VectorX checked_forces(const TetMesh& mesh, const loads::LoadCase& load_case,
+                       const std::vector<element::Material>& materials) {
+  VectorX f = loads::nodal_forces(mesh, load_case, materials);
   if (!(f.norm() > 0.0)) {
     throw InvalidInput(fmt::format(
         "load case '{}' has no load: give a force, a pressure, gravity or a "
@@ -64,4 +64,4 @@ VectorX checked_forces(const TetMesh& mesh, const LoadCase& load_case,
   return f;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -7,7 +7,7 @@
 #include "fea/equations/elastic_solution.h"
 #include "fea/loads/loads.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 /// Throws InvalidInput unless the arrays of the mesh fit each other.
 void check_arrays(const TetMesh& mesh);
@@ -20,7 +20,7 @@ void check_arrays(const TetMesh& mesh);
 void check_memory(const TetMesh& mesh, SolverKind solver);
 
 /// The load case's nodal forces; throws InvalidInput when there are none.
-VectorX checked_forces(const TetMesh& mesh, const LoadCase& load_case,
-                       const std::vector<Material>& materials);
+VectorX checked_forces(const TetMesh& mesh, const loads::LoadCase& load_case,
+                       const std::vector<element::Material>& materials);
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -7,9 +7,9 @@
 #include "core/error.h"
 #include "fea/equations/elastic_system.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
-VectorX to_solver(const NodeOrder& order, const VectorX& v) {
+VectorX to_solver(const solver::NodeOrder& order, const VectorX& v) {
   VectorX w(v.size());
   for (std::size_t i = 0; i < order.to_mesh.size(); ++i) {
     w.segment<3>(static_cast<Eigen::Index>(3 * i)) =
@@ -18,7 +18,7 @@ VectorX to_solver(const NodeOrder& order, const VectorX& v) {
   return w;
 }
 
-VectorX to_mesh(const NodeOrder& order, const VectorX& v) {
+VectorX to_mesh(const solver::NodeOrder& order, const VectorX& v) {
   VectorX w(v.size());
   for (std::size_t i = 0; i < order.to_mesh.size(); ++i) {
     w.segment<3>(3L * order.to_mesh[i]) =
@@ -28,8 +28,8 @@ VectorX to_mesh(const NodeOrder& order, const VectorX& v) {
 }
 
 ElasticOperator ElasticSystem::operator_at(
-    const TetMesh& mesh, const std::vector<LoadCase>& load_cases, int load_case,
-    const std::vector<Material>* materials) const {
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    int load_case, const std::vector<element::Material>* materials) const {
   const auto group =
       std::find_if(groups_.begin(), groups_.end(), [load_case](const Group& g) {
         return std::find(g.cases.begin(), g.cases.end(), load_case) !=
@@ -39,9 +39,9 @@ ElasticOperator ElasticSystem::operator_at(
     throw InvalidInput(fmt::format("elasticity: load case {} of {}", load_case,
                                    load_cases.size()));
   }
-  const LoadCase& loads = load_cases[load_case];
-  Holding holding = make_holding(mesh, loads, base_.order);
-  if (!alike(holding, group->holding)) {
+  const loads::LoadCase& loads = load_cases[load_case];
+  supports::Holding holding = supports::make_holding(mesh, loads, base_.order);
+  if (!supports::alike(holding, group->holding)) {
     throw SolverError(fmt::format(
         "load case '{}': the directions in which its supports hold the nodes "
         "are no longer the base design's",
@@ -59,8 +59,8 @@ ElasticOperator ElasticSystem::operator_at(
   if (const auto failure = assemble(mesh, regions.laws, result.K)) {
     throw MeshError(failure->message);
   }
-  add_springs(shared_->table.pattern, holding.springs, result.K);
+  supports::add_springs(shared_->table.pattern, holding.springs, result.K);
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

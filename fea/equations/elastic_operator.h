@@ -10,22 +10,22 @@
 #include "fea/solver/node_order.h"
 #include "fea/solver/preconditioner.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 struct ElasticOperator {
   // Of the model, not owned:
-  const ElementTable* table;
-  const NodeOrder* order;
-  const Preconditioner* preconditioner;
+  const solver::ElementTable* table;
+  const solver::NodeOrder* order;
+  const solver::Preconditioner* preconditioner;
 
-  std::vector<Material> materials;  // of the design
-  BlockMatrix<double> K;            // with springs
-  NodeFreedom freedom;
+  std::vector<element::Material> materials;  // of the design
+  solver::BlockMatrix<double> K;             // with springs
+  solver::NodeFreedom freedom;
   Points x;  // of solver's nodes [length]
 };
 
 /// Vectors of 3 per node from the mesh's numbering into the solver's, and back.
-VectorX to_solver(const NodeOrder& order, const VectorX& v);
-VectorX to_mesh(const NodeOrder& order, const VectorX& v);
+VectorX to_solver(const solver::NodeOrder& order, const VectorX& v);
+VectorX to_mesh(const solver::NodeOrder& order, const VectorX& v);
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -9,7 +9,7 @@
 #include "core/monitor.h"
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 struct ElasticReport {
   int dofs = 0;                     // free unknowns of the first load case
@@ -58,4 +58,4 @@ struct ElasticOptions {
   Monitor* monitor = nullptr;  // not owned; must outlive the model
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -10,13 +10,13 @@
 #include "fea/solver/conjugate_gradients.h"
 #include "fea/solver/corner_mesh.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 ElasticSystem::ElasticSystem(const TetMesh& base,
-                             const std::vector<Material>& materials,
-                             const std::vector<LoadCase>& load_cases,
+                             const std::vector<element::Material>& materials,
+                             const std::vector<loads::LoadCase>& load_cases,
                              const ElasticOptions& options,
-                             BlockMatrix<double>& matrix)
+                             solver::BlockMatrix<double>& matrix)
     : base_(base, materials, load_cases, options),
       shared_(std::make_unique<Shared>()) {
   order_mesh(base);
@@ -28,14 +28,14 @@ ElasticSystem::ElasticSystem(const TetMesh& base,
 }
 
 void ElasticSystem::order_mesh(const TetMesh& base) {
-  base_.order = chunked_order(base);
-  shared_->table = make_element_table(
+  base_.order = solver::chunked_order(base);
+  shared_->table = solver::make_element_table(
       base_.order.chunks, base.nodes_per_element(), base_.solver_elements(base),
       base_.solver_regions(base));
 }
 
-void ElasticSystem::group_supports(const TetMesh& base,
-                                   const std::vector<LoadCase>& load_cases) {
+void ElasticSystem::group_supports(
+    const TetMesh& base, const std::vector<loads::LoadCase>& load_cases) {
   for (HeldCases& held : group_alike(base, load_cases, base_.order)) {
     groups_.push_back(
         {.cases = std::move(held.cases), .holding = std::move(held.holding)});
@@ -43,31 +43,33 @@ void ElasticSystem::group_supports(const TetMesh& base,
 }
 
 void ElasticSystem::build_preconditioners(
-    const TetMesh& base, const std::vector<LoadCase>& load_cases,
-    const BlockMatrix<double>& matrix) {
+    const TetMesh& base, const std::vector<loads::LoadCase>& load_cases,
+    const solver::BlockMatrix<double>& matrix) {
   multigrid_ = base_.options.solver == SolverKind::Multigrid ||
                (base_.options.solver == SolverKind::Automatic &&
-                free_unknowns(groups_.front().holding) > kFactorUnknowns);
+                supports::free_unknowns(groups_.front().holding) >
+                    solver::kFactorUnknowns);
   if (multigrid_) {
     return build_multigrid(base, load_cases, matrix);
   }
-  const BlockPattern& pattern = shared_->table.pattern;
+  const solver::BlockPattern& pattern = shared_->table.pattern;
   for (Group& group : groups_) {
-    const Holding& holding = group.holding;
+    const supports::Holding& holding = group.holding;
     group.preconditioner =
         holding.springs.at.empty()
-            ? make_direct(pattern, matrix, holding.freedom)
-            : make_direct(pattern,
-                          sprung_matrix(pattern, matrix, holding.springs),
-                          holding.freedom);
+            ? solver::make_direct(pattern, matrix, holding.freedom)
+            : solver::make_direct(
+                  pattern,
+                  supports::sprung_matrix(pattern, matrix, holding.springs),
+                  holding.freedom);
   }
 }
 
-CornerMesh ElasticSystem::build_corners(const TetMesh& base,
-                                        BlockMatrix<double>& matrix) {
-  CornerMesh corners = make_corner_mesh(base, base_.order);
-  if (const auto bad = meniscus::assemble(corners.table, corners.x,
-                                          base_.regions.laws, matrix)) {
+solver::CornerMesh ElasticSystem::build_corners(
+    const TetMesh& base, solver::BlockMatrix<double>& matrix) {
+  solver::CornerMesh corners = solver::make_corner_mesh(base, base_.order);
+  if (const auto bad = meniscus::solver::assemble(corners.table, corners.x,
+                                                  base_.regions.laws, matrix)) {
     throw MeshError(fmt::format(
         "element {}: its straight-sided corners enclose no positive volume; "
         "improve the mesh or choose the Cholesky solver",
@@ -75,47 +77,47 @@ CornerMesh ElasticSystem::build_corners(const TetMesh& base,
   }
   shared_->map = std::move(corners.map);
   shared_->corner_pattern = corners.table.pattern;
-  shared_->corner_smoother = make_smoother_matrix(matrix);
+  shared_->corner_smoother = solver::make_smoother_matrix(matrix);
   return corners;
 }
 
-void ElasticSystem::build_multigrid(const TetMesh& base,
-                                    const std::vector<LoadCase>& load_cases,
-                                    const BlockMatrix<double>& matrix) {
+void ElasticSystem::build_multigrid(
+    const TetMesh& base, const std::vector<loads::LoadCase>& load_cases,
+    const solver::BlockMatrix<double>& matrix) {
   const bool ten_nodes = base.order == 2;
-  shared_->smoother = make_smoother_matrix(matrix);
-  BlockMatrix<double> coarse;
+  shared_->smoother = solver::make_smoother_matrix(matrix);
+  solver::BlockMatrix<double> coarse;
   const Points x =
       ten_nodes ? build_corners(base, coarse).x : base_.solver_points(base);
-  const BlockPattern& pattern = shared_->table.pattern;
+  const solver::BlockPattern& pattern = shared_->table.pattern;
   for (Group& group : groups_) {
-    const SpringBlocks& springs = group.holding.springs;
-    const BlockMatrix<double>* fine = &matrix;
-    const BlockMatrix<double>* corner = &coarse;
-    BlockMatrix<double> sprung;
-    BlockMatrix<double> sprung_corner;
+    const supports::SpringBlocks& springs = group.holding.springs;
+    const solver::BlockMatrix<double>* fine = &matrix;
+    const solver::BlockMatrix<double>* corner = &coarse;
+    solver::BlockMatrix<double> sprung;
+    solver::BlockMatrix<double> sprung_corner;
     if (!springs.at.empty()) {
-      sprung = sprung_matrix(pattern, matrix, springs);
+      sprung = supports::sprung_matrix(pattern, matrix, springs);
       fine = &sprung;
-      group.smoother =
-          std::make_unique<SmootherMatrix>(make_smoother_matrix(sprung));
+      group.smoother = std::make_unique<solver::SmootherMatrix>(
+          solver::make_smoother_matrix(sprung));
     }
     if (!springs.at.empty() && ten_nodes) {
-      sprung_corner =
-          sprung_matrix(shared_->corner_pattern, coarse,
-                        corner_springs(base, load_cases[group.cases.front()],
-                                       base_.order, shared_->map));
+      sprung_corner = supports::sprung_matrix(
+          shared_->corner_pattern, coarse,
+          supports::corner_springs(base, load_cases[group.cases.front()],
+                                   base_.order, shared_->map));
       corner = &sprung_corner;
-      group.corner_smoother =
-          std::make_unique<SmootherMatrix>(make_smoother_matrix(sprung_corner));
+      group.corner_smoother = std::make_unique<solver::SmootherMatrix>(
+          solver::make_smoother_matrix(sprung_corner));
     }
-    const SmootherMatrix* smoother =
+    const solver::SmootherMatrix* smoother =
         group.smoother ? group.smoother.get() : &shared_->smoother;
-    const SmootherMatrix* corner_smoother = group.corner_smoother
-                                                ? group.corner_smoother.get()
-                                                : &shared_->corner_smoother;
-    MultigridInput input{.nodal = {&pattern, fine, smoother, &x},
-                         .freedom = &group.holding.freedom};
+    const solver::SmootherMatrix* corner_smoother =
+        group.corner_smoother ? group.corner_smoother.get()
+                              : &shared_->corner_smoother;
+    solver::MultigridInput input{.nodal = {&pattern, fine, smoother, &x},
+                                 .freedom = &group.holding.freedom};
     if (ten_nodes) {
       input.nodal = {&shared_->corner_pattern, corner, corner_smoother, &x};
       input.fine_pattern = &pattern;
@@ -123,27 +125,26 @@ void ElasticSystem::build_multigrid(const TetMesh& base,
       input.fine_smoother = smoother;
       input.map = &shared_->map;
     }
-    group.preconditioner = make_multigrid(input);
+    group.preconditioner = solver::make_multigrid(input);
   }
 }
 
 std::optional<Failure> ElasticSystem::assemble(
-    const TetMesh& mesh, const std::vector<ElasticLaw>& laws,
-    BlockMatrix<double>& matrix) const {
+    const TetMesh& mesh, const std::vector<element::ElasticLaw>& laws,
+    solver::BlockMatrix<double>& matrix) const {
   if (auto failure = base_.bad_node(mesh)) {
     return failure;
   }
-  const auto bad = meniscus::assemble(shared_->table, base_.solver_points(mesh),
-                                      laws, matrix);
+  const auto bad = meniscus::solver::assemble(
+      shared_->table, base_.solver_points(mesh), laws, matrix);
   return bad ? std::optional<Failure>(base_.inverted(mesh, *bad))
              : std::nullopt;
 }
 
-ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
-                                     const std::vector<LoadCase>& load_cases,
-                                     const RegionMaterials& regions,
-                                     const BlockMatrix<double>& matrix,
-                                     const ElasticSolution* start) const {
+ElasticSolution ElasticSystem::solve(
+    const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+    const RegionMaterials& regions, const solver::BlockMatrix<double>& matrix,
+    const ElasticSolution* start) const {
   const Timer timer;
   ElasticSolution result;
   result.displacements.resize(load_cases.size());
@@ -151,27 +152,29 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
   result.report.solver = !multigrid_       ? "cholmod"
                          : mesh.order == 1 ? "multigrid"
                                            : "p-multigrid";
-  result.report.dofs = free_unknowns(groups_.front().holding);
+  result.report.dofs = supports::free_unknowns(groups_.front().holding);
   const std::vector<VectorX> f =
       base_.solver_forces(mesh, load_cases, regions.materials);
   const Points x = base_.solver_points(mesh);
   for (const Group& group : groups_) {
-    const Holding holding =
+    const supports::Holding holding =
         start == nullptr
             ? group.holding
-            : make_holding(mesh, load_cases[group.cases.front()], base_.order);
-    if (!alike(holding, group.holding)) {
+            : supports::make_holding(mesh, load_cases[group.cases.front()],
+                                     base_.order);
+    if (!supports::alike(holding, group.holding)) {
       result.failure = ElasticBase::turned(load_cases[group.cases.front()]);
       return result;
     }
     const bool plain = holding.springs.at.empty();
-    const BlockMatrix<double> sprung =
-        plain ? BlockMatrix<double>{}
-              : sprung_matrix(shared_->table.pattern, matrix, holding.springs);
+    const solver::BlockMatrix<double> sprung =
+        plain ? solver::BlockMatrix<double>{}
+              : supports::sprung_matrix(shared_->table.pattern, matrix,
+                                        holding.springs);
     for (std::size_t first = 0; first < group.cases.size();
-         first += kMostColumns) {
+         first += solver::kMostColumns) {
       const std::size_t last =
-          std::min(first + kMostColumns, group.cases.size());
+          std::min(first + solver::kMostColumns, group.cases.size());
       solve_columns(group, holding,
                     {group.cases.begin() + static_cast<std::ptrdiff_t>(first),
                      group.cases.begin() + static_cast<std::ptrdiff_t>(last)},
@@ -181,19 +184,21 @@ ElasticSolution ElasticSystem::solve(const TetMesh& mesh,
   }
   if (!result.failure && load_cases[0].temperature) {
     result.report.strain_energy =
-        strain_energy(mesh, regions.materials, result.displacements[0],
-                      temperature_change(mesh, load_cases[0]));
+        loads::strain_energy(mesh, regions.materials, result.displacements[0],
+                             loads::temperature_change(mesh, load_cases[0]));
   }
   result.report.solve_seconds = timer.seconds();
   return result;
 }
 
 void ElasticSystem::solve_columns(
-    const Group& group, const Holding& holding, const std::vector<int>& cases,
-    const Points& x, const std::vector<VectorX>& f,
-    const std::vector<LoadCase>& load_cases,
-    const std::vector<ElasticLaw>& laws, const BlockMatrix<double>& matrix,
-    const ElasticSolution* start, ElasticSolution& result) const {
+    const Group& group, const supports::Holding& holding,
+    const std::vector<int>& cases, const Points& x,
+    const std::vector<VectorX>& f,
+    const std::vector<loads::LoadCase>& load_cases,
+    const std::vector<element::ElasticLaw>& laws,
+    const solver::BlockMatrix<double>& matrix, const ElasticSolution* start,
+    ElasticSolution& result) const {
   Monitor& monitor = base_.options.monitor != nullptr ? *base_.options.monitor
                                                       : silent_monitor();
   std::vector<VectorX> right;
@@ -204,30 +209,33 @@ void ElasticSystem::solve_columns(
                     ? to_solver(base_.order, start->displacements[c])
                     : VectorX(VectorX::Zero(f[c].size())));
   }
-  const auto solve_with = [&](const Preconditioner& preconditioner) {
-    return conjugate_gradients({.pattern = shared_->table.pattern,
-                                .matrix = matrix,
-                                .preconditioner = preconditioner,
-                                .freedom = holding.freedom,
-                                .tolerance = base_.options.tolerance,
-                                .max_iterations = base_.options.max_iterations,
-                                .monitor = monitor},
-                               right, u);
+  const auto solve_with = [&](const solver::Preconditioner& preconditioner) {
+    return solver::conjugate_gradients(
+        {.pattern = shared_->table.pattern,
+         .matrix = matrix,
+         .preconditioner = preconditioner,
+         .freedom = holding.freedom,
+         .tolerance = base_.options.tolerance,
+         .max_iterations = base_.options.max_iterations,
+         .monitor = monitor},
+        right, u);
   };
-  std::vector<CgColumn> columns = solve_with(*group.preconditioner);
+  std::vector<solver::CgColumn> columns = solve_with(*group.preconditioner);
   const bool lost = std::any_of(
-      columns.begin(), columns.end(),
-      [](const CgColumn& column) { return column.end == CgEnd::NotPositive; });
-  if (lost && multigrid_ && free_unknowns(holding) <= kSecondChance) {
+      columns.begin(), columns.end(), [](const solver::CgColumn& column) {
+        return column.end == solver::CgEnd::NotPositive;
+      });
+  if (lost && multigrid_ &&
+      supports::free_unknowns(holding) <= solver::kSecondChance) {
     // Single precision is lost on supports that hardly hold.
     for (VectorX& v : u) {
       v.setZero();
     }
     columns = solve_with(
-        *make_direct(shared_->table.pattern, matrix, holding.freedom));
+        *solver::make_direct(shared_->table.pattern, matrix, holding.freedom));
     result.report.solver = "cholmod after multigrid";
   }
-  const VectorX diagonal = diagonal_of(matrix);
+  const VectorX diagonal = solver::diagonal_of(matrix);
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const int c = cases[k];
     conclude(base_, shared_->table,
@@ -244,4 +252,4 @@ void ElasticSystem::solve_columns(
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

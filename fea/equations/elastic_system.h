@@ -13,78 +13,81 @@
 #include "fea/solver/multigrid.h"
 #include "fea/solver/preconditioner.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 class ElasticSystem {
  public:
   /// Checks the input, orders the mesh, assembles the base's stiffness into
   /// `matrix` and builds the preconditioners from it.
-  ElasticSystem(const TetMesh& base, const std::vector<Material>& materials,
-                const std::vector<LoadCase>& load_cases,
-                const ElasticOptions& options, BlockMatrix<double>& matrix);
+  ElasticSystem(const TetMesh& base,
+                const std::vector<element::Material>& materials,
+                const std::vector<loads::LoadCase>& load_cases,
+                const ElasticOptions& options,
+                solver::BlockMatrix<double>& matrix);
 
   const ElasticBase& base() const { return base_; }
 
   /// The stiffness of `mesh`, or why there is none.
   std::optional<Failure> assemble(const TetMesh& mesh,
-                                  const std::vector<ElasticLaw>& laws,
-                                  BlockMatrix<double>& matrix) const;
+                                  const std::vector<element::ElasticLaw>& laws,
+                                  solver::BlockMatrix<double>& matrix) const;
 
   /// Solves all load cases; `start`: a solution to begin from, or null.
   ElasticSolution solve(const TetMesh& mesh,
-                        const std::vector<LoadCase>& load_cases,
+                        const std::vector<loads::LoadCase>& load_cases,
                         const RegionMaterials& regions,
-                        const BlockMatrix<double>& matrix,
+                        const solver::BlockMatrix<double>& matrix,
                         const ElasticSolution* start) const;
 
   /// What adjoints need of a design that was solved.
-  KeptState keep(const TetMesh& mesh, const std::vector<LoadCase>& load_cases,
-                 std::vector<ElasticLaw> laws,
-                 BlockMatrix<double> matrix) const;
+  KeptState keep(const TetMesh& mesh,
+                 const std::vector<loads::LoadCase>& load_cases,
+                 std::vector<element::ElasticLaw> laws,
+                 solver::BlockMatrix<double> matrix) const;
 
   /// See ElasticModel::operator_at().
-  ElasticOperator operator_at(const TetMesh& mesh,
-                              const std::vector<LoadCase>& load_cases,
-                              int load_case,
-                              const std::vector<Material>* materials) const;
+  ElasticOperator operator_at(
+      const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+      int load_case, const std::vector<element::Material>* materials) const;
 
  private:
   /// Load cases that are held alike share a preconditioner.
   struct Group {
     std::vector<int> cases;
-    Holding holding;  // at the base
+    supports::Holding holding;  // at the base
     // With springs; else the shared ones serve.
-    std::unique_ptr<SmootherMatrix> smoother;
-    std::unique_ptr<SmootherMatrix> corner_smoother;
-    std::unique_ptr<Preconditioner> preconditioner;
+    std::unique_ptr<solver::SmootherMatrix> smoother;
+    std::unique_ptr<solver::SmootherMatrix> corner_smoother;
+    std::unique_ptr<solver::Preconditioner> preconditioner;
   };
 
   /// What the preconditioners point to; its address never changes.
   struct Shared {
-    ElementTable table;
-    SmootherMatrix smoother;
+    solver::ElementTable table;
+    solver::SmootherMatrix smoother;
     // Of ten-node elements:
-    BlockPattern corner_pattern;
-    SmootherMatrix corner_smoother;
-    CornerMap map;
+    solver::BlockPattern corner_pattern;
+    solver::SmootherMatrix corner_smoother;
+    solver::CornerMap map;
   };
 
   void order_mesh(const TetMesh& base);
   void group_supports(const TetMesh& base,
-                      const std::vector<LoadCase>& load_cases);
+                      const std::vector<loads::LoadCase>& load_cases);
   void build_multigrid(const TetMesh& base,
-                       const std::vector<LoadCase>& load_cases,
-                       const BlockMatrix<double>& matrix);
-  CornerMesh build_corners(const TetMesh& base, BlockMatrix<double>& matrix);
+                       const std::vector<loads::LoadCase>& load_cases,
+                       const solver::BlockMatrix<double>& matrix);
+  solver::CornerMesh build_corners(const TetMesh& base,
+                                   solver::BlockMatrix<double>& matrix);
   void build_preconditioners(const TetMesh& base,
-                             const std::vector<LoadCase>& load_cases,
-                             const BlockMatrix<double>& matrix);
-  void solve_columns(const Group& group, const Holding& holding,
+                             const std::vector<loads::LoadCase>& load_cases,
+                             const solver::BlockMatrix<double>& matrix);
+  void solve_columns(const Group& group, const supports::Holding& holding,
                      const std::vector<int>& cases, const Points& x,
                      const std::vector<VectorX>& f,
-                     const std::vector<LoadCase>& load_cases,
-                     const std::vector<ElasticLaw>& laws,
-                     const BlockMatrix<double>& matrix,
+                     const std::vector<loads::LoadCase>& load_cases,
+                     const std::vector<element::ElasticLaw>& laws,
+                     const solver::BlockMatrix<double>& matrix,
                      const ElasticSolution* start,
                      ElasticSolution& result) const;
 
@@ -94,4 +97,4 @@ class ElasticSystem {
   bool multigrid_ = false;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::equations {
 
 namespace {
 
@@ -96,4 +96,4 @@ std::optional<Failure> judge(const Equilibrium& equilibrium, double tolerance,
   return std::nullopt;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -9,7 +9,7 @@
 #include "core/types.h"
 #include "fea/solver/node_freedom.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 /// One load case, all in the solver's numbering, 3 per node.
 struct EquilibriumInput {
@@ -18,7 +18,7 @@ struct EquilibriumInput {
   const VectorX& internal;  // K u [force]
   const VectorX& springs;   // S u [force]
   const VectorX& u;         // [length]
-  const NodeFreedom& freedom;
+  const solver::NodeFreedom& freedom;
   const VectorX& diagonal;  // of the stiffness [force/length]
 };
 
@@ -38,4 +38,4 @@ Equilibrium check_equilibrium(const EquilibriumInput& input);
 std::optional<Failure> judge(const Equilibrium& equilibrium, double tolerance,
                              const std::string& load_case);
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

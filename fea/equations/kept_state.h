@@ -11,33 +11,33 @@
 #include "fea/solver/preconditioner.h"
 #include "fea/supports/holding.h"
 
-namespace meniscus {
+namespace meniscus::equations {
 
 /// In the solver's numbering.
 struct KeptState {
   /// Load cases that are held alike.
   struct Group {
     std::vector<int> cases;
-    Holding holding;
-    const Preconditioner* preconditioner = nullptr;  // of the model
+    supports::Holding holding;
+    const solver::Preconditioner* preconditioner = nullptr;  // of the model
   };
 
   // Of the model, not owned:
-  const ElementTable* table = nullptr;
-  const NodeOrder* order = nullptr;
+  const solver::ElementTable* table = nullptr;
+  const solver::NodeOrder* order = nullptr;
   Monitor* monitor = nullptr;
 
-  std::vector<ElasticLaw> laws;  // of the design
+  std::vector<element::ElasticLaw> laws;  // of the design
   double tolerance = 0.0;
   int max_iterations = 0;
   std::vector<Group> groups;
-  std::vector<std::string> names;  // of load cases
-  BlockMatrix<double> matrix;      // without springs
-  Points x;                        // of solver's nodes [length]
+  std::vector<std::string> names;      // of load cases
+  solver::BlockMatrix<double> matrix;  // without springs
+  Points x;                            // of solver's nodes [length]
 };
 
 /// See ElasticModel::solve_adjoint().
 AdjointSolution solve_adjoint(const KeptState& state, int load_case,
                               const std::vector<VectorX>& right_hand_sides);
 
-}  // namespace meniscus
+}  // namespace meniscus::equations

@@ -13,7 +13,7 @@
 #include "fea/loads/remote_gradient.h"
 #include "fea/loads/remote_load.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 namespace {
 
@@ -47,41 +47,45 @@ struct SurfaceMean {
   const TetMesh& mesh;
   const std::string& surface;
   Vec3 direction;  // unit
-  FaceRule rule;
+  element::FaceRule rule;
   const VectorX& displacement;
 };
 
 /// Mean of density(point, s) over the surface and, if `gradient`, all its
 /// derivatives; by_direction is that by the unit direction.
 template <class OfPlace>
-DirectedFunctional surface_mean(const SurfaceMean& in, Derivatives derivatives,
-                                const OfPlace& density) {
-  const int label = surface_label(in.mesh, in.surface);
+element::DirectedFunctional surface_mean(const SurfaceMean& in,
+                                         element::Derivatives derivatives,
+                                         const OfPlace& density) {
+  const int label = element::surface_label(in.mesh, in.surface);
   double area = 0.0;
   double sum = 0.0;
-  const auto along = [&](int f, const FacePoint& point) {
-    return value_at(in.mesh, f, point, in.displacement).dot(in.direction);
+  const auto along = [&](int f, const element::FacePoint& point) {
+    return element::value_at(in.mesh, f, point, in.displacement)
+        .dot(in.direction);
   };
-  over_face_points(in.mesh, label, in.rule, [&](int f, const FacePoint& point) {
-    const double share = point.normal.norm();
-    area += share;
-    sum += share * density(point, along(f, point)).value;
-  });
+  element::over_face_points(
+      in.mesh, label, in.rule, [&](int f, const element::FacePoint& point) {
+        const double share = point.normal.norm();
+        area += share;
+        sum += share * density(point, along(f, point)).value;
+      });
   if (!(area > 0.0)) {
     throw InvalidInput(
         fmt::format("surface '{}' has an area of {}", in.surface, area));
   }
-  DirectedFunctional result;
+  element::DirectedFunctional result;
   result.value = sum / area;
-  if (derivatives == Derivatives::None) {
+  if (derivatives == element::Derivatives::None) {
     return result;
   }
   result.by_nodes.assign(in.mesh.nodes.size(), Vec3::Zero());
-  result.by_displacement = nodal_zeros(in.mesh);
-  pull_back_faces(
+  result.by_displacement = element::nodal_zeros(in.mesh);
+  element::pull_back_faces(
       in.mesh, label, in.rule,
-      [&](int f, const FacePoint& point) -> FacePointGradient {
-        const Vec3 u = value_at(in.mesh, f, point, in.displacement);
+      [&](int f,
+          const element::FacePoint& point) -> element::FacePointGradient {
+        const Vec3 u = element::value_at(in.mesh, f, point, in.displacement);
         const Density at = density(point, u.dot(in.direction));
         const double share = point.normal.norm() / area;
         const auto ids = in.mesh.face(f);
@@ -98,13 +102,13 @@ DirectedFunctional surface_mean(const SurfaceMean& in, Derivatives derivatives,
 }
 
 /// From the derivative by the unit direction to that by the one given.
-void turn_to_given(const Vec3& given, DirectedFunctional& result) {
+void turn_to_given(const Vec3& given, element::DirectedFunctional& result) {
   const Vec3 d = given.normalized();
   result.by_direction =
       (result.by_direction - d.dot(result.by_direction) * d) / given.norm();
 }
 
-void scale(double factor, DirectedFunctional& result) {
+void scale(double factor, element::DirectedFunctional& result) {
   for (Vec3& g : result.by_nodes) {
     g *= factor;
   }
@@ -114,52 +118,51 @@ void scale(double factor, DirectedFunctional& result) {
 
 }  // namespace
 
-DirectedFunctional mean_displacement_functional(const TetMesh& mesh,
-                                                const std::string& surface,
-                                                const Vec3& direction,
-                                                const VectorX& displacement,
-                                                Derivatives derivatives) {
+element::DirectedFunctional mean_displacement_functional(
+    const TetMesh& mesh, const std::string& surface, const Vec3& direction,
+    const VectorX& displacement, element::Derivatives derivatives) {
   check_displacement(mesh, surface, displacement);
-  DirectedFunctional result =
-      surface_mean({mesh, surface, unit_direction(surface, direction),
-                    FaceRule::Three, displacement},
-                   derivatives, [](const FacePoint&, double s) -> Density {
-                     return {s, 1.0, Vec3::Zero()};
-                   });
-  turn_to_given(direction, result);
-  return result;
-}
-
-DirectedFunctional weighted_displacement_functional(const TetMesh& mesh,
-                                                    const std::string& surface,
-                                                    const Vec3& direction,
-                                                    const SlopedField& weight,
-                                                    const VectorX& displacement,
-                                                    Derivatives derivatives) {
-  check_displacement(mesh, surface, displacement);
-  const std::string what = fmt::format("the weight on surface '{}'", surface);
-  const LoadCase place{.name = "response"};
-  const bool sloped = derivatives == Derivatives::All;
-  if (sloped) {
-    require_slope(weight.slope, place, what);
-  }
-  DirectedFunctional result = surface_mean(
-      {mesh, surface, unit_direction(surface, direction), FaceRule::Seven,
-       displacement},
-      derivatives, [&](const FacePoint& point, double s) -> Density {
-        const double w = field_value(weight.value, point.position, place, what);
-        return {w * s, w,
-                sloped ? Vec3(s * field_value(weight.slope, point.position,
-                                              place, what))
-                       : Vec3(Vec3::Zero())};
+  element::DirectedFunctional result = surface_mean(
+      {mesh, surface, unit_direction(surface, direction),
+       element::FaceRule::Three, displacement},
+      derivatives, [](const element::FacePoint&, double s) -> Density {
+        return {s, 1.0, Vec3::Zero()};
       });
   turn_to_given(direction, result);
   return result;
 }
 
-DirectedFunctional displacement_norm_functional(
+element::DirectedFunctional weighted_displacement_functional(
     const TetMesh& mesh, const std::string& surface, const Vec3& direction,
-    double power, const VectorX& displacement, Derivatives derivatives) {
+    const loads::SlopedField& weight, const VectorX& displacement,
+    element::Derivatives derivatives) {
+  check_displacement(mesh, surface, displacement);
+  const std::string what = fmt::format("the weight on surface '{}'", surface);
+  const loads::LoadCase place{.name = "response"};
+  const bool sloped = derivatives == element::Derivatives::All;
+  if (sloped) {
+    loads::require_slope(weight.slope, place, what);
+  }
+  element::DirectedFunctional result = surface_mean(
+      {mesh, surface, unit_direction(surface, direction),
+       element::FaceRule::Seven, displacement},
+      derivatives, [&](const element::FacePoint& point, double s) -> Density {
+        const double w =
+            loads::field_value(weight.value, point.position, place, what);
+        return {w * s, w,
+                sloped
+                    ? Vec3(s * loads::field_value(weight.slope, point.position,
+                                                  place, what))
+                    : Vec3(Vec3::Zero())};
+      });
+  turn_to_given(direction, result);
+  return result;
+}
+
+element::DirectedFunctional displacement_norm_functional(
+    const TetMesh& mesh, const std::string& surface, const Vec3& direction,
+    double power, const VectorX& displacement,
+    element::Derivatives derivatives) {
   check_displacement(mesh, surface, displacement);
   if (!(power >= 2.0) || !std::isfinite(power)) {
     throw InvalidInput(fmt::format(
@@ -169,14 +172,15 @@ DirectedFunctional displacement_norm_functional(
   }
   const Vec3 d = unit_direction(surface, direction);
   double largest = 0.0;
-  for (const int i : surface_nodes(mesh, surface_label(mesh, surface))) {
+  for (const int i :
+       element::surface_nodes(mesh, element::surface_label(mesh, surface))) {
     largest =
         std::max(largest, std::abs(displacement.segment<3>(3L * i).dot(d)));
   }
   const double unit = largest > 0.0 ? largest : 1.0;
-  DirectedFunctional result = surface_mean(
-      {mesh, surface, d, FaceRule::Seven, displacement}, derivatives,
-      [&](const FacePoint&, double s) -> Density {
+  element::DirectedFunctional result = surface_mean(
+      {mesh, surface, d, element::FaceRule::Seven, displacement}, derivatives,
+      [&](const element::FacePoint&, double s) -> Density {
         const double t = s / unit;
         const double tail = std::pow(std::abs(t), power - 2.0);
         return {tail * t * t, power * tail * t / unit, Vec3::Zero()};
@@ -188,26 +192,25 @@ DirectedFunctional displacement_norm_functional(
   return result;
 }
 
-DirectedFunctional rotation_functional(const TetMesh& mesh,
-                                       const std::string& surface,
-                                       const Vec3& axis,
-                                       const VectorX& displacement,
-                                       Derivatives derivatives) {
+element::DirectedFunctional rotation_functional(
+    const TetMesh& mesh, const std::string& surface, const Vec3& axis,
+    const VectorX& displacement, element::Derivatives derivatives) {
   check_displacement(mesh, surface, displacement);
-  const RemoteLoad load{.surface = surface,
-                        .moment = unit_direction(surface, axis)};
-  DirectedFunctional result;
-  if (derivatives == Derivatives::None) {
-    result.value = remote_gradient(mesh, load, displacement, nullptr).value;
+  const loads::RemoteLoad load{.surface = surface,
+                               .moment = unit_direction(surface, axis)};
+  element::DirectedFunctional result;
+  if (derivatives == element::Derivatives::None) {
+    result.value =
+        loads::remote_gradient(mesh, load, displacement, nullptr).value;
     return result;
   }
   result.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
-  const RemoteGradient gradient =
-      remote_gradient(mesh, load, displacement, &result.by_nodes);
+  const loads::RemoteGradient gradient =
+      loads::remote_gradient(mesh, load, displacement, &result.by_nodes);
   result.value = gradient.value;
-  result.by_displacement = nodal_zeros(mesh);
-  const SurfaceWeights w = surface_weights(mesh, surface);
-  const Points forces = remote_forces(mesh, w, load);
+  result.by_displacement = element::nodal_zeros(mesh);
+  const loads::SurfaceWeights w = loads::surface_weights(mesh, surface);
+  const Points forces = loads::remote_forces(mesh, w, load);
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     result.by_displacement.segment<3>(3L * w.nodes[k]) = forces[k];
   }
@@ -216,4 +219,4 @@ DirectedFunctional rotation_functional(const TetMesh& mesh,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

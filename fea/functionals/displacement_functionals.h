@@ -9,32 +9,34 @@
 #include "fea/element/functional.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 /// mean_displacement() (loads.h): (1/A) int u . d dA [length].
-DirectedFunctional mean_displacement_functional(
+element::DirectedFunctional mean_displacement_functional(
     const TetMesh& mesh, const std::string& surface, const Vec3& direction,
-    const VectorX& displacement, Derivatives derivatives = Derivatives::All);
+    const VectorX& displacement,
+    element::Derivatives derivatives = element::Derivatives::All);
 
 /// (1/A) int w(x) u . d dA by seven points a face [length x weight]. Divided by
 /// the area, not by the weight's integral, so that a weight may change its
 /// sign and measure a tilt.
-DirectedFunctional weighted_displacement_functional(
+element::DirectedFunctional weighted_displacement_functional(
     const TetMesh& mesh, const std::string& surface, const Vec3& direction,
-    const SlopedField& weight, const VectorX& displacement,
-    Derivatives derivatives = Derivatives::All);
+    const loads::SlopedField& weight, const VectorX& displacement,
+    element::Derivatives derivatives = element::Derivatives::All);
 
 /// ((1/A) int |u . d|^p dA)^(1/p) by seven points a face [length]; p >= 2.
-DirectedFunctional displacement_norm_functional(
+element::DirectedFunctional displacement_norm_functional(
     const TetMesh& mesh, const std::string& surface, const Vec3& direction,
     double power, const VectorX& displacement,
-    Derivatives derivatives = Derivatives::All);
+    element::Derivatives derivatives = element::Derivatives::All);
 
 /// Angle by which a surface turns about `axis` (made unit), right-handed: the
 /// component along it of the rigid rotation that fits the nodes' displacement
 /// best, weighted by area [rad]. What a remote moment (RemoteLoad) works on.
-DirectedFunctional rotation_functional(
+element::DirectedFunctional rotation_functional(
     const TetMesh& mesh, const std::string& surface, const Vec3& axis,
-    const VectorX& displacement, Derivatives derivatives = Derivatives::All);
+    const VectorX& displacement,
+    element::Derivatives derivatives = element::Derivatives::All);
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

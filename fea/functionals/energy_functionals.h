@@ -8,23 +8,21 @@
 #include "fea/element/material.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 /// f(x) . u, f the nodal_forces() of the load case, expansion's included
 /// [force length]. Its adjoint is the displacement itself, with the reactions
 /// of the solve: no solution is needed. Throws as force_gradient().
-Functional compliance_functional(const TetMesh& mesh,
-                                 const std::vector<Material>& materials,
-                                 const LoadCase& load_case,
-                                 const VectorX& displacement,
-                                 Derivatives derivatives = Derivatives::All);
+element::Functional compliance_functional(
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const loads::LoadCase& load_case, const VectorX& displacement,
+    element::Derivatives derivatives = element::Derivatives::All);
 
 /// strain_energy() (body_loads.h): of the solid without springs, expansion
 /// taken out [force length]. Throws InvalidInput as residual_gradient().
-Functional strain_energy_functional(const TetMesh& mesh,
-                                    const std::vector<Material>& materials,
-                                    const LoadCase& load_case,
-                                    const VectorX& displacement,
-                                    Derivatives derivatives = Derivatives::All);
+element::Functional strain_energy_functional(
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const loads::LoadCase& load_case, const VectorX& displacement,
+    element::Derivatives derivatives = element::Derivatives::All);
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "fea/loads/load_checks.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 namespace {
 
@@ -29,7 +29,7 @@ std::vector<int> outer_nodes(const TetMesh& mesh) {
 
 const char* const kWhat = "the level set of a region";
 
-LoadCase response_place() { return {.name = "response"}; }
+loads::LoadCase response_place() { return {.name = "response"}; }
 
 /// How much each outer node counts: of sum 1.
 struct Shares {
@@ -38,9 +38,9 @@ struct Shares {
   double value = 0.0;
 };
 
-Shares shares_of(const TetMesh& mesh, const NumberOfPlace& level,
+Shares shares_of(const TetMesh& mesh, const loads::NumberOfPlace& level,
                  double sharpness) {
-  const LoadCase place = response_place();
+  const loads::LoadCase place = response_place();
   Shares result{.nodes = outer_nodes(mesh), .share = {}};
   if (!(sharpness > 0.0) || !std::isfinite(sharpness) || result.nodes.empty()) {
     throw InvalidInput(fmt::format(
@@ -50,7 +50,8 @@ Shares shares_of(const TetMesh& mesh, const NumberOfPlace& level,
   }
   result.share.reserve(result.nodes.size());
   for (const int i : result.nodes) {
-    result.share.push_back(field_value(level, mesh.nodes[i], place, kWhat));
+    result.share.push_back(
+        loads::field_value(level, mesh.nodes[i], place, kWhat));
   }
   const double largest =
       *std::max_element(result.share.begin(), result.share.end());
@@ -68,34 +69,36 @@ Shares shares_of(const TetMesh& mesh, const NumberOfPlace& level,
 
 }  // namespace
 
-Functional intrusion_functional(const TetMesh& mesh, const SlopedField& level,
-                                double sharpness, Derivatives derivatives) {
+element::Functional intrusion_functional(const TetMesh& mesh,
+                                         const loads::SlopedField& level,
+                                         double sharpness,
+                                         element::Derivatives derivatives) {
   const Shares shares = shares_of(mesh, level.value, sharpness);
-  Functional result{.value = shares.value};
-  if (derivatives == Derivatives::All) {
-    const LoadCase place = response_place();
-    require_slope(level.slope, place, kWhat);
+  element::Functional result{.value = shares.value};
+  if (derivatives == element::Derivatives::All) {
+    const loads::LoadCase place = response_place();
+    loads::require_slope(level.slope, place, kWhat);
     result.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
     for (std::size_t k = 0; k < shares.nodes.size(); ++k) {
       const int node = shares.nodes[k];
       result.by_nodes[node] =
           shares.share[k] *
-          field_value(level.slope, mesh.nodes[node], place, kWhat);
+          loads::field_value(level.slope, mesh.nodes[node], place, kWhat);
     }
   }
   return result;
 }
 
-double intrusion_rate(const TetMesh& mesh, const NumberOfPlace& level,
-                      const NumberOfPlace& rate, double sharpness) {
+double intrusion_rate(const TetMesh& mesh, const loads::NumberOfPlace& level,
+                      const loads::NumberOfPlace& rate, double sharpness) {
   const Shares shares = shares_of(mesh, level, sharpness);
-  const LoadCase place = response_place();
+  const loads::LoadCase place = response_place();
   double sum = 0.0;
   for (std::size_t k = 0; k < shares.nodes.size(); ++k) {
     sum += shares.share[k] *
-           field_value(rate, mesh.nodes[shares.nodes[k]], place, kWhat);
+           loads::field_value(rate, mesh.nodes[shares.nodes[k]], place, kWhat);
   }
   return sum;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

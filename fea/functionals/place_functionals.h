@@ -5,7 +5,7 @@
 #include "fea/element/functional.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 /// Smooth largest value over the nodes of the outer surface of a level set
 /// that is positive in a region to keep out of, and measures the distance from
@@ -15,13 +15,13 @@ namespace meniscus {
 /// ln(nodes) / k. `sharpness` k > 0 [1/length]. Throws InvalidInput for a
 /// sharpness that is not positive, a mesh without faces, a level set without a
 /// finite value or, for derivatives, without a slope.
-Functional intrusion_functional(const TetMesh& mesh, const SlopedField& level,
-                                double sharpness,
-                                Derivatives derivatives = Derivatives::All);
+element::Functional intrusion_functional(
+    const TetMesh& mesh, const loads::SlopedField& level, double sharpness,
+    element::Derivatives derivatives = element::Derivatives::All);
 
 /// What intrusion_functional() changes by when the level set at each place
 /// changes by `rate`, the mesh held. Throws likewise.
-double intrusion_rate(const TetMesh& mesh, const NumberOfPlace& level,
-                      const NumberOfPlace& rate, double sharpness);
+double intrusion_rate(const TetMesh& mesh, const loads::NumberOfPlace& level,
+                      const loads::NumberOfPlace& rate, double sharpness);
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

@@ -12,7 +12,7 @@
 #include "fea/loads/body_load_gradient.h"
 #include "fea/loads/body_loads.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 namespace {
 
@@ -20,7 +20,7 @@ enum class Measure { VonMises, EnergyDensity };
 
 /// The measure at every integration point, and where it counts.
 struct Sample {
-  PointStress points;
+  element::PointStress points;
   std::vector<double> value;
   std::vector<char> counts;  // per element
   double volume = 0.0;
@@ -29,8 +29,9 @@ struct Sample {
 
 Sample sample(const StressFunctionalInput& in, Measure measure) {
   Sample s;
-  s.points = point_stress(in.mesh, in.materials, in.displacement,
-                          temperature_change(in.mesh, in.load_case));
+  s.points =
+      element::point_stress(in.mesh, in.materials, in.displacement,
+                            loads::temperature_change(in.mesh, in.load_case));
   const int elements = in.mesh.element_count();
   if (!in.excluded.empty() &&
       static_cast<int>(in.excluded.size()) != elements) {
@@ -38,7 +39,8 @@ Sample sample(const StressFunctionalInput& in, Measure measure) {
         fmt::format("stress functional: exclusion marks {} of {} elements",
                     in.excluded.size(), elements));
   }
-  const std::vector<ElasticLaw> laws = elastic_laws(in.materials);
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws(in.materials);
   s.value.assign(s.points.stress.size(), 0.0);
   s.counts.assign(static_cast<std::size_t>(elements), 1);
 #pragma omp parallel for schedule(static)
@@ -49,12 +51,12 @@ Sample sample(const StressFunctionalInput& in, Measure measure) {
     }
     for (int q = 0; q < s.points.points_per_element; ++q) {
       const std::size_t at = s.points.index(e, q);
-      const Stress& stress = s.points.stress[at];
+      const element::Stress& stress = s.points.stress[at];
       s.value[at] =
           measure == Measure::VonMises
-              ? von_mises(stress)
-              : 0.5 * complementary_product(stress, stress,
-                                            laws[in.mesh.element_region[e]]);
+              ? element::von_mises(stress)
+              : 0.5 * element::complementary_product(
+                          stress, stress, laws[in.mesh.element_region[e]]);
     }
   }
   for (int e = 0; e < elements; ++e) {
@@ -93,10 +95,10 @@ struct Weight {
 };
 
 /// The strain A that stress changes the measure by: its derivative by stress.
-Mat3 by_stress(Measure measure, const Stress& stress, double value,
-               const ElasticLaw& law) {
+Mat3 by_stress(Measure measure, const element::Stress& stress, double value,
+               const element::ElasticLaw& law) {
   if (measure == Measure::EnergyDensity) {
-    const Strain e = strain_of(stress, law);
+    const element::Strain e = element::strain_of(stress, law);
     Mat3 A;
     A << e[0], e[3], e[5], e[3], e[1], e[4], e[5], e[4], e[2];
     return A;
@@ -104,7 +106,8 @@ Mat3 by_stress(Measure measure, const Stress& stress, double value,
   if (value == 0.0) {  // no derivative: as well none as any
     return Mat3::Zero();
   }
-  Mat3 A = stress_tensor(Eigen::Map<const Vec6>(stress.data()));
+  Mat3 A =
+      element::stress_tensor(Eigen::Map<const element::Vec6>(stress.data()));
   A.diagonal().array() -= A.trace() / 3.0;
   return 1.5 / value * A;
 }
@@ -116,7 +119,7 @@ std::vector<double> by_modulus(const StressFunctionalInput& in, const Sample& s,
   std::vector<double> result(in.materials.size(), 0.0);
   for (std::size_t e = 0; e < s.counts.size(); ++e) {
     const int region = in.mesh.element_region[e];
-    const Material& material = in.materials[region];
+    const element::Material& material = in.materials[region];
     for (int q = 0; s.counts[e] != 0 && !material.orthotropic &&
                     q < s.points.points_per_element;
          ++q) {
@@ -131,27 +134,31 @@ std::vector<double> by_modulus(const StressFunctionalInput& in, const Sample& s,
 /// Adds the derivatives, `weight`(value of a point) given.
 template <class OfValue>
 void differentiate(const StressFunctionalInput& in, Measure measure,
-                   const Sample& s, const OfValue& weight, Functional& result) {
-  require_temperature_slope(in.load_case);
-  const std::vector<ElasticLaw> laws = elastic_laws(in.materials);
-  VectorX by_x = nodal_zeros(in.mesh);
-  result.by_displacement = nodal_zeros(in.mesh);
+                   const Sample& s, const OfValue& weight,
+                   element::Functional& result) {
+  loads::require_temperature_slope(in.load_case);
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws(in.materials);
+  VectorX by_x = element::nodal_zeros(in.mesh);
+  result.by_displacement = element::nodal_zeros(in.mesh);
   const bool warm = in.load_case.temperature.has_value();
   if (warm) {
     result.by_temperature.setZero(
         static_cast<Eigen::Index>(in.mesh.nodes.size()));
   }
-  const SweepTargets<1, 2> targets{
+  const element::SweepTargets<1, 2> targets{
       .fields = {&in.displacement},
       .outputs = {&by_x, &result.by_displacement},
       .scalar = warm ? &result.by_temperature : nullptr};
-  sweep_stiffness_points(
-      in.mesh, targets, [&](const SweepPoint<1>& point, SweepFlux<2>& flux) {
+  element::sweep_stiffness_points(
+      in.mesh, targets,
+      [&](const element::SweepPoint<1>& point, element::SweepFlux<2>& flux) {
         if (s.counts[point.element] == 0) {
           return;
         }
         const std::size_t at = s.points.index(point.element, point.point);
-        const ElasticLaw& law = laws[in.mesh.element_region[point.element]];
+        const element::ElasticLaw& law =
+            laws[in.mesh.element_region[point.element]];
         const Weight w = weight(s.value[at]);
         const Mat3 A = w.by_value * by_stress(measure, s.points.stress[at],
                                               s.value[at], law);
@@ -159,23 +166,25 @@ void differentiate(const StressFunctionalInput& in, Measure measure,
         flux.by_gradient[0].noalias() = -point.gradient[0].transpose() * B;
         flux.by_gradient[0].diagonal().array() += point.volume * w.by_volume;
         flux.by_gradient[1] = B;
-        flux.by_scalar = -point.volume *
-                         stress_tensor(law.heat_stress).cwiseProduct(A).sum();
+        flux.by_scalar =
+            -point.volume *
+            element::stress_tensor(law.heat_stress).cwiseProduct(A).sum();
       });
-  result.by_nodes = as_points(by_x);
-  add_temperature_slope(in.mesh, in.load_case, result.by_temperature,
-                        result.by_nodes);
+  result.by_nodes = element::as_points(by_x);
+  loads::add_temperature_slope(in.mesh, in.load_case, result.by_temperature,
+                               result.by_nodes);
   result.by_modulus = by_modulus(in, s, weight);
 }
 
-Functional variation(const StressFunctionalInput& in, Measure measure) {
+element::Functional variation(const StressFunctionalInput& in,
+                              Measure measure) {
   const Sample s = sample(in, measure);
   const double mean = sample_mean(s, [](double x) { return x; });
   const double variance =
       sample_mean(s, [mean](double x) { return (x - mean) * (x - mean); });
   const double deviation = std::sqrt(variance);
-  Functional result{.value = mean > 0.0 ? deviation / mean : 0.0};
-  if (in.derivatives == Derivatives::All) {
+  element::Functional result{.value = mean > 0.0 ? deviation / mean : 0.0};
+  if (in.derivatives == element::Derivatives::All) {
     // An even distribution is a minimum without a derivative: as well none.
     const bool smooth = mean > 0.0 && deviation > 0.0;
     const double by_variance = smooth ? 0.5 / (deviation * mean) : 0.0;
@@ -194,8 +203,8 @@ Functional variation(const StressFunctionalInput& in, Measure measure) {
 
 }  // namespace
 
-Functional von_mises_norm_functional(const StressFunctionalInput& in,
-                                     double power) {
+element::Functional von_mises_norm_functional(const StressFunctionalInput& in,
+                                              double power) {
   if (!(power >= 1.0) || !std::isfinite(power)) {
     throw InvalidInput(fmt::format(
         "stress functional: the power of the norm is {}; it must be 1 or above",
@@ -205,8 +214,8 @@ Functional von_mises_norm_functional(const StressFunctionalInput& in,
   const double unit = s.largest > 0.0 ? s.largest : 1.0;
   const double mean =
       sample_mean(s, [&](double x) { return std::pow(x / unit, power); });
-  Functional result{.value = unit * std::pow(mean, 1.0 / power)};
-  if (in.derivatives == Derivatives::All) {
+  element::Functional result{.value = unit * std::pow(mean, 1.0 / power)};
+  if (in.derivatives == element::Derivatives::All) {
     const double factor =
         mean > 0.0 ? result.value / (power * mean * s.volume) : 0.0;
     differentiate(
@@ -221,8 +230,8 @@ Functional von_mises_norm_functional(const StressFunctionalInput& in,
   return result;
 }
 
-Functional von_mises_ks_functional(const StressFunctionalInput& in,
-                                   const KsOptions& options) {
+element::Functional von_mises_ks_functional(const StressFunctionalInput& in,
+                                            const KsOptions& options) {
   if (!(options.sharpness > 0.0) || !std::isfinite(options.sharpness) ||
       !(options.scale > 0.0) || !std::isfinite(options.scale)) {
     throw InvalidInput(fmt::format(
@@ -234,8 +243,8 @@ Functional von_mises_ks_functional(const StressFunctionalInput& in,
   const double k = options.sharpness / options.scale;
   const double mean =
       sample_mean(s, [&](double x) { return std::exp(k * (x - s.largest)); });
-  Functional result{.value = s.largest + std::log(mean) / k};
-  if (in.derivatives == Derivatives::All) {
+  element::Functional result{.value = s.largest + std::log(mean) / k};
+  if (in.derivatives == element::Derivatives::All) {
     differentiate(
         in, Measure::VonMises, s,
         [&](double x) -> Weight {
@@ -248,13 +257,14 @@ Functional von_mises_ks_functional(const StressFunctionalInput& in,
   return result;
 }
 
-Functional von_mises_variation_functional(const StressFunctionalInput& input) {
+element::Functional von_mises_variation_functional(
+    const StressFunctionalInput& input) {
   return variation(input, Measure::VonMises);
 }
 
-Functional energy_density_variation_functional(
+element::Functional energy_density_variation_functional(
     const StressFunctionalInput& input) {
   return variation(input, Measure::EnergyDensity);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

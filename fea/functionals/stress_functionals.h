@@ -12,23 +12,23 @@
 #include "fea/element/material.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 struct StressFunctionalInput {
   const TetMesh& mesh;
-  const std::vector<Material>& materials;
-  const LoadCase& load_case;  // for its temperature
+  const std::vector<element::Material>& materials;
+  const loads::LoadCase& load_case;  // for its temperature
   const VectorX& displacement;
   /// One char per element, 1 where it is left out (stress_uniformity.h's
   /// excluded_elements() at the base design); empty: all count.
   const std::vector<char>& excluded;
-  Derivatives derivatives = Derivatives::All;
+  element::Derivatives derivatives = element::Derivatives::All;
 };
 
 /// ((1/V) int s^p dV)^(1/p), s the von Mises stress [pressure]: between the
 /// mean and the peak, to the peak as p grows. p >= 1.
-Functional von_mises_norm_functional(const StressFunctionalInput& input,
-                                     double power);
+element::Functional von_mises_norm_functional(
+    const StressFunctionalInput& input, double power);
 
 /// (scale / k) ln((1/V) int exp(k s / scale) dV), s the von Mises stress:
 /// Kreisselmeier and Steinhauser's smooth maximum [pressure], by volume; from
@@ -37,13 +37,14 @@ struct KsOptions {
   double sharpness = 50.0;  // k > 0
   double scale = 1.0;       // > 0 [pressure]
 };
-Functional von_mises_ks_functional(const StressFunctionalInput& input,
-                                   const KsOptions& options);
+element::Functional von_mises_ks_functional(const StressFunctionalInput& input,
+                                            const KsOptions& options);
 
 /// Standard deviation over volume / mean: Uniformity's
 /// coefficient_of_variation (stress_uniformity.h) [1].
-Functional von_mises_variation_functional(const StressFunctionalInput& input);
-Functional energy_density_variation_functional(
+element::Functional von_mises_variation_functional(
+    const StressFunctionalInput& input);
+element::Functional energy_density_variation_functional(
     const StressFunctionalInput& input);
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "fea/element/face_points.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 namespace {
 
@@ -30,11 +30,11 @@ struct FaceCentre {
 
 /// Of the outer surface, ascending along x and then by face.
 std::vector<FaceCentre> outer_centres(const TetMesh& mesh) {
-  const FaceQuadrature plane(1, FaceRule::Seven);
+  const element::FaceQuadrature plane(1, element::FaceRule::Seven);
   std::vector<FaceCentre> centres;
   for (int f = 0; f < mesh.face_count(); ++f) {
     if (mesh.face_front.empty() || mesh.face_front[f] < 0) {
-      const FacePoint point = plane.at(mesh, f, kCentre);
+      const element::FacePoint point = plane.at(mesh, f, kCentre);
       centres.push_back({f, point.position, point.normal.normalized()});
     }
   }
@@ -90,7 +90,7 @@ struct Distance {
   Vec3 by_e, by_normal_a, by_normal_b;  // by the normals as they are
 };
 
-Distance distance_of(const FacePoint& a, const FacePoint& b) {
+Distance distance_of(const element::FacePoint& a, const element::FacePoint& b) {
   const Vec3 e = b.position - a.position;
   const Vec3 n_a = a.normal.normalized();
   const Vec3 n_b = b.normal.normalized();
@@ -133,13 +133,13 @@ ThicknessPairs thickness_pairs(const TetMesh& base) {
 
 ThinPlace thinnest_place(const TetMesh& mesh, const ThicknessPairs& pairs,
                          double limit) {
-  const FaceQuadrature plane(1, FaceRule::Seven);
+  const element::FaceQuadrature plane(1, element::FaceRule::Seven);
   ThinPlace result{.value = std::numeric_limits<double>::infinity()};
   double area = 0.0;
   double below = 0.0;
   for (const auto& [f, g] : pairs.faces) {
-    const FacePoint a = plane.at(mesh, f, kCentre);
-    const FacePoint b = plane.at(mesh, g, kCentre);
+    const element::FacePoint a = plane.at(mesh, f, kCentre);
+    const element::FacePoint b = plane.at(mesh, g, kCentre);
     const double value = distance_of(a, b).value;
     area += a.normal.norm();
     below += value < limit ? a.normal.norm() : 0.0;
@@ -152,15 +152,16 @@ ThinPlace thinnest_place(const TetMesh& mesh, const ThicknessPairs& pairs,
   return result;
 }
 
-Functional thickness_functional(const TetMesh& mesh,
-                                const ThicknessPairs& pairs, double sharpness,
-                                Derivatives derivatives) {
+element::Functional thickness_functional(const TetMesh& mesh,
+                                         const ThicknessPairs& pairs,
+                                         double sharpness,
+                                         element::Derivatives derivatives) {
   if (!(sharpness > 0.0) || !std::isfinite(sharpness) || pairs.faces.empty()) {
     throw InvalidInput(fmt::format(
         "thickness: sharpness {} over {} pairs of faces; both must be above 0",
         sharpness, pairs.faces.size()));
   }
-  const FaceQuadrature plane(1, FaceRule::Seven);
+  const element::FaceQuadrature plane(1, element::FaceRule::Seven);
   std::vector<Distance> distances;
   distances.reserve(pairs.faces.size());
   double least = std::numeric_limits<double>::infinity();
@@ -173,8 +174,8 @@ Functional thickness_functional(const TetMesh& mesh,
   for (const Distance& d : distances) {
     sum += std::exp(-sharpness * (d.value - least));
   }
-  Functional result{.value = least - std::log(sum) / sharpness};
-  if (derivatives == Derivatives::All) {
+  element::Functional result{.value = least - std::log(sum) / sharpness};
+  if (derivatives == element::Derivatives::All) {
     result.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
     for (std::size_t k = 0; k < distances.size(); ++k) {
       const Distance& d = distances[k];
@@ -189,4 +190,4 @@ Functional thickness_functional(const TetMesh& mesh,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

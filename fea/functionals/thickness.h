@@ -7,7 +7,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "fea/element/functional.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 /// Faces of the outer surface, each with the one across the solid from it: the
 /// one whose centre lies on the smallest ball that touches the face at its own
@@ -41,8 +41,8 @@ ThinPlace thinnest_place(const TetMesh& mesh, const ThicknessPairs& pairs,
 /// ln(pairs) / k; plates and wedges have it exactly, curved walls to second
 /// order. `sharpness` k > 0 [1/length]. Throws InvalidInput for a sharpness
 /// that is not positive.
-Functional thickness_functional(const TetMesh& mesh,
-                                const ThicknessPairs& pairs, double sharpness,
-                                Derivatives derivatives = Derivatives::All);
+element::Functional thickness_functional(
+    const TetMesh& mesh, const ThicknessPairs& pairs, double sharpness,
+    element::Derivatives derivatives = element::Derivatives::All);
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

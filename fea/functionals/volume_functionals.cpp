@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "fea/element/element_sweep.h"
 
-namespace meniscus {
+namespace meniscus::functionals {
 
 namespace {
 
@@ -20,15 +20,17 @@ struct RegionSums {
 /// The moments only with a direction.
 template <int Nodes>
 RegionSums region_sums(const TetMesh& mesh, std::size_t regions,
-                       const TetRule<Nodes>& rule, const Vec3& direction) {
+                       const element::TetRule<Nodes>& rule,
+                       const Vec3& direction) {
   RegionSums sums{std::vector<double>(regions, 0.0),
                   std::vector<double>(regions, 0.0)};
   const auto count = static_cast<std::size_t>(mesh.element_count());
   std::vector<double> volume(count, 0.0);
   std::vector<double> moment(count, 0.0);
-  const SweepTargets<0, 0> targets{};
-  sweep_elements(
-      mesh, rule, targets, [&](const SweepPoint<0>& point, SweepFlux<0>&) {
+  const element::SweepTargets<0, 0> targets{};
+  element::sweep_elements(
+      mesh, rule, targets,
+      [&](const element::SweepPoint<0>& point, element::SweepFlux<0>&) {
         volume[point.element] += point.volume;
         for (std::size_t a = 0; a < point.shape.size(); ++a) {
           moment[point.element] += point.volume * point.shape[a] *
@@ -45,13 +47,14 @@ RegionSums region_sums(const TetMesh& mesh, std::size_t regions,
 /// Gradient of sum over regions of factor V + (direction times moment_factor)
 /// . int x dV.
 template <int Nodes>
-Points gradient_of(const TetMesh& mesh, const TetRule<Nodes>& rule,
+Points gradient_of(const TetMesh& mesh, const element::TetRule<Nodes>& rule,
                    const std::vector<double>& factor, const Vec3& direction,
                    const std::vector<double>& moment_factor) {
-  VectorX sum = nodal_zeros(mesh);
-  const SweepTargets<0, 1> targets{.fields = {}, .outputs = {&sum}};
-  sweep_elements(
-      mesh, rule, targets, [&](const SweepPoint<0>& point, SweepFlux<1>& flux) {
+  VectorX sum = element::nodal_zeros(mesh);
+  const element::SweepTargets<0, 1> targets{.fields = {}, .outputs = {&sum}};
+  element::sweep_elements(
+      mesh, rule, targets,
+      [&](const element::SweepPoint<0>& point, element::SweepFlux<1>& flux) {
         const int region = mesh.element_region[point.element];
         double density = factor[region];
         if (moment_factor[region] != 0.0) {
@@ -63,23 +66,25 @@ Points gradient_of(const TetMesh& mesh, const TetRule<Nodes>& rule,
         }
         flux.by_gradient[0] = point.volume * density * Mat3::Identity();
       });
-  return as_points(sum);
+  return element::as_points(sum);
 }
 
 template <class Visit>
 auto with_volume_rule(const TetMesh& mesh, const Visit& visit) {
-  return mesh.order == 1 ? visit(volume_rule<4>()) : visit(volume_rule<10>());
+  return mesh.order == 1 ? visit(element::volume_rule<4>())
+                         : visit(element::volume_rule<10>());
 }
 
 template <class Visit>
 auto with_moment_rule(const TetMesh& mesh, const Visit& visit) {
-  return mesh.order == 1 ? visit(moment_rule<4>()) : visit(moment_rule<10>());
+  return mesh.order == 1 ? visit(element::moment_rule<4>())
+                         : visit(element::moment_rule<10>());
 }
 
 /// sum over regions of density times volume.
 MassFunctional weighted_volume(const TetMesh& mesh,
                                const std::vector<double>& density,
-                               Derivatives derivatives) {
+                               element::Derivatives derivatives) {
   MassFunctional result;
   result.by_density = with_volume_rule(mesh, [&](const auto& rule) {
     return region_sums(mesh, density.size(), rule, Vec3::Zero()).volume;
@@ -87,7 +92,7 @@ MassFunctional weighted_volume(const TetMesh& mesh,
   for (std::size_t r = 0; r < density.size(); ++r) {
     result.value += density[r] * result.by_density[r];
   }
-  if (derivatives == Derivatives::All) {
+  if (derivatives == element::Derivatives::All) {
     result.by_nodes = with_volume_rule(mesh, [&](const auto& rule) {
       return gradient_of(mesh, rule, density, Vec3::Zero(),
                          std::vector<double>(density.size(), 0.0));
@@ -97,11 +102,11 @@ MassFunctional weighted_volume(const TetMesh& mesh,
 }
 
 std::vector<double> densities(const TetMesh& mesh,
-                              const std::vector<Material>& materials) {
-  check_materials(mesh, materials);
+                              const std::vector<element::Material>& materials) {
+  element::check_materials(mesh, materials);
   std::vector<double> density;
   density.reserve(materials.size());
-  for (const Material& material : materials) {
+  for (const element::Material& material : materials) {
     density.push_back(material.density);
   }
   return density;
@@ -109,7 +114,8 @@ std::vector<double> densities(const TetMesh& mesh,
 
 }  // namespace
 
-Functional volume_functional(const TetMesh& mesh, Derivatives derivatives) {
+element::Functional volume_functional(const TetMesh& mesh,
+                                      element::Derivatives derivatives) {
   int regions = 0;
   for (const int region : mesh.element_region) {
     regions = std::max(regions, region + 1);
@@ -118,15 +124,14 @@ Functional volume_functional(const TetMesh& mesh, Derivatives derivatives) {
 }
 
 MassFunctional mass_functional(const TetMesh& mesh,
-                               const std::vector<Material>& materials,
-                               Derivatives derivatives) {
+                               const std::vector<element::Material>& materials,
+                               element::Derivatives derivatives) {
   return weighted_volume(mesh, densities(mesh, materials), derivatives);
 }
 
-MassFunctional centre_of_mass_functional(const TetMesh& mesh,
-                                         const std::vector<Material>& materials,
-                                         const Vec3& direction,
-                                         Derivatives derivatives) {
+MassFunctional centre_of_mass_functional(
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const Vec3& direction, element::Derivatives derivatives) {
   const std::vector<double> density = densities(mesh, materials);
   const RegionSums sums = with_moment_rule(mesh, [&](const auto& rule) {
     return region_sums(mesh, density.size(), rule, direction);
@@ -156,7 +161,7 @@ MassFunctional centre_of_mass_functional(const TetMesh& mesh,
     factor.push_back(-result.value * density[r] / mass);
     moment_factor.push_back(density[r] / mass);
   }
-  if (derivatives == Derivatives::All) {
+  if (derivatives == element::Derivatives::All) {
     result.by_nodes = with_moment_rule(mesh, [&](const auto& rule) {
       return gradient_of(mesh, rule, factor, direction, moment_factor);
     });
@@ -164,4 +169,4 @@ MassFunctional centre_of_mass_functional(const TetMesh& mesh,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::functionals

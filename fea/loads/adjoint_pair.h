@@ -3,7 +3,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 /// A displacement and an adjoint of one load case, 3 numbers per node each; not
 /// owned. Reactions as ElasticSolution and AdjointSolution hand them out; they
@@ -15,4 +15,4 @@ struct AdjointPair {
   const VectorX& adjoint_reactions;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

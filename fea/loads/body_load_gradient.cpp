@@ -5,12 +5,12 @@
 #include "fea/loads/body_loads.h"
 #include "fea/loads/load_checks.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 namespace {
 
 template <std::size_t Fields>
-Vec3 field_at(const SweepPoint<Fields>& point, const VectorX& field) {
+Vec3 field_at(const element::SweepPoint<Fields>& point, const VectorX& field) {
   Vec3 value = Vec3::Zero();
   for (std::size_t a = 0; a < point.shape.size(); ++a) {
     value += point.shape[a] * field.segment<3>(3L * point.nodes[a]);
@@ -20,7 +20,7 @@ Vec3 field_at(const SweepPoint<Fields>& point, const VectorX& field) {
 
 /// v . density (gravity + rate^2 r).
 void add_weight_by_nodes(const TetMesh& mesh,
-                         const std::vector<Material>& materials,
+                         const std::vector<element::Material>& materials,
                          const LoadCase& load_case, const VectorX& v,
                          VectorX& sum) {
   const bool spins = load_case.spin && load_case.spin->rate != 0.0;
@@ -37,9 +37,10 @@ void add_weight_by_nodes(const TetMesh& mesh,
         spin.rate * spin.rate * (Mat3::Identity() - axis * axis.transpose());
     centre = spin.point;
   }
-  const SweepTargets<0, 1> targets{.fields = {}, .outputs = {&sum}};
-  sweep_stiffness_points(
-      mesh, targets, [&](const SweepPoint<0>& point, SweepFlux<1>& flux) {
+  const element::SweepTargets<0, 1> targets{.fields = {}, .outputs = {&sum}};
+  element::sweep_stiffness_points(
+      mesh, targets,
+      [&](const element::SweepPoint<0>& point, element::SweepFlux<1>& flux) {
         Vec3 r = -centre;
         for (std::size_t a = 0; spins && a < point.shape.size(); ++a) {
           r += point.shape[a] * mesh.nodes[point.nodes[a]];
@@ -55,19 +56,21 @@ void add_weight_by_nodes(const TetMesh& mesh,
 }
 
 /// (C expansion change) : gradient of v.
-void add_expansion(const TetMesh& mesh, const std::vector<Material>& materials,
+void add_expansion(const TetMesh& mesh,
+                   const std::vector<element::Material>& materials,
                    const LoadCase& load_case, const VectorX& v, VectorX& sum,
                    VectorX& by_temperature) {
   const VectorX change = temperature_change(mesh, load_case);
   std::vector<Mat3> stress;
   stress.reserve(materials.size());
-  for (const ElasticLaw& law : elastic_laws(materials)) {
-    stress.push_back(stress_tensor(law.heat_stress));
+  for (const element::ElasticLaw& law : element::elastic_laws(materials)) {
+    stress.push_back(element::stress_tensor(law.heat_stress));
   }
-  const SweepTargets<1, 1> targets{
+  const element::SweepTargets<1, 1> targets{
       .fields = {&v}, .outputs = {&sum}, .scalar = &by_temperature};
-  sweep_stiffness_points(
-      mesh, targets, [&](const SweepPoint<1>& point, SweepFlux<1>& flux) {
+  element::sweep_stiffness_points(
+      mesh, targets,
+      [&](const element::SweepPoint<1>& point, element::SweepFlux<1>& flux) {
         double degrees = 0.0;
         for (std::size_t a = 0; a < point.shape.size(); ++a) {
           degrees += point.shape[a] * change[point.nodes[a]];
@@ -102,11 +105,11 @@ void add_temperature_slope(const TetMesh& mesh, const LoadCase& load_case,
 }
 
 void add_body_load_gradient(const TetMesh& mesh,
-                            const std::vector<Material>& materials,
+                            const std::vector<element::Material>& materials,
                             const LoadCase& load_case, const VectorX& v,
                             Points& gradient) {
-  check_materials(mesh, materials);
-  VectorX sum = nodal_zeros(mesh);
+  element::check_materials(mesh, materials);
+  VectorX sum = element::nodal_zeros(mesh);
   add_weight_by_nodes(mesh, materials, load_case, v, sum);
   if (load_case.temperature) {
     require_temperature_slope(load_case);
@@ -118,4 +121,4 @@ void add_body_load_gradient(const TetMesh& mesh,
   flat(gradient) += sum;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

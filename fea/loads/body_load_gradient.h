@@ -7,12 +7,12 @@
 #include "fea/element/material.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 /// Adds the gradient of v . f, f the nodal forces of gravity, spin and
 /// expansion. Throws as nodal_forces(), and for a temperature without a slope.
 void add_body_load_gradient(const TetMesh& mesh,
-                            const std::vector<Material>& materials,
+                            const std::vector<element::Material>& materials,
                             const LoadCase& load_case, const VectorX& v,
                             Points& gradient);
 
@@ -24,4 +24,4 @@ void require_temperature_slope(const LoadCase& load_case);
 void add_temperature_slope(const TetMesh& mesh, const LoadCase& load_case,
                            const VectorX& by_temperature, Points& gradient);
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

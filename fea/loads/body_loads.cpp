@@ -11,7 +11,7 @@
 #include "fea/element/tet_shape.h"
 #include "fea/loads/load_checks.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 namespace {
 
@@ -19,19 +19,19 @@ namespace {
 /// of the stiffness rule.
 template <int Nodes, class Visit>
 void visit_points(const TetMesh& mesh, const Visit& visit) {
-  std::array<std::array<double, Nodes>, kTetPoints<Nodes>> shapes;
-  for (int q = 0; q < kTetPoints<Nodes>; ++q) {
-    shapes[q] = tet_shapes<Nodes>(rule_point<Nodes>(q));
+  std::array<std::array<double, Nodes>, element::kTetPoints<Nodes>> shapes;
+  for (int q = 0; q < element::kTetPoints<Nodes>; ++q) {
+    shapes[q] = element::tet_shapes<Nodes>(element::rule_point<Nodes>(q));
   }
   std::array<Vec3, Nodes> x;
-  TetGradients<Nodes> g;
+  element::TetGradients<Nodes> g;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const auto ids = mesh.element(e);
     for (int a = 0; a < Nodes; ++a) {
       x[a] = mesh.nodes[ids[a]];
     }
-    tet_gradients<Nodes>(x, g);
-    for (int q = 0; q < kTetPoints<Nodes>; ++q) {
+    element::tet_gradients<Nodes>(x, g);
+    for (int q = 0; q < element::kTetPoints<Nodes>; ++q) {
       visit(e, g.volume[q], shapes[q], g.gradient[q]);
     }
   }
@@ -47,8 +47,8 @@ void over_points(const TetMesh& mesh, const Visit& visit) {
 }
 
 /// The materials that fill some element.
-std::vector<char> used_regions(const TetMesh& mesh,
-                               const std::vector<Material>& materials) {
+std::vector<char> used_regions(
+    const TetMesh& mesh, const std::vector<element::Material>& materials) {
   std::vector<char> used(materials.size(), 0);
   for (const int region : mesh.element_region) {
     used[region] = 1;
@@ -70,8 +70,8 @@ Vec3 checked_axis(const LoadCase& load_case) {
 }
 
 void check_densities(const TetMesh& mesh, const LoadCase& load_case,
-                     const std::vector<Material>& materials) {
-  check_materials(mesh, materials);
+                     const std::vector<element::Material>& materials) {
+  element::check_materials(mesh, materials);
   const std::vector<char> used = used_regions(mesh, materials);
   for (std::size_t r = 0; r < materials.size(); ++r) {
     if (used[r] != 0 && materials[r].density == 0.0) {
@@ -86,7 +86,8 @@ void check_densities(const TetMesh& mesh, const LoadCase& load_case,
 }  // namespace
 
 void add_body_forces(const TetMesh& mesh, const LoadCase& load_case,
-                     const std::vector<Material>& materials, VectorX& f) {
+                     const std::vector<element::Material>& materials,
+                     VectorX& f) {
   require_finite(load_case.gravity, load_case, "gravity");
   const bool spins = load_case.spin && load_case.spin->rate != 0.0;
   const Vec3 axis = load_case.spin ? checked_axis(load_case) : Vec3::Zero();
@@ -135,17 +136,19 @@ VectorX temperature_change(const TetMesh& mesh, const LoadCase& load_case) {
 }
 
 void add_thermal_forces(const TetMesh& mesh, const LoadCase& load_case,
-                        const std::vector<Material>& materials, VectorX& f) {
+                        const std::vector<element::Material>& materials,
+                        VectorX& f) {
   const VectorX change = temperature_change(mesh, load_case);
   if (change.size() == 0 || change.isZero(0.0)) {
     return;
   }
-  check_materials(mesh, materials);
+  element::check_materials(mesh, materials);
   const std::vector<char> used = used_regions(mesh, materials);
   bool expands = false;
   std::vector<Mat3> stress;
   for (std::size_t r = 0; r < materials.size(); ++r) {
-    stress.push_back(stress_tensor(elastic_law(materials[r]).heat_stress));
+    stress.push_back(
+        element::stress_tensor(element::elastic_law(materials[r]).heat_stress));
     expands = expands || (used[r] != 0 && !stress.back().isZero(0.0));
   }
   if (!expands) {
@@ -169,22 +172,24 @@ void add_thermal_forces(const TetMesh& mesh, const LoadCase& load_case,
 }
 
 double strain_energy(const TetMesh& mesh,
-                     const std::vector<Material>& materials,
+                     const std::vector<element::Material>& materials,
                      const VectorX& displacement,
                      const VectorX& temperature_change) {
-  const PointStress points =
-      point_stress(mesh, materials, displacement, temperature_change);
-  const std::vector<ElasticLaw> laws = elastic_laws(materials);
+  const element::PointStress points =
+      element::point_stress(mesh, materials, displacement, temperature_change);
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws(materials);
   double energy = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const ElasticLaw& law = laws[mesh.element_region[e]];
+    const element::ElasticLaw& law = laws[mesh.element_region[e]];
     for (int q = 0; q < points.points_per_element; ++q) {
       const std::size_t at = points.index(e, q);
-      const Stress& s = points.stress[at];
-      energy += 0.5 * points.volume[at] * complementary_product(s, s, law);
+      const element::Stress& s = points.stress[at];
+      energy +=
+          0.5 * points.volume[at] * element::complementary_product(s, s, law);
     }
   }
   return energy;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

@@ -9,7 +9,7 @@
 #include "core/types.h"
 #include "fea/element/local_axes.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 /// Values at places [length]. They may throw ExpressionError; what is not
 /// finite is refused with the place.
@@ -36,7 +36,8 @@ struct Support {
   std::string surface;
   bool fix_x = false, fix_y = false, fix_z = false;  // of Components
   SupportKind kind = SupportKind::Components;
-  std::optional<LocalAxes> axes;  // x, y, z of Components are along these
+  std::optional<element::LocalAxes>
+      axes;  // x, y, z of Components are along these
 
   bool operator==(const Support&) const = default;
 };
@@ -52,7 +53,7 @@ struct SpringBed {
                         // per area, [force/length] in total
   double normal = 0.0;  // along the surface's normal; the same
   SpringMeasure measure = SpringMeasure::PerArea;
-  std::optional<LocalAxes> axes;
+  std::optional<element::LocalAxes> axes;
 
   bool operator==(const SpringBed&) const = default;
 };
@@ -119,4 +120,4 @@ struct LoadCase {
   VectorX nodal;  // forces at nodes, 3 per node; empty: none [force]
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

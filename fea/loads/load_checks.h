@@ -10,7 +10,7 @@
 #include "core/math/expression.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 inline bool is_finite(double value) { return std::isfinite(value); }
 inline bool is_finite(const Vec3& value) { return value.allFinite(); }
@@ -61,4 +61,4 @@ void require_slope(const Field& slope, const LoadCase& load_case,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

@@ -11,7 +11,7 @@
 #include "fea/loads/load_checks.h"
 #include "fea/loads/remote_load.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 namespace {
 
@@ -21,17 +21,18 @@ std::string named(const char* what, const std::string& surface) {
 
 /// Adds traction(point) [force per area, times the point's area] to f.
 template <class Traction>
-void spread(const TetMesh& mesh, const std::string& surface, FaceRule rule,
-            const Traction& traction, VectorX& f) {
+void spread(const TetMesh& mesh, const std::string& surface,
+            element::FaceRule rule, const Traction& traction, VectorX& f) {
   surface_weights(mesh, surface);  // refuses a surface without area
-  over_face_points(mesh, surface_label(mesh, surface), rule,
-                   [&](int face, const FacePoint& point) {
-                     const Vec3 force = traction(point);
-                     const auto ids = mesh.face(face);
-                     for (std::size_t a = 0; a < ids.size(); ++a) {
-                       f.segment<3>(3L * ids[a]) += point.shape[a] * force;
-                     }
-                   });
+  element::over_face_points(mesh, element::surface_label(mesh, surface), rule,
+                            [&](int face, const element::FacePoint& point) {
+                              const Vec3 force = traction(point);
+                              const auto ids = mesh.face(face);
+                              for (std::size_t a = 0; a < ids.size(); ++a) {
+                                f.segment<3>(3L * ids[a]) +=
+                                    point.shape[a] * force;
+                              }
+                            });
 }
 
 void add_force(const TetMesh& mesh, const LoadCase& load_case,
@@ -51,15 +52,15 @@ void add_pressure(const TetMesh& mesh, const LoadCase& load_case,
   if (!load.field) {
     require_finite(load.pressure, load_case, what);
     return spread(
-        mesh, load.surface, FaceRule::Three,
-        [&](const FacePoint& point) -> Vec3 {
+        mesh, load.surface, element::FaceRule::Three,
+        [&](const element::FacePoint& point) -> Vec3 {
           return -load.pressure * point.normal;
         },
         f);
   }
   spread(
-      mesh, load.surface, FaceRule::Seven,
-      [&](const FacePoint& point) -> Vec3 {
+      mesh, load.surface, element::FaceRule::Seven,
+      [&](const element::FacePoint& point) -> Vec3 {
         return -field_value(load.field, point.position, load_case, what) *
                point.normal;
       },
@@ -72,15 +73,15 @@ void add_traction(const TetMesh& mesh, const LoadCase& load_case,
   if (!load.field) {
     require_finite(load.traction, load_case, what);
     return spread(
-        mesh, load.surface, FaceRule::Three,
-        [&](const FacePoint& point) -> Vec3 {
+        mesh, load.surface, element::FaceRule::Three,
+        [&](const element::FacePoint& point) -> Vec3 {
           return point.normal.norm() * load.traction;
         },
         f);
   }
   spread(
-      mesh, load.surface, FaceRule::Seven,
-      [&](const FacePoint& point) -> Vec3 {
+      mesh, load.surface, element::FaceRule::Seven,
+      [&](const element::FacePoint& point) -> Vec3 {
         return point.normal.norm() *
                field_value(load.field, point.position, load_case, what);
       },
@@ -104,18 +105,18 @@ void add_remote(const TetMesh& mesh, const LoadCase& load_case,
 
 SurfaceWeights surface_weights(const TetMesh& mesh,
                                const std::string& surface) {
-  const int label = surface_label(mesh, surface);
+  const int label = element::surface_label(mesh, surface);
   SurfaceWeights result;
-  result.nodes = surface_nodes(mesh, label);
+  result.nodes = element::surface_nodes(mesh, label);
   VectorX all = VectorX::Zero(static_cast<Eigen::Index>(mesh.nodes.size()));
-  over_face_points(mesh, label, FaceRule::Three,
-                   [&](int face, const FacePoint& point) {
-                     const double area = point.normal.norm();
-                     const auto ids = mesh.face(face);
-                     for (std::size_t a = 0; a < ids.size(); ++a) {
-                       all[ids[a]] += point.shape[a] * area;
-                     }
-                   });
+  element::over_face_points(mesh, label, element::FaceRule::Three,
+                            [&](int face, const element::FacePoint& point) {
+                              const double area = point.normal.norm();
+                              const auto ids = mesh.face(face);
+                              for (std::size_t a = 0; a < ids.size(); ++a) {
+                                all[ids[a]] += point.shape[a] * area;
+                              }
+                            });
   result.weights.resize(static_cast<Eigen::Index>(result.nodes.size()));
   for (std::size_t k = 0; k < result.nodes.size(); ++k) {
     result.weights[static_cast<Eigen::Index>(k)] = all[result.nodes[k]];
@@ -129,7 +130,7 @@ SurfaceWeights surface_weights(const TetMesh& mesh,
 }
 
 VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case,
-                     const std::vector<Material>& materials) {
+                     const std::vector<element::Material>& materials) {
   VectorX f = VectorX::Zero(static_cast<Eigen::Index>(3 * mesh.nodes.size()));
   if (load_case.nodal.size() != 0) {
     if (load_case.nodal.size() != f.size() || !load_case.nodal.allFinite()) {
@@ -180,4 +181,4 @@ double mean_displacement(const TetMesh& mesh, const std::string& surface,
   return sum / (w.weights.sum() * length);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

@@ -8,7 +8,7 @@
 #include "fea/element/material.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 /// Consistent weights of a surface: integral of each node's shape function
 /// over it, by the three-point rule (CalculiX's own for C3D10) [length^2].
@@ -28,11 +28,11 @@ SurfaceWeights surface_weights(const TetMesh& mesh, const std::string& surface);
 /// without area, numbers that are not finite, a material that is missing, has
 /// no density under gravity or spin, or no expansion under a temperature.
 VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case,
-                     const std::vector<Material>& materials = {});
+                     const std::vector<element::Material>& materials = {});
 
 /// Area-weighted mean displacement of a surface along `direction` (made unit)
 /// [length]. `displacement`: 3 per node.
 double mean_displacement(const TetMesh& mesh, const std::string& surface,
                          const Vec3& direction, const VectorX& displacement);
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

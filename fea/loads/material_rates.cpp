@@ -9,27 +9,28 @@
 #include "fea/element/element_sweep.h"
 #include "fea/loads/body_loads.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 namespace {
 
 /// What a region's law becomes by each constant.
 struct LawRates {
-  ElasticLaw law;
+  element::ElasticLaw law;
   Mat3 expansion = Mat3::Zero();   // strain per degree
   Mat3 per_degree = Mat3::Zero();  // stress of a unit expansion in all three
   double modulus = 1.0;
-  Lame by_poisson{0.0, 0.0};
+  element::Lame by_poisson{0.0, 0.0};
 };
 
-std::vector<LawRates> law_rates(const std::vector<Material>& materials) {
+std::vector<LawRates> law_rates(
+    const std::vector<element::Material>& materials) {
   std::vector<LawRates> rates;
   rates.reserve(materials.size());
-  for (const Material& material : materials) {
-    LawRates r{.law = elastic_law(material)};
-    Vec6 strain = r.law.expansion;
+  for (const element::Material& material : materials) {
+    LawRates r{.law = element::elastic_law(material)};
+    element::Vec6 strain = r.law.expansion;
     strain.tail<3>() *= 0.5;
-    r.expansion = stress_tensor(strain);
+    r.expansion = element::stress_tensor(strain);
     r.per_degree = r.law.stress(Mat3::Identity());
     if (!material.orthotropic) {
       const double E = material.youngs_modulus;
@@ -69,7 +70,7 @@ void check_size(const TetMesh& mesh, const VectorX& v) {
 }
 
 LawParts point_parts(const TetMesh& mesh, const LoadCase& load_case,
-                     const LawRates& r, const SweepPoint<2>& point,
+                     const LawRates& r, const element::SweepPoint<2>& point,
                      const VectorX& lambda, const VectorX& change) {
   Vec3 x = Vec3::Zero();
   Vec3 here = Vec3::Zero();
@@ -95,20 +96,19 @@ LawParts point_parts(const TetMesh& mesh, const LoadCase& load_case,
 
 }  // namespace
 
-MaterialGradient material_gradient(const TetMesh& mesh,
-                                   const std::vector<Material>& materials,
-                                   const LoadCase& load_case, const VectorX& u,
-                                   const VectorX& lambda) {
-  check_materials(mesh, materials);
+MaterialGradient material_gradient(
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const LoadCase& load_case, const VectorX& u, const VectorX& lambda) {
+  element::check_materials(mesh, materials);
   check_size(mesh, u);
   check_size(mesh, lambda);
   const VectorX change = temperature_change(mesh, load_case);
   const std::vector<LawRates> rates = law_rates(materials);
   std::vector<LawParts> parts(static_cast<std::size_t>(mesh.element_count()),
                               LawParts{});
-  sweep_stiffness_points(
-      mesh, SweepTargets<2, 0>{.fields = {&u, &lambda}, .outputs = {}},
-      [&](const SweepPoint<2>& point, SweepFlux<0>&) {
+  element::sweep_stiffness_points(
+      mesh, element::SweepTargets<2, 0>{.fields = {&u, &lambda}, .outputs = {}},
+      [&](const element::SweepPoint<2>& point, element::SweepFlux<0>&) {
         const LawParts here = point_parts(
             mesh, load_case, rates[mesh.element_region[point.element]], point,
             lambda, change);
@@ -128,4 +128,4 @@ MaterialGradient material_gradient(const TetMesh& mesh,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

@@ -7,7 +7,7 @@
 #include "fea/element/material.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 /// Of lambda . (f - K u) at fixed mesh, u and lambda. An ElasticModel keeps its
 /// base's materials: these are for designs that change those.
@@ -21,9 +21,8 @@ struct MaterialGradient {
 
 /// u, lambda: 3 per node. Throws InvalidInput: check_materials(), a
 /// temperature that is not finite, sizes that do not fit.
-MaterialGradient material_gradient(const TetMesh& mesh,
-                                   const std::vector<Material>& materials,
-                                   const LoadCase& load_case, const VectorX& u,
-                                   const VectorX& lambda);
+MaterialGradient material_gradient(
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const LoadCase& load_case, const VectorX& u, const VectorX& lambda);
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

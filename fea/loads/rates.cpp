@@ -11,7 +11,7 @@
 #include "fea/loads/loads.h"
 #include "fea/loads/remote_gradient.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 namespace {
 
@@ -35,34 +35,36 @@ void add_surface_loads(const TetMesh& mesh, const LoadCase& load_case,
   for (const SurfacePressure& load : load_case.pressures) {
     SurfacePressure by{.surface = load.surface};
     LoadGradient::NumberField field;
-    over_face_points(mesh, surface_label(mesh, load.surface),
-                     load.field ? FaceRule::Seven : FaceRule::Three,
-                     [&](int f, const FacePoint& point) {
-                       const double weight =
-                           -point.normal.dot(value_at(mesh, f, point, v));
-                       by.pressure += weight;
-                       if (load.field) {
-                         field.places.push_back(point.position);
-                         field.weights.push_back(weight);
-                       }
-                     });
+    element::over_face_points(
+        mesh, element::surface_label(mesh, load.surface),
+        load.field ? element::FaceRule::Seven : element::FaceRule::Three,
+        [&](int f, const element::FacePoint& point) {
+          const double weight =
+              -point.normal.dot(element::value_at(mesh, f, point, v));
+          by.pressure += weight;
+          if (load.field) {
+            field.places.push_back(point.position);
+            field.weights.push_back(weight);
+          }
+        });
     out.by_number.pressures.push_back(by);
     out.pressures.push_back(std::move(field));
   }
   for (const SurfaceTraction& load : load_case.tractions) {
     SurfaceTraction by{.surface = load.surface};
     LoadGradient::VectorField field;
-    over_face_points(mesh, surface_label(mesh, load.surface),
-                     load.field ? FaceRule::Seven : FaceRule::Three,
-                     [&](int f, const FacePoint& point) {
-                       const Vec3 weight =
-                           point.normal.norm() * value_at(mesh, f, point, v);
-                       by.traction += weight;
-                       if (load.field) {
-                         field.places.push_back(point.position);
-                         field.weights.push_back(weight);
-                       }
-                     });
+    element::over_face_points(
+        mesh, element::surface_label(mesh, load.surface),
+        load.field ? element::FaceRule::Seven : element::FaceRule::Three,
+        [&](int f, const element::FacePoint& point) {
+          const Vec3 weight =
+              point.normal.norm() * element::value_at(mesh, f, point, v);
+          by.traction += weight;
+          if (load.field) {
+            field.places.push_back(point.position);
+            field.weights.push_back(weight);
+          }
+        });
     out.by_number.tractions.push_back(by);
     out.tractions.push_back(std::move(field));
   }
@@ -80,12 +82,12 @@ struct MassMoments {
 };
 
 MassMoments mass_moments(const TetMesh& mesh,
-                         const std::vector<Material>& materials,
+                         const std::vector<element::Material>& materials,
                          const VectorX& v) {
   std::vector<MassMoments> part(static_cast<std::size_t>(mesh.element_count()));
-  sweep_stiffness_points(
-      mesh, SweepTargets<0, 0>{},
-      [&](const SweepPoint<0>& point, SweepFlux<0>&) {
+  element::sweep_stiffness_points(
+      mesh, element::SweepTargets<0, 0>{},
+      [&](const element::SweepPoint<0>& point, element::SweepFlux<0>&) {
         Vec3 x = Vec3::Zero();
         Vec3 here = Vec3::Zero();
         for (std::size_t a = 0; a < point.shape.size(); ++a) {
@@ -109,7 +111,7 @@ MassMoments mass_moments(const TetMesh& mesh,
 /// With T = sum mass r v^T, r from the axis' point, and the unit axis a:
 /// v . f = gravity . sum mass v + rate^2 (tr T - a . T a).
 void add_weight_rates(const TetMesh& mesh,
-                      const std::vector<Material>& materials,
+                      const std::vector<element::Material>& materials,
                       const LoadCase& load_case, const VectorX& v,
                       LoadGradient& out) {
   const MassMoments moments = mass_moments(mesh, materials, v);
@@ -129,20 +131,21 @@ void add_weight_rates(const TetMesh& mesh,
 }
 
 void add_temperature(const TetMesh& mesh,
-                     const std::vector<Material>& materials,
+                     const std::vector<element::Material>& materials,
                      const LoadCase& load_case, const VectorX& v,
                      LoadGradient& out) {
   std::vector<Mat3> stress;
   stress.reserve(materials.size());
-  for (const ElasticLaw& law : elastic_laws(materials)) {
-    stress.push_back(stress_tensor(law.heat_stress));
+  for (const element::ElasticLaw& law : element::elastic_laws(materials)) {
+    stress.push_back(element::stress_tensor(law.heat_stress));
   }
-  VectorX unused = nodal_zeros(mesh);
+  VectorX unused = element::nodal_zeros(mesh);
   VectorX by_node = VectorX::Zero(static_cast<Eigen::Index>(mesh.nodes.size()));
-  const SweepTargets<1, 1> targets{
+  const element::SweepTargets<1, 1> targets{
       .fields = {&v}, .outputs = {&unused}, .scalar = &by_node};
-  sweep_stiffness_points(
-      mesh, targets, [&](const SweepPoint<1>& point, SweepFlux<1>& flux) {
+  element::sweep_stiffness_points(
+      mesh, targets,
+      [&](const element::SweepPoint<1>& point, element::SweepFlux<1>& flux) {
         flux.by_scalar =
             point.volume * stress[mesh.element_region[point.element]]
                                .cwiseProduct(point.gradient[0])
@@ -237,9 +240,9 @@ double temperature_rate(const LoadGradient& gradient, const LoadCase& rates) {
 }  // namespace
 
 LoadGradient load_gradient(const TetMesh& mesh,
-                           const std::vector<Material>& materials,
+                           const std::vector<element::Material>& materials,
                            const LoadCase& load_case, const VectorX& v) {
-  check_materials(mesh, materials);
+  element::check_materials(mesh, materials);
   if (v.size() != static_cast<Eigen::Index>(3 * mesh.nodes.size())) {
     throw InvalidInput(
         fmt::format("load case '{}': a vector of {} numbers for {} nodes",
@@ -307,4 +310,4 @@ double load_rate(const LoadGradient& gradient, const LoadCase& rates) {
   return sum;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

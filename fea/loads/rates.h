@@ -7,7 +7,7 @@
 #include "fea/element/material.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 /// d(v . f) by each number of a load case at fixed mesh and v, once for any
 /// number of design variables: a load case whose numbers are the derivatives
@@ -29,7 +29,7 @@ struct LoadGradient {
 
 /// `v`: 3 per node; an adjoint, say. Throws as nodal_forces().
 LoadGradient load_gradient(const TetMesh& mesh,
-                           const std::vector<Material>& materials,
+                           const std::vector<element::Material>& materials,
                            const LoadCase& load_case, const VectorX& v);
 
 /// Adds a functional's derivative by the nodes' temperatures (functional.h's
@@ -45,4 +45,4 @@ void add_temperature_gradient(const TetMesh& mesh, const LoadCase& load_case,
 /// loads differ in count, or a field stands for a number's rate.
 double load_rate(const LoadGradient& gradient, const LoadCase& rates);
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

@@ -6,7 +6,7 @@
 #include "fea/element/surface_faces.h"
 #include "fea/loads/remote_load.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 namespace {
 
@@ -26,9 +26,11 @@ Vec3 at(const VectorX& v, int node) { return v.segment<3>(3L * node); }
 /// Through the weights, each the integral of a shape function.
 void pull_back_weights(const TetMesh& mesh, const RemoteLoad& load,
                        const VectorX& by_weight, Points& gradient) {
-  pull_back_faces(
-      mesh, surface_label(mesh, load.surface), FaceRule::Three,
-      [&](int f, const FacePoint& point) -> FacePointGradient {
+  element::pull_back_faces(
+      mesh, element::surface_label(mesh, load.surface),
+      element::FaceRule::Three,
+      [&](int f,
+          const element::FacePoint& point) -> element::FacePointGradient {
         double sum = 0.0;
         const auto ids = mesh.face(f);
         for (std::size_t a = 0; a < ids.size(); ++a) {
@@ -91,4 +93,4 @@ RemoteGradient remote_gradient(const TetMesh& mesh, const RemoteLoad& load,
           .by_moment = parts.s};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

@@ -4,7 +4,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "fea/loads/load_case.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 /// Of v . f, f the nodal forces of a remote load and v (3 per node) held.
 struct RemoteGradient {
@@ -19,4 +19,4 @@ struct RemoteGradient {
 RemoteGradient remote_gradient(const TetMesh& mesh, const RemoteLoad& load,
                                const VectorX& v, Points* gradient);
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

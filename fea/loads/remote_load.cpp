@@ -4,10 +4,10 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 namespace {
 
@@ -58,4 +58,4 @@ Points remote_forces(const TetMesh& mesh, const SurfaceWeights& weights,
   return forces;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

@@ -5,7 +5,7 @@
 
 #include "fea/loads/loads.h"
 
-namespace meniscus {
+namespace meniscus::loads {
 
 /// Of a surface's nodes with its weights.
 struct RemoteMoments {
@@ -25,4 +25,4 @@ RemoteMoments remote_moments(const TetMesh& mesh, const SurfaceWeights& weights,
 Points remote_forces(const TetMesh& mesh, const SurfaceWeights& weights,
                      const RemoteLoad& load);
 
-}  // namespace meniscus
+}  // namespace meniscus::loads

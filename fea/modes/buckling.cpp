@@ -11,7 +11,7 @@
 #include "fea/modes/eigen_shapes.h"
 #include "fea/modes/eigenpairs.h"
 
-namespace meniscus {
+namespace meniscus::modes {
 
 namespace {
 
@@ -32,19 +32,22 @@ void check_buckling(const TetMesh& mesh, const VectorX& displacement,
 }
 
 /// A of the eigenproblem: the stresses that weaken, turned with the loads.
-NodalMatrix weakening(const TetMesh& mesh, const ElasticOperator& op,
-                      const LoadCase& load_case, const VectorX& displacement,
-                      LoadSense sense) {
-  PointStress stress = point_stress(mesh, op.materials, displacement,
-                                    temperature_change(mesh, load_case));
+solver::NodalMatrix weakening(const TetMesh& mesh,
+                              const equations::ElasticOperator& op,
+                              const loads::LoadCase& load_case,
+                              const VectorX& displacement, LoadSense sense) {
+  element::PointStress stress =
+      element::point_stress(mesh, op.materials, displacement,
+                            loads::temperature_change(mesh, load_case));
   if (sense == LoadSense::AsGiven) {
-    for (Stress& s : stress.stress) {
+    for (element::Stress& s : stress.stress) {
       for (double& component : s) {
         component = -component;
       }
     }
   }
-  return geometric_stiffness(*op.table, op.x, op.order->element, stress);
+  return solver::geometric_stiffness(*op.table, op.x, op.order->element,
+                                     stress);
 }
 
 /// All but the shapes.
@@ -75,18 +78,20 @@ BucklingModes judged(const EigenPairs& pairs, const BucklingOptions& options,
 
 }  // namespace
 
-BucklingModes buckling_modes(const ElasticModel& model, const TetMesh& mesh,
-                             const std::vector<LoadCase>& load_cases,
+BucklingModes buckling_modes(const elastic::ElasticModel& model,
+                             const TetMesh& mesh,
+                             const std::vector<loads::LoadCase>& load_cases,
                              int load_case, const VectorX& displacement,
                              const BucklingOptions& options) {
   const Timer timer;
   check_buckling(mesh, displacement, options);
-  const ElasticOperator op =
+  const equations::ElasticOperator op =
       model.operator_at(mesh, load_cases, load_case, options.materials);
-  const LoadCase& loads = load_cases[load_case];
-  const NodalMatrix A = weakening(mesh, op, loads, displacement, options.sense);
+  const loads::LoadCase& loads = load_cases[load_case];
+  const solver::NodalMatrix A =
+      weakening(mesh, op, loads, displacement, options.sense);
   const EigenPairs pairs =
-      eigenpairs_of(op, A, Columns(),
+      eigenpairs_of(op, A, solver::Columns(),
                     {.count = options.count,
                      .tolerance = options.tolerance,
                      .floor = 1.0 / options.largest,
@@ -95,12 +100,12 @@ BucklingModes buckling_modes(const ElasticModel& model, const TetMesh& mesh,
                      .monitor = options.monitor});
   BucklingModes modes = judged(pairs, options, loads.name);
   for (std::size_t k = 0; k < modes.factors.size(); ++k) {
-    const VectorX x =
-        to_mesh(*op.order, pairs.x.col(static_cast<Eigen::Index>(k)));
+    const VectorX x = equations::to_mesh(
+        *op.order, pairs.x.col(static_cast<Eigen::Index>(k)));
     modes.shapes.push_back(with_fixed_sign(x / largest_of_nodes(x)));
   }
   modes.seconds = timer.seconds();
   return modes;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

@@ -12,7 +12,7 @@
 #include "core/monitor.h"
 #include "fea/elastic/elasticity.h"
 
-namespace meniscus {
+namespace meniscus::modes {
 
 enum class LoadSense { AsGiven, Reversed };
 
@@ -27,7 +27,7 @@ struct BucklingOptions {
   int max_iterations = 200;
   Monitor* monitor = nullptr;  // not owned
   /// Of the design, one per region, not owned; null: those of the model's base.
-  const std::vector<Material>* materials = nullptr;
+  const std::vector<element::Material>* materials = nullptr;
 };
 
 struct BucklingModes {
@@ -50,9 +50,10 @@ struct BucklingModes {
 /// `displacement`: the solution of load case `load_case` (index) on `mesh`.
 /// Throws what ElasticModel::operator_at() throws, and InvalidInput for sizes
 /// and options out of range.
-BucklingModes buckling_modes(const ElasticModel& model, const TetMesh& mesh,
-                             const std::vector<LoadCase>& load_cases,
+BucklingModes buckling_modes(const elastic::ElasticModel& model,
+                             const TetMesh& mesh,
+                             const std::vector<loads::LoadCase>& load_cases,
                              int load_case, const VectorX& displacement,
                              const BucklingOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

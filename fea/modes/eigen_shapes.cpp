@@ -5,16 +5,18 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::modes {
 
-EigenPairs eigenpairs_of(const ElasticOperator& op, const NodalMatrix& A,
-                         const Columns& start, const EigenOptions& options) {
-  const BlockPattern& pattern = op.table->pattern;
+EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
+                         const solver::NodalMatrix& A,
+                         const solver::Columns& start,
+                         const EigenOptions& options) {
+  const solver::BlockPattern& pattern = op.table->pattern;
   EigenPairs pairs = largest_eigenpairs(
       {pattern, op.K, A, *op.preconditioner, op.freedom}, start, options);
   if (pairs.end == EigenEnd::NotPositive &&
-      3 * pattern.nodes <= kSecondChance) {
-    const auto factor = make_direct(pattern, op.K, op.freedom);
+      3 * pattern.nodes <= solver::kSecondChance) {
+    const auto factor = solver::make_direct(pattern, op.K, op.freedom);
     pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom}, start,
                                options);
   }
@@ -67,4 +69,4 @@ double largest_of_nodes(const VectorX& x) {
   return largest;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

@@ -8,13 +8,15 @@
 #include "fea/equations/elastic_operator.h"
 #include "fea/modes/eigenpairs.h"
 
-namespace meniscus {
+namespace meniscus::modes {
 
 /// largest_eigenpairs() of A against the operator's K; once more with a factor
 /// in double precision where its preconditioner is not positive definite
 /// (supports that hardly hold) and the part is not large.
-EigenPairs eigenpairs_of(const ElasticOperator& op, const NodalMatrix& A,
-                         const Columns& start, const EigenOptions& options);
+EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
+                         const solver::NodalMatrix& A,
+                         const solver::Columns& start,
+                         const EigenOptions& options);
 
 /// Why there is no answer; nothing when the pairs converged.
 std::optional<Failure> why_not(const EigenPairs& pairs,
@@ -27,4 +29,4 @@ VectorX with_fixed_sign(VectorX x);
 /// The largest length of a node's three numbers.
 double largest_of_nodes(const VectorX& x);
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

@@ -7,10 +7,10 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "fea/solver/conjugate_gradients.h"
 #include "core/math/dense.h"
+#include "fea/solver/conjugate_gradients.h"
 
-namespace meniscus {
+namespace meniscus::modes {
 
 namespace {
 
@@ -65,12 +65,12 @@ class EigenSearch {
         rows_(3L * problem.pattern.nodes),
         products_(problem.pattern, problem.freedom) {}
 
-  EigenPairs run(const Columns& start);
+  EigenPairs run(const solver::Columns& start);
 
  private:
   Eigen::Index block_size(Eigen::Index given) const;
   void apply_both(Eigen::Index first, Eigen::Index count);
-  void begin(const Columns& start);
+  void begin(const solver::Columns& start);
   bool improve(Eigen::Index lead);
   void measure();
   bool all_settled() const;
@@ -90,11 +90,11 @@ class EigenSearch {
   const EigenProblem& problem_;
   const EigenOptions& options_;
   Eigen::Index rows_;
-  ColumnProducts products_;
+  solver::ColumnProducts products_;
   Eigen::Index m_ = 0;  // columns of X
   Eigen::Index p_ = 0;  // of P
   Eigen::Index w_ = 0;  // of W
-  Columns S_, KS_, AS_;
+  solver::Columns S_, KS_, AS_;
   VectorX theta_;
   VectorX residuals_;      // relative
   VectorX norms_;          // of A x - theta K x
@@ -111,8 +111,9 @@ Eigen::Index EigenSearch::block_size(Eigen::Index given) const {
   }
   Eigen::Index block =
       std::max<Eigen::Index>(options_.count, given) + options_.guards;
-  if (block > kMostColumns) {  // whole fours cost no more
-    block = (block + kMostColumns - 1) / kMostColumns * kMostColumns;
+  if (block > solver::kMostColumns) {  // whole fours cost no more
+    block = (block + solver::kMostColumns - 1) / solver::kMostColumns *
+            solver::kMostColumns;
   }
   return std::min<Eigen::Index>(block, std::lround(free));
 }
@@ -124,9 +125,9 @@ void EigenSearch::apply_both(Eigen::Index first, Eigen::Index count) {
                   AS_.middleCols(first, count));
 }
 
-void EigenSearch::begin(const Columns& start) {
+void EigenSearch::begin(const solver::Columns& start) {
   m_ = block_size(start.cols());
-  for (Columns* block : {&S_, &KS_, &AS_}) {
+  for (solver::Columns* block : {&S_, &KS_, &AS_}) {
     block->resize(rows_, 3 * m_);
   }
   const Eigen::Index given = std::min(start.cols(), m_);
@@ -136,7 +137,7 @@ void EigenSearch::begin(const Columns& start) {
       X(i, k) = noise(static_cast<std::uint64_t>(k * rows_ + i));
     }
   }
-  project(problem_.freedom, X);
+  solver::project(problem_.freedom, X);
   // One step of inverse iteration leaves little of the roughness.
   products_.apply(problem_.A, S_.middleCols(given, m_ - given),
                   AS_.middleCols(given, m_ - given));
@@ -144,7 +145,7 @@ void EigenSearch::begin(const Columns& start) {
                   S_.middleCols(given, m_ - given));
   if (given > 0) {
     S_.leftCols(given) = start.leftCols(given);
-    project(problem_.freedom, S_.leftCols(given));
+    solver::project(problem_.freedom, S_.leftCols(given));
   }
   apply_both(0, m_);
 }
@@ -152,8 +153,8 @@ void EigenSearch::begin(const Columns& start) {
 /// Rayleigh-Ritz on the whole basis; `lead`: the columns of X in it.
 bool EigenSearch::improve(Eigen::Index lead) {
   const Eigen::Index k = lead + p_ + w_;
-  const Eigen::MatrixXd GK = gram(S_.leftCols(k), KS_.leftCols(k));
-  const Eigen::MatrixXd GA = gram(S_.leftCols(k), AS_.leftCols(k));
+  const Eigen::MatrixXd GK = solver::gram(S_.leftCols(k), KS_.leftCols(k));
+  const Eigen::MatrixXd GA = solver::gram(S_.leftCols(k), AS_.leftCols(k));
   if (!GK.allFinite() || !GA.allFinite()) {
     end_ = EigenEnd::NotFinite;
     return false;
@@ -186,8 +187,8 @@ bool EigenSearch::improve(Eigen::Index lead) {
     C.conservativeResize(k, m_ + p_);
     C.rightCols(p_) = D;
   }
-  for (Columns* block : {&S_, &KS_, &AS_}) {
-    combine(C, block->leftCols(k));
+  for (solver::Columns* block : {&S_, &KS_, &AS_}) {
+    solver::combine(C, block->leftCols(k));
   }
   w_ = 0;
   return true;
@@ -199,7 +200,7 @@ void EigenSearch::measure() {
   const Eigen::Index at = m_ + p_;
   auto R = KS_.middleCols(at, m_);
   R = AS_.leftCols(m_) - KS_.leftCols(m_) * theta_.asDiagonal();
-  norms_ = gram(R, R).diagonal().cwiseMax(0.0).cwiseSqrt();
+  norms_ = solver::gram(R, R).diagonal().cwiseMax(0.0).cwiseSqrt();
   w_ = 0;
   std::vector<Eigen::Index> moving;
   for (Eigen::Index k = 0; k < m_; ++k) {
@@ -214,7 +215,8 @@ void EigenSearch::measure() {
   }
   products_.apply(problem_.preconditioner, R.leftCols(w_),
                   S_.middleCols(at, w_));
-  const VectorX square = gram(R.leftCols(w_), S_.middleCols(at, w_)).diagonal();
+  const VectorX square =
+      solver::gram(R.leftCols(w_), S_.middleCols(at, w_)).diagonal();
   residuals_.conservativeResize(m_);
   settled_norms_.conservativeResizeLike(VectorX::Zero(m_));
   settled_theta_.conservativeResizeLike(VectorX::Zero(m_));
@@ -243,7 +245,7 @@ bool EigenSearch::all_settled() const {
 void EigenSearch::add_search_directions() {
   const Eigen::Index at = m_ + p_;
   auto W = S_.middleCols(at, w_);
-  subtract(S_.leftCols(at), gram(KS_.leftCols(at), W), W);
+  solver::subtract(S_.leftCols(at), solver::gram(KS_.leftCols(at), W), W);
   apply_both(at, w_);
 }
 
@@ -259,8 +261,9 @@ EigenPairs EigenSearch::finish() {
   m_ = count;
   p_ = 0;
   apply_both(0, m_);
-  const VectorX energy = gram(S_.leftCols(m_), KS_.leftCols(m_)).diagonal();
-  theta_ = gram(S_.leftCols(m_), AS_.leftCols(m_)).diagonal().array() /
+  const VectorX energy =
+      solver::gram(S_.leftCols(m_), KS_.leftCols(m_)).diagonal();
+  theta_ = solver::gram(S_.leftCols(m_), AS_.leftCols(m_)).diagonal().array() /
            energy.array();
   settled_norms_.resize(0);
   settled_theta_.resize(0);
@@ -274,7 +277,7 @@ EigenPairs EigenSearch::finish() {
   return pairs;
 }
 
-EigenPairs EigenSearch::run(const Columns& start) {
+EigenPairs EigenSearch::run(const solver::Columns& start) {
   Monitor& monitor =
       options_.monitor != nullptr ? *options_.monitor : silent_monitor();
   begin(start);
@@ -304,9 +307,10 @@ EigenPairs EigenSearch::run(const Columns& start) {
 
 }  // namespace
 
-EigenPairs largest_eigenpairs(const EigenProblem& problem, const Columns& start,
+EigenPairs largest_eigenpairs(const EigenProblem& problem,
+                              const solver::Columns& start,
                               const EigenOptions& options) {
   return EigenSearch(problem, options).run(start);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

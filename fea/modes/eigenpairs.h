@@ -6,16 +6,16 @@
 #include "core/monitor.h"
 #include "fea/solver/columns.h"
 
-namespace meniscus {
+namespace meniscus::modes {
 
 /// `K` must be positive definite on the free directions, `preconditioner` an
 /// approximation of its inverse.
 struct EigenProblem {
-  const BlockPattern& pattern;
-  const BlockMatrix<double>& K;
-  const NodalMatrix& A;
-  const Preconditioner& preconditioner;
-  const NodeFreedom& freedom;
+  const solver::BlockPattern& pattern;
+  const solver::BlockMatrix<double>& K;
+  const solver::NodalMatrix& A;
+  const solver::Preconditioner& preconditioner;
+  const solver::NodeFreedom& freedom;
 };
 
 struct EigenOptions {
@@ -38,7 +38,7 @@ enum class EigenEnd { Converged, TooManyIterations, NotPositive, NotFinite };
 struct EigenPairs {
   EigenEnd end = EigenEnd::Converged;
   VectorX theta;      // descending; fewer than asked for when there are fewer
-  Columns x;          // one a column, x^T K x = 1
+  solver::Columns x;  // one a column, x^T K x = 1
   VectorX residuals;  // |A x - theta K x| in the norm of the preconditioner
                       // (near that of K^-1), over max(|theta|, floor): some
                       // eigenvalue is no farther than this from theta
@@ -52,7 +52,8 @@ struct EigenPairs {
 /// to begin with, may have no columns; the rest of the block begins with fixed
 /// pseudo-random numbers. The same bits for any number of threads. Throws
 /// Interrupted when the monitor asks.
-EigenPairs largest_eigenpairs(const EigenProblem& problem, const Columns& start,
+EigenPairs largest_eigenpairs(const EigenProblem& problem,
+                              const solver::Columns& start,
                               const EigenOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

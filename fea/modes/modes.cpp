@@ -11,7 +11,7 @@
 #include "fea/modes/shifted_system.h"
 #include "fea/supports/held_check.h"
 
-namespace meniscus {
+namespace meniscus::modes {
 
 namespace {
 
@@ -21,10 +21,10 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kRigid = 1e-7;
 
 std::vector<double> densities(const TetMesh& mesh,
-                              const std::vector<Material>& materials) {
+                              const std::vector<element::Material>& materials) {
   std::vector<double> density;
   density.reserve(materials.size());
-  for (const Material& material : materials) {
+  for (const element::Material& material : materials) {
     density.push_back(material.density);
   }
   for (const int region : mesh.element_region) {
@@ -51,16 +51,16 @@ void check_modes(const ModeOptions& options) {
 /// The operator's K is shifted by shift M.
 struct Shifted {
   double shift = 0.0;
-  Columns start;  // motions that supports leave
-  int rigid = 0;  // of these, how many springs leave too
+  solver::Columns start;  // motions that supports leave
+  int rigid = 0;          // of these, how many springs leave too
 };
 
-NaturalModes solve(const TetMesh& mesh, const ElasticOperator& op,
+NaturalModes solve(const TetMesh& mesh, const equations::ElasticOperator& op,
                    const Shifted& shifted, const ModeOptions& options) {
   const Timer timer;
   check_modes(options);
-  const NodalMatrix M =
-      mass_matrix(*op.table, op.x, densities(mesh, op.materials), options.mass);
+  const solver::NodalMatrix M = solver::mass_matrix(
+      *op.table, op.x, densities(mesh, op.materials), options.mass);
   const EigenPairs pairs =
       eigenpairs_of(op, M, shifted.start,
                     {.count = options.count + shifted.rigid,
@@ -78,8 +78,8 @@ NaturalModes solve(const TetMesh& mesh, const ElasticOperator& op,
     }
     modes.frequencies.push_back(std::sqrt(square) / (2.0 * kPi));
     modes.residuals.push_back(pairs.residuals[k]);
-    modes.shapes.push_back(with_fixed_sign(
-        to_mesh(*op.order, pairs.x.col(k) / std::sqrt(pairs.theta[k]))));
+    modes.shapes.push_back(with_fixed_sign(equations::to_mesh(
+        *op.order, pairs.x.col(k) / std::sqrt(pairs.theta[k]))));
   }
   modes.seconds = timer.seconds();
   return modes;
@@ -87,15 +87,17 @@ NaturalModes solve(const TetMesh& mesh, const ElasticOperator& op,
 
 }  // namespace
 
-NaturalModes natural_modes(const ElasticModel& model, const TetMesh& mesh,
-                           const std::vector<LoadCase>& load_cases,
+NaturalModes natural_modes(const elastic::ElasticModel& model,
+                           const TetMesh& mesh,
+                           const std::vector<loads::LoadCase>& load_cases,
                            int load_case, const ModeOptions& options) {
   const Timer timer;
-  const ElasticOperator op =
+  const equations::ElasticOperator op =
       model.operator_at(mesh, load_cases, load_case, options.materials);
-  const LoadCase& held = load_cases[load_case];
+  const loads::LoadCase& held = load_cases[load_case];
   if (!held.springs.empty() &&
-      free_motions(mesh, held_directions(mesh, held)).cols() > 0) {
+      supports::free_motions(mesh, supports::held_directions(mesh, held))
+              .cols() > 0) {
     return natural_modes(mesh, op.materials, held, options);
   }
   NaturalModes modes = solve(mesh, op, {}, options);
@@ -104,8 +106,9 @@ NaturalModes natural_modes(const ElasticModel& model, const TetMesh& mesh,
 }
 
 NaturalModes natural_modes(const TetMesh& mesh,
-                           const std::vector<Material>& materials,
-                           const LoadCase& held, const ModeOptions& options) {
+                           const std::vector<element::Material>& materials,
+                           const loads::LoadCase& held,
+                           const ModeOptions& options) {
   const Timer timer;
   const ShiftedSystem system(mesh, materials, held);
   NaturalModes modes = solve(mesh, system.shifted(),
@@ -117,4 +120,4 @@ NaturalModes natural_modes(const TetMesh& mesh,
   return modes;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

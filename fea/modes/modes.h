@@ -10,17 +10,17 @@
 #include "fea/elastic/elasticity.h"
 #include "fea/solver/nodal_matrix.h"
 
-namespace meniscus {
+namespace meniscus::modes {
 
 struct ModeOptions {
   int count = 6;            // lowest elastic modes
   double tolerance = 1e-6;  // residual of each mode, see eigenpairs.h;
                             // omega^2 is off by about its square
   int max_iterations = 200;
-  MassRule mass = MassRule::Exact;
+  solver::MassRule mass = solver::MassRule::Exact;
   Monitor* monitor = nullptr;  // not owned
   /// Of the design, one per region, not owned; null: those of the model's base.
-  const std::vector<Material>* materials = nullptr;
+  const std::vector<element::Material>* materials = nullptr;
 };
 
 struct NaturalModes {
@@ -41,8 +41,9 @@ struct NaturalModes {
 /// not matter), by the model's own preconditioner. Throws what
 /// ElasticModel::operator_at() throws, InvalidInput for options out of range
 /// and for a material without density.
-NaturalModes natural_modes(const ElasticModel& model, const TetMesh& mesh,
-                           const std::vector<LoadCase>& load_cases,
+NaturalModes natural_modes(const elastic::ElasticModel& model,
+                           const TetMesh& mesh,
+                           const std::vector<loads::LoadCase>& load_cases,
                            int load_case, const ModeOptions& options = {});
 
 /// Without a model; supports may leave rigid motions or be missing: the
@@ -50,8 +51,8 @@ NaturalModes natural_modes(const ElasticModel& model, const TetMesh& mesh,
 /// springs do not resist either are counted. `held`: its loads are not read.
 /// Throws InvalidInput and MeshError as ElasticModel does.
 NaturalModes natural_modes(const TetMesh& mesh,
-                           const std::vector<Material>& materials,
-                           const LoadCase& held,
+                           const std::vector<element::Material>& materials,
+                           const loads::LoadCase& held,
                            const ModeOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

@@ -11,7 +11,7 @@
 #include "fea/stress/stress.h"
 #include "fea/supports/held_check.h"
 
-namespace meniscus {
+namespace meniscus::modes {
 
 namespace {
 
@@ -19,11 +19,12 @@ namespace {
 /// the lowest frequencies of a part that is not slender.
 constexpr double kShift = 0.1;
 
-double shift_of(const TetMesh& mesh, const std::vector<Material>& materials,
-                const std::vector<ElasticLaw>& laws) {
-  const double mass = mesh_mass(mesh, materials);
+double shift_of(const TetMesh& mesh,
+                const std::vector<element::Material>& materials,
+                const std::vector<element::ElasticLaw>& laws) {
+  const double mass = stress::mesh_mass(mesh, materials);
   double stiffest = 0.0;
-  for (const ElasticLaw& law : laws) {
+  for (const element::ElasticLaw& law : laws) {
     stiffest = std::max(stiffest, law.stiffness.diagonal().maxCoeff());
   }
   Vec3 low = mesh.nodes[mesh.elements[0]];
@@ -32,22 +33,22 @@ double shift_of(const TetMesh& mesh, const std::vector<Material>& materials,
     low = low.cwiseMin(mesh.nodes[node]);
     high = high.cwiseMax(mesh.nodes[node]);
   }
-  return kShift * stiffest * mesh_volume(mesh) /
+  return kShift * stiffest * stress::mesh_volume(mesh) /
          (mass * (high - low).squaredNorm());
 }
 
 }  // namespace
 
 ShiftedSystem::ShiftedSystem(const TetMesh& mesh,
-                             const std::vector<Material>& materials,
-                             const LoadCase& held)
+                             const std::vector<element::Material>& materials,
+                             const loads::LoadCase& held)
     : materials_(materials) {
-  check_arrays(mesh);
-  check_materials(mesh, materials);
-  for (const Material& material : materials) {
+  equations::check_arrays(mesh);
+  element::check_materials(mesh, materials);
+  for (const element::Material& material : materials) {
     density_.push_back(material.density);
   }
-  order_ = chunked_order(mesh);
+  order_ = solver::chunked_order(mesh);
   std::vector<int> elements;
   std::vector<int> region;
   for (const int e : order_.element) {
@@ -56,23 +57,26 @@ ShiftedSystem::ShiftedSystem(const TetMesh& mesh,
     }
     region.push_back(mesh.element_region[e]);
   }
-  table_ = make_element_table(order_.chunks, mesh.nodes_per_element(), elements,
-                              std::move(region));
-  holding_ = make_holding(mesh, held, order_);
-  std::vector<HeldDirection> directions = held_directions(mesh, held);
-  motions_ = meniscus::free_motions(mesh, directions);
-  const std::vector<HeldDirection> sprung = sprung_directions(mesh, held);
+  table_ = solver::make_element_table(order_.chunks, mesh.nodes_per_element(),
+                                      elements, std::move(region));
+  holding_ = supports::make_holding(mesh, held, order_);
+  std::vector<supports::HeldDirection> directions =
+      supports::held_directions(mesh, held);
+  motions_ = meniscus::supports::free_motions(mesh, directions);
+  const std::vector<supports::HeldDirection> sprung =
+      supports::sprung_directions(mesh, held);
   directions.insert(directions.end(), sprung.begin(), sprung.end());
-  unsprung_ = static_cast<int>(meniscus::free_motions(mesh, directions).cols());
+  unsprung_ = static_cast<int>(
+      meniscus::supports::free_motions(mesh, directions).cols());
   for (auto motion : motions_.colwise()) {
-    motion = to_solver(order_, motion);
+    motion = equations::to_solver(order_, motion);
   }
   assemble_shifted(mesh, held);
   build_preconditioner(mesh, held);
 }
 
 void ShiftedSystem::assemble_shifted(const TetMesh& mesh,
-                                     const LoadCase& held) {
+                                     const loads::LoadCase& held) {
   operator_ = {.table = &table_,
                .order = &order_,
                .preconditioner = nullptr,
@@ -83,8 +87,10 @@ void ShiftedSystem::assemble_shifted(const TetMesh& mesh,
   for (const int node : order_.to_mesh) {
     operator_.x.push_back(mesh.nodes[node]);
   }
-  const std::vector<ElasticLaw> laws = elastic_laws(materials_);
-  if (const auto bad = assemble(table_, operator_.x, laws, operator_.K)) {
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws(materials_);
+  if (const auto bad =
+          solver::assemble(table_, operator_.x, laws, operator_.K)) {
     throw MeshError(
         fmt::format("element {} is inverted or flat: its Jacobian determinant "
                     "is not positive",
@@ -98,37 +104,41 @@ void ShiftedSystem::assemble_shifted(const TetMesh& mesh,
                       "give one to every material",
                       held.name));
     }
-    add_scaled(shift_, mass_matrix(table_, operator_.x, density_), operator_.K);
+    solver::add_scaled(shift_,
+                       solver::mass_matrix(table_, operator_.x, density_),
+                       operator_.K);
   }
-  add_springs(table_.pattern, holding_.springs, operator_.K);
+  supports::add_springs(table_.pattern, holding_.springs, operator_.K);
 }
 
 void ShiftedSystem::build_preconditioner(const TetMesh& mesh,
-                                         const LoadCase& held) {
-  if (free_unknowns(holding_) <= kFactorUnknowns) {
+                                         const loads::LoadCase& held) {
+  if (supports::free_unknowns(holding_) <= solver::kFactorUnknowns) {
     preconditioner_ =
-        make_direct(table_.pattern, operator_.K, holding_.freedom);
+        solver::make_direct(table_.pattern, operator_.K, holding_.freedom);
     operator_.preconditioner = preconditioner_.get();
     return;
   }
-  smoother_ = make_smoother_matrix(operator_.K);
-  MultigridInput input{
+  smoother_ = solver::make_smoother_matrix(operator_.K);
+  solver::MultigridInput input{
       .nodal = {&table_.pattern, &operator_.K, &smoother_, &operator_.x},
       .freedom = &holding_.freedom};
-  BlockMatrix<double> coarse;
+  solver::BlockMatrix<double> coarse;
   if (mesh.order == 2) {
-    corners_ = make_corner_mesh(mesh, order_);
-    if (assemble(corners_.table, corners_.x, elastic_laws(materials_),
-                 coarse)) {
+    corners_ = solver::make_corner_mesh(mesh, order_);
+    if (solver::assemble(corners_.table, corners_.x,
+                         element::elastic_laws(materials_), coarse)) {
       throw MeshError(
           "the straight-sided corners of an element enclose no "
           "positive volume; improve the mesh");
     }
-    add_scaled(shift_, mass_matrix(corners_.table, corners_.x, density_),
-               coarse);
-    add_springs(corners_.table.pattern,
-                corner_springs(mesh, held, order_, corners_.map), coarse);
-    corner_smoother_ = make_smoother_matrix(coarse);
+    solver::add_scaled(
+        shift_, solver::mass_matrix(corners_.table, corners_.x, density_),
+        coarse);
+    supports::add_springs(
+        corners_.table.pattern,
+        supports::corner_springs(mesh, held, order_, corners_.map), coarse);
+    corner_smoother_ = solver::make_smoother_matrix(coarse);
     input.fine_pattern = &table_.pattern;
     input.fine_matrix = &operator_.K;
     input.fine_smoother = &smoother_;
@@ -136,8 +146,8 @@ void ShiftedSystem::build_preconditioner(const TetMesh& mesh,
     input.nodal = {&corners_.table.pattern, &coarse, &corner_smoother_,
                    &corners_.x};
   }
-  preconditioner_ = make_multigrid(input);
+  preconditioner_ = solver::make_multigrid(input);
   operator_.preconditioner = preconditioner_.get();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

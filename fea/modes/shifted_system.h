@@ -11,18 +11,19 @@
 #include "fea/solver/multigrid.h"
 #include "fea/supports/holding.h"
 
-namespace meniscus {
+namespace meniscus::modes {
 
 class ShiftedSystem {
  public:
   /// `held`: its supports and springs count, its loads do not. Throws
   /// InvalidInput (arrays, materials, surfaces, no density anywhere) and
   /// MeshError (inverted element).
-  ShiftedSystem(const TetMesh& mesh, const std::vector<Material>& materials,
-                const LoadCase& held);
+  ShiftedSystem(const TetMesh& mesh,
+                const std::vector<element::Material>& materials,
+                const loads::LoadCase& held);
 
   /// K + shift() M; must not outlive this.
-  const ElasticOperator& shifted() const { return operator_; }
+  const equations::ElasticOperator& shifted() const { return operator_; }
 
   /// 0 where supports hold all parts [1/time^2].
   double shift() const { return shift_; }
@@ -34,23 +35,23 @@ class ShiftedSystem {
   int unsprung_motions() const { return unsprung_; }
 
  private:
-  void assemble_shifted(const TetMesh& mesh, const LoadCase& held);
-  void build_preconditioner(const TetMesh& mesh, const LoadCase& held);
+  void assemble_shifted(const TetMesh& mesh, const loads::LoadCase& held);
+  void build_preconditioner(const TetMesh& mesh, const loads::LoadCase& held);
 
-  std::vector<Material> materials_;
+  std::vector<element::Material> materials_;
   std::vector<double> density_;
-  NodeOrder order_;
-  ElementTable table_;
-  Holding holding_;
+  solver::NodeOrder order_;
+  solver::ElementTable table_;
+  supports::Holding holding_;
   Eigen::MatrixXd motions_;
   int unsprung_ = 0;
   double shift_ = 0.0;
-  ElasticOperator operator_;
+  equations::ElasticOperator operator_;
   // Of multigrid:
-  SmootherMatrix smoother_;
-  SmootherMatrix corner_smoother_;
-  CornerMesh corners_;
-  std::unique_ptr<Preconditioner> preconditioner_;
+  solver::SmootherMatrix smoother_;
+  solver::SmootherMatrix corner_smoother_;
+  solver::CornerMesh corners_;
+  std::unique_ptr<solver::Preconditioner> preconditioner_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::modes

@@ -11,7 +11,7 @@
 #include "fea/element/tet_element.h"
 #include "fea/solver/block_kernels.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -27,7 +27,7 @@ void load_nodes(const ElementTable& table, const Points& x, int e,
 /// Adds the blocks of one element; false when it is bad.
 template <int Nodes>
 bool add_element(const ElementTable& table, const Points& x,
-                 const std::vector<ElasticLaw>& laws, int e,
+                 const std::vector<element::ElasticLaw>& laws, int e,
                  BlockMatrix<double>& matrix) {
   const BlockPattern& p = table.pattern;
   constexpr int kPairs = Nodes * (Nodes - 1) / 2;
@@ -36,7 +36,7 @@ bool add_element(const ElementTable& table, const Points& x,
   const std::size_t first = static_cast<std::size_t>(e) * Nodes;
   const int* ids = p.element_nodes.data() + first;
   const int* block = p.pair_block.data() + static_cast<std::size_t>(e) * kPairs;
-  return add_element_stiffness<Nodes>(
+  return element::add_element_stiffness<Nodes>(
       corner, table.slot.data() + first, laws[table.region[e]],
       [&](int a, int b) {
         return a == b ? matrix.diagonal.data() + 9L * ids[a]
@@ -47,10 +47,10 @@ bool add_element(const ElementTable& table, const Points& x,
 template <int Nodes>
 std::optional<int> first_bad(const ElementTable& table, const Points& x) {
   std::array<Vec3, Nodes> corner;
-  TetGradients<Nodes> g;
+  element::TetGradients<Nodes> g;
   for (int e = 0; e < table.pattern.element_count(); ++e) {
     load_nodes<Nodes>(table, x, e, corner);
-    if (!tet_gradients<Nodes>(corner, g)) {
+    if (!element::tet_gradients<Nodes>(corner, g)) {
       return e;
     }
   }
@@ -61,9 +61,9 @@ std::optional<int> first_bad(const ElementTable& table, const Points& x) {
 /// functions, a tenth of it, are not counted.
 template <int Nodes>
 double element_work(const ElementTable& table,
-                    const std::vector<ElasticLaw>& laws) {
+                    const std::vector<element::ElasticLaw>& laws) {
   constexpr double kRows = 3.0 * Nodes;
-  constexpr double kPoints = kTetPoints<Nodes>;
+  constexpr double kPoints = element::kTetPoints<Nodes>;
   constexpr double kBlocks = Nodes * (Nodes + 1) / 2.0;
   constexpr double kIsotropic = 37.0;
   constexpr double kTensor = 9.0 * (2 * 9 + 1);
@@ -80,7 +80,7 @@ double element_work(const ElementTable& table,
 
 template <int Nodes>
 std::optional<int> assemble_all(const ElementTable& table, const Points& x,
-                                const std::vector<ElasticLaw>& laws,
+                                const std::vector<element::ElasticLaw>& laws,
                                 BlockMatrix<double>& matrix) {
   const BlockPattern& p = table.pattern;
   count_operations(element_work<Nodes>(table, laws));
@@ -105,14 +105,14 @@ std::optional<int> assemble_all(const ElementTable& table, const Points& x,
 
 template <int Nodes>
 void add_internal_forces(const ElementTable& table, const Points& x,
-                         const std::vector<ElasticLaw>& laws, const VectorX& u,
-                         VectorX& f) {
+                         const std::vector<element::ElasticLaw>& laws,
+                         const VectorX& u, VectorX& f) {
   over_elements(table, [&](int e) {
     std::array<Vec3, Nodes> corner;
     load_nodes<Nodes>(table, x, e, corner);
-    TetGradients<Nodes> g;
-    tet_gradients<Nodes>(corner, g);
-    const ElasticLaw& law = laws[table.region[e]];
+    element::TetGradients<Nodes> g;
+    element::tet_gradients<Nodes>(corner, g);
+    const element::ElasticLaw& law = laws[table.region[e]];
     const std::size_t first = static_cast<std::size_t>(e) * Nodes;
     std::array<int, Nodes> ids;
     std::array<Vec3, Nodes> du;  // relative to one node: no rigid shift
@@ -120,7 +120,7 @@ void add_internal_forces(const ElementTable& table, const Points& x,
       ids[a] = table.pattern.element_nodes[first + table.slot[first + a]];
       du[a] = u.segment<3>(3 * ids[a]) - u.segment<3>(3 * ids[0]);
     }
-    for (int q = 0; q < kTetPoints<Nodes>; ++q) {
+    for (int q = 0; q < element::kTetPoints<Nodes>; ++q) {
       Mat3 H = Mat3::Zero();
       for (int a = 1; a < Nodes; ++a) {
         H.noalias() += du[a] * g.gradient[q][a].transpose();
@@ -189,7 +189,7 @@ std::optional<int> first_bad_element(const ElementTable& table,
 }
 
 std::optional<int> assemble(const ElementTable& table, const Points& x,
-                            const std::vector<ElasticLaw>& laws,
+                            const std::vector<element::ElasticLaw>& laws,
                             BlockMatrix<double>& matrix) {
   matrix.diagonal.resize(9L * table.pattern.nodes + kBlockPadding);
   matrix.lower.resize(9L * table.pattern.column.size() + kBlockPadding);
@@ -199,7 +199,8 @@ std::optional<int> assemble(const ElementTable& table, const Points& x,
 }
 
 VectorX internal_forces(const ElementTable& table, const Points& x,
-                        const std::vector<ElasticLaw>& laws, const VectorX& u) {
+                        const std::vector<element::ElasticLaw>& laws,
+                        const VectorX& u) {
   VectorX f = VectorX::Zero(u.size());
   if (table.pattern.nodes_per_element == 4) {
     add_internal_forces<4>(table, x, laws, u, f);
@@ -209,4 +210,4 @@ VectorX internal_forces(const ElementTable& table, const Points& x,
   return f;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -7,7 +7,7 @@
 #include "fea/element/elastic_law.h"
 #include "fea/solver/block_matrix.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// What the assembler knows of a mesh's elements, in the solver's order.
 struct ElementTable {
@@ -55,12 +55,13 @@ std::optional<int> first_bad_element(const ElementTable& table,
 /// element (solver's) whose Jacobian determinant is not positive at a point;
 /// the matrix is then of no use.
 std::optional<int> assemble(const ElementTable& table, const Points& x,
-                            const std::vector<ElasticLaw>& laws,
+                            const std::vector<element::ElasticLaw>& laws,
                             BlockMatrix<double>& matrix);
 
 /// Nodal forces that hold the body in displacement u: f = K u, computed from
 /// displacement gradients, so that rigid motions give none [force].
 VectorX internal_forces(const ElementTable& table, const Points& x,
-                        const std::vector<ElasticLaw>& laws, const VectorX& u);
+                        const std::vector<element::ElasticLaw>& laws,
+                        const VectorX& u);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-namespace meniscus {
+namespace meniscus::solver {
 
 template <int B>
 inline constexpr int kLanes = B <= 4 ? 4 : 8;
@@ -90,4 +90,4 @@ struct Spread {
   }
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -5,7 +5,7 @@
 #include "core/operation_count.h"
 #include "fea/solver/block_kernels.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -140,4 +140,4 @@ VectorX diagonal_of(const BlockMatrix<double>& matrix) {
   return diagonal;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

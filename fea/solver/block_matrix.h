@@ -10,7 +10,7 @@
 #include "core/types.h"
 #include "fea/solver/row_chunks.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// Where the blocks are. Row i holds the columns column[start[i]] ..
 /// column[start[i + 1] - 1], ascending, all below i.
@@ -62,4 +62,4 @@ void multiply(const BlockPattern& pattern, const BlockMatrix<double>& matrix,
 /// The diagonal's entries, 3 per node.
 VectorX diagonal_of(const BlockMatrix<double>& matrix);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -5,7 +5,7 @@
 #include "core/operation_count.h"
 #include "fea/solver/block_kernels.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -120,4 +120,4 @@ MENISCUS_SWEEPS(6, 3)
 MENISCUS_SWEEPS(6, 4)
 #undef MENISCUS_SWEEPS
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -5,7 +5,7 @@
 
 #include "fea/solver/block_matrix.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// L: blocks below the diagonal, as in BlockMatrix; inverse: (pseudo-)inverses
 /// of the diagonal blocks, kLanes<B> numbers a row, the padding zero: held
@@ -29,4 +29,4 @@ template <int B, int K>
 void sweep_backward(const SweepMatrix& matrix, const float* r, float* x,
                     float* upper);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -7,7 +7,7 @@
 
 #include "core/math/dense.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 std::vector<ChebyshevStep> chebyshev_steps(double lowest, double highest,
                                            double reduction, int most) {
@@ -41,4 +41,4 @@ double lowest_ritz_value(const std::vector<double>& alpha,
   return tridiagonal_eigenvalues(diagonal, beside)[0];
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// Steps x += d, r -= A d with d = keep d + take M r.
 struct ChebyshevStep {
@@ -26,4 +26,4 @@ std::vector<ChebyshevStep> chebyshev_steps(double lowest, double highest,
 double lowest_ritz_value(const std::vector<double>& alpha,
                          const std::vector<double>& beta);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace meniscus {
+namespace meniscus::solver {
 
 FullRows::FullRows(const BlockPattern& p) : start(p.nodes + 1, 0) {
   for (int i = 0; i < p.nodes; ++i) {
@@ -89,4 +89,4 @@ Members::Members(const Clusters& c) : start(c.count + 1, 0) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

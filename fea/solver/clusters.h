@@ -5,7 +5,7 @@
 
 #include "fea/solver/block_matrix.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// Both halves of a pattern: per row, neighbours in ascending order, and where
 /// their blocks are stored; those above the diagonal transposed.
@@ -36,4 +36,4 @@ struct Members {
   explicit Members(const Clusters& clusters);
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -5,7 +5,7 @@
 #include "fea/solver/block_kernels.h"
 #include "fea/solver/conjugate_gradients.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -147,4 +147,4 @@ void ColumnProducts::apply(const Preconditioner& A, const ColumnsIn& x,
            [&](const auto& from, auto& to, int K) { A.apply(from, to, K); });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

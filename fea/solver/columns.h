@@ -7,7 +7,7 @@
 #include "fea/solver/node_freedom.h"
 #include "fea/solver/preconditioner.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// One vector a column: 3 numbers per node, solver's numbering.
 using Columns = Eigen::MatrixXd;
@@ -47,4 +47,4 @@ class ColumnProducts {
   std::vector<double> to_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -10,7 +10,7 @@
 #include "core/operation_count.h"
 #include "fea/solver/block_kernels.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -250,4 +250,4 @@ std::vector<CgColumn> conjugate_gradients(const CgProblem& problem,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

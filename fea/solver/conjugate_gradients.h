@@ -8,7 +8,7 @@
 #include "fea/solver/block_matrix.h"
 #include "fea/solver/preconditioner.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 inline constexpr int kMostColumns = 4;
 
@@ -40,4 +40,4 @@ std::vector<CgColumn> conjugate_gradients(const CgProblem& problem,
                                           const std::vector<VectorX>& f,
                                           std::vector<VectorX>& u);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -115,4 +115,4 @@ CornerMesh make_corner_mesh(const TetMesh& mesh, const NodeOrder& order) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

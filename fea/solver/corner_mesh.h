@@ -7,7 +7,7 @@
 #include "fea/solver/assembly.h"
 #include "fea/solver/node_order.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// How the ten-node mesh and its corner mesh hang together, in the solver's
 /// numbering. Corners keep their order and chunks.
@@ -29,4 +29,4 @@ struct CornerMesh {
 
 CornerMesh make_corner_mesh(const TetMesh& mesh, const NodeOrder& order);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

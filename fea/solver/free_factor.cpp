@@ -5,11 +5,11 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 #include "fea/solver/block_kernels.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -191,4 +191,4 @@ void FreeFactor::solve(const double* r, double* z, int K) const {
   });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

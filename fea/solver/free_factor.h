@@ -7,7 +7,7 @@
 #include "fea/solver/block_matrix.h"
 #include "fea/solver/node_freedom.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// The matrix on its free directions, factored by a supernodal Cholesky;
 /// elimination order by nested dissection of the graph of nodes.
@@ -29,4 +29,4 @@ class FreeFactor {
   SymmetricFactor factor_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -4,10 +4,10 @@
 
 #include <Eigen/LU>
 
-#include "fea/solver/smoothed_aggregation.h"
 #include "core/math/dense.h"
+#include "fea/solver/smoothed_aggregation.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {}  // namespace
 
@@ -103,4 +103,4 @@ std::vector<double> rigid_motions(const Points& x, const NodeFreedom& freedom) {
 template std::vector<float> padded<3>(const std::vector<double>& blocks);
 template std::vector<float> padded<6>(const std::vector<double>& blocks);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -9,7 +9,7 @@
 #include "fea/solver/corner_mesh.h"
 #include "fea/solver/node_freedom.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// The freedom of the corner nodes.
 NodeFreedom corner_freedom(const NodeFreedom& fine, const CornerMap& map);
@@ -32,4 +32,4 @@ std::vector<double> rigid_motions(const Points& x, const NodeFreedom& freedom);
 template <int B>
 std::vector<float> padded(const std::vector<double>& blocks);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

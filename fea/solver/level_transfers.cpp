@@ -2,7 +2,7 @@
 
 #include "fea/solver/block_kernels.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 template <int B, int K>
 void restrict_motions(const Prolongation& P, const float* upper,
@@ -113,4 +113,4 @@ MENISCUS_TRANSFERS(3)
 MENISCUS_TRANSFERS(4)
 #undef MENISCUS_TRANSFERS
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

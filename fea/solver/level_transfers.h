@@ -4,7 +4,7 @@
 #include "fea/solver/corner_mesh.h"
 #include "fea/solver/smoothed_aggregation.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// coarse = -P^T upper for K vectors of padded layout (block_sweeps.h); the
 /// coarse one's padding becomes garbage.
@@ -24,4 +24,4 @@ void restrict_corners(const CornerMap& map, float factor, const float* upper,
 template <int K>
 void prolong_corners(const CornerMap& map, const float* e, float* x);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

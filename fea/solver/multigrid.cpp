@@ -13,7 +13,7 @@
 #include "fea/solver/level_transfers.h"
 #include "fea/solver/smoothed_aggregation.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -420,4 +420,4 @@ SmootherMatrix make_smoother_matrix(const BlockMatrix<double>& matrix) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

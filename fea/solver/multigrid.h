@@ -10,7 +10,7 @@
 #include "fea/solver/corner_mesh.h"
 #include "fea/solver/preconditioner.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// Blocks below the diagonal in single precision, divided by `scale`; shared
 /// by load cases, whatever they hold.
@@ -40,4 +40,4 @@ struct MultigridInput {
 
 std::unique_ptr<Preconditioner> make_multigrid(const MultigridInput& input);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

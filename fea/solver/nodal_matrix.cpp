@@ -4,7 +4,7 @@
 #include "fea/element/tet_shape.h"
 #include "fea/solver/block_kernels.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -51,8 +51,8 @@ NodalMatrix assemble_nodal(const ElementTable& table, const Points& x,
 }
 
 ElementMatrix<4> exact_mass(const std::array<Vec3, 4>& x) {
-  TetGradients<4> g;
-  tet_gradients<4>(x, g);
+  element::TetGradients<4> g;
+  element::tet_gradients<4>(x, g);
   ElementMatrix<4> m;
   m.setConstant(g.volume[0] / 20.0);
   m.diagonal() *= 2.0;
@@ -62,17 +62,17 @@ ElementMatrix<4> exact_mass(const std::array<Vec3, 4>& x) {
 ElementMatrix<10> exact_mass(const std::array<Vec3, 10>& x) {
   static const auto kShapes = [] {
     std::vector<Eigen::Matrix<double, 10, 1>> shapes;
-    for (const TetRulePoint& point : fine_tet_rule()) {
-      const std::array<double, 10> N = tet_shapes<10>(point.L);
+    for (const element::TetRulePoint& point : element::fine_tet_rule()) {
+      const std::array<double, 10> N = element::tet_shapes<10>(point.L);
       shapes.emplace_back(N.data());
     }
     return shapes;
   }();
   ElementMatrix<10> m = ElementMatrix<10>::Zero();
   std::size_t q = 0;
-  for (const TetRulePoint& point : fine_tet_rule()) {
-    const double volume =
-        point.weight / 6.0 * gradient_at<10>(x, x, point.L).determinant;
+  for (const element::TetRulePoint& point : element::fine_tet_rule()) {
+    const double volume = point.weight / 6.0 *
+                          element::gradient_at<10>(x, x, point.L).determinant;
     m.noalias() += (volume * kShapes[q]) * kShapes[q].transpose();
     ++q;
   }
@@ -81,11 +81,12 @@ ElementMatrix<10> exact_mass(const std::array<Vec3, 10>& x) {
 
 template <int Nodes>
 ElementMatrix<Nodes> mass_at_points(const std::array<Vec3, Nodes>& x) {
-  TetGradients<Nodes> g;
-  tet_gradients<Nodes>(x, g);
+  element::TetGradients<Nodes> g;
+  element::tet_gradients<Nodes>(x, g);
   ElementMatrix<Nodes> m = ElementMatrix<Nodes>::Zero();
-  for (int q = 0; q < kTetPoints<Nodes>; ++q) {
-    const std::array<double, Nodes> N = tet_shapes<Nodes>(rule_point<Nodes>(q));
+  for (int q = 0; q < element::kTetPoints<Nodes>; ++q) {
+    const std::array<double, Nodes> N =
+        element::tet_shapes<Nodes>(element::rule_point<Nodes>(q));
     const Eigen::Map<const Eigen::Matrix<double, Nodes, 1>> shape(N.data());
     m.noalias() += (g.volume[q] * shape) * shape.transpose();
   }
@@ -94,13 +95,13 @@ ElementMatrix<Nodes> mass_at_points(const std::array<Vec3, Nodes>& x) {
 
 template <int Nodes>
 ElementMatrix<Nodes> geometric_of(const std::array<Vec3, Nodes>& x,
-                                  const Stress* stress) {
-  TetGradients<Nodes> g;
-  tet_gradients<Nodes>(x, g);
+                                  const element::Stress* stress) {
+  element::TetGradients<Nodes> g;
+  element::tet_gradients<Nodes>(x, g);
   ElementMatrix<Nodes> m = ElementMatrix<Nodes>::Zero();
-  for (int q = 0; q < kTetPoints<Nodes>; ++q) {
-    const Vec6 s = Eigen::Map<const Vec6>(stress[q].data());
-    const Mat3 sigma = g.volume[q] * stress_tensor(s);
+  for (int q = 0; q < element::kTetPoints<Nodes>; ++q) {
+    const element::Vec6 s = Eigen::Map<const element::Vec6>(stress[q].data());
+    const Mat3 sigma = g.volume[q] * element::stress_tensor(s);
     Eigen::Matrix<double, 3, Nodes> gradient;
     for (int a = 0; a < Nodes; ++a) {
       gradient.col(a) = g.gradient[q][a];
@@ -113,7 +114,7 @@ ElementMatrix<Nodes> geometric_of(const std::array<Vec3, Nodes>& x,
 template <int Nodes>
 NodalMatrix geometric(const ElementTable& table, const Points& x,
                       const std::vector<int>& element,
-                      const PointStress& stress) {
+                      const element::PointStress& stress) {
   return assemble_nodal<Nodes>(
       table, x, [&](int e, const std::array<Vec3, Nodes>& nodes) {
         return geometric_of<Nodes>(nodes,
@@ -191,10 +192,10 @@ NodalMatrix mass_matrix(const ElementTable& table, const Points& x,
 
 NodalMatrix geometric_stiffness(const ElementTable& table, const Points& x,
                                 const std::vector<int>& element,
-                                const PointStress& stress) {
+                                const element::PointStress& stress) {
   return table.pattern.nodes_per_element == 4
              ? geometric<4>(table, x, element, stress)
              : geometric<10>(table, x, element, stress);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

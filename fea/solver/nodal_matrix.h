@@ -8,7 +8,7 @@
 #include "fea/element/point_stress.h"
 #include "fea/solver/assembly.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// Values of the matrix's blocks, each a multiple of the unit matrix.
 struct NodalMatrix {
@@ -45,6 +45,6 @@ NodalMatrix mass_matrix(const ElementTable& table, const Points& x,
 /// loads: that pressures turn with the surface is left out.
 NodalMatrix geometric_stiffness(const ElementTable& table, const Points& x,
                                 const std::vector<int>& element,
-                                const PointStress& stress);
+                                const element::PointStress& stress);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -5,7 +5,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 struct NodeFreedom {
   int nodes = 0;
@@ -14,4 +14,4 @@ struct NodeFreedom {
                                 // symmetric, P P = P
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -199,4 +199,4 @@ NodeOrder curve_order(const TetMesh& mesh) {
   return order;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

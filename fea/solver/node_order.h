@@ -7,7 +7,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "fea/solver/row_chunks.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 struct NodeOrder {
   std::vector<int> to_mesh;    // solver's node -> the mesh's node
@@ -25,4 +25,4 @@ NodeOrder chunked_order(const TetMesh& mesh);
 /// node: equal ranges of nodes are compact pieces of the part.
 NodeOrder curve_order(const TetMesh& mesh);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

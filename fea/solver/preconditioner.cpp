@@ -4,7 +4,7 @@
 
 #include "fea/solver/free_factor.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -32,4 +32,4 @@ std::unique_ptr<Preconditioner> make_direct(const BlockPattern& pattern,
   return std::make_unique<Direct>(pattern, matrix, freedom);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

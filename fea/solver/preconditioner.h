@@ -8,7 +8,7 @@
 #include "fea/solver/block_matrix.h"
 #include "fea/solver/node_freedom.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// A symmetric positive definite approximation of A^-1 on the free directions.
 /// Vectors are K of padded layout (see multiply), K from 1 to 4.
@@ -33,4 +33,4 @@ std::unique_ptr<Preconditioner> make_direct(const BlockPattern& pattern,
                                             const BlockMatrix<double>& matrix,
                                             const NodeFreedom& freedom);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

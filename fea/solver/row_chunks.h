@@ -6,7 +6,7 @@
 
 #include "fea/solver/team_barrier.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// Chunk c holds rows first[c] .. first[c + 1] - 1; colour k holds chunks
 /// colour[k] .. colour[k + 1] - 1. No row couples to two chunks of one colour,
@@ -46,4 +46,4 @@ void over_chunks(const RowChunks& chunks, RowOrder order, const Work& work) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

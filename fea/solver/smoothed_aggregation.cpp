@@ -7,7 +7,7 @@
 #include "fea/solver/block_kernels.h"
 #include "fea/solver/clusters.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -337,4 +337,4 @@ AggregateLevel aggregate(const FineLevel& fine) {
 template AggregateLevel aggregate<3>(const FineLevel& fine);
 template AggregateLevel aggregate<6>(const FineLevel& fine);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -6,7 +6,7 @@
 
 #include "fea/solver/block_matrix.h"
 
-namespace meniscus {
+namespace meniscus::solver {
 
 inline constexpr int kRigidMotions = 6;
 
@@ -52,4 +52,4 @@ struct AggregateLevel {
 template <int B>
 AggregateLevel aggregate(const FineLevel& fine);
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

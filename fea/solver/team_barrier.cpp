@@ -8,7 +8,7 @@
 #include <linux/futex.h>
 #include <sys/syscall.h>
 
-namespace meniscus {
+namespace meniscus::solver {
 
 namespace {
 
@@ -81,4 +81,4 @@ void TeamBarrier::wait(int threads) {
   learn(since(start));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

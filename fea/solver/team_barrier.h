@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace meniscus {
+namespace meniscus::solver {
 
 /// A barrier for loops of some ten microseconds. A thread that slept wakes late
 /// (20 us and more in a virtual machine), one that spins is in the way when
@@ -22,4 +22,4 @@ class TeamBarrier {
   std::atomic<int> sleepers_{0};
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::solver

@@ -5,7 +5,7 @@
 #include "fea/element/elastic_law.h"
 #include "fea/stress/stress_difference.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 double EnergyError::relative() const {
   const double whole = std::hypot(energy_norm, error);
@@ -13,10 +13,11 @@ double EnergyError::relative() const {
 }
 
 EnergyError estimate_error(const TetMesh& mesh,
-                           const std::vector<Material>& materials,
+                           const std::vector<element::Material>& materials,
                            const StressedSolution& solution) {
   const StressDifference difference(mesh, materials, solution);
-  const std::vector<ElasticLaw> laws = elastic_laws(materials);
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws(materials);
   const int count = mesh.element_count();
   std::vector<double> energy(count);
   EnergyError result;
@@ -24,14 +25,14 @@ EnergyError estimate_error(const TetMesh& mesh,
 #pragma omp parallel for schedule(static)
   for (int e = 0; e < count; ++e) {
     const PointDifferences d = difference.of(e);
-    const ElasticLaw& law = laws[mesh.element_region[e]];
+    const element::ElasticLaw& law = laws[mesh.element_region[e]];
     double error = 0.0;
     double whole = 0.0;
     for (std::size_t q = 0; q < d.volume.size(); ++q) {
-      const Stress& s = d.recovered_minus_computed[q];
-      error += d.volume[q] * complementary_product(s, s, law);
-      whole += d.volume[q] *
-               complementary_product(d.computed[q], d.computed[q], law);
+      const element::Stress& s = d.recovered_minus_computed[q];
+      error += d.volume[q] * element::complementary_product(s, s, law);
+      whole += d.volume[q] * element::complementary_product(d.computed[q],
+                                                            d.computed[q], law);
     }
     result.element[e] = std::sqrt(error);
     energy[e] = whole;
@@ -48,12 +49,13 @@ EnergyError estimate_error(const TetMesh& mesh,
 }
 
 ResponseError response_error(const TetMesh& mesh,
-                             const std::vector<Material>& materials,
+                             const std::vector<element::Material>& materials,
                              const StressedSolution& primal,
                              const StressedSolution& dual) {
   const StressDifference first(mesh, materials, primal);
   const StressDifference second(mesh, materials, dual);
-  const std::vector<ElasticLaw> laws = elastic_laws(materials);
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws(materials);
   const int count = mesh.element_count();
   ResponseError result;
   result.element.resize(count);
@@ -61,12 +63,12 @@ ResponseError response_error(const TetMesh& mesh,
   for (int e = 0; e < count; ++e) {
     const PointDifferences p = first.of(e);
     const PointDifferences d = second.of(e);
-    const ElasticLaw& law = laws[mesh.element_region[e]];
+    const element::ElasticLaw& law = laws[mesh.element_region[e]];
     double sum = 0.0;
     for (std::size_t q = 0; q < p.volume.size(); ++q) {
-      sum += p.volume[q] * complementary_product(p.recovered_minus_computed[q],
-                                                 d.recovered_minus_computed[q],
-                                                 law);
+      sum += p.volume[q] *
+             element::complementary_product(p.recovered_minus_computed[q],
+                                            d.recovered_minus_computed[q], law);
     }
     result.element[e] = sum;
   }
@@ -77,4 +79,4 @@ ResponseError response_error(const TetMesh& mesh,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

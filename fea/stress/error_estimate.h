@@ -5,7 +5,7 @@
 
 #include "fea/stress/patch_recovery.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 /// Zienkiewicz and Zhu, A simple error estimator and adaptive procedure
 /// (1987), with stresses recovered by patches (1992): energy norm of the
@@ -30,7 +30,7 @@ struct StressedSolution {
 /// The same bits for any number of threads. Throws InvalidInput when the parts
 /// do not fit each other.
 EnergyError estimate_error(const TetMesh& mesh,
-                           const std::vector<Material>& materials,
+                           const std::vector<element::Material>& materials,
                            const StressedSolution& solution);
 
 /// Error of a linear functional J of the displacement by dual weighting
@@ -46,8 +46,8 @@ struct ResponseError {
   double bound = 0.0;           // the sum of their sizes
 };
 ResponseError response_error(const TetMesh& mesh,
-                             const std::vector<Material>& materials,
+                             const std::vector<element::Material>& materials,
                              const StressedSolution& primal,
                              const StressedSolution& dual);
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

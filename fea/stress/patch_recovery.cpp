@@ -6,7 +6,7 @@
 #include "fea/element/node_elements.h"
 #include "fea/stress/stress_patch.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 namespace {
 
@@ -21,14 +21,14 @@ constexpr double kReach = 2.6;
 
 class Recovery {
  public:
-  Recovery(const TetMesh& mesh, const PointStress& points,
-           const RegionNodes& nodes)
+  Recovery(const TetMesh& mesh, const element::PointStress& points,
+           const element::RegionNodes& nodes)
       : mesh_(mesh),
         points_(points),
         nodes_(nodes),
-        around_(node_elements(nodes.elements, nodes.nodes_per_element, 4,
-                              nodes.count())),
-        inner_(surrounded_corners(nodes)),
+        around_(element::node_elements(nodes.elements, nodes.nodes_per_element,
+                                       4, nodes.count())),
+        inner_(element::surrounded_corners(nodes)),
         patch_of_(nodes.count(), -1) {
     int corners = 0;
     for (int i = 0; i < nodes.count(); ++i) {
@@ -39,10 +39,10 @@ class Recovery {
     patch_.resize(corners);
   }
 
-  std::vector<Stress> recover() {
+  std::vector<element::Stress> recover() {
     const int count = nodes_.count();
     const std::vector<Edge> ends = mid_side_ends();
-    std::vector<Stress> value(count, Stress{});
+    std::vector<element::Stress> value(count, element::Stress{});
 #pragma omp parallel
     {
       std::vector<int> elements;
@@ -56,8 +56,8 @@ class Recovery {
 #pragma omp for schedule(dynamic, kShare)
       for (int i = 0; i < count; ++i) {
         if (ends[i][0] >= 0) {
-          const Stress a = patch_[patch_of_[ends[i][0]]].at(place(i));
-          const Stress b = patch_[patch_of_[ends[i][1]]].at(place(i));
+          const element::Stress a = patch_[patch_of_[ends[i][0]]].at(place(i));
+          const element::Stress b = patch_[patch_of_[ends[i][1]]].at(place(i));
           for (int k = 0; k < 6; ++k) {
             value[i][k] = 0.5 * (a[k] + b[k]);
           }
@@ -119,9 +119,9 @@ class Recovery {
   }
 
   const TetMesh& mesh_;
-  const PointStress& points_;
-  const RegionNodes& nodes_;
-  NodeElements around_;  // of corners
+  const element::PointStress& points_;
+  const element::RegionNodes& nodes_;
+  element::NodeElements around_;  // of corners
   std::vector<char> inner_;
   std::vector<int> patch_of_;  // corners only, else -1
   std::vector<StressPatch> patch_;
@@ -130,9 +130,9 @@ class Recovery {
 }  // namespace
 
 RecoveredStress recover_by_patches(const TetMesh& mesh,
-                                   const PointStress& points) {
+                                   const element::PointStress& points) {
   RecoveredStress result;
-  result.nodes = region_nodes(mesh);
+  result.nodes = element::region_nodes(mesh);
   result.value = Recovery(mesh, points, result.nodes).recover();
   return result;
 }
@@ -145,8 +145,8 @@ StressField nodal_stress(const TetMesh& mesh,
       recovered.value.begin(),
       recovered.value.begin() + static_cast<std::ptrdiff_t>(count));
   for (std::size_t copy = count; copy < recovered.value.size(); ++copy) {
-    Stress& here = field.nodal[recovered.nodes.node[copy]];
-    if (von_mises(recovered.value[copy]) > von_mises(here)) {
+    element::Stress& here = field.nodal[recovered.nodes.node[copy]];
+    if (element::von_mises(recovered.value[copy]) > element::von_mises(here)) {
       here = recovered.value[copy];
     }
   }
@@ -154,4 +154,4 @@ StressField nodal_stress(const TetMesh& mesh,
   return field;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

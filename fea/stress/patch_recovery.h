@@ -8,13 +8,13 @@
 #include "fea/element/region_nodes.h"
 #include "fea/stress/stress.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 /// A stress that is continuous within each region: values at its nodes,
 /// between them the element's shape functions.
 struct RecoveredStress {
-  RegionNodes nodes;
-  std::vector<Stress> value;  // per copy of a node [pressure]
+  element::RegionNodes nodes;
+  std::vector<element::Stress> value;  // per copy of a node [pressure]
 };
 
 /// Zienkiewicz and Zhu, The superconvergent patch recovery and a posteriori
@@ -27,10 +27,10 @@ struct RecoveredStress {
 /// nearer points weighing more (docs/verification.md has both). The same bits
 /// for any number of threads.
 RecoveredStress recover_by_patches(const TetMesh& mesh,
-                                   const PointStress& points);
+                                   const element::PointStress& points);
 
 /// One value per node of the mesh: on interfaces that of the region with the
 /// largest von Mises stress.
 StressField nodal_stress(const TetMesh& mesh, const RecoveredStress& recovered);
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

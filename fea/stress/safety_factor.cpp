@@ -2,13 +2,13 @@
 
 #include <limits>
 
-namespace meniscus {
+namespace meniscus::stress {
 
 SafetyFactors safety_factors(const TetMesh& mesh,
-                             const std::vector<Material>& materials,
+                             const std::vector<element::Material>& materials,
                              const RecoveredStress& stress,
                              const std::vector<char>& excluded) {
-  check_materials(mesh, materials);
+  element::check_materials(mesh, materials);
   constexpr double kNever = std::numeric_limits<double>::infinity();
   SafetyFactors result;
   result.nodal.assign(mesh.nodes.size(), kNever);
@@ -26,7 +26,7 @@ SafetyFactors safety_factors(const TetMesh& mesh,
     if (region[copy] < 0 || !materials[region[copy]].yield_strength) {
       continue;
     }
-    const double s = von_mises(stress.value[copy]);
+    const double s = element::von_mises(stress.value[copy]);
     const int node = stress.nodes.node[copy];
     const double factor =
         s > 0.0 ? *materials[region[copy]].yield_strength / s : kNever;
@@ -41,4 +41,4 @@ SafetyFactors safety_factors(const TetMesh& mesh,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

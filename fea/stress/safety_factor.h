@@ -5,7 +5,7 @@
 
 #include "fea/stress/patch_recovery.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 /// Yield strength over von Mises stress; infinite where a material has no
 /// yield strength or there is no stress.
@@ -21,8 +21,8 @@ struct SafetyFactors {
 /// of none have an infinite factor. `stress` must be of this mesh. Throws
 /// InvalidInput where materials do not fit the mesh.
 SafetyFactors safety_factors(const TetMesh& mesh,
-                             const std::vector<Material>& materials,
+                             const std::vector<element::Material>& materials,
                              const RecoveredStress& stress,
                              const std::vector<char>& excluded = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

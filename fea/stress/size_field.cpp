@@ -10,7 +10,7 @@
 #include "fea/element/node_elements.h"
 #include "fea/element/point_grid.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 namespace {
 
@@ -77,7 +77,7 @@ std::vector<double> refinements(const TetMesh& mesh, const EnergyError& error,
 /// No corner more than growth x distance above one that shares an edge.
 void limit_growth(const TetMesh& mesh, double growth,
                   std::vector<double>& length) {
-  const NodeElements around = node_elements(
+  const element::NodeElements around = element::node_elements(
       mesh.elements, mesh.nodes_per_element(), 4, mesh.corner_count);
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -138,11 +138,11 @@ SizeField size_field(const TetMesh& mesh, const EnergyError& error,
 
 std::function<double(const Vec3&)> SizeField::function() const {
   struct Lookup {
-    PointGrid nearest;
+    element::PointGrid nearest;
     SizeField field;
   };
   const auto lookup =
-      std::make_shared<const Lookup>(Lookup{PointGrid(points), *this});
+      std::make_shared<const Lookup>(Lookup{element::PointGrid(points), *this});
   return [lookup](const Vec3& x) {
     const int i = lookup->nearest.of(x);
     return lookup->field.length[i] +
@@ -150,4 +150,4 @@ std::function<double(const Vec3&)> SizeField::function() const {
   };
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

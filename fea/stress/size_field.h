@@ -7,7 +7,7 @@
 
 #include "fea/stress/error_estimate.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 struct SizeFieldOptions {
   double relative_error = 0.02;  // wanted of EnergyError::relative(); > 0
@@ -39,4 +39,4 @@ struct SizeField {
 SizeField size_field(const TetMesh& mesh, const EnergyError& error,
                      const SizeFieldOptions& options = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

@@ -6,15 +6,16 @@
 #include "fea/element/tet_element.h"
 #include "fea/stress/patch_recovery.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 namespace {
 
 /// Stresses at the four corners of an element: its own everywhere for four
 /// nodes, linearly from the four points for ten.
-std::array<Stress, 4> corner_stresses(const PointStress& points, int e) {
-  std::array<Stress, 4> corner;
-  const Stress* point = &points.stress[points.index(e)];
+std::array<element::Stress, 4> corner_stresses(
+    const element::PointStress& points, int e) {
+  std::array<element::Stress, 4> corner;
+  const element::Stress* point = &points.stress[points.index(e)];
   if (points.points_per_element == 1) {
     corner.fill(point[0]);
     return corner;
@@ -22,25 +23,26 @@ std::array<Stress, 4> corner_stresses(const PointStress& points, int e) {
   for (int k = 0; k < 6; ++k) {
     const double sum = point[0][k] + point[1][k] + point[2][k] + point[3][k];
     for (int c = 0; c < 4; ++c) {
-      corner[c][k] =
-          (point[c][k] - kTetRuleLow * sum) / (kTetRuleHigh - kTetRuleLow);
+      corner[c][k] = (point[c][k] - element::kTetRuleLow * sum) /
+                     (element::kTetRuleHigh - element::kTetRuleLow);
     }
   }
   return corner;
 }
 
 /// The mean of what the elements around `node` say, weighted by volume.
-Stress mean_at(const TetMesh& mesh, const PointStress& points,
-               const std::vector<std::array<Stress, 4>>& corners,
-               const NodeElements& around, int node) {
-  Stress sum{};
+element::Stress mean_at(
+    const TetMesh& mesh, const element::PointStress& points,
+    const std::vector<std::array<element::Stress, 4>>& corners,
+    const element::NodeElements& around, int node) {
+  element::Stress sum{};
   double weight = 0.0;
   for (const int e : around.of(node)) {
     const auto ids = mesh.element(e);
     const int a =
         static_cast<int>(std::find(ids.begin(), ids.end(), node) - ids.begin());
-    const Stress& from = corners[e][a < 4 ? a : kTetEdges[a - 4][0]];
-    const Stress& to = corners[e][a < 4 ? a : kTetEdges[a - 4][1]];
+    const element::Stress& from = corners[e][a < 4 ? a : kTetEdges[a - 4][0]];
+    const element::Stress& to = corners[e][a < 4 ? a : kTetEdges[a - 4][1]];
     double volume = 0.0;
     for (int q = 0; q < points.points_per_element; ++q) {
       volume += points.volume[points.index(e, q)];
@@ -69,8 +71,9 @@ std::array<Vec3, Nodes> element_nodes(const TetMesh& mesh, int e) {
 }
 
 double element_volume(const TetMesh& mesh, int e) {
-  return mesh.order == 1 ? corner_volume(mesh, e)
-                         : quadratic_volume(element_nodes<10>(mesh, e));
+  return mesh.order == 1
+             ? corner_volume(mesh, e)
+             : element::quadratic_volume(element_nodes<10>(mesh, e));
 }
 
 }  // namespace
@@ -80,7 +83,7 @@ void find_peak(StressField& field) {
   field.von_mises.resize(field.nodal.size());
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < count; ++i) {
-    field.von_mises[i] = von_mises(field.nodal[i]);
+    field.von_mises[i] = element::von_mises(field.nodal[i]);
   }
   field.max_von_mises = 0.0;
   field.max_node = 0;
@@ -111,12 +114,14 @@ void find_peak(const TetMesh& mesh, const std::vector<char>& excluded,
   }
 }
 
-StressField average_stress(const TetMesh& mesh, const PointStress& points) {
+StressField average_stress(const TetMesh& mesh,
+                           const element::PointStress& points) {
   const int elements = mesh.element_count();
   const int nodes = static_cast<int>(mesh.nodes.size());
   const int width = mesh.nodes_per_element();
-  const NodeElements around = node_elements(mesh.elements, width, width, nodes);
-  std::vector<std::array<Stress, 4>> corners(elements);
+  const element::NodeElements around =
+      element::node_elements(mesh.elements, width, width, nodes);
+  std::vector<std::array<element::Stress, 4>> corners(elements);
   StressField field;
   field.nodal.resize(mesh.nodes.size());
 #pragma omp parallel for schedule(static)
@@ -132,12 +137,13 @@ StressField average_stress(const TetMesh& mesh, const PointStress& points) {
 }
 
 StressField recover_stress(const TetMesh& mesh,
-                           const std::vector<Material>& materials,
+                           const std::vector<element::Material>& materials,
                            const VectorX& displacement,
                            const VectorX& temperature_change) {
   return nodal_stress(
-      mesh, recover_by_patches(mesh, point_stress(mesh, materials, displacement,
-                                                  temperature_change)));
+      mesh, recover_by_patches(
+                mesh, element::point_stress(mesh, materials, displacement,
+                                            temperature_change)));
 }
 
 double mesh_volume(const TetMesh& mesh) {
@@ -148,8 +154,9 @@ double mesh_volume(const TetMesh& mesh) {
   return volume;
 }
 
-double mesh_mass(const TetMesh& mesh, const std::vector<Material>& materials) {
-  check_materials(mesh, materials);
+double mesh_mass(const TetMesh& mesh,
+                 const std::vector<element::Material>& materials) {
+  element::check_materials(mesh, materials);
   double mass = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
     mass += materials[mesh.element_region[e]].density * element_volume(mesh, e);
@@ -157,4 +164,4 @@ double mesh_mass(const TetMesh& mesh, const std::vector<Material>& materials) {
   return mass;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

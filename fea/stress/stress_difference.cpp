@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "fea/element/tet_shape.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 namespace {
 
@@ -16,7 +16,7 @@ const std::array<std::array<double, Nodes>, kPoints>& rule_shapes() {
   static const auto kShapes = [] {
     std::array<std::array<double, Nodes>, kPoints> shapes;
     for (int q = 0; q < kPoints; ++q) {
-      shapes[q] = tet_shapes<Nodes>(fine_tet_rule()[q].L);
+      shapes[q] = element::tet_shapes<Nodes>(element::fine_tet_rule()[q].L);
     }
     return shapes;
   }();
@@ -25,11 +25,11 @@ const std::array<std::array<double, Nodes>, kPoints>& rule_shapes() {
 
 }  // namespace
 
-StressDifference::StressDifference(const TetMesh& mesh,
-                                   const std::vector<Material>& materials,
-                                   const StressedSolution& solution)
+StressDifference::StressDifference(
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const StressedSolution& solution)
     : mesh_(mesh), solution_(solution) {
-  check_materials(mesh, materials);
+  element::check_materials(mesh, materials);
   const auto nodes = static_cast<Eigen::Index>(mesh.nodes.size());
   const Eigen::Index heated = solution.temperature_change.size();
   if (solution.displacement.size() != 3 * nodes ||
@@ -42,14 +42,14 @@ StressDifference::StressDifference(const TetMesh& mesh,
         solution.stress.nodes.elements.size() / mesh.nodes_per_element(), nodes,
         mesh.element_count()));
   }
-  laws_ = elastic_laws(materials);
+  laws_ = element::elastic_laws(materials);
 }
 
 template <int Nodes>
 PointDifferences StressDifference::differences(int e) const {
   const auto ids = mesh_.element(e);
   const auto copies = solution_.stress.nodes.element(e);
-  const ElasticLaw& law = laws_[mesh_.element_region[e]];
+  const element::ElasticLaw& law = laws_[mesh_.element_region[e]];
   std::array<Vec3, Nodes> x;
   std::array<Vec3, Nodes> du;
   for (int a = 0; a < Nodes; ++a) {
@@ -59,18 +59,18 @@ PointDifferences StressDifference::differences(int e) const {
   }
   PointDifferences out;
   for (int q = 0; q < kPoints; ++q) {
-    const auto& [L, weight] = fine_tet_rule()[q];
-    const GradientAt<Nodes> at = gradient_at<Nodes>(x, du, L);
-    out.computed[q] = stress_of_gradient(at.gradient, law);
+    const auto& [L, weight] = element::fine_tet_rule()[q];
+    const element::GradientAt<Nodes> at = element::gradient_at<Nodes>(x, du, L);
+    out.computed[q] = element::stress_of_gradient(at.gradient, law);
     out.volume[q] = weight * at.determinant / 6.0;
-    Stress smooth{};
+    element::Stress smooth{};
     double heat = 0.0;
     for (int a = 0; a < Nodes; ++a) {
       const double N = rule_shapes<Nodes>()[q][a];
       if (solution_.temperature_change.size() != 0) {
         heat += N * solution_.temperature_change[ids[a]];
       }
-      const Stress& s = solution_.stress.value[copies[a]];
+      const element::Stress& s = solution_.stress.value[copies[a]];
       for (int k = 0; k < 6; ++k) {
         smooth[k] += N * s[k];
       }
@@ -87,4 +87,4 @@ PointDifferences StressDifference::of(int element) const {
   return mesh_.order == 1 ? differences<4>(element) : differences<10>(element);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

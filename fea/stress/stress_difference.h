@@ -7,20 +7,21 @@
 #include "fea/element/elastic_law.h"
 #include "fea/stress/error_estimate.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 /// At the fourteen points of fine_tet_rule() (tet_shape.h). The stiffness
 /// rule's own points would miss part of the error: there it is smallest.
 struct PointDifferences {
-  std::array<Stress, 14> recovered_minus_computed;  // [pressure]
-  std::array<Stress, 14> computed;                  // [pressure]
-  std::array<double, 14> volume;                    // weight x det J [length^3]
+  std::array<element::Stress, 14> recovered_minus_computed;  // [pressure]
+  std::array<element::Stress, 14> computed;                  // [pressure]
+  std::array<double, 14> volume;  // weight x det J [length^3]
 };
 
 /// All arguments are on loan.
 class StressDifference {
  public:
-  StressDifference(const TetMesh& mesh, const std::vector<Material>& materials,
+  StressDifference(const TetMesh& mesh,
+                   const std::vector<element::Material>& materials,
                    const StressedSolution& solution);
   PointDifferences of(int element) const;
 
@@ -30,7 +31,7 @@ class StressDifference {
 
   const TetMesh& mesh_;
   const StressedSolution& solution_;
-  std::vector<ElasticLaw> laws_;
+  std::vector<element::ElasticLaw> laws_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

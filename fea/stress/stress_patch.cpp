@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace meniscus {
+namespace meniscus::stress {
 
 namespace {
 
@@ -21,7 +21,7 @@ constexpr double kFlat = 1e-7;
 /// Terms and stress of one sample, side by side.
 using Row = std::array<double, kWidth>;
 
-Row sample(const Vec3& y, const Stress& s) {
+Row sample(const Vec3& y, const element::Stress& s) {
   return {1.0,           y.x(),         y.y(),         y.z(),
           y.x() * y.x(), y.y() * y.y(), y.z() * y.z(), y.x() * y.y(),
           y.y() * y.z(), y.z() * y.x(), s[0],          s[1],
@@ -107,9 +107,9 @@ bool solve(const Normal& normal, StressPatch& patch) {
 
 }  // namespace
 
-Stress StressPatch::at(const Vec3& x) const {
-  const Row row = sample((x - centre) / size, Stress{});
-  Stress s{};
+element::Stress StressPatch::at(const Vec3& x) const {
+  const Row row = sample((x - centre) / size, element::Stress{});
+  element::Stress s{};
   for (int k = 0; k < 6; ++k) {
     for (int i = 0; i < kTerms; ++i) {
       s[k] += row[i] * coefficient(i, k);
@@ -118,8 +118,9 @@ Stress StressPatch::at(const Vec3& x) const {
   return s;
 }
 
-StressPatch fit_patch(const PointStress& points, std::span<const int> elements,
-                      const Vec3& centre, const PatchOptions& options) {
+StressPatch fit_patch(const element::PointStress& points,
+                      std::span<const int> elements, const Vec3& centre,
+                      const PatchOptions& options) {
   StressPatch patch;
   patch.coefficient.setZero();
   patch.centre = centre;
@@ -167,4 +168,4 @@ StressPatch fit_patch(const PointStress& points, std::span<const int> elements,
   return patch;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

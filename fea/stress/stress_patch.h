@@ -8,7 +8,7 @@
 
 #include "fea/element/point_stress.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 /// Stress as a polynomial of at most degree two in (x - centre) / size.
 struct StressPatch {
@@ -17,7 +17,7 @@ struct StressPatch {
   Vec3 centre = Vec3::Zero();
   double size = 1.0;
 
-  Stress at(const Vec3& x) const;
+  element::Stress at(const Vec3& x) const;
 };
 
 struct PatchOptions {
@@ -31,7 +31,8 @@ struct PatchOptions {
 /// that asked which twice as many points as terms determine well; the plain
 /// mean if none (for a single ten-node element the exact linear fit).
 /// `elements` must not be empty.
-StressPatch fit_patch(const PointStress& points, std::span<const int> elements,
-                      const Vec3& centre, const PatchOptions& options);
+StressPatch fit_patch(const element::PointStress& points,
+                      std::span<const int> elements, const Vec3& centre,
+                      const PatchOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

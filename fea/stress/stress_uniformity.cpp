@@ -8,10 +8,10 @@
 
 #include "core/error.h"
 #include "fea/element/elastic_law.h"
-#include "fea/element/surface_faces.h"
 #include "fea/element/point_grid.h"
+#include "fea/element/surface_faces.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 namespace {
 
@@ -31,11 +31,11 @@ void exclude_near(const TetMesh& mesh, const ExclusionZone& zone,
         zone.surface, zone.distance));
   }
   Points points;
-  for (const int node :
-       surface_nodes(mesh, surface_label(mesh, zone.surface))) {
+  for (const int node : element::surface_nodes(
+           mesh, element::surface_label(mesh, zone.surface))) {
     points.push_back(mesh.nodes[node]);
   }
-  const PointGrid nearest(points);
+  const element::PointGrid nearest(points);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const Vec3 x = centre(mesh, e);
     if ((points[nearest.of(x)] - x).norm() <= zone.distance) {
@@ -166,12 +166,12 @@ Uniformity uniformity(const std::vector<double>& values,
   return u;
 }
 
-StressUniformity stress_uniformity(const TetMesh& mesh,
-                                   const std::vector<Material>& materials,
-                                   const PointStress& points,
-                                   const std::vector<char>& excluded) {
-  check_materials(mesh, materials);
-  const std::vector<ElasticLaw> laws = elastic_laws(materials);
+StressUniformity stress_uniformity(
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const element::PointStress& points, const std::vector<char>& excluded) {
+  element::check_materials(mesh, materials);
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws(materials);
   std::vector<double> mises;
   std::vector<double> energy;
   std::vector<double> volumes;
@@ -181,14 +181,14 @@ StressUniformity stress_uniformity(const TetMesh& mesh,
     }
     for (int q = 0; q < points.points_per_element; ++q) {
       const std::size_t at = points.index(e, q);
-      mises.push_back(von_mises(points.stress[at]));
-      const Stress& s = points.stress[at];
-      energy.push_back(
-          0.5 * complementary_product(s, s, laws[mesh.element_region[e]]));
+      mises.push_back(element::von_mises(points.stress[at]));
+      const element::Stress& s = points.stress[at];
+      energy.push_back(0.5 * element::complementary_product(
+                                 s, s, laws[mesh.element_region[e]]));
       volumes.push_back(points.volume[at]);
     }
   }
   return {uniformity(mises, volumes), uniformity(energy, volumes)};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

@@ -7,7 +7,7 @@
 
 #include "fea/element/point_stress.h"
 
-namespace meniscus {
+namespace meniscus::stress {
 
 /// Where stresses are left out of account: about clamps and loads they are the
 /// model's, not the part's.
@@ -63,9 +63,8 @@ struct StressUniformity {
   Uniformity von_mises;       // [pressure]
   Uniformity energy_density;  // [pressure]
 };
-StressUniformity stress_uniformity(const TetMesh& mesh,
-                                   const std::vector<Material>& materials,
-                                   const PointStress& points,
-                                   const std::vector<char>& excluded = {});
+StressUniformity stress_uniformity(
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const element::PointStress& points, const std::vector<char>& excluded = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::stress

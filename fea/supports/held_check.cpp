@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/math/dense.h"
 #include "core/error.h"
+#include "core/math/dense.h"
 #include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 namespace {
 
@@ -241,4 +241,4 @@ Eigen::MatrixXd free_motions(const TetMesh& mesh,
   return u;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

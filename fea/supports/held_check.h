@@ -7,7 +7,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "fea/supports/supports.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 /// Throws SolverError when a connected part of the mesh can move rigidly
 /// although it is held along `held` (held_directions, sprung_directions): the
@@ -23,4 +23,4 @@ void check_held(const TetMesh& mesh, const std::vector<HeldDirection>& held,
 Eigen::MatrixXd free_motions(const TetMesh& mesh,
                              const std::vector<HeldDirection>& held);
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

@@ -10,7 +10,7 @@
 #include "fea/supports/held_check.h"
 #include "fea/supports/supports.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 bool Holding::operator==(const Holding& other) const {
   return freedom.held == other.freedom.held &&
@@ -18,7 +18,7 @@ bool Holding::operator==(const Holding& other) const {
          springs == other.springs;
 }
 
-void check_holding(const TetMesh& mesh, const LoadCase& load_case) {
+void check_holding(const TetMesh& mesh, const loads::LoadCase& load_case) {
   std::vector<HeldDirection> held = held_directions(mesh, load_case);
   const std::vector<HeldDirection> sprung = sprung_directions(mesh, load_case);
   held.insert(held.end(), sprung.begin(), sprung.end());
@@ -30,9 +30,9 @@ void check_holding(const TetMesh& mesh, const LoadCase& load_case) {
   check_held(mesh, held, load_case.name);
 }
 
-Holding make_holding(const TetMesh& mesh, const LoadCase& load_case,
-                     const NodeOrder& order) {
-  const NodeFreedom given =
+Holding make_holding(const TetMesh& mesh, const loads::LoadCase& load_case,
+                     const solver::NodeOrder& order) {
+  const solver::NodeFreedom given =
       node_freedom(mesh, held_directions(mesh, load_case));
   std::vector<char> loose(mesh.nodes.size(), 1);
   for (const int node : mesh.elements) {
@@ -79,8 +79,10 @@ int free_unknowns(const Holding& holding) {
   return static_cast<int>(std::lround(free));
 }
 
-SpringBlocks corner_springs(const TetMesh& mesh, const LoadCase& load_case,
-                            const NodeOrder& order, const CornerMap& map) {
+SpringBlocks corner_springs(const TetMesh& mesh,
+                            const loads::LoadCase& load_case,
+                            const solver::NodeOrder& order,
+                            const solver::CornerMap& map) {
   std::vector<int> corner_of(mesh.nodes.size(), -1);  // the mesh's node
   for (std::size_t c = 0; c < map.corner.size(); ++c) {
     corner_of[order.to_mesh[map.corner[c]]] = static_cast<int>(c);
@@ -88,12 +90,12 @@ SpringBlocks corner_springs(const TetMesh& mesh, const LoadCase& load_case,
   return renumbered(spring_blocks(mesh, load_case, 1), corner_of);
 }
 
-BlockMatrix<double> sprung_matrix(const BlockPattern& pattern,
-                                  const BlockMatrix<double>& matrix,
-                                  const SpringBlocks& springs) {
-  BlockMatrix<double> sprung = matrix;
+solver::BlockMatrix<double> sprung_matrix(
+    const solver::BlockPattern& pattern,
+    const solver::BlockMatrix<double>& matrix, const SpringBlocks& springs) {
+  solver::BlockMatrix<double> sprung = matrix;
   add_springs(pattern, springs, sprung);
   return sprung;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

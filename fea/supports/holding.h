@@ -11,11 +11,11 @@
 #include "fea/solver/node_order.h"
 #include "fea/supports/springs.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 /// In the solver's numbering.
 struct Holding {
-  NodeFreedom freedom;  // nodes in no element are held too
+  solver::NodeFreedom freedom;  // nodes in no element are held too
   SpringBlocks springs;
 
   bool operator==(const Holding& other) const;
@@ -23,11 +23,11 @@ struct Holding {
 
 /// Throws InvalidInput (see supports.h, springs.h; nothing held) and
 /// SolverError when the body can move.
-void check_holding(const TetMesh& mesh, const LoadCase& load_case);
+void check_holding(const TetMesh& mesh, const loads::LoadCase& load_case);
 
 /// Throws InvalidInput as check_holding does.
-Holding make_holding(const TetMesh& mesh, const LoadCase& load_case,
-                     const NodeOrder& order);
+Holding make_holding(const TetMesh& mesh, const loads::LoadCase& load_case,
+                     const solver::NodeOrder& order);
 
 /// The same nodes are held along as many directions, though these may turn.
 bool alike(const Holding& a, const Holding& b);
@@ -35,12 +35,14 @@ bool alike(const Holding& a, const Holding& b);
 int free_unknowns(const Holding& holding);
 
 /// The springs of `load_case` on the corner mesh of `map`.
-SpringBlocks corner_springs(const TetMesh& mesh, const LoadCase& load_case,
-                            const NodeOrder& order, const CornerMap& map);
+SpringBlocks corner_springs(const TetMesh& mesh,
+                            const loads::LoadCase& load_case,
+                            const solver::NodeOrder& order,
+                            const solver::CornerMap& map);
 
 /// The stiffness with springs.
-BlockMatrix<double> sprung_matrix(const BlockPattern& pattern,
-                                  const BlockMatrix<double>& matrix,
-                                  const SpringBlocks& springs);
+solver::BlockMatrix<double> sprung_matrix(
+    const solver::BlockPattern& pattern,
+    const solver::BlockMatrix<double>& matrix, const SpringBlocks& springs);
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

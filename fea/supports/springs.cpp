@@ -14,13 +14,13 @@
 #include "fea/element/surface_normals.h"
 #include "fea/loads/loads.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 namespace {
 
 using RowMat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-void check(const SpringBed& bed, const LoadCase& load_case) {
+void check(const loads::SpringBed& bed, const loads::LoadCase& load_case) {
   const auto refuse = [&](const std::string& what) {
     throw InvalidInput(fmt::format("load case '{}': springs on '{}' {}",
                                    load_case.name, bed.surface, what));
@@ -36,7 +36,7 @@ void check(const SpringBed& bed, const LoadCase& load_case) {
   if (k.isZero(0.0) && bed.normal == 0.0) {
     refuse("have no stiffness; give one along a component or the normal");
   }
-  if (bed.axes && !span_a_plane(*bed.axes)) {
+  if (bed.axes && !element::span_a_plane(*bed.axes)) {
     refuse(
         "have axes without length or parallel ones; give two that span a "
         "plane");
@@ -48,11 +48,11 @@ struct Entry {
   Mat3 block;
 };
 
-void add_bed_stiffness(const TetMesh& mesh, const SpringBed& bed, int order,
-                       std::vector<Entry>& entries) {
+void add_bed_stiffness(const TetMesh& mesh, const loads::SpringBed& bed,
+                       int order, std::vector<Entry>& entries) {
   const BedStiffness stiffness = bed_stiffness_of(mesh, bed);
-  const int label = surface_label(mesh, bed.surface);
-  const FaceQuadrature quadrature(order, FaceRule::Seven);
+  const int label = element::surface_label(mesh, bed.surface);
+  const element::FaceQuadrature quadrature(order, element::FaceRule::Seven);
   const int count = order == 1 ? 3 : 6;
   for (int f = 0; f < mesh.face_count(); ++f) {
     if (mesh.face_label[f] != label) {
@@ -64,7 +64,7 @@ void add_bed_stiffness(const TetMesh& mesh, const SpringBed& bed, int order,
       row.fill(Mat3::Zero());
     }
     for (int q = 0; q < quadrature.size(); ++q) {
-      const FacePoint point = quadrature.at(mesh, f, q);
+      const element::FacePoint point = quadrature.at(mesh, f, q);
       const double area = point.normal.norm();
       const Vec3 n = point.normal / area;
       const Mat3 k =
@@ -102,43 +102,48 @@ SpringBlocks merged(std::vector<Entry> entries) {
 }
 
 /// Along a fixed direction, or the normal where there is none.
-SpringSet spring_set(const TetMesh& mesh, const SpringBed& bed,
+SpringSet spring_set(const TetMesh& mesh, const loads::SpringBed& bed,
                      double stiffness, const std::optional<Vec3>& direction) {
-  const double whole = bed.measure == SpringMeasure::Total
-                           ? surface_weights(mesh, bed.surface).weights.sum()
-                           : 1.0;
+  const double whole =
+      bed.measure == loads::SpringMeasure::Total
+          ? loads::surface_weights(mesh, bed.surface).weights.sum()
+          : 1.0;
   SpringSet set{.stiffness = stiffness};
-  over_face_points(mesh, surface_label(mesh, bed.surface), FaceRule::Seven,
-                   [&](int f, const FacePoint& point) {
-                     const double area = point.normal.norm();
-                     const Vec3 along = std::sqrt(area / whole) *
-                                        direction.value_or(point.normal / area);
-                     const auto ids = mesh.face(f);
-                     SpringSet::Spring& spring = set.springs.emplace_back();
-                     spring.nodes.assign(ids.begin(), ids.end());
-                     for (std::size_t a = 0; a < ids.size(); ++a) {
-                       spring.coefficients.push_back(point.shape[a] * along);
-                     }
-                   });
+  element::over_face_points(
+      mesh, element::surface_label(mesh, bed.surface), element::FaceRule::Seven,
+      [&](int f, const element::FacePoint& point) {
+        const double area = point.normal.norm();
+        const Vec3 along =
+            std::sqrt(area / whole) * direction.value_or(point.normal / area);
+        const auto ids = mesh.face(f);
+        SpringSet::Spring& spring = set.springs.emplace_back();
+        spring.nodes.assign(ids.begin(), ids.end());
+        for (std::size_t a = 0; a < ids.size(); ++a) {
+          spring.coefficients.push_back(point.shape[a] * along);
+        }
+      });
   return set;
 }
 
 }  // namespace
 
-BedStiffness bed_stiffness_of(const TetMesh& mesh, const SpringBed& bed) {
-  const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
-  const double area = surface_weights(mesh, bed.surface).weights.sum();
-  const double scale = bed.measure == SpringMeasure::Total ? 1.0 / area : 1.0;
+BedStiffness bed_stiffness_of(const TetMesh& mesh,
+                              const loads::SpringBed& bed) {
+  const Mat3 axes = bed.axes ? element::unit_axes(*bed.axes) : Mat3::Identity();
+  const double area = loads::surface_weights(mesh, bed.surface).weights.sum();
+  const double scale =
+      bed.measure == loads::SpringMeasure::Total ? 1.0 / area : 1.0;
   return {scale * axes * bed.components.asDiagonal() * axes.transpose(),
           scale * bed.normal};
 }
 
 std::vector<SpringSet> spring_sets(const TetMesh& mesh,
-                                   const LoadCase& load_case) {
+                                   const loads::LoadCase& load_case) {
   std::vector<SpringSet> sets;
-  for (const SpringBed& bed : load_case.springs) {
+  for (const loads::SpringBed& bed : load_case.springs) {
     check(bed, load_case);
-    const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
+    const Mat3 axes =
+        bed.axes ? element::unit_axes(*bed.axes) : Mat3::Identity();
     for (int c = 0; c < 3; ++c) {
       if (bed.components[c] > 0.0) {
         sets.push_back(
@@ -152,10 +157,10 @@ std::vector<SpringSet> spring_sets(const TetMesh& mesh,
   return sets;
 }
 
-SpringBlocks spring_blocks(const TetMesh& mesh, const LoadCase& load_case,
-                           int order) {
+SpringBlocks spring_blocks(const TetMesh& mesh,
+                           const loads::LoadCase& load_case, int order) {
   std::vector<Entry> entries;
-  for (const SpringBed& bed : load_case.springs) {
+  for (const loads::SpringBed& bed : load_case.springs) {
     check(bed, load_case);
     add_bed_stiffness(mesh, bed, order, entries);
   }
@@ -173,8 +178,9 @@ SpringBlocks renumbered(const SpringBlocks& springs,
   return merged(std::move(entries));
 }
 
-void add_springs(const BlockPattern& pattern, const SpringBlocks& springs,
-                 BlockMatrix<double>& matrix) {
+void add_springs(const solver::BlockPattern& pattern,
+                 const SpringBlocks& springs,
+                 solver::BlockMatrix<double>& matrix) {
   for (std::size_t k = 0; k < springs.at.size(); ++k) {
     const auto [row, column] = springs.at[k];
     double* block = matrix.diagonal.data() + 9L * row;
@@ -201,12 +207,14 @@ VectorX spring_forces(const SpringBlocks& springs, const VectorX& u) {
 }
 
 std::vector<HeldDirection> sprung_directions(const TetMesh& mesh,
-                                             const LoadCase& load_case) {
+                                             const loads::LoadCase& load_case) {
   std::vector<HeldDirection> held;
-  for (const SpringBed& bed : load_case.springs) {
+  for (const loads::SpringBed& bed : load_case.springs) {
     check(bed, load_case);
-    const Mat3 axes = bed.axes ? unit_axes(*bed.axes) : Mat3::Identity();
-    const SurfaceNormals normals = surface_normals(mesh, bed.surface);
+    const Mat3 axes =
+        bed.axes ? element::unit_axes(*bed.axes) : Mat3::Identity();
+    const element::SurfaceNormals normals =
+        element::surface_normals(mesh, bed.surface);
     for (std::size_t k = 0; k < normals.nodes.size(); ++k) {
       for (int c = 0; c < 3; ++c) {
         if (bed.components[c] > 0.0) {
@@ -222,4 +230,4 @@ std::vector<HeldDirection> sprung_directions(const TetMesh& mesh,
   return held;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

@@ -9,7 +9,7 @@
 #include "fea/solver/block_matrix.h"
 #include "fea/supports/supports.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 /// Blocks of the lower triangle, ascending by row and column.
 struct SpringBlocks {
@@ -25,23 +25,24 @@ struct SpringBlocks {
 /// what multigrid's four-node level needs. Throws InvalidInput, naming load
 /// case and surface: unknown surfaces, axes that span no plane, stiffnesses
 /// that are negative, not finite or all 0.
-SpringBlocks spring_blocks(const TetMesh& mesh, const LoadCase& load_case,
-                           int order);
+SpringBlocks spring_blocks(const TetMesh& mesh,
+                           const loads::LoadCase& load_case, int order);
 
 /// A bed's stiffness per area: `tensor` + normal n n^T [pressure/length].
 struct BedStiffness {
   Mat3 tensor = Mat3::Zero();
   double normal = 0.0;
 };
-BedStiffness bed_stiffness_of(const TetMesh& mesh, const SpringBed& bed);
+BedStiffness bed_stiffness_of(const TetMesh& mesh, const loads::SpringBed& bed);
 
 /// The blocks with nodes renumbered.
 SpringBlocks renumbered(const SpringBlocks& springs,
                         const std::vector<int>& number);
 
 /// Adds the blocks; every pair of them must be in the pattern.
-void add_springs(const BlockPattern& pattern, const SpringBlocks& springs,
-                 BlockMatrix<double>& matrix);
+void add_springs(const solver::BlockPattern& pattern,
+                 const SpringBlocks& springs,
+                 solver::BlockMatrix<double>& matrix);
 
 /// S u: what the springs pull with, against u [force].
 VectorX spring_forces(const SpringBlocks& springs, const VectorX& u);
@@ -63,10 +64,10 @@ struct SpringSet {
 /// A set for each component and normal that has a stiffness. Throws what
 /// spring_blocks throws.
 std::vector<SpringSet> spring_sets(const TetMesh& mesh,
-                                   const LoadCase& load_case);
+                                   const loads::LoadCase& load_case);
 
 /// The directions that springs pull along, with the uncertainty of normals.
 std::vector<HeldDirection> sprung_directions(const TetMesh& mesh,
-                                             const LoadCase& load_case);
+                                             const loads::LoadCase& load_case);
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

@@ -9,7 +9,7 @@
 #include "fea/supports/springs.h"
 #include "fea/supports/supports.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 namespace {
 
@@ -48,8 +48,8 @@ void add_node(const HeldDirection* first, const HeldSpan& span, const Vec3& u,
 }
 
 std::vector<ByDirection> by_directions(const TetMesh& mesh,
-                                       const LoadCase& load_case,
-                                       const AdjointPair& pair) {
+                                       const loads::LoadCase& load_case,
+                                       const loads::AdjointPair& pair) {
   const SpringBlocks springs = spring_blocks(mesh, load_case, mesh.order);
   const VectorX r = of_supports(pair.reactions, springs, pair.displacement);
   const VectorX adjoint_r =
@@ -83,21 +83,23 @@ std::vector<ByDirection> by_directions(const TetMesh& mesh,
 void pull_back_plane(const TetMesh& mesh, int label, const Vec3& by_normal,
                      Points& gradient) {
   Vec3 sum = Vec3::Zero();
-  over_face_points(mesh, label, FaceRule::Three,
-                   [&](int, const FacePoint& point) { sum += point.normal; });
+  element::over_face_points(
+      mesh, label, element::FaceRule::Three,
+      [&](int, const element::FacePoint& point) { sum += point.normal; });
   const Vec3 n = sum.normalized();
-  const FacePointGradient each{.by_normal = (by_normal - n.dot(by_normal) * n) /
-                                            sum.norm()};
-  pull_back_faces(
-      mesh, label, FaceRule::Three, [&](int, const FacePoint&) { return each; },
-      gradient);
+  const element::FacePointGradient each{
+      .by_normal = (by_normal - n.dot(by_normal) * n) / sum.norm()};
+  element::pull_back_faces(
+      mesh, label, element::FaceRule::Three,
+      [&](int, const element::FacePoint&) { return each; }, gradient);
 }
 
 /// Through the normals at nodes: each its faces' area vectors' sum made unit.
 /// `by_normal`: 3 per node of the mesh.
 void pull_back_normals(const TetMesh& mesh, int label, const VectorX& by_normal,
                        Points& gradient) {
-  const FaceQuadrature quadrature(mesh.order, FaceRule::Nodes);
+  const element::FaceQuadrature quadrature(mesh.order,
+                                           element::FaceRule::Nodes);
   VectorX sums = VectorX::Zero(by_normal.size());
   const auto over_nodes = [&](const auto& visit) {
     for (int f = 0; f < mesh.face_count(); ++f) {
@@ -123,12 +125,12 @@ void pull_back_normals(const TetMesh& mesh, int label, const VectorX& by_normal,
 
 }  // namespace
 
-void add_support_gradient(const TetMesh& mesh, const LoadCase& load_case,
-                          const AdjointPair& pair, Points& gradient) {
-  const auto turns = [](const Support& support) {
-    return support.kind != SupportKind::Components;
+void add_support_gradient(const TetMesh& mesh, const loads::LoadCase& load_case,
+                          const loads::AdjointPair& pair, Points& gradient) {
+  const auto turns = [](const loads::Support& support) {
+    return support.kind != loads::SupportKind::Components;
   };
-  const std::vector<Support>& supports = load_case.supports;
+  const std::vector<loads::Support>& supports = load_case.supports;
   if (std::none_of(supports.begin(), supports.end(), turns)) {
     return;
   }
@@ -137,7 +139,7 @@ void add_support_gradient(const TetMesh& mesh, const LoadCase& load_case,
     if (!turns(supports[s])) {
       continue;
     }
-    const int label = surface_label(mesh, supports[s].surface);
+    const int label = element::surface_label(mesh, supports[s].surface);
     VectorX by_normal = VectorX::Zero(pair.lambda.size());
     Vec3 sum = Vec3::Zero();
     for (const ByDirection& direction : all) {
@@ -146,7 +148,7 @@ void add_support_gradient(const TetMesh& mesh, const LoadCase& load_case,
         sum += direction.derivative;
       }
     }
-    if (supports[s].kind == SupportKind::Symmetry) {
+    if (supports[s].kind == loads::SupportKind::Symmetry) {
       pull_back_plane(mesh, label, sum, gradient);
     } else {
       pull_back_normals(mesh, label, by_normal, gradient);
@@ -154,4 +156,4 @@ void add_support_gradient(const TetMesh& mesh, const LoadCase& load_case,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

@@ -8,33 +8,33 @@
 #include "fea/element/surface_faces.h"
 #include "fea/element/surface_normals.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 namespace {
 
 /// Uncertainty of a normal, in spreads of the facets' normals around its node.
 constexpr double kSpreads = 2.0;
 
-Mat3 axes_of(const Support& support, const LoadCase& load_case) {
+Mat3 axes_of(const loads::Support& support, const loads::LoadCase& load_case) {
   if (!support.axes) {
     return Mat3::Identity();
   }
-  if (!span_a_plane(*support.axes)) {
+  if (!element::span_a_plane(*support.axes)) {
     throw InvalidInput(fmt::format(
         "load case '{}': the axes of the support on '{}' have no length or are "
         "parallel; give two that span a plane",
         load_case.name, support.surface));
   }
-  return unit_axes(*support.axes);
+  return element::unit_axes(*support.axes);
 }
 
-void add_components(const TetMesh& mesh, const Support& support,
-                    const LoadCase& load_case,
+void add_components(const TetMesh& mesh, const loads::Support& support,
+                    const loads::LoadCase& load_case,
                     std::vector<HeldDirection>& held) {
   const Mat3 axes = axes_of(support, load_case);
   const std::array<bool, 3> fix = {support.fix_x, support.fix_y, support.fix_z};
-  const int label = surface_label(mesh, support.surface);
-  for (const int node : surface_nodes(mesh, label)) {
+  const int label = element::surface_label(mesh, support.surface);
+  for (const int node : element::surface_nodes(mesh, label)) {
     for (int k = 0; k < 3; ++k) {
       if (fix[k]) {
         held.push_back({node, axes.col(k), kExactDirection});
@@ -43,17 +43,18 @@ void add_components(const TetMesh& mesh, const Support& support,
   }
 }
 
-void add_normals(const TetMesh& mesh, const Support& support,
+void add_normals(const TetMesh& mesh, const loads::Support& support,
                  std::vector<HeldDirection>& held) {
-  if (support.kind == SupportKind::Symmetry) {
-    const Vec3 normal = plane_normal(mesh, support.surface);
-    const int label = surface_label(mesh, support.surface);
-    for (const int node : surface_nodes(mesh, label)) {
+  if (support.kind == loads::SupportKind::Symmetry) {
+    const Vec3 normal = element::plane_normal(mesh, support.surface);
+    const int label = element::surface_label(mesh, support.surface);
+    for (const int node : element::surface_nodes(mesh, label)) {
       held.push_back({node, normal, kExactDirection});
     }
     return;
   }
-  const SurfaceNormals normals = surface_normals(mesh, support.surface);
+  const element::SurfaceNormals normals =
+      element::surface_normals(mesh, support.surface);
   for (std::size_t k = 0; k < normals.nodes.size(); ++k) {
     held.push_back({normals.nodes[k], normals.normal[k],
                     std::max(kExactDirection, kSpreads * normals.spread[k])});
@@ -92,13 +93,13 @@ HeldSpan held_span(const HeldDirection* first, const HeldDirection* last) {
 }
 
 std::vector<HeldDirection> held_directions(const TetMesh& mesh,
-                                           const LoadCase& load_case) {
+                                           const loads::LoadCase& load_case) {
   std::vector<HeldDirection> held;
   const auto add = [&](bool components) {
     for (std::size_t s = 0; s < load_case.supports.size(); ++s) {
-      const Support& support = load_case.supports[s];
+      const loads::Support& support = load_case.supports[s];
       const std::size_t first = held.size();
-      if ((support.kind == SupportKind::Components) != components) {
+      if ((support.kind == loads::SupportKind::Components) != components) {
         continue;
       }
       if (components) {
@@ -116,12 +117,13 @@ std::vector<HeldDirection> held_directions(const TetMesh& mesh,
   return held;
 }
 
-NodeFreedom node_freedom(const TetMesh& mesh, std::vector<HeldDirection> held) {
+solver::NodeFreedom node_freedom(const TetMesh& mesh,
+                                 std::vector<HeldDirection> held) {
   std::stable_sort(held.begin(), held.end(),
                    [](const HeldDirection& a, const HeldDirection& b) {
                      return a.node < b.node;
                    });
-  NodeFreedom freedom{static_cast<int>(mesh.nodes.size()), {}, {}};
+  solver::NodeFreedom freedom{static_cast<int>(mesh.nodes.size()), {}, {}};
   for (std::size_t k = 0; k < held.size();) {
     std::size_t end = k;
     while (end < held.size() && held[end].node == held[k].node) {
@@ -135,4 +137,4 @@ NodeFreedom node_freedom(const TetMesh& mesh, std::vector<HeldDirection> held) {
   return freedom;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

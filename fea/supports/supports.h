@@ -8,7 +8,7 @@
 #include "fea/loads/load_case.h"
 #include "fea/solver/node_freedom.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 /// One direction that a node is held along.
 struct HeldDirection {
@@ -24,7 +24,7 @@ inline constexpr double kExactDirection = 1e-6;
 /// a surface that is unknown, has no normal or, under symmetry, is no plane;
 /// axes that span none.
 std::vector<HeldDirection> held_directions(const TetMesh& mesh,
-                                           const LoadCase& load_case);
+                                           const loads::LoadCase& load_case);
 
 /// Which of the directions of one node, taken in their order, it is held along,
 /// and what they span.
@@ -39,6 +39,7 @@ HeldSpan held_span(const HeldDirection* first, const HeldDirection* last);
 /// mesh's numbering. A node is held along the span of its directions, taken in
 /// their order; each counts when it leaves the span of those before by more
 /// than their uncertainty.
-NodeFreedom node_freedom(const TetMesh& mesh, std::vector<HeldDirection> held);
+solver::NodeFreedom node_freedom(const TetMesh& mesh,
+                                 std::vector<HeldDirection> held);
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

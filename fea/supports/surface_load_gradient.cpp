@@ -12,83 +12,93 @@
 #include "fea/loads/remote_gradient.h"
 #include "fea/supports/springs.h"
 
-namespace meniscus {
+namespace meniscus::supports {
 
 namespace {
 
 /// int v . traction dA with traction = total / area: by the rule of the
 /// surface's weights.
-void add_force(const TetMesh& mesh, const SurfaceForce& load, const VectorX& v,
-               Points& gradient) {
-  const SurfaceWeights w = surface_weights(mesh, load.surface);
+void add_force(const TetMesh& mesh, const loads::SurfaceForce& load,
+               const VectorX& v, Points& gradient) {
+  const loads::SurfaceWeights w = loads::surface_weights(mesh, load.surface);
   const double area = w.weights.sum();
   double mean = 0.0;
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     mean += w.weights[static_cast<Eigen::Index>(k)] / area *
             load.total.dot(v.segment<3>(3L * w.nodes[k]));
   }
-  pull_back_faces(
-      mesh, surface_label(mesh, load.surface), FaceRule::Three,
-      [&](int f, const FacePoint& point) -> FacePointGradient {
-        const double here = load.total.dot(value_at(mesh, f, point, v));
+  element::pull_back_faces(
+      mesh, element::surface_label(mesh, load.surface),
+      element::FaceRule::Three,
+      [&](int f,
+          const element::FacePoint& point) -> element::FacePointGradient {
+        const double here =
+            load.total.dot(element::value_at(mesh, f, point, v));
         return {.by_normal = (here - mean) / area * point.normal.normalized()};
       },
       gradient);
 }
 
-void add_pressure(const TetMesh& mesh, const LoadCase& load_case,
-                  const SurfacePressure& load, const VectorX& v,
+void add_pressure(const TetMesh& mesh, const loads::LoadCase& load_case,
+                  const loads::SurfacePressure& load, const VectorX& v,
                   Points& gradient) {
-  const int label = surface_label(mesh, load.surface);
+  const int label = element::surface_label(mesh, load.surface);
   if (!load.field) {
-    pull_back_faces(
-        mesh, label, FaceRule::Three,
-        [&](int f, const FacePoint& point) -> FacePointGradient {
-          return {.by_normal = -load.pressure * value_at(mesh, f, point, v)};
+    element::pull_back_faces(
+        mesh, label, element::FaceRule::Three,
+        [&](int f,
+            const element::FacePoint& point) -> element::FacePointGradient {
+          return {.by_normal =
+                      -load.pressure * element::value_at(mesh, f, point, v)};
         },
         gradient);
     return;
   }
   const std::string what =
       fmt::format("the pressure on surface '{}'", load.surface);
-  require_slope(load.slope, load_case, what);
-  pull_back_faces(
-      mesh, label, FaceRule::Seven,
-      [&](int f, const FacePoint& point) -> FacePointGradient {
-        const Vec3 here = value_at(mesh, f, point, v);
+  loads::require_slope(load.slope, load_case, what);
+  element::pull_back_faces(
+      mesh, label, element::FaceRule::Seven,
+      [&](int f,
+          const element::FacePoint& point) -> element::FacePointGradient {
+        const Vec3 here = element::value_at(mesh, f, point, v);
         const double p =
-            field_value(load.field, point.position, load_case, what);
+            loads::field_value(load.field, point.position, load_case, what);
         const Vec3 slope =
-            field_value(load.slope, point.position, load_case, what);
+            loads::field_value(load.slope, point.position, load_case, what);
         return {-point.normal.dot(here) * slope, -p * here};
       },
       gradient);
 }
 
-void add_traction(const TetMesh& mesh, const LoadCase& load_case,
-                  const SurfaceTraction& load, const VectorX& v,
+void add_traction(const TetMesh& mesh, const loads::LoadCase& load_case,
+                  const loads::SurfaceTraction& load, const VectorX& v,
                   Points& gradient) {
-  const int label = surface_label(mesh, load.surface);
+  const int label = element::surface_label(mesh, load.surface);
   if (!load.field) {
-    pull_back_faces(
-        mesh, label, FaceRule::Three,
-        [&](int f, const FacePoint& point) -> FacePointGradient {
-          return {.by_normal = load.traction.dot(value_at(mesh, f, point, v)) *
-                               point.normal.normalized()};
+    element::pull_back_faces(
+        mesh, label, element::FaceRule::Three,
+        [&](int f,
+            const element::FacePoint& point) -> element::FacePointGradient {
+          return {.by_normal =
+                      load.traction.dot(element::value_at(mesh, f, point, v)) *
+                      point.normal.normalized()};
         },
         gradient);
     return;
   }
   const std::string what =
       fmt::format("the traction on surface '{}'", load.surface);
-  require_slope(load.slope, load_case, what);
-  pull_back_faces(
-      mesh, label, FaceRule::Seven,
-      [&](int f, const FacePoint& point) -> FacePointGradient {
-        const Vec3 here = value_at(mesh, f, point, v);
-        const Vec3 t = field_value(load.field, point.position, load_case, what);
+  loads::require_slope(load.slope, load_case, what);
+  element::pull_back_faces(
+      mesh, label, element::FaceRule::Seven,
+      [&](int f,
+          const element::FacePoint& point) -> element::FacePointGradient {
+        const Vec3 here = element::value_at(mesh, f, point, v);
+        const Vec3 t =
+            loads::field_value(load.field, point.position, load_case, what);
         const Mat3 slope =
-            field_value(load.slope, point.position, load_case, what);
+            loads::field_value(load.slope, point.position, load_case, what);
         const double area = point.normal.norm();
         return {area * slope.transpose() * here,
                 t.dot(here) / area * point.normal};
@@ -97,16 +107,17 @@ void add_traction(const TetMesh& mesh, const LoadCase& load_case,
 }
 
 /// Of area (v . k u) + normal (n . v)(n . u), n the point's normal.
-void add_bed_gradient(const TetMesh& mesh, const SpringBed& bed,
+void add_bed_gradient(const TetMesh& mesh, const loads::SpringBed& bed,
                       const VectorX& u, const VectorX& v, Points& gradient) {
   const BedStiffness bed_stiffness = bed_stiffness_of(mesh, bed);
-  const int label = surface_label(mesh, bed.surface);
+  const int label = element::surface_label(mesh, bed.surface);
   double product = 0.0;
-  pull_back_faces(
-      mesh, label, FaceRule::Seven,
-      [&](int f, const FacePoint& point) -> FacePointGradient {
-        const Vec3 at_u = value_at(mesh, f, point, u);
-        const Vec3 at_v = value_at(mesh, f, point, v);
+  element::pull_back_faces(
+      mesh, label, element::FaceRule::Seven,
+      [&](int f,
+          const element::FacePoint& point) -> element::FacePointGradient {
+        const Vec3 at_u = element::value_at(mesh, f, point, u);
+        const Vec3 at_v = element::value_at(mesh, f, point, v);
         const double area = point.normal.norm();
         const Vec3 n = point.normal / area;
         const double along = n.dot(at_u) * n.dot(at_v);
@@ -117,11 +128,12 @@ void add_bed_gradient(const TetMesh& mesh, const SpringBed& bed,
                                                n.dot(at_v) * at_u - along * n)};
       },
       gradient);
-  if (bed.measure == SpringMeasure::Total) {
-    const double area = surface_weights(mesh, bed.surface).weights.sum();
-    pull_back_faces(
-        mesh, label, FaceRule::Three,
-        [&](int, const FacePoint& point) -> FacePointGradient {
+  if (bed.measure == loads::SpringMeasure::Total) {
+    const double area = loads::surface_weights(mesh, bed.surface).weights.sum();
+    element::pull_back_faces(
+        mesh, label, element::FaceRule::Three,
+        [&](int,
+            const element::FacePoint& point) -> element::FacePointGradient {
           return {.by_normal = product / area * point.normal.normalized()};
         },
         gradient);
@@ -130,27 +142,28 @@ void add_bed_gradient(const TetMesh& mesh, const SpringBed& bed,
 
 }  // namespace
 
-void add_surface_load_gradient(const TetMesh& mesh, const LoadCase& load_case,
+void add_surface_load_gradient(const TetMesh& mesh,
+                               const loads::LoadCase& load_case,
                                const VectorX& v, Points& gradient) {
-  for (const SurfaceForce& load : load_case.forces) {
+  for (const loads::SurfaceForce& load : load_case.forces) {
     add_force(mesh, load, v, gradient);
   }
-  for (const SurfacePressure& load : load_case.pressures) {
+  for (const loads::SurfacePressure& load : load_case.pressures) {
     add_pressure(mesh, load_case, load, v, gradient);
   }
-  for (const SurfaceTraction& load : load_case.tractions) {
+  for (const loads::SurfaceTraction& load : load_case.tractions) {
     add_traction(mesh, load_case, load, v, gradient);
   }
-  for (const RemoteLoad& load : load_case.remote_loads) {
-    remote_gradient(mesh, load, v, &gradient);
+  for (const loads::RemoteLoad& load : load_case.remote_loads) {
+    loads::remote_gradient(mesh, load, v, &gradient);
   }
 }
 
-void add_spring_gradient(const TetMesh& mesh, const LoadCase& load_case,
+void add_spring_gradient(const TetMesh& mesh, const loads::LoadCase& load_case,
                          const VectorX& u, const VectorX& v, Points& gradient) {
-  for (const SpringBed& bed : load_case.springs) {
+  for (const loads::SpringBed& bed : load_case.springs) {
     add_bed_gradient(mesh, bed, u, v, gradient);
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::supports

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -62,4 +62,4 @@ std::string with_values(const std::string& text,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// The text with each of `names` replaced by its value, in parentheses and to
 /// the last bit; other names and functions stay.
@@ -13,4 +13,4 @@ std::string with_values(const std::string& text,
                         const std::vector<std::string>& names,
                         std::span<const double> values);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

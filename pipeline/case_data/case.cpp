@@ -15,7 +15,7 @@
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_kinds.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 Case::Case() = default;
 Case::~Case() = default;
@@ -38,7 +38,7 @@ constexpr int kPlacesOnCurve = 16;
 
 /// Tells where an expression of place is not above 0 on the curves that hold a
 /// film: what can be known before there is one.
-void check_on_curves(const Case& input, const FilmSystem& system,
+void check_on_curves(const Case& input, const films::FilmSystem& system,
                      const std::vector<std::string>& curves,
                      const PlaceQuantity& from, const Expression& expression,
                      const CaseValues& values) {
@@ -50,13 +50,13 @@ void check_on_curves(const Case& input, const FilmSystem& system,
         place(input, from.quantity.line), from.quantity.key, found, at.x(),
         at.y(), at.z(), curve, values.where(from.quantity)));
   };
-  for (const Curve& curve : system.curves) {
+  for (const curves::Curve& curve : system.curves) {
     if (std::find(curves.begin(), curves.end(), curve.name) == curves.end()) {
       continue;
     }
     for (int k = 0; k < kPlacesOnCurve; ++k) {
-      const Vec3 at =
-          point_at(curve.shape, static_cast<double>(k) / kPlacesOnCurve);
+      const Vec3 at = curves::point_at(curve.shape,
+                                       static_cast<double>(k) / kPlacesOnCurve);
       try {
         const double value =
             expression.evaluate(std::span<const double>(at.data(), 3));
@@ -71,14 +71,14 @@ void check_on_curves(const Case& input, const FilmSystem& system,
   }
 }
 
-PoleShape pole_of(const FieldEntry& field, const CaseValues& values) {
+films::PoleShape pole_of(const FieldEntry& field, const CaseValues& values) {
   switch (field.kind) {
     case FieldKind::Segment:
-      return SegmentPole{values.at(field.from), values.at(field.to)};
+      return films::SegmentPole{values.at(field.from), values.at(field.to)};
     case FieldKind::Plane:
-      return PlanePole{values.at(field.at), values.at(field.normal)};
+      return films::PlanePole{values.at(field.at), values.at(field.normal)};
     case FieldKind::Polyline: {
-      PolylinePole pole;
+      films::PolylinePole pole;
       for (const QuantityVector& point : field.points) {
         pole.points.push_back(values.at(point));
       }
@@ -88,11 +88,11 @@ PoleShape pole_of(const FieldEntry& field, const CaseValues& values) {
     case FieldKind::Pressure:
       break;
   }
-  return PointPole{values.at(field.at)};
+  return films::PointPole{values.at(field.at)};
 }
 
 void add_field(const Case& input, const FieldEntry& field,
-               const CaseValues& values, FilmSystem& system) {
+               const CaseValues& values, films::FilmSystem& system) {
   if (field.kind == FieldKind::Pressure) {
     system.pressures.push_back(
         {field.name, field.body, values.of_place(field.pressure)});
@@ -100,16 +100,16 @@ void add_field(const Case& input, const FieldEntry& field,
   }
   const std::size_t before = values.problems().size();
   const bool checked = !values.are_rates();
-  FieldSpec spec{.name = field.name, .shape = pole_of(field, values)};
+  films::FieldSpec spec{.name = field.name, .shape = pole_of(field, values)};
   spec.strength = values.at(field.strength);
   spec.power = values.positive(field.power);
   spec.core = values.positive(field.core);
   if (field.body.empty()) {
-    spec.per = PerArea{field.films};
+    spec.per = films::PerArea{field.films};
   } else {
-    spec.per = PerVolume{field.body};
+    spec.per = films::PerVolume{field.body};
   }
-  for (const FilmSpec& film : system.films) {
+  for (const films::FilmSpec& film : system.films) {
     const bool acts = std::find(field.films.begin(), field.films.end(),
                                 film.name) != field.films.end();
     if (checked && acts && !film.tension_field &&
@@ -123,7 +123,7 @@ void add_field(const Case& input, const FieldEntry& field,
   }
   if (checked && values.problems().size() == before) {
     try {
-      field_expression(spec);
+      energy::field_expression(spec);
     } catch (const InvalidInput& error) {
       values.problems().push_back(
           fmt::format("{}: {}", place(input, field.line), error.what()));
@@ -132,9 +132,9 @@ void add_field(const Case& input, const FieldEntry& field,
   system.fields.push_back(std::move(spec));
 }
 
-std::shared_ptr<const StartFacets> start_of(const FilmEntry& film,
-                                            const CaseValues& values) {
-  auto start = std::make_shared<StartFacets>();
+std::shared_ptr<const films::StartFacets> start_of(const FilmEntry& film,
+                                                   const CaseValues& values) {
+  auto start = std::make_shared<films::StartFacets>();
   start->facets = film.facets;
   for (const QuantityVector& vertex : film.vertices) {
     start->points.push_back(values.at(vertex));
@@ -142,12 +142,12 @@ std::shared_ptr<const StartFacets> start_of(const FilmEntry& film,
   return start;
 }
 
-FilmSystem films_of(const Case& input, const CaseValues& values) {
-  FilmSystem system;
+films::FilmSystem films_of(const Case& input, const CaseValues& values) {
+  films::FilmSystem system;
   system.curves = curves_of(input, values);
   for (const FilmEntry& film : input.films) {
     system.films.push_back(film.spec);
-    FilmSpec& spec = system.films.back();
+    films::FilmSpec& spec = system.films.back();
     if (film.tension.of_place) {
       spec.tension_field = values.of_place(film.tension);
     } else {
@@ -162,9 +162,9 @@ FilmSystem films_of(const Case& input, const CaseValues& values) {
     system.caps.push_back(cap.spec);
   }
   for (const BodyEntry& body : input.bodies) {
-    BodySpec spec{.name = body.name,
-                  .enclosed_by = body.enclosed_by,
-                  .is_void = body.material == kVoid};
+    films::BodySpec spec{.name = body.name,
+                         .enclosed_by = body.enclosed_by,
+                         .is_void = body.material == kVoid};
     if (body.volume) {
       spec.volume = values.positive(*body.volume);
     }
@@ -195,14 +195,14 @@ std::vector<std::string> curves_under(const Case& input,
 void check_places(const Case& input, const EvaluatedCase& numbers,
                   const CaseValues& values) {
   for (std::size_t k = 0; k < input.films.size(); ++k) {
-    const FilmSpec& film = numbers.film_system.films[k];
+    const films::FilmSpec& film = numbers.film_system.films[k];
     if (film.tension_field) {
       check_on_curves(input, numbers.film_system, film.curves,
                       input.films[k].tension, *film.tension_field, values);
     }
   }
   for (std::size_t k = 0; k < input.walls.size(); ++k) {
-    const WallSpec& wall = numbers.walls[k];
+    const walls::WallSpec& wall = numbers.walls[k];
     check_on_curves(input, numbers.film_system, curves_under(input, wall.films),
                     input.walls[k].thickness, wall.thickness, values);
   }
@@ -213,13 +213,13 @@ EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
   EvaluatedCase result;
   result.film_system = films_of(input, values);
   for (const WallEntry& wall : input.walls) {
-    WallSpec spec{.name = wall.name,
-                  .films = wall.films,
-                  .thickness = values.of_place(wall.thickness),
-                  .side = wall.side,
-                  .fillet = wall.fillet,
-                  .number = std::nullopt,
-                  .region = wall.region};
+    walls::WallSpec spec{.name = wall.name,
+                         .films = wall.films,
+                         .thickness = values.of_place(wall.thickness),
+                         .side = wall.side,
+                         .fillet = wall.fillet,
+                         .number = std::nullopt,
+                         .region = wall.region};
     if (!wall.thickness.of_place) {
       spec.number = values.at(wall.thickness.quantity);
     }
@@ -356,4 +356,4 @@ std::string response_unit(const Case& input, int response) {
       dimension_of(input.responses[static_cast<std::size_t>(response)].kind));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -10,7 +10,7 @@
 #include "evolve/walls/wall_spec.h"
 #include "pipeline/case_data/case_entries.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// A file that a case names, kept so that the case can be read again without
 /// it.
@@ -64,10 +64,10 @@ std::vector<BodyEntry> solid_bodies(const Case& input);
 /// What a response depends on beside fields.
 struct ResponseNumbers {
   Vec3 direction = Vec3::Zero();
-  NumberOfPlace weight;  // empty: 1
-  VectorOfPlace weight_slope;
-  NumberOfPlace level;  // above 0 where the part must not be [length]
-  VectorOfPlace level_slope;
+  loads::NumberOfPlace weight;  // empty: 1
+  loads::VectorOfPlace weight_slope;
+  loads::NumberOfPlace level;  // above 0 where the part must not be [length]
+  loads::VectorOfPlace level_slope;
 };
 
 /// The numbers of one design.
@@ -81,10 +81,11 @@ struct EvaluatedCase {
   EvaluatedCase& operator=(EvaluatedCase&& other) noexcept;
 
   VectorX design;  // where
-  FilmSystem film_system;
-  std::vector<WallSpec> walls;
-  std::vector<Material> materials;  // one per body that is solid, in order
-  std::vector<LoadCase> load_cases;
+  films::FilmSystem film_system;
+  std::vector<walls::WallSpec> walls;
+  std::vector<element::Material>
+      materials;  // one per body that is solid, in order
+  std::vector<loads::LoadCase> load_cases;
   std::vector<ResponseNumbers> responses;
   double fea_edge = 0.0;
 };
@@ -120,4 +121,4 @@ std::vector<std::string> response_names(const Case& input);
 Dimension dimension_of(ResponseKind kind);
 std::string response_unit(const Case& input, int response);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

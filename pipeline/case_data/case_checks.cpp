@@ -13,7 +13,7 @@
 #include "pipeline/case_data/case_loads.h"
 #include "pipeline/case_data/case_sides.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -78,7 +78,7 @@ void check_use(const Case& input, CaseProblems& problems) {
 void check_loads(const Case& input, const EvaluatedCase& numbers,
                  CaseProblems& problems) {
   for (std::size_t k = 0; k < numbers.load_cases.size(); ++k) {
-    const LoadCase& load_case = numbers.load_cases[k];
+    const loads::LoadCase& load_case = numbers.load_cases[k];
     if (!is_loaded(load_case)) {
       problems.add(input.load_cases[k].line,
                    fmt::format("load case '{}' has no load that is not 0; a "
@@ -86,9 +86,11 @@ void check_loads(const Case& input, const EvaluatedCase& numbers,
                                load_case.name));
     }
   }
-  const bool expands = std::any_of(
-      numbers.materials.begin(), numbers.materials.end(),
-      [](const Material& m) { return !m.thermal_expansion.isZero(0.0); });
+  const bool expands =
+      std::any_of(numbers.materials.begin(), numbers.materials.end(),
+                  [](const element::Material& m) {
+                    return !m.thermal_expansion.isZero(0.0);
+                  });
   for (std::size_t k = 0; k < numbers.load_cases.size() && !expands; ++k) {
     if (numbers.load_cases[k].temperature) {
       problems.add(input.load_cases[k].line,
@@ -106,7 +108,7 @@ void check_loads(const Case& input, const EvaluatedCase& numbers,
     }
     const auto weighs =
         std::find_if(numbers.load_cases.begin(), numbers.load_cases.end(),
-                     [](const LoadCase& c) { return has_weight(c); });
+                     [](const loads::LoadCase& c) { return has_weight(c); });
     if (weighs != numbers.load_cases.end()) {
       problems.add(entry.density.line,
                    fmt::format("materials.{}.density is 0, but load case '{}' "
@@ -138,8 +140,8 @@ void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
                            const EvaluatedCase& other, CaseProblems& problems) {
   const std::vector<BodyEntry> solid = solid_bodies(input);
   for (std::size_t k = 0; k < initial.materials.size(); ++k) {
-    const Material& a = initial.materials[k];
-    const Material& b = other.materials[k];
+    const element::Material& a = initial.materials[k];
+    const element::Material& b = other.materials[k];
     const MaterialEntry& entry =
         input.materials[static_cast<std::size_t>(solid[k].material)];
     if (a.poisson_ratio != b.poisson_ratio) {
@@ -292,4 +294,41 @@ std::string case_name(const std::string& path) {
              : file.stem().string();
 }
 
-}  // namespace meniscus
+std::vector<std::string> curves_of_wall(const Case& input,
+                                        const WallEntry& wall) {
+  std::vector<std::string> curves;
+  for (const FilmEntry& film : input.films) {
+    if (std::count(wall.films.begin(), wall.films.end(), film.spec.name) > 0) {
+      curves.insert(curves.end(), film.spec.curves.begin(),
+                    film.spec.curves.end());
+    }
+  }
+  return curves;
+}
+
+std::vector<std::string> wall_surface_names(const Case& input) {
+  std::map<std::string, int> uses;  // of curves by films with walls
+  for (const WallEntry& wall : input.walls) {
+    for (const std::string& curve : curves_of_wall(input, wall)) {
+      ++uses[curve];
+    }
+  }
+  std::vector<std::string> names;
+  for (const WallEntry& wall : input.walls) {
+    for (const FilmEntry& film : input.films) {
+      if (std::count(wall.films.begin(), wall.films.end(), film.spec.name) ==
+          0) {
+        continue;
+      }
+      names.push_back(film.spec.name + "/back");
+      for (const std::string& curve : film.spec.curves) {
+        if (uses[curve] == 1) {
+          names.push_back(film.spec.name + "/rim:" + curve);
+        }
+      }
+    }
+  }
+  return names;
+}
+
+}  // namespace meniscus::case_data

@@ -8,7 +8,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/case_data/case_problems.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// Sets `parameter_order`: each after those that it uses. A circle is named.
 void order_parameters(Case& input, CaseProblems& problems);
@@ -37,10 +37,14 @@ bool has_facets(const Case& input, const BodyEntry& body);
 std::vector<std::string> surface_names(const Case& input);
 /// Of walls, beside their films.
 std::vector<std::string> wall_surface_names(const Case& input);
+
+/// The curves that the films of a wall end on, once for each film.
+std::vector<std::string> curves_of_wall(const Case& input,
+                                        const WallEntry& wall);
 std::vector<std::string> film_names(const Case& input);
 std::vector<std::string> body_names(const Case& input);
 
 /// "two_arm" for "cases/two_arm/case.toml", else the file's stem.
 std::string case_name(const std::string& path);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

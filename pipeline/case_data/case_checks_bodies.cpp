@@ -8,7 +8,7 @@
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_sides.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -29,7 +29,7 @@ std::map<std::string, std::set<std::string>> surfaces_at_curves(
   }
   for (const CapEntry& cap : input.caps) {
     if (is_among(body.enclosed_by, cap.spec.name)) {
-      CapSpec spec = cap.spec;
+      films::CapSpec spec = cap.spec;
       spec.start = nullptr;  // a file's surfaces may end anywhere
       for (const std::string& curve : spec.curves()) {
         at_curve[curve].insert(spec.name);
@@ -159,8 +159,8 @@ bool names_are_known(const Case& input, const BodyEntry& body) {
       body.enclosed_by.begin(), body.enclosed_by.end(),
       [&](const std::string& name) { return is_among(surfaces, name); });
   for (const FilmEntry& film : input.films) {
-    known = known &&
-            (film.spec.kind == FilmKind::Facets || !film.spec.curves.empty());
+    known = known && (film.spec.kind == films::FilmKind::Facets ||
+                      !film.spec.curves.empty());
   }
   const auto is_curve = [&](const std::string& name) {
     return std::any_of(input.curves.begin(), input.curves.end(),
@@ -222,4 +222,4 @@ void check_bodies(const Case& input, CaseProblems& problems) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

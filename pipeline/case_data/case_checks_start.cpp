@@ -7,12 +7,12 @@
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/film_start.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 bool has_facets(const Case& input) {
   return std::any_of(input.films.begin(), input.films.end(),
                      [](const FilmEntry& film) {
-                       return film.spec.kind == FilmKind::Facets;
+                       return film.spec.kind == films::FilmKind::Facets;
                      }) ||
          std::any_of(input.caps.begin(), input.caps.end(),
                      [](const CapEntry& cap) { return cap.is_file; });
@@ -25,7 +25,7 @@ bool has_facets(const Case& input, const BodyEntry& body) {
   };
   return std::any_of(input.films.begin(), input.films.end(),
                      [&](const FilmEntry& film) {
-                       return film.spec.kind == FilmKind::Facets &&
+                       return film.spec.kind == films::FilmKind::Facets &&
                               encloses(film.spec.name);
                      }) ||
          std::any_of(input.caps.begin(), input.caps.end(),
@@ -40,12 +40,13 @@ void check_start(const Case& input, const EvaluatedCase& numbers,
     return;
   }
   try {
-    build_start(numbers.film_system,
-                start_edge(numbers.film_system, numbers.fea_edge));
+    start::build_start(
+        numbers.film_system,
+        start::start_edge(numbers.film_system, numbers.fea_edge));
   } catch (const Error& error) {
     const std::string message = error.what();
     problems.add(line_of_start(input, message), message);
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

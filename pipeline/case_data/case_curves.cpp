@@ -9,7 +9,7 @@
 #include "evolve/curves/curve_contact.h"
 #include "evolve/films/shared_sides.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -25,8 +25,9 @@ Points points_of(const CurveEntry& entry, const CaseValues& values) {
   return points;
 }
 
-Polyline polyline_of(const CurveEntry& entry, const CaseValues& values) {
-  Polyline result;
+curves::Polyline polyline_of(const CurveEntry& entry,
+                             const CaseValues& values) {
+  curves::Polyline result;
   for (const PathPoint& point : entry.points) {
     if (point.through) {
       result.via.back() = values.at(point.at);
@@ -38,12 +39,13 @@ Polyline polyline_of(const CurveEntry& entry, const CaseValues& values) {
   return result;
 }
 
-CurveCopy copy_of(const CurveEntry& entry, const std::vector<Curve>& above,
-                  const CaseValues& values) {
+curves::CurveCopy copy_of(const CurveEntry& entry,
+                          const std::vector<curves::Curve>& above,
+                          const CaseValues& values) {
   const CopyEntry& copy = entry.copy;
-  CurveCopy result;
-  result.of =
-      std::make_shared<const Curve>(above[static_cast<std::size_t>(copy.of)]);
+  curves::CurveCopy result;
+  result.of = std::make_shared<const curves::Curve>(
+      above[static_cast<std::size_t>(copy.of)]);
   if (copy.offset) {
     result.offset = values.at(*copy.offset);
   }
@@ -58,22 +60,24 @@ CurveCopy copy_of(const CurveEntry& entry, const std::vector<Curve>& above,
   return result;
 }
 
-CurveShape shape_of(const CurveEntry& curve, const std::vector<Curve>& above,
-                    const CaseValues& values) {
+curves::CurveShape shape_of(const CurveEntry& curve,
+                            const std::vector<curves::Curve>& above,
+                            const CaseValues& values) {
   switch (curve.kind) {
     case CurveKind::Circle:
-      return Circle{values.at(curve.center), values.at(curve.normal),
-                    values.at(curve.radius)};
+      return curves::Circle{values.at(curve.center), values.at(curve.normal),
+                            values.at(curve.radius)};
     case CurveKind::Ellipse:
-      return Ellipse{values.at(curve.center), values.at(curve.normal),
-                     values.at(curve.axis), values.at(curve.radius_1),
-                     values.at(curve.radius_2)};
+      return curves::Ellipse{values.at(curve.center), values.at(curve.normal),
+                             values.at(curve.axis), values.at(curve.radius_1),
+                             values.at(curve.radius_2)};
     case CurveKind::Rectangle:
-      return Rectangle{values.at(curve.center), values.at(curve.normal),
-                       values.at(curve.axis),   values.at(curve.width),
-                       values.at(curve.height), values.at(curve.corner_radius)};
+      return curves::Rectangle{
+          values.at(curve.center), values.at(curve.normal),
+          values.at(curve.axis),   values.at(curve.width),
+          values.at(curve.height), values.at(curve.corner_radius)};
     case CurveKind::Spline:
-      return Spline{points_of(curve, values)};
+      return curves::Spline{points_of(curve, values)};
     case CurveKind::Polyline:
       return polyline_of(curve, values);
     case CurveKind::Copy:
@@ -81,7 +85,7 @@ CurveShape shape_of(const CurveEntry& curve, const std::vector<Curve>& above,
     case CurveKind::Polygon:
       break;
   }
-  return Polygon{points_of(curve, values)};
+  return curves::Polygon{points_of(curve, values)};
 }
 
 /// The values of what a curve that is none is made of.
@@ -106,12 +110,12 @@ bool may_meet_itself(const CurveEntry& entry) {
 }
 
 /// Refuses what is no curve, and one that crosses itself.
-void check(const CurveEntry& entry, const Curve& curve) {
-  validate(curve);
+void check(const CurveEntry& entry, const curves::Curve& curve) {
+  curves::validate(curve);
   if (!may_meet_itself(entry)) {
     return;
   }
-  if (const auto at = meets_itself(curve.shape)) {
+  if (const auto at = curves::meets_itself(curve.shape)) {
     throw InvalidInput(fmt::format(
         "curve '{}': crosses or touches itself near ({:.4g}, {:.4g}, {:.4g}); "
         "no film can start there: {}",
@@ -123,8 +127,9 @@ void check(const CurveEntry& entry, const Curve& curve) {
 
 }  // namespace
 
-std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
-  std::vector<Curve> result;
+std::vector<curves::Curve> curves_of(const Case& input,
+                                     const CaseValues& values) {
+  std::vector<curves::Curve> result;
   result.reserve(input.curves.size());
   std::vector<char> bad;  // copies of those are no news
   for (const CurveEntry& entry : input.curves) {
@@ -136,7 +141,7 @@ std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
       bad.push_back(1);
       continue;
     }
-    Curve curve{entry.name, shape_of(entry, result, values)};
+    curves::Curve curve{entry.name, shape_of(entry, result, values)};
     if (!values.are_rates() && values.problems().size() == before) {
       try {
         check(entry, curve);
@@ -152,21 +157,21 @@ std::vector<Curve> curves_of(const Case& input, const CaseValues& values) {
   return result;
 }
 
-void check_meetings(const Case& input, const FilmSystem& system,
+void check_meetings(const Case& input, const films::FilmSystem& system,
                     const CaseValues& values) {
-  const SharedRims shared(system.curves);
+  const films::SharedRims shared(system.curves);
   std::vector<std::size_t> rims;  // what holds a film or a cap
-  std::vector<const CurveShape*> shapes;
+  std::vector<const curves::CurveShape*> shapes;
   for (std::size_t c = 0; c < system.curves.size(); ++c) {
     const std::string& name = system.curves[c].name;
     const bool held =
         std::any_of(system.films.begin(), system.films.end(),
-                    [&](const FilmSpec& film) {
+                    [&](const films::FilmSpec& film) {
                       return std::find(film.curves.begin(), film.curves.end(),
                                        name) != film.curves.end();
                     }) ||
         std::any_of(system.caps.begin(), system.caps.end(),
-                    [&](const CapSpec& cap) {
+                    [&](const films::CapSpec& cap) {
                       const std::vector<std::string> at = cap.curves();
                       return std::find(at.begin(), at.end(), name) != at.end();
                     });
@@ -175,7 +180,7 @@ void check_meetings(const Case& input, const FilmSystem& system,
       shapes.push_back(&system.curves[c].shape);
     }
   }
-  for (const CurveMeeting& meeting : meetings_of(shapes)) {
+  for (const curves::CurveMeeting& meeting : curves::meetings_of(shapes)) {
     const std::size_t a = rims[static_cast<std::size_t>(meeting.first)];
     const std::size_t b = rims[static_cast<std::size_t>(meeting.second)];
     if (shared.shares(static_cast<int>(a)) &&
@@ -192,4 +197,4 @@ void check_meetings(const Case& input, const FilmSystem& system,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -7,14 +7,15 @@
 #include "pipeline/case_data/case_problems.h"
 #include "pipeline/case_data/case_values.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// One per entry, in order; values, or rates. A value that makes no curve is
 /// told in the problems of `values`.
-std::vector<Curve> curves_of(const Case& input, const CaseValues& values);
+std::vector<curves::Curve> curves_of(const Case& input,
+                                     const CaseValues& values);
 
 /// Tells of curves that hold films or caps and touch or cross each other.
-void check_meetings(const Case& input, const FilmSystem& system,
+void check_meetings(const Case& input, const films::FilmSystem& system,
                     const CaseValues& values);
 
 /// Finds curves of films and solids that lie on each other at the initial
@@ -26,4 +27,4 @@ void merge_curves(Case& input, CaseProblems& problems);
 void check_merged(const Case& input, const EvaluatedCase& initial,
                   const EvaluatedCase& other, CaseProblems& problems);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -16,7 +16,7 @@
 #include "fea/elastic/elasticity.h"
 #include "fea/stress/stress_uniformity.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// Where an entry stands in the case file: its line from 1; -k where the k-th
 /// override (--set) put it; 0 when not known.
@@ -96,7 +96,7 @@ struct MergedCurves {
 };
 
 struct FilmEntry {
-  FilmSpec spec;  // tension and start filled in by evaluate()
+  films::FilmSpec spec;  // tension and start filled in by evaluate()
   PlaceQuantity tension;
   std::vector<QuantityVector> vertices;  // of facets in the case
   std::vector<Triangle> facets;          // of vertices
@@ -104,7 +104,7 @@ struct FilmEntry {
 };
 
 struct CapEntry {
-  CapSpec spec;
+  films::CapSpec spec;
   bool is_file = false;  // else a flat disk
   SourceLine line = 0;
 };
@@ -124,7 +124,7 @@ struct WallEntry {
   std::string name;
   std::vector<std::string> films;
   PlaceQuantity thickness;
-  WallSide side = WallSide::Both;
+  walls::WallSide side = walls::WallSide::Both;
   std::optional<double> fillet;  // [length]
   int material = kVoid;          // index into materials; kVoid: none given
   int region = 0;                // walls whose films share a curve are of one
@@ -149,7 +149,8 @@ struct MaterialEntry {
   std::string name;
   Quantity youngs_modulus, poisson_ratio, density;
   std::optional<Quantity> yield_strength;
-  std::optional<Orthotropic> orthotropic;  // instead of modulus and ratio
+  std::optional<element::Orthotropic>
+      orthotropic;  // instead of modulus and ratio
   Vec3 thermal_expansion = Vec3::Zero();
   SourceLine line = 0;
 };
@@ -179,15 +180,15 @@ struct LoadEntry {
 
 struct LoadCaseEntry {
   std::string name;
-  std::vector<Support> supports;
-  std::vector<SpringBed> springs;
+  std::vector<loads::Support> supports;
+  std::vector<loads::SpringBed> springs;
   std::vector<LoadEntry> loads;
   SourceLine line = 0;
 };
 
 /// A zone that stress figures leave out.
 struct ExclusionEntry {
-  ExclusionZone zone;
+  stress::ExclusionZone zone;
   std::string key;  // "analysis.exclude[0]", for messages
   SourceLine line = 0;
 };
@@ -195,7 +196,7 @@ struct ExclusionEntry {
 struct AnalysisEntry {
   bool adapt = false;  // one round of adaptive refinement
   std::vector<ExclusionEntry> exclude;
-  SolverKind solver = SolverKind::Automatic;
+  equations::SolverKind solver = equations::SolverKind::Automatic;
   int processes = 2;  // of Distributed
   // Eigenvalues of the best design:
   static constexpr int kFree = -1;  // not held at all
@@ -251,7 +252,7 @@ struct ResponseEntry {
   std::string film;                // empty: all
   std::vector<std::string> films;  // of gap two; of scan_distance
   std::string scan;                // of scan_distance: its path
-  ScanMeasure measure = ScanMeasure::Rms;
+  scan::ScanMeasure measure = scan::ScanMeasure::Rms;
   int body = 0;  // index
   /// Of Expression: over the case's names, then the responses above it.
   Quantity value;
@@ -313,4 +314,4 @@ struct StudyEntry {
   SourceLine line = 0;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

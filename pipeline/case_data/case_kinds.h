@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// The keys that one kind of entry has beside `kind`.
 struct KindKeys {
@@ -75,4 +75,4 @@ const Row& row_named(const std::vector<Row>& rows, const std::string& name) {
                        [&](const Row& row) { return name == row.name; });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -6,25 +6,26 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
-SurfaceTraction traction_of(const LoadEntry& load, const CaseValues& values) {
-  SurfaceTraction result{.surface = load.surface};
+loads::SurfaceTraction traction_of(const LoadEntry& load,
+                                   const CaseValues& values) {
+  loads::SurfaceTraction result{.surface = load.surface};
   const auto& t = load.traction;
   if (!t[0].of_place && !t[1].of_place && !t[2].of_place) {
     result.traction = {values.at(t[0].quantity), values.at(t[1].quantity),
                        values.at(t[2].quantity)};
     return result;
   }
-  const std::array<NumberOfPlace, 3> components = {
+  const std::array<loads::NumberOfPlace, 3> components = {
       values.field(t[0]), values.field(t[1]), values.field(t[2])};
   result.field = [components](const Vec3& x) {
     return Vec3(components[0](x), components[1](x), components[2](x));
   };
   if (!values.are_rates()) {
-    const std::array<VectorOfPlace, 3> rows = {
+    const std::array<loads::VectorOfPlace, 3> rows = {
         values.slope(t[0]), values.slope(t[1]), values.slope(t[2])};
     result.slope = [rows](const Vec3& x) {
       Mat3 slope;
@@ -37,7 +38,7 @@ SurfaceTraction traction_of(const LoadEntry& load, const CaseValues& values) {
 }
 
 void add_load(const LoadEntry& load, const CaseValues& values,
-              LoadCase& result) {
+              loads::LoadCase& result) {
   switch (load.kind) {
     case LoadKind::Force:
       result.forces.push_back({load.surface, values.at(load.vector)});
@@ -48,7 +49,7 @@ void add_load(const LoadEntry& load, const CaseValues& values,
                                      values.at(load.moment)});
       break;
     case LoadKind::Pressure: {
-      SurfacePressure pressure{.surface = load.surface};
+      loads::SurfacePressure pressure{.surface = load.surface};
       if (load.place.of_place) {
         pressure.field = values.field(load.place);
         pressure.slope = values.slope(load.place);
@@ -65,11 +66,11 @@ void add_load(const LoadEntry& load, const CaseValues& values,
       result.gravity += values.at(load.vector);
       break;
     case LoadKind::Spin:
-      result.spin = Spin{values.at(load.at), values.at(load.vector),
-                         values.at(load.number)};
+      result.spin = loads::Spin{values.at(load.at), values.at(load.vector),
+                                values.at(load.number)};
       break;
     case LoadKind::Temperature: {
-      Temperature temperature{.reference = values.at(load.number)};
+      loads::Temperature temperature{.reference = values.at(load.number)};
       if (load.place.of_place) {
         temperature.field = values.field(load.place);
         temperature.slope = values.slope(load.place);
@@ -84,9 +85,9 @@ void add_load(const LoadEntry& load, const CaseValues& values,
 
 }  // namespace
 
-Material material_of(const Case& input, const MaterialEntry& entry,
-                     const CaseValues& values) {
-  Material material{.name = entry.name};
+element::Material material_of(const Case& input, const MaterialEntry& entry,
+                              const CaseValues& values) {
+  element::Material material{.name = entry.name};
   material.orthotropic = entry.orthotropic;
   material.thermal_expansion = entry.thermal_expansion;
   if (!entry.orthotropic) {
@@ -102,7 +103,7 @@ Material material_of(const Case& input, const MaterialEntry& entry,
   }
   if (entry.orthotropic && !values.are_rates()) {
     try {
-      check_material(material);
+      element::check_material(material);
     } catch (const InvalidInput& error) {
       values.problems().push_back(
           fmt::format("{}: {}", place(input, entry.line), error.what()));
@@ -111,8 +112,9 @@ Material material_of(const Case& input, const MaterialEntry& entry,
   return material;
 }
 
-LoadCase load_case_of(const LoadCaseEntry& entry, const CaseValues& values) {
-  LoadCase result{.name = entry.name, .supports = entry.supports};
+loads::LoadCase load_case_of(const LoadCaseEntry& entry,
+                             const CaseValues& values) {
+  loads::LoadCase result{.name = entry.name, .supports = entry.supports};
   result.springs = entry.springs;
   for (const LoadEntry& load : entry.loads) {
     add_load(load, values, result);
@@ -120,12 +122,12 @@ LoadCase load_case_of(const LoadCaseEntry& entry, const CaseValues& values) {
   return result;
 }
 
-bool has_weight(const LoadCase& load_case) {
+bool has_weight(const loads::LoadCase& load_case) {
   return !load_case.gravity.isZero(0.0) ||
          (load_case.spin && load_case.spin->rate != 0.0);
 }
 
-bool is_loaded(const LoadCase& load_case) {
+bool is_loaded(const loads::LoadCase& load_case) {
   const auto& t = load_case.temperature;
   return has_weight(load_case) ||
          (t && (t->field || t->value != t->reference)) ||
@@ -144,4 +146,4 @@ bool is_loaded(const LoadCase& load_case) {
                      });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

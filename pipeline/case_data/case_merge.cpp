@@ -7,11 +7,11 @@
 
 #include "core/error.h"
 #include "core/geometry/surface_mesh.h"
+#include "core/math/union_find.h"
 #include "evolve/curves/curve_contact.h"
 #include "pipeline/case_data/case_curves.h"
-#include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -26,9 +26,10 @@ struct Outline {
   double size = 0.0;
 };
 
-Outline outline_of(int index, const CurveShape& shape) {
-  const Points points =
-      points_at(shape, sample_parameters(shape, length_of(shape), kPlaces));
+Outline outline_of(int index, const curves::CurveShape& shape) {
+  const Points points = curves::points_at(
+      shape,
+      curves::sample_parameters(shape, curves::length_of(shape), kPlaces));
   Outline result{index, points[0], points[0], bounding_diagonal(points)};
   for (const Vec3& p : points) {
     result.low = result.low.cwiseMin(p);
@@ -56,7 +57,7 @@ std::set<std::string> held_curves(const Case& input) {
 
 /// Outlines of the held curves, from the least x up.
 std::vector<Outline> outlines_of(const Case& input,
-                                 const std::vector<Curve>& curves) {
+                                 const std::vector<curves::Curve>& curves) {
   const std::set<std::string> held = held_curves(input);
   std::vector<Outline> result;
   for (std::size_t c = 0; c < curves.size(); ++c) {
@@ -72,7 +73,7 @@ std::vector<Outline> outlines_of(const Case& input,
 
 /// Per curve the first one that it lies on, itself where there is none.
 std::vector<int> first_curves(const Case& input,
-                              const std::vector<Curve>& curves,
+                              const std::vector<curves::Curve>& curves,
                               std::map<int, double>& distance) {
   const std::vector<Outline> outlines = outlines_of(input, curves);
   UnionFind alikes(curves.size());
@@ -86,8 +87,8 @@ std::vector<int> first_curves(const Case& input,
       if (!alike(a, b)) {
         continue;
       }
-      if (const auto off =
-              lie_on_each_other(curves[a.curve].shape, curves[b.curve].shape)) {
+      if (const auto off = curves::lie_on_each_other(curves[a.curve].shape,
+                                                     curves[b.curve].shape)) {
         const int dropped =
             std::max(alikes.root(a.curve), alikes.root(b.curve));
         alikes.join(a.curve, b.curve);
@@ -121,7 +122,7 @@ void rename(const std::map<std::string, std::string>& kept,
 
 void merge_curves(Case& input, CaseProblems& problems) {
   std::vector<std::string> found;
-  std::vector<Curve> curves;
+  std::vector<curves::Curve> curves;
   try {
     const VectorX design = initial_design(input);
     const CaseValues values(input, design, found);
@@ -175,7 +176,7 @@ void check_merged(const Case& input, const EvaluatedCase& initial,
                   const EvaluatedCase& other, CaseProblems& problems) {
   const auto moved = [&](int curve) {
     const auto at = [&](const EvaluatedCase& numbers, double t) {
-      return point_at(
+      return curves::point_at(
           numbers.film_system.curves[static_cast<std::size_t>(curve)].shape, t);
     };
     return at(initial, 0.0) != at(other, 0.0) ||
@@ -186,8 +187,8 @@ void check_merged(const Case& input, const EvaluatedCase& initial,
     const auto a = static_cast<std::size_t>(pair.kept);
     const auto b = static_cast<std::size_t>(pair.dropped);
     if ((moved(pair.kept) || moved(pair.dropped)) &&
-        !lie_on_each_other(other.film_system.curves[a].shape,
-                           other.film_system.curves[b].shape)) {
+        !curves::lie_on_each_other(other.film_system.curves[a].shape,
+                                   other.film_system.curves[b].shape)) {
       problems.add(
           input.curves[b].line,
           fmt::format("curves '{}' and '{}' lie on each other at the initial "
@@ -199,4 +200,4 @@ void check_merged(const Case& input, const EvaluatedCase& initial,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

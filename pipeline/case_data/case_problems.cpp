@@ -6,7 +6,7 @@
 
 #include "core/nearest_name.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -94,4 +94,4 @@ std::vector<std::string> CaseProblems::take_warnings() {
   return texts;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

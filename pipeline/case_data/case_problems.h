@@ -6,7 +6,7 @@
 
 #include "pipeline/case_data/case_entries.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 class CaseProblems {
  public:
@@ -46,4 +46,4 @@ class CaseProblems {
 std::string advice(const std::string& name,
                    const std::vector<std::string>& known);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

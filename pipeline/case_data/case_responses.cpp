@@ -6,7 +6,7 @@
 #include "core/math/expression.h"
 #include "pipeline/case_data/response_kinds.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -64,4 +64,4 @@ ResponseNumbers response_of(const Case& input, const ResponseEntry& response,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

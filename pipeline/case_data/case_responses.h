@@ -4,7 +4,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/case_data/case_values.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// Values, or rates. Its fields throw InvalidInput, naming file, line and key,
 /// at a place where they have no value. What is wrong elsewhere is told in the
@@ -12,4 +12,4 @@ namespace meniscus {
 ResponseNumbers response_of(const Case& input, const ResponseEntry& response,
                             const CaseValues& values);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

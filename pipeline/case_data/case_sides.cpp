@@ -9,7 +9,7 @@
 #include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_checks.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -20,9 +20,10 @@ std::string text(const Vec3& p) {
 }
 
 /// The first of the shared sides that one is the same as.
-std::map<SideName, SideName> first_of(const std::vector<SharedSide>& shared) {
+std::map<SideName, SideName> first_of(
+    const std::vector<films::SharedSide>& shared) {
   std::map<SideName, SideName> first;
-  for (const SharedSide& side : shared) {
+  for (const films::SharedSide& side : shared) {
     const SideName known(side.first_curve, side.first_side);
     const auto at = first.find(known);
     first.emplace(SideName(side.second_curve, side.second_side),
@@ -31,14 +32,14 @@ std::map<SideName, SideName> first_of(const std::vector<SharedSide>& shared) {
   return first;
 }
 
-std::vector<std::string> curves_of_surface(const FilmSystem& system,
+std::vector<std::string> curves_of_surface(const films::FilmSystem& system,
                                            const std::string& name) {
-  for (const CapSpec& cap : system.caps) {
+  for (const films::CapSpec& cap : system.caps) {
     if (cap.name == name) {
       return cap.curves();
     }
   }
-  for (const FilmSpec& film : system.films) {
+  for (const films::FilmSpec& film : system.films) {
     if (film.name == name) {
       return film.curves;
     }
@@ -49,15 +50,15 @@ std::vector<std::string> curves_of_surface(const FilmSystem& system,
 using SurfacesAtSides = std::map<SideName, std::vector<std::string>>;
 
 /// Surfaces of the body at each side of the polygons that bound them.
-SurfacesAtSides surfaces_at_sides(const FilmSystem& system,
-                                  const BodySpec& body,
+SurfacesAtSides surfaces_at_sides(const films::FilmSystem& system,
+                                  const films::BodySpec& body,
                                   const std::map<SideName, SideName>& first) {
   SurfacesAtSides result;
   for (const std::string& surface : body.enclosed_by) {
     for (const std::string& name : curves_of_surface(system, surface)) {
       for (int c = 0; c < static_cast<int>(system.curves.size()); ++c) {
-        const Curve& curve = system.curves[static_cast<std::size_t>(c)];
-        const auto* polygon = std::get_if<Polygon>(&curve.shape);
+        const curves::Curve& curve = system.curves[static_cast<std::size_t>(c)];
+        const auto* polygon = std::get_if<curves::Polygon>(&curve.shape);
         if (curve.name != name || polygon == nullptr) {
           continue;
         }
@@ -73,10 +74,11 @@ SurfacesAtSides surfaces_at_sides(const FilmSystem& system,
 }
 
 /// The caps outside the body, by the sides that they end at.
-SurfacesAtSides caps_beside(const FilmSystem& system, const BodySpec& body,
+SurfacesAtSides caps_beside(const films::FilmSystem& system,
+                            const films::BodySpec& body,
                             const std::map<SideName, SideName>& first) {
-  BodySpec others;
-  for (const CapSpec& cap : system.caps) {
+  films::BodySpec others;
+  for (const films::CapSpec& cap : system.caps) {
     if (std::find(body.enclosed_by.begin(), body.enclosed_by.end(), cap.name) ==
         body.enclosed_by.end()) {
       others.enclosed_by.push_back(cap.name);
@@ -87,13 +89,13 @@ SurfacesAtSides caps_beside(const FilmSystem& system, const BodySpec& body,
 
 /// "the side from A to B of curve 'c' ...": the first of one curve's sides that
 /// are open, with `surfaces` there, how many there are, and what to do.
-std::string open_sides_text(const FilmSystem& system,
+std::string open_sides_text(const films::FilmSystem& system,
                             const std::vector<SideName>& sides,
                             const std::vector<std::string>& surfaces,
                             const SurfacesAtSides& beside) {
-  const Curve& curve =
+  const curves::Curve& curve =
       system.curves[static_cast<std::size_t>(sides.front().first)];
-  const Points& corners = std::get<Polygon>(curve.shape).points;
+  const Points& corners = std::get<curves::Polygon>(curve.shape).points;
   const auto k = static_cast<std::size_t>(sides.front().second);
   const std::string more =
       sides.size() == 1
@@ -130,10 +132,10 @@ bool may_join_by_sides(const Case& input, const std::string& curve) {
   return polygons.count(curve) != 0 && polygons.size() > 2;
 }
 
-void check_sides(const Case& input, const FilmSystem& system,
+void check_sides(const Case& input, const films::FilmSystem& system,
                  const CaseValues& values) {
   const std::map<SideName, SideName> first =
-      first_of(shared_sides(system.curves));
+      first_of(films::shared_sides(system.curves));
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
     if (has_facets(input, input.bodies[b])) {
       continue;  // facets may join elsewhere than on curves: check_start()
@@ -155,4 +157,4 @@ void check_sides(const Case& input, const FilmSystem& system,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

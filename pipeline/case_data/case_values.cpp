@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "pipeline/case_data/bound_text.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -87,7 +87,8 @@ Expression CaseValues::of_place(const PlaceQuantity& place_quantity) const {
   }
 }
 
-NumberOfPlace CaseValues::field(const PlaceQuantity& place_quantity) const {
+loads::NumberOfPlace CaseValues::field(
+    const PlaceQuantity& place_quantity) const {
   if (!are_rates()) {
     return [expression = of_place(place_quantity)](const Vec3& x) {
       return expression.evaluate(std::span<const double>(x.data(), 3));
@@ -101,7 +102,8 @@ NumberOfPlace CaseValues::field(const PlaceQuantity& place_quantity) const {
   };
 }
 
-VectorOfPlace CaseValues::slope(const PlaceQuantity& place_quantity) const {
+loads::VectorOfPlace CaseValues::slope(
+    const PlaceQuantity& place_quantity) const {
   return [expression = of_place(place_quantity)](const Vec3& x) -> Vec3 {
     const std::array<Dual3, 3> at = {Dual3::variable(x.x(), 0),
                                      Dual3::variable(x.y(), 1),
@@ -177,4 +179,4 @@ void CaseValues::mark(const Quantity& quantity, std::vector<char>& used) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

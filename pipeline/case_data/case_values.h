@@ -8,7 +8,7 @@
 #include "core/math/dual.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// All names' values at one design: design variables, then parameters. What
 /// has no good value is told in `problems` and counts as 0.
@@ -63,9 +63,9 @@ class CaseValues {
 
   /// The number at a place, or its rate there. Throws ExpressionError where it
   /// has none.
-  NumberOfPlace field(const PlaceQuantity& quantity) const;
+  loads::NumberOfPlace field(const PlaceQuantity& quantity) const;
   /// Its gradient there (of values only).
-  VectorOfPlace slope(const PlaceQuantity& quantity) const;
+  loads::VectorOfPlace slope(const PlaceQuantity& quantity) const;
 
   /// " where support_x = 3, gap = 2"; nothing for plain numbers.
   template <class... Quantities>
@@ -98,4 +98,4 @@ class CaseValues {
   std::vector<Dual> duals_;  // of one variable; for rates only
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 std::string content_hash(std::string_view text) {
   // Offset basis and prime of the 128-bit FNV-1a hash (Fowler, Noll, Vo).
@@ -20,4 +20,4 @@ std::string content_hash(std::string_view text) {
                      static_cast<std::uint64_t>(hash));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

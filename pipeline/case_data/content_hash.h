@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 std::string content_hash(std::string_view text);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

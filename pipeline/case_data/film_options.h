@@ -5,7 +5,7 @@
 
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// Refinements that give split facets of adaptive meshes their mid-sides.
 inline constexpr int kAdaptiveRefinements = 2;
@@ -17,4 +17,4 @@ inline int film_refinements(const Case& input) {
              : input.resolution.refinements;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

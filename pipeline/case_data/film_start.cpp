@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 SourceLine line_of_start(const Case& input, const std::string& message) {
   SourceLine line = 0;
@@ -26,10 +26,10 @@ SourceLine line_of_start(const Case& input, const std::string& message) {
   return line;
 }
 
-FilmModel freeze_films(const Case& input, const EvaluatedCase& numbers,
-                       const FilmModelOptions& options) {
+frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& numbers,
+                               const frozen::FilmModelOptions& options) {
   try {
-    return FilmModel::freeze(numbers.film_system, options);
+    return frozen::FilmModel::freeze(numbers.film_system, options);
   } catch (const InvalidInput& error) {
     const std::string message = error.what();
     throw InvalidInput(fmt::format(
@@ -37,4 +37,4 @@ FilmModel freeze_films(const Case& input, const EvaluatedCase& numbers,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -6,7 +6,7 @@
 #include "evolve/frozen/film_model.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// The line of the film, solid or body that a message of the start names
 /// first; 0: none.
@@ -14,7 +14,7 @@ SourceLine line_of_start(const Case& input, const std::string& message);
 
 /// FilmModel::freeze() of the case's films; what it refuses is told with the
 /// line of the case. Throws InvalidInput.
-FilmModel freeze_films(const Case& input, const EvaluatedCase& numbers,
-                       const FilmModelOptions& options);
+frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& numbers,
+                               const frozen::FilmModelOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

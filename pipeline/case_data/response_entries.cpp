@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "pipeline/case_data/response_kinds.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 bool has_derivatives(const Case& input, int response) {
   const ResponseEntry& entry = input.responses[response];
@@ -28,4 +28,4 @@ int response_index(const Case& input, const std::string& name) {
   return index;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

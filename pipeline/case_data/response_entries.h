@@ -5,7 +5,7 @@
 
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// False for peaks of nodal stress, and for what is made of them.
 bool has_derivatives(const Case& input, int response);
@@ -13,4 +13,4 @@ bool has_derivatives(const Case& input, int response);
 /// Position of a response of the case; it must exist.
 int response_index(const Case& input, const std::string& name);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 const std::vector<ResponseRow>& response_kinds() {
   using D = Dimension;
@@ -162,4 +162,4 @@ bool needs_key(const ResponseRow& row, const char* key) {
          row.keys.needed.end();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

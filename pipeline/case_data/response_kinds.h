@@ -10,7 +10,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/case_data/case_kinds.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// How the error that the mesh makes in a response is estimated.
 enum class ErrorSource {
@@ -38,4 +38,4 @@ const ResponseRow& row_of(ResponseKind kind);
 /// A key that each of its kind has.
 bool needs_key(const ResponseRow& row, const char* key);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

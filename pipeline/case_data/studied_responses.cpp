@@ -3,7 +3,7 @@
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/study_kinds.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 std::vector<int> studied_responses(const Case& input) {
   const auto responses = row_of(input.study.kind).responses;
@@ -15,4 +15,4 @@ bool asks_for_gradients(const StudyEntry& study) {
   return gradients != nullptr && gradients(study);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -5,7 +5,7 @@
 
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 /// Indices of responses: of a match those that its targets are made of,
 /// ascending; of a minimum the objective, then the constraints, and the second
@@ -15,4 +15,4 @@ std::vector<int> studied_responses(const Case& input);
 /// The study's method is one that takes derivatives where there are any.
 bool asks_for_gradients(const StudyEntry& study);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

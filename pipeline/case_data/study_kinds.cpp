@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <set>
 
-#include "optimize/problem.h"
 #include "optimize/minimize.h"
+#include "optimize/problem.h"
 #include "pipeline/case_data/response_entries.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 namespace {
 
@@ -48,7 +48,7 @@ std::vector<int> differentiable_responses(const Case& input) {
 
 std::vector<std::string> methods_of_minima() {
   std::vector<std::string> names;
-  for (const MinimizeMethod& method : minimize_methods()) {
+  for (const optimize::MinimizeMethod& method : optimize::minimize_methods()) {
     names.push_back(method.name);
   }
   return names;
@@ -60,7 +60,7 @@ std::vector<std::string> sweep_methods() {
 
 /// A method may wait in the case, of any kind, while it is only analysed.
 std::vector<std::string> methods_that_wait() {
-  std::vector<std::string> names = match_methods();
+  std::vector<std::string> names = optimize::match_methods();
   for (const auto& more : {methods_of_minima(), sweep_methods()}) {
     names.insert(names.end(), more.begin(), more.end());
   }
@@ -70,7 +70,8 @@ std::vector<std::string> methods_that_wait() {
 bool by_ceres(const StudyEntry& study) { return study.method == "ceres"; }
 
 bool by_slopes(const StudyEntry& study) {
-  const MinimizeMethod* method = find_minimize_method(study.method);
+  const optimize::MinimizeMethod* method =
+      optimize::find_minimize_method(study.method);
   return method != nullptr && method->gradients;
 }
 
@@ -100,7 +101,7 @@ const std::vector<StudyRow>& study_kinds() {
        .kind = Kind::Match,
        .keys = {"equal", "targets", "fit", "tolerance", "max_evaluations",
                 "coarse_first", "refreeze"},
-       .methods = match_methods(),
+       .methods = optimize::match_methods(),
        .usual_method = "ceres",
        .outer_stage = "match",
        .responses = matched_responses,
@@ -149,4 +150,4 @@ const StudyRow& row_of(StudyKind kind) {
                        [&](const StudyRow& row) { return row.kind == kind; });
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

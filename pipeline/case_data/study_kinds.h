@@ -7,7 +7,7 @@
 
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::case_data {
 
 struct StudyRow {
   const char* name;
@@ -29,4 +29,4 @@ const std::vector<StudyRow>& study_kinds();
 
 const StudyRow& row_of(StudyKind kind);
 
-}  // namespace meniscus
+}  // namespace meniscus::case_data

@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "pipeline/files/text_table.h"
 
-namespace meniscus {
+namespace meniscus::files {
 
 namespace {
 
@@ -202,4 +202,4 @@ CurveFile read_curve_text(const std::string& text, const std::string& path,
   return reader.take();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::files

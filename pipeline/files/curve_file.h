@@ -7,7 +7,7 @@
 #include "core/types.h"
 #include "core/units.h"
 
-namespace meniscus {
+namespace meniscus::files {
 
 struct CurveFile {
   Points points;                      // in case units, in the order of the rows
@@ -23,4 +23,4 @@ struct CurveFile {
 CurveFile read_curve_text(const std::string& text, const std::string& path,
                           const UnitSystem& units);
 
-}  // namespace meniscus
+}  // namespace meniscus::files

@@ -5,11 +5,11 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::files {
 
 /// [x, y, z].
 inline nlohmann::ordered_json place_json(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::files

@@ -11,7 +11,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "evolve/curves/curve_place.h"
 
-namespace meniscus {
+namespace meniscus::files {
 
 namespace {
 
@@ -20,27 +20,27 @@ constexpr double kSplineMiss = 1e-6;  // of the loop's size
 constexpr double kArcMiss = 1e-4;
 constexpr int kFewestPoints = 16;
 constexpr int kMostCurvePoints = 2048;
-constexpr int kAll = StepPiece::kIntervals;
+constexpr int kAll = step::StepPiece::kIntervals;
 constexpr double kStraight = 1e-9;  // sagitta that is none [chord]
 constexpr double kGoesOn = 1e-7;    // off the line or circle before
 
-double length_of(const StepLoop& loop) {
+double length_of(const step::StepLoop& loop) {
   double sum = 0.0;
-  for (const StepPiece& piece : loop.pieces) {
+  for (const step::StepPiece& piece : loop.pieces) {
     sum += piece.length;
   }
   return sum;
 }
 
-double size_of(const StepLoop& loop) {
+double size_of(const step::StepLoop& loop) {
   Points all;
-  for (const StepPiece& piece : loop.pieces) {
+  for (const step::StepPiece& piece : loop.pieces) {
     all.insert(all.end(), piece.samples.begin(), piece.samples.end());
   }
   return bounding_diagonal(all);
 }
 
-bool is_smooth(const StepLoop& loop) {
+bool is_smooth(const step::StepLoop& loop) {
   for (std::size_t k = 0; k < loop.pieces.size(); ++k) {
     const Vec3& in = loop.pieces[k].arrives;
     const Vec3& out = loop.pieces[(k + 1) % loop.pieces.size()].leaves;
@@ -52,12 +52,13 @@ bool is_smooth(const StepLoop& loop) {
 }
 
 /// A spline through about `count` points, and how far it misses the others.
-Spline spline_through(const StepLoop& loop, int count, double& miss) {
+curves::Spline spline_through(const step::StepLoop& loop, int count,
+                              double& miss) {
   const double step = length_of(loop) / count;
-  Spline spline;
+  curves::Spline spline;
   Points places;             // between those points
   std::vector<double> from;  // per place: the point before it
-  for (const StepPiece& piece : loop.pieces) {
+  for (const step::StepPiece& piece : loop.pieces) {
     const auto wanted = static_cast<unsigned>(
         std::clamp(std::ceil(piece.length / step), 1.0, double(kAll)));
     const int stride = kAll / static_cast<int>(std::bit_ceil(wanted));
@@ -84,17 +85,17 @@ Spline spline_through(const StepLoop& loop, int count, double& miss) {
     high.push_back(t[static_cast<std::size_t>(k) + 1] / t.back());
   }
   miss = 0.0;
-  for (const CurvePlace& place :
-       nearest_between(spline, places, std::move(low), std::move(high))) {
+  for (const curves::CurvePlace& place : curves::nearest_between(
+           spline, places, std::move(low), std::move(high))) {
     miss = std::max(miss, place.distance);
   }
   return spline;
 }
 
-StepCurve fit_spline(const StepLoop& loop, const std::string& unit) {
+StepCurve fit_spline(const step::StepLoop& loop, const std::string& unit) {
   const double allowed = kSplineMiss * size_of(loop);
   StepCurve result;
-  Spline best;
+  curves::Spline best;
   for (int count = kFewestPoints; count <= kMostCurvePoints; count *= 2) {
     best = spline_through(loop, count, result.deviation);
     if (result.deviation <= allowed) {
@@ -198,7 +199,7 @@ double arc_miss(const Points& samples, int first, int last) {
 }
 
 /// Arcs that an edge needs, and how far it is off these.
-int arcs_of(const StepPiece& piece, double allowed, double& miss) {
+int arcs_of(const step::StepPiece& piece, double allowed, double& miss) {
   for (int arcs = 1;; arcs *= 2) {
     const int width = kAll / arcs;
     double most = 0.0;
@@ -213,25 +214,25 @@ int arcs_of(const StepPiece& piece, double allowed, double& miss) {
   }
 }
 
-StepCurve fit_polyline(const StepLoop& loop, const std::string& unit) {
+StepCurve fit_polyline(const step::StepLoop& loop, const std::string& unit) {
   const double allowed = kArcMiss * size_of(loop);
   StepCurve result;
   std::vector<Side> sides;
-  for (const StepPiece& piece : loop.pieces) {
+  for (const step::StepPiece& piece : loop.pieces) {
     const Points& p = piece.samples;
-    const bool exact = piece.kind != StepPiece::Kind::Free;
+    const bool exact = piece.kind != step::StepPiece::Kind::Free;
     const int width =
         kAll / (exact ? 1 : arcs_of(piece, allowed, result.deviation));
     for (int k = 0; k < kAll; k += width) {
       Side side{p[k], p[k + width / 2], p[k + width]};
       side.exact = exact;
-      side.arc = piece.kind != StepPiece::Kind::Line &&
+      side.arc = piece.kind != step::StepPiece::Kind::Line &&
                  !is_straight(side.from, side.via, side.to);
       sides.push_back(side);
     }
   }
   join(sides);
-  Polyline line;
+  curves::Polyline line;
   for (const Side& side : sides) {
     line.corners.push_back(side.from);
     line.via.push_back(side.arc ? std::optional(side.via) : std::nullopt);
@@ -248,31 +249,31 @@ StepCurve fit_polyline(const StepLoop& loop, const std::string& unit) {
   return result;
 }
 
-StepCurve conic(const EllipseCurve& ellipse, const std::string& unit) {
+StepCurve conic(const solid::EllipseCurve& ellipse, const std::string& unit) {
   const double a = ellipse.u.norm();
   const double b = ellipse.v.norm();
   const Vec3 normal = ellipse.u.cross(ellipse.v) / (a * b);
   if (std::abs(a - b) <= 1e-9 * a) {
-    return {Circle{ellipse.center, normal, a}, 0.0,
+    return {curves::Circle{ellipse.center, normal, a}, 0.0,
             fmt::format("a circle of radius {:.6g} {}, exact", a, unit)};
   }
-  return {Ellipse{ellipse.center, normal, ellipse.u / a, a, b}, 0.0,
+  return {curves::Ellipse{ellipse.center, normal, ellipse.u / a, a, b}, 0.0,
           fmt::format("an ellipse of radii {:.6g} and {:.6g} {}, exact", a, b,
                       unit)};
 }
 
 }  // namespace
 
-StepCurve fit_step_loop(const StepLoop& loop, const std::string& unit) {
+StepCurve fit_step_loop(const step::StepLoop& loop, const std::string& unit) {
   if (loop.whole) {
     return conic(*loop.whole, unit);
   }
   const bool lines_and_arcs = std::all_of(
-      loop.pieces.begin(), loop.pieces.end(), [](const StepPiece& piece) {
-        return piece.kind != StepPiece::Kind::Free;
+      loop.pieces.begin(), loop.pieces.end(), [](const step::StepPiece& piece) {
+        return piece.kind != step::StepPiece::Kind::Free;
       });
   return is_smooth(loop) && !lines_and_arcs ? fit_spline(loop, unit)
                                             : fit_polyline(loop, unit);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::files

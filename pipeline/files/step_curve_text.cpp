@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "pipeline/files/step_curve.h"
 
-namespace meniscus {
+namespace meniscus::files {
 
 namespace {
 
@@ -19,18 +19,18 @@ std::string row(const char* what, const Vec3& p) {
 
 std::string step_curve_text(const StepCurve& curve) {
   std::string text = fmt::format("# {}\nwhat,x,y,z\n", curve.description);
-  if (const auto* circle = std::get_if<Circle>(&curve.shape)) {
+  if (const auto* circle = std::get_if<curves::Circle>(&curve.shape)) {
     text += row("center", circle->center) + row("normal", circle->normal) +
             row("radius", {circle->radius, 0.0, 0.0});
-  } else if (const auto* ellipse = std::get_if<Ellipse>(&curve.shape)) {
+  } else if (const auto* ellipse = std::get_if<curves::Ellipse>(&curve.shape)) {
     text += row("center", ellipse->center) + row("normal", ellipse->normal) +
             row("axis", ellipse->axis) +
             row("radii", {ellipse->radius_1, ellipse->radius_2, 0.0});
-  } else if (const auto* spline = std::get_if<Spline>(&curve.shape)) {
+  } else if (const auto* spline = std::get_if<curves::Spline>(&curve.shape)) {
     for (const Vec3& p : spline->points) {
       text += row("point", p);
     }
-  } else if (const auto* line = std::get_if<Polyline>(&curve.shape)) {
+  } else if (const auto* line = std::get_if<curves::Polyline>(&curve.shape)) {
     for (std::size_t k = 0; k < line->corners.size(); ++k) {
       text += row("corner", line->corners[k]);
       if (line->via[k]) {
@@ -67,10 +67,10 @@ bool read_row(std::string_view text, std::string& what, Vec3& p) {
 
 StepCurve read_step_curve_text(const std::string& text) {
   StepCurve result;
-  Circle circle;
-  Ellipse ellipse;
-  Spline spline;
-  Polyline line;
+  curves::Circle circle;
+  curves::Ellipse ellipse;
+  curves::Spline spline;
+  curves::Polyline line;
   bool round = false;
   bool good = text.starts_with("# ");
   for (std::size_t at = 0; good && at < text.size();) {
@@ -128,4 +128,4 @@ StepCurve read_step_curve_text(const std::string& text) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::files

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace meniscus {
+namespace meniscus::files {
 
 namespace {
 
@@ -147,4 +147,4 @@ void add_units(const std::map<std::string, std::string>& units,
 
 CsvRows parse_csv(const std::string& text) { return Cutter(text).cut(); }
 
-}  // namespace meniscus
+}  // namespace meniscus::files

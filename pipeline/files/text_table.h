@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace meniscus {
+namespace meniscus::files {
 
 using TextRow = std::vector<std::string>;
 
@@ -37,4 +37,4 @@ CsvRows parse_csv(const std::string& text);
 /// Without the blanks around it.
 std::string trimmed(const std::string& text);
 
-}  // namespace meniscus
+}  // namespace meniscus::files

@@ -6,7 +6,7 @@
 
 #include "fea/stress/size_field.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
@@ -29,7 +29,7 @@ double mean_edge(const TetMesh& mesh, int f) {
   return sum / 3.0;
 }
 
-Json state_json(const Case& input, const AdaptedState& state) {
+Json state_json(const case_data::Case& input, const AdaptedState& state) {
   Json json = {
       {"nodes", state.tet.nodes},    {"elements", state.tet.elements},
       {"dofs", state.dofs},          {"energy_error", state.errors.energy},
@@ -47,14 +47,15 @@ Json state_json(const Case& input, const AdaptedState& state) {
 
 RefinementPlan plan_refinement(const TetMesh& mesh,
                                const std::vector<double>& share) {
-  EnergyError error{.error = 1.0};
+  stress::EnergyError error{.error = 1.0};
   for (const double s : share) {
     error.element.push_back(std::sqrt(s));
   }
-  const SizeField field = size_field(mesh, error,
-                                     {.relative_error = kErrorWanted,
-                                      .most_refinement = kMostRefinement,
-                                      .most_coarsening = 1.0});
+  const stress::SizeField field =
+      stress::size_field(mesh, error,
+                         {.relative_error = kErrorWanted,
+                          .most_refinement = kMostRefinement,
+                          .most_coarsening = 1.0});
   RefinementPlan plan{.size = field.function()};
   for (int f = 0; f < mesh.face_count(); ++f) {
     double wanted = 0.0;
@@ -66,9 +67,10 @@ RefinementPlan plan_refinement(const TetMesh& mesh,
   return plan;
 }
 
-Json adaptation_json(const Case& input, const Adaptation& adaptation) {
+Json adaptation_json(const case_data::Case& input,
+                     const Adaptation& adaptation) {
   return {{"before", state_json(input, adaptation.before)},
           {"after", state_json(input, adaptation.after)}};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -9,7 +9,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "pipeline/forward/element_errors.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// What to ask of TetGen (TetrahedralizeOptions) where edges halve from one
 /// facet to the next: at its usual 1.4 and 15 degrees it takes a third more
@@ -43,7 +43,7 @@ struct Adaptation {
 };
 
 /// result.json's "adaptation" (docs/results.md).
-nlohmann::ordered_json adaptation_json(const Case& input,
+nlohmann::ordered_json adaptation_json(const case_data::Case& input,
                                        const Adaptation& adaptation);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -9,7 +9,7 @@
 #include "fea/loads/rates.h"
 #include "pipeline/case_data/case_values.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
@@ -19,10 +19,10 @@ struct Backward {
   ResponsePartials partials;
   VectorX lambda;  // adjoint displacement; empty: does not depend on it
   VectorX adjoint_reactions;
-  std::optional<LoadGradient> loads;
+  std::optional<loads::LoadGradient> loads;
   std::vector<double> by_density;  // per region, of all stages
   std::vector<double> by_modulus;  // likewise; both empty: 0
-  FilmGradient film;
+  frozen::FilmGradient film;
   VectorX by_thickness;  // of walls; empty: 0
 };
 
@@ -40,10 +40,11 @@ class Adjoint {
   void through_materials(Backward& backward) const;
   void through_mesh(Backward& backward) const;
   void through_film();
-  double rate(const Backward& backward, const EvaluatedCase& rates) const;
+  double rate(const Backward& backward,
+              const case_data::EvaluatedCase& rates) const;
   void add_expressions(const std::vector<char>& needed, int variable,
                        VectorX& rates) const;
-  const ResponseEntry& entry(const Backward& backward) const {
+  const case_data::ResponseEntry& entry(const Backward& backward) const {
     return in_.input.responses[backward.response];
   }
 
@@ -53,7 +54,7 @@ class Adjoint {
 
 /// The responses wanted, and those that they are made of.
 std::vector<char> Adjoint::needed(const std::vector<int>& wanted) const {
-  const Case& input = in_.input;
+  const case_data::Case& input = in_.input;
   const auto names =
       static_cast<int>(input.design.size() + input.parameters.size());
   std::vector<char> result(input.responses.size(), 0);
@@ -61,8 +62,9 @@ std::vector<char> Adjoint::needed(const std::vector<int>& wanted) const {
     result[response] = 1;
   }
   for (std::size_t k = input.responses.size(); k-- > 0;) {
-    const ResponseEntry& response = input.responses[k];
-    if (result[k] == 0 || response.kind != ResponseKind::Expression) {
+    const case_data::ResponseEntry& response = input.responses[k];
+    if (result[k] == 0 ||
+        response.kind != case_data::ResponseKind::Expression) {
       continue;
     }
     for (const int name : response.value.expression.names_used()) {
@@ -75,7 +77,7 @@ std::vector<char> Adjoint::needed(const std::vector<int>& wanted) const {
 }
 
 bool Adjoint::solve_adjoints(std::size_t load_case, DesignGradient& result) {
-  const ElasticSolution& solution = in_.fields.solution;
+  const equations::ElasticSolution& solution = in_.fields.solution;
   std::vector<Backward*> open;
   std::vector<VectorX> right;
   for (Backward& backward : backwards_) {
@@ -95,7 +97,7 @@ bool Adjoint::solve_adjoints(std::size_t load_case, DesignGradient& result) {
   if (open.empty()) {
     return true;
   }
-  AdjointSolution adjoint = in_.elasticity.solve_adjoint(
+  equations::AdjointSolution adjoint = in_.elasticity.solve_adjoint(
       in_.elastic_state, static_cast<int>(load_case), right);
   result.solves += static_cast<int>(open.size());
   result.failure = adjoint.failure;
@@ -117,13 +119,13 @@ bool Adjoint::solve_adjoints(DesignGradient& result) {
 
 /// Some material depends on some design variable.
 bool Adjoint::materials_move() const {
-  const Case& input = in_.input;
+  const case_data::Case& input = in_.input;
   std::vector<std::string> problems;
   for (std::size_t j = 0; j < input.design.size(); ++j) {
-    const CaseValues rates(input, in_.fields.numbers.design, problems,
-                           static_cast<int>(j));
-    for (const BodyEntry& body : solid_bodies(input)) {
-      const MaterialEntry& entry = input.materials[body.material];
+    const case_data::CaseValues rates(input, in_.fields.numbers.design,
+                                      problems, static_cast<int>(j));
+    for (const case_data::BodyEntry& body : case_data::solid_bodies(input)) {
+      const case_data::MaterialEntry& entry = input.materials[body.material];
       if (rates.at(entry.density) != 0.0 ||
           (!entry.orthotropic && rates.at(entry.youngs_modulus) != 0.0)) {
         return true;
@@ -152,9 +154,9 @@ void Adjoint::through_materials(Backward& backward) const {
   const auto load_case = static_cast<std::size_t>(entry(backward).load_case);
   const VectorX& u = fields.solution.displacements[load_case];
   const auto add_work = [&](const VectorX& moved, const VectorX& lambda) {
-    const MaterialGradient by =
-        material_gradient(fields.mesh, fields.numbers.materials,
-                          fields.numbers.load_cases[load_case], moved, lambda);
+    const loads::MaterialGradient by = loads::material_gradient(
+        fields.mesh, fields.numbers.materials,
+        fields.numbers.load_cases[load_case], moved, lambda);
     add(by.density, backward.by_density);
     add(by.youngs_modulus, backward.by_modulus);
   };
@@ -169,12 +171,12 @@ void Adjoint::through_mesh(Backward& backward) const {
   ResponsePartials& partials = backward.partials;
   const auto load_case = static_cast<std::size_t>(entry(backward).load_case);
   if (backward.lambda.size() > 0) {
-    const Points state =
-        residual_gradient(fields.mesh, fields.numbers.materials,
-                          fields.numbers.load_cases[load_case],
-                          {fields.solution.displacements[load_case],
-                           fields.solution.reactions[load_case],
-                           backward.lambda, backward.adjoint_reactions});
+    const Points state = elastic::residual_gradient(
+        fields.mesh, fields.numbers.materials,
+        fields.numbers.load_cases[load_case],
+        {fields.solution.displacements[load_case],
+         fields.solution.reactions[load_case], backward.lambda,
+         backward.adjoint_reactions});
     for (std::size_t i = 0; i < state.size(); ++i) {
       partials.by_nodes[i] += state[i];
     }
@@ -183,10 +185,11 @@ void Adjoint::through_mesh(Backward& backward) const {
       by_forces += partials.by_forces;
     }
     backward.loads =
-        load_gradient(fields.mesh, fields.numbers.materials,
-                      fields.numbers.load_cases[load_case], by_forces);
-    add_temperature_gradient(fields.mesh, fields.numbers.load_cases[load_case],
-                             partials.by_temperature, *backward.loads);
+        loads::load_gradient(fields.mesh, fields.numbers.materials,
+                             fields.numbers.load_cases[load_case], by_forces);
+    loads::add_temperature_gradient(fields.mesh,
+                                    fields.numbers.load_cases[load_case],
+                                    partials.by_temperature, *backward.loads);
   }
   if (!partials.by_nodes.empty()) {
     SurfaceGradient by = in_.to_film(partials.by_nodes);
@@ -196,12 +199,12 @@ void Adjoint::through_mesh(Backward& backward) const {
 }
 
 void Adjoint::through_film() {
-  std::vector<FilmCovector> covectors;
+  std::vector<frozen::FilmCovector> covectors;
   covectors.reserve(backwards_.size());
   for (const Backward& backward : backwards_) {
     covectors.push_back(backward.partials.film);
   }
-  std::vector<FilmGradient> gradients = in_.fields.film->transpose(
+  std::vector<frozen::FilmGradient> gradients = in_.fields.film->transpose(
       *in_.fields.film_state, in_.fields.numbers.film_system, covectors);
   for (std::size_t k = 0; k < gradients.size(); ++k) {
     backwards_[k].film = std::move(gradients[k]);
@@ -210,15 +213,15 @@ void Adjoint::through_film() {
 
 /// The response's derivative by the variable that `rates` belong to.
 double Adjoint::rate(const Backward& backward,
-                     const EvaluatedCase& rates) const {
+                     const case_data::EvaluatedCase& rates) const {
   const ResponsePartials& partials = backward.partials;
   double sum = in_.fields.film->rate(
       backward.film, in_.fields.numbers.film_system, rates.film_system);
   sum +=
       partials.by_direction.dot(rates.responses[backward.response].direction);
   if (backward.loads) {
-    sum +=
-        load_rate(*backward.loads, rates.load_cases[entry(backward).load_case]);
+    sum += loads::load_rate(*backward.loads,
+                            rates.load_cases[entry(backward).load_case]);
   }
   for (std::size_t k = 0; k < backward.by_density.size(); ++k) {
     sum += backward.by_density[k] * rates.materials[k].density;
@@ -227,7 +230,7 @@ double Adjoint::rate(const Backward& backward,
     sum += backward.by_modulus[k] * rates.materials[k].youngs_modulus;
   }
   for (Eigen::Index w = 0; w < backward.by_thickness.size(); ++w) {
-    const WallSpec& wall = rates.walls[static_cast<std::size_t>(w)];
+    const walls::WallSpec& wall = rates.walls[static_cast<std::size_t>(w)];
     sum += backward.by_thickness[w] * wall.number.value_or(0.0);
   }
   return sum + place_rate(entry(backward),
@@ -238,14 +241,15 @@ double Adjoint::rate(const Backward& backward,
 /// `rates`: of the responses that are no expressions; receives the others.
 void Adjoint::add_expressions(const std::vector<char>& needed, int variable,
                               VectorX& rates) const {
-  const Case& input = in_.input;
+  const case_data::Case& input = in_.input;
   const VectorX& design = in_.fields.numbers.design;
   std::vector<std::string> problems;
-  const CaseValues values(input, design, problems, variable);
+  const case_data::CaseValues values(input, design, problems, variable);
   const VectorX responses = respond(input, in_.fields);
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
-    const ResponseEntry& response = input.responses[k];
-    if (needed[k] != 0 && response.kind == ResponseKind::Expression) {
+    const case_data::ResponseEntry& response = input.responses[k];
+    if (needed[k] != 0 &&
+        response.kind == case_data::ResponseKind::Expression) {
       rates[static_cast<Eigen::Index>(k)] =
           values.rate(response.value, {responses.data(), k}, {rates.data(), k});
     }
@@ -257,19 +261,19 @@ void Adjoint::add_expressions(const std::vector<char>& needed, int variable,
 
 DesignGradient Adjoint::run(const std::vector<int>& wanted) {
   const Timer timer;
-  const Case& input = in_.input;
+  const case_data::Case& input = in_.input;
   const std::vector<char> needed = this->needed(wanted);
   DesignGradient result;
   bool expressions = false;
   for (std::size_t k = 0; k < needed.size(); ++k) {
-    const ResponseEntry& response = input.responses[k];
-    const bool composed = response.kind == ResponseKind::Expression;
+    const case_data::ResponseEntry& response = input.responses[k];
+    const bool composed = response.kind == case_data::ResponseKind::Expression;
     expressions = expressions || (needed[k] != 0 && composed);
     if (needed[k] != 0 && !composed) {
       backwards_.push_back(
           {.response = k,
            .partials = partials_of(response, in_.fields.numbers.responses[k],
-                                   in_.fields, Derivatives::All)});
+                                   in_.fields, element::Derivatives::All)});
     }
   }
   if (!solve_adjoints(result)) {
@@ -288,8 +292,8 @@ DesignGradient Adjoint::run(const std::vector<int>& wanted) {
   result.jacobian.resize(static_cast<Eigen::Index>(wanted.size()), variables);
   for (Eigen::Index j = 0; j < variables; ++j) {
     const auto variable = static_cast<int>(j);
-    const EvaluatedCase rates =
-        meniscus::rates(input, in_.fields.numbers.design, variable);
+    const case_data::EvaluatedCase rates =
+        meniscus::case_data::rates(input, in_.fields.numbers.design, variable);
     VectorX column =
         VectorX::Zero(static_cast<Eigen::Index>(input.responses.size()));
     for (const Backward& backward : backwards_) {
@@ -314,4 +318,4 @@ DesignGradient design_gradient(const GradientInput& input,
   return Adjoint(input).run(wanted);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

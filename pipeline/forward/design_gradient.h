@@ -10,7 +10,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/forward/responses.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// Rows are responses, columns design variables.
 struct DesignGradient {
@@ -28,11 +28,11 @@ struct SurfaceGradient {
 
 /// The evaluated design, on loan.
 struct GradientInput {
-  const Case& input;
+  const case_data::Case& input;
   const ResponseInput& fields;
   const VectorX& responses;  // their values
-  const ElasticModel& elasticity;
-  const ElasticState& elastic_state;
+  const elastic::ElasticModel& elasticity;
+  const equations::ElasticState& elastic_state;
   /// From a gradient by all nodes of the mesh to what the surface was made
   /// from.
   std::function<SurfaceGradient(const Points&)> to_film;
@@ -46,4 +46,4 @@ struct GradientInput {
 DesignGradient design_gradient(const GradientInput& input,
                                const std::vector<int>& wanted);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

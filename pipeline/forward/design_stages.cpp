@@ -10,11 +10,11 @@
 #include "pipeline/forward/stage_meter.h"
 #include "pipeline/forward/walls.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
-Failure not_a_number(const Case& input, const VectorX& responses) {
+Failure not_a_number(const case_data::Case& input, const VectorX& responses) {
   Eigen::Index worst = 0;
   while (std::isfinite(responses[worst])) {
     ++worst;
@@ -27,7 +27,8 @@ Failure not_a_number(const Case& input, const VectorX& responses) {
 
 }  // namespace
 
-TetFigures figures_of(const TetMesh& mesh, const TetQuality& quality) {
+TetFigures figures_of(const TetMesh& mesh,
+                      const mesh_tet::TetQuality& quality) {
   return {.nodes = static_cast<int>(mesh.nodes.size()),
           .elements = mesh.element_count(),
           .min_dihedral_deg = quality.min_dihedral_deg,
@@ -36,16 +37,16 @@ TetFigures figures_of(const TetMesh& mesh, const TetQuality& quality) {
 
 /// From a gradient by all nodes of the mesh to that by the film's vertices and
 /// the walls' thickness.
-SurfaceGradient ForwardModel::Impl::to_film(const EvaluatedCase& inputs,
-                                            const Points& film_points,
-                                            const TetMesh& mesh,
-                                            const Points& by_nodes) const {
-  const QuadraticGradient by = transpose_quadratic(mesh, by_nodes, curve_edge);
+SurfaceGradient ForwardModel::Impl::to_film(
+    const case_data::EvaluatedCase& inputs, const Points& film_points,
+    const TetMesh& mesh, const Points& by_nodes) const {
+  const mesh_tet::QuadraticGradient by =
+      mesh_tet::transpose_quadratic(mesh, by_nodes, curve_edge);
   const Points by_corners = motion->transpose(by.corners);
   if (!walls) {
     return {film->transpose_surface(by_corners, by.mid), VectorX()};
   }
-  WallGradient gradient = walls->transpose(
+  walls::WallGradient gradient = walls->transpose(
       film_points, walls->thickness(inputs.walls), by_corners, by.mid);
   return {std::move(gradient.film), std::move(gradient.thickness)};
 }
@@ -60,7 +61,7 @@ bool DesignStages::place_mesh(StagedDesign& staged) const {
   return place_on(*model_.impl_, staged);
 }
 
-bool DesignStages::mesh_of(const Case& input, const VectorX& design,
+bool DesignStages::mesh_of(const case_data::Case& input, const VectorX& design,
                            Monitor* monitor, StagedDesign& staged) {
   if (input.analysis.adapt) {
     const ForwardModel model(input, {.monitor = monitor});
@@ -74,7 +75,8 @@ bool DesignStages::mesh_of(const Case& input, const VectorX& design,
   model.input = input;
   model.watcher = monitor;
   Monitor& told = monitor != nullptr ? *monitor : silent_monitor();
-  const EvaluatedCase inputs = meniscus::evaluate(input, initial_design(input));
+  const case_data::EvaluatedCase inputs =
+      meniscus::case_data::evaluate(input, case_data::initial_design(input));
   if (!model.freeze_film(inputs, {.monitor = monitor}, told) ||
       !model.freeze_mesh(inputs, {.monitor = &told}, told)) {
     staged.evaluation.failure = model.frozen.failure;
@@ -88,14 +90,14 @@ bool DesignStages::settle_on(const ForwardModel::Impl& model,
   Evaluation& result = staged.evaluation;
   result.design = design;
   try {
-    staged.fields.inputs = meniscus::evaluate(model.input, design);
+    staged.fields.inputs = meniscus::case_data::evaluate(model.input, design);
   } catch (const InvalidInput& error) {
     // Numbers that hold at the ends of the bounds may fail between them.
     result.failure = Failure{FailureKind::NotANumber, error.what()};
     return false;
   }
   const StageMeter meter;
-  FilmState& film = staged.adjoint.film;
+  settle::FilmState& film = staged.adjoint.film;
   film = model.film->settle(staged.fields.inputs.film_system,
                             {.monitor = model.watcher});
   result.film = film.report;
@@ -117,10 +119,10 @@ bool DesignStages::place_on(const ForwardModel::Impl& model,
   }
   TetMesh& mesh = staged.fields.mesh;
   mesh = model.base_mesh;
-  move_quadratic(mesh, model.motion->move(surface.base.points), surface,
-                 model.curve_edge);
-  TetQuality quality;
-  result.failure = check_moved(mesh, {}, &quality);
+  mesh_tet::move_quadratic(mesh, model.motion->move(surface.base.points),
+                           surface, model.curve_edge);
+  mesh_tet::TetQuality quality;
+  result.failure = mesh_tet::check_moved(mesh, {}, &quality);
   result.tet = figures_of(mesh, quality);
   meter.add_to(result.seconds.mesh, result.operations.mesh);
   return !result.failure;
@@ -129,7 +131,7 @@ bool DesignStages::place_on(const ForwardModel::Impl& model,
 bool DesignStages::solve(StagedDesign& staged, KeepStiffness keep) const {
   Evaluation& result = staged.evaluation;
   const StageMeter meter;
-  ElasticSolution& solution = staged.fields.solution;
+  equations::ElasticSolution& solution = staged.fields.solution;
   try {
     solution = model_.elasticity().solve(
         staged.fields.mesh, staged.fields.inputs.load_cases,
@@ -215,4 +217,4 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

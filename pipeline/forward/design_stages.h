@@ -4,7 +4,7 @@
 
 #include "pipeline/forward/forward_model.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// What the stages of one design have left so far.
 struct StagedDesign {
@@ -34,7 +34,7 @@ class DesignStages {
   /// with a model: nothing is solved, but with analysis.adapt, where errors
   /// choose the mesh. What failed is in `staged.evaluation`. Throws what
   /// ForwardModel throws.
-  static bool mesh_of(const Case& input, const VectorX& design,
+  static bool mesh_of(const case_data::Case& input, const VectorX& design,
                       Monitor* monitor, StagedDesign& staged);
 
  private:
@@ -45,4 +45,4 @@ class DesignStages {
   const ForwardModel& model_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -8,7 +8,7 @@
 
 #include "core/timer.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
@@ -24,12 +24,13 @@ constexpr int kMostSteps = 150;
 constexpr double kSafelyStable = 10.0;
 
 /// Where the matrix is not in one process.
-bool left_out(const AnalysisEntry& analysis) {
-  return analysis.solver == SolverKind::Distributed;
+bool left_out(const case_data::AnalysisEntry& analysis) {
+  return analysis.solver == equations::SolverKind::Distributed;
 }
 
-BucklingOptions buckling_options(const AnalysisEntry& analysis,
-                                 const ElasticReport& solve, Monitor* monitor) {
+modes::BucklingOptions buckling_options(
+    const case_data::AnalysisEntry& analysis,
+    const equations::ElasticReport& solve, Monitor* monitor) {
   if (left_out(analysis)) {
     return {.count = 0};
   }
@@ -58,28 +59,31 @@ Modes or_failure(const Solve& solve) {
   return modes;
 }
 
-FrequencyFigures frequencies_of(const AnalysisEntry& analysis,
+FrequencyFigures frequencies_of(const case_data::AnalysisEntry& analysis,
                                 const EvaluationFields& fields,
-                                const ElasticModel& model, Monitor* monitor) {
-  const ModeOptions options{.count = analysis.frequencies,
-                            .monitor = monitor,
-                            .materials = &fields.inputs.materials};
+                                const elastic::ElasticModel& model,
+                                Monitor* monitor) {
+  const modes::ModeOptions options{.count = analysis.frequencies,
+                                   .monitor = monitor,
+                                   .materials = &fields.inputs.materials};
   const int held = analysis.supports_of;
-  if (held == AnalysisEntry::kFree) {
-    return {"free", or_failure<NaturalModes>([&] {
-              return natural_modes(fields.mesh, fields.inputs.materials,
-                                   LoadCase{.name = "free"}, options);
+  if (held == case_data::AnalysisEntry::kFree) {
+    return {"free", or_failure<modes::NaturalModes>([&] {
+              return modes::natural_modes(fields.mesh, fields.inputs.materials,
+                                          loads::LoadCase{.name = "free"},
+                                          options);
             })};
   }
-  const std::vector<LoadCase>& cases = fields.inputs.load_cases;
+  const std::vector<loads::LoadCase>& cases = fields.inputs.load_cases;
   return {cases[static_cast<std::size_t>(held)].name,
-          or_failure<NaturalModes>([&] {
-            return natural_modes(model, fields.mesh, cases, held, options);
+          or_failure<modes::NaturalModes>([&] {
+            return modes::natural_modes(model, fields.mesh, cases, held,
+                                        options);
           })};
 }
 
 std::string buckling_line(const BucklingFigures& b) {
-  const BucklingModes& modes = b.modes;
+  const modes::BucklingModes& modes = b.modes;
   std::string text = fmt::format("  buckling of '{}': ", b.load_case);
   if (!modes.factors.empty()) {
     std::vector<std::string> factors;
@@ -96,20 +100,23 @@ std::string buckling_line(const BucklingFigures& b) {
 
 }  // namespace
 
-EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
-                           const ElasticModel& model, Monitor* monitor) {
+EigenFigures eigen_figures(const case_data::Case& input,
+                           const EvaluationFields& fields,
+                           const elastic::ElasticModel& model,
+                           Monitor* monitor) {
   const Timer timer;
-  const AnalysisEntry& analysis = input.analysis;
-  const std::vector<LoadCase>& cases = fields.inputs.load_cases;
+  const case_data::AnalysisEntry& analysis = input.analysis;
+  const std::vector<loads::LoadCase>& cases = fields.inputs.load_cases;
   EigenFigures figures;
-  BucklingOptions options =
+  modes::BucklingOptions options =
       buckling_options(analysis, model.base_solution().report, monitor);
   options.materials = &fields.inputs.materials;
   for (std::size_t c = 0; c < cases.size() && options.count > 0; ++c) {
     figures.buckling.push_back(
-        {cases[c].name, or_failure<BucklingModes>([&] {
-           return buckling_modes(model, fields.mesh, cases, static_cast<int>(c),
-                                 fields.solution.displacements[c], options);
+        {cases[c].name, or_failure<modes::BucklingModes>([&] {
+           return modes::buckling_modes(
+               model, fields.mesh, cases, static_cast<int>(c),
+               fields.solution.displacements[c], options);
          })});
   }
   if (left_out(analysis) && !analysis.buckling) {
@@ -144,7 +151,7 @@ void add_eigen_json(const EigenFigures& figures, Json& json) {
   }
   json["buckling"] = std::move(buckling);
   if (figures.frequencies) {
-    const NaturalModes& modes = figures.frequencies->modes;
+    const modes::NaturalModes& modes = figures.frequencies->modes;
     json["natural_frequencies"] = {
         {"supports_of", figures.frequencies->load_case},
         {"rigid_motions", modes.rigid_motions},
@@ -163,7 +170,7 @@ std::string eigen_text(const EigenFigures& figures) {
     for (const double f : figures.frequencies->modes.frequencies) {
       values.push_back(fmt::format("{:.5g}", f));
     }
-    const NaturalModes& modes = figures.frequencies->modes;
+    const modes::NaturalModes& modes = figures.frequencies->modes;
     const std::string held =
         modes.rigid_motions == 0
             ? fmt::format("held as in '{}'", figures.frequencies->load_case)
@@ -175,11 +182,11 @@ std::string eigen_text(const EigenFigures& figures) {
   return text;
 }
 
-std::vector<ModeShape> mode_shapes(const Case& input,
+std::vector<ModeShape> mode_shapes(const case_data::Case& input,
                                    const EigenFigures& figures) {
   std::vector<ModeShape> shapes;
   if (figures.frequencies) {
-    const NaturalModes& modes = figures.frequencies->modes;
+    const modes::NaturalModes& modes = figures.frequencies->modes;
     for (std::size_t k = 0; k < modes.shapes.size(); ++k) {
       shapes.push_back({fmt::format("mode_{}", k + 1),
                         fmt::format("{:.8g} Hz", modes.frequencies[k]),
@@ -199,4 +206,4 @@ std::vector<ModeShape> mode_shapes(const Case& input,
   return shapes;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -11,18 +11,18 @@
 #include "fea/modes/modes.h"
 #include "pipeline/forward/forward_model.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// Of one load case.
 struct BucklingFigures {
   std::string load_case;
-  BucklingModes modes;   // as many as the case asks for, or the first
-  bool roughly = false;  // unasked, not converged, and far above 1
+  modes::BucklingModes modes;  // as many as the case asks for, or the first
+  bool roughly = false;        // unasked, not converged, and far above 1
 };
 
 struct FrequencyFigures {
   std::string load_case;  // whose supports hold the part; or "free"
-  NaturalModes modes;
+  modes::NaturalModes modes;
 };
 
 struct EigenFigures {
@@ -36,8 +36,9 @@ struct EigenFigures {
 /// every load case up to 1000, to three digits, or a remark where the solver
 /// keeps its matrix in other processes. `model` must know the fields'
 /// mesh. An answer that did not come is a failure within. Throws Interrupted.
-EigenFigures eigen_figures(const Case& input, const EvaluationFields& fields,
-                           const ElasticModel& model,
+EigenFigures eigen_figures(const case_data::Case& input,
+                           const EvaluationFields& fields,
+                           const elastic::ElasticModel& model,
                            Monitor* monitor = nullptr);
 
 /// Adds "buckling" and "natural_frequencies" to result.json (docs/results.md).
@@ -47,7 +48,7 @@ void add_eigen_json(const EigenFigures& figures, nlohmann::ordered_json& json);
 std::string eigen_text(const EigenFigures& figures);
 
 /// The modes that [analysis] asked for by number, for part.vtu.
-std::vector<ModeShape> mode_shapes(const Case& input,
+std::vector<ModeShape> mode_shapes(const case_data::Case& input,
                                    const EigenFigures& figures);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -9,7 +9,7 @@
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_kinds.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
@@ -17,12 +17,13 @@ namespace {
 /// `scale`: as large as the load case's own, for the solver starts from that
 /// one's solution.
 struct DualLoad {
-  LoadCase load;
+  loads::LoadCase load;
   double scale = 1.0;
 };
-DualLoad dual_load(const EvaluationFields& fields, const LoadCase& load_case,
+DualLoad dual_load(const EvaluationFields& fields,
+                   const loads::LoadCase& load_case,
                    const VectorX& by_displacement) {
-  LoadCase dual = load_case;
+  loads::LoadCase dual = load_case;
   dual.forces.clear();
   dual.pressures.clear();
   dual.tractions.clear();
@@ -31,22 +32,24 @@ DualLoad dual_load(const EvaluationFields& fields, const LoadCase& load_case,
   dual.spin.reset();
   dual.temperature.reset();
   const double scale =
-      nodal_forces(fields.mesh, load_case, fields.inputs.materials).norm() /
+      loads::nodal_forces(fields.mesh, load_case, fields.inputs.materials)
+          .norm() /
       by_displacement.norm();
   dual.nodal = scale * by_displacement;
   return {std::move(dual), scale};
 }
 
-ResponseError dual_weighted(const EvaluationFields& fields,
-                            std::size_t load_case, const VectorX& dual) {
+stress::ResponseError dual_weighted(const EvaluationFields& fields,
+                                    std::size_t load_case,
+                                    const VectorX& dual) {
   const auto& materials = fields.inputs.materials;
   const PartStress& primal = fields.stresses[load_case];
-  const RecoveredStress stress = recover_by_patches(
-      fields.mesh, point_stress(fields.mesh, materials, dual));
-  return response_error(fields.mesh, materials,
-                        {fields.solution.displacements[load_case],
-                         primal.recovered, primal.temperature_change},
-                        {dual, stress, {}});
+  const stress::RecoveredStress stress = stress::recover_by_patches(
+      fields.mesh, element::point_stress(fields.mesh, materials, dual));
+  return stress::response_error(fields.mesh, materials,
+                                {fields.solution.displacements[load_case],
+                                 primal.recovered, primal.temperature_change},
+                                {dual, stress, {}});
 }
 
 /// Sums shares of errors that have different units.
@@ -92,7 +95,7 @@ struct Dual {
 /// What the elements' errors mean for responses.
 class ResponseErrors {
  public:
-  ResponseErrors(const Case& input, const EvaluationFields& fields,
+  ResponseErrors(const case_data::Case& input, const EvaluationFields& fields,
                  const VectorX& values, Shares& shares, ElementErrors& errors)
       : input_(input),
         fields_(fields),
@@ -103,19 +106,19 @@ class ResponseErrors {
         VectorX::Zero(static_cast<Eigen::Index>(input.responses.size()));
   }
 
-  void run(const ElasticModel& model);
+  void run(const elastic::ElasticModel& model);
 
  private:
   /// Duals that are to be solved, by load case; what needs none is written.
   std::vector<std::vector<Dual>> duals();
   bool solve(const std::vector<std::vector<Dual>>& duals, std::size_t round,
-             const ElasticModel& model);
+             const elastic::ElasticModel& model);
   void add_expressions();
   double& error(std::size_t response) {
     return errors_.responses[static_cast<Eigen::Index>(response)];
   }
 
-  const Case& input_;
+  const case_data::Case& input_;
   const EvaluationFields& fields_;
   const VectorX& values_;
   Shares& shares_;
@@ -125,12 +128,13 @@ class ResponseErrors {
 std::vector<std::vector<Dual>> ResponseErrors::duals() {
   std::vector<std::vector<Dual>> result(fields_.inputs.load_cases.size());
   for (std::size_t r = 0; r < input_.responses.size(); ++r) {
-    const ResponseEntry& response = input_.responses[r];
-    const ErrorSource estimate = row_of(response.kind).error;
-    if (estimate == ErrorSource::Unknown) {
+    const case_data::ResponseEntry& response = input_.responses[r];
+    const case_data::ErrorSource estimate =
+        case_data::row_of(response.kind).error;
+    if (estimate == case_data::ErrorSource::Unknown) {
       error(r) = std::numeric_limits<double>::quiet_NaN();
     }
-    if (estimate != ErrorSource::ByDual) {
+    if (estimate != case_data::ErrorSource::ByDual) {
       continue;
     }
     const auto k = static_cast<std::size_t>(response.load_case);
@@ -138,7 +142,7 @@ std::vector<std::vector<Dual>> ResponseErrors::duals() {
         partials_of(response, fields_.inputs.responses[r],
                     {fields_.inputs, fields_.mesh, fields_.solution,
                      fields_.exclusion.element},
-                    Derivatives::All);
+                    element::Derivatives::All);
     if (partials.self_adjoint != 0.0) {  // the dual is the solution itself
       const double norm = fields_.stresses[k].error.error;
       error(r) = partials.self_adjoint * norm * norm;
@@ -151,8 +155,9 @@ std::vector<std::vector<Dual>> ResponseErrors::duals() {
 
 /// One dual a load case, all load cases together; false when none is left.
 bool ResponseErrors::solve(const std::vector<std::vector<Dual>>& duals,
-                           std::size_t round, const ElasticModel& model) {
-  std::vector<LoadCase> loads = fields_.inputs.load_cases;
+                           std::size_t round,
+                           const elastic::ElasticModel& model) {
+  std::vector<loads::LoadCase> loads = fields_.inputs.load_cases;
   std::vector<double> scale(loads.size(), 0.0);  // 0: no dual left
   for (std::size_t k = 0; k < loads.size(); ++k) {
     if (round < duals[k].size()) {
@@ -166,12 +171,12 @@ bool ResponseErrors::solve(const std::vector<std::vector<Dual>>& duals,
                   [](double s) { return s == 0.0; })) {
     return false;
   }
-  const ElasticSolution solution =
+  const equations::ElasticSolution solution =
       model.solve(fields_.mesh, loads, fields_.inputs.materials, nullptr);
   errors_.failure = solution.failure;
   for (std::size_t k = 0; k < loads.size() && !errors_.failure; ++k) {
     if (scale[k] != 0.0) {
-      const ResponseError found =
+      const stress::ResponseError found =
           dual_weighted(fields_, k, solution.displacements[k]);
       error(duals[k][round].response) = found.value / scale[k];
       shares_.add([&](std::size_t i) { return std::abs(found.element[i]); });
@@ -183,19 +188,19 @@ bool ResponseErrors::solve(const std::vector<std::vector<Dual>>& duals,
 /// What an expression would change by if all that it is made of did.
 void ResponseErrors::add_expressions() {
   std::vector<std::string> problems;
-  const CaseValues values(input_, fields_.inputs.design, problems);
+  const case_data::CaseValues values(input_, fields_.inputs.design, problems);
   const VectorX& here = values_;
   const VectorX there = here + errors_.responses;
   for (std::size_t r = 0; r < input_.responses.size(); ++r) {
-    const ResponseEntry& response = input_.responses[r];
-    if (response.kind == ResponseKind::Expression) {
+    const case_data::ResponseEntry& response = input_.responses[r];
+    if (response.kind == case_data::ResponseKind::Expression) {
       error(r) = values.at(response.value, {there.data(), r}) -
                  values.at(response.value, {here.data(), r});
     }
   }
 }
 
-void ResponseErrors::run(const ElasticModel& model) {
+void ResponseErrors::run(const elastic::ElasticModel& model) {
   const std::vector<std::vector<Dual>> waiting = duals();
   for (std::size_t round = 0; solve(waiting, round, model);) {
     ++round;
@@ -207,10 +212,10 @@ void ResponseErrors::run(const ElasticModel& model) {
 
 }  // namespace
 
-ElementErrors estimate_element_errors(const Case& input,
+ElementErrors estimate_element_errors(const case_data::Case& input,
                                       const EvaluationFields& fields,
                                       const VectorX& responses,
-                                      const ElasticModel& model) {
+                                      const elastic::ElasticModel& model) {
   ElementErrors errors;
   Shares shares(fields.mesh.element_count());
   for (const PartStress& stress : fields.stresses) {
@@ -223,4 +228,4 @@ ElementErrors estimate_element_errors(const Case& input,
   return errors;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "pipeline/forward/forward_model.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// It knows nothing of the errors of films and of the meshed surface.
 struct ElementErrors {
@@ -25,9 +25,9 @@ struct ElementErrors {
 /// what depends on displacements: one more solution per response, none for a
 /// compliance; expressions by what they are made of. `responses`: their values;
 /// `model`: the elasticity that solved `fields`, whose stresses must be there.
-ElementErrors estimate_element_errors(const Case& input,
+ElementErrors estimate_element_errors(const case_data::Case& input,
                                       const EvaluationFields& fields,
                                       const VectorX& responses,
-                                      const ElasticModel& model);
+                                      const elastic::ElasticModel& model);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
@@ -17,7 +17,7 @@ std::string text(const Vec3& x) {
   return fmt::format("({:g}, {:g}, {:g})", x.x(), x.y(), x.z());
 }
 
-std::string where(const ExclusionZone& zone, const std::string& unit) {
+std::string where(const stress::ExclusionZone& zone, const std::string& unit) {
   if (zone.ball) {
     return fmt::format("within {:g} {} of {}", zone.ball->radius, unit,
                        text(zone.ball->center));
@@ -55,26 +55,28 @@ Json share_json(const ExclusionShare& share) {
 
 }  // namespace
 
-Exclusion choose_exclusion(const Case& input, const TetMesh& mesh,
+Exclusion choose_exclusion(const case_data::Case& input, const TetMesh& mesh,
                            EmptyZones empty) {
   Exclusion result;
   const auto& entries = input.analysis.exclude;
   if (entries.empty()) {
     return result;
   }
-  std::vector<ExclusionZone> zones;
-  for (const ExclusionEntry& entry : entries) {
+  std::vector<stress::ExclusionZone> zones;
+  for (const case_data::ExclusionEntry& entry : entries) {
     zones.push_back(entry.zone);
-    result.zones.push_back(share(mesh, excluded_elements(mesh, {entry.zone}),
+    result.zones.push_back(share(mesh,
+                                 stress::excluded_elements(mesh, {entry.zone}),
                                  where(entry.zone, input.units.length)));
     if (empty == EmptyZones::Refused && result.zones.back().elements == 0) {
       throw InvalidInput(fmt::format(
           "{}: {}: no element has its centre {}; make the zone larger or "
           "shorten resolution.fea",
-          place(input, entry.line), entry.key, result.zones.back().where));
+          case_data::place(input, entry.line), entry.key,
+          result.zones.back().where));
     }
   }
-  result.element = excluded_elements(mesh, zones);
+  result.element = stress::excluded_elements(mesh, zones);
   result.all = share(mesh, result.element, "all zones");
   if (result.all.elements == mesh.element_count()) {
     const std::size_t largest = static_cast<std::size_t>(
@@ -86,7 +88,7 @@ Exclusion choose_exclusion(const Case& input, const TetMesh& mesh,
     throw InvalidInput(fmt::format(
         "{}: {}: the zones leave no element to count ({} of {} are {}); make "
         "them smaller",
-        place(input, entries[largest].line), entries[largest].key,
+        case_data::place(input, entries[largest].line), entries[largest].key,
         result.zones[largest].elements, mesh.element_count(),
         result.zones[largest].where));
   }
@@ -103,4 +105,4 @@ Json exclusion_json(const Exclusion& exclusion) {
           {"zones", zones}};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -10,7 +10,7 @@
 #include "core/geometry/tet_mesh.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 struct ExclusionShare {
   std::string where;  // "within 5 mm of 'foot'"
@@ -29,10 +29,10 @@ enum class EmptyZones { Refused, Allowed };
 /// Throws InvalidInput, naming the zone with its place in the case, where a
 /// zone holds no element, or all zones hold every one. `Allowed` is for coarser
 /// models of a case that was checked.
-Exclusion choose_exclusion(const Case& input, const TetMesh& mesh,
+Exclusion choose_exclusion(const case_data::Case& input, const TetMesh& mesh,
                            EmptyZones empty = EmptyZones::Refused);
 
 /// result.json's "exclusion" (docs/results.md).
 nlohmann::ordered_json exclusion_json(const Exclusion& exclusion);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

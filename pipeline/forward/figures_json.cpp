@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
@@ -17,7 +17,7 @@ nlohmann::ordered_json tet_json(const TetFigures& tet) {
           {"max_dihedral_deg", tet.max_dihedral_deg}};
 }
 
-nlohmann::ordered_json fea_json(const ElasticReport& fea) {
+nlohmann::ordered_json fea_json(const equations::ElasticReport& fea) {
   Json json = {{"element_order", 2},
                {"dofs", fea.dofs},
                {"solver", fea.solver},
@@ -39,9 +39,9 @@ nlohmann::ordered_json units_json(const UnitSystem& units) {
           {"mass", units.mass}};
 }
 
-nlohmann::ordered_json film_json(const FilmReport& film) {
+nlohmann::ordered_json film_json(const settle::FilmReport& film) {
   Json bodies = Json::object();
-  for (const BodyState& body : film.bodies) {
+  for (const settle::BodyState& body : film.bodies) {
     bodies[body.name] = {{"volume", body.volume}, {"pressure", body.pressure}};
   }
   return {{"vertices", film.vertices},
@@ -60,4 +60,4 @@ nlohmann::ordered_json film_json(const FilmReport& film) {
           {"bodies", bodies}};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

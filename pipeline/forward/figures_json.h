@@ -6,16 +6,16 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/forward/forward_model.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// Each unit by what it is of, of result.json.
 nlohmann::ordered_json units_json(const UnitSystem& units);
 
 /// The film's part of result.json.
-nlohmann::ordered_json film_json(const FilmReport& film);
+nlohmann::ordered_json film_json(const settle::FilmReport& film);
 
 nlohmann::ordered_json tet_json(const TetFigures& tet);
 
-nlohmann::ordered_json fea_json(const ElasticReport& fea);
+nlohmann::ordered_json fea_json(const equations::ElasticReport& fea);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -13,30 +13,31 @@
 #include "pipeline/forward/stage_meter.h"
 #include "pipeline/forward/walls.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
 // TetGen now and then leaves a flat element; another edge, and it does not.
 constexpr std::array<double, 3> kEdgeFactors = {1.0, 1.1, 0.9};
 
-const ThickWall& first_with_findings(const WallModel& walls) {
+const walls::ThickWall& first_with_findings(const walls::WallModel& walls) {
   return *std::find_if(
       walls.walls().begin(), walls.walls().end(),
-      [](const ThickWall& wall) { return !wall.findings.empty(); });
+      [](const walls::ThickWall& wall) { return !wall.findings.empty(); });
 }
 
 }  // namespace
 
-bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
+bool ForwardModel::Impl::freeze_film(const case_data::EvaluatedCase& inputs,
                                      const ForwardModelOptions& options,
                                      Monitor& monitor) {
   const StageMeter meter;
   monitor.progress({.stage = "film", .detail = "settling the start"});
-  film.emplace(freeze_films(input, inputs,
-                            {.edge = inputs.fea_edge * options.edge_factor,
-                             .refinements = film_refinements(input),
-                             .monitor = &monitor}));
+  film.emplace(case_data::freeze_films(
+      input, inputs,
+      {.edge = inputs.fea_edge * options.edge_factor,
+       .refinements = case_data::film_refinements(input),
+       .monitor = &monitor}));
   frozen.film = film->reference().report;
   frozen.failure = film->reference().failure;
   if (!frozen.failure && !inputs.walls.empty()) {
@@ -44,7 +45,7 @@ bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
     walls.emplace(wall_model(inputs, *film, film->reference().points));
     frozen.failure = wall_failure(inputs, *walls);
     if (frozen.failure) {
-      const ThickWall& wall = first_with_findings(*walls);
+      const walls::ThickWall& wall = first_with_findings(*walls);
       unfilled = wall.surface;
       findings = wall.findings;
     }
@@ -53,20 +54,21 @@ bool ForwardModel::Impl::freeze_film(const EvaluatedCase& inputs,
   return !frozen.failure;
 }
 
-QuadraticSurface ForwardModel::Impl::surface(const EvaluatedCase& inputs,
-                                             const Points& film_points) const {
+QuadraticSurface ForwardModel::Impl::surface(
+    const case_data::EvaluatedCase& inputs, const Points& film_points) const {
   return walls ? walls->surface(film_points, walls->thickness(inputs.walls))
                : film->surface(film_points);
 }
 
-bool ForwardModel::Impl::freeze_mesh(const EvaluatedCase& inputs,
-                                     const TetrahedralizeOptions& options,
-                                     Monitor& monitor) {
+bool ForwardModel::Impl::freeze_mesh(
+    const case_data::EvaluatedCase& inputs,
+    const mesh_tet::TetrahedralizeOptions& options, Monitor& monitor) {
   const StageMeter meter;
   monitor.progress({.stage = "mesh", .detail = "filling the surface"});
   const QuadraticSurface surface =
       this->surface(inputs, film->reference().points);
-  Tetrahedralization filled = tetrahedralize(surface.base, options);
+  mesh_tet::Tetrahedralization filled =
+      mesh_tet::tetrahedralize(surface.base, options);
   if (filled.failure) {
     frozen.failure = filled.failure;
     unfilled = surface.base;
@@ -74,24 +76,25 @@ bool ForwardModel::Impl::freeze_mesh(const EvaluatedCase& inputs,
   } else {
     motion.emplace(filled.mesh, static_cast<int>(surface.base.points.size()));
     curve_edge.clear();
-    base_mesh = make_quadratic(filled.mesh, surface, &curve_edge);
+    base_mesh = mesh_tet::make_quadratic(filled.mesh, surface, &curve_edge);
     frozen.tet = figures_of(base_mesh, filled.quality);
   }
   meter.add_to(frozen.seconds.mesh, frozen.operations.mesh);
   return !frozen.failure;
 }
 
-bool ForwardModel::Impl::freeze_elasticity(const EvaluatedCase& inputs,
-                                           Monitor& monitor) {
+bool ForwardModel::Impl::freeze_elasticity(
+    const case_data::EvaluatedCase& inputs, Monitor& monitor) {
   const StageMeter meter;
   monitor.progress({.stage = "fea",
                     .detail = fmt::format("{} ten-node tetrahedra",
                                           base_mesh.element_count())});
   try {
-    elasticity.emplace(base_mesh, inputs.materials, inputs.load_cases,
-                       ElasticOptions{.solver = input.analysis.solver,
-                                      .processes = input.analysis.processes,
-                                      .monitor = &monitor});
+    elasticity.emplace(
+        base_mesh, inputs.materials, inputs.load_cases,
+        equations::ElasticOptions{.solver = input.analysis.solver,
+                                  .processes = input.analysis.processes,
+                                  .monitor = &monitor});
     frozen.fea = elasticity->base_solution().report;
     frozen.failure = elasticity->base_solution().failure;
   } catch (const SolverError& error) {
@@ -112,15 +115,15 @@ bool ForwardModel::Impl::freeze_pairs() {
   return !frozen.failure;
 }
 
-VectorX ForwardModel::Impl::responses(const EvaluatedCase& inputs,
-                                      const FilmState& film_state,
-                                      const TetMesh& mesh,
-                                      const ElasticSolution& solution) const {
+VectorX ForwardModel::Impl::responses(
+    const case_data::EvaluatedCase& inputs, const settle::FilmState& film_state,
+    const TetMesh& mesh, const equations::ElasticSolution& solution) const {
   return respond(input, {inputs, mesh, solution, exclusion.element, &*film,
                          &film_state, &pairs, &scans});
 }
 
-AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
+AdaptedState ForwardModel::Impl::state(
+    const case_data::EvaluatedCase& inputs) const {
   EvaluationFields fields;
   fields.mesh = base_mesh;
   fields.inputs = inputs;
@@ -137,7 +140,8 @@ AdaptedState ForwardModel::Impl::state(const EvaluatedCase& inputs) const {
 }
 
 /// A finer mesh where the first one errs, and the elasticity on it.
-bool ForwardModel::Impl::adapt(const EvaluatedCase& inputs, Monitor& monitor) {
+bool ForwardModel::Impl::adapt(const case_data::EvaluatedCase& inputs,
+                               Monitor& monitor) {
   const Timer timer;
   monitor.progress({.stage = "adapt", .detail = "errors of the first mesh"});
   Adaptation round{.before = state(inputs), .after = {}};
@@ -187,8 +191,9 @@ bool ForwardModel::Impl::adapt(const EvaluatedCase& inputs, Monitor& monitor) {
 void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
-  frozen.design = initial_design(input);
-  const EvaluatedCase inputs = meniscus::evaluate(input, frozen.design);
+  frozen.design = case_data::initial_design(input);
+  const case_data::EvaluatedCase inputs =
+      meniscus::case_data::evaluate(input, frozen.design);
   if (!freeze_film(inputs, options, monitor) ||
       !freeze_mesh(inputs, {.monitor = &monitor}, monitor)) {
     return;
@@ -202,13 +207,13 @@ void ForwardModel::Impl::freeze(const ForwardModelOptions& options) {
   }
 }
 
-void require_solver(const Case& input) {
-  if (input.analysis.solver == SolverKind::Distributed) {
-    require_petsc();
+void require_solver(const case_data::Case& input) {
+  if (input.analysis.solver == equations::SolverKind::Distributed) {
+    distributed::require_petsc();
   }
 }
 
-ForwardModel::ForwardModel(const Case& input,
+ForwardModel::ForwardModel(const case_data::Case& input,
                            const ForwardModelOptions& options)
     : impl_(std::make_unique<Impl>()) {
   refuse_walls(input);
@@ -237,18 +242,18 @@ const std::optional<Failure>& ForwardModel::failure() const {
 
 const Evaluation& ForwardModel::frozen() const { return impl_->frozen; }
 
-const FilmModel& ForwardModel::film() const { return *impl_->film; }
+const frozen::FilmModel& ForwardModel::film() const { return *impl_->film; }
 
-const WallModel* ForwardModel::walls() const {
+const walls::WallModel* ForwardModel::walls() const {
   return impl_->walls ? &*impl_->walls : nullptr;
 }
 
-QuadraticSurface ForwardModel::surface(const EvaluatedCase& inputs,
+QuadraticSurface ForwardModel::surface(const case_data::EvaluatedCase& inputs,
                                        const Points& film_points) const {
   return impl_->surface(inputs, film_points);
 }
 
-SurfaceMesh ForwardModel::boundary(const EvaluatedCase& inputs,
+SurfaceMesh ForwardModel::boundary(const case_data::EvaluatedCase& inputs,
                                    const Points& film_points) const {
   const auto& walls = impl_->walls;
   return walls ? walls->fine(film_points, walls->thickness(inputs.walls))
@@ -257,7 +262,7 @@ SurfaceMesh ForwardModel::boundary(const EvaluatedCase& inputs,
 
 const Scans& ForwardModel::scans() const { return impl_->scans; }
 
-const ElasticModel& ForwardModel::elasticity() const {
+const elastic::ElasticModel& ForwardModel::elasticity() const {
   return *impl_->elasticity;
 }
 
@@ -265,4 +270,4 @@ const Adaptation* ForwardModel::adaptation() const {
   return impl_->adaptation ? &*impl_->adaptation : nullptr;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

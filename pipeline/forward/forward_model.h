@@ -19,7 +19,7 @@
 #include "pipeline/forward/scans.h"
 #include "pipeline/forward/stage_meter.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 struct TetFigures {
   int nodes = 0;
@@ -34,9 +34,9 @@ struct Evaluation {
   VectorX design;
   VectorX responses;
   std::optional<Failure> failure;
-  FilmReport film;
+  settle::FilmReport film;
   TetFigures tet;
-  ElasticReport fea;
+  equations::ElasticReport fea;
   StageSeconds seconds;
   StageOperations operations;
 };
@@ -64,19 +64,19 @@ struct EvaluationFields {
   SurfaceMesh boundary;           // of that what bounds material
   QuadraticSurface surface;       // as meshed
   TetMesh mesh;                   // ten-node
-  ElasticSolution solution;
+  equations::ElasticSolution solution;
   std::vector<PartStress> stresses;  // per load case; found once, at the end
   std::vector<ModeShape> modes;      // that the case asks for; the same
   std::vector<FilmFrame> history;    // of the study, by evaluation; the same
-  EvaluatedCase inputs;
+  case_data::EvaluatedCase inputs;
   Exclusion exclusion;      // the model's
   double start_edge = 0.0;  // of the start that the model's film was found from
 };
 
 /// What gradient() needs beside the fields; as large as a stiffness matrix.
 struct AdjointState {
-  FilmState film;
-  ElasticState elastic;
+  settle::FilmState film;
+  equations::ElasticState elastic;
 };
 
 struct Adaptation;  // pipeline/forward/adaptation.h
@@ -89,7 +89,7 @@ struct ForwardModelOptions {
 
 /// Throws IoError, with what to install, when the case's solver is a program
 /// that is not here.
-void require_solver(const Case& input);
+void require_solver(const case_data::Case& input);
 
 class ForwardModel {
  public:
@@ -99,7 +99,7 @@ class ForwardModel {
   /// must not be used. Throws what its stages throw for wrong input
   /// (choose_exclusion too), for walls that refuse_walls() refuses, and what
   /// require_solver and read_scans throw.
-  explicit ForwardModel(const Case& input,
+  explicit ForwardModel(const case_data::Case& input,
                         const ForwardModelOptions& options = {});
   ~ForwardModel();
   ForwardModel(ForwardModel&&) noexcept;
@@ -117,23 +117,23 @@ class ForwardModel {
 
   /// The film that evaluate() settles first: alone, settle() of a design's
   /// film system costs a hundredth of an evaluation and has the same bits.
-  const FilmModel& film() const;
+  const frozen::FilmModel& film() const;
 
   /// Its walls; null for a case without.
-  const WallModel* walls() const;
+  const walls::WallModel* walls() const;
 
   /// What bounds the part on a settled film of the design that `inputs` are
   /// of: as it is filled, and as closed surface at the film's own resolution.
-  QuadraticSurface surface(const EvaluatedCase& inputs,
+  QuadraticSurface surface(const case_data::EvaluatedCase& inputs,
                            const Points& film_points) const;
-  SurfaceMesh boundary(const EvaluatedCase& inputs,
+  SurfaceMesh boundary(const case_data::EvaluatedCase& inputs,
                        const Points& film_points) const;
 
   /// What its responses compare films with.
   const Scans& scans() const;
 
   /// The elasticity that evaluate() solves with.
-  const ElasticModel& elasticity() const;
+  const elastic::ElasticModel& elasticity() const;
 
   /// What a case with analysis.adapt was adapted from and to; else null.
   const Adaptation* adaptation() const;
@@ -158,4 +158,4 @@ class ForwardModel {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -12,43 +12,46 @@
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/responses.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
-TetFigures figures_of(const TetMesh& mesh, const TetQuality& quality);
+TetFigures figures_of(const TetMesh& mesh, const mesh_tet::TetQuality& quality);
 
 struct ForwardModel::Impl {
-  Case input;
+  case_data::Case input;
   Evaluation frozen;
   SurfaceMesh unfilled;
   std::vector<Finding> findings;
-  std::optional<FilmModel> film;
-  std::optional<WallModel> walls;  // of a case that has some
-  TetMesh base_mesh;               // ten-node, at the initial design
+  std::optional<frozen::FilmModel> film;
+  std::optional<walls::WallModel> walls;  // of a case that has some
+  TetMesh base_mesh;                      // ten-node, at the initial design
   std::vector<char> curve_edge;
-  std::optional<MeshMotion> motion;
-  std::optional<ElasticModel> elasticity;
+  std::optional<mesh_tet::MeshMotion> motion;
+  std::optional<elastic::ElasticModel> elasticity;
   Exclusion exclusion;
-  ThicknessPairs pairs;
+  functionals::ThicknessPairs pairs;
   Scans scans;
   std::optional<Adaptation> adaptation;
   Monitor* watcher = nullptr;  // of evaluations
 
   void freeze(const ForwardModelOptions& options);
-  bool freeze_film(const EvaluatedCase& inputs,
+  bool freeze_film(const case_data::EvaluatedCase& inputs,
                    const ForwardModelOptions& options, Monitor& monitor);
-  bool freeze_mesh(const EvaluatedCase& inputs,
-                   const TetrahedralizeOptions& options, Monitor& monitor);
-  bool freeze_elasticity(const EvaluatedCase& inputs, Monitor& monitor);
+  bool freeze_mesh(const case_data::EvaluatedCase& inputs,
+                   const mesh_tet::TetrahedralizeOptions& options,
+                   Monitor& monitor);
+  bool freeze_elasticity(const case_data::EvaluatedCase& inputs,
+                         Monitor& monitor);
   bool freeze_pairs();
-  bool adapt(const EvaluatedCase& inputs, Monitor& monitor);
-  AdaptedState state(const EvaluatedCase& inputs) const;
-  VectorX responses(const EvaluatedCase& inputs, const FilmState& film_state,
-                    const TetMesh& mesh, const ElasticSolution& solution) const;
-  QuadraticSurface surface(const EvaluatedCase& inputs,
+  bool adapt(const case_data::EvaluatedCase& inputs, Monitor& monitor);
+  AdaptedState state(const case_data::EvaluatedCase& inputs) const;
+  VectorX responses(const case_data::EvaluatedCase& inputs,
+                    const settle::FilmState& film_state, const TetMesh& mesh,
+                    const equations::ElasticSolution& solution) const;
+  QuadraticSurface surface(const case_data::EvaluatedCase& inputs,
                            const Points& film_points) const;
-  SurfaceGradient to_film(const EvaluatedCase& inputs,
+  SurfaceGradient to_film(const case_data::EvaluatedCase& inputs,
                           const Points& film_points, const TetMesh& mesh,
                           const Points& by_nodes) const;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -8,14 +8,15 @@
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/forward_model.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
-std::vector<Variable> variables_at(const Case& input, const VectorX& design) {
-  std::vector<Variable> variables;
+std::vector<optimize::Variable> variables_at(const case_data::Case& input,
+                                             const VectorX& design) {
+  std::vector<optimize::Variable> variables;
   for (std::size_t k = 0; k < input.design.size(); ++k) {
-    const DesignVariable& variable = input.design[k];
+    const case_data::DesignVariable& variable = input.design[k];
     variables.push_back({.name = variable.name,
                          .initial = design[static_cast<Eigen::Index>(k)],
                          .lower = variable.lower,
@@ -24,7 +25,8 @@ std::vector<Variable> variables_at(const Case& input, const VectorX& design) {
   return variables;
 }
 
-void refuse_without_design(const Case& input, const VectorX& design) {
+void refuse_without_design(const case_data::Case& input,
+                           const VectorX& design) {
   if (input.design.empty()) {
     throw InvalidInput(fmt::format(
         "{}: there is nothing to differentiate by: add [design.NAME] with "
@@ -40,10 +42,11 @@ void refuse_without_design(const Case& input, const VectorX& design) {
 
 }  // namespace
 
-CaseGradientCheck check_case_gradient(const Case& input, const VectorX& design,
-                                      const GradientCheckOptions& options) {
+CaseGradientCheck check_case_gradient(
+    const case_data::Case& input, const VectorX& design,
+    const optimize::GradientCheckOptions& options) {
   refuse_without_design(input, design);
-  if (input.analysis.solver == SolverKind::Distributed) {
+  if (input.analysis.solver == equations::SolverKind::Distributed) {
     throw InvalidInput(fmt::format(
         "{}: the solver petsc keeps its matrix in other processes and gives no "
         "gradients; choose another analysis.solver",
@@ -55,7 +58,7 @@ CaseGradientCheck check_case_gradient(const Case& input, const VectorX& design,
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const auto response = static_cast<int>(k);
     const std::string& name = input.responses[k].name;
-    if (has_derivatives(input, response)) {
+    if (case_data::has_derivatives(input, response)) {
       wanted.push_back(response);
       names.push_back(name);
     } else {
@@ -87,9 +90,9 @@ CaseGradientCheck check_case_gradient(const Case& input, const VectorX& design,
   if (gradient.failure) {
     throw SolverError("the adjoint: " + gradient.failure->message);
   }
-  const VectorFunction function = [&](const VectorX& x) {
+  const optimize::VectorFunction function = [&](const VectorX& x) {
     const Evaluation there = model.evaluate(x);
-    VectorAnswer answer{.values = {}, .failure = there.failure};
+    optimize::VectorAnswer answer{.values = {}, .failure = there.failure};
     if (!there.failure) {
       answer.values.resize(static_cast<Eigen::Index>(wanted.size()));
       for (std::size_t k = 0; k < wanted.size(); ++k) {
@@ -99,17 +102,17 @@ CaseGradientCheck check_case_gradient(const Case& input, const VectorX& design,
     }
     return answer;
   };
-  check.report = check_gradient(variables_at(input, design), names, function,
-                                gradient.jacobian, options);
+  check.report = optimize::check_gradient(variables_at(input, design), names,
+                                          function, gradient.jacobian, options);
   return check;
 }
 
-std::string gradient_check_text(const Case& input,
+std::string gradient_check_text(const case_data::Case& input,
                                 const CaseGradientCheck& check) {
-  const std::vector<GradientCheckRow>& rows = check.report.rows;
+  const std::vector<optimize::GradientCheckRow>& rows = check.report.rows;
   std::size_t responses = 8;
   std::size_t variables = 8;
-  for (const GradientCheckRow& row : rows) {
+  for (const optimize::GradientCheckRow& row : rows) {
     responses = std::max(responses, row.response.size());
     variables = std::max(variables, row.variable.size());
   }
@@ -122,7 +125,7 @@ std::string gradient_check_text(const Case& input,
   text += fmt::format("\n{:<{}}  {:<{}}  {:>16}  {:>16}  {:>8}  {:>8}  {:>8}\n",
                       "response", responses, "variable", variables, "adjoint",
                       "difference", "step", "error", "allowed");
-  for (const GradientCheckRow& row : rows) {
+  for (const optimize::GradientCheckRow& row : rows) {
     text += fmt::format(
         "{:<{}}  {:<{}}  {:>16.9e}  {:>16.9e}  {:>8.1e}  {:>8.1e}  "
         "{:>8.1e}{}\n",
@@ -140,4 +143,4 @@ std::string gradient_check_text(const Case& input,
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

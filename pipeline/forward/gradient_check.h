@@ -7,11 +7,11 @@
 #include "optimize/check_gradient.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 struct CaseGradientCheck {
   VectorX design;  // where
-  GradientCheckReport report;
+  optimize::GradientCheckReport report;
   std::vector<std::string> left_out;  // responses without derivatives
   double evaluation_seconds = 0.0;    // of the design, a next one
   double gradient_seconds = 0.0;      // of all responses together
@@ -21,11 +21,12 @@ struct CaseGradientCheck {
 /// compares. Throws InvalidInput for a case without design variables, without
 /// responses that have derivatives, or a design of another size; MeshError or
 /// SolverError when `design` cannot be evaluated.
-CaseGradientCheck check_case_gradient(const Case& input, const VectorX& design,
-                                      const GradientCheckOptions& options = {});
+CaseGradientCheck check_case_gradient(
+    const case_data::Case& input, const VectorX& design,
+    const optimize::GradientCheckOptions& options = {});
 
 /// The table for people: one line per response and variable, and the verdict.
-std::string gradient_check_text(const Case& input,
+std::string gradient_check_text(const case_data::Case& input,
                                 const CaseGradientCheck& check);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

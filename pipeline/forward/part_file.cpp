@@ -16,36 +16,40 @@
 #include "io/obj.h"
 #include "io/read_stl.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
 struct PartReader {
   const char* ending;
   SurfaceMesh (*read)(const std::filesystem::path& path,
-                      const ReadStepOptions& options);
+                      const step::ReadStepOptions& options);
   bool named = true;  // in messages; else another ending of the one before
 };
 
-SurfaceMesh stl(const std::filesystem::path& path, const ReadStepOptions&) {
-  return read_stl(path);
+SurfaceMesh stl(const std::filesystem::path& path,
+                const step::ReadStepOptions&) {
+  return io::read_stl(path);
 }
 
-SurfaceMesh obj(const std::filesystem::path& path, const ReadStepOptions&) {
-  return read_obj(path);
+SurfaceMesh obj(const std::filesystem::path& path,
+                const step::ReadStepOptions&) {
+  return io::read_obj(path);
 }
 
 /// All that bounds: films and fixed facets.
 SurfaceMesh datafile(const std::filesystem::path& path,
-                     const ReadStepOptions&) {
-  return complex_of(read_fe(read_file(path), path.filename().string())).mesh;
+                     const step::ReadStepOptions&) {
+  return datafile::complex_of(
+             datafile::read_fe(read_file(path), path.filename().string()))
+      .mesh;
 }
 
 constexpr std::array<PartReader, 5> kReaders = {
     {{".stl", stl},
      {".obj", obj},
-     {".step", read_step_part},
-     {".stp", read_step_part, false},
+     {".step", step::read_step_part},
+     {".stp", step::read_step_part, false},
      {".fe", datafile}}};
 
 std::string reader_endings() {
@@ -78,7 +82,7 @@ bool is_part_file(const std::filesystem::path& path) {
 }
 
 SurfaceMesh read_part_file(const std::filesystem::path& path,
-                           const ReadStepOptions& options) {
+                           const step::ReadStepOptions& options) {
   const PartReader* reader = reader_of(path);
   if (reader == nullptr) {
     throw InvalidInput(fmt::format("{}: no file of a part; there are {}",
@@ -87,4 +91,4 @@ SurfaceMesh read_part_file(const std::filesystem::path& path,
   return reader->read(path, options);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -6,7 +6,7 @@
 #include "cad/step/step_reader.h"
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// A file's name ends as those of parts that can be read: .stl, .obj, .step,
 /// .stp, .fe, in any case.
@@ -16,6 +16,6 @@ bool is_part_file(const std::filesystem::path& path);
 /// curved faces become facets. Throws what the format's reader throws,
 /// InvalidInput for another ending.
 SurfaceMesh read_part_file(const std::filesystem::path& path,
-                           const ReadStepOptions& options);
+                           const step::ReadStepOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

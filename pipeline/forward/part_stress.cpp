@@ -2,24 +2,25 @@
 
 #include "fea/loads/body_loads.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
-std::vector<PartStress> part_stresses(const TetMesh& mesh,
-                                      const EvaluatedCase& numbers,
-                                      const ElasticSolution& solution) {
+std::vector<PartStress> part_stresses(
+    const TetMesh& mesh, const case_data::EvaluatedCase& numbers,
+    const equations::ElasticSolution& solution) {
   std::vector<PartStress> stresses;
   for (std::size_t k = 0; k < numbers.load_cases.size(); ++k) {
     const VectorX& u = solution.displacements[k];
     PartStress& stress = stresses.emplace_back();
-    stress.temperature_change = temperature_change(mesh, numbers.load_cases[k]);
-    stress.points =
-        point_stress(mesh, numbers.materials, u, stress.temperature_change);
-    stress.recovered = recover_by_patches(mesh, stress.points);
-    stress.error =
-        estimate_error(mesh, numbers.materials,
-                       {u, stress.recovered, stress.temperature_change});
+    stress.temperature_change =
+        loads::temperature_change(mesh, numbers.load_cases[k]);
+    stress.points = element::point_stress(mesh, numbers.materials, u,
+                                          stress.temperature_change);
+    stress.recovered = stress::recover_by_patches(mesh, stress.points);
+    stress.error = stress::estimate_error(
+        mesh, numbers.materials,
+        {u, stress.recovered, stress.temperature_change});
   }
   return stresses;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

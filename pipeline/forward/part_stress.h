@@ -8,19 +8,19 @@
 #include "fea/stress/error_estimate.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// Of one load case.
 struct PartStress {
   VectorX temperature_change;  // per node, or empty
-  PointStress points;
-  RecoveredStress recovered;
-  EnergyError error;
+  element::PointStress points;
+  stress::RecoveredStress recovered;
+  stress::EnergyError error;
 };
 
 /// Of every load case, in their order.
-std::vector<PartStress> part_stresses(const TetMesh& mesh,
-                                      const EvaluatedCase& numbers,
-                                      const ElasticSolution& solution);
+std::vector<PartStress> part_stresses(
+    const TetMesh& mesh, const case_data::EvaluatedCase& numbers,
+    const equations::ElasticSolution& solution);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

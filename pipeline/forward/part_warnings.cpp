@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "fea/functionals/thickness.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
@@ -24,7 +24,8 @@ double largest_displacement(const VectorX& u) {
   return largest;
 }
 
-std::string yield_warning(const Case& input, const std::string& load_case,
+std::string yield_warning(const case_data::Case& input,
+                          const std::string& load_case,
                           const StressFigures::Safety& s, const char* where) {
   return fmt::format(
       "stress above yield{}: load case '{}' reaches {:.4g} {} at ({:.4g}, "
@@ -39,7 +40,7 @@ std::string yield_warning(const Case& input, const std::string& load_case,
 }  // namespace
 
 std::vector<std::string> part_warnings(
-    const Case& input, const EvaluationFields& fields,
+    const case_data::Case& input, const EvaluationFields& fields,
     const std::vector<StressFigures>& stress) {
   std::vector<std::string> warnings;
   const double size = bounding_diagonal(fields.mesh.nodes);
@@ -71,25 +72,26 @@ std::vector<std::string> wall_warnings(const ForwardModel& model) {
   if (model.walls() == nullptr) {
     return warnings;
   }
-  for (const ThickWall& wall : model.walls()->walls()) {
-    const SafeThickness& safe = wall.safe;
-    if (safe.limit != WallLimit::None && safe.asked >= safe.value) {
+  for (const walls::ThickWall& wall : model.walls()->walls()) {
+    const walls::SafeThickness& safe = wall.safe;
+    if (safe.limit != walls::WallLimit::None && safe.asked >= safe.value) {
       warnings.push_back(safe.message);
     }
   }
   return warnings;
 }
 
-std::vector<std::string> process_warnings(const Case& input,
+std::vector<std::string> process_warnings(const case_data::Case& input,
                                           const TetMesh& mesh) {
-  const ProcessEntry& process = input.process;
+  const case_data::ProcessEntry& process = input.process;
   if (!(process.smallest_feature > 0.0)) {
     return {};
   }
   const double limit = (1.0 - kFlatFacets) * process.smallest_feature;
-  ThinPlace thin;
+  functionals::ThinPlace thin;
   try {
-    thin = thinnest_place(mesh, thickness_pairs(mesh), limit);
+    thin = functionals::thinnest_place(mesh, functionals::thickness_pairs(mesh),
+                                       limit);
   } catch (const InvalidInput&) {  // no two faces across from each other
     return {};
   }
@@ -130,4 +132,4 @@ std::vector<std::string> buckling_warnings(const EigenFigures& figures) {
   return warnings;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

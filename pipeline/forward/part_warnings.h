@@ -7,13 +7,13 @@
 #include "pipeline/forward/eigen_figures.h"
 #include "pipeline/forward/stress_figures.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// Sentences for stress above yield (the place with the least safety factor,
 /// each body against its own material) and for displacements that are not small
 /// against the part. `stress`: stress_figures() of the fields, every load case.
 std::vector<std::string> part_warnings(
-    const Case& input, const EvaluationFields& fields,
+    const case_data::Case& input, const EvaluationFields& fields,
     const std::vector<StressFigures>& stress);
 
 /// Sentences for walls thicker than is safe at the design they are frozen at.
@@ -21,11 +21,11 @@ std::vector<std::string> wall_warnings(const ForwardModel& model);
 
 /// A sentence where the part is thinner than its [process] can make, by more
 /// than flat facets leave in doubt, with the place and how much of it is.
-std::vector<std::string> process_warnings(const Case& input,
+std::vector<std::string> process_warnings(const case_data::Case& input,
                                           const TetMesh& mesh);
 
 /// Sentences for buckling factors below 1, and for eigenvalues that could not
 /// be found.
 std::vector<std::string> buckling_warnings(const EigenFigures& figures);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

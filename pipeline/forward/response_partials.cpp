@@ -11,11 +11,11 @@
 #include "fea/functionals/stress_functionals.h"
 #include "fea/functionals/volume_functionals.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
-ResponsePartials taken(Functional functional) {
+ResponsePartials taken(element::Functional functional) {
   ResponsePartials result;
   result.value = functional.value;
   result.by_nodes = std::move(functional.by_nodes);
@@ -25,21 +25,23 @@ ResponsePartials taken(Functional functional) {
   return result;
 }
 
-ResponsePartials taken(DirectedFunctional functional) {
+ResponsePartials taken(element::DirectedFunctional functional) {
   const Vec3 by_direction = functional.by_direction;
-  ResponsePartials result = taken(static_cast<Functional&&>(functional));
+  ResponsePartials result =
+      taken(static_cast<element::Functional&&>(functional));
   result.by_direction = by_direction;
   return result;
 }
 
-ResponsePartials taken(MassFunctional functional) {
+ResponsePartials taken(functionals::MassFunctional functional) {
   std::vector<double> by_density = std::move(functional.by_density);
-  ResponsePartials result = taken(static_cast<Functional&&>(functional));
+  ResponsePartials result =
+      taken(static_cast<element::Functional&&>(functional));
   result.by_density = std::move(by_density);
   return result;
 }
 
-ResponsePartials taken(FilmResponse film) {
+ResponsePartials taken(frozen::FilmResponse film) {
   ResponsePartials result;
   result.value = film.value;
   result.film = std::move(film.by);
@@ -51,53 +53,54 @@ const VectorX& displacement(const ResponseTask& task) {
   return task.fields.solution.displacements[task.response.load_case];
 }
 
-const std::vector<Material>& materials(const ResponseTask& task) {
+const std::vector<element::Material>& materials(const ResponseTask& task) {
   return task.fields.numbers.materials;
 }
 
 ResponsePartials mean_displacement(const ResponseTask& task) {
   if (!task.response.weight) {
-    return taken(mean_displacement_functional(
+    return taken(functionals::mean_displacement_functional(
         task.fields.mesh, task.response.surface, task.numbers.direction,
         displacement(task), task.derivatives));
   }
-  return taken(weighted_displacement_functional(
+  return taken(functionals::weighted_displacement_functional(
       task.fields.mesh, task.response.surface, task.numbers.direction,
       {task.numbers.weight, task.numbers.weight_slope}, displacement(task),
       task.derivatives));
 }
 
 ResponsePartials displacement_norm(const ResponseTask& task) {
-  return taken(displacement_norm_functional(
+  return taken(functionals::displacement_norm_functional(
       task.fields.mesh, task.response.surface, task.numbers.direction,
       task.response.power, displacement(task), task.derivatives));
 }
 
 ResponsePartials rotation(const ResponseTask& task) {
-  return taken(rotation_functional(task.fields.mesh, task.response.surface,
-                                   task.numbers.direction, displacement(task),
-                                   task.derivatives));
+  return taken(functionals::rotation_functional(
+      task.fields.mesh, task.response.surface, task.numbers.direction,
+      displacement(task), task.derivatives));
 }
 
 /// Half the work of the loads is the strain energy where it all goes into the
 /// solid.
 ResponsePartials energy(const ResponseTask& task) {
-  const LoadCase& load_case =
+  const loads::LoadCase& load_case =
       task.fields.numbers.load_cases[task.response.load_case];
   const VectorX& u = displacement(task);
-  const bool strain = task.response.kind == ResponseKind::StrainEnergy;
+  const bool strain =
+      task.response.kind == case_data::ResponseKind::StrainEnergy;
   if (strain && (!load_case.springs.empty() || load_case.temperature)) {
-    return taken(strain_energy_functional(task.fields.mesh, materials(task),
-                                          load_case, u, task.derivatives));
+    return taken(functionals::strain_energy_functional(
+        task.fields.mesh, materials(task), load_case, u, task.derivatives));
   }
   const double share = strain ? 0.5 : 1.0;
-  ResponsePartials result = taken(compliance_functional(
+  ResponsePartials result = taken(functionals::compliance_functional(
       task.fields.mesh, materials(task), load_case, u, task.derivatives));
   result.value *= share;
   for (Vec3& by_node : result.by_nodes) {
     by_node *= share;
   }
-  if (task.derivatives == Derivatives::All) {
+  if (task.derivatives == element::Derivatives::All) {
     result.self_adjoint = share;
     result.by_forces = share * u;
   }
@@ -105,28 +108,29 @@ ResponsePartials energy(const ResponseTask& task) {
 }
 
 ResponsePartials mass(const ResponseTask& task) {
-  return taken(
-      mass_functional(task.fields.mesh, materials(task), task.derivatives));
+  return taken(functionals::mass_functional(task.fields.mesh, materials(task),
+                                            task.derivatives));
 }
 
 ResponsePartials volume(const ResponseTask& task) {
-  return taken(volume_functional(task.fields.mesh, task.derivatives));
+  return taken(
+      functionals::volume_functional(task.fields.mesh, task.derivatives));
 }
 
 /// Along a direction the centre of mass is a coordinate: of a unit vector.
 ResponsePartials centre_of_mass(const ResponseTask& task) {
   const double length = task.numbers.direction.norm();
   const Vec3 unit = task.numbers.direction / length;
-  ResponsePartials result = taken(centre_of_mass_functional(
+  ResponsePartials result = taken(functionals::centre_of_mass_functional(
       task.fields.mesh, materials(task), unit, task.derivatives));
-  if (task.derivatives == Derivatives::All) {
+  if (task.derivatives == element::Derivatives::All) {
     for (int k = 0; k < 3; ++k) {
       const Vec3 across = (Vec3::Unit(k) - unit[k] * unit) / length;
       if (!across.isZero(0.0)) {
-        result.by_direction[k] =
-            centre_of_mass_functional(task.fields.mesh, materials(task), across,
-                                      Derivatives::None)
-                .value;
+        result.by_direction[k] = functionals::centre_of_mass_functional(
+                                     task.fields.mesh, materials(task), across,
+                                     element::Derivatives::None)
+                                     .value;
       }
     }
   }
@@ -134,7 +138,7 @@ ResponsePartials centre_of_mass(const ResponseTask& task) {
 }
 
 ResponsePartials peak(const ResponseTask& task) {
-  if (task.derivatives == Derivatives::All) {
+  if (task.derivatives == element::Derivatives::All) {
     throw InvalidInput(fmt::format(
         "response '{}' is a max_von_mises, which has no derivative: use "
         "von_mises_norm or von_mises_ks",
@@ -148,7 +152,7 @@ ResponsePartials peak(const ResponseTask& task) {
   return result;
 }
 
-StressFunctionalInput stress_input(const ResponseTask& task) {
+functionals::StressFunctionalInput stress_input(const ResponseTask& task) {
   return {task.fields.mesh,
           materials(task),
           task.fields.numbers.load_cases[task.response.load_case],
@@ -158,13 +162,13 @@ StressFunctionalInput stress_input(const ResponseTask& task) {
 }
 
 ResponsePartials von_mises_norm(const ResponseTask& task) {
-  return taken(
-      von_mises_norm_functional(stress_input(task), task.response.power));
+  return taken(functionals::von_mises_norm_functional(stress_input(task),
+                                                      task.response.power));
 }
 
-double least_yield(const std::vector<Material>& materials) {
+double least_yield(const std::vector<element::Material>& materials) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Material& material : materials) {
+  for (const element::Material& material : materials) {
     least = std::min(least, material.yield_strength.value_or(least));
   }
   return least;
@@ -172,21 +176,22 @@ double least_yield(const std::vector<Material>& materials) {
 
 ResponsePartials von_mises_ks(const ResponseTask& task) {
   const double yield = least_yield(materials(task));
-  return taken(von_mises_ks_functional(
+  return taken(functionals::von_mises_ks_functional(
       stress_input(task), {.sharpness = task.response.sharpness,
                            .scale = task.response.scale.value_or(yield)}));
 }
 
 ResponsePartials uniformity(const ResponseTask& task) {
-  return taken(von_mises_variation_functional(stress_input(task)));
+  return taken(functionals::von_mises_variation_functional(stress_input(task)));
 }
 
 ResponsePartials energy_uniformity(const ResponseTask& task) {
-  return taken(energy_density_variation_functional(stress_input(task)));
+  return taken(
+      functionals::energy_density_variation_functional(stress_input(task)));
 }
 
 ResponsePartials film_area(const ResponseTask& task) {
-  const FilmModel& film = *task.fields.film;
+  const frozen::FilmModel& film = *task.fields.film;
   const VectorX areas = film.areas(task.fields.film_state->points);
   const std::vector<std::string>& labels = film.labels();
   ResponsePartials result;
@@ -209,7 +214,8 @@ ResponsePartials film_energy(const ResponseTask& task) {
 }
 
 ResponsePartials body_pressure(const ResponseTask& task) {
-  const std::vector<BodyState>& bodies = task.fields.film_state->report.bodies;
+  const std::vector<settle::BodyState>& bodies =
+      task.fields.film_state->report.bodies;
   ResponsePartials result;
   result.value = bodies[task.response.body].pressure;
   result.film.pressures = VectorX::Unit(
@@ -228,13 +234,13 @@ ResponsePartials radius(const ResponseTask& task) {
 }
 
 ResponsePartials thickness(const ResponseTask& task) {
-  return taken(thickness_functional(task.fields.mesh, *task.fields.pairs,
-                                    sharpness_of(task.response, task.fields),
-                                    task.derivatives));
+  return taken(functionals::thickness_functional(
+      task.fields.mesh, *task.fields.pairs,
+      sharpness_of(task.response, task.fields), task.derivatives));
 }
 
 ResponsePartials distance(const ResponseTask& task) {
-  return taken(intrusion_functional(
+  return taken(functionals::intrusion_functional(
       task.fields.mesh, {task.numbers.level, task.numbers.level_slope},
       sharpness_of(task.response, task.fields), task.derivatives));
 }
@@ -250,15 +256,15 @@ ResponsePartials gap(const ResponseTask& task) {
 
 ResponsePartials scan_distance(const ResponseTask& task) {
   const Points& points = task.fields.film_state->points;
-  return taken(measure(scan_distances(task.response, *task.fields.scans,
-                                      *task.fields.film, points),
-                       task.response.measure, points.size()));
+  return taken(scan::measure(scan_distances(task.response, *task.fields.scans,
+                                            *task.fields.film, points),
+                             task.response.measure, points.size()));
 }
 
 }  // namespace
 
 ResponsePartials compute_partials(const ResponseTask& task) {
-  using Kind = ResponseKind;
+  using Kind = case_data::ResponseKind;
   switch (task.response.kind) {
     case Kind::MeanDisplacement:
       return mean_displacement(task);
@@ -310,11 +316,11 @@ ResponsePartials compute_partials(const ResponseTask& task) {
   return {};
 }
 
-double sharpness_of(const ResponseEntry& response,
+double sharpness_of(const case_data::ResponseEntry& response,
                     const ResponseInput& fields) {
   constexpr double kPartOfEdge = 0.1;
   return 1.0 /
          response.smoothing.value_or(kPartOfEdge * fields.numbers.fea_edge);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

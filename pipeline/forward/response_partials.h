@@ -4,14 +4,14 @@
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/forward/responses.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// One response of one design, on loan.
 struct ResponseTask {
-  const ResponseEntry& response;
-  const ResponseNumbers& numbers;
+  const case_data::ResponseEntry& response;
+  const case_data::ResponseNumbers& numbers;
   const ResponseInput& fields;
-  Derivatives derivatives;
+  element::Derivatives derivatives;
 };
 
 /// Of every kind but expressions of other responses.
@@ -19,6 +19,7 @@ ResponsePartials compute_partials(const ResponseTask& task);
 
 /// Of extremes over the part's surface, where the case says nothing else: to a
 /// tenth of an edge [1/length].
-double sharpness_of(const ResponseEntry& response, const ResponseInput& fields);
+double sharpness_of(const case_data::ResponseEntry& response,
+                    const ResponseInput& fields);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -12,16 +12,17 @@
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/response_partials.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
 /// Over the case's names and the values above.
-double expression_value(const Case& input, const ResponseEntry& response,
+double expression_value(const case_data::Case& input,
+                        const case_data::ResponseEntry& response,
                         const VectorX& design, std::span<const double> above) {
   std::vector<std::string> problems;
   const double value =
-      CaseValues(input, design, problems).at(response.value, above);
+      case_data::CaseValues(input, design, problems).at(response.value, above);
   if (!problems.empty()) {
     throw InvalidInput(problems.front());
   }
@@ -30,64 +31,72 @@ double expression_value(const Case& input, const ResponseEntry& response,
 
 }  // namespace
 
-StressField load_case_stress(const TetMesh& mesh, const EvaluatedCase& numbers,
-                             std::size_t load_case, const VectorX& u,
-                             const std::vector<char>& excluded) {
-  StressField field =
-      recover_stress(mesh, numbers.materials, u,
-                     temperature_change(mesh, numbers.load_cases[load_case]));
+stress::StressField load_case_stress(const TetMesh& mesh,
+                                     const case_data::EvaluatedCase& numbers,
+                                     std::size_t load_case, const VectorX& u,
+                                     const std::vector<char>& excluded) {
+  stress::StressField field = stress::recover_stress(
+      mesh, numbers.materials, u,
+      loads::temperature_change(mesh, numbers.load_cases[load_case]));
   if (!excluded.empty()) {
-    find_peak(mesh, excluded, field);
+    stress::find_peak(mesh, excluded, field);
   }
   return field;
 }
 
-ThicknessPairs thickness_pairs_of(const Case& input, const TetMesh& base) {
-  const bool asked = std::any_of(
-      input.responses.begin(), input.responses.end(),
-      [](const ResponseEntry& r) { return r.kind == ResponseKind::Thickness; });
-  return asked ? thickness_pairs(base) : ThicknessPairs();
+functionals::ThicknessPairs thickness_pairs_of(const case_data::Case& input,
+                                               const TetMesh& base) {
+  const bool asked =
+      std::any_of(input.responses.begin(), input.responses.end(),
+                  [](const case_data::ResponseEntry& r) {
+                    return r.kind == case_data::ResponseKind::Thickness;
+                  });
+  return asked ? functionals::thickness_pairs(base)
+               : functionals::ThicknessPairs();
 }
 
-ResponsePartials partials_of(const ResponseEntry& response,
-                             const ResponseNumbers& numbers,
+ResponsePartials partials_of(const case_data::ResponseEntry& response,
+                             const case_data::ResponseNumbers& numbers,
                              const ResponseInput& fields,
-                             Derivatives derivatives) {
-  if (response.kind == ResponseKind::Expression) {
+                             element::Derivatives derivatives) {
+  if (response.kind == case_data::ResponseKind::Expression) {
     throw InvalidInput(
         fmt::format("response '{}' has no partial derivatives", response.name));
   }
   return compute_partials({response, numbers, fields, derivatives});
 }
 
-double place_rate(const ResponseEntry& response, const ResponseNumbers& numbers,
-                  const ResponseNumbers& rates, const ResponseInput& fields) {
+double place_rate(const case_data::ResponseEntry& response,
+                  const case_data::ResponseNumbers& numbers,
+                  const case_data::ResponseNumbers& rates,
+                  const ResponseInput& fields) {
   if (rates.weight) {
-    return weighted_displacement_functional(
+    return functionals::weighted_displacement_functional(
                fields.mesh, response.surface, numbers.direction,
                {rates.weight, {}},
                fields.solution.displacements[response.load_case],
-               Derivatives::None)
+               element::Derivatives::None)
         .value;
   }
-  return rates.level ? intrusion_rate(fields.mesh, numbers.level, rates.level,
-                                      sharpness_of(response, fields))
+  return rates.level ? functionals::intrusion_rate(
+                           fields.mesh, numbers.level, rates.level,
+                           sharpness_of(response, fields))
                      : 0.0;
 }
 
-VectorX respond(const Case& input, const ResponseInput& fields) {
+VectorX respond(const case_data::Case& input, const ResponseInput& fields) {
   VectorX values(static_cast<Eigen::Index>(input.responses.size()));
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
-    const ResponseEntry& response = input.responses[k];
+    const case_data::ResponseEntry& response = input.responses[k];
     values[static_cast<Eigen::Index>(k)] =
-        response.kind == ResponseKind::Expression
+        response.kind == case_data::ResponseKind::Expression
             ? expression_value(input, response, fields.numbers.design,
                                {values.data(), k})
             : partials_of(response, fields.numbers.responses[k], fields,
-                          Derivatives::None)
+                          element::Derivatives::None)
                   .value;
   }
   return values;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -10,19 +10,20 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/forward/scans.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 /// What a design came to, on loan to the responses.
 struct ResponseInput {
-  const EvaluatedCase& numbers;
+  const case_data::EvaluatedCase& numbers;
   const TetMesh& mesh;
-  const ElasticSolution& solution;
+  const equations::ElasticSolution& solution;
   const std::vector<char>& excluded;  // that peaks leave out; may be empty
   // May be null for responses of displacements and of the mesh:
-  const FilmModel* film = nullptr;
-  const FilmState* film_state = nullptr;
-  const ThicknessPairs* pairs = nullptr;  // thickness_pairs_of() the model
-  const Scans* scans = nullptr;           // read_scans() of the case
+  const frozen::FilmModel* film = nullptr;
+  const settle::FilmState* film_state = nullptr;
+  const functionals::ThicknessPairs* pairs =
+      nullptr;                   // thickness_pairs_of() the model
+  const Scans* scans = nullptr;  // read_scans() of the case
 };
 
 /// One response's value and its partial derivatives, all else held. What is
@@ -39,36 +40,40 @@ struct ResponsePartials {
   Vec3 by_direction = Vec3::Zero();
   std::vector<double> by_density;  // per region
   std::vector<double> by_modulus;  // Young's, per region; displacement held
-  FilmCovector film;
+  frozen::FilmCovector film;
 };
 
 /// What a response of kind thickness compares in every design; empty without
 /// one. `base`: the mesh at the design that the model is frozen at. Throws as
 /// thickness_pairs().
-ThicknessPairs thickness_pairs_of(const Case& input, const TetMesh& base);
+functionals::ThicknessPairs thickness_pairs_of(const case_data::Case& input,
+                                               const TetMesh& base);
 
 /// One value per response of the case, in its order and units. Not finite
 /// where the fields are not. Throws InvalidInput, naming file, line and key,
 /// where an expression, a weight or a region has no value.
-VectorX respond(const Case& input, const ResponseInput& fields);
+VectorX respond(const case_data::Case& input, const ResponseInput& fields);
 
 /// Of a response that is no expression of others. Throws InvalidInput for one
 /// without derivatives (has_derivatives()) when they are asked for.
-ResponsePartials partials_of(const ResponseEntry& response,
-                             const ResponseNumbers& numbers,
+ResponsePartials partials_of(const case_data::ResponseEntry& response,
+                             const case_data::ResponseNumbers& numbers,
                              const ResponseInput& fields,
-                             Derivatives derivatives);
+                             element::Derivatives derivatives);
 
 /// What a weight or a region that moves with the design changes the response
 /// by, all else held; `rates`: of `numbers`, by one design variable. Throws as
 /// respond().
-double place_rate(const ResponseEntry& response, const ResponseNumbers& numbers,
-                  const ResponseNumbers& rates, const ResponseInput& fields);
+double place_rate(const case_data::ResponseEntry& response,
+                  const case_data::ResponseNumbers& numbers,
+                  const case_data::ResponseNumbers& rates,
+                  const ResponseInput& fields);
 
 /// Nodal stresses of one load case, its expansion taken out. `u`: 3 per node;
 /// `excluded`: one char per element that the peak leaves out, or empty.
-StressField load_case_stress(const TetMesh& mesh, const EvaluatedCase& numbers,
-                             std::size_t load_case, const VectorX& u,
-                             const std::vector<char>& excluded = {});
+stress::StressField load_case_stress(const TetMesh& mesh,
+                                     const case_data::EvaluatedCase& numbers,
+                                     std::size_t load_case, const VectorX& u,
+                                     const std::vector<char>& excluded = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -11,31 +11,33 @@
 #include "pipeline/case_data/scan_path.h"
 #include "pipeline/forward/part_file.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
-std::shared_ptr<const Scan> read_scan(const Case& input,
-                                      const ResponseEntry& response) {
-  const std::filesystem::path path = scan_path(input, response.scan);
-  const auto known = std::find_if(
-      input.files.begin(), input.files.end(),
-      [&](const CaseFile& file) { return file.path == response.scan; });
+std::shared_ptr<const scan::Scan> read_scan(
+    const case_data::Case& input, const case_data::ResponseEntry& response) {
+  const std::filesystem::path path = case_data::scan_path(input, response.scan);
+  const auto known = std::find_if(input.files.begin(), input.files.end(),
+                                  [&](const case_data::CaseFile& file) {
+                                    return file.path == response.scan;
+                                  });
   if (known != input.files.end() &&
-      known->text != content_hash(read_file(path))) {
+      known->text != case_data::content_hash(read_file(path))) {
     throw InvalidInput(fmt::format(
         "{}: '{}' has changed since the case was read; run it again",
-        place(input, response.line), path.string()));
+        case_data::place(input, response.line), path.string()));
   }
   try {
-    return std::make_shared<const Scan>(read_part_file(path, {}));
+    return std::make_shared<const scan::Scan>(read_part_file(path, {}));
   } catch (const MeshError& error) {
-    throw InvalidInput(fmt::format("{}: '{}': {}", place(input, response.line),
+    throw InvalidInput(fmt::format("{}: '{}': {}",
+                                   case_data::place(input, response.line),
                                    path.string(), error.what()));
   }
 }
 
-std::vector<int> labels_of(const FilmModel& film,
+std::vector<int> labels_of(const frozen::FilmModel& film,
                            const std::vector<std::string>& films) {
   const std::vector<std::string>& labels = film.labels();
   std::vector<int> result;
@@ -49,10 +51,10 @@ std::vector<int> labels_of(const FilmModel& film,
 
 }  // namespace
 
-Scans read_scans(const Case& input) {
+Scans read_scans(const case_data::Case& input) {
   Scans scans;
-  for (const ResponseEntry& response : input.responses) {
-    if (response.kind == ResponseKind::ScanDistance &&
+  for (const case_data::ResponseEntry& response : input.responses) {
+    if (response.kind == case_data::ResponseKind::ScanDistance &&
         scans.count(response.scan) == 0) {
       scans[response.scan] = read_scan(input, response);
     }
@@ -60,10 +62,12 @@ Scans read_scans(const Case& input) {
   return scans;
 }
 
-ScanDistances scan_distances(const ResponseEntry& response, const Scans& scans,
-                             const FilmModel& film, const Points& points) {
-  return distances_to(*scans.at(response.scan), film.fine_mesh(points),
-                      labels_of(film, response.films));
+scan::ScanDistances scan_distances(const case_data::ResponseEntry& response,
+                                   const Scans& scans,
+                                   const frozen::FilmModel& film,
+                                   const Points& points) {
+  return scan::distances_to(*scans.at(response.scan), film.fine_mesh(points),
+                            labels_of(film, response.films));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

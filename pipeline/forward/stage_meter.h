@@ -4,7 +4,7 @@
 #include "core/operation_count.h"
 #include "core/timer.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 struct StageSeconds {
   double film = 0.0;
@@ -43,4 +43,4 @@ class StageMeter {
   double before_ = operations_done();
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -6,13 +6,13 @@
 
 #include "pipeline/files/place_json.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json uniformity_json(const Uniformity& u) {
+Json uniformity_json(const stress::Uniformity& u) {
   return {{"mean", u.mean},
           {"coefficient_of_variation", u.coefficient_of_variation},
           {"gini", u.gini},
@@ -26,14 +26,15 @@ Json uniformity_json(const Uniformity& u) {
 }
 
 std::optional<StressFigures::Safety> safety_of(
-    const TetMesh& mesh, const std::vector<Material>& materials,
-    const RecoveredStress& stress, const std::vector<char>& excluded) {
-  const SafetyFactors safety =
-      safety_factors(mesh, materials, stress, excluded);
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const stress::RecoveredStress& stress, const std::vector<char>& excluded) {
+  const stress::SafetyFactors safety =
+      stress::safety_factors(mesh, materials, stress, excluded);
   if (!std::isfinite(safety.smallest)) {
     return std::nullopt;
   }
-  const Material& weakest = materials[static_cast<std::size_t>(safety.region)];
+  const element::Material& weakest =
+      materials[static_cast<std::size_t>(safety.region)];
   return StressFigures::Safety{
       .factor = safety.smallest,
       .von_mises = safety.von_mises,
@@ -53,34 +54,36 @@ StressFigures figures_of(const EvaluationFields& fields,
                          std::size_t load_case) {
   const TetMesh& mesh = fields.mesh;
   const auto& materials = fields.inputs.materials;
-  const LoadCase& loads = fields.inputs.load_cases[load_case];
+  const loads::LoadCase& loads = fields.inputs.load_cases[load_case];
   const std::vector<char>& excluded = fields.exclusion.element;
-  const PointStress& points = fields.stresses[load_case].points;
-  const RecoveredStress& recovered = fields.stresses[load_case].recovered;
-  StressField nodal = nodal_stress(mesh, recovered);
+  const element::PointStress& points = fields.stresses[load_case].points;
+  const stress::RecoveredStress& recovered =
+      fields.stresses[load_case].recovered;
+  stress::StressField nodal = stress::nodal_stress(mesh, recovered);
   const auto place = [&] {
     return mesh.nodes[static_cast<std::size_t>(nodal.max_node)];
   };
   StressFigures figures{.load_case = loads.name};
   if (fields.exclusion.all.elements > 0) {
     const std::vector<char> counted = complement(excluded);
-    find_peak(mesh, counted, nodal);
+    stress::find_peak(mesh, counted, nodal);
     figures.excluded =
         StressFigures::Excluded{nodal.max_von_mises, place(),
                                 safety_of(mesh, materials, recovered, counted)};
-    find_peak(mesh, excluded, nodal);
+    stress::find_peak(mesh, excluded, nodal);
   }
   figures.max_von_mises = nodal.max_von_mises;
   figures.position = place();
   figures.safety = safety_of(mesh, materials, recovered, excluded);
-  figures.uniformity = stress_uniformity(mesh, materials, points, excluded);
+  figures.uniformity =
+      stress::stress_uniformity(mesh, materials, points, excluded);
   return figures;
 }
 
 Json safety_json(const StressFigures::Safety& safety) {
   return {{"smallest", safety.factor},
           {"von_mises", safety.von_mises},
-          {"position", place_json(safety.position)},
+          {"position", files::place_json(safety.position)},
           {"material", safety.material}};
 }
 
@@ -98,13 +101,14 @@ Json stress_json(const std::vector<StressFigures>& figures) {
   Json json = Json::object();
   for (const StressFigures& f : figures) {
     Json entry = {{"max_von_mises", f.max_von_mises},
-                  {"position", place_json(f.position)}};
+                  {"position", files::place_json(f.position)}};
     if (f.safety) {
       entry["safety_factor"] = safety_json(*f.safety);
     }
     if (f.excluded) {
-      entry["excluded"] = {{"max_von_mises", f.excluded->max_von_mises},
-                           {"position", place_json(f.excluded->position)}};
+      entry["excluded"] = {
+          {"max_von_mises", f.excluded->max_von_mises},
+          {"position", files::place_json(f.excluded->position)}};
       if (f.excluded->safety) {
         entry["excluded"]["safety_factor"] = safety_json(*f.excluded->safety);
       }
@@ -116,4 +120,4 @@ Json stress_json(const std::vector<StressFigures>& figures) {
   return json;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -11,7 +11,7 @@
 #include "fea/stress/stress_uniformity.h"
 #include "pipeline/forward/forward_model.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
 struct StressFigures {
   std::string load_case;
@@ -27,7 +27,7 @@ struct StressFigures {
     double yield_strength = 0.0;  // its [pressure]
   };
   std::optional<Safety> safety;
-  StressUniformity uniformity;  // of the elements that count
+  stress::StressUniformity uniformity;  // of the elements that count
   /// The same peaks of the zones that do not count, so that nothing is hidden.
   struct Excluded {
     double max_von_mises = 0.0;
@@ -43,4 +43,4 @@ std::vector<StressFigures> stress_figures(const EvaluationFields& fields);
 /// result.json's "stress": an entry per load case (docs/results.md).
 nlohmann::ordered_json stress_json(const std::vector<StressFigures>& figures);
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

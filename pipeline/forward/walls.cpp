@@ -13,17 +13,19 @@
 #include "io/vtk_files.h"
 #include "pipeline/files/place_json.h"
 
-namespace meniscus {
+namespace meniscus::forward {
 
-WallModel wall_model(const EvaluatedCase& numbers, const FilmModel& model,
-                     const Points& points) {
-  return WallModel::freeze(model, numbers.film_system, points, numbers.walls);
+walls::WallModel wall_model(const case_data::EvaluatedCase& numbers,
+                            const frozen::FilmModel& model,
+                            const Points& points) {
+  return walls::WallModel::freeze(model, numbers.film_system, points,
+                                  numbers.walls);
 }
 
-std::vector<CaseWall> named_walls(const EvaluatedCase& numbers,
-                                  const WallModel& model) {
+std::vector<CaseWall> named_walls(const case_data::EvaluatedCase& numbers,
+                                  const walls::WallModel& model) {
   std::vector<CaseWall> walls;
-  for (const WallSpec& spec : numbers.walls) {
+  for (const walls::WallSpec& spec : numbers.walls) {
     if (spec.region == static_cast<int>(walls.size())) {
       walls.push_back({spec.name, model.walls()[walls.size()], {}});
     }
@@ -31,17 +33,18 @@ std::vector<CaseWall> named_walls(const EvaluatedCase& numbers,
   return walls;
 }
 
-std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
-                                 const FilmModel& model, const Points& points) {
+std::vector<CaseWall> make_walls(const case_data::EvaluatedCase& numbers,
+                                 const frozen::FilmModel& model,
+                                 const Points& points) {
   if (numbers.walls.empty()) {
     return {};
   }
-  const WallModel made =
-      WallModel::freeze(model, numbers.film_system, points, numbers.walls,
-                        SafePlaces::Everywhere);
+  const walls::WallModel made =
+      walls::WallModel::freeze(model, numbers.film_system, points,
+                               numbers.walls, walls::SafePlaces::Everywhere);
   std::vector<CaseWall> walls = named_walls(numbers, made);
   for (CaseWall& wall : walls) {
-    for (const WallTrace& trace : wall.wall.trace) {
+    for (const walls::WallTrace& trace : wall.wall.trace) {
       wall.safe.push_back(trace.vertex < 0
                               ? std::numeric_limits<double>::infinity()
                               : made.safe()[trace.vertex]);
@@ -50,10 +53,10 @@ std::vector<CaseWall> make_walls(const EvaluatedCase& numbers,
   return walls;
 }
 
-std::string wall_text(const Case& input, const CaseWall& made) {
-  const ThickWall& wall = made.wall;
+std::string wall_text(const case_data::Case& input, const CaseWall& made) {
+  const walls::ThickWall& wall = made.wall;
   const std::string& unit = input.units.length;
-  const auto measured = [&](const MeasuredThickness& t) {
+  const auto measured = [&](const walls::MeasuredThickness& t) {
     return fmt::format("{:.4g} {} of {:.4g} asked at ({:.4g}, {:.4g}, {:.4g})",
                        t.value, unit, t.asked, t.place.x(), t.place.y(),
                        t.place.z());
@@ -64,7 +67,7 @@ std::string wall_text(const Case& input, const CaseWall& made) {
       made.name, wall.surface.facets.size(), wall.volume,
       input.units.unit_of(Dimension::Volume), measured(wall.thinnest),
       measured(wall.thickest),
-      wall.safe.limit == WallLimit::None
+      wall.safe.limit == walls::WallLimit::None
           ? std::string("not limited by the film")
           : fmt::format("{:.4g} {}: {}", wall.safe.value, unit,
                         wall.safe.message));
@@ -74,13 +77,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json measured_json(const MeasuredThickness& t) {
-  return {
-      {"value", t.value}, {"asked", t.asked}, {"place", place_json(t.place)}};
+Json measured_json(const walls::MeasuredThickness& t) {
+  return {{"value", t.value},
+          {"asked", t.asked},
+          {"place", files::place_json(t.place)}};
 }
 
-Json wall_json(const Case& input, const CaseWall& made) {
-  const ThickWall& wall = made.wall;
+Json wall_json(const case_data::Case& input, const CaseWall& made) {
+  const walls::ThickWall& wall = made.wall;
   Json json = {{"schema_version", 1},
                {"title", input.title},
                {"length_unit", input.units.length},
@@ -90,10 +94,10 @@ Json wall_json(const Case& input, const CaseWall& made) {
                {"thickest", measured_json(wall.thickest)},
                {"safe", nullptr},
                {"findings", summary(wall.findings)}};
-  if (wall.safe.limit != WallLimit::None) {
+  if (wall.safe.limit != walls::WallLimit::None) {
     json["safe"] = {{"value", wall.safe.value},
                     {"asked", wall.safe.asked},
-                    {"place", place_json(wall.safe.place)},
+                    {"place", files::place_json(wall.safe.place)},
                     {"message", wall.safe.message}};
   }
   return json;
@@ -101,50 +105,50 @@ Json wall_json(const Case& input, const CaseWall& made) {
 
 }  // namespace
 
-void write_wall(const Case& input, const CaseWall& made,
+void write_wall(const case_data::Case& input, const CaseWall& made,
                 const std::filesystem::path& folder) {
   const std::string name = "wall_" + made.name;
-  MeshFields fields;
+  io::MeshFields fields;
   fields.notes = {{"title", input.title}, {"length_unit", input.units.length}};
   if (!made.safe.empty()) {
     // Viewers choke on infinity; nothing is thicker than the part is long.
-    Field safe{.name = "safe_thickness",
-               .unit = input.units.length,
-               .components = 1,
-               .values = made.safe};
+    io::Field safe{.name = "safe_thickness",
+                   .unit = input.units.length,
+                   .components = 1,
+                   .values = made.safe};
     const double most = bounding_diagonal(made.wall.surface.points);
     for (double& value : safe.values) {
       value = std::min(value, most);
     }
     fields.points.push_back(std::move(safe));
   }
-  write_vtp(folder / (name + ".vtp"), made.wall.surface, fields);
-  write_stl(folder / (name + ".stl"), made.wall.surface,
-            {.name = input.title, .unit = input.units.length});
+  io::write_vtp(folder / (name + ".vtp"), made.wall.surface, fields);
+  io::write_stl(folder / (name + ".stl"), made.wall.surface,
+                {.name = input.title, .unit = input.units.length});
   write_file(folder / (name + ".json"),
              json_text(wall_json(input, made), 1) + "\n");
 }
 
-void refuse_walls(const Case& input) {
+void refuse_walls(const case_data::Case& input) {
   if (input.walls.empty()) {
     return;
   }
-  const WallEntry& first = input.walls.front();
-  for (const BodyEntry& body : input.bodies) {
-    if (body.material != kVoid) {
+  const case_data::WallEntry& first = input.walls.front();
+  for (const case_data::BodyEntry& body : input.bodies) {
+    if (body.material != case_data::kVoid) {
       throw InvalidInput(fmt::format(
           "{}: walls.{} stands beside bodies.{}, which is solid; a run "
           "analyses walls or bodies: make the body's material \"void\", so "
           "that it only shapes its films, or take [walls] out",
-          place(input, first.line), first.name, body.name));
+          case_data::place(input, first.line), first.name, body.name));
     }
   }
-  for (const WallEntry& wall : input.walls) {
-    if (wall.material == kVoid) {
+  for (const case_data::WallEntry& wall : input.walls) {
+    if (wall.material == case_data::kVoid) {
       throw InvalidInput(fmt::format(
           "{}: walls.{} has no material, which a run needs; add material = "
           "\"NAME\" ({}), or look at the wall alone with `meniscus evolve`",
-          place(input, wall.line), wall.name,
+          case_data::place(input, wall.line), wall.name,
           input.materials.empty() ? "and a table [materials.NAME]"
                                   : "of [materials.NAME]"));
     }
@@ -158,24 +162,24 @@ void refuse_walls(const Case& input) {
   }
 }
 
-SurfaceMesh boundary_of(const EvaluatedCase& numbers, const FilmModel& model,
-                        const Points& points) {
+SurfaceMesh boundary_of(const case_data::EvaluatedCase& numbers,
+                        const frozen::FilmModel& model, const Points& points) {
   if (numbers.walls.empty()) {
     return model.boundary(points);
   }
-  const WallModel walls = wall_model(numbers, model, points);
+  const walls::WallModel walls = wall_model(numbers, model, points);
   return walls.fine(points, walls.thickness(numbers.walls));
 }
 
-std::optional<Failure> wall_failure(const EvaluatedCase& numbers,
-                                    const WallModel& model) {
+std::optional<Failure> wall_failure(const case_data::EvaluatedCase& numbers,
+                                    const walls::WallModel& model) {
   for (const CaseWall& made : named_walls(numbers, model)) {
-    const ThickWall& wall = made.wall;
+    const walls::ThickWall& wall = made.wall;
     if (wall.findings.empty()) {
       continue;
     }
     std::string message = fmt::format("walls.{} cannot be meshed: ", made.name);
-    if (wall.safe.limit != WallLimit::None &&
+    if (wall.safe.limit != walls::WallLimit::None &&
         wall.safe.asked >= wall.safe.value) {
       message += wall.safe.message + ". ";
     }
@@ -185,4 +189,4 @@ std::optional<Failure> wall_failure(const EvaluatedCase& numbers,
   return std::nullopt;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::forward

@@ -14,7 +14,7 @@
 #include "pipeline/reader/case_reader_tables.h"
 #include "pipeline/reader/family_members.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -24,8 +24,8 @@ bool is_blank(std::string_view text) {
   return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
 }
 
-void read_content(const std::string& text, CaseProblems& problems,
-                  Case& result) {
+void read_content(const std::string& text, case_data::CaseProblems& problems,
+                  case_data::Case& result) {
   if (is_blank(text)) {
     problems.add(0,
                  "the file is empty; `meniscus new NAME` writes a case to "
@@ -42,12 +42,12 @@ void read_content(const std::string& text, CaseProblems& problems,
     const OverriddenNodes overridden =
         apply_overrides(root, result.overrides, problems);
     read_tables(root, overridden, problems, result);
-    check_case(result, problems);
+    case_data::check_case(result, problems);
     std::string content = canonical_text(root);
-    for (const CaseFile& file : result.files) {
+    for (const case_data::CaseFile& file : result.files) {
       content += fmt::format("file {}:{}", file.text.size(), file.text);
     }
-    result.hash = content_hash(content);
+    result.hash = case_data::content_hash(content);
   } catch (const toml::parse_error& error) {
     problems.add(static_cast<int>(error.source().begin.line),
                  fmt::format("this is not TOML: {} (column {})",
@@ -59,14 +59,14 @@ void read_content(const std::string& text, CaseProblems& problems,
 
 CaseReading read_case_text(const std::string& text, const std::string& path,
                            const std::vector<std::string>& overrides,
-                           std::vector<CaseFile> files) {
-  Case result;
+                           std::vector<case_data::CaseFile> files) {
+  case_data::Case result;
   result.files = std::move(files);
   result.path = path;
-  result.name = case_name(path);
+  result.name = case_data::case_name(path);
   result.text = text;
   result.overrides = overrides;
-  CaseProblems problems(path, overrides);
+  case_data::CaseProblems problems(path, overrides);
   read_content(text, problems, result);
   CaseReading reading;
   reading.problems = problems.take();
@@ -113,8 +113,8 @@ CaseReading read_case_file(const std::string& path,
   return read_case_text(text, path, overrides);
 }
 
-Case read_case(const std::string& path,
-               const std::vector<std::string>& overrides) {
+case_data::Case read_case(const std::string& path,
+                          const std::vector<std::string>& overrides) {
   CaseReading reading = read_case_file(path, overrides);
   if (!reading.input) {
     throw InvalidInput(fmt::format("{}", fmt::join(reading.problems, "\n")));
@@ -122,4 +122,4 @@ Case read_case(const std::string& path,
   return *std::move(reading.input);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

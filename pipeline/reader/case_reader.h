@@ -8,13 +8,13 @@
 
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 /// All that was found: a case when there are no problems. Each problem and
 /// warning reads "PATH:LINE: what, found, expected, try"; one that an override
 /// made reads "PATH: --set NAME=VALUE: ...".
 struct CaseReading {
-  std::optional<Case> input;
+  std::optional<case_data::Case> input;
   std::vector<std::string> problems;  // at most 20, and how many more
   std::vector<std::string> warnings;
 };
@@ -29,10 +29,10 @@ CaseReading read_case_file(const std::string& path,
 /// from `files` where they are there, else from disk beside `path`.
 CaseReading read_case_text(const std::string& text, const std::string& path,
                            const std::vector<std::string>& overrides = {},
-                           std::vector<CaseFile> files = {});
+                           std::vector<case_data::CaseFile> files = {});
 
 /// The case, or InvalidInput with all problems, one a line.
-Case read_case(const std::string& path,
-               const std::vector<std::string>& overrides = {});
+case_data::Case read_case(const std::string& path,
+                          const std::vector<std::string>& overrides = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -5,29 +5,29 @@
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
 /// More modes at once would take more memory than the part's own solve.
 constexpr int kMostModes = 50;
 
-const std::vector<Named<SolverKind>>& solver_kinds() {
-  static const std::vector<Named<SolverKind>> kinds = {
-      {"auto", SolverKind::Automatic},
-      {"cholmod", SolverKind::Cholesky},
-      {"p-multigrid", SolverKind::Multigrid},
-      {"petsc", SolverKind::Distributed}};
+const std::vector<case_data::Named<equations::SolverKind>>& solver_kinds() {
+  static const std::vector<case_data::Named<equations::SolverKind>> kinds = {
+      {"auto", equations::SolverKind::Automatic},
+      {"cholmod", equations::SolverKind::Cholesky},
+      {"p-multigrid", equations::SolverKind::Multigrid},
+      {"petsc", equations::SolverKind::Distributed}};
   return kinds;
 }
 
 /// After the eigenvalues that are asked for.
 void read_solver(CaseContext& context, const CaseTable& table,
-                 AnalysisEntry& analysis) {
+                 case_data::AnalysisEntry& analysis) {
   if (const auto kind = table.choice("solver")) {
-    analysis.solver = row_named(solver_kinds(), *kind).value;
+    analysis.solver = case_data::row_named(solver_kinds(), *kind).value;
   }
-  if (analysis.solver != SolverKind::Distributed) {
+  if (analysis.solver != equations::SolverKind::Distributed) {
     if (table.has("processes")) {
       context.problems.add(table.line("processes"),
                            "analysis.processes belongs to solver = \"petsc\"; "
@@ -35,8 +35,9 @@ void read_solver(CaseContext& context, const CaseTable& table,
     }
     return;
   }
-  analysis.processes = table.integer_within("processes", 1, kMostProcesses)
-                           .value_or(analysis.processes);
+  analysis.processes =
+      table.integer_within("processes", 1, equations::kMostProcesses)
+          .value_or(analysis.processes);
   for (const auto& [key, asked] :
        {std::pair("frequencies", analysis.frequencies > 0),
         std::pair("buckling", analysis.buckling.value_or(0) > 0)}) {
@@ -52,25 +53,25 @@ void read_solver(CaseContext& context, const CaseTable& table,
 }
 
 void read_analysis_table(CaseContext& context, const toml::table& root,
-                         Case& result) {
+                         case_data::Case& result) {
   const auto table = single_table(context, root, "analysis");
   if (!table) {
     return;
   }
-  AnalysisEntry& analysis = result.analysis;
+  case_data::AnalysisEntry& analysis = result.analysis;
   analysis.adapt = table->flag("adapt").value_or(false);
   read_zones(context, *table, result);
   analysis.frequencies =
       table->integer_within("frequencies", 0, kMostModes).value_or(0);
   analysis.buckling = table->integer_within("buckling", 0, kMostModes);
   read_solver(context, *table, analysis);
-  const auto is_free = [](const LoadCaseEntry& entry) {
+  const auto is_free = [](const case_data::LoadCaseEntry& entry) {
     return entry.name == "free";
   };
   if (table->text("supports_of") == "free" &&
       std::none_of(result.load_cases.begin(), result.load_cases.end(),
                    is_free)) {
-    analysis.supports_of = AnalysisEntry::kFree;
+    analysis.supports_of = case_data::AnalysisEntry::kFree;
   } else {
     analysis.supports_of =
         index_of_load_case(context, *table, result, "supports_of");
@@ -104,7 +105,7 @@ TableSpec analysis_table() {
         "of the linear systems: auto chooses by size between cholmod (a "
         "factor) and p-multigrid (conjugate gradients); petsc: in processes "
         "of its own, for parts that outgrow one machine; auto when left out",
-        choices_of(solver_kinds())},
+        case_data::choices_of(solver_kinds())},
        {"processes", K::Integer, D::None, false,
         "of solver = \"petsc\": how many share the part; 2 when left out"},
        {"frequencies", K::Integer, D::None, false,
@@ -118,11 +119,11 @@ TableSpec analysis_table() {
 }
 
 void read_analysis(CaseContext& context, const toml::table& root,
-                   Case& result) {
+                   case_data::Case& result) {
   read_load_cases(context, root, result);
   read_analysis_table(context, root, result);
   read_responses(context, root, result);
   read_study(context, root, result);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -167,4 +167,4 @@ int line_of_deep_key(std::string_view text) {
   return 0;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -7,7 +7,7 @@
 
 #include <toml++/toml.h>
 
-namespace meniscus {
+namespace meniscus::reader {
 
 /// One text for all files whose evaluations agree bit for bit: comments,
 /// spacing, the order of tables and of keys, and 8 against 8.0 make no
@@ -22,4 +22,4 @@ std::string canonical_text(const toml::table& root);
 /// library recurses by them without a limit of its own.
 int line_of_deep_key(std::string_view text);
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -6,7 +6,7 @@
 
 #include "pipeline/reader/case_reader_repeat.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 std::string CaseTable::filled_text(const toml::node& node,
                                    const std::string& text,
@@ -110,4 +110,4 @@ std::vector<CaseTable> CaseTable::tables(const char* key,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -13,18 +13,20 @@
 #include "pipeline/files/step_curve.h"
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
-std::filesystem::path place_of(const Case& result, const std::string& path) {
+std::filesystem::path place_of(const case_data::Case& result,
+                               const std::string& path) {
   return std::filesystem::path(result.path).parent_path() / path;
 }
 
-const CaseFile* held_file(const Case& result, const std::string& path) {
-  const auto at =
-      std::find_if(result.files.begin(), result.files.end(),
-                   [&](const CaseFile& file) { return file.path == path; });
+const case_data::CaseFile* held_file(const case_data::Case& result,
+                                     const std::string& path) {
+  const auto at = std::find_if(
+      result.files.begin(), result.files.end(),
+      [&](const case_data::CaseFile& file) { return file.path == path; });
   return at == result.files.end() ? nullptr : &*at;
 }
 
@@ -41,15 +43,17 @@ void refuse_keys(CaseContext& context, const CaseTable& table,
 }
 
 void read_points(CaseContext& context, const CaseTable& table,
-                 const std::string& path, Case& result, CurveEntry& curve) {
+                 const std::string& path, case_data::Case& result,
+                 case_data::CurveEntry& curve) {
   refuse_keys(context, table, {"edge", "face"}, "STEP files");
-  curve.kind =
-      row_named(point_curves(), table.choice("as").value_or("spline")).value;
+  curve.kind = case_data::row_named(point_curves(),
+                                    table.choice("as").value_or("spline"))
+                   .value;
   if (const std::string* text =
           file_text(context, table, path,
                     "a csv file with columns x, y, z or a STEP file", result)) {
-    CurveFile file =
-        read_curve_text(*text, place_of(result, path).string(), context.units);
+    files::CurveFile file = files::read_curve_text(
+        *text, place_of(result, path).string(), context.units);
     for (const std::string& problem : file.problems) {
       context.problems.add_text(problem);
     }
@@ -64,29 +68,29 @@ void read_points(CaseContext& context, const CaseTable& table,
 /// the key `file`.
 class FixedCurve {
  public:
-  FixedCurve(const CaseTable& table, CurveEntry& curve)
+  FixedCurve(const CaseTable& table, case_data::CurveEntry& curve)
       : line_(table.line("file")), key_(table.path()), curve_(curve) {}
 
-  void operator()(const Circle& circle) {
-    curve_.kind = CurveKind::Circle;
+  void operator()(const curves::Circle& circle) {
+    curve_.kind = case_data::CurveKind::Circle;
     curve_.center = vector(circle.center);
     curve_.normal = vector(circle.normal);
     curve_.radius = number(circle.radius);
   }
-  void operator()(const Ellipse& ellipse) {
-    curve_.kind = CurveKind::Ellipse;
+  void operator()(const curves::Ellipse& ellipse) {
+    curve_.kind = case_data::CurveKind::Ellipse;
     curve_.center = vector(ellipse.center);
     curve_.normal = vector(ellipse.normal);
     curve_.axis = vector(ellipse.axis);
     curve_.radius_1 = number(ellipse.radius_1);
     curve_.radius_2 = number(ellipse.radius_2);
   }
-  void operator()(const Spline& spline) {
-    curve_.kind = CurveKind::Spline;
+  void operator()(const curves::Spline& spline) {
+    curve_.kind = case_data::CurveKind::Spline;
     curve_.fixed_points = spline.points;
   }
-  void operator()(const Polyline& line) {
-    curve_.kind = CurveKind::Polyline;
+  void operator()(const curves::Polyline& line) {
+    curve_.kind = case_data::CurveKind::Polyline;
     for (std::size_t k = 0; k < line.corners.size(); ++k) {
       curve_.points.push_back({vector(line.corners[k]), false});
       if (line.via[k]) {
@@ -98,21 +102,21 @@ class FixedCurve {
   void operator()(const Shape& /*shape*/) {}  // STEP gives no others
 
  private:
-  Quantity number(double value) const {
+  case_data::Quantity number(double value) const {
     return {.expression = Expression(value), .line = line_, .key = key_};
   }
-  QuantityVector vector(const Vec3& v) const {
+  case_data::QuantityVector vector(const Vec3& v) const {
     return {number(v[0]), number(v[1]), number(v[2])};
   }
 
-  SourceLine line_;
+  case_data::SourceLine line_;
   std::string key_;
-  CurveEntry& curve_;
+  case_data::CurveEntry& curve_;
 };
 
 /// The curve's text, from the case or, fitted, from the file.
 std::string step_text(CaseContext& context, const CaseTable& table,
-                      const std::string& path, Case& result) {
+                      const std::string& path, case_data::Case& result) {
   const std::vector<std::string> edges = table.names_or_numbers("edge");
   const std::vector<std::string> faces = table.names_or_numbers("face");
   if (edges.empty() && faces.empty()) {
@@ -121,7 +125,7 @@ std::string step_text(CaseContext& context, const CaseTable& table,
   const std::string key =
       fmt::format("{}#{}={}", path, edges.empty() ? "face" : "edge",
                   fmt::join(edges.empty() ? faces : edges, ","));
-  if (const CaseFile* file = held_file(result, key)) {
+  if (const case_data::CaseFile* file = held_file(result, key)) {
     return file->text;
   }
   const std::string place = place_of(result, path).string();
@@ -139,13 +143,13 @@ std::string step_text(CaseContext& context, const CaseTable& table,
     const std::string unit = context.units.unit_of(Dimension::Length);
     auto& file = context.step_files[place];
     if (!file) {
-      file = std::make_shared<StepEdges>(place, unit);
+      file = std::make_shared<step::StepEdges>(place, unit);
     }
     at = named;
-    const StepLoop loop =
+    const step::StepLoop loop =
         edges.empty() ? file->rim(faces.front()) : file->loop(edges);
-    StepCurve curve = fit_step_loop(loop, unit);
-    result.files.push_back({key, step_curve_text(curve)});
+    files::StepCurve curve = files::fit_step_loop(loop, unit);
+    result.files.push_back({key, files::step_curve_text(curve)});
     return result.files.back().text;
   } catch (const Error& error) {
     context.problems.add(table.line(at), fmt::format("{}.{}: {}", table.path(),
@@ -155,7 +159,8 @@ std::string step_text(CaseContext& context, const CaseTable& table,
 }
 
 void read_step_edges(CaseContext& context, const CaseTable& table,
-                     const std::string& path, Case& result, CurveEntry& curve) {
+                     const std::string& path, case_data::Case& result,
+                     case_data::CurveEntry& curve) {
   refuse_keys(context, table, {"as"}, "csv files");
   const bool edge = table.has("edge");
   if (edge == table.has("face")) {
@@ -177,11 +182,11 @@ void read_step_edges(CaseContext& context, const CaseTable& table,
     return;
   }
   try {
-    const StepCurve found = read_step_curve_text(text);
+    const files::StepCurve found = files::read_step_curve_text(text);
     std::visit(FixedCurve(table, curve), found.shape);
-    result.remarks.push_back(fmt::format("{}: {}: {}",
-                                         place(result, table.line("file")),
-                                         table.path(), found.description));
+    result.remarks.push_back(
+        fmt::format("{}: {}: {}", case_data::place(result, table.line("file")),
+                    table.path(), found.description));
   } catch (const InvalidInput& error) {
     context.problems.add(table.line("file"), error.what());
   }
@@ -191,8 +196,8 @@ void read_step_edges(CaseContext& context, const CaseTable& table,
 
 const std::string* file_text(CaseContext& context, const CaseTable& table,
                              const std::string& path, const char* expected,
-                             Case& result) {
-  if (const CaseFile* file = held_file(result, path)) {
+                             case_data::Case& result) {
+  if (const case_data::CaseFile* file = held_file(result, path)) {
     return &file->text;
   }
   const std::filesystem::path place = place_of(result, path);
@@ -221,14 +226,15 @@ std::string ending_of(const std::string& path) {
   return ending;
 }
 
-const std::vector<Named<CurveKind>>& point_curves() {
-  static const std::vector<Named<CurveKind>> kinds = {
-      {"spline", CurveKind::Spline}, {"polygon", CurveKind::Polygon}};
+const std::vector<case_data::Named<case_data::CurveKind>>& point_curves() {
+  static const std::vector<case_data::Named<case_data::CurveKind>> kinds = {
+      {"spline", case_data::CurveKind::Spline},
+      {"polygon", case_data::CurveKind::Polygon}};
   return kinds;
 }
 
-void read_curve_file(CaseContext& context, const CaseTable& table, Case& result,
-                     CurveEntry& curve) {
+void read_curve_file(CaseContext& context, const CaseTable& table,
+                     case_data::Case& result, case_data::CurveEntry& curve) {
   const auto path = table.text("file");
   if (!path) {
     return;
@@ -247,4 +253,4 @@ void read_curve_file(CaseContext& context, const CaseTable& table, Case& result,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -2,25 +2,28 @@
 
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
 struct CurveRow {
   const char* name;
-  CurveKind kind;
-  KindKeys keys;
+  case_data::CurveKind kind;
+  case_data::KindKeys keys;
   std::string_view doc;
 };
 
 const std::vector<CurveRow>& curve_kinds() {
-  using Kind = CurveKind;
+  using Kind = case_data::CurveKind;
   static const std::vector<CurveRow> kinds = {
-      {"circle", Kind::Circle, {{"center", "normal", "radius"}, {}}, kWithNext},
+      {"circle",
+       Kind::Circle,
+       {{"center", "normal", "radius"}, {}},
+       case_data::kWithNext},
       {"ellipse",
        Kind::Ellipse,
        {{"center", "normal", "axis", "radius_1", "radius_2"}, {}},
-       kWithNext},
+       case_data::kWithNext},
       {"rectangle",
        Kind::Rectangle,
        {{"center", "normal", "axis", "width", "height"}, {"corner_radius"}},
@@ -44,7 +47,8 @@ const std::vector<CurveRow>& curve_kinds() {
   return kinds;
 }
 
-Quantity fixed(const CaseTable& table, const char* key, double value) {
+case_data::Quantity fixed(const CaseTable& table, const char* key,
+                          double value) {
   return {.expression = Expression(value),
           .line = table.line(key),
           .key = fmt::format("{}.{}", table.path(), key)};
@@ -52,13 +56,13 @@ Quantity fixed(const CaseTable& table, const char* key, double value) {
 
 /// What arcs go through stands between two corners.
 void check_path(CaseContext& context, const CaseTable& table,
-                const CurveEntry& curve) {
+                const case_data::CurveEntry& curve) {
   for (std::size_t k = 0; k < curve.points.size(); ++k) {
     if (!curve.points[k].through) {
       continue;
     }
-    const SourceLine line = curve.points[k].at[0].line;
-    if (curve.kind != CurveKind::Polyline) {
+    const case_data::SourceLine line = curve.points[k].at[0].line;
+    if (curve.kind != case_data::CurveKind::Polyline) {
       context.problems.add(
           line, fmt::format("{}.points[{}] has 'through', which only a "
                             "polyline knows; expected [x, y, z]",
@@ -75,13 +79,13 @@ void check_path(CaseContext& context, const CaseTable& table,
 
 /// The curve above that a copy is of; -1 with a problem noted.
 int find_curve(CaseContext& context, const CaseTable& table,
-               const toml::table& root, const Case& result) {
+               const toml::table& root, const case_data::Case& result) {
   const auto wanted = table.text("of");
   if (!wanted) {
     return -1;
   }
   std::vector<std::string> known;
-  for (const CurveEntry& curve : result.curves) {
+  for (const case_data::CurveEntry& curve : result.curves) {
     if (curve.name == *wanted) {
       return static_cast<int>(known.size());
     }
@@ -102,13 +106,14 @@ int find_curve(CaseContext& context, const CaseTable& table,
 }
 
 void read_copy(CaseContext& context, const CaseTable& table,
-               const toml::table& root, const Case& result, CurveEntry& curve) {
-  CopyEntry& copy = curve.copy;
+               const toml::table& root, const case_data::Case& result,
+               case_data::CurveEntry& curve) {
+  case_data::CopyEntry& copy = curve.copy;
   copy.of = find_curve(context, table, root, result);
   copy.offset = table.quantity("offset");
   if (copy.offset && copy.of >= 0 &&
       result.curves[static_cast<std::size_t>(copy.of)].kind ==
-          CurveKind::Copy) {
+          case_data::CurveKind::Copy) {
     context.problems.add(
         table.line("offset"),
         fmt::format("{}.offset: '{}' is a copy itself, and copies have no "
@@ -117,19 +122,19 @@ void read_copy(CaseContext& context, const CaseTable& table,
                     result.curves[static_cast<std::size_t>(copy.of)].name,
                     result.curves[static_cast<std::size_t>(copy.of)].name));
   }
-  const Quantity uniform =
+  const case_data::Quantity uniform =
       table.quantity("scale").value_or(fixed(table, "scale", 1.0));
   copy.scale = table.vector("scales").value_or(
-      QuantityVector{uniform, uniform, uniform});
+      case_data::QuantityVector{uniform, uniform, uniform});
   if (table.has("scale") && table.has("scales")) {
     context.problems.add(table.line("scales"),
                          table.path() + " has both scale and scales; keep one");
   }
   copy.mirror = table.vector("mirror");
   copy.angle = table.quantity("rotate").value_or(fixed(table, "rotate", 0.0));
-  curve.axis = table.vector("axis").value_or(
-      QuantityVector{fixed(table, "axis", 0.0), fixed(table, "axis", 0.0),
-                     fixed(table, "axis", 1.0)});
+  curve.axis = table.vector("axis").value_or(case_data::QuantityVector{
+      fixed(table, "axis", 0.0), fixed(table, "axis", 0.0),
+      fixed(table, "axis", 1.0)});
   if (table.has("rotate") != table.has("axis")) {
     context.problems.add(
         table.line(table.has("axis") ? "axis" : "rotate"),
@@ -143,14 +148,15 @@ void read_copy(CaseContext& context, const CaseTable& table,
   copy.move = table.vector_or_zero("move");
 }
 
-CurveEntry read_curve(CaseContext& context, const CaseTable& table,
-                      const toml::table& root, Case& result) {
-  CurveEntry curve{.name = table.name(), .line = table.line()};
+case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
+                                 const toml::table& root,
+                                 case_data::Case& result) {
+  case_data::CurveEntry curve{.name = table.name(), .line = table.line()};
   const auto kind = table.choice("kind");
   if (!kind) {
     return curve;
   }
-  const CurveRow& row = row_named(curve_kinds(), *kind);
+  const CurveRow& row = case_data::row_named(curve_kinds(), *kind);
   table.check_kind(*kind, row.keys);
   curve.kind = row.kind;
   if (*kind == "copy") {
@@ -186,8 +192,8 @@ TableSpec curve_table() {
       TableNeed::Optional,
       "A closed boundary curve, counter-clockwise seen from its normal's tip",
       {{"kind", K::Choice, D::None, true,
-        "its shape: " + meanings_of(curve_kinds()), choices_of(curve_kinds()),
-        "arc"},
+        "its shape: " + case_data::meanings_of(curve_kinds()),
+        case_data::choices_of(curve_kinds()), "arc"},
        {"center", K::Vector, D::Length, false, "of circle, ellipse, rectangle"},
        {"normal", K::Vector, D::None, false,
         "of circle, ellipse, rectangle; any length but 0"},
@@ -210,7 +216,7 @@ TableSpec curve_table() {
         "[in]), or a STEP file; relative to the case file"},
        {"as", K::Choice, D::None, false,
         "of a csv file: what the points make; spline when left out",
-        choices_of(point_curves())},
+        case_data::choices_of(point_curves())},
        {"edge", K::NamesOrNumbers, D::None, false,
         "of a STEP file: a closed edge, or several that close, by name or "
         "number: 7, \"rim\", [3, 4]; or"},
@@ -233,10 +239,11 @@ TableSpec curve_table() {
        {"move", K::Vector, D::Length, false, "of copy: added at the end"}}};
 }
 
-void read_curves(CaseContext& context, const toml::table& root, Case& result) {
+void read_curves(CaseContext& context, const toml::table& root,
+                 case_data::Case& result) {
   for (const CaseTable& table : named_tables(context, root, "curves")) {
     result.curves.push_back(read_curve(context, table, root, result));
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -5,27 +5,27 @@
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
 struct FieldRow {
   const char* name;
-  FieldKind kind;
-  KindKeys keys;
+  case_data::FieldKind kind;
+  case_data::KindKeys keys;
 };
 
 const std::vector<FieldRow>& field_kinds() {
   const auto pole = [](std::vector<std::string> shape) {
     shape.insert(shape.end(), {"strength", "core"});
-    return KindKeys{std::move(shape), {"power", "films", "body"}};
+    return case_data::KindKeys{std::move(shape), {"power", "films", "body"}};
   };
   static const std::vector<FieldRow> kinds = {
-      {"point", FieldKind::Point, pole({"at"})},
-      {"segment", FieldKind::Segment, pole({"from", "to"})},
-      {"polyline", FieldKind::Polyline, pole({"points"})},
-      {"plane", FieldKind::Plane, pole({"at", "normal"})},
-      {"pressure", FieldKind::Pressure, {{"pressure", "body"}, {}}}};
+      {"point", case_data::FieldKind::Point, pole({"at"})},
+      {"segment", case_data::FieldKind::Segment, pole({"from", "to"})},
+      {"polyline", case_data::FieldKind::Polyline, pole({"points"})},
+      {"plane", case_data::FieldKind::Plane, pole({"at", "normal"})},
+      {"pressure", case_data::FieldKind::Pressure, {{"pressure", "body"}, {}}}};
   return kinds;
 }
 
@@ -33,7 +33,7 @@ const std::vector<FieldRow>& field_kinds() {
 std::string pole_names() {
   std::string names;
   for (const FieldRow& row : field_kinds()) {
-    if (row.kind != FieldKind::Pressure) {
+    if (row.kind != case_data::FieldKind::Pressure) {
       names += (names.empty() ? "" : ", ") + std::string(row.name);
     }
   }
@@ -41,7 +41,8 @@ std::string pole_names() {
 }
 
 void read_field_targets(CaseContext& context, const CaseTable& table,
-                        const Case& result, FieldEntry& field) {
+                        const case_data::Case& result,
+                        case_data::FieldEntry& field) {
   const auto check = [&](const char* key, const char* what,
                          const std::string& name,
                          const std::vector<std::string>& known) {
@@ -51,13 +52,13 @@ void read_field_targets(CaseContext& context, const CaseTable& table,
   };
   field.films = table.names("films");
   for (const std::string& film : field.films) {
-    check("films", "film", film, film_names(result));
+    check("films", "film", film, case_data::film_names(result));
   }
   if (const auto body = table.text("body")) {
     field.body = *body;
-    check("body", "body", *body, body_names(result));
+    check("body", "body", *body, case_data::body_names(result));
   }
-  if (field.kind != FieldKind::Pressure &&
+  if (field.kind != case_data::FieldKind::Pressure &&
       table.has("films") == table.has("body")) {
     context.problems.add(
         table.line(),
@@ -70,9 +71,10 @@ void read_field_targets(CaseContext& context, const CaseTable& table,
 }
 
 /// Per area a tension, per volume a pressure.
-Quantity read_strength(CaseContext& context, const CaseTable& table) {
-  Quantity none{.line = table.line("strength"),
-                .key = table.path() + ".strength"};
+case_data::Quantity read_strength(CaseContext& context,
+                                  const CaseTable& table) {
+  case_data::Quantity none{.line = table.line("strength"),
+                           .key = table.path() + ".strength"};
   const toml::node* node = table.node("strength");
   return node == nullptr ? none
                          : read_quantity(context, *node,
@@ -82,17 +84,18 @@ Quantity read_strength(CaseContext& context, const CaseTable& table) {
                                .value_or(none);
 }
 
-void require_frozen_field(CaseContext& context, const FieldEntry& field) {
-  std::vector<Quantity> all = {field.strength, field.power, field.core,
-                               field.pressure.quantity};
-  for (const QuantityVector& v :
+void require_frozen_field(CaseContext& context,
+                          const case_data::FieldEntry& field) {
+  std::vector<case_data::Quantity> all = {field.strength, field.power,
+                                          field.core, field.pressure.quantity};
+  for (const case_data::QuantityVector& v :
        {field.at, field.normal, field.from, field.to}) {
     all.insert(all.end(), v.begin(), v.end());
   }
-  for (const QuantityVector& v : field.points) {
+  for (const case_data::QuantityVector& v : field.points) {
     all.insert(all.end(), v.begin(), v.end());
   }
-  for (const Quantity& quantity : all) {
+  for (const case_data::Quantity& quantity : all) {
     require_frozen(context, quantity, "a field energy");
   }
 }
@@ -112,7 +115,7 @@ TableSpec field_table() {
           "adds to a body's own. Part of the frozen film: no design variable "
           "may move it",
       {{"kind", K::Choice, D::None, true, "what acts",
-        choices_of(field_kinds())},
+        case_data::choices_of(field_kinds())},
        {"at", K::Vector, D::Length, false, "of point, plane"},
        {"normal", K::Vector, D::None, false, "of plane; any length but 0"},
        {"from", K::Vector, D::Length, false, "of segment"},
@@ -134,16 +137,17 @@ TableSpec field_table() {
         "of pressure: above 0 inflates"}}};
 }
 
-void read_fields(CaseContext& context, const toml::table& root, Case& result) {
+void read_fields(CaseContext& context, const toml::table& root,
+                 case_data::Case& result) {
   for (const CaseTable& table : named_tables(context, root, "fields")) {
-    FieldEntry field;
+    case_data::FieldEntry field;
     field.name = table.name();
     field.line = table.line();
     const auto kind = table.choice("kind");
     if (!kind) {
       continue;
     }
-    const FieldRow& row = row_named(field_kinds(), *kind);
+    const FieldRow& row = case_data::row_named(field_kinds(), *kind);
     field.kind = row.kind;
     table.check_kind(*kind, row.keys);
     field.at = table.vector_or_zero("at");
@@ -152,14 +156,15 @@ void read_fields(CaseContext& context, const toml::table& root, Case& result) {
     field.to = table.vector_or_zero("to");
     field.points = table.vectors("points");
     field.strength = read_strength(context, table);
-    field.power = table.quantity("power").value_or(
-        Quantity{.expression = Expression(2.0), .line = table.line()});
+    field.power = table.quantity("power").value_or(case_data::Quantity{
+        .expression = Expression(2.0), .line = table.line()});
     field.core = table.quantity_or_zero("core");
     read_field_targets(context, table, result, field);
-    field.pressure = table.place_quantity("pressure").value_or(PlaceQuantity{});
+    field.pressure =
+        table.place_quantity("pressure").value_or(case_data::PlaceQuantity{});
     require_frozen_field(context, field);
     result.fields.push_back(std::move(field));
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

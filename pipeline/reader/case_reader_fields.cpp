@@ -7,7 +7,7 @@
 
 #include "core/nearest_name.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -15,7 +15,7 @@ constexpr std::size_t kShown = 40;  // characters of a text in a message
 
 }  // namespace
 
-SourceLine CaseContext::line_of(const toml::node& node) const {
+case_data::SourceLine CaseContext::line_of(const toml::node& node) const {
   const auto at = overridden.find(&node);
   return at != overridden.end() ? -at->second
                                 : static_cast<int>(node.source().begin.line);
@@ -58,19 +58,19 @@ CaseTable::CaseTable(CaseContext& context, const toml::table& table,
     if (find_key(spec, found) == nullptr) {
       context.problems.add(context.line_of(node),
                            fmt::format("unknown key '{}' in {}{}", found, path_,
-                                       advice(found, known)));
+                                       case_data::advice(found, known)));
     }
   }
 }
 
-SourceLine CaseTable::line(const char* key) const {
+case_data::SourceLine CaseTable::line(const char* key) const {
   const toml::node* node = table_->get(key);
   return node == nullptr ? line() : context_->line_of(*node);
 }
 
 namespace {
 
-std::string all_of(const KindKeys& keys) {
+std::string all_of(const case_data::KindKeys& keys) {
   std::vector<std::string> all = keys.needed;
   all.insert(all.end(), keys.optional.begin(), keys.optional.end());
   return all.empty() ? "no keys of its own"
@@ -80,7 +80,7 @@ std::string all_of(const KindKeys& keys) {
 }  // namespace
 
 void CaseTable::check_kind(const std::string& kind,
-                           const KindKeys& keys) const {
+                           const case_data::KindKeys& keys) const {
   for (const std::string& key : keys.needed) {
     if (!table_->contains(key)) {
       context_->problems.add(
@@ -220,7 +220,7 @@ std::optional<int> CaseTable::integer_within(const char* key, int least,
   return std::nullopt;
 }
 
-std::optional<Quantity> CaseTable::quantity(const char* key) const {
+std::optional<case_data::Quantity> CaseTable::quantity(const char* key) const {
   if (!has(key)) {
     return std::nullopt;
   }
@@ -229,7 +229,8 @@ std::optional<Quantity> CaseTable::quantity(const char* key) const {
                        fmt::format("{}.{}", path_, key));
 }
 
-std::optional<PlaceQuantity> CaseTable::place_quantity(const char* key) const {
+std::optional<case_data::PlaceQuantity> CaseTable::place_quantity(
+    const char* key) const {
   if (!has(key)) {
     return std::nullopt;
   }
@@ -271,15 +272,15 @@ std::vector<double> CaseTable::constants(const char* key) const {
   return result;
 }
 
-Quantity CaseTable::quantity_or_zero(const char* key) const {
-  return quantity(key).value_or(
-      Quantity{.line = line(key), .key = fmt::format("{}.{}", path_, key)});
+case_data::Quantity CaseTable::quantity_or_zero(const char* key) const {
+  return quantity(key).value_or(case_data::Quantity{
+      .line = line(key), .key = fmt::format("{}.{}", path_, key)});
 }
 
-QuantityVector CaseTable::vector_or_zero(const char* key) const {
-  const Quantity zero{.line = line(key),
-                      .key = fmt::format("{}.{}", path_, key)};
-  return vector(key).value_or(QuantityVector{zero, zero, zero});
+case_data::QuantityVector CaseTable::vector_or_zero(const char* key) const {
+  const case_data::Quantity zero{.line = line(key),
+                                 .key = fmt::format("{}.{}", path_, key)};
+  return vector(key).value_or(case_data::QuantityVector{zero, zero, zero});
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -19,16 +19,18 @@
 #include "pipeline/case_data/case_problems.h"
 #include "pipeline/reader/case_schema.h"
 
-namespace meniscus {
-
+namespace meniscus::step {
 class StepEdges;
+}
+
+namespace meniscus::reader {
 
 /// Nodes that overrides put into the file: the override's number, from 1.
 using OverriddenNodes = std::map<const toml::node*, int>;
 
 /// What all entries of one file share.
 struct CaseContext {
-  CaseProblems& problems;
+  case_data::CaseProblems& problems;
   const OverriddenNodes& overridden;
   UnitSystem units;
   std::vector<std::string> names;  // that expressions know, by position
@@ -38,9 +40,10 @@ struct CaseContext {
   bool bodies_good = false;  // nothing was wrong with them
   // Of the copy of an entry with `repeat` that is being read: i, j, k.
   std::vector<int> indices;
-  std::map<std::string, std::shared_ptr<StepEdges>> step_files;  // by path
+  std::map<std::string, std::shared_ptr<step::StepEdges>>
+      step_files;  // by path
 
-  SourceLine line_of(const toml::node& node) const;
+  case_data::SourceLine line_of(const toml::node& node) const;
 };
 
 /// "a table", "text 'abc'", "3.5": what was found, for messages.
@@ -60,12 +63,13 @@ class CaseTable {
 
   const std::string& name() const { return name_; }
   const std::string& path() const { return path_; }
-  SourceLine line() const { return context_->line_of(*table_); }
+  case_data::SourceLine line() const { return context_->line_of(*table_); }
   /// Of the key's value, or of the table when it is not there.
-  SourceLine line(const char* key) const;
+  case_data::SourceLine line(const char* key) const;
   bool has(const char* key) const { return table_->contains(key); }
   /// Notes keys that an entry of this kind lacks or should not have.
-  void check_kind(const std::string& kind, const KindKeys& keys) const;
+  void check_kind(const std::string& kind,
+                  const case_data::KindKeys& keys) const;
 
   // Absent or wrong values come back empty; wrong ones have been noted.
   std::optional<std::string> text(const char* key) const;
@@ -77,28 +81,28 @@ class CaseTable {
   std::optional<bool> flag(const char* key) const;
   std::optional<int> positive_integer(const char* key) const;
   std::optional<int> integer_within(const char* key, int least, int most) const;
-  std::optional<Quantity> quantity(const char* key) const;
-  std::optional<PlaceQuantity> place_quantity(const char* key) const;
+  std::optional<case_data::Quantity> quantity(const char* key) const;
+  std::optional<case_data::PlaceQuantity> place_quantity(const char* key) const;
   std::optional<double> constant(const char* key) const;
   std::vector<double> constants(const char* key) const;
-  std::optional<QuantityVector> vector(const char* key) const;
+  std::optional<case_data::QuantityVector> vector(const char* key) const;
   /// Points, and { at = [x, y, z], repeat = n } for several.
-  std::vector<QuantityVector> vectors(const char* key) const;
+  std::vector<case_data::QuantityVector> vectors(const char* key) const;
   /// Three or more corners each, cut into triangles from the first; numbers
   /// from 0 of so many vertices.
   std::vector<Triangle> facets(const char* key, std::ptrdiff_t vertices) const;
   /// As vectors(), with points that arcs go through: { through = [x, y, z] }.
-  std::vector<PathPoint> path_points(const char* key) const;
+  std::vector<case_data::PathPoint> path_points(const char* key) const;
   std::optional<Vec3> constant_vector(const char* key) const;
-  std::optional<std::array<PlaceQuantity, 3>> place_vector(
+  std::optional<std::array<case_data::PlaceQuantity, 3>> place_vector(
       const char* key) const;
-  std::optional<LocalAxes> axes(const char* key) const;
+  std::optional<element::LocalAxes> axes(const char* key) const;
   /// The array's tables, checked against the vocabulary's table `spec`.
   std::vector<CaseTable> tables(const char* key, const char* spec) const;
 
   /// As quantity() and vector(), with 0 for absent or wrong values.
-  Quantity quantity_or_zero(const char* key) const;
-  QuantityVector vector_or_zero(const char* key) const;
+  case_data::Quantity quantity_or_zero(const char* key) const;
+  case_data::QuantityVector vector_or_zero(const char* key) const;
 
   const toml::node* node(const char* key) const { return table_->get(key); }
 
@@ -143,19 +147,18 @@ class IndexScope {
 
 /// A number, an expression or a value with a unit; nothing, and a note, when
 /// it is none. `dimension`: none allows any.
-std::optional<Quantity> read_quantity(CaseContext& context,
-                                      const toml::node& node,
-                                      std::optional<Dimension> dimension,
-                                      const std::string& key);
+std::optional<case_data::Quantity> read_quantity(
+    CaseContext& context, const toml::node& node,
+    std::optional<Dimension> dimension, const std::string& key);
 
 /// The same for a quantity that may also be an expression of x, y, z.
-std::optional<PlaceQuantity> read_place_quantity(
+std::optional<case_data::PlaceQuantity> read_place_quantity(
     CaseContext& context, const toml::node& node,
     std::optional<Dimension> dimension, const std::string& key);
 
 /// Notes a quantity that a design variable moves although `what`, of which it
 /// is a part, belongs to the frozen film.
-void require_frozen(CaseContext& context, const Quantity& quantity,
+void require_frozen(CaseContext& context, const case_data::Quantity& quantity,
                     const char* what);
 
 /// The same where no design variable may have a say.
@@ -164,4 +167,4 @@ std::optional<double> read_constant(CaseContext& context,
                                     std::optional<Dimension> dimension,
                                     const std::string& key);
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

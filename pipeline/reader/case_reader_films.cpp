@@ -10,13 +10,13 @@
 #include "pipeline/reader/case_reader_tables.h"
 #include "pipeline/reader/facet_file.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
-std::vector<std::string> curve_names(const Case& result) {
+std::vector<std::string> curve_names(const case_data::Case& result) {
   std::vector<std::string> names;
-  for (const CurveEntry& curve : result.curves) {
+  for (const case_data::CurveEntry& curve : result.curves) {
     names.push_back(curve.name);
   }
   return names;
@@ -24,8 +24,8 @@ std::vector<std::string> curve_names(const Case& result) {
 
 struct FilmRow {
   const char* name;
-  FilmKind kind;
-  KindKeys keys;
+  films::FilmKind kind;
+  case_data::KindKeys keys;
   std::string_view doc;
   // Curves that it names, where their number is not free:
   std::size_t least = 0;
@@ -36,32 +36,32 @@ struct FilmRow {
 const std::vector<FilmRow>& film_kinds() {
   static const std::vector<FilmRow> kinds = {
       {"branch",
-       FilmKind::Branch,
+       films::FilmKind::Branch,
        {{"curves"}, {"tension"}},
        "convex hull of any number of curves less their caps",
        2,
        std::size_t(-1),
        "a branch needs two or more"},
       {"loft",
-       FilmKind::Loft,
+       films::FilmKind::Loft,
        {{"curves"}, {"tension"}},
        "band between two",
        2,
        2,
        "a loft needs two"},
       {"disk",
-       FilmKind::Disk,
+       films::FilmKind::Disk,
        {{"curves"}, {"tension"}},
        "across one",
        1,
        1,
        "a disk needs one"},
       {"facets",
-       FilmKind::Facets,
+       films::FilmKind::Facets,
        {{"vertices", "facets"}, {"curves", "within", "tension"}},
        "given here"},
       {"file",
-       FilmKind::Facets,
+       films::FilmKind::Facets,
        {{"file"}, {"curves", "surface", "scale", "within", "tension"}},
        "facets of an STL, OBJ or Surface Evolver file"}};
   return kinds;
@@ -69,7 +69,7 @@ const std::vector<FilmRow>& film_kinds() {
 
 struct SolidRow {
   const char* name;
-  KindKeys keys;
+  case_data::KindKeys keys;
   std::string_view doc;
 };
 
@@ -116,9 +116,9 @@ void check_count(CaseContext& context, const CaseTable& table,
 
 /// The facets of a file that films or solids start from; null with a problem
 /// noted.
-std::shared_ptr<const StartFacets> read_start(CaseContext& context,
-                                              const CaseTable& table,
-                                              Case& result) {
+std::shared_ptr<const films::StartFacets> read_start(CaseContext& context,
+                                                     const CaseTable& table,
+                                                     case_data::Case& result) {
   const auto path = table.text("file");
   if (!path) {
     return nullptr;
@@ -154,13 +154,14 @@ double read_within(CaseContext& context, const CaseTable& table) {
   return within.value_or(0.0);
 }
 
-FilmEntry read_film(CaseContext& context, const CaseTable& table,
-                    const std::vector<std::string>& known, Case& result) {
-  FilmEntry film{.line = table.line()};
+case_data::FilmEntry read_film(CaseContext& context, const CaseTable& table,
+                               const std::vector<std::string>& known,
+                               case_data::Case& result) {
+  case_data::FilmEntry film{.line = table.line()};
   film.spec.name = table.name();
   film.spec.curves = table.names("curves");
   if (const auto kind = table.choice("kind")) {
-    const FilmRow& row = row_named(film_kinds(), *kind);
+    const FilmRow& row = case_data::row_named(film_kinds(), *kind);
     table.check_kind(*kind, row.keys);
     film.spec.kind = row.kind;
     check_count(context, table, row, film.spec.curves.size());
@@ -174,19 +175,21 @@ FilmEntry read_film(CaseContext& context, const CaseTable& table,
   }
   check_curves(context, table, known, film.spec.curves);
   film.tension = table.place_quantity("tension").value_or(
-      PlaceQuantity{{.expression = Expression(1.0),
-                     .line = table.line(),
-                     .key = table.path() + ".tension"}});
+      case_data::PlaceQuantity{{.expression = Expression(1.0),
+                                .line = table.line(),
+                                .key = table.path() + ".tension"}});
   if (film.tension.of_place) {
     require_frozen(context, film.tension.quantity, "a tension of x, y, z");
   }
   return film;
 }
 
-const CurveEntry* polygon_named(const Case& input, const std::string& name) {
-  for (const CurveEntry& curve : input.curves) {
+const case_data::CurveEntry* polygon_named(const case_data::Case& input,
+                                           const std::string& name) {
+  for (const case_data::CurveEntry& curve : input.curves) {
     if (curve.name == name) {
-      return curve.kind == CurveKind::Polygon && !curve.points.empty()
+      return curve.kind == case_data::CurveKind::Polygon &&
+                     !curve.points.empty()
                  ? &curve
                  : nullptr;
     }
@@ -196,16 +199,18 @@ const CurveEntry* polygon_named(const Case& input, const std::string& name) {
 
 /// A polygon NAME/k between each two sides, across which the solid lies.
 void read_sides(CaseContext& context, const CaseTable& table,
-                const std::vector<std::string>& known, Case& result,
-                CapSpec& spec) {
+                const std::vector<std::string>& known, case_data::Case& result,
+                films::CapSpec& spec) {
   const std::vector<std::string> curves = table.names("curves");
   if (curves.empty()) {
     return;  // told already
   }
   check_curves(context, table, known, curves);
   const bool two = curves.size() == 2 && curves[0] != curves[1];
-  const CurveEntry* low = two ? polygon_named(result, curves[0]) : nullptr;
-  const CurveEntry* high = two ? polygon_named(result, curves[1]) : nullptr;
+  const case_data::CurveEntry* low =
+      two ? polygon_named(result, curves[0]) : nullptr;
+  const case_data::CurveEntry* high =
+      two ? polygon_named(result, curves[1]) : nullptr;
   if (low == nullptr || high == nullptr ||
       low->points.size() != high->points.size()) {
     context.problems.add(
@@ -215,13 +220,14 @@ void read_sides(CaseContext& context, const CaseTable& table,
                     table.path(), fmt::join(curves, ", ")));
     return;
   }
-  const std::vector<PathPoint> a = low->points;
-  const std::vector<PathPoint> b = high->points;
+  const std::vector<case_data::PathPoint> a = low->points;
+  const std::vector<case_data::PathPoint> b = high->points;
   for (std::size_t k = 0; k < a.size(); ++k) {
     const std::size_t next = (k + 1) % a.size();
-    CurveEntry face{.name = fmt::format("{}/{}", table.name(), k + 1),
-                    .kind = CurveKind::Polygon,
-                    .line = table.line()};
+    case_data::CurveEntry face{
+        .name = fmt::format("{}/{}", table.name(), k + 1),
+        .kind = case_data::CurveKind::Polygon,
+        .line = table.line()};
     face.points = {a[k], a[next], b[next], b[k]};
     spec.more.push_back(face.name);
     result.curves.push_back(std::move(face));
@@ -232,7 +238,7 @@ void read_sides(CaseContext& context, const CaseTable& table,
 
 /// The curves of a cap or ring.
 void read_rims(CaseContext& context, const CaseTable& table,
-               const std::vector<std::string>& known, CapSpec& spec) {
+               const std::vector<std::string>& known, films::CapSpec& spec) {
   const auto check = [&](const char* key, const std::string& curve) {
     if (std::find(known.begin(), known.end(), curve) == known.end()) {
       context.problems.unknown(table.line(key), "curve", curve, known);
@@ -266,15 +272,16 @@ void read_rims(CaseContext& context, const CaseTable& table,
   }
 }
 
-CapEntry read_solid(CaseContext& context, const CaseTable& table,
-                    const std::vector<std::string>& known, Case& result) {
-  CapEntry cap{.spec = {.name = table.name(), .curve = ""},
-               .line = table.line()};
+case_data::CapEntry read_solid(CaseContext& context, const CaseTable& table,
+                               const std::vector<std::string>& known,
+                               case_data::Case& result) {
+  case_data::CapEntry cap{.spec = {.name = table.name(), .curve = ""},
+                          .line = table.line()};
   const auto kind = table.choice("kind");
   if (!kind) {
     return cap;
   }
-  table.check_kind(*kind, row_named(solid_kinds(), *kind).keys);
+  table.check_kind(*kind, case_data::row_named(solid_kinds(), *kind).keys);
   if (*kind == "file") {
     cap.is_file = true;
     cap.spec.rims = table.names("curves");
@@ -301,8 +308,8 @@ TableSpec film_table() {
       "A liquid film between curves",
       {{"kind", K::Choice, D::None, true,
         "how the liquid starts: " +
-            meanings_of(film_kinds(), {" (", ")", ", "}),
-        choices_of(film_kinds())},
+            case_data::meanings_of(film_kinds(), {" (", ")", ", "}),
+        case_data::choices_of(film_kinds())},
        {"curves", K::Names, D::None, false,
         "the curves that hold it; of facets and file those that its rims lie "
         "on, none where it is closed"},
@@ -334,8 +341,8 @@ TableSpec solid_table() {
       true,
       TableNeed::Optional,
       "A solid surface, named so that loads find it",
-      {{"kind", K::Choice, D::None, true, meanings_of(solid_kinds()),
-        choices_of(solid_kinds()), "plate|pad|faces"},
+      {{"kind", K::Choice, D::None, true, case_data::meanings_of(solid_kinds()),
+        case_data::choices_of(solid_kinds()), "plate|pad|faces"},
        {"curve", K::Name, D::None, false, "of cap, ring: its rim"},
        {"inner", K::Name, D::None, false, "of ring: the rim of its hole"},
        {"holes", K::Names, D::None, false,
@@ -349,18 +356,20 @@ TableSpec solid_table() {
        {"within", K::Constant, D::Length, false, "of file: as of films"}}};
 }
 
-void read_films(CaseContext& context, const toml::table& root, Case& result) {
+void read_films(CaseContext& context, const toml::table& root,
+                case_data::Case& result) {
   const std::vector<std::string> known = curve_names(result);
   for (const CaseTable& table : named_tables(context, root, "films")) {
     result.films.push_back(read_film(context, table, known, result));
   }
 }
 
-void read_solids(CaseContext& context, const toml::table& root, Case& result) {
+void read_solids(CaseContext& context, const toml::table& root,
+                 case_data::Case& result) {
   const std::vector<std::string> known = curve_names(result);
   for (const CaseTable& table : named_tables(context, root, "solids")) {
-    CapEntry cap = read_solid(context, table, known, result);
-    for (const FilmEntry& film : result.films) {
+    case_data::CapEntry cap = read_solid(context, table, known, result);
+    for (const case_data::FilmEntry& film : result.films) {
       if (film.spec.name == cap.spec.name) {
         context.problems.add(
             table.line(), fmt::format("'{}' is both a film and a solid; rename "
@@ -372,4 +381,4 @@ void read_solids(CaseContext& context, const toml::table& root, Case& result) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -9,7 +9,7 @@
 #include "pipeline/case_data/case_curves.h"
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -51,22 +51,23 @@ void check_material(CaseContext& context, const CaseTable& table,
   }
 }
 
-Orthotropic read_orthotropic(const CaseTable& table) {
-  Orthotropic result;
+element::Orthotropic read_orthotropic(const CaseTable& table) {
+  element::Orthotropic result;
   result.youngs_moduli =
       table.constant_vector("youngs_moduli").value_or(Vec3::Ones());
   result.poisson_ratios =
       table.constant_vector("poisson_ratios").value_or(Vec3::Zero());
   result.shear_moduli =
       table.constant_vector("shear_moduli").value_or(Vec3::Ones());
-  result.axes = table.axes("axes").value_or(LocalAxes{});
+  result.axes = table.axes("axes").value_or(element::LocalAxes{});
   return result;
 }
 
 void read_materials(CaseContext& context, const toml::table& root,
-                    Case& result) {
+                    case_data::Case& result) {
   for (const CaseTable& table : named_tables(context, root, "materials")) {
-    MaterialEntry material{.name = table.name(), .line = table.line()};
+    case_data::MaterialEntry material{.name = table.name(),
+                                      .line = table.line()};
     if (material.name == kVoidName) {
       context.problems.add(material.line,
                            "materials.void: bodies that are void have this "
@@ -93,17 +94,17 @@ void read_materials(CaseContext& context, const toml::table& root,
 }
 
 void find_material(CaseContext& context, const CaseTable& table,
-                   const Case& result, BodyEntry& body) {
+                   const case_data::Case& result, case_data::BodyEntry& body) {
   const auto wanted = table.text("material");
   if (!wanted) {
     return;
   }
   if (*wanted == kVoidName) {
-    body.material = kVoid;
+    body.material = case_data::kVoid;
     return;
   }
   std::vector<std::string> known;
-  for (const MaterialEntry& material : result.materials) {
+  for (const case_data::MaterialEntry& material : result.materials) {
     if (material.name == *wanted) {
       body.material = static_cast<int>(known.size());
       return;
@@ -113,10 +114,11 @@ void find_material(CaseContext& context, const CaseTable& table,
   context.problems.unknown(table.line("material"), "material", *wanted, known);
 }
 
-void read_bodies(CaseContext& context, const toml::table& root, Case& result) {
-  const std::vector<std::string> surfaces = surface_names(result);
+void read_bodies(CaseContext& context, const toml::table& root,
+                 case_data::Case& result) {
+  const std::vector<std::string> surfaces = case_data::surface_names(result);
   for (const CaseTable& table : named_tables(context, root, "bodies")) {
-    BodyEntry body{.name = table.name(), .line = table.line()};
+    case_data::BodyEntry body{.name = table.name(), .line = table.line()};
     std::set<std::string> seen;
     for (const std::string& surface : table.names("enclosed_by")) {
       if (!contains(surfaces, surface)) {
@@ -149,7 +151,7 @@ void read_bodies(CaseContext& context, const toml::table& root, Case& result) {
     find_material(context, table, result, body);
     result.bodies.push_back(std::move(body));
   }
-  if (!result.bodies.empty() && solid_bodies(result).empty() &&
+  if (!result.bodies.empty() && case_data::solid_bodies(result).empty() &&
       !root.contains("walls")) {
     context.problems.add(result.bodies.front().line,
                          "all bodies are void; one must have a material, or "
@@ -160,19 +162,19 @@ void read_bodies(CaseContext& context, const toml::table& root, Case& result) {
 }  // namespace
 
 void read_geometry(CaseContext& context, const toml::table& root,
-                   Case& result) {
+                   case_data::Case& result) {
   read_curves(context, root, result);
   read_films(context, root, result);
   read_solids(context, root, result);
   if (context.problems.empty()) {
-    merge_curves(result, context.problems);
+    case_data::merge_curves(result, context.problems);
   }
   read_materials(context, root, result);
   const std::size_t before = context.problems.size();
   read_bodies(context, root, result);
-  check_bodies(result, context.problems);
+  case_data::check_bodies(result, context.problems);
   context.bodies_good =
       !result.bodies.empty() && context.problems.size() == before;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

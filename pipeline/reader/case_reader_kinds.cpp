@@ -9,15 +9,18 @@
 #include "pipeline/case_data/study_kinds.h"
 #include "pipeline/reader/case_reader_study.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
 /// "slsqp (when left out), mma"; NLopt's in the order of their own table.
-std::string names_text(const StudyRow& row, std::vector<std::string> names) {
-  const std::vector<MinimizeMethod>& all = minimize_methods();
+std::string names_text(const case_data::StudyRow& row,
+                       std::vector<std::string> names) {
+  const std::vector<optimize::MinimizeMethod>& all =
+      optimize::minimize_methods();
   const auto order = [&](const std::string& name) {
-    const MinimizeMethod* method = find_minimize_method(name);
+    const optimize::MinimizeMethod* method =
+        optimize::find_minimize_method(name);
     return method == nullptr ? -1 : static_cast<int>(method - all.data());
   };
   std::stable_sort(
@@ -29,11 +32,11 @@ std::string names_text(const StudyRow& row, std::vector<std::string> names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string minima_text(const StudyRow& row) {
+std::string minima_text(const case_data::StudyRow& row) {
   std::vector<std::string> sloped;
   std::vector<std::string> local;
   std::vector<std::string> global;
-  for (const MinimizeMethod& method : minimize_methods()) {
+  for (const optimize::MinimizeMethod& method : optimize::minimize_methods()) {
     (method.gradients ? sloped
      : method.global  ? global
                       : local)
@@ -47,33 +50,35 @@ std::string minima_text(const StudyRow& row) {
 /// "of match: ceres, ...; of minimize and pareto: ...".
 std::string all_methods_text() {
   std::string text;
-  std::vector<const StudyRow*> rows;
-  for (const StudyRow& row : study_kinds()) {
-    if (row.kind != StudyKind::Analyse) {
+  std::vector<const case_data::StudyRow*> rows;
+  for (const case_data::StudyRow& row : case_data::study_kinds()) {
+    if (row.kind != case_data::StudyKind::Analyse) {
       rows.push_back(&row);
     }
   }
   while (!rows.empty()) {
-    const StudyRow& first = *rows.front();
+    const case_data::StudyRow& first = *rows.front();
     std::vector<std::string> alike;
-    std::erase_if(rows, [&](const StudyRow* row) {
+    std::erase_if(rows, [&](const case_data::StudyRow* row) {
       const bool same = row->methods == first.methods;
       if (same) {
         alike.emplace_back(row->name);
       }
       return same;
     });
-    text += fmt::format(
-        "{}of {}: {}", text.empty() ? "" : "; ", fmt::join(alike, " and "),
-        first.kind == StudyKind::Minimize ? minima_text(first)
-                                          : names_text(first, first.methods));
+    text += fmt::format("{}of {}: {}", text.empty() ? "" : "; ",
+                        fmt::join(alike, " and "),
+                        first.kind == case_data::StudyKind::Minimize
+                            ? minima_text(first)
+                            : names_text(first, first.methods));
   }
   return text;
 }
 
 void check_method(CaseContext& context, const CaseTable& table,
-                  const StudyEntry& study) {
-  const std::vector<std::string>& methods = row_of(study.kind).methods;
+                  const case_data::StudyEntry& study) {
+  const std::vector<std::string>& methods =
+      case_data::row_of(study.kind).methods;
   if (std::find(methods.begin(), methods.end(), study.method) ==
       methods.end()) {
     context.problems.unknown(table.line("method"), "method", study.method,
@@ -84,7 +89,7 @@ void check_method(CaseContext& context, const CaseTable& table,
 /// Names of the kinds of study that each key of [study] belongs to.
 std::map<std::string, std::vector<std::string>> owners_of_keys() {
   std::map<std::string, std::vector<std::string>> owners;
-  for (const StudyRow& row : study_kinds()) {
+  for (const case_data::StudyRow& row : case_data::study_kinds()) {
     for (const std::string& key : row.keys) {
       owners[key].emplace_back(row.name);
     }
@@ -110,8 +115,9 @@ TableSpec study_table() {
       "What to do; analyse the initial design when left out",
       {{"kind", K::Choice, D::None, true,
         fmt::format("{}; family: one of these for each member",
-                    either_of(split_choices(choices_of(study_kinds())))),
-        choices_of(study_kinds()) + "|family"},
+                    either_of(split_choices(
+                        case_data::choices_of(case_data::study_kinds())))),
+        case_data::choices_of(case_data::study_kinds()) + "|family"},
        {"each", K::Choice, D::None, false,
         "of family: what each member's own study is, with the keys of that "
         "kind; minimize when left out",
@@ -172,11 +178,11 @@ TableSpec study_table() {
 }
 
 void read_method(CaseContext& context, const CaseTable& table,
-                 StudyEntry& study) {
-  const StudyRow& row = row_of(study.kind);
+                 case_data::StudyEntry& study) {
+  const case_data::StudyRow& row = case_data::row_of(study.kind);
   const std::vector<std::string>& own = row.methods;
   study.method = table.text("method").value_or(row.usual_method);
-  if (waits(table, "method") && study.kind != StudyKind::Analyse &&
+  if (waits(table, "method") && study.kind != case_data::StudyKind::Analyse &&
       std::find(own.begin(), own.end(), study.method) == own.end()) {
     study.method = row.usual_method;
   }
@@ -227,4 +233,4 @@ void check_keys(CaseContext& context, const CaseTable& table,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -6,7 +6,7 @@
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -16,14 +16,15 @@ void note(CaseContext& context, const CaseTable& table, const char* key,
                        fmt::format("{}.{} {}", table.path(), key, what));
 }
 
-void read_fix(CaseContext& context, const CaseTable& table, Support& support) {
+void read_fix(CaseContext& context, const CaseTable& table,
+              loads::Support& support) {
   const auto fix = table.text("fix");
   if (!fix) {
     return;
   }
   if (*fix == "normal" || *fix == "symmetry") {
-    support.kind =
-        *fix == "normal" ? SupportKind::Normal : SupportKind::Symmetry;
+    support.kind = *fix == "normal" ? loads::SupportKind::Normal
+                                    : loads::SupportKind::Symmetry;
     if (table.has("axes")) {
       note(context, table, "axes",
            fmt::format("does not belong to fix = \"{}\"; take it out", *fix));
@@ -42,13 +43,13 @@ void read_fix(CaseContext& context, const CaseTable& table, Support& support) {
   support.axes = table.axes("axes");
 }
 
-SpringBed read_springs(CaseContext& context, const CaseTable& table) {
-  SpringBed bed;
+loads::SpringBed read_springs(CaseContext& context, const CaseTable& table) {
+  loads::SpringBed bed;
   bed.components = table.constant_vector("stiffness").value_or(Vec3::Zero());
   bed.normal = table.constant("normal_stiffness").value_or(0.0);
   bed.axes = table.axes("axes");
   if (table.choice("stiffness_of") == "total") {
-    bed.measure = SpringMeasure::Total;
+    bed.measure = loads::SpringMeasure::Total;
   }
   if (bed.components.minCoeff() < 0.0 || bed.normal < 0.0 ||
       (bed.components.isZero(0.0) && bed.normal == 0.0)) {
@@ -62,7 +63,8 @@ SpringBed read_springs(CaseContext& context, const CaseTable& table) {
 }
 
 void read_support(CaseContext& context, const CaseTable& table,
-                  const Case& result, LoadCaseEntry& load_case) {
+                  const case_data::Case& result,
+                  case_data::LoadCaseEntry& load_case) {
   const std::string surface = surface_on(context, table, result);
   const bool springs = table.has("stiffness") || table.has("normal_stiffness");
   if (table.has("fix") == springs) {
@@ -74,11 +76,11 @@ void read_support(CaseContext& context, const CaseTable& table,
             table.path(), surface,
             springs ? "both fix and springs" : "neither fix nor springs"));
   } else if (springs) {
-    SpringBed bed = read_springs(context, table);
+    loads::SpringBed bed = read_springs(context, table);
     bed.surface = surface;
     load_case.springs.push_back(std::move(bed));
   } else {
-    Support support{.surface = surface};
+    loads::Support support{.surface = surface};
     read_fix(context, table, support);
     load_case.supports.push_back(std::move(support));
   }
@@ -87,20 +89,20 @@ void read_support(CaseContext& context, const CaseTable& table,
 /// A load has the key of its name, and what belongs to that.
 struct LoadRow {
   const char* name;
-  LoadKind kind;
+  case_data::LoadKind kind;
   bool on_surface;
   std::vector<std::string> optional;
 };
 
 const std::vector<LoadRow>& load_kinds() {
   static const std::vector<LoadRow> kinds = {
-      {"force", LoadKind::Force, true, {"at", "moment"}},
-      {"moment", LoadKind::Remote, true, {"at", "force"}},
-      {"pressure", LoadKind::Pressure, true, {}},
-      {"traction", LoadKind::Traction, true, {}},
-      {"gravity", LoadKind::Gravity, false, {}},
-      {"spin", LoadKind::Spin, false, {"at", "axis"}},
-      {"temperature", LoadKind::Temperature, false, {"reference"}}};
+      {"force", case_data::LoadKind::Force, true, {"at", "moment"}},
+      {"moment", case_data::LoadKind::Remote, true, {"at", "force"}},
+      {"pressure", case_data::LoadKind::Pressure, true, {}},
+      {"traction", case_data::LoadKind::Traction, true, {}},
+      {"gravity", case_data::LoadKind::Gravity, false, {}},
+      {"spin", case_data::LoadKind::Spin, false, {"at", "axis"}},
+      {"temperature", case_data::LoadKind::Temperature, false, {"reference"}}};
   return kinds;
 }
 
@@ -120,7 +122,7 @@ std::string load_key(CaseContext& context, const CaseTable& table,
   std::vector<std::string> found;
   for (const LoadRow& row : load_kinds()) {
     if (table.has(row.name) &&
-        !(row.kind == LoadKind::Remote && table.has("force"))) {
+        !(row.kind == case_data::LoadKind::Remote && table.has("force"))) {
       found.emplace_back(row.name);
     }
   }
@@ -130,17 +132,18 @@ std::string load_key(CaseContext& context, const CaseTable& table,
   }
   context.problems.add(
       table.line(),
-      fmt::format("{}{} has {}; expected one of {}", table.path(),
-                  surface.empty() ? "" : fmt::format(" on '{}'", surface),
-                  found.empty() ? "no load"
-                                : fmt::format("{}", fmt::join(found, " and ")),
-                  fmt::join(split_choices(choices_of(load_kinds())), ", ")));
+      fmt::format(
+          "{}{} has {}; expected one of {}", table.path(),
+          surface.empty() ? "" : fmt::format(" on '{}'", surface),
+          found.empty() ? "no load"
+                        : fmt::format("{}", fmt::join(found, " and ")),
+          fmt::join(split_choices(case_data::choices_of(load_kinds())), ", ")));
   return "";
 }
 
 void check_load_keys(CaseContext& context, const CaseTable& table,
                      const std::string& key) {
-  const LoadRow& row = row_named(load_kinds(), key);
+  const LoadRow& row = case_data::row_named(load_kinds(), key);
   if (row.on_surface && !table.has("on")) {
     context.problems.add(table.line(),
                          fmt::format("{} is a {} and has no 'on' (the surface "
@@ -177,34 +180,36 @@ void check_load_keys(CaseContext& context, const CaseTable& table,
   }
 }
 
-void read_load(CaseContext& context, const CaseTable& table, const Case& result,
-               LoadCaseEntry& load_case) {
-  LoadEntry load{.surface = surface_on(context, table, result),
-                 .line = table.line()};
+void read_load(CaseContext& context, const CaseTable& table,
+               const case_data::Case& result,
+               case_data::LoadCaseEntry& load_case) {
+  case_data::LoadEntry load{.surface = surface_on(context, table, result),
+                            .line = table.line()};
   const std::string key = load_key(context, table, load.surface);
   if (key.empty()) {
     return;
   }
   check_load_keys(context, table, key);
-  load.kind = row_named(load_kinds(), key).kind;
+  load.kind = case_data::row_named(load_kinds(), key).kind;
   if (key == "force" && (table.has("at") || table.has("moment"))) {
-    load.kind = LoadKind::Remote;
+    load.kind = case_data::LoadKind::Remote;
   }
   load.at = table.vector_or_zero("at");
   load.moment = table.vector_or_zero("moment");
-  load.vector = table.vector_or_zero(load.kind == LoadKind::Gravity ? "gravity"
-                                     : load.kind == LoadKind::Spin  ? "axis"
-                                                                    : "force");
-  load.place =
-      table
-          .place_quantity(load.kind == LoadKind::Temperature ? "temperature"
-                                                             : "pressure")
-          .value_or(PlaceQuantity{});
+  load.vector =
+      table.vector_or_zero(load.kind == case_data::LoadKind::Gravity ? "gravity"
+                           : load.kind == case_data::LoadKind::Spin  ? "axis"
+                                                                     : "force");
+  load.place = table
+                   .place_quantity(load.kind == case_data::LoadKind::Temperature
+                                       ? "temperature"
+                                       : "pressure")
+                   .value_or(case_data::PlaceQuantity{});
   if (auto traction = table.place_vector("traction")) {
     load.traction = *std::move(traction);
   }
   load.number = table.quantity_or_zero(
-      load.kind == LoadKind::Spin ? "spin" : "reference");
+      load.kind == case_data::LoadKind::Spin ? "spin" : "reference");
   load_case.loads.push_back(std::move(load));
 }
 
@@ -242,21 +247,21 @@ TableSpec load_table() {
 }
 
 std::string surface_on(CaseContext& context, const CaseTable& table,
-                       const Case& result, const char* key) {
+                       const case_data::Case& result, const char* key) {
   std::string surface = table.text(key).value_or("");
   if (!table.has(key)) {
     return surface;
   }
-  const std::vector<std::string> known = surface_names(result);
+  const std::vector<std::string> known = case_data::surface_names(result);
   int bodies = 0;
   int solid = 0;
-  for (const BodyEntry& body : result.bodies) {
+  for (const case_data::BodyEntry& body : result.bodies) {
     const int one = static_cast<int>(
         std::count(body.enclosed_by.begin(), body.enclosed_by.end(), surface));
     bodies += one;
-    solid += body.material == kVoid ? 0 : one;
+    solid += body.material == case_data::kVoid ? 0 : one;
   }
-  for (const WallEntry& wall : result.walls) {
+  for (const case_data::WallEntry& wall : result.walls) {
     for (const std::string& film : wall.films) {
       solid += film == surface || surface.starts_with(film + "/") ? 1 : 0;
     }
@@ -274,9 +279,10 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
 }
 
 void read_load_cases(CaseContext& context, const toml::table& root,
-                     Case& result) {
+                     case_data::Case& result) {
   for (const CaseTable& table : named_tables(context, root, "load_cases")) {
-    LoadCaseEntry load_case{.name = table.name(), .line = table.line()};
+    case_data::LoadCaseEntry load_case{.name = table.name(),
+                                       .line = table.line()};
     for (const CaseTable& support : table.tables("supports", "support")) {
       read_support(context, support, result, load_case);
     }
@@ -287,4 +293,4 @@ void read_load_cases(CaseContext& context, const toml::table& root,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -7,7 +7,7 @@
 #include "pipeline/reader/case_reader_tables.h"
 #include "pipeline/reader/member_file.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -22,7 +22,7 @@ std::string text_of(const toml::node& node) {
 
 /// Tables within tables are dotted keys.
 void add_overrides(const toml::table& table, const std::string& prefix,
-                   MemberEntry& member) {
+                   case_data::MemberEntry& member) {
   for (const auto& [key, node] : table) {
     const std::string name = prefix + std::string(key.str());
     if (const toml::table* inner = node.as_table()) {
@@ -34,10 +34,10 @@ void add_overrides(const toml::table& table, const std::string& prefix,
 }
 
 void read_member_tables(CaseContext& context, const toml::table& table,
-                        Case& result) {
-  std::vector<std::pair<SourceLine, MemberEntry>> found;
+                        case_data::Case& result) {
+  std::vector<std::pair<case_data::SourceLine, case_data::MemberEntry>> found;
   for (const auto& [key, node] : table) {
-    const SourceLine line = context.line_of(node);
+    const case_data::SourceLine line = context.line_of(node);
     const std::string name(key.str());
     const toml::table* values = node.as_table();
     if (values == nullptr) {
@@ -53,9 +53,10 @@ void read_member_tables(CaseContext& context, const toml::table& table,
                                        "letters, digits, _ and -",
                                        name));
     }
-    MemberEntry member{.name = name,
-                       .overrides = {},
-                       .place = fmt::format("{}:{}", result.path, line)};
+    case_data::MemberEntry member{
+        .name = name,
+        .overrides = {},
+        .place = fmt::format("{}:{}", result.path, line)};
     add_overrides(*values, "", member);
     found.emplace_back(line, std::move(member));
   }
@@ -71,7 +72,7 @@ void read_member_tables(CaseContext& context, const toml::table& table,
 }  // namespace
 
 std::string read_members(CaseContext& context, const CaseTable& study,
-                         Case& result) {
+                         case_data::Case& result) {
   const std::string each = study.choice("each").value_or("minimize");
   const toml::node* node = study.node("members");
   if (node == nullptr) {
@@ -112,4 +113,4 @@ std::string read_members(CaseContext& context, const CaseTable& study,
   return each;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -117,7 +117,7 @@ void mark(const toml::node& node, int number, OverriddenNodes& overridden) {
 
 OverriddenNodes apply_overrides(toml::table& root,
                                 const std::vector<std::string>& overrides,
-                                CaseProblems& problems) {
+                                case_data::CaseProblems& problems) {
   std::map<std::pair<toml::table*, std::string>, int> put;
   for (std::size_t k = 0; k < overrides.size(); ++k) {
     const std::string& text = overrides[k];
@@ -131,10 +131,11 @@ OverriddenNodes apply_overrides(toml::table& root,
     }
     const Slot slot = find_slot(root, name);
     if (slot.parent == nullptr) {
-      problems.add(-number,
-                   fmt::format("there is no parameter, design variable or key "
-                               "'{}'{}",
-                               name, advice(name, known_names(root))));
+      problems.add(
+          -number,
+          fmt::format("there is no parameter, design variable or key "
+                      "'{}'{}",
+                      name, case_data::advice(name, known_names(root))));
       continue;
     }
     toml::table value = parse_value(trimmed(text.substr(equals + 1)));
@@ -150,4 +151,4 @@ OverriddenNodes apply_overrides(toml::table& root,
   return overridden;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

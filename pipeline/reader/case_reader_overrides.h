@@ -9,7 +9,7 @@
 #include "pipeline/case_data/case_problems.h"
 #include "pipeline/reader/case_reader_fields.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 /// Replaces values in `root` as the overrides say, each "name=value" with the
 /// name of a parameter, of a design variable (its initial value) or a dotted
@@ -17,6 +17,6 @@ namespace meniscus {
 /// name that is not there is a problem. The last of two for one key holds.
 OverriddenNodes apply_overrides(toml::table& root,
                                 const std::vector<std::string>& overrides,
-                                CaseProblems& problems);
+                                case_data::CaseProblems& problems);
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

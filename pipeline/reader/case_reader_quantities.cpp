@@ -6,7 +6,7 @@
 #include "pipeline/case_data/bound_text.h"
 #include "pipeline/reader/case_reader_repeat.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -14,12 +14,11 @@ const char* const kQuantity =
     "a number, an expression in quotes or a value with a unit";
 
 /// `names`: those of the context, and more after them.
-std::optional<Quantity> read_expression(CaseContext& context,
-                                        const toml::node& node,
-                                        std::optional<Dimension> dimension,
-                                        const std::string& key,
-                                        const std::vector<std::string>& names) {
-  Quantity result{.line = context.line_of(node), .key = key};
+std::optional<case_data::Quantity> read_expression(
+    CaseContext& context, const toml::node& node,
+    std::optional<Dimension> dimension, const std::string& key,
+    const std::vector<std::string>& names) {
+  case_data::Quantity result{.line = context.line_of(node), .key = key};
   const auto* text = node.as_string();
   if (text == nullptr) {
     const auto value = node.value<double>();
@@ -34,7 +33,7 @@ std::optional<Quantity> read_expression(CaseContext& context,
   static const std::vector<std::string> letters = {"i", "j", "k"};
   std::string bound = text->get();
   if (!context.indices.empty()) {
-    bound = with_values(
+    bound = case_data::with_values(
         filled(context, bound, context.indices, result.line, key),
         {letters.begin(), letters.begin() + std::ssize(context.indices)},
         std::vector<double>(context.indices.begin(), context.indices.end()));
@@ -62,7 +61,8 @@ std::optional<Quantity> read_expression(CaseContext& context,
 
 /// The first name that a design variable moves or that has no value; empty
 /// when there is none.
-std::string moving_name(const CaseContext& context, const Quantity& quantity) {
+std::string moving_name(const CaseContext& context,
+                        const case_data::Quantity& quantity) {
   for (const int name : quantity.expression.names_used()) {
     const auto k = static_cast<std::size_t>(name);
     if (k < context.names.size() &&
@@ -75,14 +75,13 @@ std::string moving_name(const CaseContext& context, const Quantity& quantity) {
 
 }  // namespace
 
-std::optional<Quantity> read_quantity(CaseContext& context,
-                                      const toml::node& node,
-                                      std::optional<Dimension> dimension,
-                                      const std::string& key) {
+std::optional<case_data::Quantity> read_quantity(
+    CaseContext& context, const toml::node& node,
+    std::optional<Dimension> dimension, const std::string& key) {
   return read_expression(context, node, dimension, key, context.names);
 }
 
-std::optional<PlaceQuantity> read_place_quantity(
+std::optional<case_data::PlaceQuantity> read_place_quantity(
     CaseContext& context, const toml::node& node,
     std::optional<Dimension> dimension, const std::string& key) {
   std::vector<std::string> names = context.names;
@@ -94,10 +93,10 @@ std::optional<PlaceQuantity> read_place_quantity(
   const std::vector<int> used = quantity->expression.names_used();
   const bool of_place =
       !used.empty() && used.back() >= static_cast<int>(context.names.size());
-  return PlaceQuantity{*std::move(quantity), of_place};
+  return case_data::PlaceQuantity{*std::move(quantity), of_place};
 }
 
-void require_frozen(CaseContext& context, const Quantity& quantity,
+void require_frozen(CaseContext& context, const case_data::Quantity& quantity,
                     const char* what) {
   if (const std::string name = moving_name(context, quantity); !name.empty()) {
     context.problems.add(
@@ -140,4 +139,4 @@ std::optional<double> read_constant(CaseContext& context,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

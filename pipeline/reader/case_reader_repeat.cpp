@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -248,7 +248,7 @@ std::vector<std::vector<int>> copies_of(CaseContext& context,
 }
 
 std::string filled(CaseContext& context, const std::string& text,
-                   const std::vector<int>& indices, SourceLine line,
+                   const std::vector<int>& indices, case_data::SourceLine line,
                    const std::string& path) {
   std::string result;
   std::size_t at = 0;
@@ -278,4 +278,4 @@ std::string filled(CaseContext& context, const std::string& text,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -7,7 +7,7 @@
 
 #include "pipeline/reader/case_reader_fields.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 /// What `repeat` says in `node`, which is of `path`: one to three counts, each
 /// a whole number or a constant expression of one. Empty with a problem noted.
@@ -28,7 +28,7 @@ std::vector<std::vector<int>> copies_of(CaseContext& context,
 /// of b's sign, so that {i % 12 + 1} follows i around twelve. Notes what is
 /// wrong at `line`.
 std::string filled(CaseContext& context, const std::string& text,
-                   const std::vector<int>& indices, SourceLine line,
+                   const std::vector<int>& indices, case_data::SourceLine line,
                    const std::string& path);
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

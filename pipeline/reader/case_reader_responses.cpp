@@ -12,16 +12,16 @@
 #include "pipeline/case_data/scan_path.h"
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
-const std::vector<Named<ScanMeasure>>& scan_measures() {
-  static const std::vector<Named<ScanMeasure>> measures = {
-      {"rms", ScanMeasure::Rms},
-      {"mean", ScanMeasure::Mean},
-      {"p95", ScanMeasure::P95},
-      {"largest", ScanMeasure::Largest}};
+const std::vector<case_data::Named<scan::ScanMeasure>>& scan_measures() {
+  static const std::vector<case_data::Named<scan::ScanMeasure>> measures = {
+      {"rms", scan::ScanMeasure::Rms},
+      {"mean", scan::ScanMeasure::Mean},
+      {"p95", scan::ScanMeasure::P95},
+      {"largest", scan::ScanMeasure::Largest}};
   return measures;
 }
 
@@ -53,10 +53,10 @@ int index_among(CaseContext& context, const CaseTable& table, const char* key,
 /// A radius is a mean of even powers; a norm of displacements has second
 /// derivatives from 2 on.
 double read_power(CaseContext& context, const CaseTable& table,
-                  const ResponseEntry& response) {
+                  const case_data::ResponseEntry& response) {
   constexpr double kUsualOfRadius = 16.0;
   constexpr double kMostOfRadius = 64.0;
-  const bool of_radius = response.kind == ResponseKind::Radius;
+  const bool of_radius = response.kind == case_data::ResponseKind::Radius;
   const double usual = of_radius ? kUsualOfRadius : response.power;
   const double power = table.constant("power").value_or(usual);
   bool good = power > 1.0;
@@ -65,7 +65,7 @@ double read_power(CaseContext& context, const CaseTable& table,
     good =
         power >= 2.0 && power <= kMostOfRadius && std::fmod(power, 2.0) == 0.0;
     must_be = fmt::format("even, from 2 to {:g}", kMostOfRadius);
-  } else if (response.kind == ResponseKind::DisplacementNorm) {
+  } else if (response.kind == case_data::ResponseKind::DisplacementNorm) {
     good = power >= 2.0;
     must_be = "2 or above";
   }
@@ -79,24 +79,26 @@ double read_power(CaseContext& context, const CaseTable& table,
   return power;
 }
 
-bool any_yields(const Case& result) {
-  const std::vector<BodyEntry> bodies = solid_bodies(result);
-  return std::any_of(bodies.begin(), bodies.end(), [&](const BodyEntry& body) {
-    const auto material = static_cast<std::size_t>(body.material);
-    return material < result.materials.size() &&
-           result.materials[material].yield_strength;
-  });
+bool any_yields(const case_data::Case& result) {
+  const std::vector<case_data::BodyEntry> bodies =
+      case_data::solid_bodies(result);
+  return std::any_of(
+      bodies.begin(), bodies.end(), [&](const case_data::BodyEntry& body) {
+        const auto material = static_cast<std::size_t>(body.material);
+        return material < result.materials.size() &&
+               result.materials[material].yield_strength;
+      });
 }
 
 /// What stress norms are measured in; the least yield strength when left out.
 std::optional<double> stress_scale(CaseContext& context, const CaseTable& table,
-                                   const ResponseEntry& response,
-                                   const Case& result) {
+                                   const case_data::ResponseEntry& response,
+                                   const case_data::Case& result) {
   if (table.has("scale")) {
     return constant_above(context, table, "scale", 0.0, 1.0);
   }
-  if (response.kind == ResponseKind::VonMisesKs && context.bodies_good &&
-      !any_yields(result)) {
+  if (response.kind == case_data::ResponseKind::VonMisesKs &&
+      context.bodies_good && !any_yields(result)) {
     context.problems.add(
         table.line(),
         fmt::format("{} has no 'scale', and no body's material a "
@@ -108,27 +110,27 @@ std::optional<double> stress_scale(CaseContext& context, const CaseTable& table,
 }
 
 /// Over the case's names and the responses above this one.
-Quantity read_value(CaseContext& context, const CaseTable& table,
-                    const Case& result) {
+case_data::Quantity read_value(CaseContext& context, const CaseTable& table,
+                               const case_data::Case& result) {
   const std::size_t own = context.names.size();
-  for (const ResponseEntry& response : result.responses) {
+  for (const case_data::ResponseEntry& response : result.responses) {
     const bool taken = std::find(context.names.begin(), context.names.end(),
                                  response.name) != context.names.end();
     // A name of the case hides a response of that name.
     context.names.push_back(taken ? "" : response.name);
   }
-  Quantity value = table.quantity_or_zero("value");
+  case_data::Quantity value = table.quantity_or_zero("value");
   context.names.resize(own);
   return value;
 }
 
 /// The region of a distance, and how smooth extremes over places are.
 void read_place(CaseContext& context, const CaseTable& table,
-                ResponseEntry& response) {
+                case_data::ResponseEntry& response) {
   if (table.has("smoothing")) {
     response.smoothing = constant_above(context, table, "smoothing", 0.0, 1.0);
   }
-  if (response.kind != ResponseKind::Distance) {
+  if (response.kind != case_data::ResponseKind::Distance) {
     return;
   }
   if (table.has("keep_out") == table.has("keep_in")) {
@@ -139,22 +141,22 @@ void read_place(CaseContext& context, const CaseTable& table,
                     table.path(), table.has("keep_in") ? "both" : "none"));
     return;
   }
-  response.side =
-      table.has("keep_in") ? RegionSide::KeepIn : RegionSide::KeepOut;
+  response.side = table.has("keep_in") ? case_data::RegionSide::KeepIn
+                                       : case_data::RegionSide::KeepOut;
   response.region =
       table.place_quantity(table.has("keep_in") ? "keep_in" : "keep_out");
 }
 
 /// Bytes of a scan belong to the case, by their fingerprint: scans are large.
 void keep_scan(CaseContext& context, const CaseTable& table,
-               const std::string& scan, Case& result) {
-  const auto known =
-      std::any_of(result.files.begin(), result.files.end(),
-                  [&](const CaseFile& file) { return file.path == scan; });
+               const std::string& scan, case_data::Case& result) {
+  const auto known = std::any_of(
+      result.files.begin(), result.files.end(),
+      [&](const case_data::CaseFile& file) { return file.path == scan; });
   if (known) {
     return;
   }
-  const std::filesystem::path path = scan_path(result, scan);
+  const std::filesystem::path path = case_data::scan_path(result, scan);
   const std::string ending = path.extension().string();
   if (ending != ".stl" && ending != ".obj" && ending != ".STL") {
     context.problems.add(
@@ -170,7 +172,7 @@ void keep_scan(CaseContext& context, const CaseTable& table,
                     table.path(), path.string()));
   } else {
     try {
-      result.files.push_back({scan, content_hash(read_file(path))});
+      result.files.push_back({scan, case_data::content_hash(read_file(path))});
     } catch (const IoError& error) {
       context.problems.add(table.line("scan"), error.what());
     }
@@ -179,29 +181,32 @@ void keep_scan(CaseContext& context, const CaseTable& table,
 
 /// Films of a gap, or of a distance to a scan.
 void read_response_films(CaseContext& context, const CaseTable& table,
-                         const Case& result, ResponseEntry& response) {
-  const std::vector<std::string> known = film_names(result);
+                         const case_data::Case& result,
+                         case_data::ResponseEntry& response) {
+  const std::vector<std::string> known = case_data::film_names(result);
   response.films = table.names("films");
   for (const std::string& film : response.films) {
     if (std::find(known.begin(), known.end(), film) == known.end()) {
       context.problems.unknown(table.line("films"), "film", film, known);
     }
   }
-  if (response.kind == ResponseKind::Gap && table.has("films") &&
+  if (response.kind == case_data::ResponseKind::Gap && table.has("films") &&
       (response.films.size() != 2 || response.films[0] == response.films[1])) {
     context.problems.add(
         table.line("films"),
         fmt::format("{}.films has [{}]; a gap is between two films",
                     table.path(), fmt::join(response.films, ", ")));
   }
-  if (response.kind == ResponseKind::ScanDistance && response.films.empty()) {
+  if (response.kind == case_data::ResponseKind::ScanDistance &&
+      response.films.empty()) {
     response.films = known;
   }
 }
 
 /// What only liquid has; parts of plane faces may have none.
 void require_films(CaseContext& context, const CaseTable& table,
-                   const ResponseRow& row, const Case& result) {
+                   const case_data::ResponseRow& row,
+                   const case_data::Case& result) {
   if (result.films.empty() && row.of_films) {
     context.problems.add(
         table.line("kind"),
@@ -211,17 +216,19 @@ void require_films(CaseContext& context, const CaseTable& table,
   }
 }
 
-ResponseEntry read_response(CaseContext& context, const CaseTable& table,
-                            const ResponseRow& row, const Case& result) {
-  ResponseEntry response;
+case_data::ResponseEntry read_response(CaseContext& context,
+                                       const CaseTable& table,
+                                       const case_data::ResponseRow& row,
+                                       const case_data::Case& result) {
+  case_data::ResponseEntry response;
   response.name = table.name();
   response.line = table.line();
   response.kind = row.kind;
   table.check_kind(row.name, row.keys);
   require_films(context, table, row, result);
   response.surface = surface_on(context, table, result);
-  response.direction =
-      table.vector_or_zero(needs_key(row, "axis") ? "axis" : "direction");
+  response.direction = table.vector_or_zero(
+      case_data::needs_key(row, "axis") ? "axis" : "direction");
   const std::vector<std::string>& optional = row.keys.optional;
   if (std::find(optional.begin(), optional.end(), "load_case") !=
       optional.end()) {
@@ -235,14 +242,17 @@ ResponseEntry read_response(CaseContext& context, const CaseTable& table,
   read_place(context, table, response);
   if (const auto film = table.text("film")) {
     response.film = *film;
-    index_among(context, table, "film", film_names(result));
+    index_among(context, table, "film", case_data::film_names(result));
   }
   read_response_films(context, table, result, response);
   response.measure =
-      row_named(scan_measures(), table.choice("measure").value_or("rms")).value;
+      case_data::row_named(scan_measures(),
+                           table.choice("measure").value_or("rms"))
+          .value;
   response.scan = table.text("scan").value_or("");
-  response.body = index_among(context, table, "body", body_names(result));
-  if (response.kind == ResponseKind::Expression) {
+  response.body =
+      index_among(context, table, "body", case_data::body_names(result));
+  if (response.kind == case_data::ResponseKind::Expression) {
     response.value = read_value(context, table, result);
   }
   return response;
@@ -258,8 +268,9 @@ TableSpec response_table() {
       true,
       TableNeed::ForParts,
       "A number that the solver reports",
-      {{"kind", K::Choice, D::None, true, meanings_of(response_kinds()),
-        choices_of(response_kinds())},
+      {{"kind", K::Choice, D::None, true,
+        case_data::meanings_of(case_data::response_kinds()),
+        case_data::choices_of(case_data::response_kinds())},
        {"on", K::Name, D::None, false,
         "of displacements and rotations: the surface"},
        {"direction", K::Vector, D::None, false,
@@ -299,7 +310,7 @@ TableSpec response_table() {
        {"measure", K::Choice, D::None, false,
         "of scan_distance: root of the mean square, mean, what 95 % of the "
         "vertices do not exceed, largest; rms when left out",
-        choices_of(scan_measures())},
+        case_data::choices_of(scan_measures())},
        {"body", K::Name, D::None, false, "of pressure"},
        {"value", K::Quantity, std::nullopt, false,
         "of expression: over the case's names and the responses above"}}};
@@ -307,13 +318,13 @@ TableSpec response_table() {
 
 /// The load case that `key` names; the first when left out or wrong.
 int index_of_load_case(CaseContext& context, const CaseTable& table,
-                       const Case& result, const char* key) {
+                       const case_data::Case& result, const char* key) {
   const auto wanted = table.text(key);
   if (!wanted) {
     return 0;
   }
   std::vector<std::string> known;
-  for (const LoadCaseEntry& entry : result.load_cases) {
+  for (const case_data::LoadCaseEntry& entry : result.load_cases) {
     if (entry.name == *wanted) {
       return static_cast<int>(known.size());
     }
@@ -324,10 +335,11 @@ int index_of_load_case(CaseContext& context, const CaseTable& table,
 }
 
 void read_responses(CaseContext& context, const toml::table& root,
-                    Case& result) {
+                    case_data::Case& result) {
   for (const CaseTable& table : named_tables(context, root, "responses")) {
     if (const auto kind = table.choice("kind")) {
-      const ResponseRow& row = row_named(response_kinds(), *kind);
+      const case_data::ResponseRow& row =
+          case_data::row_named(case_data::response_kinds(), *kind);
       result.responses.push_back(read_response(context, table, row, result));
       if (const std::string& scan = result.responses.back().scan;
           !scan.empty()) {
@@ -337,4 +349,4 @@ void read_responses(CaseContext& context, const toml::table& root,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

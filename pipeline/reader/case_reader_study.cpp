@@ -10,7 +10,7 @@
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/case_data/study_kinds.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -18,22 +18,24 @@ constexpr double kCoarsest = 8.0;  // edges of a coarser model over the case's
 
 /// The dimension of a response; notes an unknown name.
 std::optional<Dimension> response_dimension(CaseContext& context,
-                                            const Case& result,
+                                            const case_data::Case& result,
                                             const std::string& name,
-                                            SourceLine line) {
-  for (const ResponseEntry& response : result.responses) {
+                                            case_data::SourceLine line) {
+  for (const case_data::ResponseEntry& response : result.responses) {
     if (response.name == name) {
-      return dimension_of(response.kind);
+      return case_data::dimension_of(response.kind);
     }
   }
-  context.problems.unknown(line, "response", name, response_names(result));
+  context.problems.unknown(line, "response", name,
+                           case_data::response_names(result));
   return std::nullopt;
 }
 
-void read_equal(CaseContext& context, const CaseTable& table, Case& result) {
-  StudyEntry& study = result.study;
+void read_equal(CaseContext& context, const CaseTable& table,
+                case_data::Case& result) {
+  case_data::StudyEntry& study = result.study;
   study.equal = table.names("equal");
-  const SourceLine line = table.line("equal");
+  const case_data::SourceLine line = table.line("equal");
   std::set<std::string> seen;
   std::set<Dimension> dimensions;
   for (const std::string& name : study.equal) {
@@ -58,7 +60,8 @@ void read_equal(CaseContext& context, const CaseTable& table, Case& result) {
   }
 }
 
-void read_targets(CaseContext& context, const CaseTable& table, Case& result) {
+void read_targets(CaseContext& context, const CaseTable& table,
+                  case_data::Case& result) {
   const toml::node* node = table.node("targets");
   if (node == nullptr) {
     return;
@@ -84,20 +87,21 @@ void read_targets(CaseContext& context, const CaseTable& table, Case& result) {
 }
 
 /// The distance to a scan that a match makes small, and how small is enough.
-void read_fit(CaseContext& context, const CaseTable& table, Case& result) {
+void read_fit(CaseContext& context, const CaseTable& table,
+              case_data::Case& result) {
   const auto name = table.text("fit");
   if (!name) {
     return;
   }
-  const SourceLine line = table.line("fit");
+  const case_data::SourceLine line = table.line("fit");
   result.study.fit = find_response(context, result, *name, line);
   if (!result.study.fit) {
     return;
   }
-  const ResponseEntry& response =
+  const case_data::ResponseEntry& response =
       result.responses[static_cast<std::size_t>(*result.study.fit)];
-  if (response.kind != ResponseKind::ScanDistance ||
-      response.measure != ScanMeasure::Rms) {
+  if (response.kind != case_data::ResponseKind::ScanDistance ||
+      response.measure != scan::ScanMeasure::Rms) {
     context.problems.add(
         line, fmt::format("study.fit names '{}'; expected a response of kind = "
                           "\"scan_distance\" and measure = \"rms\"",
@@ -117,7 +121,7 @@ void read_fit(CaseContext& context, const CaseTable& table, Case& result) {
 
 /// A study that moves something needs something to move.
 void check_variables(CaseContext& context, const CaseTable& table,
-                     const std::string& kind, const Case& result) {
+                     const std::string& kind, const case_data::Case& result) {
   if (result.design.empty()) {
     context.problems.add(
         table.line(),
@@ -129,48 +133,51 @@ void check_variables(CaseContext& context, const CaseTable& table,
 
 }  // namespace
 
-std::optional<int> find_response(CaseContext& context, const Case& result,
-                                 const std::string& name, SourceLine line) {
+std::optional<int> find_response(CaseContext& context,
+                                 const case_data::Case& result,
+                                 const std::string& name,
+                                 case_data::SourceLine line) {
   if (!response_dimension(context, result, name, line)) {
     return std::nullopt;
   }
-  return response_index(result, name);
+  return case_data::response_index(result, name);
 }
 
 namespace {
 
 /// Index of the response that `key` names; 0 for none, which is noted.
 int index_of_response(CaseContext& context, const CaseTable& table,
-                      const char* key, const Case& result) {
+                      const char* key, const case_data::Case& result) {
   const auto name = table.text(key);
   if (!name || !response_dimension(context, result, *name, table.line(key))) {
     return 0;
   }
-  return response_index(result, *name);
+  return case_data::response_index(result, *name);
 }
 
 std::optional<double> bound_of(CaseContext& context, const CaseTable& table,
-                               const char* key, const Case& result,
+                               const char* key, const case_data::Case& result,
                                int response) {
   const toml::node* node = table.node(key);
   if (node == nullptr) {
     return std::nullopt;
   }
-  const ResponseKind kind = result.responses[response].kind;
-  return read_constant(context, *node,
-                       kind == ResponseKind::Expression
-                           ? std::nullopt
-                           : std::optional<Dimension>(dimension_of(kind)),
-                       table.path() + "." + key);
+  const case_data::ResponseKind kind = result.responses[response].kind;
+  return read_constant(
+      context, *node,
+      kind == case_data::ResponseKind::Expression
+          ? std::nullopt
+          : std::optional<Dimension>(case_data::dimension_of(kind)),
+      table.path() + "." + key);
 }
 
 void read_constraints(CaseContext& context, const CaseTable& table,
-                      Case& result) {
+                      case_data::Case& result) {
   for (const CaseTable& entry : table.tables("constraints", "constraint")) {
     if (!entry.has("response") || result.responses.empty()) {
       continue;
     }
-    ConstraintEntry constraint{
+    case_data::ConstraintEntry constraint{
         .response = index_of_response(context, entry, "response", result),
         .line = entry.line()};
     if (!entry.has("min") && !entry.has("max")) {
@@ -196,12 +203,12 @@ void read_constraints(CaseContext& context, const CaseTable& table,
 
 /// What a gradient method asks of responses that have no derivatives.
 void check_derivatives(CaseContext& context, const CaseTable& table,
-                       const Case& result) {
-  if (!asks_for_gradients(result.study)) {
+                       const case_data::Case& result) {
+  if (!case_data::asks_for_gradients(result.study)) {
     return;
   }
-  for (const int response : studied_responses(result)) {
-    if (!has_derivatives(result, response)) {
+  for (const int response : case_data::studied_responses(result)) {
+    if (!case_data::has_derivatives(result, response)) {
       context.problems.add(
           table.line(),
           fmt::format("response '{}' has no derivatives, and method {} needs "
@@ -213,7 +220,7 @@ void check_derivatives(CaseContext& context, const CaseTable& table,
 }
 
 void read_objective(CaseContext& context, const CaseTable& table,
-                    Case& result) {
+                    case_data::Case& result) {
   if (result.responses.empty() || !context.problems.empty()) {
     return;
   }
@@ -230,7 +237,7 @@ void read_objective(CaseContext& context, const CaseTable& table,
 }
 
 void read_coarse_first(CaseContext& context, const CaseTable& table,
-                       StudyEntry& study) {
+                       case_data::StudyEntry& study) {
   const std::optional<double> factor = table.constant("coarse_first");
   if (!factor) {
     return;
@@ -247,7 +254,7 @@ void read_coarse_first(CaseContext& context, const CaseTable& table,
 }
 
 void read_time_limit(CaseContext& context, const CaseTable& table,
-                     StudyEntry& study) {
+                     case_data::StudyEntry& study) {
   const std::optional<double> limit = table.constant("time_limit");
   if (limit && !(*limit > 0.0)) {
     context.problems.add(
@@ -262,20 +269,21 @@ void read_time_limit(CaseContext& context, const CaseTable& table,
 
 }  // namespace
 
-void read_study(CaseContext& context, const toml::table& root, Case& result) {
+void read_study(CaseContext& context, const toml::table& root,
+                case_data::Case& result) {
   const auto table = single_table(context, root, "study");
   if (!table) {
     return;
   }
-  StudyEntry& study = result.study;
+  case_data::StudyEntry& study = result.study;
   study.line = table->line();
   const std::string asked = table->choice("kind").value_or("analyse");
   const std::string kind =
       asked == "family" ? read_members(context, *table, result) : asked;
-  study.kind = row_named(study_kinds(), kind).kind;
-  const bool minimizes =
-      study.kind == StudyKind::Minimize || study.kind == StudyKind::Pareto;
-  const bool sweeps = study.kind == StudyKind::Sweep;
+  study.kind = case_data::row_named(case_data::study_kinds(), kind).kind;
+  const bool minimizes = study.kind == case_data::StudyKind::Minimize ||
+                         study.kind == case_data::StudyKind::Pareto;
+  const bool sweeps = study.kind == case_data::StudyKind::Sweep;
   study.tolerance =
       table->constant("tolerance").value_or(minimizes ? 1e-4 : 1e-3);
   if (!(study.tolerance > 0.0)) {
@@ -291,7 +299,7 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   read_time_limit(context, *table, study);
   study.refreeze = table->flag("refreeze").value_or(study.refreeze);
   check_keys(context, *table, kind);
-  if (study.kind != StudyKind::Analyse) {
+  if (study.kind != case_data::StudyKind::Analyse) {
     check_variables(context, *table, kind, result);
   }
   read_equal(context, *table, result);
@@ -300,10 +308,10 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   if (sweeps) {
     read_sweep(context, *table, result);
   }
-  if (study.kind == StudyKind::Tolerance) {
+  if (study.kind == case_data::StudyKind::Tolerance) {
     read_tolerance(context, *table, result);
   }
-  if (study.kind == StudyKind::Pareto) {
+  if (study.kind == case_data::StudyKind::Pareto) {
     read_front(context, *table, result);
   }
   if (minimizes || sweeps) {
@@ -311,4 +319,4 @@ void read_study(CaseContext& context, const toml::table& root, Case& result) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

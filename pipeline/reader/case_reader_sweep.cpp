@@ -6,14 +6,15 @@
 #include "optimize/sampling.h"
 #include "pipeline/reader/case_reader_study.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
 constexpr int kMostDesigns = 1'000'000;
 
 /// Levels per design variable, 0 where `levels` does not name it.
-void read_levels(CaseContext& context, const CaseTable& table, Case& result) {
+void read_levels(CaseContext& context, const CaseTable& table,
+                 case_data::Case& result) {
   const toml::node* node = table.node("levels");
   const toml::table* levels = node == nullptr ? nullptr : node->as_table();
   if (levels == nullptr || levels->empty()) {
@@ -28,7 +29,7 @@ void read_levels(CaseContext& context, const CaseTable& table, Case& result) {
   result.study.levels.assign(result.design.size(), 0);
   std::vector<std::string> names;
   names.reserve(result.design.size());
-  for (const DesignVariable& variable : result.design) {
+  for (const case_data::DesignVariable& variable : result.design) {
     names.push_back(variable.name);
   }
   double designs = 1.0;
@@ -70,8 +71,9 @@ void refuse(CaseContext& context, const CaseTable& table, const char* key,
 
 }  // namespace
 
-void read_sweep(CaseContext& context, const CaseTable& table, Case& result) {
-  StudyEntry& study = result.study;
+void read_sweep(CaseContext& context, const CaseTable& table,
+                case_data::Case& result) {
+  case_data::StudyEntry& study = result.study;
   if (study.method == "grid") {
     refuse(context, table, "count", "a grid's levels say how many");
     refuse(context, table, "seed", "a grid has nothing random");
@@ -81,12 +83,13 @@ void read_sweep(CaseContext& context, const CaseTable& table, Case& result) {
   refuse(context, table, "levels", "they belong to method = \"grid\"");
   if (study.method == "sobol") {
     refuse(context, table, "seed", "a Sobol sequence has nothing random");
-    if (static_cast<int>(result.design.size()) > kMostSobolDimensions) {
+    if (static_cast<int>(result.design.size()) >
+        optimize::kMostSobolDimensions) {
       context.problems.add(
           table.line("method"),
           fmt::format("method sobol serves {} design variables at most, the "
                       "case has {}; try latin_hypercube",
-                      kMostSobolDimensions, result.design.size()));
+                      optimize::kMostSobolDimensions, result.design.size()));
     }
   }
   if (!table.has("count")) {
@@ -99,4 +102,4 @@ void read_sweep(CaseContext& context, const CaseTable& table, Case& result) {
   study.seed = table.positive_integer("seed").value_or(study.seed);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -9,7 +9,7 @@
 
 #include "pipeline/case_data/case_checks.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -48,12 +48,13 @@ void check_top(CaseContext& context, const toml::table& root) {
       context.problems.add(
           context.line_of(node),
           fmt::format("unknown {} '{}'{}", node.is_table() ? "table" : "key",
-                      name, advice(name, known)));
+                      name, case_data::advice(name, known)));
     }
   }
 }
 
-void read_head(CaseContext& context, const toml::table& root, Case& result) {
+void read_head(CaseContext& context, const toml::table& root,
+               case_data::Case& result) {
   const toml::node* title = root.get("title");
   if (title != nullptr) {
     if (const auto* text = title->as_string()) {
@@ -93,7 +94,7 @@ bool is_name(const std::string& name) {
 }
 
 void check_name(CaseContext& context, const std::string& name,
-                const std::string& table, SourceLine line) {
+                const std::string& table, case_data::SourceLine line) {
   if (!is_name(name)) {
     context.problems.add(
         line, fmt::format("{}.{}: '{}' is no name; expected letters, digits "
@@ -104,9 +105,9 @@ void check_name(CaseContext& context, const std::string& name,
 
 /// All names that expressions know: design variables, then parameters.
 void claim_names(CaseContext& context, const std::vector<CaseTable>& design,
-                 const toml::table* parameters, Case& result) {
-  std::map<std::string, SourceLine> seen;
-  const auto claim = [&](const std::string& name, SourceLine line) {
+                 const toml::table* parameters, case_data::Case& result) {
+  std::map<std::string, case_data::SourceLine> seen;
+  const auto claim = [&](const std::string& name, case_data::SourceLine line) {
     if (is_reserved_name(name)) {
       context.problems.add(line,
                            fmt::format("'{}' is a name that expressions know "
@@ -135,7 +136,7 @@ void claim_names(CaseContext& context, const std::vector<CaseTable>& design,
 }
 
 /// Values of the parameters that no design variable moves.
-void find_constants(CaseContext& context, const Case& result) {
+void find_constants(CaseContext& context, const case_data::Case& result) {
   context.constants.assign(context.names.size(), std::nullopt);
   const std::size_t first = context.names.size() - result.parameters.size();
   for (const int k : result.parameter_order) {
@@ -160,26 +161,26 @@ void find_constants(CaseContext& context, const Case& result) {
 }
 
 void read_parameters(CaseContext& context, const toml::table* parameters,
-                     Case& result) {
+                     case_data::Case& result) {
   if (parameters != nullptr) {
     for (const auto& [key, node] : *parameters) {
       const std::string name(key.str());
-      const Quantity zero{.line = context.line_of(node),
-                          .key = "parameters." + name};
+      const case_data::Quantity zero{.line = context.line_of(node),
+                                     .key = "parameters." + name};
       result.parameters.push_back(
           {name, read_quantity(context, node, std::nullopt, zero.key)
                      .value_or(zero)});
     }
   }
-  order_parameters(result, context.problems);
+  case_data::order_parameters(result, context.problems);
   find_constants(context, result);
 }
 
 void read_design(const std::vector<CaseTable>& tables, CaseContext& context,
-                 Case& result) {
+                 case_data::Case& result) {
   for (std::size_t k = 0; k < tables.size(); ++k) {
     const CaseTable& table = tables[k];
-    DesignVariable& variable = result.design[k];
+    case_data::DesignVariable& variable = result.design[k];
     const auto initial = table.constant("initial");
     const std::vector<double> bounds = table.constants("bounds");
     variable.initial = initial.value_or(0.0);
@@ -205,14 +206,14 @@ void read_design(const std::vector<CaseTable>& tables, CaseContext& context,
 }
 
 /// How far rims of facets may lie off their curves, where it is not said.
-void set_within(Case& result) {
+void set_within(case_data::Case& result) {
   constexpr double kUsual = 0.25;  // of resolution.fea
-  for (FilmEntry& film : result.films) {
+  for (case_data::FilmEntry& film : result.films) {
     if (!(film.spec.within > 0.0)) {
       film.spec.within = kUsual * result.resolution.fea;
     }
   }
-  for (CapEntry& cap : result.caps) {
+  for (case_data::CapEntry& cap : result.caps) {
     if (!(cap.spec.within > 0.0)) {
       cap.spec.within = kUsual * result.resolution.fea;
     }
@@ -220,7 +221,7 @@ void set_within(Case& result) {
 }
 
 void read_resolution(CaseContext& context, const toml::table& root,
-                     Case& result) {
+                     case_data::Case& result) {
   const auto table = single_table(context, root, "resolution");
   if (!table) {
     return;
@@ -231,7 +232,7 @@ void read_resolution(CaseContext& context, const toml::table& root,
         fmt::format("resolution.{} is {:g}; an edge length is above 0", key,
                     edge));
   };
-  Resolution& resolution = result.resolution;
+  case_data::Resolution& resolution = result.resolution;
   const auto length = [&](const char* key, double otherwise) {
     const double edge = table->constant(key).value_or(otherwise);
     if (table->has(key) && !(edge > 0.0)) {
@@ -240,7 +241,7 @@ void read_resolution(CaseContext& context, const toml::table& root,
     return edge;
   };
   resolution.keep_facets = table->flag("keep_facets").value_or(false);
-  if (resolution.keep_facets && !has_facets(result)) {
+  if (resolution.keep_facets && !case_data::has_facets(result)) {
     context.problems.add(table->line("keep_facets"),
                          "resolution.keep_facets: no film is of kind facets or "
                          "file; take it out");
@@ -255,12 +256,13 @@ void read_resolution(CaseContext& context, const toml::table& root,
     resolution.export_edges.push_back(edge);
   }
   if (context.problems.size() == before && table->has("fea")) {
-    nest_film(resolution, table->line("film"), context.problems);
+    case_data::nest_film(resolution, table->line("film"), context.problems);
   }
   set_within(result);
 }
 
-void read_process(CaseContext& context, const toml::table& root, Case& result) {
+void read_process(CaseContext& context, const toml::table& root,
+                  case_data::Case& result) {
   const auto table = single_table(context, root, "process");
   if (!table) {
     return;
@@ -276,7 +278,7 @@ void read_process(CaseContext& context, const toml::table& root, Case& result) {
   result.process.smallest_feature = least;
 }
 
-void warn_of_unused(CaseContext& context, const Case& result) {
+void warn_of_unused(CaseContext& context, const case_data::Case& result) {
   for (std::size_t k = 0; k < context.names.size(); ++k) {
     const bool is_design = k < result.design.size();
     if (context.used[k] == 0) {
@@ -355,7 +357,7 @@ std::optional<CaseTable> single_table(CaseContext& context,
 }
 
 void read_tables(const toml::table& root, const OverriddenNodes& overridden,
-                 CaseProblems& problems, Case& result) {
+                 case_data::CaseProblems& problems, case_data::Case& result) {
   CaseContext context{.problems = problems, .overridden = overridden};
   check_top(context, root);
   read_head(context, root, result);
@@ -380,4 +382,4 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   warn_of_unused(context, result);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -8,11 +8,11 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/reader/case_reader_fields.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 /// Everything: the case's entries, and what is wrong in `problems`.
 void read_tables(const toml::table& root, const OverriddenNodes& overridden,
-                 CaseProblems& problems, Case& result);
+                 case_data::CaseProblems& problems, case_data::Case& result);
 
 /// The tables [`table`.NAME] in the order of the file.
 std::vector<CaseTable> named_tables(CaseContext& context,
@@ -24,65 +24,75 @@ std::optional<CaseTable> single_table(CaseContext& context,
                                       const char* table);
 
 /// Curves, of which some may come from files.
-void read_curves(CaseContext& context, const toml::table& root, Case& result);
+void read_curves(CaseContext& context, const toml::table& root,
+                 case_data::Case& result);
 
 /// A curve of kind "file": its points, or the curve of STEP edges.
-void read_curve_file(CaseContext& context, const CaseTable& table, Case& result,
-                     CurveEntry& curve);
+void read_curve_file(CaseContext& context, const CaseTable& table,
+                     case_data::Case& result, case_data::CurveEntry& curve);
 
 /// What the points of a csv file make.
-const std::vector<Named<CurveKind>>& point_curves();
+const std::vector<case_data::Named<case_data::CurveKind>>& point_curves();
 
 /// The text of the file that the key `file` names, from disk unless the case
 /// holds it, which it does from then on. Null with a problem noted; `expected`
 /// is for that.
 const std::string* file_text(CaseContext& context, const CaseTable& table,
                              const std::string& path, const char* expected,
-                             Case& result);
+                             case_data::Case& result);
 
 /// The ending of a file's name in lower case: ".step".
 std::string ending_of(const std::string& path);
 
 /// After the curves; solids after the films.
-void read_films(CaseContext& context, const toml::table& root, Case& result);
-void read_solids(CaseContext& context, const toml::table& root, Case& result);
+void read_films(CaseContext& context, const toml::table& root,
+                case_data::Case& result);
+void read_solids(CaseContext& context, const toml::table& root,
+                 case_data::Case& result);
 
 /// Curves, films, solids, materials, bodies, in this order; sets bodies_good.
-void read_geometry(CaseContext& context, const toml::table& root, Case& result);
+void read_geometry(CaseContext& context, const toml::table& root,
+                   case_data::Case& result);
 
 /// Walls and field energies; after the geometry.
-void read_walls(CaseContext& context, const toml::table& root, Case& result);
-void read_fields(CaseContext& context, const toml::table& root, Case& result);
+void read_walls(CaseContext& context, const toml::table& root,
+                case_data::Case& result);
+void read_fields(CaseContext& context, const toml::table& root,
+                 case_data::Case& result);
 
 /// The surface that a load, support or response names with `key`: a film
 /// or solid that encloses a body; empty without the key.
 std::string surface_on(CaseContext& context, const CaseTable& table,
-                       const Case& result, const char* key = "on");
+                       const case_data::Case& result, const char* key = "on");
 
 /// Supports and loads; after the geometry.
 void read_load_cases(CaseContext& context, const toml::table& root,
-                     Case& result);
+                     case_data::Case& result);
 
 /// What stress figures leave out, from [analysis]; after the geometry.
-void read_zones(CaseContext& context, const CaseTable& table, Case& result);
+void read_zones(CaseContext& context, const CaseTable& table,
+                case_data::Case& result);
 
 /// The load case that `key` names; the first when left out or wrong.
 int index_of_load_case(CaseContext& context, const CaseTable& table,
-                       const Case& result, const char* key = "load_case");
+                       const case_data::Case& result,
+                       const char* key = "load_case");
 
 /// After load cases and bodies.
 void read_responses(CaseContext& context, const toml::table& root,
-                    Case& result);
+                    case_data::Case& result);
 
 /// The members of a family, from tables or a csv file; the kind of each one's
 /// own study.
 std::string read_members(CaseContext& context, const CaseTable& study,
-                         Case& result);
+                         case_data::Case& result);
 
 /// After the responses.
-void read_study(CaseContext& context, const toml::table& root, Case& result);
+void read_study(CaseContext& context, const toml::table& root,
+                case_data::Case& result);
 
 /// Load cases, analysis, responses, study; after the geometry.
-void read_analysis(CaseContext& context, const toml::table& root, Case& result);
+void read_analysis(CaseContext& context, const toml::table& root,
+                   case_data::Case& result);
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

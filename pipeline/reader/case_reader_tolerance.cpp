@@ -5,7 +5,7 @@
 #include "optimize/sampling.h"
 #include "pipeline/reader/case_reader_study.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -14,14 +14,15 @@ constexpr int kUsualPoints = 7;  // of a front
 constexpr int kMostFrontPoints = 1000;
 
 void read_deviation(CaseContext& context, const std::string& name,
-                    const toml::node& node, Case& result) {
-  const auto at = std::find_if(
-      result.design.begin(), result.design.end(),
-      [&](const DesignVariable& variable) { return variable.name == name; });
+                    const toml::node& node, case_data::Case& result) {
+  const auto at = std::find_if(result.design.begin(), result.design.end(),
+                               [&](const case_data::DesignVariable& variable) {
+                                 return variable.name == name;
+                               });
   if (at == result.design.end()) {
     std::vector<std::string> names;
     names.reserve(result.design.size());
-    for (const DesignVariable& variable : result.design) {
+    for (const case_data::DesignVariable& variable : result.design) {
       names.push_back(variable.name);
     }
     context.problems.unknown(context.line_of(node), "design variable", name,
@@ -45,7 +46,7 @@ void read_deviation(CaseContext& context, const std::string& name,
 }  // namespace
 
 void read_tolerance(CaseContext& context, const CaseTable& table,
-                    Case& result) {
+                    case_data::Case& result) {
   const toml::node* node = table.node("deviations");
   const toml::table* deviations = node == nullptr ? nullptr : node->as_table();
   if (deviations == nullptr || deviations->empty()) {
@@ -61,12 +62,12 @@ void read_tolerance(CaseContext& context, const CaseTable& table,
     read_deviation(context, std::string(key.str()), value, result);
   }
   if (result.study.method == "sobol" &&
-      static_cast<int>(deviations->size()) > kMostSobolDimensions) {
+      static_cast<int>(deviations->size()) > optimize::kMostSobolDimensions) {
     context.problems.add(
         table.line("deviations"),
         fmt::format("method sobol serves {} variables that scatter at most, "
                     "found {}; try latin_hypercube",
-                    kMostSobolDimensions, deviations->size()));
+                    optimize::kMostSobolDimensions, deviations->size()));
   }
   if (result.study.method == "sobol" && table.has("seed")) {
     context.problems.add(table.line("seed"),
@@ -81,9 +82,10 @@ void read_tolerance(CaseContext& context, const CaseTable& table,
       table.positive_integer("seed").value_or(result.study.seed);
 }
 
-void read_front(CaseContext& context, const CaseTable& table, Case& result) {
+void read_front(CaseContext& context, const CaseTable& table,
+                case_data::Case& result) {
   const std::vector<std::string> names = table.names("objectives");
-  const SourceLine line = table.line("objectives");
+  const case_data::SourceLine line = table.line("objectives");
   if (names.size() != 2 || names[0] == names[1]) {
     context.problems.add(
         line,
@@ -100,4 +102,4 @@ void read_front(CaseContext& context, const CaseTable& table, Case& result) {
       table.integer_within("count", 3, kMostFrontPoints).value_or(kUsualPoints);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

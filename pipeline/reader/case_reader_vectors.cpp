@@ -4,7 +4,7 @@
 
 #include "pipeline/reader/case_reader_fields.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -60,7 +60,8 @@ const toml::array* CaseTable::three(const char* key, const char* wanted) const {
   return array;
 }
 
-std::optional<QuantityVector> CaseTable::vector(const char* key) const {
+std::optional<case_data::QuantityVector> CaseTable::vector(
+    const char* key) const {
   const toml::array* array = three(key, "[x, y, z]");
   if (array == nullptr) {
     return std::nullopt;
@@ -73,9 +74,10 @@ std::optional<QuantityVector> CaseTable::vector(const char* key) const {
                     });
 }
 
-std::vector<QuantityVector> CaseTable::vectors(const char* key) const {
-  std::vector<QuantityVector> result;
-  for (PathPoint& point : path_points(key)) {
+std::vector<case_data::QuantityVector> CaseTable::vectors(
+    const char* key) const {
+  std::vector<case_data::QuantityVector> result;
+  for (case_data::PathPoint& point : path_points(key)) {
     if (point.through) {
       context_->problems.add(
           point.at[0].line,
@@ -124,8 +126,9 @@ std::vector<Triangle> CaseTable::facets(const char* key,
   return result;
 }
 
-std::vector<PathPoint> CaseTable::path_points(const char* key) const {
-  std::vector<PathPoint> result;
+std::vector<case_data::PathPoint> CaseTable::path_points(
+    const char* key) const {
+  std::vector<case_data::PathPoint> result;
   if (!has(key)) {
     return result;
   }
@@ -158,7 +161,7 @@ std::vector<PathPoint> CaseTable::path_points(const char* key) const {
           [&](const toml::node& part, const std::string& name) {
             return read_quantity(*context_, part, dimension(key), name);
           });
-      result.push_back({std::move(at).value_or(QuantityVector{}),
+      result.push_back({std::move(at).value_or(case_data::QuantityVector{}),
                         item.is_table() && !point.repeated});
       result.back().at[0].line = context_->line_of(item);
     }
@@ -188,7 +191,7 @@ std::optional<Vec3> CaseTable::constant_vector(const char* key) const {
   return constants_of(*node(key), key, fmt::format("{}.{}", path_, key));
 }
 
-std::optional<std::array<PlaceQuantity, 3>> CaseTable::place_vector(
+std::optional<std::array<case_data::PlaceQuantity, 3>> CaseTable::place_vector(
     const char* key) const {
   const toml::array* array = three(key, "[x, y, z]");
   if (array == nullptr) {
@@ -202,12 +205,12 @@ std::optional<std::array<PlaceQuantity, 3>> CaseTable::place_vector(
                     });
 }
 
-std::optional<LocalAxes> CaseTable::axes(const char* key) const {
+std::optional<element::LocalAxes> CaseTable::axes(const char* key) const {
   if (!has(key)) {
     return std::nullopt;
   }
   const toml::array* array = node(key)->as_array();
-  LocalAxes axes;
+  element::LocalAxes axes;
   const IndexScope scope(*context_, indices_);
   const std::size_t before = context_->problems.size();
   for (std::size_t k = 0; k < 2 && array != nullptr && array->size() == 2;
@@ -220,7 +223,7 @@ std::optional<LocalAxes> CaseTable::axes(const char* key) const {
       (k == 0 ? axes.first : axes.second) = *v;
     }
   }
-  if (array == nullptr || array->size() != 2 || !span_a_plane(axes)) {
+  if (array == nullptr || array->size() != 2 || !element::span_a_plane(axes)) {
     if (context_->problems.size() == before) {
       note(key, "two directions that span a plane: [[1, 0, 0], [0, 1, 0]]");
     }
@@ -229,4 +232,4 @@ std::optional<LocalAxes> CaseTable::axes(const char* key) const {
   return axes;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -7,23 +7,24 @@
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
-const std::vector<Named<WallSide>>& wall_sides() {
-  static const std::vector<Named<WallSide>> sides = {
-      {"both", WallSide::Both},
-      {"inside", WallSide::Inside},
-      {"outside", WallSide::Outside}};
+const std::vector<case_data::Named<walls::WallSide>>& wall_sides() {
+  static const std::vector<case_data::Named<walls::WallSide>> sides = {
+      {"both", walls::WallSide::Both},
+      {"inside", walls::WallSide::Inside},
+      {"outside", walls::WallSide::Outside}};
   return sides;
 }
 
 /// Films that the table's `films` names, each once.
 std::vector<std::string> wall_films(CaseContext& context,
-                                    const CaseTable& table, const Case& result,
+                                    const CaseTable& table,
+                                    const case_data::Case& result,
                                     std::map<std::string, std::string>& taken) {
-  const std::vector<std::string> known = film_names(result);
+  const std::vector<std::string> known = case_data::film_names(result);
   std::vector<std::string> films;
   for (const std::string& film : table.names("films")) {
     const auto at = taken.find(film);
@@ -43,35 +44,25 @@ std::vector<std::string> wall_films(CaseContext& context,
   return films;
 }
 
-std::vector<std::string> curves_of(const Case& input, const WallEntry& wall) {
-  std::vector<std::string> curves;
-  for (const FilmEntry& film : input.films) {
-    if (std::count(wall.films.begin(), wall.films.end(), film.spec.name) > 0) {
-      curves.insert(curves.end(), film.spec.curves.begin(),
-                    film.spec.curves.end());
-    }
-  }
-  return curves;
-}
-
-bool meet(const Case& input, const WallEntry& a, const WallEntry& b) {
-  const std::vector<std::string> there = curves_of(input, b);
-  const std::vector<std::string> here = curves_of(input, a);
+bool meet(const case_data::Case& input, const case_data::WallEntry& a,
+          const case_data::WallEntry& b) {
+  const std::vector<std::string> there = case_data::curves_of_wall(input, b);
+  const std::vector<std::string> here = case_data::curves_of_wall(input, a);
   return std::any_of(here.begin(), here.end(), [&](const std::string& curve) {
     return std::find(there.begin(), there.end(), curve) != there.end();
   });
 }
 
 /// Walls whose films share a curve become one body, numbered by its first.
-void find_regions(CaseContext& context, Case& result) {
-  std::vector<WallEntry>& walls = result.walls;
+void find_regions(CaseContext& context, case_data::Case& result) {
+  std::vector<case_data::WallEntry>& walls = result.walls;
   for (std::size_t k = 0; k < walls.size(); ++k) {
     walls[k].region = static_cast<int>(k);
   }
   for (bool changed = true; changed;) {
     changed = false;
-    for (WallEntry& a : walls) {
-      for (const WallEntry& b : walls) {
+    for (case_data::WallEntry& a : walls) {
+      for (const case_data::WallEntry& b : walls) {
         if (b.region < a.region && meet(result, a, b)) {
           a.region = b.region;
           changed = true;
@@ -80,12 +71,12 @@ void find_regions(CaseContext& context, Case& result) {
     }
   }
   std::map<int, int> number;
-  std::map<int, const WallEntry*> first;
-  for (WallEntry& wall : walls) {
+  std::map<int, const case_data::WallEntry*> first;
+  for (case_data::WallEntry& wall : walls) {
     wall.region =
         number.try_emplace(wall.region, static_cast<int>(number.size()))
             .first->second;
-    const WallEntry& other =
+    const case_data::WallEntry& other =
         *first.try_emplace(wall.region, &wall).first->second;
     if (other.material != wall.material) {
       context.problems.add(
@@ -98,48 +89,23 @@ void find_regions(CaseContext& context, Case& result) {
 }
 
 int material_of(CaseContext& context, const CaseTable& table,
-                const Case& result) {
+                const case_data::Case& result) {
   const auto wanted = table.text("material");
   if (!wanted) {
-    return kVoid;
+    return case_data::kVoid;
   }
   std::vector<std::string> known;
-  for (const MaterialEntry& material : result.materials) {
+  for (const case_data::MaterialEntry& material : result.materials) {
     if (material.name == *wanted) {
       return static_cast<int>(known.size());
     }
     known.push_back(material.name);
   }
   context.problems.unknown(table.line("material"), "material", *wanted, known);
-  return kVoid;
+  return case_data::kVoid;
 }
 
 }  // namespace
-
-std::vector<std::string> wall_surface_names(const Case& input) {
-  std::map<std::string, int> uses;  // of curves by films with walls
-  for (const WallEntry& wall : input.walls) {
-    for (const std::string& curve : curves_of(input, wall)) {
-      ++uses[curve];
-    }
-  }
-  std::vector<std::string> names;
-  for (const WallEntry& wall : input.walls) {
-    for (const FilmEntry& film : input.films) {
-      if (std::count(wall.films.begin(), wall.films.end(), film.spec.name) ==
-          0) {
-        continue;
-      }
-      names.push_back(film.spec.name + "/back");
-      for (const std::string& curve : film.spec.curves) {
-        if (uses[curve] == 1) {
-          names.push_back(film.spec.name + "/rim:" + curve);
-        }
-      }
-    }
-  }
-  return names;
-}
 
 TableSpec wall_table() {
   using D = Dimension;
@@ -164,22 +130,24 @@ TableSpec wall_table() {
         "where the material lies: both sides of the film, all of it inside "
         "(towards the middle of the film's curves) or outside; both when left "
         "out",
-        choices_of(wall_sides())}}};
+        case_data::choices_of(wall_sides())}}};
 }
 
-void read_walls(CaseContext& context, const toml::table& root, Case& result) {
+void read_walls(CaseContext& context, const toml::table& root,
+                case_data::Case& result) {
   std::map<std::string, std::string> taken;
   for (const CaseTable& table : named_tables(context, root, "walls")) {
-    WallEntry wall{.name = table.name(), .line = table.line()};
+    case_data::WallEntry wall{.name = table.name(), .line = table.line()};
     wall.films = wall_films(context, table, result, taken);
     wall.thickness =
-        table.place_quantity("thickness").value_or(PlaceQuantity{});
+        table.place_quantity("thickness").value_or(case_data::PlaceQuantity{});
     if (wall.thickness.of_place) {
       require_frozen(context, wall.thickness.quantity,
                      "a thickness of x, y, z");
     }
-    wall.side =
-        row_named(wall_sides(), table.choice("side").value_or("both")).value;
+    wall.side = case_data::row_named(wall_sides(),
+                                     table.choice("side").value_or("both"))
+                    .value;
     wall.fillet = table.constant("fillet");
     if (wall.fillet && !(*wall.fillet >= 0.0)) {
       context.problems.add(table.line("fillet"),
@@ -193,4 +161,4 @@ void read_walls(CaseContext& context, const toml::table& root, Case& result) {
   find_regions(context, result);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

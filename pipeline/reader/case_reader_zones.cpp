@@ -2,7 +2,7 @@
 
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -17,9 +17,10 @@ double above_zero(CaseContext& context, const CaseTable& table,
   return value.value_or(0.0);
 }
 
-ExclusionZone::Box read_box(CaseContext& context, const CaseTable& table) {
+stress::ExclusionZone::Box read_box(CaseContext& context,
+                                    const CaseTable& table) {
   const std::size_t before = context.problems.size();
-  const ExclusionZone::Box box{
+  const stress::ExclusionZone::Box box{
       table.constant_vector("low").value_or(Vec3::Zero()),
       table.constant_vector("high").value_or(Vec3::Zero())};
   if (context.problems.size() == before &&
@@ -59,15 +60,16 @@ std::string zone_kind_of(CaseContext& context, const CaseTable& table) {
   return found;
 }
 
-ExclusionEntry read_zone(CaseContext& context, const CaseTable& table,
-                         const Case& result) {
-  ExclusionEntry entry{.line = table.line()};
+case_data::ExclusionEntry read_zone(CaseContext& context,
+                                    const CaseTable& table,
+                                    const case_data::Case& result) {
+  case_data::ExclusionEntry entry{.line = table.line()};
   const std::string kind = zone_kind_of(context, table);
   if (kind == "near") {
     entry.zone.surface = surface_on(context, table, result, "near");
     entry.zone.distance = above_zero(context, table, "distance");
   } else if (kind == "center") {
-    entry.zone.ball = ExclusionZone::Ball{
+    entry.zone.ball = stress::ExclusionZone::Ball{
         table.constant_vector("center").value_or(Vec3::Zero()),
         above_zero(context, table, "radius")};
   } else if (kind == "low") {
@@ -78,13 +80,14 @@ ExclusionEntry read_zone(CaseContext& context, const CaseTable& table,
 
 }  // namespace
 
-void read_zones(CaseContext& context, const CaseTable& table, Case& result) {
+void read_zones(CaseContext& context, const CaseTable& table,
+                case_data::Case& result) {
   for (const CaseTable& zone : table.tables("exclude", "exclude")) {
-    ExclusionEntry entry = read_zone(context, zone, result);
+    case_data::ExclusionEntry entry = read_zone(context, zone, result);
     entry.key =
         fmt::format("{}[{}]", zone.path(), result.analysis.exclude.size());
     result.analysis.exclude.push_back(std::move(entry));
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -223,4 +223,4 @@ bool is_later_table(const std::string& name) {
   return std::find(kLater.begin(), kLater.end(), name) != kLater.end();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -9,7 +9,7 @@
 
 #include "core/units.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 enum class KeyType {
   Text,
@@ -104,4 +104,4 @@ std::string json_schema();
 /// The reference's tables as markdown; docs/case-file.md holds them.
 std::string schema_markdown();
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -6,7 +6,7 @@
 #include "core/json.h"
 #include "pipeline/reader/case_schema.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -279,4 +279,4 @@ std::string schema_markdown() {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

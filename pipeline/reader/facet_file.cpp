@@ -16,7 +16,7 @@
 #include "io/read_stl.h"
 #include "pipeline/reader/case_reader_tables.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -25,7 +25,8 @@ constexpr std::size_t kMostFacets = 500000;
 /// The films of a datafile, as far as they are nothing but films.
 SurfaceMesh read_datafile(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
-  FilmComplex complex = complex_of(read_fe(read_file(path), name));
+  films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(read_file(path), name));
   // A datafile has gravity unless it says none; without weight it does nothing.
   const bool heavy = !complex.gravity.isZero() &&
                      std::any_of(complex.bodies.begin(), complex.bodies.end(),
@@ -59,10 +60,10 @@ SurfaceMesh read_datafile(const std::filesystem::path& path) {
 SurfaceMesh read_surfaces(const std::filesystem::path& path) {
   const std::string ending = ending_of(path.string());
   if (ending == ".stl") {
-    return read_stl(path);
+    return io::read_stl(path);
   }
   if (ending == ".obj") {
-    return read_obj(path);
+    return io::read_obj(path);
   }
   if (ending == ".fe") {
     return read_datafile(path);
@@ -124,14 +125,14 @@ std::string text_from_file(const std::filesystem::path& path,
 
 }  // namespace
 
-std::shared_ptr<const StartFacets> start_from_file(Case& input,
-                                                   const std::string& path,
-                                                   const std::string& surface,
-                                                   double scale) {
+std::shared_ptr<const films::StartFacets> start_from_file(
+    case_data::Case& input, const std::string& path, const std::string& surface,
+    double scale) {
   const std::string key =
       fmt::format("{}#surface={}&scale={}", path, surface, scale);
-  auto held = std::find_if(input.files.begin(), input.files.end(),
-                           [&](const CaseFile& f) { return f.path == key; });
+  auto held =
+      std::find_if(input.files.begin(), input.files.end(),
+                   [&](const case_data::CaseFile& f) { return f.path == key; });
   if (held == input.files.end()) {
     const auto place = std::filesystem::path(input.path).parent_path() / path;
     if (!std::filesystem::is_regular_file(place)) {
@@ -144,11 +145,11 @@ std::shared_ptr<const StartFacets> start_from_file(Case& input,
     input.files.push_back({key, text_from_file(place, surface, scale)});
     held = std::prev(input.files.end());
   }
-  SurfaceMesh mesh = read_obj_text(held->text, path);
-  auto start = std::make_shared<StartFacets>();
+  SurfaceMesh mesh = io::read_obj_text(held->text, path);
+  auto start = std::make_shared<films::StartFacets>();
   start->points = std::move(mesh.points);
   start->facets = std::move(mesh.facets);
   return start;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -6,7 +6,7 @@
 
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 /// The facets of a file that the case names by `path` (.stl, .obj, .fe), or of
 /// its surface of that name alone, their lengths times `scale`. The case keeps
@@ -18,9 +18,8 @@ namespace meniscus {
 /// Throws InvalidInput (another ending, no such surface, a datafile whose films
 /// hang on constraints or boundaries or have energies of their own), IoError,
 /// and what the format's reader throws.
-std::shared_ptr<const StartFacets> start_from_file(Case& input,
-                                                   const std::string& path,
-                                                   const std::string& surface,
-                                                   double scale);
+std::shared_ptr<const films::StartFacets> start_from_file(
+    case_data::Case& input, const std::string& path, const std::string& surface,
+    double scale);
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -6,12 +6,13 @@
 #include "pipeline/case_data/study_kinds.h"
 #include "pipeline/reader/member_file.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
 /// A member's problem at the member's own place.
-std::string placed(const Case& family, const MemberEntry& member,
+std::string placed(const case_data::Case& family,
+                   const case_data::MemberEntry& member,
                    const std::string& problem) {
   std::string what = problem;
   for (const std::string& override : member.overrides) {
@@ -26,13 +27,14 @@ std::string placed(const Case& family, const MemberEntry& member,
 
 }  // namespace
 
-CaseReading read_family_member(const Case& family, const MemberEntry& member) {
+CaseReading read_family_member(const case_data::Case& family,
+                               const case_data::MemberEntry& member) {
   std::vector<std::string> overrides = family.overrides;
   overrides.insert(overrides.end(), member.overrides.begin(),
                    member.overrides.end());
   // Last, so that a member is never a family itself.
   overrides.push_back(
-      fmt::format("study.kind={}", row_of(family.study.kind).name));
+      fmt::format("study.kind={}", case_data::row_of(family.study.kind).name));
   CaseReading reading =
       read_case_text(family.text, family.path, overrides, family.files);
   for (std::string& problem : reading.problems) {
@@ -44,10 +46,10 @@ CaseReading read_family_member(const Case& family, const MemberEntry& member) {
   return reading;
 }
 
-std::vector<std::string> member_problems(const Case& family) {
+std::vector<std::string> member_problems(const case_data::Case& family) {
   std::vector<std::string> problems;
   std::size_t more = 0;
-  for (const MemberEntry& member : family.study.members) {
+  for (const case_data::MemberEntry& member : family.study.members) {
     for (std::string& problem : read_family_member(family, member).problems) {
       if (problems.size() < kMostProblems) {
         problems.push_back(std::move(problem));
@@ -62,10 +64,10 @@ std::vector<std::string> member_problems(const Case& family) {
   return problems;
 }
 
-std::vector<Case> family_cases(const Case& family) {
-  std::vector<Case> cases;
+std::vector<case_data::Case> family_cases(const case_data::Case& family) {
+  std::vector<case_data::Case> cases;
   cases.reserve(family.study.members.size());
-  for (const MemberEntry& member : family.study.members) {
+  for (const case_data::MemberEntry& member : family.study.members) {
     CaseReading reading = read_family_member(family, member);
     if (!reading.input) {
       throw InvalidInput(fmt::format("{}", fmt::join(reading.problems, "\n")));
@@ -75,17 +77,17 @@ std::vector<Case> family_cases(const Case& family) {
   return cases;
 }
 
-VectorX member_numbers(const Case& member) {
+VectorX member_numbers(const case_data::Case& member) {
   std::vector<double> numbers;
   for (const auto& [name, value] :
-       parameter_values(member, initial_design(member))) {
+       case_data::parameter_values(member, case_data::initial_design(member))) {
     numbers.push_back(value);
   }
-  for (const DesignVariable& variable : member.design) {
+  for (const case_data::DesignVariable& variable : member.design) {
     numbers.insert(numbers.end(),
                    {variable.initial, variable.lower, variable.upper});
   }
   return Eigen::Map<const VectorX>(numbers.data(), std::ssize(numbers));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "pipeline/files/text_table.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 namespace {
 
@@ -26,8 +26,8 @@ class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path) {}
 
-  void read_head(const CsvRow& row);
-  void read_row(const CsvRow& row);
+  void read_head(const files::CsvRow& row);
+  void read_row(const files::CsvRow& row);
   void add(int line, const std::string& message) {
     if (file_.problems.size() < kMostProblems) {
       file_.problems.push_back(fmt::format("{}:{}: {}", path_, line, message));
@@ -37,7 +37,7 @@ class Reader {
   bool has_names() const { return name_ < head_.size(); }
 
  private:
-  void add_overrides(const CsvRow& row, MemberEntry& member);
+  void add_overrides(const files::CsvRow& row, case_data::MemberEntry& member);
 
   const std::string& path_;
   MemberFile file_;
@@ -46,7 +46,7 @@ class Reader {
   std::set<std::string> seen_;
 };
 
-void Reader::read_head(const CsvRow& row) {
+void Reader::read_head(const files::CsvRow& row) {
   head_ = row.cells;
   name_ = static_cast<std::size_t>(
       std::find(head_.begin(), head_.end(), "name") - head_.begin());
@@ -78,7 +78,8 @@ void Reader::read_head(const CsvRow& row) {
   }
 }
 
-void Reader::add_overrides(const CsvRow& row, MemberEntry& member) {
+void Reader::add_overrides(const files::CsvRow& row,
+                           case_data::MemberEntry& member) {
   std::map<std::string, std::string> lower;
   std::map<std::string, std::string> upper;
   for (std::size_t k = 0; k < head_.size(); ++k) {
@@ -114,16 +115,16 @@ void Reader::add_overrides(const CsvRow& row, MemberEntry& member) {
   }
 }
 
-void Reader::read_row(const CsvRow& row) {
+void Reader::read_row(const files::CsvRow& row) {
   if (row.cells.size() != head_.size()) {
     add(row.line, fmt::format("{} cells in this row and {} in the head row; "
                               "put quotes around a cell that holds commas",
                               row.cells.size(), head_.size()));
     return;
   }
-  MemberEntry member{.name = row.cells[name_],
-                     .overrides = {},
-                     .place = fmt::format("{}:{}", path_, row.line)};
+  case_data::MemberEntry member{.name = row.cells[name_],
+                                .overrides = {},
+                                .place = fmt::format("{}:{}", path_, row.line)};
   if (!is_member_name(member.name)) {
     add(row.line, fmt::format("'{}' is no name of a member; expected letters, "
                               "digits, _ and -",
@@ -147,7 +148,7 @@ bool is_member_name(const std::string& name) {
 }
 
 MemberFile read_member_text(const std::string& text, const std::string& path) {
-  const CsvRows csv = parse_csv(text);
+  const files::CsvRows csv = files::parse_csv(text);
   Reader reader(path);
   if (csv.open_quote > 0) {
     reader.add(csv.open_quote, "a quote that is never closed");
@@ -170,4 +171,4 @@ MemberFile read_member_file(const std::string& path) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

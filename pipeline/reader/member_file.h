@@ -6,13 +6,13 @@
 
 #include "pipeline/case_data/case_entries.h"
 
-namespace meniscus {
+namespace meniscus::reader {
 
 /// Of one table of members that are told; more are counted.
 inline constexpr std::size_t kMostProblems = 20;
 
 struct MemberFile {
-  std::vector<MemberEntry> members;   // in the order of the rows
+  std::vector<case_data::MemberEntry> members;  // in the order of the rows
   std::vector<std::string> problems;  // "FILE:LINE: what, found, expected, try"
 };
 
@@ -29,4 +29,4 @@ MemberFile read_member_file(const std::string& path);
 /// The name makes a folder: letters, digits, _ and -, at most 80.
 bool is_member_name(const std::string& name);
 
-}  // namespace meniscus
+}  // namespace meniscus::reader

@@ -12,39 +12,40 @@
 #include "fea/supports/springs.h"
 #include "fea/supports/supports.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
 constexpr double kNothing = 1e-12;  // a coefficient that rounding left
 
-DeckMaterial material_of(const Material& m) {
-  DeckMaterial result{.name = m.name,
-                      .youngs_modulus = m.youngs_modulus,
-                      .poisson_ratio = m.poisson_ratio,
-                      .density = m.density};
+io::DeckMaterial material_of(const element::Material& m) {
+  io::DeckMaterial result{.name = m.name,
+                          .youngs_modulus = m.youngs_modulus,
+                          .poisson_ratio = m.poisson_ratio,
+                          .density = m.density};
   result.thermal_expansion = m.thermal_expansion;
   if (m.orthotropic) {
-    const Orthotropic& o = *m.orthotropic;
+    const element::Orthotropic& o = *m.orthotropic;
     result.orthotropic =
-        DeckOrthotropic{o.youngs_moduli, o.poisson_ratios, o.shear_moduli,
-                        o.axes.first, o.axes.second};
+        io::DeckOrthotropic{o.youngs_moduli, o.poisson_ratios, o.shear_moduli,
+                            o.axes.first, o.axes.second};
   }
   return result;
 }
 
-bool along_axes(const LoadCase& load_case) {
+bool along_axes(const loads::LoadCase& load_case) {
   return std::all_of(load_case.supports.begin(), load_case.supports.end(),
-                     [](const Support& s) {
-                       return s.kind == SupportKind::Components && !s.axes;
+                     [](const loads::Support& s) {
+                       return s.kind == loads::SupportKind::Components &&
+                              !s.axes;
                      });
 }
 
 /// Rows of the held directions, each solved for a component of its own: that
 /// component has coefficient 1, and 0 in all other rows.
-std::vector<DeckEquation> solved_rows(int node, const Mat3& projector) {
+std::vector<io::DeckEquation> solved_rows(int node, const Mat3& projector) {
   Mat3 rows = Mat3::Identity() - projector;
-  std::vector<DeckEquation> result;
+  std::vector<io::DeckEquation> result;
   for (int k = 0; k < 3; ++k) {
     Eigen::Index row = 0;
     Eigen::Index column = 0;
@@ -70,18 +71,18 @@ std::vector<DeckEquation> solved_rows(int node, const Mat3& projector) {
 
 /// Supports of nodes held along the axes; equations for the others.
 struct HeldNodes {
-  std::vector<DeckSupport> supports;
-  std::vector<DeckEquation> equations;
+  std::vector<io::DeckSupport> supports;
+  std::vector<io::DeckEquation> equations;
 };
 
-HeldNodes held_nodes(const TetMesh& mesh, const LoadCase& load_case) {
-  const NodeFreedom freedom =
-      node_freedom(mesh, held_directions(mesh, load_case));
+HeldNodes held_nodes(const TetMesh& mesh, const loads::LoadCase& load_case) {
+  const solver::NodeFreedom freedom =
+      supports::node_freedom(mesh, supports::held_directions(mesh, load_case));
   HeldNodes result;
   std::map<std::array<bool, 3>, std::vector<int>> fixed;
   for (std::size_t h = 0; h < freedom.held.size(); ++h) {
     std::array<bool, 3> fix{};
-    for (const DeckEquation& row :
+    for (const io::DeckEquation& row :
          solved_rows(freedom.held[h], freedom.projector[h])) {
       if ((row.coefficients.array() != 0.0).count() == 1) {
         fix[row.dependent] = true;
@@ -99,22 +100,23 @@ HeldNodes held_nodes(const TetMesh& mesh, const LoadCase& load_case) {
   return result;
 }
 
-bool same(const std::vector<DeckEquation>& a,
-          const std::vector<DeckEquation>& b) {
+bool same(const std::vector<io::DeckEquation>& a,
+          const std::vector<io::DeckEquation>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const DeckEquation& x, const DeckEquation& y) {
+                    [](const io::DeckEquation& x, const io::DeckEquation& y) {
                       return x.node == y.node && x.dependent == y.dependent &&
                              x.coefficients == y.coefficients;
                     });
 }
 
 /// What the deck has no card for goes into nodal forces.
-void add_loads(const LoadCase& load_case, const TetMesh& mesh, DeckStep& step) {
-  LoadCase rest{.name = load_case.name};
+void add_loads(const loads::LoadCase& load_case, const TetMesh& mesh,
+               io::DeckStep& step) {
+  loads::LoadCase rest{.name = load_case.name};
   rest.forces = load_case.forces;
   rest.tractions = load_case.tractions;
   rest.remote_loads = load_case.remote_loads;
-  for (const SurfacePressure& p : load_case.pressures) {
+  for (const loads::SurfacePressure& p : load_case.pressures) {
     if (p.field) {
       rest.pressures.push_back(p);
     } else {
@@ -123,40 +125,41 @@ void add_loads(const LoadCase& load_case, const TetMesh& mesh, DeckStep& step) {
   }
   if (!rest.forces.empty() || !rest.tractions.empty() ||
       !rest.remote_loads.empty() || !rest.pressures.empty()) {
-    step.nodal_forces = nodal_forces(mesh, rest);
+    step.nodal_forces = loads::nodal_forces(mesh, rest);
   }
   step.gravity = load_case.gravity;
   if (load_case.spin) {
-    step.spin = DeckSpin{load_case.spin->point, load_case.spin->axis,
-                         load_case.spin->rate};
+    step.spin = io::DeckSpin{load_case.spin->point, load_case.spin->axis,
+                             load_case.spin->rate};
   }
-  step.temperature_change = temperature_change(mesh, load_case);
+  step.temperature_change = loads::temperature_change(mesh, load_case);
 }
 
 /// The springs of load case `step`, together with those of an earlier one that
 /// stands on the same beds.
-void add_springs(const std::vector<LoadCase>& load_cases, std::size_t step,
-                 const TetMesh& mesh, CalculixDeck& deck) {
-  const LoadCase& load_case = load_cases[step];
+void add_springs(const std::vector<loads::LoadCase>& load_cases,
+                 std::size_t step, const TetMesh& mesh,
+                 io::CalculixDeck& deck) {
+  const loads::LoadCase& load_case = load_cases[step];
   if (load_case.springs.empty()) {
     return;
   }
   const auto number = static_cast<int>(step);
   const auto same_beds = std::find_if(
       load_cases.begin(), load_cases.begin() + number,
-      [&](const LoadCase& c) { return c.springs == load_case.springs; });
+      [&](const loads::LoadCase& c) { return c.springs == load_case.springs; });
   const auto earlier = static_cast<int>(same_beds - load_cases.begin());
   if (earlier < number) {
-    for (DeckSprings& set : deck.springs) {
+    for (io::DeckSprings& set : deck.springs) {
       if (set.steps.front() == earlier) {
         set.steps.push_back(number);
       }
     }
     return;
   }
-  for (SpringSet& set : spring_sets(mesh, load_case)) {
-    DeckSprings springs{.stiffness = set.stiffness, .steps = {number}};
-    for (SpringSet::Spring& spring : set.springs) {
+  for (supports::SpringSet& set : supports::spring_sets(mesh, load_case)) {
+    io::DeckSprings springs{.stiffness = set.stiffness, .steps = {number}};
+    for (supports::SpringSet::Spring& spring : set.springs) {
       springs.springs.push_back(
           {std::move(spring.nodes), std::move(spring.coefficients)});
     }
@@ -166,18 +169,18 @@ void add_springs(const std::vector<LoadCase>& load_cases, std::size_t step,
 
 }  // namespace
 
-CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
-                              const std::vector<LoadCase>& load_cases,
-                              const TetMesh& mesh) {
-  CalculixDeck deck;
-  for (const Material& m : materials) {
+io::CalculixDeck calculix_deck_of(
+    const std::vector<element::Material>& materials,
+    const std::vector<loads::LoadCase>& load_cases, const TetMesh& mesh) {
+  io::CalculixDeck deck;
+  for (const element::Material& m : materials) {
     deck.materials.push_back(material_of(m));
   }
-  for (const LoadCase& load_case : load_cases) {
-    DeckStep step{.name = load_case.name};
-    std::vector<DeckEquation> equations;
+  for (const loads::LoadCase& load_case : load_cases) {
+    io::DeckStep step{.name = load_case.name};
+    std::vector<io::DeckEquation> equations;
     if (along_axes(load_case)) {
-      for (const Support& s : load_case.supports) {
+      for (const loads::Support& s : load_case.supports) {
         step.supports.push_back({.surface = s.surface,
                                  .fix_x = s.fix_x,
                                  .fix_y = s.fix_y,
@@ -203,12 +206,13 @@ CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
   return deck;
 }
 
-CalculixDeck calculix_deck_of(const Case& input, const EvaluatedCase& numbers,
-                              const TetMesh& mesh) {
-  CalculixDeck deck =
+io::CalculixDeck calculix_deck_of(const case_data::Case& input,
+                                  const case_data::EvaluatedCase& numbers,
+                                  const TetMesh& mesh) {
+  io::CalculixDeck deck =
       calculix_deck_of(numbers.materials, numbers.load_cases, mesh);
   deck.comments = {"case: " + input.title, "units: " + input.units.name};
   return deck;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

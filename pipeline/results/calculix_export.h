@@ -7,19 +7,20 @@
 #include "io/calculix_inp.h"
 #include "pipeline/forward/forward_model.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 /// The deck of a mesh: materials, one step per load case. Numbers that CalculiX
 /// has a card for go there (*DLOAD pressure, gravity, spin; *TEMPERATURE),
 /// other loads become nodal forces; oblique supports become equations, beds of
 /// springs SPRING1 elements. Throws InvalidInput for load cases with different
 /// oblique supports.
-CalculixDeck calculix_deck_of(const std::vector<Material>& materials,
-                              const std::vector<LoadCase>& load_cases,
-                              const TetMesh& mesh);
+io::CalculixDeck calculix_deck_of(
+    const std::vector<element::Material>& materials,
+    const std::vector<loads::LoadCase>& load_cases, const TetMesh& mesh);
 
 /// The same for a case, with its title and units.
-CalculixDeck calculix_deck_of(const Case& input, const EvaluatedCase& numbers,
-                              const TetMesh& mesh);
+io::CalculixDeck calculix_deck_of(const case_data::Case& input,
+                                  const case_data::EvaluatedCase& numbers,
+                                  const TetMesh& mesh);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -22,7 +22,7 @@
 #include "pipeline/results/evolved_film.h"
 #include "pipeline/results/results.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -32,7 +32,8 @@ constexpr double kDescentResidual = 1e-6;  // x tension x edge
 // rounding, and the shapes that sliding leaves do not matter.
 constexpr std::size_t kSlid = 2000;
 
-int refinements_of(const FilmComplex& complex, const DatafileOptions& options) {
+int refinements_of(const films::FilmComplex& complex,
+                   const DatafileOptions& options) {
   if (options.refinements) {
     return *options.refinements;
   }
@@ -46,8 +47,8 @@ int refinements_of(const FilmComplex& complex, const DatafileOptions& options) {
   return result;
 }
 
-double residual_bound_of(const FilmEnergy& energy, const Points& points,
-                         const FilmTargets& targets) {
+double residual_bound_of(const energy::FilmEnergy& energy, const Points& points,
+                         const films::FilmTargets& targets) {
   const double tension =
       targets.tension.empty()
           ? 0.0
@@ -56,49 +57,54 @@ double residual_bound_of(const FilmEnergy& energy, const Points& points,
 }
 
 /// The film as descent left it, with the verdict.
-FilmState state_after(const FilmComplex& complex, const DescentReport& descent,
-                      int steps) {
-  const FilmEnergy energy(complex);
-  const FilmTargets targets = targets_of(complex);
-  FilmState state;
+settle::FilmState state_after(const films::FilmComplex& complex,
+                              const settle::DescentReport& descent, int steps) {
+  const energy::FilmEnergy energy(complex);
+  const films::FilmTargets targets = energy::targets_of(complex);
+  settle::FilmState state;
   state.points = complex.mesh.points;
-  FilmReport& figures = state.report;
-  figures = figures_of(energy, targets, state.points, descent.pressure);
+  settle::FilmReport& figures = state.report;
+  figures = settle::figures_of(energy, targets, state.points, descent.pressure);
   figures.residual = descent.residual;
   figures.residual_bound = residual_bound_of(energy, state.points, targets);
   figures.iterations = steps;
-  const LowestMode mode =
-      lowest_mode_of(energy, targets, state.points, descent.pressure);
+  const energy::LowestMode mode =
+      settle::lowest_mode_of(energy, targets, state.points, descent.pressure);
   figures.min_eigenvalue = mode.eigenvalue;
   figures.index = mode.eigenvalue < 0.0 ? 1 : 0;
   const bool at_rest = figures.residual <= figures.residual_bound;
-  judge(energy, complex, {.reason = at_rest ? "" : descent.message}, state);
+  settle::judge(energy, complex, {.reason = at_rest ? "" : descent.message},
+                state);
   return state;
 }
 
-DescentReport descend_to_rest(FilmComplex& complex, DescentOptions options) {
-  const FilmEnergy energy(complex);
-  const FilmTargets targets = targets_of(complex);
+settle::DescentReport descend_to_rest(films::FilmComplex& complex,
+                                      settle::DescentOptions options) {
+  const energy::FilmEnergy energy(complex);
+  const films::FilmTargets targets = energy::targets_of(complex);
   const Points directions = energy.space().directions(complex.mesh.points);
   options.residual_bound =
       residual_bound_of(energy, complex.mesh.points, targets);
-  return descend(energy, targets, directions, complex.mesh.points, options);
+  return settle::descend(energy, targets, directions, complex.mesh.points,
+                         options);
 }
 
 /// The paper's motion, refined and groomed between its runs.
-FilmState descend_by_levels(FilmComplex& complex, int refinements,
-                            const DatafileOptions& options) {
-  const DescentMethod method = options.method == DatafileMethod::Gradient
-                                   ? DescentMethod::Gradient
-                                   : DescentMethod::ConjugateGradients;
-  DescentReport report;
+settle::FilmState descend_by_levels(films::FilmComplex& complex,
+                                    int refinements,
+                                    const DatafileOptions& options) {
+  const settle::DescentMethod method =
+      options.method == DatafileMethod::Gradient
+          ? settle::DescentMethod::Gradient
+          : settle::DescentMethod::ConjugateGradients;
+  settle::DescentReport report;
   int steps = 0;
   for (int level = 0; level <= refinements; ++level) {
     if (level > 0) {
-      complex = refine(complex).complex;
+      complex = groom::refine(complex).complex;
     }
-    equiangulate(complex);
-    average_vertices(complex);
+    groom::equiangulate(complex);
+    groom::average_vertices(complex);
     report = descend_to_rest(complex, {.method = method,
                                        .max_steps = options.max_steps,
                                        .monitor = options.monitor});
@@ -108,11 +114,11 @@ FilmState descend_by_levels(FilmComplex& complex, int refinements,
 }
 
 /// The film as it is, with the verdict on it.
-FilmState judge_macro(FilmComplex& complex, int iterations) {
-  DescentReport now =
+settle::FilmState judge_macro(films::FilmComplex& complex, int iterations) {
+  settle::DescentReport now =
       descend_to_rest(complex, {.max_steps = 0, .most_restore = 0.0});
   now.message = "the macro ended here";
-  FilmState state = state_after(complex, now, iterations);
+  settle::FilmState state = state_after(complex, now, iterations);
   if (state.report.residual > state.report.residual_bound) {
     state.report.verdict = fmt::format(
         "not at rest: the macro ended at a residual of {:.3g} (bound {:.3g})",
@@ -125,14 +131,16 @@ FilmState judge_macro(FilmComplex& complex, int iterations) {
 /// Our own route: raw facets flipped as Surface Evolver's users do with `u`,
 /// equilibrium, and where facets are few, vertices moved to where they have
 /// least area, as `g` does.
-FilmState settle(FilmComplex& complex, const FindOptions& options) {
-  equiangulate(complex, FlipRule::AnglesOnly);
-  FilmState state = find_equilibrium(complex, options);
+settle::FilmState settle(films::FilmComplex& complex,
+                         const settle::FindOptions& options) {
+  groom::equiangulate(complex, groom::FlipRule::AnglesOnly);
+  settle::FilmState state = settle::find_equilibrium(complex, options);
   if (state.failure || complex.mesh.facets.size() >= kSlid) {
     return state;
   }
-  FilmComplex slid = complex;
-  FilmState lower = slide_vertices(slid, {.settle = options.settle});
+  films::FilmComplex slid = complex;
+  settle::FilmState lower =
+      settle::slide_vertices(slid, {.settle = options.settle});
   if (lower.failure || !(lower.report.energy < state.report.energy)) {
     return state;
   }
@@ -144,22 +152,23 @@ FilmState settle(FilmComplex& complex, const FindOptions& options) {
 /// Settled; where junctions are to pop or there is no stable film, the
 /// histories of pops are searched from the start and from the start at rest,
 /// and the lowest films that they end at are settled in turn.
-FilmState settle_and_pop(FilmComplex& complex, const FindOptions& options,
-                         int& popped) {
-  FilmComplex raw = complex;
-  FilmState state = settle(complex, options);
-  FilmComplex rested = raw;
-  equiangulate(rested, FlipRule::AnglesOnly);
-  find_equilibrium(rested, {.settle = options.settle});
-  FilmComplex probe = rested;
+settle::FilmState settle_and_pop(films::FilmComplex& complex,
+                                 const settle::FindOptions& options,
+                                 int& popped) {
+  films::FilmComplex raw = complex;
+  settle::FilmState state = settle(complex, options);
+  films::FilmComplex rested = raw;
+  groom::equiangulate(rested, groom::FlipRule::AnglesOnly);
+  settle::find_equilibrium(rested, {.settle = options.settle});
+  films::FilmComplex probe = rested;
   if (!state.failure &&
-      pop_edges(probe).popped + pop_vertices(probe).popped == 0) {
+      groom::pop_edges(probe).popped + groom::pop_vertices(probe).popped == 0) {
     return state;
   }
-  std::optional<FilmState> lowest;
-  for (PoppedFilm& film :
-       search_pops({raw, rested}, {.monitor = options.settle.monitor})) {
-    FilmState found = settle(film.complex, options);
+  std::optional<settle::FilmState> lowest;
+  for (settle::PoppedFilm& film : settle::search_pops(
+           {raw, rested}, {.monitor = options.settle.monitor})) {
+    settle::FilmState found = settle(film.complex, options);
     if (!found.failure &&
         (!lowest || found.report.energy < lowest->report.energy)) {
       lowest = std::move(found);
@@ -175,28 +184,29 @@ FilmState settle_and_pop(FilmComplex& complex, const FindOptions& options,
 DatafileResult evolve_datafile(const std::filesystem::path& path,
                                const DatafileOptions& options) {
   const Timer timer;
-  const FeFile file = read_fe(read_file(path), path.filename().string());
-  check_fe_bodies(file);
+  const datafile::FeFile file =
+      datafile::read_fe(read_file(path), path.filename().string());
+  datafile::check_fe_bodies(file);
   // Commands of the file that stand outside its macros are part of the film.
-  FeScriptResult script =
-      run_fe_script(file, options.parameters,
-                    {.macro = options.macro, .monitor = options.monitor});
+  datafile::FeScriptResult script = datafile::run_fe_script(
+      file, options.parameters,
+      {.macro = options.macro, .monitor = options.monitor});
   DatafileResult result;
   result.complex = std::move(script.complex);
   result.printed = std::move(script.output);
   const int refinements = refinements_of(result.complex, options);
-  FilmState state;
+  settle::FilmState state;
   if (options.macro) {
     state = judge_macro(result.complex, script.iterations);
   } else if (options.method == DatafileMethod::Newton) {
-    const FindOptions find{.refinements = refinements,
-                           .settle = {.monitor = options.monitor}};
+    const settle::FindOptions find{.refinements = refinements,
+                                   .settle = {.monitor = options.monitor}};
     state = options.pop ? settle_and_pop(result.complex, find, result.popped)
                         : settle(result.complex, find);
   } else {
     state = descend_by_levels(result.complex, refinements, options);
   }
-  const FilmEnergy energy(result.complex);
+  const energy::FilmEnergy energy(result.complex);
   const VectorX values = energy.quantities(result.complex.mesh.points);
   for (std::size_t q = 0; q < result.complex.quantities.size(); ++q) {
     result.quantities.emplace_back(result.complex.quantities[q].name,
@@ -208,9 +218,9 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
   return result;
 }
 
-std::vector<std::string> solids_of(const FilmComplex& complex) {
+std::vector<std::string> solids_of(const films::FilmComplex& complex) {
   std::vector<std::string> solids;
-  for (const ComplexSurface& surface : complex.surfaces) {
+  for (const films::ComplexSurface& surface : complex.surfaces) {
     if (!surface.liquid) {
       solids.push_back(surface.name);
     }
@@ -221,7 +231,7 @@ std::vector<std::string> solids_of(const FilmComplex& complex) {
 std::string write_datafile_result(const DatafileResult& result,
                                   const std::string& title,
                                   const std::filesystem::path& folder) {
-  write_vtp(folder / "film.vtp", result.complex.mesh);
+  io::write_vtp(folder / "film.vtp", result.complex.mesh);
   EvolvedFilm film{.title = title,
                    .report = result.report,
                    .failure = result.failure,
@@ -230,7 +240,7 @@ std::string write_datafile_result(const DatafileResult& result,
                    .quantities = result.quantities};
   write_evolved_film(film, {}, folder);
   try {
-    write_file(folder / "film.fe", fe_text(result.complex));
+    write_file(folder / "film.fe", datafile::fe_text(result.complex));
   } catch (const InvalidInput& error) {
     return fmt::format("film.fe is left out: {}", error.what());
   }
@@ -238,7 +248,7 @@ std::string write_datafile_result(const DatafileResult& result,
 }
 
 std::string datafile_text(const DatafileResult& result) {
-  const FilmReport& film = result.report;
+  const settle::FilmReport& film = result.report;
   std::string text = result.printed;
   text += fmt::format(
       "film: {}\n  {} vertices, {} facets, area {:.12g}, energy {:.12g} (units "
@@ -251,7 +261,7 @@ std::string datafile_text(const DatafileResult& result) {
                         film.smallest_neck, film.neck_position.x(),
                         film.neck_position.y(), film.neck_position.z());
   }
-  for (const BodyState& body : film.bodies) {
+  for (const settle::BodyState& body : film.bodies) {
     text += fmt::format("  {}: volume {:.12g}, pressure {:.8g}\n", body.name,
                         body.volume, body.pressure);
   }
@@ -266,4 +276,4 @@ std::string datafile_text(const DatafileResult& result) {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -11,7 +11,7 @@
 #include "evolve/frozen/film_model.h"
 #include "evolve/settle/descent.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 enum class DatafileMethod { Newton, Gradient, ConjugateGradients };
 
@@ -30,8 +30,8 @@ struct DatafileOptions {
 };
 
 struct DatafileResult {
-  FilmComplex complex;  // settled
-  FilmReport report;
+  films::FilmComplex complex;  // settled
+  settle::FilmReport report;
   std::vector<std::pair<std::string, double>> quantities;
   std::optional<Failure> failure;
   std::string printed;  // by the macro
@@ -45,7 +45,7 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
                                const DatafileOptions& options);
 
 /// Names of the surfaces that are no films.
-std::vector<std::string> solids_of(const FilmComplex& complex);
+std::vector<std::string> solids_of(const films::FilmComplex& complex);
 
 /// film.vtp, film.fe and film.json in `folder`; `title`: one line for people.
 /// Throws IoError. Returns a warning when the film cannot be said in a
@@ -57,4 +57,4 @@ std::string write_datafile_result(const DatafileResult& result,
 /// The result for people; a datafile has no units.
 std::string datafile_text(const DatafileResult& result);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

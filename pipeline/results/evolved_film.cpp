@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/json.h"
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/results/results.h"
-#include "core/json.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 using Json = nlohmann::ordered_json;
 
@@ -25,14 +25,15 @@ Json numbers(const Points& points) {
 }  // namespace
 
 std::vector<std::pair<std::string, double>> areas_of_films(
-    const Case& input, const FilmModel& model) {
+    const case_data::Case& input, const frozen::FilmModel& model) {
   const VectorX areas = model.areas(model.reference().points);
   std::vector<std::pair<std::string, double>> all;
   for (std::size_t k = 0; k < model.labels().size(); ++k) {
     const std::string& name = model.labels()[k];
-    const bool is_film = std::any_of(
-        input.films.begin(), input.films.end(),
-        [&](const FilmEntry& entry) { return entry.spec.name == name; });
+    const bool is_film = std::any_of(input.films.begin(), input.films.end(),
+                                     [&](const case_data::FilmEntry& entry) {
+                                       return entry.spec.name == name;
+                                     });
     if (is_film) {
       all.emplace_back(name, areas[static_cast<Eigen::Index>(k)]);
     }
@@ -40,11 +41,12 @@ std::vector<std::pair<std::string, double>> areas_of_films(
   return all;
 }
 
-std::vector<CurvePieces> pieces_of_curves(const std::vector<Curve>& curves) {
+std::vector<CurvePieces> pieces_of_curves(
+    const std::vector<curves::Curve>& curves) {
   constexpr int kPieces = 96;
   std::vector<CurvePieces> all;
-  for (const Curve& curve : curves) {
-    if (std::holds_alternative<ParametricCurve>(curve.shape)) {
+  for (const curves::Curve& curve : curves) {
+    if (std::holds_alternative<curves::ParametricCurve>(curve.shape)) {
       continue;
     }
     CurvePieces& pieces = all.emplace_back();
@@ -52,16 +54,16 @@ std::vector<CurvePieces> pieces_of_curves(const std::vector<Curve>& curves) {
     for (int k = 0; k < kPieces; ++k) {
       for (const int end : {k, (k + 1) % kPieces}) {
         pieces.ends.push_back(
-            point_at(curve.shape, static_cast<double>(end) / kPieces));
+            curves::point_at(curve.shape, static_cast<double>(end) / kPieces));
       }
     }
   }
   return all;
 }
 
-std::vector<CurvePieces> pieces_of_curves(const FilmComplex& complex) {
+std::vector<CurvePieces> pieces_of_curves(const films::FilmComplex& complex) {
   std::map<int, Points> ends;  // by curve
-  for (const ComplexEdge& edge : complex.edges) {
+  for (const films::ComplexEdge& edge : complex.edges) {
     if (edge.curve >= 0) {
       for (const int end : {edge.a, edge.b}) {
         ends[edge.curve].push_back(
@@ -79,7 +81,7 @@ std::vector<CurvePieces> pieces_of_curves(const FilmComplex& complex) {
 }
 
 void write_evolved_film(const EvolvedFilm& film,
-                        const std::vector<FilmFrame>& frames,
+                        const std::vector<forward::FilmFrame>& frames,
                         const std::filesystem::path& folder) {
   Json json = {{"schema_version", kResultSchemaVersion},
                {"title", film.title},
@@ -87,9 +89,9 @@ void write_evolved_film(const EvolvedFilm& film,
                {"message", film.failure ? film.failure->message
                                         : "the film is at rest and stable"}};
   if (film.units) {
-    json["units"] = units_json(*film.units);
+    json["units"] = forward::units_json(*film.units);
   }
-  json.update(film_json(film.report));
+  json.update(forward::film_json(film.report));
   for (const auto& [name, value] : film.quantities) {
     json["quantities"][name] = value;
   }
@@ -104,15 +106,15 @@ void write_evolved_film(const EvolvedFilm& film,
         {{"name", curve.name}, {"ends", numbers(curve.ends)}});
   }
   json["frames"] = Json::array();
-  for (const FilmFrame& frame : frames) {
+  for (const forward::FilmFrame& frame : frames) {
     json["frames"].push_back(settling_caption(frame));
   }
   write_file(folder / "film.json", json_text(json, 1) + "\n");
 }
 
-std::string settling_caption(const FilmFrame& frame) {
+std::string settling_caption(const forward::FilmFrame& frame) {
   return frame.kept == "flowing" ? fmt::format("step {}", frame.evaluation)
                                  : frame.kept;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

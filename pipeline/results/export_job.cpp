@@ -13,12 +13,12 @@
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_store.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
 /// The case of the study with its resolution changed to `edge`.
-Case at_edge(Case input, std::optional<double> edge) {
+case_data::Case at_edge(case_data::Case input, std::optional<double> edge) {
   if (edge) {
     input.resolution.fea = *edge;
     input.resolution.film = *edge / std::exp2(input.resolution.refinements);
@@ -30,26 +30,29 @@ Case at_edge(Case input, std::optional<double> edge) {
 
 ExportJob::ExportJob(const std::filesystem::path& folder, Options options)
     : options_(std::move(options)) {
-  const StudyStore store = StudyStore::read(folder.string());
-  const std::vector<EvaluationRecord> records = store.all();
-  input_ = at_edge(frozen_as_answered(restore_case(store.meta()), records),
-                   options_.edge);
-  design_ = answer_of_run(input_, records, folder);
-  numbers_ = evaluate(input_, design_);
+  const store::StudyStore store = store::StudyStore::read(folder.string());
+  const std::vector<store::EvaluationRecord> records = store.all();
+  input_ = at_edge(
+      store::frozen_as_answered(store::restore_case(store.meta()), records),
+      options_.edge);
+  design_ = store::answer_of_run(input_, records, folder);
+  numbers_ = case_data::evaluate(input_, design_);
 }
 
 const SettledFilm& ExportJob::film() {
   if (film_) {
     return *film_;
   }
-  const EvaluatedCase frozen =
-      options_.edge ? numbers_ : evaluate(input_, initial_design(input_));
-  FilmModel model = FilmModel::freeze(
+  const case_data::EvaluatedCase frozen =
+      options_.edge
+          ? numbers_
+          : case_data::evaluate(input_, case_data::initial_design(input_));
+  frozen::FilmModel model = frozen::FilmModel::freeze(
       frozen.film_system,
       {.edge = options_.edge.value_or(frozen.fea_edge),
-       .refinements = options_.edge ? 0 : film_refinements(input_),
+       .refinements = options_.edge ? 0 : case_data::film_refinements(input_),
        .monitor = options_.monitor});
-  FilmState state = model.reference();
+  settle::FilmState state = model.reference();
   if (!options_.edge && !state.failure) {
     state = model.settle(numbers_.film_system, {.monitor = options_.monitor});
   }
@@ -64,54 +67,56 @@ const SettledFilm& ExportJob::film() {
 
 SurfaceMesh ExportJob::bodies_surface() {
   const SettledFilm& settled = film();
-  return numbers_.walls.empty()
-             ? settled.model.solids(settled.state.points)
-             : boundary_of(numbers_, settled.model, settled.state.points);
+  return numbers_.walls.empty() ? settled.model.solids(settled.state.points)
+                                : forward::boundary_of(numbers_, settled.model,
+                                                       settled.state.points);
 }
 
 namespace {
 
-MeshError no_part(const Case& input, const std::optional<Failure>& failure) {
+MeshError no_part(const case_data::Case& input,
+                  const std::optional<Failure>& failure) {
   return MeshError(fmt::format("no part at edge {:g}: {}", input.resolution.fea,
                                failure->message));
 }
 
 }  // namespace
 
-const EvaluationFields& ExportJob::meshed() {
+const forward::EvaluationFields& ExportJob::meshed() {
   if (fields_ || meshed_) {
     return fields_ ? *fields_ : *meshed_;
   }
-  StagedDesign staged;
-  if (!DesignStages::mesh_of(input_, design_, options_.monitor, staged)) {
+  forward::StagedDesign staged;
+  if (!forward::DesignStages::mesh_of(input_, design_, options_.monitor,
+                                      staged)) {
     throw no_part(input_, staged.evaluation.failure);
   }
   meshed_ = std::move(staged.fields);
   return *meshed_;
 }
 
-const EvaluationFields& ExportJob::fields() {
+const forward::EvaluationFields& ExportJob::fields() {
   if (fields_) {
     return *fields_;
   }
-  const ForwardModel model(input_, {.monitor = options_.monitor});
+  const forward::ForwardModel model(input_, {.monitor = options_.monitor});
   fields_.emplace();
-  const Evaluation evaluation =
+  const forward::Evaluation evaluation =
       model.failure() ? model.frozen() : model.evaluate(design_, &*fields_);
   if (evaluation.failure) {
     throw no_part(input_, evaluation.failure);
   }
   fields_->stresses =
-      part_stresses(fields_->mesh, fields_->inputs, fields_->solution);
+      forward::part_stresses(fields_->mesh, fields_->inputs, fields_->solution);
   return *fields_;
 }
 
-FileNotes ExportJob::notes() const {
-  FileNotes notes{.program = "Meniscus " + options_.program_version,
-                  .title = input_.title,
-                  .unit = input_.units.length,
-                  .unit_system = input_.units.name,
-                  .lines = {"case name: " + input_.name}};
+io::FileNotes ExportJob::notes() const {
+  io::FileNotes notes{.program = "Meniscus " + options_.program_version,
+                      .title = input_.title,
+                      .unit = input_.units.length,
+                      .unit_system = input_.units.name,
+                      .lines = {"case name: " + input_.name}};
   for (std::size_t k = 0; k < input_.design.size(); ++k) {
     notes.lines.push_back(fmt::format("{} = {}", input_.design[k].name,
                                       design_[static_cast<Eigen::Index>(k)]));
@@ -121,10 +126,10 @@ FileNotes ExportJob::notes() const {
 
 std::vector<std::string> ExportJob::body_names() const {
   std::vector<std::string> names;
-  for (const BodyEntry& body : solid_bodies(input_)) {
+  for (const case_data::BodyEntry& body : case_data::solid_bodies(input_)) {
     names.push_back(body.name);
   }
   return names;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -11,12 +11,12 @@
 #include "io/file_notes.h"
 #include "pipeline/forward/forward_model.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 /// A film at rest and the model that settled it.
 struct SettledFilm {
-  FilmModel model;
-  FilmState state;
+  frozen::FilmModel model;
+  settle::FilmState state;
 };
 
 class ExportJob {
@@ -31,9 +31,9 @@ class ExportJob {
   /// InvalidInput (no finished evaluation).
   ExportJob(const std::filesystem::path& folder, Options options);
 
-  const Case& input() const { return input_; }
+  const case_data::Case& input() const { return input_; }
   const VectorX& design() const { return design_; }
-  const EvaluatedCase& numbers() const { return numbers_; }
+  const case_data::EvaluatedCase& numbers() const { return numbers_; }
   std::optional<double> edge() const { return options_.edge; }
   Monitor* monitor() const { return options_.monitor; }
 
@@ -49,26 +49,26 @@ class ExportJob {
 
   /// The mesh and the case's numbers there: nothing is solved for it. Throws
   /// MeshError where the design has no mesh, what ForwardModel throws.
-  const EvaluationFields& meshed();
+  const forward::EvaluationFields& meshed();
 
   /// Mesh, solution and stresses. Throws MeshError where the design cannot be
   /// evaluated, what ForwardModel throws.
-  const EvaluationFields& fields();
+  const forward::EvaluationFields& fields();
 
   /// Program, title, units, name of the case and the answer's design.
-  FileNotes notes() const;
+  io::FileNotes notes() const;
 
   /// Of the bodies of material, in the order of the mesh's regions.
   std::vector<std::string> body_names() const;
 
  private:
   Options options_;
-  Case input_;
+  case_data::Case input_;
   VectorX design_;
-  EvaluatedCase numbers_;
+  case_data::EvaluatedCase numbers_;
   std::optional<SettledFilm> film_;
-  std::optional<EvaluationFields> meshed_;
-  std::optional<EvaluationFields> fields_;
+  std::optional<forward::EvaluationFields> meshed_;
+  std::optional<forward::EvaluationFields> fields_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -8,6 +8,7 @@
 #include "cad/step/step_writer.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "evolve/datafile/fe_write.h"
 #include "io/gmsh_msh.h"
 #include "io/nastran_bdf.h"
 #include "io/obj.h"
@@ -21,7 +22,7 @@
 #include "pipeline/results/results.h"
 #include "pipeline/study/ledger.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -29,32 +30,34 @@ namespace fs = std::filesystem;
 
 void stl(ExportJob& job, const fs::path& file) {
   const SettledFilm& film = job.film();
-  write_stl(file, boundary_of(job.numbers(), film.model, film.state.points),
-            {.name = job.input().title,
-             .unit = job.input().units.length,
-             .program = job.notes().program});
+  io::write_stl(
+      file, forward::boundary_of(job.numbers(), film.model, film.state.points),
+      {.name = job.input().title,
+       .unit = job.input().units.length,
+       .program = job.notes().program});
 }
 
 void three_mf(ExportJob& job, const fs::path& file) {
-  write_3mf(file, job.bodies_surface(),
-            {.notes = job.notes(), .bodies = job.body_names()});
+  io::write_3mf(file, job.bodies_surface(),
+                {.notes = job.notes(), .bodies = job.body_names()});
 }
 
 void obj(ExportJob& job, const fs::path& file) {
-  write_obj(file, job.bodies_surface(),
-            {.notes = job.notes(), .bodies = job.body_names()});
+  io::write_obj(file, job.bodies_surface(),
+                {.notes = job.notes(), .bodies = job.body_names()});
 }
 
 void fe(ExportJob& job, const fs::path& file) {
   const SettledFilm& film = job.film();
-  std::vector<std::string> comments = comment_lines(job.notes());
+  std::vector<std::string> comments = io::comment_lines(job.notes());
   comments.push_back(fmt::format("energy of the films and fields: {} ({})",
                                  film.state.report.energy,
                                  job.input().units.unit_of(Dimension::Energy)));
   comments.emplace_back(
       "'m 0; g' sets the pressures that 'hessian' asks for, and moves nothing");
-  write_file(file, film.model.datafile(film.state, job.numbers().film_system,
-                                       comments));
+  write_file(file, datafile::fe_text(film.model.complex_at(
+                                         film.state, job.numbers().film_system),
+                                     comments));
 }
 
 void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
@@ -64,9 +67,10 @@ void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
         "--format step-faceted, or stl, 3mf, obj");
   }
   const SettledFilm& film = job.film();
-  write_step(
+  step::write_step(
       file,
-      faceted_solid(boundary_of(job.numbers(), film.model, film.state.points)),
+      solid::faceted_solid(
+          forward::boundary_of(job.numbers(), film.model, film.state.points)),
       {.name = job.input().title, .unit = job.input().units.length});
 }
 
@@ -91,10 +95,11 @@ void faceted_step(ExportJob& job, const fs::path& file) {
   step(job, file, true);
 }
 
-CalculixDeck deck(ExportJob& job) {
-  const EvaluationFields& fields = job.meshed();
-  CalculixDeck deck = calculix_deck_of(job.input(), fields.inputs, fields.mesh);
-  const FileNotes notes = job.notes();
+io::CalculixDeck deck(ExportJob& job) {
+  const forward::EvaluationFields& fields = job.meshed();
+  io::CalculixDeck deck =
+      calculix_deck_of(job.input(), fields.inputs, fields.mesh);
+  const io::FileNotes notes = job.notes();
   deck.comments.insert(deck.comments.begin(), notes.program);
   deck.comments.insert(deck.comments.end(), notes.lines.begin(),
                        notes.lines.end());
@@ -102,16 +107,16 @@ CalculixDeck deck(ExportJob& job) {
 }
 
 void inp(ExportJob& job, const fs::path& file) {
-  write_calculix_inp(file, job.meshed().mesh, deck(job));
+  io::write_calculix_inp(file, job.meshed().mesh, deck(job));
 }
 
 void bdf(ExportJob& job, const fs::path& file) {
-  write_nastran_bdf(file, job.meshed().mesh, deck(job));
+  io::write_nastran_bdf(file, job.meshed().mesh, deck(job));
 }
 
 void msh(ExportJob& job, const fs::path& file) {
-  const EvaluationFields& fields = job.fields();
-  MshOptions options{
+  const forward::EvaluationFields& fields = job.fields();
+  io::MshOptions options{
       .notes = job.notes(), .regions = job.body_names(), .fields = {}};
   const UnitSystem& units = job.input().units;
   for (std::size_t k = 0; k < fields.stresses.size(); ++k) {
@@ -124,14 +129,15 @@ void msh(ExportJob& job, const fs::path& file) {
     options.fields.push_back(
         {.name = fmt::format("von Mises, {} [{}]", load_case, units.pressure),
          .components = 1,
-         .values = nodal_stress(fields.mesh, fields.stresses[k].recovered)
-                       .von_mises});
+         .values =
+             stress::nodal_stress(fields.mesh, fields.stresses[k].recovered)
+                 .von_mises});
   }
-  write_msh(file, fields.mesh, options);
+  io::write_msh(file, fields.mesh, options);
 }
 
 void vtu(ExportJob& job, const fs::path& file) {
-  const FileNotes notes = job.notes();
+  const io::FileNotes notes = job.notes();
   write_part(
       file, job.input(), job.fields(),
       {{"program", notes.program},
@@ -180,7 +186,7 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   ExportJob job(folder, {.edge = options.edge,
                          .program_version = options.program_version,
                          .monitor = options.monitor});
-  const Resolution& resolution = job.input().resolution;
+  const case_data::Resolution& resolution = job.input().resolution;
   const double edge =
       options.edge.value_or(format.of_film ? resolution.film : resolution.fea);
   fs::path file =
@@ -192,4 +198,4 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   return file;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

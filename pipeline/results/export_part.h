@@ -8,7 +8,7 @@
 
 #include "core/monitor.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 class ExportJob;
 
@@ -43,4 +43,4 @@ struct ExportOptions {
 std::filesystem::path export_part(const std::filesystem::path& folder,
                                   const ExportOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -13,7 +13,7 @@
 #include "evolve/curves/curve_shape.h"
 #include "evolve/frozen/film_model.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -21,56 +21,59 @@ constexpr double kMostDeviation = 0.1;  // of the film's edge: else a warning
 constexpr double kMostBreak = 1.0;      // [degree]
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
-RimPiece line_piece(const Vec3& from, const Vec3& to) {
+solid::RimPiece line_piece(const Vec3& from, const Vec3& to) {
   const Vec3 way = to - from;
-  return {StraightLine{from, way.normalized()}, 0.0, way.norm()};
+  return {solid::StraightLine{from, way.normalized()}, 0.0, way.norm()};
 }
 
-std::vector<RimPiece> pieces_of(const Circle& circle) {
-  const auto frame = curve_shape::frame_of(circle);
-  return {{EllipseCurve{circle.center, circle.radius * frame.u,
-                        circle.radius * frame.v},
+std::vector<solid::RimPiece> pieces_of(const curves::Circle& circle) {
+  const auto frame = curves::curve_shape::frame_of(circle);
+  return {{solid::EllipseCurve{circle.center, circle.radius * frame.u,
+                               circle.radius * frame.v},
            0.0, kFullTurn}};
 }
 
-std::vector<RimPiece> pieces_of(const Ellipse& ellipse) {
-  const auto frame = curve_shape::frame_of(ellipse);
-  return {{EllipseCurve{ellipse.center, ellipse.radius_1 * frame.u,
-                        ellipse.radius_2 * frame.v},
+std::vector<solid::RimPiece> pieces_of(const curves::Ellipse& ellipse) {
+  const auto frame = curves::curve_shape::frame_of(ellipse);
+  return {{solid::EllipseCurve{ellipse.center, ellipse.radius_1 * frame.u,
+                               ellipse.radius_2 * frame.v},
            0.0, kFullTurn}};
 }
 
-std::vector<RimPiece> pieces_of(const Rectangle& box) {
-  const auto frame = curve_shape::frame_of(box);
+std::vector<solid::RimPiece> pieces_of(const curves::Rectangle& box) {
+  const auto frame = curves::curve_shape::frame_of(box);
   const double r = box.corner_radius;
-  std::vector<RimPiece> pieces;
+  std::vector<solid::RimPiece> pieces;
   const auto at = [&](double a, double b) {
     return Vec3(box.center + a * frame.u + b * frame.v);
   };
   // Counter-clockwise from the right side, as evolve/curves/curve has it.
   const double w = 0.5 * box.width;
   const double h = 0.5 * box.height;
-  const std::array<Vec2, 4> from{Vec2(w, r - h), Vec2(w - r, h),
-                                 Vec2(-w, h - r), Vec2(r - w, -h)};
-  const std::array<Vec2, 4> to{Vec2(w, h - r), Vec2(r - w, h), Vec2(-w, r - h),
-                               Vec2(w - r, -h)};
-  const std::array<Vec2, 4> middle{Vec2(w - r, h - r), Vec2(r - w, h - r),
-                                   Vec2(r - w, r - h), Vec2(w - r, r - h)};
+  const std::array<solid::Vec2, 4> from{
+      solid::Vec2(w, r - h), solid::Vec2(w - r, h), solid::Vec2(-w, h - r),
+      solid::Vec2(r - w, -h)};
+  const std::array<solid::Vec2, 4> to{
+      solid::Vec2(w, h - r), solid::Vec2(r - w, h), solid::Vec2(-w, r - h),
+      solid::Vec2(w - r, -h)};
+  const std::array<solid::Vec2, 4> middle{
+      solid::Vec2(w - r, h - r), solid::Vec2(r - w, h - r),
+      solid::Vec2(r - w, r - h), solid::Vec2(w - r, r - h)};
   for (int k = 0; k < 4; ++k) {
     pieces.push_back(
         line_piece(at(from[k][0], from[k][1]), at(to[k][0], to[k][1])));
     if (r > 0.0) {
       const double start = 0.25 * kFullTurn * k;
-      pieces.push_back({EllipseCurve{at(middle[k][0], middle[k][1]),
-                                     r * frame.u, r * frame.v},
+      pieces.push_back({solid::EllipseCurve{at(middle[k][0], middle[k][1]),
+                                            r * frame.u, r * frame.v},
                         start, start + 0.25 * kFullTurn});
     }
   }
   return pieces;
 }
 
-std::vector<RimPiece> pieces_of(const Polygon& polygon) {
-  std::vector<RimPiece> pieces;
+std::vector<solid::RimPiece> pieces_of(const curves::Polygon& polygon) {
+  std::vector<solid::RimPiece> pieces;
   const std::size_t n = polygon.points.size();
   for (std::size_t k = 0; k < n; ++k) {
     pieces.push_back(
@@ -81,19 +84,19 @@ std::vector<RimPiece> pieces_of(const Polygon& polygon) {
 
 /// Other kinds: none, a spline goes through the film's own points.
 template <class Shape>
-std::vector<RimPiece> pieces_of(const Shape& /*shape*/) {
+std::vector<solid::RimPiece> pieces_of(const Shape& /*shape*/) {
   return {};
 }
 
-std::vector<NamedRim> rims_of(const FilmSystem& system,
-                              const FilmModel& model) {
-  std::vector<NamedRim> rims;
-  for (const Curve& curve : system.curves) {
-    std::vector<RimPiece> pieces = std::visit(
+std::vector<solid::NamedRim> rims_of(const films::FilmSystem& system,
+                                     const frozen::FilmModel& model) {
+  std::vector<solid::NamedRim> rims;
+  for (const curves::Curve& curve : system.curves) {
+    std::vector<solid::RimPiece> pieces = std::visit(
         [](const auto& shape) { return pieces_of(shape); }, curve.shape);
     if (!pieces.empty()) {
-      rims.push_back(
-          {curve.name, RimCurve(std::move(pieces)), model.rim(curve.name)});
+      rims.push_back({curve.name, solid::RimCurve(std::move(pieces)),
+                      model.rim(curve.name)});
     }
   }
   return rims;
@@ -101,25 +104,27 @@ std::vector<NamedRim> rims_of(const FilmSystem& system,
 
 /// Volumes are those of flat facets, and the smooth film encloses more where
 /// it bulges: the same system with each body's volume so much less.
-FilmSystem for_smooth_films(FilmSystem system, const SurfaceMesh& mesh) {
+films::FilmSystem for_smooth_films(films::FilmSystem system,
+                                   const SurfaceMesh& mesh) {
   std::vector<char> flat;
   flat.reserve(mesh.labels.size());
   for (const std::string& label : mesh.labels) {
-    flat.push_back(
-        std::any_of(system.caps.begin(), system.caps.end(),
-                    [&](const CapSpec& cap) { return cap.name == label; })
-            ? 1
-            : 0);
+    flat.push_back(std::any_of(system.caps.begin(), system.caps.end(),
+                               [&](const films::CapSpec& cap) {
+                                 return cap.name == label;
+                               })
+                       ? 1
+                       : 0);
   }
-  const std::vector<double> bulges = bulge_volumes(mesh, flat);
+  const std::vector<double> bulges = solid::bulge_volumes(mesh, flat);
   const auto bodies_of = [&](const std::string& surface) {
     return std::count_if(system.bodies.begin(), system.bodies.end(),
-                         [&](const BodySpec& b) {
+                         [&](const films::BodySpec& b) {
                            return std::count(b.enclosed_by.begin(),
                                              b.enclosed_by.end(), surface) > 0;
                          });
   };
-  for (BodySpec& body : system.bodies) {
+  for (films::BodySpec& body : system.bodies) {
     for (const std::string& surface : body.enclosed_by) {
       const int label = mesh.label_of(surface);
       if (body.volume && label >= 0 && bodies_of(surface) == 1) {
@@ -130,8 +135,9 @@ FilmSystem for_smooth_films(FilmSystem system, const SurfaceMesh& mesh) {
   return system;
 }
 
-FilmModel settled(const FilmSystem& system, double edge) {
-  FilmModel model = FilmModel::freeze(system, {.edge = edge, .refinements = 0});
+frozen::FilmModel settled(const films::FilmSystem& system, double edge) {
+  frozen::FilmModel model =
+      frozen::FilmModel::freeze(system, {.edge = edge, .refinements = 0});
   if (model.reference().failure) {
     throw MeshError(fmt::format("no film at edge {:g}: {}", edge,
                                 model.reference().failure->message));
@@ -143,8 +149,8 @@ std::string number_of(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-void tell(const StepExport& options, const FilmSolidReport& film,
-          const StepReport& step) {
+void tell(const StepExport& options, const solid::FilmSolidReport& film,
+          const step::StepReport& step) {
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   const std::string& unit = options.unit;
@@ -155,7 +161,7 @@ void tell(const StepExport& options, const FilmSolidReport& film,
                   number_of(film.planes, "plane"),
                   number_of(film.cylinders, "cylinder"),
                   number_of(film.spheres, "sphere"), step.volume, unit));
-  for (const SimpleFace& face : film.simple) {
+  for (const solid::SimpleFace& face : film.simple) {
     monitor.log(Severity::Info,
                 fmt::format("{} is a {}{}; the film leaves it by {:.2g} {} at "
                             "most ({:.2g} of its edge)",
@@ -185,23 +191,23 @@ void tell(const StepExport& options, const FilmSolidReport& film,
 
 }  // namespace
 
-void export_step(const std::filesystem::path& file, const FilmSystem& system,
-                 const StepExport& options) {
-  FilmModel model = settled(system, options.edge);
+void export_step(const std::filesystem::path& file,
+                 const films::FilmSystem& system, const StepExport& options) {
+  frozen::FilmModel model = settled(system, options.edge);
   SurfaceMesh mesh = model.boundary(model.reference().points);
-  const StepOptions names{.name = options.title, .unit = options.unit};
+  const step::StepOptions names{.name = options.title, .unit = options.unit};
   if (options.faceted) {
-    write_step(file, faceted_solid(mesh), names);
+    step::write_step(file, solid::faceted_solid(mesh), names);
     return;
   }
   model = settled(for_smooth_films(system, mesh), options.edge);
   mesh = model.boundary(model.reference().points);
-  FilmSolidInput input{mesh, rims_of(system, model), {}, options.edge};
-  for (const CapSpec& cap : system.caps) {
+  solid::FilmSolidInput input{mesh, rims_of(system, model), {}, options.edge};
+  for (const films::CapSpec& cap : system.caps) {
     input.caps.push_back(cap.name);
   }
-  const FilmSolid solid = film_solid(input);
-  tell(options, solid.report, write_step(file, solid.brep, names));
+  const solid::FilmSolid solid = solid::film_solid(input);
+  tell(options, solid.report, step::write_step(file, solid.brep, names));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

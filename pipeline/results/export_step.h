@@ -7,7 +7,7 @@
 #include "core/monitor.h"
 #include "evolve/films/film_system.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 struct StepExport {
   std::string title;           // of the part
@@ -21,7 +21,7 @@ struct StepExport {
 /// B-spline faces, caps as planes with their exact rims. Throws MeshError (no
 /// stable film, a film that cannot be cut into patches, no valid solid),
 /// IoError.
-void export_step(const std::filesystem::path& file, const FilmSystem& system,
-                 const StepExport& options);
+void export_step(const std::filesystem::path& file,
+                 const films::FilmSystem& system, const StepExport& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

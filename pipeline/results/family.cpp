@@ -26,7 +26,7 @@
 #include "pipeline/study/study_records.h"
 #include "pipeline/study/time_limit.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -69,11 +69,13 @@ std::optional<Json> stored_result(const fs::path& folder) {
   return json;
 }
 
-StudyStore open_store(const Case& member, const fs::path& folder,
-                      const FamilyOptions& options) {
+store::StudyStore open_store(const case_data::Case& member,
+                             const fs::path& folder,
+                             const FamilyOptions& options) {
   bool same = false;
   if (options.resume && fs::exists(folder / "study.sqlite")) {
-    same = StudyStore::read(folder.string()).meta().case_hash == member.hash;
+    same = store::StudyStore::read(folder.string()).meta().case_hash ==
+           member.hash;
   }
   return open_run(member, folder, same ? RunBegins::Resumed : RunBegins::Anew,
                   options.program_version);
@@ -81,14 +83,15 @@ StudyStore open_store(const Case& member, const fs::path& folder,
 
 class FamilyRun {
  public:
-  FamilyRun(const Case& family, const FamilyOptions& options)
+  FamilyRun(const case_data::Case& family, const FamilyOptions& options)
       : family_(family),
         options_(options),
         monitor_(options.monitor != nullptr ? *options.monitor
                                             : silent_monitor()),
         lock_(options.folder.string()),
-        limit_(smaller_limit(options.time_limit, family.study.time_limit)),
-        members_(family_cases(family)) {}
+        limit_(
+            study::smaller_limit(options.time_limit, family.study.time_limit)),
+        members_(reader::family_cases(family)) {}
 
   FamilyResult run();
 
@@ -98,9 +101,9 @@ class FamilyRun {
   void work(const std::vector<int>& wave, std::atomic<std::size_t>& next);
   void size(std::size_t k);
   Json study(std::size_t k, const std::optional<VectorX>& start);
-  Json compute(const Case& member, const fs::path& folder, StudyStore& store,
-               const StudyOptions& options);
-  StudyListener listener_of(std::size_t k) const;
+  Json compute(const case_data::Case& member, const fs::path& folder,
+               store::StudyStore& store, const study::StudyOptions& options);
+  study::StudyListener listener_of(std::size_t k) const;
   std::optional<VectorX> start_of(std::size_t k) const;
   Json passport(std::size_t k, const std::optional<VectorX>& start) const;
   void finish(std::size_t k, const Json& result);
@@ -108,13 +111,13 @@ class FamilyRun {
   void tell();
   double time_left() const;
 
-  const Case& family_;
+  const case_data::Case& family_;
   const FamilyOptions& options_;
   Monitor& monitor_;
-  RunLock lock_;
+  store::RunLock lock_;
   Timer timer_;
   double limit_;  // [s], 0: none
-  std::vector<Case> members_;
+  std::vector<case_data::Case> members_;
   std::vector<int> parents_;  // -1: none
   FamilyResult result_;
   std::mutex mutex_;  // of all below and of result_.rows while threads run
@@ -148,7 +151,7 @@ std::optional<VectorX> FamilyRun::start_of(std::size_t k) const {
     return std::nullopt;
   }
   const FamilyRow& parent = result_.rows[static_cast<std::size_t>(parents_[k])];
-  const std::vector<DesignVariable>& design = members_[k].design;
+  const std::vector<case_data::DesignVariable>& design = members_[k].design;
   if (!parent.sized() || parent.design.size() != design.size()) {
     return std::nullopt;
   }
@@ -169,8 +172,8 @@ Json FamilyRun::passport(std::size_t k,
       {"name", name},
       {"parent",
        start ? result_.rows[static_cast<std::size_t>(parents_[k])].name : ""},
-      {"fingerprint",
-       content_hash(options_.program_version + stored_case(members_[k]))},
+      {"fingerprint", case_data::content_hash(options_.program_version +
+                                              store::stored_case(members_[k]))},
       {"start", Json::array()}};
   if (start) {
     json["start"] = std::vector<double>(start->begin(), start->end());
@@ -178,12 +181,13 @@ Json FamilyRun::passport(std::size_t k,
   return json;
 }
 
-Json FamilyRun::compute(const Case& member, const fs::path& folder,
-                        StudyStore& store, const StudyOptions& options) {
-  RunResult result;
+Json FamilyRun::compute(const case_data::Case& member, const fs::path& folder,
+                        store::StudyStore& store,
+                        const study::StudyOptions& options) {
+  study::RunResult result;
   try {
-    EvaluationFields fields;
-    result = run_study(member, store, options, &fields);
+    forward::EvaluationFields fields;
+    result = study::run_study(member, store, options, &fields);
     if (options_.write_files) {
       const Timer timer;
       options_.write_files(member, fields, folder, result);
@@ -191,29 +195,29 @@ Json FamilyRun::compute(const Case& member, const fs::path& folder,
       result.total_seconds += result.output_seconds;
     }
   } catch (const Interrupted&) {
-    result = result_so_far(member, store.all());
-    result.status = RunStatus::Interrupted;
+    result = study::result_so_far(member, store.all());
+    result.status = study::RunStatus::Interrupted;
     result.message = fmt::format(
         "{} finished evaluations are kept, go on with --resume", store.size());
     stopping_ = true;
   } catch (const IoError&) {
     throw;
   } catch (const Error& error) {
-    result = result_so_far(member, store.all());
-    result.status = RunStatus::Failed;
+    result = study::result_so_far(member, store.all());
+    result.status = study::RunStatus::Failed;
     result.message = error.what();
   }
-  write_file(folder / "history.csv", history_csv(store.all()));
+  write_file(folder / "history.csv", store::history_csv(store.all()));
   return result_json(member, result, options_.program_version);
 }
 
 /// The family's, told whose news it is.
-StudyListener FamilyRun::listener_of(std::size_t k) const {
+study::StudyListener FamilyRun::listener_of(std::size_t k) const {
   if (!options_.listener) {
     return {};
   }
-  return [this, name = result_.rows[k].name](const StudyNews& news) {
-    StudyNews named = news;
+  return [this, name = result_.rows[k].name](const study::StudyNews& news) {
+    study::StudyNews named = news;
     named.member = name;
     options_.listener(named);
   };
@@ -221,7 +225,7 @@ StudyListener FamilyRun::listener_of(std::size_t k) const {
 
 /// The member's result, read or computed and written.
 Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
-  const Case& member = members_[k];
+  const case_data::Case& member = members_[k];
   const fs::path folder = options_.folder / result_.rows[k].folder;
   const Json own = passport(k, start);
   make_folder(folder);
@@ -233,7 +237,7 @@ Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
       return *known;
     }
   }
-  StudyStore store = open_store(member, folder, options_);
+  store::StudyStore store = open_store(member, folder, options_);
   MemberMonitor monitor(monitor_, result_.rows[k].name);
   const Timer timer;
   Json json = compute(
@@ -329,26 +333,28 @@ FamilyResult FamilyRun::run() {
   prepare();
   std::vector<VectorX> numbers;
   numbers.reserve(members_.size());
-  for (const Case& member : members_) {
-    numbers.push_back(member_numbers(member));
+  for (const case_data::Case& member : members_) {
+    numbers.push_back(reader::member_numbers(member));
   }
-  const std::vector<FamilyStep> steps = family_tree(numbers);
-  if (family_.study.kind != StudyKind::Analyse) {  // that has no start
-    for (const FamilyStep& step : steps) {
+  const std::vector<optimize::FamilyStep> steps =
+      optimize::family_tree(numbers);
+  if (family_.study.kind !=
+      case_data::StudyKind::Analyse) {  // that has no start
+    for (const optimize::FamilyStep& step : steps) {
       parents_[static_cast<std::size_t>(step.member)] =
           step.parent.value_or(-1);
     }
   }
   write_table();
   tell();
-  for (const std::vector<int>& wave : family_waves(steps)) {
+  for (const std::vector<int>& wave : optimize::family_waves(steps)) {
     if (!stopping_) {
       run_wave(wave);
     }
   }
   conclude(result_);
   if (stopping_) {
-    result_.status = RunStatus::Interrupted;
+    result_.status = study::RunStatus::Interrupted;
   }
   result_.total_seconds = timer_.seconds();
   write_table();
@@ -361,8 +367,9 @@ FamilyResult FamilyRun::run() {
 
 }  // namespace
 
-FamilyResult run_family(const Case& family, const FamilyOptions& options) {
+FamilyResult run_family(const case_data::Case& family,
+                        const FamilyOptions& options) {
   return FamilyRun(family, options).run();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -10,23 +10,25 @@
 #include "pipeline/results/family_table.h"
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 struct FamilyOptions {
   std::filesystem::path folder;  // exists; locked for as long as it runs
   std::string program_version;
   /// Members that are finished are read, begun ones go on.
   bool resume = false;
-  int jobs = 1;                 // members side by side, >= 1; same bits for any
-  int threads = 1;              // of all jobs together, >= 1
-  double time_limit = 0.0;      // of the whole family [s], 0: none
-  int frames = 0;               // as in StudyOptions, of each member
-  StudyListener listener = {};  // as in StudyOptions; on a member's thread
+  int jobs = 1;             // members side by side, >= 1; same bits for any
+  int threads = 1;          // of all jobs together, >= 1
+  double time_limit = 0.0;  // of the whole family [s], 0: none
+  int frames = 0;           // as in StudyOptions, of each member
+  study::StudyListener listener =
+      {};  // as in StudyOptions; on a member's thread
   Monitor* monitor = nullptr;
   /// Writes a member's meshes and pictures into its folder, adds to its
   /// warnings; called on the member's thread. Empty: nothing is written.
-  std::function<void(const Case& member, const EvaluationFields& fields,
-                     const std::filesystem::path& folder, RunResult& result)>
+  std::function<void(
+      const case_data::Case& member, const forward::EvaluationFields& fields,
+      const std::filesystem::path& folder, study::RunResult& result)>
       write_files = {};
 };
 
@@ -42,6 +44,7 @@ struct FamilyOptions {
 /// What goes wrong with one member is its row; the others go on. Throws
 /// IoError where a file or database cannot be written, InvalidInput where
 /// another run has the folder. Interrupted does not pass: it is the status.
-FamilyResult run_family(const Case& family, const FamilyOptions& options);
+FamilyResult run_family(const case_data::Case& family,
+                        const FamilyOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -11,7 +11,7 @@
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/results/results.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -51,7 +51,7 @@ std::vector<std::string> names_of(const FamilyRow::Numbers& numbers) {
 }
 
 void add_cells(const FamilyRow::Numbers& numbers,
-               const std::vector<std::string>& columns, TextRow& cells) {
+               const std::vector<std::string>& columns, files::TextRow& cells) {
   for (const std::string& column : columns) {
     const auto at =
         std::find_if(numbers.begin(), numbers.end(),
@@ -83,18 +83,20 @@ std::string shortened(const std::string& cell) {
 
 }  // namespace
 
-FamilyRow family_row(const Case& member, const Json& result) {
+FamilyRow family_row(const case_data::Case& member, const Json& result) {
   FamilyRow row;
   row.status = result.value("status", "error");
   row.message = result.value("message", "");
   std::vector<std::string> parameters;
-  for (const Parameter& parameter : member.parameters) {
+  for (const case_data::Parameter& parameter : member.parameters) {
     parameters.push_back(parameter.name);
   }
   row.parameters = numbers_of(result, "parameters", parameters);
-  row.responses = numbers_of(result, "responses", response_names(member));
+  row.responses =
+      numbers_of(result, "responses", case_data::response_names(member));
   if (!row.responses.empty()) {
-    row.design = numbers_of(result, "parameters", design_names(member));
+    row.design =
+        numbers_of(result, "parameters", case_data::design_names(member));
   }
   row.objective = number(result.value("objective", Json()));
   const Json constraints = result.value("constraints", Json::object());
@@ -113,14 +115,14 @@ std::string family_csv(const std::vector<FamilyRow>& rows) {
   const auto parameters = columns_of(rows, &FamilyRow::parameters);
   const auto design = columns_of(rows, &FamilyRow::design);
   const auto responses = columns_of(rows, &FamilyRow::responses);
-  TextRow head = {"member", "status", "parent"};
+  files::TextRow head = {"member", "status", "parent"};
   for (const auto* names : {&parameters, &design, &responses}) {
     head.insert(head.end(), names->begin(), names->end());
   }
   head.insert(head.end(), {"objective", "evaluations", "seconds", "message"});
-  std::vector<TextRow> table = {head};
+  std::vector<files::TextRow> table = {head};
   for (const FamilyRow& row : rows) {
-    TextRow cells = {row.name, row.status, row.parent};
+    files::TextRow cells = {row.name, row.status, row.parent};
     add_cells(row.parameters, parameters, cells);
     add_cells(row.design, design, cells);
     add_cells(row.responses, responses, cells);
@@ -132,15 +134,15 @@ std::string family_csv(const std::vector<FamilyRow>& rows) {
     cells.push_back(row.message);
     table.push_back(std::move(cells));
   }
-  return csv_text(table);
+  return files::csv_text(table);
 }
 
 std::string family_table_text(const std::string& csv,
                               const std::map<std::string, std::string>& units) {
-  std::vector<TextRow> table;
+  std::vector<files::TextRow> table;
   std::string messages;
-  for (const CsvRow& row : parse_csv(csv).rows) {
-    TextRow cells = row.cells;
+  for (const files::CsvRow& row : files::parse_csv(csv).rows) {
+    files::TextRow cells = row.cells;
     const std::string message = cells.back();
     cells.pop_back();
     if (!table.empty() && cells.size() > 1) {
@@ -151,22 +153,22 @@ std::string family_table_text(const std::string& csv,
                      shortened);
     }
     if (table.empty()) {
-      add_units(units, cells);
+      files::add_units(units, cells);
     }
     table.push_back(std::move(cells));
   }
-  return table.empty() ? "" : aligned_text(table) + messages;
+  return table.empty() ? "" : files::aligned_text(table) + messages;
 }
 
-Json family_json(const Case& family, const FamilyResult& result,
+Json family_json(const case_data::Case& family, const FamilyResult& result,
                  const std::string& program_version) {
   Json json;
   json["schema_version"] = kResultSchemaVersion;
   json["case"] = family.title;
   json["case_hash"] = family.hash;
   json["program_version"] = program_version;
-  json["units"] = units_json(family.units);
-  json["status"] = name_of(result.status);
+  json["units"] = forward::units_json(family.units);
+  json["status"] = study::name_of(result.status);
   json["message"] = result.message;
   json["members"] = Json::array();
   for (const FamilyRow& row : result.rows) {
@@ -182,7 +184,7 @@ Json family_json(const Case& family, const FamilyResult& result,
                   {"responses", object(row.responses)},
                   {"evaluations", row.evaluations},
                   {"seconds", row.seconds}};
-    for (const Constraint& c : row.constraints) {
+    for (const study::Constraint& c : row.constraints) {
       entry["constraints"][c.name] = {
           {"value", c.value}, {"bound", c.bound}, {"satisfied", c.satisfied}};
     }
@@ -202,10 +204,11 @@ void conclude(FamilyResult& result) {
                        [&](const FamilyRow& r) { return r.status == status; });
   };
   const bool all = sized == std::ssize(result.rows);
-  result.status = all                                ? RunStatus::Converged
-                  : has("interrupted")               ? RunStatus::Interrupted
-                  : has("stopped") || has("waiting") ? RunStatus::Stopped
-                                                     : RunStatus::Infeasible;
+  result.status = all                  ? study::RunStatus::Converged
+                  : has("interrupted") ? study::RunStatus::Interrupted
+                  : has("stopped") || has("waiting")
+                      ? study::RunStatus::Stopped
+                      : study::RunStatus::Infeasible;
   result.message =
       fmt::format("{} of {} members are sized", sized, result.rows.size());
   std::vector<std::string> others;
@@ -219,4 +222,4 @@ void conclude(FamilyResult& result) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

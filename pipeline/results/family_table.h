@@ -11,7 +11,7 @@
 
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 /// One member: a row of the table. Numbers are those of its result.json.
 struct FamilyRow {
@@ -25,7 +25,7 @@ struct FamilyRow {
   Numbers design;     // the best one; empty: none
   Numbers responses;  // there, in the case's units
   double objective = 0.0;
-  std::vector<Constraint> constraints;
+  std::vector<study::Constraint> constraints;
   int evaluations = 0;
   double seconds = 0.0;
 
@@ -33,7 +33,7 @@ struct FamilyRow {
 };
 
 struct FamilyResult {
-  RunStatus status = RunStatus::Error;
+  study::RunStatus status = study::RunStatus::Error;
   std::string message;
   std::vector<FamilyRow> rows;  // in the order of the case
   double total_seconds = 0.0;
@@ -41,7 +41,8 @@ struct FamilyResult {
 };
 
 /// The row of a member that has a result.json; `member` names its parts.
-FamilyRow family_row(const Case& member, const nlohmann::ordered_json& result);
+FamilyRow family_row(const case_data::Case& member,
+                     const nlohmann::ordered_json& result);
 
 /// Head line: member, status, parent, each parameter, design variable and
 /// response, then objective, evaluations, seconds, message. Numbers with the
@@ -56,11 +57,11 @@ std::string family_table_text(
     const std::map<std::string, std::string>& units = {});
 
 /// The family's result.json (docs/results.md).
-nlohmann::ordered_json family_json(const Case& family,
+nlohmann::ordered_json family_json(const case_data::Case& family,
                                    const FamilyResult& result,
                                    const std::string& program_version);
 
 /// How many are sized, and which are not and why, in words; the status.
 void conclude(FamilyResult& result);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

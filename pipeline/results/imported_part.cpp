@@ -12,7 +12,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/forward/part_file.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -57,9 +57,9 @@ std::vector<Triangle> parts_of(const Triangle& t, std::array<int, 3> mid) {
 }
 
 /// Each surface that a load or support of the run names.
-std::set<std::string> surfaces_used(const EvaluatedCase& numbers) {
+std::set<std::string> surfaces_used(const case_data::EvaluatedCase& numbers) {
   std::set<std::string> used;
-  for (const LoadCase& load_case : numbers.load_cases) {
+  for (const loads::LoadCase& load_case : numbers.load_cases) {
     const auto add = [&](const auto& entries) {
       for (const auto& entry : entries) {
         used.insert(entry.surface);
@@ -75,7 +75,8 @@ std::set<std::string> surfaces_used(const EvaluatedCase& numbers) {
   return used;
 }
 
-void check_names(const SurfaceMesh& surface, const EvaluatedCase& numbers,
+void check_names(const SurfaceMesh& surface,
+                 const case_data::EvaluatedCase& numbers,
                  const std::string& path) {
   for (const std::string& name : surfaces_used(numbers)) {
     if (surface.label_of(name) < 0) {
@@ -112,8 +113,8 @@ SurfaceMesh renamed(SurfaceMesh surface, const FaceNames& names,
 /// Ten-node elements with straight sides.
 TetMesh filled(const SurfaceMesh& surface, double edge, const std::string& path,
                Monitor* monitor) {
-  const Tetrahedralization linear =
-      tetrahedralize(surface, {.edge = edge, .monitor = monitor});
+  const mesh_tet::Tetrahedralization linear =
+      mesh_tet::tetrahedralize(surface, {.edge = edge, .monitor = monitor});
   if (linear.failure) {
     throw MeshError(fmt::format("{}: it cannot be filled with elements: {}",
                                 path, linear.failure->message));
@@ -126,7 +127,7 @@ TetMesh filled(const SurfaceMesh& surface, double edge, const std::string& path,
                             (surface.points[static_cast<std::size_t>(e[0])] +
                              surface.points[static_cast<std::size_t>(e[1])]));
   }
-  return make_quadratic(linear.mesh, quadratic);
+  return mesh_tet::make_quadratic(linear.mesh, quadratic);
 }
 
 }  // namespace
@@ -172,11 +173,14 @@ SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
 
 PartFigures imported_part_figures(const std::filesystem::path& path,
                                   const RunPart& run, const FaceNames& names,
-                                  Monitor* monitor, EvaluationFields* kept) {
-  const std::vector<BodyEntry> bodies = solid_bodies(run.input);
-  if (std::any_of(bodies.begin(), bodies.end(), [&](const BodyEntry& body) {
-        return body.material != bodies.front().material;
-      })) {
+                                  Monitor* monitor,
+                                  forward::EvaluationFields* kept) {
+  const std::vector<case_data::BodyEntry> bodies =
+      case_data::solid_bodies(run.input);
+  if (std::any_of(bodies.begin(), bodies.end(),
+                  [&](const case_data::BodyEntry& body) {
+                    return body.material != bodies.front().material;
+                  })) {
     throw InvalidInput(fmt::format(
         "{}: the run has {} bodies of several materials; a part from a file is "
         "of one material, and which is not known",
@@ -184,22 +188,22 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
   }
   const double edge = run.input.resolution.fea;
   const SurfaceMesh surface = with_short_edges(
-      renamed(
-          read_part_file(path, {.unit = run.input.units.length, .edge = edge}),
-          names, path.string()),
+      renamed(forward::read_part_file(
+                  path, {.unit = run.input.units.length, .edge = edge}),
+              names, path.string()),
       kLongestEdge * edge);
   check_names(surface, run.fields.inputs, path.string());
-  EvaluationFields fields;
+  forward::EvaluationFields fields;
   fields.inputs = run.fields.inputs;
   fields.inputs.materials.resize(1);
   fields.mesh = filled(surface, edge, path.string(), monitor);
-  fields.exclusion =
-      choose_exclusion(run.input, fields.mesh, EmptyZones::Allowed);
-  const ElasticModel elasticity(fields.mesh, fields.inputs.materials,
-                                fields.inputs.load_cases,
-                                {.solver = run.input.analysis.solver,
-                                 .processes = run.input.analysis.processes,
-                                 .monitor = monitor});
+  fields.exclusion = forward::choose_exclusion(run.input, fields.mesh,
+                                               forward::EmptyZones::Allowed);
+  const elastic::ElasticModel elasticity(
+      fields.mesh, fields.inputs.materials, fields.inputs.load_cases,
+      {.solver = run.input.analysis.solver,
+       .processes = run.input.analysis.processes,
+       .monitor = monitor});
   fields.solution = elasticity.base_solution();
   if (fields.solution.failure) {
     throw SolverError(path.string() + ": " + fields.solution.failure->message);
@@ -211,4 +215,4 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
   return figures;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

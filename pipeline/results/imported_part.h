@@ -9,7 +9,7 @@
 #include "core/monitor.h"
 #include "pipeline/results/part_comparison.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 /// Edges longer than `longest` [length] halved, and again, until none is;
 /// shape, labels and bodies stay.
@@ -34,6 +34,6 @@ using FaceNames = std::map<std::string, std::string>;
 PartFigures imported_part_figures(const std::filesystem::path& path,
                                   const RunPart& run, const FaceNames& names,
                                   Monitor* monitor,
-                                  EvaluationFields* kept = nullptr);
+                                  forward::EvaluationFields* kept = nullptr);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -8,12 +8,12 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json.h"
 #include "evolve/start/start_complex.h"
 #include "pipeline/results/calculix_export.h"
 #include "pipeline/results/results.h"
-#include "core/json.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -33,7 +33,7 @@ double area_of(const SurfaceMesh& mesh) {
   return 0.5 * twice;
 }
 
-LedgerAmount amount_of(const SurfaceMesh& mesh) {
+study::LedgerAmount amount_of(const SurfaceMesh& mesh) {
   const auto facets = static_cast<double>(mesh.facets.size());
   return {.elements = facets,
           .area = area_of(mesh),
@@ -42,14 +42,15 @@ LedgerAmount amount_of(const SurfaceMesh& mesh) {
 }
 
 /// With the mid-sides that make its facets curved.
-LedgerAmount amount_of(const QuadraticSurface& surface) {
-  LedgerAmount amount = amount_of(surface.base);
+study::LedgerAmount amount_of(const QuadraticSurface& surface) {
+  study::LedgerAmount amount = amount_of(surface.base);
   amount.bytes += kPoint * static_cast<double>(surface.mid.size());
   return amount;
 }
 
 /// `area`: of the surface that it fills.
-LedgerAmount amount_of(const TetMesh& mesh, const std::optional<double>& area) {
+study::LedgerAmount amount_of(const TetMesh& mesh,
+                              const std::optional<double>& area) {
   return {.elements = static_cast<double>(mesh.element_count()),
           .area = area,
           .bytes = kPoint * static_cast<double>(mesh.nodes.size()) +
@@ -59,7 +60,7 @@ LedgerAmount amount_of(const TetMesh& mesh, const std::optional<double>& area) {
                            mesh.faces.size() + mesh.face_label.size())};
 }
 
-double bytes_of(const ElasticSolution& solution) {
+double bytes_of(const equations::ElasticSolution& solution) {
   double numbers = 0.0;
   for (const auto* vectors : {&solution.displacements, &solution.reactions}) {
     for (const VectorX& vector : *vectors) {
@@ -75,7 +76,8 @@ std::optional<double> counted(double operations) {
 }
 
 /// Of the facets with one label, and the points that they use.
-LedgerAmount amount_of(const SurfaceMesh& mesh, const std::string& label) {
+study::LedgerAmount amount_of(const SurfaceMesh& mesh,
+                              const std::string& label) {
   SurfaceMesh part{.points = mesh.points,
                    .facets = {},
                    .facet_label = {},
@@ -89,7 +91,7 @@ LedgerAmount amount_of(const SurfaceMesh& mesh, const std::string& label) {
       }
     }
   }
-  LedgerAmount amount = amount_of(part);
+  study::LedgerAmount amount = amount_of(part);
   amount.bytes -=
       kPoint * static_cast<double>(std::count(used.begin(), used.end(), 0));
   return amount;
@@ -97,7 +99,7 @@ LedgerAmount amount_of(const SurfaceMesh& mesh, const std::string& label) {
 
 /// The stages start and film of each film and face, which are not timed apart.
 void add_surfaces(const SurfaceMesh& start, const SurfaceMesh& film,
-                  std::vector<LedgerStage>& stages) {
+                  std::vector<study::LedgerStage>& stages) {
   for (const std::string& label : film.labels) {
     stages.push_back({"film: " + label,
                       amount_of(start, label),
@@ -107,16 +109,16 @@ void add_surfaces(const SurfaceMesh& start, const SurfaceMesh& film,
   }
 }
 
-SurfaceMesh start_surface(const EvaluationFields& fields) {
-  return build_start(fields.inputs.film_system, fields.start_edge).mesh;
+SurfaceMesh start_surface(const forward::EvaluationFields& fields) {
+  return start::build_start(fields.inputs.film_system, fields.start_edge).mesh;
 }
 
 /// The files of a run that hold the part, and the deck as it would be exported
 /// where it was not.
-std::vector<FileBytes> files_of(const Case& input,
-                                const EvaluationFields& fields,
-                                const fs::path& folder,
-                                const std::vector<fs::path>& exported) {
+std::vector<study::FileBytes> files_of(const case_data::Case& input,
+                                       const forward::EvaluationFields& fields,
+                                       const fs::path& folder,
+                                       const std::vector<fs::path>& exported) {
   std::vector<std::string> names = {"film.vtp", "part.vtu", "part_surface.vtp"};
   if (input.resolution.export_edges.empty()) {
     names.push_back(stl_name(input.resolution.film));
@@ -130,7 +132,7 @@ std::vector<FileBytes> files_of(const Case& input,
       names.push_back(name);
     }
   }
-  std::vector<FileBytes> files;
+  std::vector<study::FileBytes> files;
   for (const std::string& name : names) {
     std::error_code code;
     const auto bytes = fs::file_size(folder / name, code);
@@ -140,17 +142,19 @@ std::vector<FileBytes> files_of(const Case& input,
   }
   const std::string deck_name =
       fmt::format("part_{:g}.inp", input.resolution.fea);
-  if (std::any_of(files.begin(), files.end(), [&](const FileBytes& file) {
-        return file.name == deck_name;
-      })) {
+  if (std::any_of(files.begin(), files.end(),
+                  [&](const study::FileBytes& file) {
+                    return file.name == deck_name;
+                  })) {
     return files;
   }
   try {
-    const CalculixDeck deck =
+    const io::CalculixDeck deck =
         calculix_deck_of(input, fields.inputs, fields.mesh);
     files.push_back(
         {deck_name,
-         static_cast<double>(calculix_deck(fields.mesh, deck).size()), false});
+         static_cast<double>(io::calculix_deck(fields.mesh, deck).size()),
+         false});
   } catch (const InvalidInput&) {
     // A case that no deck can say has none.
   }
@@ -159,28 +163,30 @@ std::vector<FileBytes> files_of(const Case& input,
 
 }  // namespace
 
-Ledger make_ledger(const Case& input, const RunResult& result,
-                   const EvaluationFields& fields, const fs::path& folder,
-                   const std::vector<fs::path>& exported) {
-  const Evaluation& best = *result.best;
-  const Evaluation& frozen = result.frozen;
-  Ledger ledger;
+study::Ledger make_ledger(const case_data::Case& input,
+                          const study::RunResult& result,
+                          const forward::EvaluationFields& fields,
+                          const fs::path& folder,
+                          const std::vector<fs::path>& exported) {
+  const forward::Evaluation& best = *result.best;
+  const forward::Evaluation& frozen = result.frozen;
+  study::Ledger ledger;
   ledger.input_bytes = static_cast<double>(input.text.size());
   ledger.files = files_of(input, fields, folder, exported);
-  const LedgerAmount curves = {
+  const study::LedgerAmount curves = {
       .elements = static_cast<double>(input.curves.size()),
       .area = {},
       .bytes = ledger.input_bytes};
   const SurfaceMesh raw = start_surface(fields);
-  const LedgerAmount start = amount_of(raw);
-  const LedgerAmount film = amount_of(fields.film);
-  const LedgerAmount surface = amount_of(fields.surface);
-  const LedgerAmount mesh = amount_of(fields.mesh, surface.area);
-  LedgerAmount solved = mesh;
+  const study::LedgerAmount start = amount_of(raw);
+  const study::LedgerAmount film = amount_of(fields.film);
+  const study::LedgerAmount surface = amount_of(fields.surface);
+  const study::LedgerAmount mesh = amount_of(fields.mesh, surface.area);
+  study::LedgerAmount solved = mesh;
   solved.bytes = bytes_of(fields.solution);
-  LedgerAmount files = solved;
+  study::LedgerAmount files = solved;
   files.bytes = 0.0;
-  for (const FileBytes& file : ledger.files) {
+  for (const study::FileBytes& file : ledger.files) {
     files.bytes += file.written ? file.bytes : 0.0;
   }
   ledger.stages = {
@@ -231,4 +237,4 @@ void note_file(const fs::path& folder, const fs::path& file,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -8,15 +8,16 @@
 #include "pipeline/study/ledger.h"
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 /// Of a run whose best design was evaluated, after its files are in `folder`,
 /// those that export_part() wrote for it among them; `fields`: of that design.
 /// Operations: docs/theory.md, Counting work.
-Ledger make_ledger(const Case& input, const RunResult& result,
-                   const EvaluationFields& fields,
-                   const std::filesystem::path& folder,
-                   const std::vector<std::filesystem::path>& exported = {});
+study::Ledger make_ledger(
+    const case_data::Case& input, const study::RunResult& result,
+    const forward::EvaluationFields& fields,
+    const std::filesystem::path& folder,
+    const std::vector<std::filesystem::path>& exported = {});
 
 /// Puts an exported file into the ledger of FOLDER/result.json, in the place of
 /// what stood there under its name: the file's own where it lies in the folder,
@@ -25,4 +26,4 @@ Ledger make_ledger(const Case& input, const RunResult& result,
 void note_file(const std::filesystem::path& folder,
                const std::filesystem::path& file, const std::string& name);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

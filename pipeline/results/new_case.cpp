@@ -1,6 +1,6 @@
 #include "pipeline/results/new_case.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -93,4 +93,4 @@ std::string new_case_text(const std::string& name) {
   return title + "\"" + kText;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

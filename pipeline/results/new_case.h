@@ -3,11 +3,11 @@
 
 #include <string>
 
-namespace meniscus {
+namespace meniscus::results {
 
 /// The text of NAME/case.toml: a strut between two rings under load, every
 /// table that a case needs, each line explained. It reads back without
 /// problems and runs in seconds.
 std::string new_case_text(const std::string& name);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

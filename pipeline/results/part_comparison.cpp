@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/math/union_find.h"
 #include "fea/functionals/volume_functionals.h"
 #include "fea/loads/loads.h"
 #include "pipeline/forward/figures_json.h"
@@ -14,9 +15,8 @@
 #include "pipeline/results/results.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
-#include "core/math/union_find.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -50,24 +50,25 @@ int piece_count(const TetMesh& mesh) {
 
 /// Of the nodes of elements that count.
 double largest_principal(const TetMesh& mesh, const std::vector<char>& excluded,
-                         const RecoveredStress& recovered) {
-  const StressField field = nodal_stress(mesh, recovered);
+                         const stress::RecoveredStress& recovered) {
+  const stress::StressField field = stress::nodal_stress(mesh, recovered);
   double largest = -std::numeric_limits<double>::infinity();
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (!excluded.empty() && excluded[static_cast<std::size_t>(e)] != 0) {
       continue;
     }
     for (const int n : mesh.element(e)) {
-      const Stress& stress = field.nodal[static_cast<std::size_t>(n)];
-      largest = std::max(largest, principal_stresses(stress)[0]);
+      const element::Stress& stress = field.nodal[static_cast<std::size_t>(n)];
+      largest = std::max(largest, element::principal_stresses(stress)[0]);
     }
   }
   return largest;
 }
 
-PartLoadFigures load_figures(const EvaluationFields& fields, std::size_t k,
-                             const StressFigures& stress) {
-  const LoadCase& load_case = fields.inputs.load_cases[k];
+PartLoadFigures load_figures(const forward::EvaluationFields& fields,
+                             std::size_t k,
+                             const forward::StressFigures& stress) {
+  const loads::LoadCase& load_case = fields.inputs.load_cases[k];
   PartLoadFigures figures{
       .load_case = load_case.name,
       .stiffness = std::nullopt,
@@ -78,7 +79,7 @@ PartLoadFigures load_figures(const EvaluationFields& fields, std::size_t k,
           stress.uniformity.von_mises.coefficient_of_variation,
       .gini = stress.uniformity.von_mises.gini};
   const VectorX forces =
-      nodal_forces(fields.mesh, load_case, fields.inputs.materials);
+      loads::nodal_forces(fields.mesh, load_case, fields.inputs.materials);
   figures.work = forces.dot(fields.solution.displacements[k]);
   Vec3 resultant = Vec3::Zero();
   double sum = 0.0;
@@ -214,18 +215,23 @@ Json part_json(const PartFigures& part) {
 
 }  // namespace
 
-PartFigures part_figures(const std::string& name, EvaluationFields& fields) {
-  fields.stresses = part_stresses(fields.mesh, fields.inputs, fields.solution);
+PartFigures part_figures(const std::string& name,
+                         forward::EvaluationFields& fields) {
+  fields.stresses =
+      forward::part_stresses(fields.mesh, fields.inputs, fields.solution);
   PartFigures part{
       .name = name,
       .parts = piece_count(fields.mesh),
-      .volume = volume_functional(fields.mesh, Derivatives::None).value,
-      .mass = mass_functional(fields.mesh, fields.inputs.materials,
-                              Derivatives::None)
+      .volume = functionals::volume_functional(fields.mesh,
+                                               element::Derivatives::None)
+                    .value,
+      .mass = functionals::mass_functional(fields.mesh, fields.inputs.materials,
+                                           element::Derivatives::None)
                   .value,
       .elements = fields.mesh.element_count(),
       .load_cases = {}};
-  const std::vector<StressFigures> stresses = stress_figures(fields);
+  const std::vector<forward::StressFigures> stresses =
+      forward::stress_figures(fields);
   for (std::size_t k = 0; k < stresses.size(); ++k) {
     part.load_cases.push_back(load_figures(fields, k, stresses[k]));
   }
@@ -233,17 +239,18 @@ PartFigures part_figures(const std::string& name, EvaluationFields& fields) {
 }
 
 RunPart load_run_part(const std::filesystem::path& folder, Monitor* monitor) {
-  const StudyStore store = StudyStore::read(folder.string());
-  const std::vector<EvaluationRecord> records = store.all();
-  RunPart part{.input = frozen_as_answered(restore_case(store.meta()), records),
+  const store::StudyStore store = store::StudyStore::read(folder.string());
+  const std::vector<store::EvaluationRecord> records = store.all();
+  RunPart part{.input = store::frozen_as_answered(
+                   store::restore_case(store.meta()), records),
                .design = {},
                .fields = {},
                .figures = {}};
-  part.design = answer_of_run(part.input, records, folder);
-  const ForwardModel model(part.input, {.monitor = monitor});
-  const Evaluation found = model.failure()
-                               ? model.frozen()
-                               : model.evaluate(part.design, &part.fields);
+  part.design = store::answer_of_run(part.input, records, folder);
+  const forward::ForwardModel model(part.input, {.monitor = monitor});
+  const forward::Evaluation found =
+      model.failure() ? model.frozen()
+                      : model.evaluate(part.design, &part.fields);
   if (found.failure) {
     throw MeshError(fmt::format("{}: the run's part cannot be made again: {}",
                                 folder.string(), found.failure->message));
@@ -273,7 +280,7 @@ Json comparison_json(const std::vector<PartFigures>& parts,
                      const std::string& program_version) {
   Json json = {{"schema_version", kResultSchemaVersion},
                {"program_version", program_version},
-               {"units", units_json(units)},
+               {"units", forward::units_json(units)},
                {"parts", Json::array()}};
   for (const PartFigures& part : parts) {
     json["parts"].push_back(part_json(part));
@@ -281,4 +288,4 @@ Json comparison_json(const std::vector<PartFigures>& parts,
   return json;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -12,7 +12,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/forward/forward_model.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 struct PartLoadFigures {
   std::string load_case;
@@ -41,13 +41,14 @@ struct PartFigures {
 };
 
 /// `fields` as evaluate() leaves them.
-PartFigures part_figures(const std::string& name, EvaluationFields& fields);
+PartFigures part_figures(const std::string& name,
+                         forward::EvaluationFields& fields);
 
 /// A run's case and the part of its answer, made again (the same bits).
 struct RunPart {
-  Case input;
+  case_data::Case input;
   VectorX design;
-  EvaluationFields fields;
+  forward::EvaluationFields fields;
   PartFigures figures;
 };
 
@@ -65,4 +66,4 @@ nlohmann::ordered_json comparison_json(const std::vector<PartFigures>& parts,
                                        const UnitSystem& units,
                                        const std::string& program_version);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -15,13 +15,13 @@
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json seconds_json(const StageSeconds& seconds) {
+Json seconds_json(const forward::StageSeconds& seconds) {
   return {{"evolve", seconds.film},
           {"mesh", seconds.mesh},
           {"fea", seconds.fea},
@@ -29,46 +29,48 @@ Json seconds_json(const StageSeconds& seconds) {
 }
 
 /// A field of `components` values per node from what numbers them by node.
-Field node_field(const char* name, const std::string& unit, int components,
-                 const double* values, std::size_t count) {
+io::Field node_field(const char* name, const std::string& unit, int components,
+                     const double* values, std::size_t count) {
   return {.name = name,
           .unit = unit,
           .components = components,
           .values = {values, values + count}};
 }
 
-Field element_field(const char* name, const std::string& unit) {
+io::Field element_field(const char* name, const std::string& unit) {
   return {.name = name, .unit = unit};
 }
 
 /// What elements have of the first load case: stresses at integration points,
 /// one after the other, and their errors.
-std::vector<Field> element_fields(const Case& input,
-                                  const EvaluationFields& fields) {
-  const PartStress& first = fields.stresses.front();
-  Field stress = element_field("point_stress", input.units.pressure);
+std::vector<io::Field> element_fields(const case_data::Case& input,
+                                      const forward::EvaluationFields& fields) {
+  const forward::PartStress& first = fields.stresses.front();
+  io::Field stress = element_field("point_stress", input.units.pressure);
   stress.components = 6 * first.points.points_per_element;
-  for (const Stress& s : first.points.stress) {
+  for (const element::Stress& s : first.points.stress) {
     stress.values.insert(stress.values.end(), s.begin(), s.end());
   }
-  Field error = element_field("energy_error", "");
+  io::Field error = element_field("energy_error", "");
   error.values = first.error.element;
-  Field excluded = element_field("excluded", "");
+  io::Field excluded = element_field("excluded", "");
   excluded.values.assign(fields.exclusion.element.begin(),
                          fields.exclusion.element.end());
   excluded.values.resize(first.error.element.size(), 0.0);
   return {std::move(stress), std::move(error), std::move(excluded)};
 }
 
-MeshFields part_fields(const Case& input, const EvaluationFields& fields) {
+io::MeshFields part_fields(const case_data::Case& input,
+                           const forward::EvaluationFields& fields) {
   const VectorX& u = fields.solution.displacements.front();
-  const StressField nodal =
-      nodal_stress(fields.mesh, fields.stresses.front().recovered);
-  MeshFields out;
+  const stress::StressField nodal =
+      stress::nodal_stress(fields.mesh, fields.stresses.front().recovered);
+  io::MeshFields out;
   out.points.push_back(node_field("displacement", input.units.length, 3,
                                   u.data(),
                                   static_cast<std::size_t>(u.size())));
-  Field stress{.name = "stress", .unit = input.units.pressure, .components = 6};
+  io::Field stress{
+      .name = "stress", .unit = input.units.pressure, .components = 6};
   for (const auto& s : nodal.nodal) {
     // xx yy zz xy yz zx: VTK's order of a symmetric tensor too.
     stress.values.insert(stress.values.end(), s.begin(), s.end());
@@ -81,7 +83,7 @@ MeshFields part_fields(const Case& input, const EvaluationFields& fields) {
   out.notes = {{"title", input.title},
                {"length_unit", input.units.length},
                {"load_case", input.load_cases.front().name}};
-  for (const ModeShape& mode : fields.modes) {
+  for (const forward::ModeShape& mode : fields.modes) {
     out.points.push_back(
         node_field(mode.name.c_str(), "", 3, mode.shape.data(),
                    static_cast<std::size_t>(mode.shape.size())));
@@ -98,68 +100,73 @@ Json value_map(const std::vector<std::string>& names, const VectorX& values) {
   return map;
 }
 
-Json parameters_json(const Case& input, const VectorX& design) {
-  Json json = value_map(design_names(input), design);
-  for (const auto& [name, value] : parameter_values(input, design)) {
+Json parameters_json(const case_data::Case& input, const VectorX& design) {
+  Json json = value_map(case_data::design_names(input), design);
+  for (const auto& [name, value] : case_data::parameter_values(input, design)) {
     json[name] = value;
   }
   return json;
 }
 
-Json coarse_json(const Case& input, const CoarseFigures& coarse) {
+Json coarse_json(const case_data::Case& input,
+                 const study::CoarseFigures& coarse) {
   const bool answered = coarse.design.size() > 0;
   return {{"edge_factor", coarse.edge_factor},
           {"message", coarse.message},
           {"parameters",
-           answered ? value_map(design_names(input), coarse.design) : Json()},
+           answered ? value_map(case_data::design_names(input), coarse.design)
+                    : Json()},
           {"evaluations", coarse.evaluations},
           {"gradient_evaluations", coarse.gradients}};
 }
 
-Json refrozen_json(const Case& input, const std::vector<Refreeze>& refrozen) {
+Json refrozen_json(const case_data::Case& input,
+                   const std::vector<store::Refreeze>& refrozen) {
   Json json = Json::array();
-  for (const Refreeze& r : refrozen) {
-    json.push_back({{"evaluation", r.evaluation},
-                    {"reason", r.reason},
-                    {"parameters", value_map(design_names(input), r.design)},
-                    {"shift", value_map(response_names(input), r.shift)}});
+  for (const store::Refreeze& r : refrozen) {
+    json.push_back(
+        {{"evaluation", r.evaluation},
+         {"reason", r.reason},
+         {"parameters", value_map(case_data::design_names(input), r.design)},
+         {"shift", value_map(case_data::response_names(input), r.shift)}});
   }
   return json;
 }
 
 }  // namespace
 
-nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
+nlohmann::ordered_json result_json(const case_data::Case& input,
+                                   const study::RunResult& result,
                                    const std::string& program_version) {
   Json json;
   json["schema_version"] = kResultSchemaVersion;
   json["case"] = input.title;
   json["case_hash"] = input.hash;
   json["program_version"] = program_version;
-  json["units"] = units_json(input.units);
-  json["status"] = name_of(result.status);
+  json["units"] = forward::units_json(input.units);
+  json["status"] = study::name_of(result.status);
   json["message"] = result.message;
-  const Evaluation* best = result.best ? &*result.best : nullptr;
+  const forward::Evaluation* best = result.best ? &*result.best : nullptr;
   json["parameters"] = parameters_json(
-      input, best != nullptr ? best->design : initial_design(input));
+      input, best != nullptr ? best->design : case_data::initial_design(input));
   const bool has_objective =
-      input.study.kind == StudyKind::Match || input.study.objective;
+      input.study.kind == case_data::StudyKind::Match || input.study.objective;
   json["objective"] = has_objective ? Json(result.objective) : Json();
   json["constraints"] = Json::object();
-  for (const Constraint& c : result.constraints) {
+  for (const study::Constraint& c : result.constraints) {
     json["constraints"][c.name] = {
         {"value", c.value}, {"bound", c.bound}, {"satisfied", c.satisfied}};
   }
   if (result.sweep) {
-    json["sweep"] = sweep_json(input, *result.sweep);
+    json["sweep"] = study::sweep_json(input, *result.sweep);
   }
   if (result.tolerance) {
-    json["tolerance"] = tolerance_json(input, *result.tolerance);
+    json["tolerance"] = study::tolerance_json(input, *result.tolerance);
   }
   if (result.front) {
-    json["front"] = front_json(input, *result.front);
+    json["front"] = study::front_json(input, *result.front);
   }
-  const std::vector<std::string> names = response_names(input);
+  const std::vector<std::string> names = case_data::response_names(input);
   json["responses"] =
       value_map(names, best != nullptr ? best->responses : VectorX());
   json["response_errors"] = value_map(names, result.response_errors);
@@ -169,11 +176,11 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
         {"responses", value_map(names, result.element_errors->responses)}};
   }
   json["parameter_errors"] =
-      value_map(design_names(input), result.design_errors);
+      value_map(case_data::design_names(input), result.design_errors);
   if (result.start) {
-    json["start"] = {
-        {"parameters", value_map(design_names(input), result.start->design)},
-        {"responses", value_map(names, result.start->responses)}};
+    json["start"] = {{"parameters", value_map(case_data::design_names(input),
+                                              result.start->design)},
+                     {"responses", value_map(names, result.start->responses)}};
   }
   json["evaluations"] = result.evaluations;
   json["failed_evaluations"] = result.failed_evaluations;
@@ -185,66 +192,67 @@ nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
     json["refrozen"] = refrozen_json(input, result.refrozen);
   }
   if (best != nullptr) {
-    json["film"] = film_json(best->film);
-    json["tet"] = tet_json(best->tet);
-    json["fea"] = fea_json(best->fea);
+    json["film"] = forward::film_json(best->film);
+    json["tet"] = forward::tet_json(best->tet);
+    json["fea"] = forward::fea_json(best->fea);
   }
   if (result.adaptation) {
-    json["adaptation"] = adaptation_json(input, *result.adaptation);
+    json["adaptation"] = forward::adaptation_json(input, *result.adaptation);
   }
-  json["stress"] = stress_json(result.stress);
+  json["stress"] = forward::stress_json(result.stress);
   if (result.eigen) {
-    add_eigen_json(*result.eigen, json);
+    forward::add_eigen_json(*result.eigen, json);
   }
   if (!result.exclusion.zones.empty()) {
-    json["exclusion"] = exclusion_json(result.exclusion);
+    json["exclusion"] = forward::exclusion_json(result.exclusion);
   }
   json["seconds"] = seconds_json(result.seconds);
   json["seconds"]["output"] = result.output_seconds;
   json["seconds"]["total"] = result.total_seconds;
   if (result.ledger) {
-    json["ledger"] = ledger_json(*result.ledger);
+    json["ledger"] = study::ledger_json(*result.ledger);
   }
   json["warnings"] = result.warnings;
   return json;
 }
 
-void write_film(const Case& input, const SurfaceMesh& film,
+void write_film(const case_data::Case& input, const SurfaceMesh& film,
                 const std::filesystem::path& folder) {
-  MeshFields fields;
+  io::MeshFields fields;
   fields.notes = {{"title", input.title}, {"length_unit", input.units.length}};
-  write_vtp(folder / "film.vtp", film, fields);
+  io::write_vtp(folder / "film.vtp", film, fields);
 }
 
-void write_part(const std::filesystem::path& file, const Case& input,
-                const EvaluationFields& fields,
+void write_part(const std::filesystem::path& file, const case_data::Case& input,
+                const forward::EvaluationFields& fields,
                 const std::vector<std::pair<std::string, std::string>>& notes) {
-  MeshFields part = part_fields(input, fields);
+  io::MeshFields part = part_fields(input, fields);
   part.notes.insert(part.notes.end(), notes.begin(), notes.end());
-  write_vtu(file, fields.mesh, part);
+  io::write_vtu(file, fields.mesh, part);
 }
 
-void write_part_surface(const std::filesystem::path& file, const Case& input,
-                        const EvaluationFields& fields) {
-  write_boundary_vtp(file, fields.mesh, part_fields(input, fields));
+void write_part_surface(const std::filesystem::path& file,
+                        const case_data::Case& input,
+                        const forward::EvaluationFields& fields) {
+  io::write_boundary_vtp(file, fields.mesh, part_fields(input, fields));
 }
 
-std::vector<std::string> write_meshes(const Case& input,
-                                      const EvaluationFields& fields,
+std::vector<std::string> write_meshes(const case_data::Case& input,
+                                      const forward::EvaluationFields& fields,
                                       const std::filesystem::path& folder) {
   std::vector<std::string> names;
   const auto path = [&](const std::string& name) {
     names.push_back(name);
     return folder / name;
   };
-  const MeshFields part = part_fields(input, fields);
+  const io::MeshFields part = part_fields(input, fields);
   names.emplace_back("film.vtp");
   write_film(input, fields.film, folder);
-  write_vtu(path("part.vtu"), fields.mesh, part);
-  write_boundary_vtp(path("part_surface.vtp"), fields.mesh, part);
+  io::write_vtu(path("part.vtu"), fields.mesh, part);
+  io::write_boundary_vtp(path("part_surface.vtp"), fields.mesh, part);
   const auto write_part_stl = [&](const SurfaceMesh& mesh, double edge) {
-    write_stl(path(stl_name(edge)), mesh,
-              {.name = input.title, .unit = input.units.length});
+    io::write_stl(path(stl_name(edge)), mesh,
+                  {.name = input.title, .unit = input.units.length});
   };
   if (input.resolution.export_edges.empty()) {
     write_part_stl(fields.boundary, input.resolution.film);
@@ -255,13 +263,13 @@ std::vector<std::string> write_meshes(const Case& input,
   return names;
 }
 
-std::vector<std::string> write_unfilled(const EvaluationFields& fields,
+std::vector<std::string> write_unfilled(const forward::EvaluationFields& fields,
                                         const std::filesystem::path& folder) {
   if (fields.surface.base.facets.empty() || !fields.mesh.nodes.empty()) {
     return {};
   }
-  write_findings_vtp(folder / "findings.vtp", fields.surface.base,
-                     fields.findings);
+  io::write_findings_vtp(folder / "findings.vtp", fields.surface.base,
+                         fields.findings);
   // Broken corners cannot be drawn; the findings leave them out.
   const auto broken = [](const Finding& finding) {
     return finding.kind == FindingKind::BadIndex ||
@@ -270,29 +278,29 @@ std::vector<std::string> write_unfilled(const EvaluationFields& fields,
   if (std::any_of(fields.findings.begin(), fields.findings.end(), broken)) {
     return {"findings.vtp"};
   }
-  write_vtp(folder / "unfilled_surface.vtp", fields.surface.base);
+  io::write_vtp(folder / "unfilled_surface.vtp", fields.surface.base);
   return {"findings.vtp", "unfilled_surface.vtp"};
 }
 
-SurfaceMesh settle_again(const EvaluatedCase& numbers, double edge) {
-  const FilmModel model =
-      FilmModel::freeze(numbers.film_system, {.edge = edge, .refinements = 0});
+SurfaceMesh settle_again(const case_data::EvaluatedCase& numbers, double edge) {
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      numbers.film_system, {.edge = edge, .refinements = 0});
   if (model.reference().failure) {
     throw MeshError(fmt::format("no film at edge {:g}: {}", edge,
                                 model.reference().failure->message));
   }
-  return boundary_of(numbers, model, model.reference().points);
+  return forward::boundary_of(numbers, model, model.reference().points);
 }
 
 std::string stl_name(double edge) { return fmt::format("part_{:g}.stl", edge); }
 
-void write_summary(const Case& input, const RunResult& result,
-                   const std::vector<EvaluationRecord>& records,
+void write_summary(const case_data::Case& input, const study::RunResult& result,
+                   const std::vector<store::EvaluationRecord>& records,
                    const std::string& program_version,
                    const std::filesystem::path& folder) {
-  write_file(folder / "history.csv", history_csv(records));
+  write_file(folder / "history.csv", store::history_csv(records));
   write_file(folder / "result.json",
              json_text(result_json(input, result, program_version), 2) + "\n");
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -11,58 +11,62 @@
 
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 /// Version of result.json's schema (docs/results.md).
 inline constexpr int kResultSchemaVersion = 1;
 
-nlohmann::ordered_json result_json(const Case& input, const RunResult& result,
+nlohmann::ordered_json result_json(const case_data::Case& input,
+                                   const study::RunResult& result,
                                    const std::string& program_version);
 
 /// The result as a table for people: inputs, responses with errors, checks.
-std::string result_text(const Case& input, const RunResult& result);
+std::string result_text(const case_data::Case& input,
+                        const study::RunResult& result);
 
 /// The film's report for people.
-std::string film_text(const Case& input, const FilmReport& film);
+std::string film_text(const case_data::Case& input,
+                      const settle::FilmReport& film);
 
 /// film.vtp in `folder`.
-void write_film(const Case& input, const SurfaceMesh& film,
+void write_film(const case_data::Case& input, const SurfaceMesh& film,
                 const std::filesystem::path& folder);
 
 /// The meshed part with displacement and stress as a .vtu file; `notes` (name,
 /// text) go in beside title, unit and load case.
 void write_part(
-    const std::filesystem::path& file, const Case& input,
-    const EvaluationFields& fields,
+    const std::filesystem::path& file, const case_data::Case& input,
+    const forward::EvaluationFields& fields,
     const std::vector<std::pair<std::string, std::string>>& notes = {});
 
 /// The boundary of the same, with its point data, as a .vtp file.
-void write_part_surface(const std::filesystem::path& file, const Case& input,
-                        const EvaluationFields& fields);
+void write_part_surface(const std::filesystem::path& file,
+                        const case_data::Case& input,
+                        const forward::EvaluationFields& fields);
 
 /// film.vtp, part.vtu, part_surface.vtp and the STL files of a finished run.
 /// Returns the names written. Throws IoError.
-std::vector<std::string> write_meshes(const Case& input,
-                                      const EvaluationFields& fields,
+std::vector<std::string> write_meshes(const case_data::Case& input,
+                                      const forward::EvaluationFields& fields,
                                       const std::filesystem::path& folder);
 
 /// Where a surface could not be filled, for the eye: findings.vtp (places and
 /// facets at fault) and unfilled_surface.vtp. Returns the names written, none
 /// when there is no such surface. Throws IoError.
-std::vector<std::string> write_unfilled(const EvaluationFields& fields,
+std::vector<std::string> write_unfilled(const forward::EvaluationFields& fields,
                                         const std::filesystem::path& folder);
 
 /// The closed surface of a design, settled from its curves at another edge
 /// length. Throws MeshError where there is no stable film.
-SurfaceMesh settle_again(const EvaluatedCase& numbers, double edge);
+SurfaceMesh settle_again(const case_data::EvaluatedCase& numbers, double edge);
 
 /// "part_4.stl" for edge 4.
 std::string stl_name(double edge);
 
 /// history.csv and, last, result.json. Throws IoError.
-void write_summary(const Case& input, const RunResult& result,
-                   const std::vector<EvaluationRecord>& records,
+void write_summary(const case_data::Case& input, const study::RunResult& result,
+                   const std::vector<store::EvaluationRecord>& records,
                    const std::string& program_version,
                    const std::filesystem::path& folder);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -6,7 +6,7 @@
 #include "pipeline/forward/eigen_figures.h"
 #include "pipeline/results/results.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -20,8 +20,8 @@ std::string with_error(double value, const VectorX& errors, Eigen::Index k,
 }
 
 /// What another mesh changed most, relative to the answer.
-std::string shift_text(const Case& input, const Refreeze& refreeze,
-                       const VectorX& answer) {
+std::string shift_text(const case_data::Case& input,
+                       const store::Refreeze& refreeze, const VectorX& answer) {
   Eigen::Index worst = -1;
   double largest = 0.0;
   for (Eigen::Index k = 0; k < refreeze.shift.size(); ++k) {
@@ -37,9 +37,10 @@ std::string shift_text(const Case& input, const Refreeze& refreeze,
 }
 
 /// "  sway   0.09 mm, at most 0.1 mm: kept".
-std::string bounds_text(const Case& input, const ConstraintEntry& entry,
-                        const Constraint& constraint) {
-  const std::string unit = response_unit(input, entry.response);
+std::string bounds_text(const case_data::Case& input,
+                        const case_data::ConstraintEntry& entry,
+                        const study::Constraint& constraint) {
+  const std::string unit = case_data::response_unit(input, entry.response);
   std::string bounds;
   if (entry.lower == entry.upper) {
     bounds = "wanted " + quantity_text(entry.lower, unit);
@@ -59,21 +60,23 @@ std::string bounds_text(const Case& input, const ConstraintEntry& entry,
 
 }  // namespace
 
-std::string result_text(const Case& input, const RunResult& result) {
+std::string result_text(const case_data::Case& input,
+                        const study::RunResult& result) {
   std::string text;
   if (!result.best || result.best->responses.size() == 0) {
     return text;
   }
-  const Evaluation& best = *result.best;
-  const std::vector<std::string> designs = design_names(input);
+  const forward::Evaluation& best = *result.best;
+  const std::vector<std::string> designs = case_data::design_names(input);
   for (Eigen::Index k = 0; k < best.design.size(); ++k) {
     text +=
         fmt::format("  {:<20} {}\n", designs[k],
                     with_error(best.design[k], result.design_errors, k, ""));
   }
-  const std::vector<std::string> names = response_names(input);
+  const std::vector<std::string> names = case_data::response_names(input);
   for (Eigen::Index k = 0; k < best.responses.size(); ++k) {
-    const std::string unit = response_unit(input, static_cast<int>(k));
+    const std::string unit =
+        case_data::response_unit(input, static_cast<int>(k));
     text += fmt::format(
         "  {:<20} {}", names[k],
         with_error(best.responses[k], result.response_errors, k, unit));
@@ -83,39 +86,39 @@ std::string result_text(const Case& input, const RunResult& result) {
     }
     text += "\n";
   }
-  const bool matches = input.study.kind == StudyKind::Match;
+  const bool matches = input.study.kind == case_data::StudyKind::Match;
   for (std::size_t k = 0; k < result.constraints.size(); ++k) {
-    const Constraint& c = result.constraints[k];
+    const study::Constraint& c = result.constraints[k];
     text += matches
                 ? fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n",
                               c.name, c.value, c.bound)
                 : bounds_text(input, input.study.constraints[k], c);
   }
   if (result.sweep) {
-    text += sweep_text(input, *result.sweep);
+    text += study::sweep_text(input, *result.sweep);
   }
   if (result.tolerance) {
-    text += tolerance_text(input, *result.tolerance);
+    text += study::tolerance_text(input, *result.tolerance);
   }
   if (result.front) {
-    text += front_text(input, *result.front);
+    text += study::front_text(input, *result.front);
   }
-  for (const ExclusionShare& zone : result.exclusion.zones) {
+  for (const forward::ExclusionShare& zone : result.exclusion.zones) {
     text += fmt::format(
         "  left out of stress figures: {}: {} elements, {:.2g} % of the "
         "volume\n",
         zone.where, zone.elements, 100.0 * zone.volume_share);
   }
-  for (const Refreeze& r : result.refrozen) {
+  for (const store::Refreeze& r : result.refrozen) {
     text += fmt::format("  frozen anew at evaluation {}: {}{}\n", r.evaluation,
                         r.reason, shift_text(input, r, best.responses));
   }
   if (result.eigen) {
-    text += eigen_text(*result.eigen);
+    text += forward::eigen_text(*result.eigen);
   }
   if (result.adaptation) {
-    const AdaptedState& before = result.adaptation->before;
-    const AdaptedState& after = result.adaptation->after;
+    const forward::AdaptedState& before = result.adaptation->before;
+    const forward::AdaptedState& after = result.adaptation->after;
     text += fmt::format(
         "  adapted: {} elements with an energy error of {:.2g} % to {} with "
         "{:.2g} %\n",
@@ -138,12 +141,13 @@ std::string result_text(const Case& input, const RunResult& result) {
       result.total_seconds, result.seconds.film, result.seconds.mesh,
       result.seconds.fea, result.seconds.gradient);
   if (result.ledger) {
-    text += ledger_text(*result.ledger, input.units.length);
+    text += study::ledger_text(*result.ledger, input.units.length);
   }
   return text;
 }
 
-std::string film_text(const Case& input, const FilmReport& film) {
+std::string film_text(const case_data::Case& input,
+                      const settle::FilmReport& film) {
   std::string text = fmt::format(
       "film: {}\n  {} vertices, {} facets, area {:.8g} {}, energy {:.8g} {}\n"
       "  residual {:.2e} {} (bound {:.2e}), smallest eigenvalue {:.4g}, index "
@@ -154,7 +158,7 @@ std::string film_text(const Case& input, const FilmReport& film) {
       film.residual_bound, film.min_eigenvalue, film.index, film.smallest_neck,
       input.units.length, film.neck_position.x(), film.neck_position.y(),
       film.neck_position.z());
-  for (const BodyState& body : film.bodies) {
+  for (const settle::BodyState& body : film.bodies) {
     text += fmt::format("  body {}: volume {:.8g} {}, pressure {:.6g} {}\n",
                         body.name, body.volume,
                         input.units.unit_of(Dimension::Volume), body.pressure,
@@ -163,4 +167,4 @@ std::string film_text(const Case& input, const FilmReport& film) {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

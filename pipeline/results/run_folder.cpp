@@ -10,34 +10,37 @@
 #include "pipeline/study/result_so_far.h"
 #include "pipeline/study/study_records.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace fs = std::filesystem;
 
-StudyStore open_run(const Case& input, const fs::path& folder, RunBegins begins,
-                    const std::string& program_version) {
-  const StudyMeta meta{.program_version = program_version,
-                       .case_hash = input.hash,
-                       .case_text = stored_case(input)};
-  StudyStore store = begins == RunBegins::Resumed
-                         ? StudyStore::resume(folder.string(), meta)
-                         : StudyStore::start(folder.string(), meta);
+store::StudyStore open_run(const case_data::Case& input, const fs::path& folder,
+                           RunBegins begins,
+                           const std::string& program_version) {
+  const store::StudyMeta meta{.program_version = program_version,
+                              .case_hash = input.hash,
+                              .case_text = store::stored_case(input)};
+  store::StudyStore store =
+      begins == RunBegins::Resumed
+          ? store::StudyStore::resume(folder.string(), meta)
+          : store::StudyStore::start(folder.string(), meta);
   remove_leftovers(folder);
   try {
     for (const char* name : {"result.json", "family.csv", "report.html"}) {
       fs::remove(folder / name);
     }
-    remove_frames(folder);
+    study::remove_frames(folder);
   } catch (const fs::filesystem_error& error) {
     throw IoError(error.what());
   }
   return store;
 }
 
-RunResult kept_result(const Case& input, const StudyStore& store,
-                      RunStatus status, const std::string& reason,
-                      const std::string& go_on) {
-  RunResult result = result_so_far(input, store.all());
+study::RunResult kept_result(const case_data::Case& input,
+                             const store::StudyStore& store,
+                             study::RunStatus status, const std::string& reason,
+                             const std::string& go_on) {
+  study::RunResult result = study::result_so_far(input, store.all());
   result.status = status;
   result.message =
       fmt::format("{}; {} finished evaluation{} kept, go on with {}", reason,
@@ -45,4 +48,4 @@ RunResult kept_result(const Case& input, const StudyStore& store,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

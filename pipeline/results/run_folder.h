@@ -8,7 +8,7 @@
 #include "pipeline/store/study_store.h"
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 enum class RunBegins { Anew, Resumed };
 
@@ -16,13 +16,16 @@ enum class RunBegins { Anew, Resumed };
 /// what an earlier run left that would stand beside a study not its own: half
 /// files of killed runs, result.json, the family's table, frames, the page.
 /// Throws IoError as StudyStore does.
-StudyStore open_run(const Case& input, const std::filesystem::path& folder,
-                    RunBegins begins, const std::string& program_version);
+store::StudyStore open_run(const case_data::Case& input,
+                           const std::filesystem::path& folder,
+                           RunBegins begins,
+                           const std::string& program_version);
 
 /// The state of a run that ended early for `reason`, for readers; `go_on`: how
 /// it goes on, "--resume".
-RunResult kept_result(const Case& input, const StudyStore& store,
-                      RunStatus status, const std::string& reason,
-                      const std::string& go_on);
+study::RunResult kept_result(const case_data::Case& input,
+                             const store::StudyStore& store,
+                             study::RunStatus status, const std::string& reason,
+                             const std::string& go_on);
 
-}  // namespace meniscus
+}  // namespace meniscus::results

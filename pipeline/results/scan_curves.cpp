@@ -8,7 +8,7 @@
 #include "pipeline/forward/part_file.h"
 #include "pipeline/results/imported_part.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
@@ -18,7 +18,7 @@ std::string vector_text(const Vec3& v, int digits) {
 }
 
 /// Digits behind the point that tell a thousandth of the rim's size.
-int digits_of(const ScanRim& rim) {
+int digits_of(const scan::ScanRim& rim) {
   constexpr double kPart = 1e-3;
   return std::max(0, static_cast<int>(std::ceil(
                          -std::log10(kPart * std::max(rim.radius, 1e-12)))));
@@ -26,13 +26,14 @@ int digits_of(const ScanRim& rim) {
 
 }  // namespace
 
-std::string curves_text(const ScanRimReport& report, const std::string& scan) {
+std::string curves_text(const scan::ScanRimReport& report,
+                        const std::string& scan) {
   std::string text = fmt::format(
       "# {} closed lines along which {} bends most; it falls into {} parts,\n"
       "# normals averaged over {:.3g}. Keep those that films should hang on.\n",
       report.rims.size(), scan, report.parts, report.radius);
   int number = 0;
-  for (const ScanRim& rim : report.rims) {
+  for (const scan::ScanRim& rim : report.rims) {
     const int digits = digits_of(rim);
     text += fmt::format(
         "\n[curves.rim_{}] # length {:.4g}, the surface turns by {:.0f} "
@@ -49,15 +50,15 @@ std::string curves_text(const ScanRimReport& report, const std::string& scan) {
   return text;
 }
 
-ScanRimReport rims_of_scan(const std::filesystem::path& scan,
-                           const ScanRimOptions& options) {
+scan::ScanRimReport rims_of_scan(const std::filesystem::path& scan,
+                                 const scan::ScanRimOptions& options) {
   const std::string ending = scan.extension().string();
-  if (!is_part_file(scan) || ending == ".step" || ending == ".stp") {
+  if (!forward::is_part_file(scan) || ending == ".step" || ending == ".stp") {
     throw InvalidInput(
         fmt::format("{}: expected a scan, a file that ends in .stl or .obj",
                     scan.string()));
   }
-  return find_rims(read_part_file(scan, {}), options);
+  return scan::find_rims(forward::read_part_file(scan, {}), options);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

@@ -15,35 +15,37 @@
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/study_records.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-double seconds_of(const EvaluationRecord& record) {
+double seconds_of(const store::EvaluationRecord& record) {
   return std::accumulate(
       record.seconds.begin(), record.seconds.end(), 0.0,
       [](double sum, const auto& stage) { return sum + stage.second; });
 }
 
 /// From the seconds that evaluations took: who watches has no clock of the run.
-std::optional<double> time_left(const std::vector<EvaluationRecord>& records,
-                                const StudyNews& news) {
+std::optional<double> time_left(
+    const std::vector<store::EvaluationRecord>& records,
+    const study::StudyNews& news) {
   if (!news.planned || records.empty()) {
     return std::nullopt;
   }
   double sum = 0.0;
-  for (const EvaluationRecord& record : records) {
+  for (const store::EvaluationRecord& record : records) {
     sum += seconds_of(record);
   }
   return sum / static_cast<double>(records.size()) *
          std::max(*news.planned - news.evaluations, 0);
 }
 
-std::string line_of(const Case& input, const StudyNews& news) {
-  const std::string standing = standing_text(news);
-  return describe(input, *news.record) +
+std::string line_of(const case_data::Case& input,
+                    const study::StudyNews& news) {
+  const std::string standing = study::standing_text(news);
+  return study::describe(input, *news.record) +
          (standing.empty() ? "" : "; " + standing);
 }
 
@@ -55,7 +57,7 @@ StudyWatch::StudyWatch(fs::path folder) : folder_(std::move(folder)) {
     return fs::exists(folder_ / name, code);
   };
   if (!has("study.sqlite") && !has("family.csv") &&
-      !holder_of_run(folder_.string())) {
+      !store::holder_of_run(folder_.string())) {
     throw IoError(fmt::format(
         "no run in '{}': neither study.sqlite nor family.csv is there; give "
         "the results folder of a run",
@@ -64,18 +66,18 @@ StudyWatch::StudyWatch(fs::path folder) : folder_(std::move(folder)) {
 }
 
 void StudyWatch::look_at_study(StudyGlance& glance) {
-  const StudyStore store = StudyStore::read(folder_.string());
-  const Case input = restore_case(store.meta());
-  const std::vector<EvaluationRecord> records = store.all();
+  const store::StudyStore store = store::StudyStore::read(folder_.string());
+  const case_data::Case input = store::restore_case(store.meta());
+  const std::vector<store::EvaluationRecord> records = store.all();
   glance.title = input.title;
   glance.evaluations = static_cast<int>(records.size());
   if (records.empty()) {
     glance.text = "  no evaluation has ended yet\n";
     return;
   }
-  StudyTeller teller(input, records.back().model);
-  StudyNews news;
-  for (const EvaluationRecord& record : records) {
+  study::StudyTeller teller(input, records.back().model);
+  study::StudyNews news;
+  for (const store::EvaluationRecord& record : records) {
     teller.remember(record);
     if (record.number > told_ && record.model == records.back().model) {
       glance.news.push_back(line_of(input, teller.news(record)));
@@ -90,8 +92,8 @@ void StudyWatch::look_at_study(StudyGlance& glance) {
           ? fmt::format(" of at most {}", *news.planned)
           : "",
       news.failed > 0 ? fmt::format(", {} failed", news.failed) : "",
-      describe(input, records.back()));
-  const std::string standing = standing_text(news);
+      study::describe(input, records.back()));
+  const std::string standing = study::standing_text(news);
   if (!standing.empty()) {
     glance.text += "  " + standing + "\n";
   }
@@ -100,11 +102,11 @@ void StudyWatch::look_at_study(StudyGlance& glance) {
 void StudyWatch::look_at_family(StudyGlance& glance) {
   const std::string csv = read_file(folder_ / "family.csv");
   glance.family = true;
-  glance.text = family_table_text(csv, stored_units(folder_));
+  glance.text = family_table_text(csv, store::stored_units(folder_));
   std::vector<std::string> rows;
   std::vector<std::string> names;
-  for (const CsvRow& row : parse_csv(csv).rows) {
-    rows.push_back(csv_text({row.cells}));
+  for (const files::CsvRow& row : files::parse_csv(csv).rows) {
+    rows.push_back(files::csv_text({row.cells}));
     names.push_back(row.cells.front());
     if (rows.size() == 1 || row.cells.size() < 2) {
       continue;  // the head line
@@ -120,7 +122,7 @@ void StudyWatch::look_at_family(StudyGlance& glance) {
   }
   for (std::size_t k = 1; k < names.size(); ++k) {
     const fs::path member = folder_ / "members" / names[k];
-    if (glance.at_work && holder_of_run(member.string())) {
+    if (glance.at_work && store::holder_of_run(member.string())) {
       StudyGlance inner;
       inner.at_work = true;
       try {
@@ -151,7 +153,7 @@ StudyGlance StudyWatch::look() {
   StudyGlance glance;
   // The lock first: a run that ends meanwhile is looked at once more.
   if (const std::optional<std::string> holder =
-          holder_of_run(folder_.string())) {
+          store::holder_of_run(folder_.string())) {
     glance.at_work = true;
     glance.holder = *holder;
   }
@@ -173,4 +175,4 @@ StudyGlance StudyWatch::look() {
   return glance;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::results

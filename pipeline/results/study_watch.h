@@ -7,7 +7,7 @@
 
 #include "pipeline/study/study_news.h"
 
-namespace meniscus {
+namespace meniscus::results {
 
 /// What a folder shows at one moment.
 struct StudyGlance {
@@ -45,4 +45,4 @@ class StudyWatch {
   std::vector<std::string> rows_;  // of the family, as told
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::results

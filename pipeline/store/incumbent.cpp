@@ -5,9 +5,10 @@
 
 #include "pipeline/store/refreeze.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
-double violation_of(const ConstraintEntry& constraint, double value) {
+double violation_of(const case_data::ConstraintEntry& constraint,
+                    double value) {
   double scale = 0.0;
   for (const double bound : {constraint.lower, constraint.upper}) {
     if (std::isfinite(bound)) {
@@ -19,9 +20,10 @@ double violation_of(const ConstraintEntry& constraint, double value) {
   return off / (scale > 0.0 ? scale : 1.0);
 }
 
-Standing standing_of(const StudyEntry& study, const VectorX& responses) {
+Standing standing_of(const case_data::StudyEntry& study,
+                     const VectorX& responses) {
   Standing standing{.objective = responses[*study.objective]};
-  for (const ConstraintEntry& constraint : study.constraints) {
+  for (const case_data::ConstraintEntry& constraint : study.constraints) {
     standing.violation =
         std::max(standing.violation,
                  violation_of(constraint, responses[constraint.response]));
@@ -37,7 +39,8 @@ bool is_better(const Standing& a, const Standing& b) {
 }
 
 const EvaluationRecord* best_by_objective(
-    const StudyEntry& study, const std::vector<EvaluationRecord>& records) {
+    const case_data::StudyEntry& study,
+    const std::vector<EvaluationRecord>& records) {
   const EvaluationRecord* best = nullptr;
   Standing standing;
   const std::string model = answering_model(records);
@@ -54,4 +57,4 @@ const EvaluationRecord* best_by_objective(
   return best;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::store

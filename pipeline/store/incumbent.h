@@ -7,14 +7,14 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/store/study_store.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
 /// Violation that still counts as kept, x the constraint's scale: the larger
 /// magnitude of its bounds, 1 where that is 0.
 inline constexpr double kFeasible = 1e-6;
 
 /// What a response is off its bounds, in scales; 0 when within.
-double violation_of(const ConstraintEntry& constraint, double value);
+double violation_of(const case_data::ConstraintEntry& constraint, double value);
 
 struct Standing {
   double violation = 0.0;  // the largest of all constraints
@@ -24,7 +24,8 @@ struct Standing {
 };
 
 /// Of a study with an objective; `responses` of all, in the case's order.
-Standing standing_of(const StudyEntry& study, const VectorX& responses);
+Standing standing_of(const case_data::StudyEntry& study,
+                     const VectorX& responses);
 
 /// Among designs that keep every constraint the lower objective, else the
 /// smaller violation; a design that keeps all goes before one that does not.
@@ -34,6 +35,7 @@ bool is_better(const Standing& a, const Standing& b);
 /// constraints, or null when all failed. `records` must be of a study with an
 /// objective.
 const EvaluationRecord* best_by_objective(
-    const StudyEntry& study, const std::vector<EvaluationRecord>& records);
+    const case_data::StudyEntry& study,
+    const std::vector<EvaluationRecord>& records);
 
-}  // namespace meniscus
+}  // namespace meniscus::store

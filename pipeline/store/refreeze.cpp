@@ -7,7 +7,7 @@
 
 #include "core/json.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
 namespace {
 
@@ -19,10 +19,11 @@ constexpr double kSame = 1e-3;
 constexpr double kNear = 0.25;
 
 /// Largest difference of a variable, x its range.
-double distance(const Case& input, const VectorX& a, const VectorX& b) {
+double distance(const case_data::Case& input, const VectorX& a,
+                const VectorX& b) {
   double largest = 0.0;
   for (std::size_t k = 0; k < input.design.size(); ++k) {
-    const DesignVariable& v = input.design[k];
+    const case_data::DesignVariable& v = input.design[k];
     const auto j = static_cast<Eigen::Index>(k);
     if (v.upper > v.lower) {
       largest = std::max(largest, std::abs(a[j] - b[j]) / (v.upper - v.lower));
@@ -86,15 +87,15 @@ std::string answering_model(const std::vector<EvaluationRecord>& records) {
   return last == records.rend() ? kStudyModel : last->model;
 }
 
-Case frozen_at(Case input, const VectorX& design) {
+case_data::Case frozen_at(case_data::Case input, const VectorX& design) {
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     input.design[k].initial = design[static_cast<Eigen::Index>(k)];
   }
   return input;
 }
 
-Case frozen_as_answered(Case input,
-                        const std::vector<EvaluationRecord>& records) {
+case_data::Case frozen_as_answered(
+    case_data::Case input, const std::vector<EvaluationRecord>& records) {
   const std::string model = answering_model(records);
   const auto at = std::find_if(records.begin(), records.end(),
                                [&](const EvaluationRecord& record) {
@@ -110,7 +111,8 @@ std::optional<Refreeze> wanted_refreeze(const FrozenStage& stage) {
                                           record.inputs == stage.best;
                                  });
   if (best == stage.records.end() || best->failure ||
-      distance(stage.input, stage.best, initial_design(stage.input)) <= kSame) {
+      distance(stage.input, stage.best,
+               case_data::initial_design(stage.input)) <= kSame) {
     return std::nullopt;
   }
   const std::string reason = reason_at(stage, *best);
@@ -123,4 +125,4 @@ std::optional<Refreeze> wanted_refreeze(const FrozenStage& stage) {
                   .shift = {}};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::store

@@ -9,7 +9,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/store/study_store.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
 /// A model frozen at a design that the one before has evaluated.
 struct Refreeze {
@@ -37,15 +37,15 @@ int count_of_model(const std::vector<EvaluationRecord>& records,
 std::string answering_model(const std::vector<EvaluationRecord>& records);
 
 /// The case with `design` for its initial one.
-Case frozen_at(Case input, const VectorX& design);
+case_data::Case frozen_at(case_data::Case input, const VectorX& design);
 
 /// The case whose freeze is the answering model.
-Case frozen_as_answered(Case input,
-                        const std::vector<EvaluationRecord>& records);
+case_data::Case frozen_as_answered(
+    case_data::Case input, const std::vector<EvaluationRecord>& records);
 
 /// What a study on one model has come to.
 struct FrozenStage {
-  const Case& input;                      // frozen at its initial design
+  const case_data::Case& input;           // frozen at its initial design
   std::vector<EvaluationRecord> records;  // designs asked for
   const std::string& model;
   const VectorX& best;            // of the model's evaluated designs
@@ -59,4 +59,4 @@ struct FrozenStage {
 /// at that very design.
 std::optional<Refreeze> wanted_refreeze(const FrozenStage& stage);
 
-}  // namespace meniscus
+}  // namespace meniscus::store

@@ -14,7 +14,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ void RunLock::release() noexcept {
   file_ = -1;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::store

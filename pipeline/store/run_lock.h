@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace meniscus {
+namespace meniscus::store {
 
 /// Holds FOLDER/.lock as a POSIX record lock: the kernel gives it back when
 /// the process ends, however it ends, and a child process does not inherit it
@@ -33,4 +33,4 @@ class RunLock {
 /// it. Takes nothing and creates nothing.
 std::optional<std::string> holder_of_run(const std::string& folder);
 
-}  // namespace meniscus
+}  // namespace meniscus::store

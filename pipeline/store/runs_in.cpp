@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
 namespace {
 
@@ -37,4 +37,4 @@ std::vector<fs::path> runs_in(const fs::path& folder) {
   return runs;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::store

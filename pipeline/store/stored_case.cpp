@@ -5,36 +5,36 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/json.h"
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/store/incumbent.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/runs_in.h"
-#include "core/json.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
-std::string stored_case(const Case& input) {
+std::string stored_case(const case_data::Case& input) {
   nlohmann::ordered_json stored = {{"path", input.path},
                                    {"overrides", input.overrides},
                                    {"text", input.text}};
-  for (const CaseFile& file : input.files) {
+  for (const case_data::CaseFile& file : input.files) {
     stored["files"].push_back({{"path", file.path}, {"text", file.text}});
   }
   return json_line(stored);
 }
 
-Case restore_case(const StudyMeta& meta) {
+case_data::Case restore_case(const StudyMeta& meta) {
   const auto stored = parse_json(meta.case_text);
   if (!stored.is_object() || !stored.contains("text")) {
     throw IoError("the study holds no case that can be read; run it again");
   }
-  std::vector<CaseFile> files;
+  std::vector<case_data::CaseFile> files;
   if (stored.contains("files")) {
     for (const auto& file : stored["files"]) {
       files.push_back({file["path"], file["text"]});
     }
   }
-  CaseReading reading = read_case_text(
+  reader::CaseReading reading = reader::read_case_text(
       stored["text"], stored["path"],
       stored["overrides"].get<std::vector<std::string>>(), std::move(files));
   if (!reading.input) {
@@ -48,11 +48,11 @@ std::map<std::string, std::string> stored_units(
     const std::filesystem::path& folder) {
   std::map<std::string, std::string> units;
   try {
-    const Case input =
+    const case_data::Case input =
         restore_case(StudyStore::read(runs_in(folder).front().string()).meta());
     for (std::size_t k = 0; k < input.responses.size(); ++k) {
       units[input.responses[k].name] =
-          response_unit(input, static_cast<int>(k));
+          case_data::response_unit(input, static_cast<int>(k));
     }
   } catch (const Error&) {
     units.clear();  // of another version, or not begun: tables go without
@@ -61,7 +61,8 @@ std::map<std::string, std::string> stored_units(
 }
 
 const EvaluationRecord& best_record(
-    const Case& input, const std::vector<EvaluationRecord>& records) {
+    const case_data::Case& input,
+    const std::vector<EvaluationRecord>& records) {
   const EvaluationRecord* best =
       input.study.objective ? best_by_objective(input.study, records) : nullptr;
   if (best != nullptr) {
@@ -74,7 +75,7 @@ const EvaluationRecord& best_record(
     }
     const bool better =
         best == nullptr ||
-        (input.study.kind == StudyKind::Match && record.mismatch &&
+        (input.study.kind == case_data::StudyKind::Match && record.mismatch &&
          (!best->mismatch || *record.mismatch < *best->mismatch));
     best = better ? &record : best;
   }
@@ -85,12 +86,12 @@ const EvaluationRecord& best_record(
   return *best;
 }
 
-VectorX answer_of_run(const Case& input,
+VectorX answer_of_run(const case_data::Case& input,
                       const std::vector<EvaluationRecord>& records,
                       const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder / "result.json")) {
     const auto result = parse_json(read_file(folder / "result.json"));
-    VectorX design = initial_design(input);
+    VectorX design = case_data::initial_design(input);
     for (std::size_t k = 0; k < input.design.size(); ++k) {
       const nlohmann::json::json_pointer at("/parameters/" +
                                             input.design[k].name);
@@ -108,4 +109,4 @@ VectorX answer_of_run(const Case& input,
   return best_record(input, records).inputs;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::store

@@ -10,13 +10,13 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/store/study_store.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
 /// For StudyMeta::case_text (JSON).
-std::string stored_case(const Case& input);
+std::string stored_case(const case_data::Case& input);
 
 /// The case back. Throws IoError when the study holds none that can be read.
-Case restore_case(const StudyMeta& meta);
+case_data::Case restore_case(const StudyMeta& meta);
 
 /// Units of the responses, by name, of the run in `folder` or of a family's
 /// first member there; none where that has no case that can be read.
@@ -27,12 +27,12 @@ std::map<std::string, std::string> stored_units(
 /// minimum the one that violates its bounds least, then with the least
 /// objective; of an analysis the first. Throws InvalidInput when there is none.
 const EvaluationRecord& best_record(
-    const Case& input, const std::vector<EvaluationRecord>& records);
+    const case_data::Case& input, const std::vector<EvaluationRecord>& records);
 
 /// The design of the run's answer: that of FOLDER/result.json where the study
 /// has it, else of best_record(). Throws as that does.
-VectorX answer_of_run(const Case& input,
+VectorX answer_of_run(const case_data::Case& input,
                       const std::vector<EvaluationRecord>& records,
                       const std::filesystem::path& folder);
 
-}  // namespace meniscus
+}  // namespace meniscus::store

@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/case_data/content_hash.h"
 #include "core/json.h"
+#include "pipeline/case_data/content_hash.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
 const char* const kEvaluationTable = R"(
 CREATE TABLE evaluation (
@@ -64,11 +64,11 @@ std::string to_text(const Json& value) { return json_line(value); }
 std::string seal_of(const Row& row) {
   const std::string mismatch =
       row.mismatch ? to_bytes(&*row.mismatch, 1) : std::string();
-  return meniscus::seal_of({row.key, row.model, row.phase, row.input_names,
-                            row.inputs, row.response_names, row.responses,
-                            row.gradient, mismatch, row.failure.value_or("-"),
-                            row.failure_message.value_or("-"), row.figures,
-                            row.seconds});
+  return meniscus::store::seal_of(
+      {row.key, row.model, row.phase, row.input_names, row.inputs,
+       row.response_names, row.responses, row.gradient, mismatch,
+       row.failure.value_or("-"), row.failure_message.value_or("-"),
+       row.figures, row.seconds});
 }
 
 Row to_row(const std::string& case_hash, const EvaluationRecord& record) {
@@ -187,7 +187,7 @@ std::string seal_of(std::initializer_list<std::string_view> parts) {
     all += fmt::format("{}:", part.size());
     all += part;
   }
-  return content_hash(all);
+  return case_data::content_hash(all);
 }
 
 std::string key_of(const std::string& case_hash, const std::string& model,
@@ -264,4 +264,4 @@ std::vector<EvaluationRecord> select_rows(const SqliteDatabase& database,
   return records;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::store

@@ -10,7 +10,7 @@
 #include "pipeline/store/study_store.h"
 #include "pipeline/store/study_store_sqlite.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
 /// The table of evaluations and its index, as SQL.
 extern const char* const kEvaluationTable;
@@ -38,4 +38,4 @@ std::vector<EvaluationRecord> select_rows(const SqliteDatabase& database,
 std::string key_of(const std::string& case_hash, const std::string& model,
                    const VectorX& inputs);
 
-}  // namespace meniscus
+}  // namespace meniscus::store

@@ -14,7 +14,7 @@
 #include "pipeline/store/study_rows.h"
 #include "pipeline/store/study_store_sqlite.h"
 
-namespace meniscus {
+namespace meniscus::store {
 namespace {
 
 namespace fs = std::filesystem;
@@ -302,4 +302,4 @@ FailureKind failure_kind_of(const std::string& name) {
   throw IoError("study: failure kind '" + name + "' is not known");
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::store

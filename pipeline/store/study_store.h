@@ -21,7 +21,7 @@
 #include "core/error.h"
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
 struct StudyMeta {
   int schema_version = 0;       // set by the store
@@ -114,4 +114,4 @@ std::string purpose_of(const EvaluationRecord& record);
 /// The kind that name_of() writes as `name`; throws IoError for no kind.
 FailureKind failure_kind_of(const std::string& name);
 
-}  // namespace meniscus
+}  // namespace meniscus::store

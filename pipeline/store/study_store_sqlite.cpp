@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::store {
 namespace {
 
 std::string damaged(const std::string& path, const std::string& how) {
@@ -171,4 +171,4 @@ std::string SqliteStatement::bytes(int column) {
                                        static_cast<std::size_t>(size));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::store

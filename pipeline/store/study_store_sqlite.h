@@ -8,7 +8,7 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace meniscus {
+namespace meniscus::store {
 
 /// One open database file. What SQLite refuses becomes an IoError that names
 /// the file and what to do: full disk, damaged, locked, not accessible.
@@ -70,4 +70,4 @@ class SqliteStatement {
   int bound_ = 0;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::store

@@ -7,7 +7,7 @@
 
 #include "pipeline/files/text_table.h"
 
-namespace meniscus {
+namespace meniscus::store {
 namespace {
 
 using Cells = std::vector<std::string>;
@@ -78,15 +78,15 @@ std::string history_csv(const std::vector<EvaluationRecord>& records) {
     const std::optional<Failure>& failure = records[i - 1].failure;
     rows[i].push_back(failure ? failure->message : "");
   }
-  return csv_text(rows);
+  return files::csv_text(rows);
 }
 
 std::string study_table_text(const std::vector<EvaluationRecord>& records,
                              const std::map<std::string, std::string>& units) {
   std::vector<Cells> rows =
       table(records, [](double value) { return fmt::format("{:.6g}", value); });
-  add_units(units, rows.front());
-  std::string text = aligned_text(rows);
+  files::add_units(units, rows.front());
+  std::string text = files::aligned_text(rows);
   for (const EvaluationRecord& record : records) {
     if (record.failure) {
       text += fmt::format("{}: {}\n", record.number, record.failure->message);
@@ -95,4 +95,4 @@ std::string study_table_text(const std::vector<EvaluationRecord>& records,
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::store

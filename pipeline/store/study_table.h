@@ -7,7 +7,7 @@
 
 #include "pipeline/store/study_store.h"
 
-namespace meniscus {
+namespace meniscus::store {
 
 /// RFC 4180 with a head line: evaluation, each design variable, each response,
 /// mismatch, status ("ok" or the failure's kind), seconds, phase, message.
@@ -21,4 +21,4 @@ std::string study_table_text(
     const std::vector<EvaluationRecord>& records,
     const std::map<std::string, std::string>& units = {});
 
-}  // namespace meniscus
+}  // namespace meniscus::store

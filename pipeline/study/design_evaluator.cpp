@@ -9,7 +9,7 @@
 #include "pipeline/study/ordered_jobs.h"
 #include "pipeline/study/study_records.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -23,7 +23,8 @@ bool has_rows(const Eigen::MatrixXd& gradient,
 
 }  // namespace
 
-DesignEvaluator::DesignEvaluator(const Case& input, StudyStore& store,
+DesignEvaluator::DesignEvaluator(const case_data::Case& input,
+                                 store::StudyStore& store,
                                  DesignEvaluatorOptions options)
     : input_(input),
       store_(store),
@@ -34,16 +35,16 @@ DesignEvaluator::DesignEvaluator(const Case& input, StudyStore& store,
       seconds_(model_.frozen().seconds),
       teller_(input, options_.model, options_.time_limit) {
   if (options_.listener) {
-    for (const EvaluationRecord& record : store_.all()) {
+    for (const store::EvaluationRecord& record : store_.all()) {
       teller_.remember(record);
     }
   }
 }
 
-EvaluationRecord DesignEvaluator::keep(const Evaluation& evaluation,
-                                       const std::string& phase) {
+store::EvaluationRecord DesignEvaluator::keep(
+    const forward::Evaluation& evaluation, const std::string& phase) {
   seconds_ += evaluation.seconds;
-  EvaluationRecord record = make_record(input_, evaluation);
+  store::EvaluationRecord record = make_record(input_, evaluation);
   record.model = options_.model;
   record.phase = phase;
   if (mismatch_ && !record.failure) {
@@ -58,21 +59,23 @@ EvaluationRecord DesignEvaluator::keep(const Evaluation& evaluation,
   return record;
 }
 
-void DesignEvaluator::compute_last(const VectorX& design, KeepStiffness keep) {
+void DesignEvaluator::compute_last(const VectorX& design,
+                                   forward::KeepStiffness keep) {
   last_ = {};  // memory: not two designs at a time
-  last_.evaluation =
-      model_.evaluate(design, &last_.fields,
-                      keep == KeepStiffness::Yes ? &last_.adjoint : nullptr);
+  last_.evaluation = model_.evaluate(
+      design, &last_.fields,
+      keep == forward::KeepStiffness::Yes ? &last_.adjoint : nullptr);
 }
 
-EvaluationRecord DesignEvaluator::evaluate(const VectorX& design,
-                                           const std::string& phase) {
+store::EvaluationRecord DesignEvaluator::evaluate(const VectorX& design,
+                                                  const std::string& phase) {
   throw_if_stopped(monitor_, "the study");
   ++counts_.evaluations;
-  std::optional<EvaluationRecord> record = store_.find(options_.model, design);
+  std::optional<store::EvaluationRecord> record =
+      store_.find(options_.model, design);
   if (!record) {
-    compute_last(design, options_.with_gradients ? KeepStiffness::Yes
-                                                 : KeepStiffness::No);
+    compute_last(design, options_.with_gradients ? forward::KeepStiffness::Yes
+                                                 : forward::KeepStiffness::No);
     record = keep(last_.evaluation, phase);
   }
   counts_.failed += record->failure ? 1 : 0;
@@ -100,7 +103,7 @@ void DesignEvaluator::compute(const std::vector<VectorX>& designs,
   throw_if_stopped(monitor_, "the study");
   const std::vector<VectorX> wanted = missing(designs);
   const int count = static_cast<int>(wanted.size());
-  std::vector<Evaluation> found(wanted.size());
+  std::vector<forward::Evaluation> found(wanted.size());
   StudyMonitor::Group group(monitor_, deadline_ ? &*deadline_ : nullptr);
   const auto tell = [&](int done) {
     monitor_.user().progress(
@@ -132,13 +135,13 @@ void DesignEvaluator::compute(const std::vector<VectorX>& designs,
   }
 }
 
-std::vector<EvaluationRecord> DesignEvaluator::evaluate_all(
+std::vector<store::EvaluationRecord> DesignEvaluator::evaluate_all(
     const std::vector<VectorX>& designs, const std::string& phase) {
   compute(designs, phase);
-  std::vector<EvaluationRecord> records;
+  std::vector<store::EvaluationRecord> records;
   records.reserve(designs.size());
   for (const VectorX& design : designs) {
-    std::optional<EvaluationRecord> record =
+    std::optional<store::EvaluationRecord> record =
         store_.find(options_.model, design);
     if (!record) {
       break;
@@ -164,19 +167,19 @@ void DesignEvaluator::limit_time(double seconds) {
   }
 }
 
-JacobianAnswer DesignEvaluator::gradient(const VectorX& design,
-                                         const std::vector<int>& responses) {
+optimize::JacobianAnswer DesignEvaluator::gradient(
+    const VectorX& design, const std::vector<int>& responses) {
   throw_if_stopped(monitor_, "the study");
   ++counts_.gradients;
-  const EvaluationRecord record = *store_.find(options_.model, design);
+  const store::EvaluationRecord record = *store_.find(options_.model, design);
   if (has_rows(record.gradient, responses)) {
     return {record.gradient, std::nullopt};
   }
   if (!is_last(design) || last_.adjoint.elastic.empty()) {
-    compute_last(design, KeepStiffness::Yes);
+    compute_last(design, forward::KeepStiffness::Yes);
     seconds_ += last_.evaluation.seconds;
   }
-  const DesignGradient found =
+  const forward::DesignGradient found =
       model_.gradient(last_.evaluation, last_.fields, last_.adjoint, responses);
   seconds_.gradient += found.seconds;
   if (found.failure) {
@@ -194,16 +197,16 @@ JacobianAnswer DesignEvaluator::gradient(const VectorX& design,
   return {std::move(gradient), std::nullopt};
 }
 
-Evaluation DesignEvaluator::with_fields(const VectorX& design,
-                                        EvaluationFields& fields) {
+forward::Evaluation DesignEvaluator::with_fields(
+    const VectorX& design, forward::EvaluationFields& fields) {
   if (!is_last(design)) {
     monitor_.progress({.stage = "study", .detail = "the best design's fields"});
-    compute_last(design, KeepStiffness::No);
+    compute_last(design, forward::KeepStiffness::No);
     seconds_ += last_.evaluation.seconds;
   }
-  StagedDesign last = std::exchange(last_, {});
+  forward::StagedDesign last = std::exchange(last_, {});
   fields = std::move(last.fields);
   return std::move(last.evaluation);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

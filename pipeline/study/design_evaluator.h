@@ -9,17 +9,18 @@
 #include <vector>
 
 #include "optimize/problem.h"
+#include "pipeline/forward/design_stages.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/store/study_store.h"
 #include "pipeline/study/study_monitor.h"
 #include "pipeline/study/study_news.h"
-#include "pipeline/forward/design_stages.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 struct DesignEvaluatorOptions {
-  std::string model = kStudyModel;  // the frozen model's name in the database
-  double edge_factor = 1.0;         // as in ForwardModelOptions
+  std::string model =
+      store::kStudyModel;       // the frozen model's name in the database
+  double edge_factor = 1.0;     // as in ForwardModelOptions
   bool with_gradients = false;  // keep what gradient() needs of each design:
                                 // memory for a second solve saved
   int jobs = 1;                 // designs side by side where several are asked
@@ -48,12 +49,12 @@ class DesignEvaluator {
   /// Freezes the model; throws what ForwardModel's constructor throws. Both
   /// references must outlive the evaluator. When model().failure() is set
   /// nothing may be asked.
-  DesignEvaluator(const Case& input, StudyStore& store,
+  DesignEvaluator(const case_data::Case& input, store::StudyStore& store,
                   DesignEvaluatorOptions options = {});
   DesignEvaluator(const DesignEvaluator&) = delete;
   DesignEvaluator& operator=(const DesignEvaluator&) = delete;
 
-  const ForwardModel& model() const { return model_; }
+  const forward::ForwardModel& model() const { return model_; }
 
   /// Larger is worse, of the responses; new records then hold it as `mismatch`.
   void judge_by(std::function<double(const VectorX& responses)> mismatch) {
@@ -62,16 +63,17 @@ class DesignEvaluator {
 
   /// Told of each design that evaluate() has found, stored or not; what it
   /// throws passes through.
-  void watch_by(std::function<void(const EvaluationRecord&)> watch) {
+  void watch_by(std::function<void(const store::EvaluationRecord&)> watch) {
     watch_ = std::move(watch);
   }
 
   /// `phase`: what the design is for, as the record tells it when it is new.
-  EvaluationRecord evaluate(const VectorX& design, const std::string& phase);
+  store::EvaluationRecord evaluate(const VectorX& design,
+                                   const std::string& phase);
 
   /// The same for each of `designs`, side by side; what the database lacks is
   /// written in their order. Fewer, the first ones, when the time is up.
-  std::vector<EvaluationRecord> evaluate_all(
+  std::vector<store::EvaluationRecord> evaluate_all(
       const std::vector<VectorX>& designs, const std::string& phase);
 
   /// Computes those that the database lacks, as evaluate_all() does, and counts
@@ -84,17 +86,18 @@ class DesignEvaluator {
 
   /// d response / d design at a design that has been evaluated: rows by
   /// response, NaN in those not among `responses` (indices).
-  JacobianAnswer gradient(const VectorX& design,
-                          const std::vector<int>& responses);
+  optimize::JacobianAnswer gradient(const VectorX& design,
+                                    const std::vector<int>& responses);
 
   /// The evaluation with the meshes behind it (all that evaluate() left when
   /// it was the last one, else computed once more) and no record.
-  Evaluation with_fields(const VectorX& design, EvaluationFields& fields);
+  forward::Evaluation with_fields(const VectorX& design,
+                                  forward::EvaluationFields& fields);
 
   const EvaluationCounts& counts() const { return counts_; }
   void reset_counts() { counts_ = {}; }
   /// Summed over freeze, evaluations and gradients that were computed.
-  const StageSeconds& seconds() const { return seconds_; }
+  const forward::StageSeconds& seconds() const { return seconds_; }
 
  private:
   bool is_last(const VectorX& design) const {
@@ -102,26 +105,27 @@ class DesignEvaluator {
            last_.evaluation.design == design;
   }
   /// Computes the design, which is the last one from then on.
-  void compute_last(const VectorX& design, KeepStiffness keep);
+  void compute_last(const VectorX& design, forward::KeepStiffness keep);
   /// Those that the database lacks, each once, in order.
   std::vector<VectorX> missing(const std::vector<VectorX>& designs) const;
   void compute(const std::vector<VectorX>& designs, const std::string& phase);
-  EvaluationRecord keep(const Evaluation& evaluation, const std::string& phase);
+  store::EvaluationRecord keep(const forward::Evaluation& evaluation,
+                               const std::string& phase);
 
-  const Case& input_;
-  StudyStore& store_;
+  const case_data::Case& input_;
+  store::StudyStore& store_;
   DesignEvaluatorOptions options_;
   StudyMonitor monitor_;  // the model's too
   std::optional<StudyMonitor::Clock::time_point> deadline_;
-  ForwardModel model_;
+  forward::ForwardModel model_;
   std::function<double(const VectorX&)> mismatch_;
-  std::function<void(const EvaluationRecord&)> watch_;
+  std::function<void(const store::EvaluationRecord&)> watch_;
   EvaluationCounts counts_;
-  StageSeconds seconds_;
+  forward::StageSeconds seconds_;
   StudyTeller teller_;
   // The design computed last, side by side ones aside, so that its gradient or
   // its meshes need no second evaluation; no stiffness unless it was kept.
-  StagedDesign last_;
+  forward::StagedDesign last_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -12,7 +12,7 @@
 #include "optimize/problem.h"
 #include "pipeline/store/incumbent.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -21,58 +21,63 @@ namespace fs = std::filesystem;
 /// Whether a study that searches prefers one record to another.
 class Preference {
  public:
-  explicit Preference(const StudyEntry& study) : study_(study) {}
+  explicit Preference(const case_data::StudyEntry& study) : study_(study) {}
 
   bool searches() const {
-    return study_.kind == StudyKind::Match ||
-           study_.kind == StudyKind::Minimize;
+    return study_.kind == case_data::StudyKind::Match ||
+           study_.kind == case_data::StudyKind::Minimize;
   }
-  bool better(const EvaluationRecord& a, const EvaluationRecord& b) const {
-    if (study_.kind == StudyKind::Match) {
+  bool better(const store::EvaluationRecord& a,
+              const store::EvaluationRecord& b) const {
+    if (study_.kind == case_data::StudyKind::Match) {
       return a.mismatch && (!b.mismatch || *a.mismatch < *b.mismatch);
     }
-    return is_better(standing_of(study_, a.responses),
-                     standing_of(study_, b.responses));
+    return store::is_better(store::standing_of(study_, a.responses),
+                            store::standing_of(study_, b.responses));
   }
 
  private:
-  const StudyEntry& study_;
+  const case_data::StudyEntry& study_;
 };
 
 /// The designs that no other beats in both objectives, as far as they are
 /// known without the optimizer's own verdict.
-bool beaten(const StudyEntry& study, const EvaluationRecord& record,
-            const std::vector<EvaluationRecord>& records) {
-  const auto value = [&](const EvaluationRecord& r, int response) {
+bool beaten(const case_data::StudyEntry& study,
+            const store::EvaluationRecord& record,
+            const std::vector<store::EvaluationRecord>& records) {
+  const auto value = [&](const store::EvaluationRecord& r, int response) {
     return r.responses[response];
   };
   const int first = *study.objective;
   const int second = *study.second;
-  return std::any_of(records.begin(), records.end(),
-                     [&](const EvaluationRecord& other) {
-                       return !other.failure && other.model == kStudyModel &&
-                              standing_of(study, other.responses).feasible() &&
-                              value(other, first) <= value(record, first) &&
-                              value(other, second) <= value(record, second) &&
-                              (value(other, first) < value(record, first) ||
-                               value(other, second) < value(record, second));
-                     });
+  return std::any_of(
+      records.begin(), records.end(),
+      [&](const store::EvaluationRecord& other) {
+        return !other.failure && other.model == store::kStudyModel &&
+               store::standing_of(study, other.responses).feasible() &&
+               value(other, first) <= value(record, first) &&
+               value(other, second) <= value(record, second) &&
+               (value(other, first) < value(record, first) ||
+                value(other, second) < value(record, second));
+      });
 }
 
 /// Every design that has a film and a reason to be shown.
-std::vector<KeptDesign> candidates(const Case& input,
-                                   const std::vector<EvaluationRecord>& records,
-                                   const VectorX& best) {
+std::vector<KeptDesign> candidates(
+    const case_data::Case& input,
+    const std::vector<store::EvaluationRecord>& records, const VectorX& best) {
   const Preference preference(input.study);
-  const bool front = input.study.kind == StudyKind::Pareto;
+  const bool front = input.study.kind == case_data::StudyKind::Pareto;
   std::vector<KeptDesign> kept;
-  const EvaluationRecord* incumbent = nullptr;
+  const store::EvaluationRecord* incumbent = nullptr;
   bool best_found = false;
-  for (const EvaluationRecord& record : records) {
-    if (record.failure || record.model != kStudyModel) {
+  for (const store::EvaluationRecord& record : records) {
+    if (record.failure || record.model != store::kStudyModel) {
       continue;
     }
-    const bool neighbour = record.phase == name_of(EvaluationPhase::Difference);
+    const bool neighbour =
+        record.phase ==
+        optimize::name_of(optimize::EvaluationPhase::Difference);
     const bool is_best = !best_found && record.inputs == best;
     best_found = best_found || is_best;
     bool wanted = incumbent == nullptr;
@@ -81,7 +86,7 @@ std::vector<KeptDesign> candidates(const Case& input,
       if (preference.searches()) {
         wanted = preference.better(record, *incumbent);
       } else if (front) {
-        wanted = standing_of(input.study, record.responses).feasible() &&
+        wanted = store::standing_of(input.study, record.responses).feasible() &&
                  !beaten(input.study, record, records);
       } else {
         wanted = true;
@@ -108,7 +113,7 @@ std::set<int> evenly(int count, int most) {
   return chosen;
 }
 
-Field numbers(const char* name, const VectorX& values) {
+io::Field numbers(const char* name, const VectorX& values) {
   return {.name = name, .values = {values.begin(), values.end()}};
 }
 
@@ -119,9 +124,9 @@ bool is_frame(const fs::path& path) {
 }
 
 /// How far each point is from where it is in the first frame.
-Field moved(const UnitSystem& units, const Points& points,
-            const Points& start) {
-  Field field{.name = "moved", .unit = units.length, .components = 3};
+io::Field moved(const UnitSystem& units, const Points& points,
+                const Points& start) {
+  io::Field field{.name = "moved", .unit = units.length, .components = 3};
   field.values.reserve(3 * points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 by = points[i] - start[i];
@@ -130,17 +135,18 @@ Field moved(const UnitSystem& units, const Points& points,
   return field;
 }
 
-MeshFields frame_fields(const Case& input, const FilmFrame& frame,
-                        const Points& start) {
-  MeshFields fields;
+io::MeshFields frame_fields(const case_data::Case& input,
+                            const forward::FilmFrame& frame,
+                            const Points& start) {
+  io::MeshFields fields;
   if (frame.surface.points.size() == start.size()) {
     fields.points = {moved(input.units, frame.surface.points, start)};
   }
   fields.notes = {{"title", input.title},
                   {"length_unit", input.units.length},
                   {"kept", frame.kept}};
-  fields.lists = {{"design_names", design_names(input)},
-                  {"response_names", response_names(input)}};
+  fields.lists = {{"design_names", case_data::design_names(input)},
+                  {"response_names", case_data::response_names(input)}};
   fields.numbers = {
       numbers("evaluation", VectorX::Constant(1, frame.evaluation)),
       numbers("design", frame.design), numbers("responses", frame.responses)};
@@ -150,8 +156,9 @@ MeshFields frame_fields(const Case& input, const FilmFrame& frame,
 }  // namespace
 
 std::vector<KeptDesign> kept_designs(
-    const Case& input, const std::vector<EvaluationRecord>& records,
-    const VectorX& best, int most) {
+    const case_data::Case& input,
+    const std::vector<store::EvaluationRecord>& records, const VectorX& best,
+    int most) {
   const std::vector<KeptDesign> all = candidates(input, records, best);
   const auto count = static_cast<int>(all.size());
   if (count <= most) {
@@ -176,21 +183,22 @@ std::vector<KeptDesign> kept_designs(
   return result;
 }
 
-std::vector<FilmFrame> film_frames(const Case& input, const ForwardModel& model,
-                                   const std::vector<KeptDesign>& designs,
-                                   Monitor& monitor) {
-  std::vector<FilmFrame> frames;
+std::vector<forward::FilmFrame> film_frames(
+    const case_data::Case& input, const forward::ForwardModel& model,
+    const std::vector<KeptDesign>& designs, Monitor& monitor) {
+  std::vector<forward::FilmFrame> frames;
   frames.reserve(designs.size());
   for (const KeptDesign& design : designs) {
     throw_if_stopped(monitor, "films of the history");
-    const EvaluationRecord& record = *design.record;
+    const store::EvaluationRecord& record = *design.record;
     monitor.progress(
         {.stage = "frames",
          .detail = fmt::format("film of evaluation {}", record.number),
          .fraction = static_cast<double>(frames.size()) /
                      static_cast<double>(designs.size())});
-    const EvaluatedCase numbers = evaluate(input, record.inputs);
-    const FilmState film = model.film().settle(numbers.film_system);
+    const case_data::EvaluatedCase numbers =
+        case_data::evaluate(input, record.inputs);
+    const settle::FilmState film = model.film().settle(numbers.film_system);
     if (!film.failure) {
       frames.push_back({.evaluation = record.number,
                         .kept = design.why,
@@ -202,7 +210,8 @@ std::vector<FilmFrame> film_frames(const Case& input, const ForwardModel& model,
   return frames;
 }
 
-void write_frames(const Case& input, const std::vector<FilmFrame>& frames,
+void write_frames(const case_data::Case& input,
+                  const std::vector<forward::FilmFrame>& frames,
                   const fs::path& folder) {
   remove_frames(folder);
   if (frames.empty()) {
@@ -210,10 +219,10 @@ void write_frames(const Case& input, const std::vector<FilmFrame>& frames,
   }
   make_folder(folder / "frames");
   std::string sets;
-  for (const FilmFrame& frame : frames) {
+  for (const forward::FilmFrame& frame : frames) {
     const std::string name = frame_name(frame.evaluation);
-    write_vtp(folder / "frames" / name, frame.surface,
-              frame_fields(input, frame, frames.front().surface.points));
+    io::write_vtp(folder / "frames" / name, frame.surface,
+                  frame_fields(input, frame, frames.front().surface.points));
     sets += fmt::format(
         "    <DataSet timestep=\"{}\" group=\"\" part=\"0\" "
         "file=\"frames/{}\"/>\n",
@@ -230,18 +239,19 @@ std::string frame_name(int evaluation) {
   return fmt::format("film_{:04d}.vtp", evaluation);
 }
 
-std::string frame_caption(const Case& input, const FilmFrame& frame) {
+std::string frame_caption(const case_data::Case& input,
+                          const forward::FilmFrame& frame) {
   constexpr Eigen::Index kMostDesigns = 3;
   constexpr int kMostResponses = 3;
   std::vector<std::string> parts;
-  const std::vector<std::string> designs = design_names(input);
+  const std::vector<std::string> designs = case_data::design_names(input);
   for (Eigen::Index k = 0;
        k < frame.design.size() && frame.design.size() <= kMostDesigns; ++k) {
     parts.push_back(fmt::format(
         "{} = {:.4g}", designs[static_cast<std::size_t>(k)], frame.design[k]));
   }
   const auto add = [&](int k) {
-    const std::string unit = response_unit(input, k);
+    const std::string unit = case_data::response_unit(input, k);
     parts.push_back(fmt::format(
         "{} = {:.4g}{}{}", input.responses[static_cast<std::size_t>(k)].name,
         frame.responses[k], unit.empty() ? "" : " ", unit));
@@ -281,4 +291,4 @@ void remove_frames(const fs::path& folder) {
   fs::remove(frames, code);  // only when empty
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -25,8 +25,9 @@ double share(const std::vector<FrontPoint>& points, const FrontPoint& point,
   return range > 0.0 ? (point.*value - (*least).*value) / range : 0.0;
 }
 
-std::string value_text(const Case& input, int response, double value) {
-  const std::string unit = response_unit(input, response);
+std::string value_text(const case_data::Case& input, int response,
+                       double value) {
+  const std::string unit = case_data::response_unit(input, response);
   return fmt::format("{} = {:.6g}{}{}", input.responses[response].name, value,
                      unit.empty() ? "" : " ", unit);
 }
@@ -48,7 +49,7 @@ int middle_of_front(const std::vector<FrontPoint>& points) {
   return nearest;
 }
 
-nlohmann::ordered_json front_json(const Case& input,
+nlohmann::ordered_json front_json(const case_data::Case& input,
                                   const FrontFigures& figures) {
   const std::string& first = input.responses[*input.study.objective].name;
   const std::string& second = input.responses[*input.study.second].name;
@@ -69,7 +70,8 @@ nlohmann::ordered_json front_json(const Case& input,
   return json;
 }
 
-std::string front_text(const Case& input, const FrontFigures& figures) {
+std::string front_text(const case_data::Case& input,
+                       const FrontFigures& figures) {
   std::string text = "  front:\n";
   for (const FrontPoint& point : figures.points) {
     text += fmt::format("    {}, {} at",
@@ -85,4 +87,4 @@ std::string front_text(const Case& input, const FrontFigures& figures) {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -8,7 +8,7 @@
 
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 struct FrontPoint {
   VectorX design;
@@ -27,10 +27,11 @@ struct FrontFigures {
 int middle_of_front(const std::vector<FrontPoint>& points);
 
 /// The part `front` of result.json (docs/results.md).
-nlohmann::ordered_json front_json(const Case& input,
+nlohmann::ordered_json front_json(const case_data::Case& input,
                                   const FrontFigures& figures);
 
 /// A line per point for people.
-std::string front_text(const Case& input, const FrontFigures& figures);
+std::string front_text(const case_data::Case& input,
+                       const FrontFigures& figures);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -77,4 +77,4 @@ std::string ledger_text(const Ledger& ledger, const std::string& length_unit) {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

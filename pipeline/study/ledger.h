@@ -8,7 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace meniscus {
+namespace meniscus::study {
 
 /// What stands before or after a stage.
 struct LedgerAmount {
@@ -45,4 +45,4 @@ nlohmann::ordered_json ledger_json(const Ledger& ledger);
 /// A line per stage and one for the files, for people.
 std::string ledger_text(const Ledger& ledger, const std::string& length_unit);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -6,7 +6,7 @@
 
 #include "pipeline/case_data/response_entries.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -17,10 +17,10 @@ double relative_difference(double a, double b) {
 
 }  // namespace
 
-MatchTargets::MatchTargets(const Case& input,
+MatchTargets::MatchTargets(const case_data::Case& input,
                            const VectorX& initial_responses) {
   const auto index = [&](const std::string& name) {
-    return static_cast<Eigen::Index>(response_index(input, name));
+    return static_cast<Eigen::Index>(case_data::response_index(input, name));
   };
   const std::vector<std::string>& equal = input.study.equal;
   for (std::size_t k = 1; k < equal.size(); ++k) {
@@ -113,4 +113,4 @@ std::string MatchTargets::name(Eigen::Index target) const {
   return targets_[static_cast<std::size_t>(target)].name;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

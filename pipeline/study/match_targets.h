@@ -8,7 +8,7 @@
 #include "core/types.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 /// `equal = [a, b, c]` gives one target per name after the first, against the
 /// first; `targets = {a = value}` one each.
@@ -19,7 +19,7 @@ namespace meniscus {
 /// |a| and |b| as they are; of a target value v: |a - v| / |v|.
 class MatchTargets {
  public:
-  MatchTargets(const Case& input, const VectorX& initial_responses);
+  MatchTargets(const case_data::Case& input, const VectorX& initial_responses);
 
   VectorX residuals(const VectorX& responses) const;
   /// d residual / d x from d response / d x, of which only the rows of
@@ -44,4 +44,4 @@ class MatchTargets {
   std::vector<Target> targets_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -12,7 +12,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -125,4 +125,4 @@ void run_in_order(const OrderedJobs& jobs) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

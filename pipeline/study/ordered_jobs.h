@@ -4,7 +4,7 @@
 
 #include <functional>
 
-namespace meniscus {
+namespace meniscus::study {
 
 /// Threads that a study may be given.
 inline constexpr int kMostJobs = 64;
@@ -28,4 +28,4 @@ struct OrderedJobs {
 /// was found beyond k is dropped.
 void run_in_order(const OrderedJobs& jobs);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -5,11 +5,11 @@
 #include "optimize/minimize.h"
 #include "pipeline/case_data/studied_responses.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
-std::string of_match(const Case& input, const MatchTargets& targets,
+std::string of_match(const case_data::Case& input, const MatchTargets& targets,
                      const VectorX& responses, const VectorX& errors) {
   const double error = targets.mismatch_errors(responses, errors).maxCoeff();
   if (!(error > input.study.tolerance)) {
@@ -21,11 +21,11 @@ std::string of_match(const Case& input, const MatchTargets& targets,
       input.study.tolerance, error);
 }
 
-std::string of_minimum(const Case& input, const VectorX& responses,
+std::string of_minimum(const case_data::Case& input, const VectorX& responses,
                        const VectorX& errors) {
-  const std::vector<int> studied = studied_responses(input);
+  const std::vector<int> studied = case_data::studied_responses(input);
   const auto size = static_cast<Eigen::Index>(studied.size());
-  MinimizeReport report;
+  optimize::MinimizeReport report;
   report.values.resize(size);
   VectorX value_errors(size);
   for (Eigen::Index k = 0; k < size; ++k) {
@@ -35,7 +35,7 @@ std::string of_minimum(const Case& input, const VectorX& responses,
   }
   report.objective = report.values[0];
   for (std::size_t k = 0; k < input.study.constraints.size(); ++k) {
-    const ConstraintEntry& constraint = input.study.constraints[k];
+    const case_data::ConstraintEntry& constraint = input.study.constraints[k];
     const auto response = static_cast<std::size_t>(constraint.response);
     report.constraints.push_back(
         {.name = input.responses[response].name,
@@ -44,13 +44,15 @@ std::string of_minimum(const Case& input, const VectorX& responses,
          .upper = constraint.upper});
   }
   const auto objective = *input.study.objective;
-  return precision_note({.objective = input.responses[objective].name}, report,
-                        input.study.tolerance, value_errors);
+  return optimize::precision_note(
+      {.objective = input.responses[objective].name}, report,
+      input.study.tolerance, value_errors);
 }
 
 }  // namespace
 
-std::string precision_statement(const Case& input, const MatchTargets* targets,
+std::string precision_statement(const case_data::Case& input,
+                                const MatchTargets* targets,
                                 const VectorX& responses,
                                 const VectorX& errors) {
   if (errors.size() == 0) {
@@ -59,9 +61,9 @@ std::string precision_statement(const Case& input, const MatchTargets* targets,
   if (targets != nullptr) {
     return of_match(input, *targets, responses, errors);
   }
-  return input.study.kind == StudyKind::Minimize
+  return input.study.kind == case_data::StudyKind::Minimize
              ? of_minimum(input, responses, errors)
              : "";
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

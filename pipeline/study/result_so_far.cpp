@@ -4,13 +4,13 @@
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/study_records.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
-RunResult result_so_far(const Case& input,
-                        const std::vector<EvaluationRecord>& records) {
+RunResult result_so_far(const case_data::Case& input,
+                        const std::vector<store::EvaluationRecord>& records) {
   RunResult result;
-  for (const EvaluationRecord& record : records) {
-    if (!is_study_model(record.model)) {
+  for (const store::EvaluationRecord& record : records) {
+    if (!store::is_study_model(record.model)) {
       continue;
     }
     if (++result.evaluations == 1) {
@@ -21,9 +21,9 @@ RunResult result_so_far(const Case& input,
   if (result.failed_evaluations == result.evaluations) {
     result.start.reset();
   } else {
-    result.best = to_evaluation(best_record(input, records));
+    result.best = to_evaluation(store::best_record(input, records));
   }
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -7,10 +7,10 @@
 #include "pipeline/store/study_store.h"
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 /// What a run that ended early has come to: the incumbent and the counts.
-RunResult result_so_far(const Case& input,
-                        const std::vector<EvaluationRecord>& records);
+RunResult result_so_far(const case_data::Case& input,
+                        const std::vector<store::EvaluationRecord>& records);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -9,13 +9,13 @@
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/forward/responses.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
-ResidualAnswer answer(const MatchTargets& targets,
-                      const EvaluationRecord& record) {
-  ResidualAnswer found;
+optimize::ResidualAnswer answer(const MatchTargets& targets,
+                                const store::EvaluationRecord& record) {
+  optimize::ResidualAnswer found;
   found.failure = record.failure;
   if (!record.failure) {
     found.residuals = targets.residuals(record.responses);
@@ -32,12 +32,13 @@ StudyOutcome analyse(const StudyTask& task) {
 }
 
 /// Empty where a response of the targets has no derivatives.
-JacobianFunction match_jacobian(const StudyTask& task) {
+optimize::JacobianFunction match_jacobian(const StudyTask& task) {
   if (!uses_gradients(task.input)) {
     return {};
   }
-  return [&task, responses = studied_responses(task.input)](const VectorX& x) {
-    JacobianAnswer answer = task.evaluator.gradient(x, responses);
+  return [&task, responses = case_data::studied_responses(task.input)](
+             const VectorX& x) {
+    optimize::JacobianAnswer answer = task.evaluator.gradient(x, responses);
     if (!answer.failure) {
       answer.jacobian = task.targets->jacobian(answer.jacobian);
     }
@@ -46,12 +47,12 @@ JacobianFunction match_jacobian(const StudyTask& task) {
 }
 
 StudyOutcome match(const StudyTask& task) {
-  const StudyEntry& study = task.input.study;
+  const case_data::StudyEntry& study = task.input.study;
   if (study.fit) {
     return fit_scan(task);
   }
   std::string phase = "start";
-  const MatchReport report = meniscus::match(
+  const optimize::MatchReport report = meniscus::optimize::match(
       variables_of(task.input, task.start),
       [&](const VectorX& x) {
         return answer(*task.targets, task.evaluator.evaluate(x, phase));
@@ -61,7 +62,10 @@ StudyOutcome match(const StudyTask& task) {
        .max_evaluations = study.max_evaluations,
        .time_limit = task.options.time_limit,
        .monitor = task.options.monitor,
-       .announce = [&](EvaluationPhase next) { phase = name_of(next); },
+       .announce =
+           [&](optimize::EvaluationPhase next) {
+             phase = optimize::name_of(next);
+           },
        .jacobian = match_jacobian(task),
        .prefetch = prefetch_of(task)});
   StudyOutcome outcome{.status = status_of(report.termination),
@@ -81,18 +85,18 @@ StudyOutcome match(const StudyTask& task) {
 
 }  // namespace
 
-RunStatus status_of(Termination termination) {
+RunStatus status_of(optimize::Termination termination) {
   switch (termination) {
-    case Termination::Converged:
+    case optimize::Termination::Converged:
       return RunStatus::Converged;
-    case Termination::LimitReached:
+    case optimize::Termination::LimitReached:
       return RunStatus::Stopped;
-    case Termination::Stalled:
-    case Termination::AtBound:
-    case Termination::NoFeasible:
-    case Termination::Infeasible:
-    case Termination::Constant:
-    case Termination::NoFreedom:
+    case optimize::Termination::Stalled:
+    case optimize::Termination::AtBound:
+    case optimize::Termination::NoFeasible:
+    case optimize::Termination::Infeasible:
+    case optimize::Termination::Constant:
+    case optimize::Termination::NoFreedom:
       return RunStatus::Infeasible;
   }
   return RunStatus::Error;
@@ -101,41 +105,44 @@ RunStatus status_of(Termination termination) {
 std::function<void(const std::vector<VectorX>&)> prefetch_of(
     const StudyTask& task) {
   return [&task](const std::vector<VectorX>& designs) {
-    task.evaluator.prefetch(designs, name_of(EvaluationPhase::Difference));
+    task.evaluator.prefetch(
+        designs, optimize::name_of(optimize::EvaluationPhase::Difference));
   };
 }
 
 StudyOutcome conduct(const StudyTask& task) {
   task.evaluator.limit_time(task.options.time_limit);
   switch (task.input.study.kind) {
-    case StudyKind::Analyse:
+    case case_data::StudyKind::Analyse:
       return analyse(task);
-    case StudyKind::Match:
+    case case_data::StudyKind::Match:
       return match(task);
-    case StudyKind::Minimize:
+    case case_data::StudyKind::Minimize:
       return minimize(task);
-    case StudyKind::Sweep:
+    case case_data::StudyKind::Sweep:
       return sweep(task);
-    case StudyKind::Tolerance:
+    case case_data::StudyKind::Tolerance:
       return tolerance(task);
-    case StudyKind::Pareto:
+    case case_data::StudyKind::Pareto:
       return pareto(task);
   }
   return {};
 }
 
-bool uses_gradients(const Case& input) {
-  const std::vector<int> responses = studied_responses(input);
-  return asks_for_gradients(input.study) && !responses.empty() &&
-         input.analysis.solver != SolverKind::Distributed &&
-         std::all_of(responses.begin(), responses.end(),
-                     [&](int r) { return has_derivatives(input, r); });
+bool uses_gradients(const case_data::Case& input) {
+  const std::vector<int> responses = case_data::studied_responses(input);
+  return case_data::asks_for_gradients(input.study) && !responses.empty() &&
+         input.analysis.solver != equations::SolverKind::Distributed &&
+         std::all_of(responses.begin(), responses.end(), [&](int r) {
+           return case_data::has_derivatives(input, r);
+         });
 }
 
-std::vector<Variable> variables_of(const Case& input, const VectorX& start) {
-  std::vector<Variable> variables;
+std::vector<optimize::Variable> variables_of(const case_data::Case& input,
+                                             const VectorX& start) {
+  std::vector<optimize::Variable> variables;
   variables.reserve(input.design.size());
-  for (const DesignVariable& v : input.design) {
+  for (const case_data::DesignVariable& v : input.design) {
     const auto k = static_cast<Eigen::Index>(variables.size());
     variables.push_back({.name = v.name,
                          .initial = start[k],
@@ -145,4 +152,4 @@ std::vector<Variable> variables_of(const Case& input, const VectorX& start) {
   return variables;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -12,11 +12,11 @@
 #include "pipeline/study/match_targets.h"
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 /// Everything a kind of study works with; the references are on loan.
 struct StudyTask {
-  const Case& input;
+  const case_data::Case& input;
   DesignEvaluator& evaluator;
   const StudyOptions& options;
   const MatchTargets* targets = nullptr;  // of a match, else null
@@ -52,25 +52,27 @@ StudyOutcome pareto(const StudyTask& task);
 /// The objective and the constraints as the optimizer sees them; a second
 /// objective is the last constraint, without bounds. `phase`, which records
 /// are given, and the task must outlive the problem.
-MinimizeProblem minimize_problem(const StudyTask& task,
-                                 const std::string& phase);
+optimize::MinimizeProblem minimize_problem(const StudyTask& task,
+                                           const std::string& phase);
 
 /// The case's; `phase` is told what is asked for next.
-MinimizeOptions minimize_options(const StudyTask& task, std::string& phase);
+optimize::MinimizeOptions minimize_options(const StudyTask& task,
+                                           std::string& phase);
 
-RunStatus status_of(Termination termination);
+RunStatus status_of(optimize::Termination termination);
 
 /// As result.json tells it, with the bound that the value is nearest to.
-Constraint told(const ConstraintState& state);
+Constraint told(const optimize::ConstraintState& state);
 
 /// Computes the neighbours of a difference side by side.
 std::function<void(const std::vector<VectorX>&)> prefetch_of(
     const StudyTask& task);
 
 /// The study's method asks for derivatives, and all that it looks at have them.
-bool uses_gradients(const Case& input);
+bool uses_gradients(const case_data::Case& input);
 
 /// The design variables as the optimizers want them, starting at `start`.
-std::vector<Variable> variables_of(const Case& input, const VectorX& start);
+std::vector<optimize::Variable> variables_of(const case_data::Case& input,
+                                             const VectorX& start);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -2,19 +2,20 @@
 
 #include <cmath>
 
-namespace meniscus {
+namespace meniscus::study {
 
-ScanMatch::ScanMatch(const Case& input, const ForwardModel& model, int response)
+ScanMatch::ScanMatch(const case_data::Case& input,
+                     const forward::ForwardModel& model, int response)
     : input_(input),
       model_(model),
       response_(input.responses[static_cast<std::size_t>(response)]) {}
 
 const ScanMatch::Settled& ScanMatch::settled(const VectorX& design) {
   if (last_.design.size() != design.size() || last_.design != design) {
-    last_.numbers = meniscus::evaluate(input_, design);
+    last_.numbers = meniscus::case_data::evaluate(input_, design);
     last_.film = model_.film().settle(last_.numbers.film_system);
-    last_.distances = scan_distances(response_, model_.scans(), model_.film(),
-                                     last_.film.points);
+    last_.distances = forward::scan_distances(response_, model_.scans(),
+                                              model_.film(), last_.film.points);
     last_.design = design;
   }
   return last_;
@@ -25,14 +26,15 @@ VectorX ScanMatch::residuals(const VectorX& design) {
   return values / std::sqrt(static_cast<double>(values.size()));
 }
 
-JacobianAnswer ScanMatch::jacobian(const VectorX& design) {
+optimize::JacobianAnswer ScanMatch::jacobian(const VectorX& design) {
   const Settled& at = settled(design);
-  JacobianAnswer answer;
-  std::vector<FilmSystem> rates;
+  optimize::JacobianAnswer answer;
+  std::vector<films::FilmSystem> rates;
   rates.reserve(static_cast<std::size_t>(design.size()));
   for (Eigen::Index j = 0; j < design.size(); ++j) {
     rates.push_back(
-        meniscus::rates(input_, design, static_cast<int>(j)).film_system);
+        meniscus::case_data::rates(input_, design, static_cast<int>(j))
+            .film_system);
   }
   const std::vector<int>& vertices = at.distances.vertices;
   const auto count = static_cast<Eigen::Index>(vertices.size());
@@ -55,4 +57,4 @@ JacobianAnswer ScanMatch::jacobian(const VectorX& design) {
   return answer;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

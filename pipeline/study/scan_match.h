@@ -6,7 +6,7 @@
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/scans.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 /// The residuals behind such a response, for least squares: distances over the
 /// root of their number, so that the sum of squares is the mean square. Films
@@ -14,25 +14,26 @@ namespace meniscus {
 class ScanMatch {
  public:
   /// Both must outlive this.
-  ScanMatch(const Case& input, const ForwardModel& model, int response);
+  ScanMatch(const case_data::Case& input, const forward::ForwardModel& model,
+            int response);
 
   VectorX residuals(const VectorX& design);
   /// By every design variable; a film that has no derivatives is a failure.
-  JacobianAnswer jacobian(const VectorX& design);
+  optimize::JacobianAnswer jacobian(const VectorX& design);
 
  private:
   struct Settled {
     VectorX design;
-    EvaluatedCase numbers;
-    FilmState film;
-    ScanDistances distances;
+    case_data::EvaluatedCase numbers;
+    settle::FilmState film;
+    scan::ScanDistances distances;
   };
   const Settled& settled(const VectorX& design);
 
-  const Case& input_;
-  const ForwardModel& model_;
-  const ResponseEntry& response_;
+  const case_data::Case& input_;
+  const forward::ForwardModel& model_;
+  const case_data::ResponseEntry& response_;
   Settled last_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -6,7 +6,7 @@
 #include "evolve/start/start_complex.h"
 #include "pipeline/study/film_frames.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -16,37 +16,38 @@ constexpr double kSmoothing = 0.5;  // edges in the first step
 
 }  // namespace
 
-std::vector<FilmFrame> settling_frames(const EvaluatedCase& numbers,
-                                       const FilmModel& model, Monitor& monitor,
-                                       int most) {
-  FilmComplex complex = build_start(numbers.film_system, model.start_edge());
-  std::vector<FilmFrame> all;
+std::vector<forward::FilmFrame> settling_frames(
+    const case_data::EvaluatedCase& numbers, const frozen::FilmModel& model,
+    Monitor& monitor, int most) {
+  films::FilmComplex complex =
+      start::build_start(numbers.film_system, model.start_edge());
+  std::vector<forward::FilmFrame> all;
   const auto keep = [&](const char* kept, SurfaceMesh surface) {
     all.push_back({.evaluation = static_cast<int>(all.size()),
                    .kept = kept,
                    .surface = std::move(surface)});
   };
   keep("raw", complex.mesh);
-  FlowOptions flow{
+  settle::FlowOptions flow{
       .max_steps = kSteps, .smoothing = kSmoothing, .monitor = &monitor};
-  flow.torn = [&](const FilmEnergy&, const Points& points) {
+  flow.torn = [&](const energy::FilmEnergy&, const Points& points) {
     SurfaceMesh surface = complex.mesh;
     surface.points = points;
     keep("flowing", std::move(surface));
     return false;
   };
   // Long facets between the curves have nothing to flow with.
-  remesh_films(complex, {.edge = model.start_edge()});
-  flow_to_rest(complex, flow);
+  groom::remesh_films(complex, {.edge = model.start_edge()});
+  settle::flow_to_rest(complex, flow);
   if (model.start_edge() > numbers.fea_edge) {
-    complex = refine(complex).complex;
+    complex = groom::refine(complex).complex;
   }
-  remesh_films(complex, {.edge = numbers.fea_edge});
-  flow_to_rest(complex, flow);
+  groom::remesh_films(complex, {.edge = numbers.fea_edge});
+  settle::flow_to_rest(complex, flow);
   if (!model.reference().failure) {
     keep("settled", model.fine_mesh(model.reference().points));
   }
-  std::vector<FilmFrame> frames;
+  std::vector<forward::FilmFrame> frames;
   const auto count = static_cast<int>(all.size());
   const int wanted = std::min(most, count);
   for (int k = 0; k < wanted; ++k) {
@@ -57,4 +58,4 @@ std::vector<FilmFrame> settling_frames(const EvaluatedCase& numbers,
   return frames;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

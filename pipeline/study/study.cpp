@@ -18,7 +18,7 @@
 #include "pipeline/study/study_stage.h"
 #include "pipeline/study/time_limit.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -31,7 +31,8 @@ constexpr double kErrorPerChange = 1.5;
 /// From the frozen model to the answer with its error, step by step.
 class StudyRun {
  public:
-  StudyRun(const Case& input, StudyStore& store, const StudyOptions& options)
+  StudyRun(const case_data::Case& input, store::StudyStore& store,
+           const StudyOptions& options)
       : input_(input),
         store_(store),
         options_(options),
@@ -44,15 +45,15 @@ class StudyRun {
 
   RunResult run();
   /// Of the best design; or what there is of a surface that was not filled.
-  EvaluationFields take_fields() { return std::move(fields_); }
+  forward::EvaluationFields take_fields() { return std::move(fields_); }
 
  private:
   void start_coarse();
   bool begin();
   bool may_refreeze() const;
   bool refreeze();
-  std::unique_ptr<StudyStage> stage_at(const Refreeze& refreeze,
-                                       const Case& input);
+  std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
+                                       const case_data::Case& input);
   void pass_time();
   void leave_stage();
   void conduct_study();
@@ -67,20 +68,21 @@ class StudyRun {
   void warn();
   void count();
 
-  const Case& input_;
-  StudyStore& store_;
+  const case_data::Case& input_;
+  store::StudyStore& store_;
   StudyOptions options_;  // its start and time as stages leave them
   Monitor& monitor_;
   double limit_;            // [s], 0: none
   LimitedMonitor limited_;  // of what may be left out at the end
   std::vector<std::string> left_out_;
   Timer timer_;
-  std::unique_ptr<Case> frozen_;  // what the stage's model is frozen of, where
-                                  // that is not the case's initial design
+  std::unique_ptr<case_data::Case>
+      frozen_;  // what the stage's model is frozen of, where
+                // that is not the case's initial design
   std::unique_ptr<StudyStage> stage_;
-  EvaluationFields fields_;
-  StageSeconds own_seconds_;   // beside those of the evaluator
-  int earlier_gradients_ = 0;  // of stages before this one
+  forward::EvaluationFields fields_;
+  forward::StageSeconds own_seconds_;  // beside those of the evaluator
+  int earlier_gradients_ = 0;          // of stages before this one
   int earlier_evaluations_ = 0;
   RunResult result_;
 };
@@ -113,8 +115,8 @@ void StudyRun::pass_time() {
 
 bool StudyRun::begin() {
   stage_ = std::make_unique<StudyStage>(input_, store_, options_);
-  const ForwardModel& model = stage_->evaluator().model();
-  if (const Adaptation* adaptation = model.adaptation()) {
+  const forward::ForwardModel& model = stage_->evaluator().model();
+  if (const forward::Adaptation* adaptation = model.adaptation()) {
     result_.adaptation = *adaptation;
   }
   result_.start = stage_->start();
@@ -140,13 +142,13 @@ void StudyRun::leave_stage() {
 }
 
 /// A stage on a model frozen there, or null where it cannot be.
-std::unique_ptr<StudyStage> StudyRun::stage_at(const Refreeze& refreeze,
-                                               const Case& input) {
+std::unique_ptr<StudyStage> StudyRun::stage_at(const store::Refreeze& refreeze,
+                                               const case_data::Case& input) {
   std::string reason;
   try {
     auto stage = std::make_unique<StudyStage>(
         input, store_, options_,
-        StageModel{.name = refrozen_model(refreeze.evaluation),
+        StageModel{.name = store::refrozen_model(refreeze.evaluation),
                    .reference = result_.start->responses});
     if (!stage->failure()) {
       return stage;
@@ -170,7 +172,7 @@ bool StudyRun::refreeze() {
       evaluations >= input_.study.max_evaluations) {
     return false;
   }
-  std::optional<Refreeze> wanted =
+  std::optional<store::Refreeze> wanted =
       stage_->wanted(outcome.best, outcome.status == RunStatus::Converged);
   if (!wanted) {
     return false;
@@ -178,7 +180,8 @@ bool StudyRun::refreeze() {
   monitor_.log(Severity::Info,
                fmt::format("a new model is frozen at evaluation {}: {}",
                            wanted->evaluation, wanted->reason));
-  auto input = std::make_unique<Case>(frozen_at(input_, wanted->design));
+  auto input = std::make_unique<case_data::Case>(
+      store::frozen_at(input_, wanted->design));
   input->study.max_evaluations -= evaluations;
   pass_time();
   std::unique_ptr<StudyStage> stage = stage_at(*wanted, *input);
@@ -196,10 +199,11 @@ bool StudyRun::refreeze() {
 }
 
 bool StudyRun::may_refreeze() const {
-  const StudyEntry& study = input_.study;
+  const case_data::StudyEntry& study = input_.study;
   return study.refreeze &&
-         static_cast<int>(result_.refrozen.size()) < kMostRefreezes &&
-         (study.kind == StudyKind::Match || study.kind == StudyKind::Minimize);
+         static_cast<int>(result_.refrozen.size()) < store::kMostRefreezes &&
+         (study.kind == case_data::StudyKind::Match ||
+          study.kind == case_data::StudyKind::Minimize);
 }
 
 void StudyRun::conduct_study() {
@@ -210,7 +214,8 @@ void StudyRun::conduct_study() {
   if (stage_->left_early()) {
     stage_->conduct();
   }
-  if (const Adaptation* adaptation = stage_->evaluator().model().adaptation()) {
+  if (const forward::Adaptation* adaptation =
+          stage_->evaluator().model().adaptation()) {
     result_.adaptation = *adaptation;
   }
   const StudyOutcome& outcome = stage_->outcome();
@@ -234,16 +239,18 @@ bool StudyRun::finish_best() {
     return false;
   }
   fields_.stresses =
-      part_stresses(fields_.mesh, fields_.inputs, fields_.solution);
-  result_.stress = stress_figures(fields_);
+      forward::part_stresses(fields_.mesh, fields_.inputs, fields_.solution);
+  result_.stress = forward::stress_figures(fields_);
   result_.exclusion = fields_.exclusion;
-  for (std::string& warning : part_warnings(input_, fields_, result_.stress)) {
+  for (std::string& warning :
+       forward::part_warnings(input_, fields_, result_.stress)) {
     result_.warnings.push_back(std::move(warning));
   }
-  for (std::string& warning : wall_warnings(stage_->evaluator().model())) {
+  for (std::string& warning :
+       forward::wall_warnings(stage_->evaluator().model())) {
     result_.warnings.push_back(std::move(warning));
   }
-  for (std::string& warning : process_warnings(input_, fields_.mesh)) {
+  for (std::string& warning : forward::process_warnings(input_, fields_.mesh)) {
     result_.warnings.push_back(std::move(warning));
   }
   return true;
@@ -278,11 +285,11 @@ void StudyRun::keep_history() {
 
 void StudyRun::solve_eigenproblems() {
   monitor_.progress({.stage = "fea", .detail = "buckling, frequencies"});
-  result_.eigen = eigen_figures(
+  result_.eigen = forward::eigen_figures(
       input_, fields_, stage_->evaluator().model().elasticity(), &limited_);
   own_seconds_.fea += result_.eigen->seconds;
-  fields_.modes = mode_shapes(input_, *result_.eigen);
-  for (std::string& warning : buckling_warnings(*result_.eigen)) {
+  fields_.modes = forward::mode_shapes(input_, *result_.eigen);
+  for (std::string& warning : forward::buckling_warnings(*result_.eigen)) {
     result_.warnings.push_back(std::move(warning));
   }
 }
@@ -290,9 +297,9 @@ void StudyRun::solve_eigenproblems() {
 void StudyRun::estimate_element_errors_of_best() {
   monitor_.progress({.stage = "accuracy", .detail = "dual solutions"});
   const Timer timer;
-  ElementErrors errors =
-      estimate_element_errors(input_, fields_, result_.best->responses,
-                              stage_->evaluator().model().elasticity());
+  forward::ElementErrors errors = forward::estimate_element_errors(
+      input_, fields_, result_.best->responses,
+      stage_->evaluator().model().elasticity());
   own_seconds_.fea += timer.seconds();
   if (errors.failure) {
     result_.warnings.push_back("no estimate of the elements' errors: " +
@@ -307,12 +314,12 @@ void StudyRun::estimate_errors() {
   monitor_.progress({.stage = "accuracy",
                      .detail = "a second model with edges twice as long"});
   try {
-    const ForwardModel coarse(
+    const forward::ForwardModel coarse(
         frozen_ ? *frozen_ : input_,
         {.edge_factor = kCoarserEdges, .monitor = &limited_});
     own_seconds_ += coarse.frozen().seconds;
     const std::optional<Failure>& failure = coarse.failure();
-    Evaluation there;
+    forward::Evaluation there;
     if (!failure) {
       there = coarse.evaluate(stage_->outcome().best);
       own_seconds_ += there.seconds;
@@ -365,8 +372,8 @@ void StudyRun::warn() {
 
 void StudyRun::count() {
   leave_stage();
-  for (const EvaluationRecord& record : store_.all()) {
-    if (is_study_model(record.model)) {
+  for (const store::EvaluationRecord& record : store_.all()) {
+    if (store::is_study_model(record.model)) {
       ++result_.evaluations;
       result_.failed_evaluations += record.failure ? 1 : 0;
     }
@@ -418,8 +425,9 @@ const char* name_of(RunStatus status) {
   return "unknown";
 }
 
-RunResult run_study(const Case& input, StudyStore& store,
-                    const StudyOptions& options, EvaluationFields* fields) {
+RunResult run_study(const case_data::Case& input, store::StudyStore& store,
+                    const StudyOptions& options,
+                    forward::EvaluationFields* fields) {
   StudyRun run(input, store, options);
   RunResult result = run.run();
   if (fields != nullptr) {
@@ -428,4 +436,4 @@ RunResult run_study(const Case& input, StudyStore& store,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -21,7 +21,7 @@
 #include "pipeline/study/sweep_figures.h"
 #include "pipeline/study/tolerance_figures.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 enum class RunStatus {
   Converged,   // exit 0
@@ -52,9 +52,9 @@ struct CoarseFigures {
 
 struct RunResult {
   RunStatus status = RunStatus::Failed;
-  std::string message;              // why it ended, in words, with figures
-  std::optional<Evaluation> start;  // the initial design
-  std::optional<Evaluation> best;
+  std::string message;  // why it ended, in words, with figures
+  std::optional<forward::Evaluation> start;  // the initial design
+  std::optional<forward::Evaluation> best;
   double objective = 0.0;  // of a match: sum of squared residuals / 2
   std::vector<Constraint> constraints;
   std::optional<SweepFigures> sweep;
@@ -62,21 +62,24 @@ struct RunResult {
   std::optional<FrontFigures> front;
   VectorX response_errors;  // estimated discretisation errors; may be empty
   VectorX design_errors;    // of the matched variables; may be empty
-  std::vector<StressFigures> stress;     // of the best design, per load case
-  Exclusion exclusion;                   // what these leave out
-  std::optional<Adaptation> adaptation;  // at the initial design
-  std::optional<ElementErrors> element_errors;  // the elements' part of them
-  std::optional<EigenFigures> eigen;            // of the best design
-  std::optional<CoarseFigures> coarse;  // what study.coarse_first asked for
-  std::vector<Refreeze> refrozen;       // models after the first, in order
+  std::vector<forward::StressFigures>
+      stress;                    // of the best design, per load case
+  forward::Exclusion exclusion;  // what these leave out
+  std::optional<forward::Adaptation> adaptation;  // at the initial design
+  std::optional<forward::ElementErrors>
+      element_errors;                          // the elements' part of them
+  std::optional<forward::EigenFigures> eigen;  // of the best design
+  std::optional<CoarseFigures> coarse;    // what study.coarse_first asked for
+  std::vector<store::Refreeze> refrozen;  // models after the first, in order
   /// Designs evaluated at the case's own resolution, each once per frozen
   /// model, finite-difference ones included: as many as the database holds.
   int evaluations = 0;
   int failed_evaluations = 0;
   int gradient_evaluations = 0;
-  Evaluation frozen;             // the freeze of the case's own model
+  forward::Evaluation frozen;    // the freeze of the case's own model
   std::optional<Ledger> ledger;  // once its files are written
-  StageSeconds seconds;  // summed over freeze, evaluations, error estimate
+  forward::StageSeconds
+      seconds;  // summed over freeze, evaluations, error estimate
   double output_seconds = 0.0;
   double total_seconds = 0.0;
   std::vector<std::string> warnings;
@@ -96,7 +99,7 @@ struct StudyOptions {
   /// Called once with the answer's meshes, solution and stresses, before its
   /// errors, buckling and the films of the history are computed: time for what
   /// can be made of them meanwhile. Must not keep the reference.
-  std::function<void(const EvaluationFields&)> answered = {};
+  std::function<void(const forward::EvaluationFields&)> answered = {};
   Monitor* monitor = nullptr;
 };
 
@@ -104,8 +107,8 @@ struct StudyOptions {
 /// holds already (--resume) are read and not computed. `fields`, when given,
 /// receives the meshes of the best design. Interrupted passes through, after
 /// the store has what was finished.
-RunResult run_study(const Case& input, StudyStore& store,
+RunResult run_study(const case_data::Case& input, store::StudyStore& store,
                     const StudyOptions& options,
-                    EvaluationFields* fields = nullptr);
+                    forward::EvaluationFields* fields = nullptr);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

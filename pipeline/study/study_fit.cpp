@@ -6,7 +6,7 @@
 #include "pipeline/study/run_kind.h"
 #include "pipeline/study/scan_match.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -14,18 +14,18 @@ namespace {
 constexpr double kNone = 1e-300;
 
 /// A least-squares fit ends where nothing better is near: its answer.
-bool is_least(Termination termination) {
-  return termination == Termination::Converged ||
-         termination == Termination::Stalled ||
-         termination == Termination::AtBound;
+bool is_least(optimize::Termination termination) {
+  return termination == optimize::Termination::Converged ||
+         termination == optimize::Termination::Stalled ||
+         termination == optimize::Termination::AtBound;
 }
 
 /// "a = 40", of variables at a bound.
-std::string bounds_reached(const Case& input, const VectorX& best) {
+std::string bounds_reached(const case_data::Case& input, const VectorX& best) {
   constexpr double kAt = 1e-9;  // x the range
   std::string text;
   for (std::size_t k = 0; k < input.design.size(); ++k) {
-    const DesignVariable& v = input.design[k];
+    const case_data::DesignVariable& v = input.design[k];
     const double value = best[static_cast<Eigen::Index>(k)];
     const double near = kAt * (v.upper - v.lower);
     if (v.upper > v.lower &&
@@ -40,17 +40,18 @@ std::string bounds_reached(const Case& input, const VectorX& best) {
 }  // namespace
 
 StudyOutcome fit_scan(const StudyTask& task) {
-  const StudyEntry& study = task.input.study;
+  const case_data::StudyEntry& study = task.input.study;
   const int response = *study.fit;
   const std::string& name =
       task.input.responses[static_cast<std::size_t>(response)].name;
   ScanMatch scan(task.input, task.evaluator.model(), response);
   std::string phase = "start";
-  const MatchReport report = meniscus::match(
+  const optimize::MatchReport report = meniscus::optimize::match(
       variables_of(task.input, task.start),
       [&](const VectorX& x) {
-        const EvaluationRecord record = task.evaluator.evaluate(x, phase);
-        ResidualAnswer answer{.failure = record.failure};
+        const store::EvaluationRecord record =
+            task.evaluator.evaluate(x, phase);
+        optimize::ResidualAnswer answer{.failure = record.failure};
         if (!record.failure) {
           answer.residuals = scan.residuals(x);
           answer.mismatch = VectorX::Constant(1, record.responses[response]);
@@ -62,7 +63,10 @@ StudyOutcome fit_scan(const StudyTask& task) {
        .max_evaluations = study.max_evaluations,
        .time_limit = task.options.time_limit,
        .monitor = task.options.monitor,
-       .announce = [&](EvaluationPhase next) { phase = name_of(next); },
+       .announce =
+           [&](optimize::EvaluationPhase next) {
+             phase = optimize::name_of(next);
+           },
        .jacobian = [&](const VectorX& x) { return scan.jacobian(x); },
        .prefetch = prefetch_of(task)});
   StudyOutcome outcome{.status = status_of(report.termination),
@@ -74,7 +78,7 @@ StudyOutcome fit_scan(const StudyTask& task) {
     return outcome;
   }
   const double rms = report.answer.mismatch[0];
-  const std::string unit = response_unit(task.input, response);
+  const std::string unit = case_data::response_unit(task.input, response);
   const bool wanted = study.tolerance > 0.0;
   const bool enough = !wanted || rms <= study.tolerance;
   if (is_least(report.termination)) {
@@ -82,7 +86,7 @@ StudyOutcome fit_scan(const StudyTask& task) {
     outcome.message =
         fmt::format("{} = {:.4g} {} over {} vertices, {} after {} evaluations",
                     name, rms, unit, report.answer.residuals.size(),
-                    report.termination == Termination::Converged
+                    report.termination == optimize::Termination::Converged
                         ? "within its tolerance"
                         : "the least that the design variables allow",
                     report.evaluations);
@@ -103,4 +107,4 @@ StudyOutcome fit_scan(const StudyTask& task) {
   return outcome;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -3,7 +3,7 @@
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/study/run_kind.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -18,13 +18,13 @@ VectorX picked(const VectorX& all, const std::vector<int>& indices) {
 
 }  // namespace
 
-MinimizeProblem minimize_problem(const StudyTask& task,
-                                 const std::string& phase) {
-  const Case& input = task.input;
-  MinimizeProblem problem;
+optimize::MinimizeProblem minimize_problem(const StudyTask& task,
+                                           const std::string& phase) {
+  const case_data::Case& input = task.input;
+  optimize::MinimizeProblem problem;
   problem.variables = variables_of(input, task.start);
   problem.objective = input.responses[*input.study.objective].name;
-  for (const ConstraintEntry& constraint : input.study.constraints) {
+  for (const case_data::ConstraintEntry& constraint : input.study.constraints) {
     problem.constraints.push_back(
         {.name = input.responses[constraint.response].name,
          .lower = constraint.lower,
@@ -34,10 +34,10 @@ MinimizeProblem minimize_problem(const StudyTask& task,
     problem.constraints.push_back(
         {.name = input.responses[*input.study.second].name});
   }
-  const std::vector<int> responses = studied_responses(input);
+  const std::vector<int> responses = case_data::studied_responses(input);
   problem.function = [&task, &phase, responses](const VectorX& x) {
-    const EvaluationRecord record = task.evaluator.evaluate(x, phase);
-    VectorAnswer answer{.values = {}, .failure = record.failure};
+    const store::EvaluationRecord record = task.evaluator.evaluate(x, phase);
+    optimize::VectorAnswer answer{.values = {}, .failure = record.failure};
     if (!record.failure) {
       answer.values = picked(record.responses, responses);
     }
@@ -45,7 +45,7 @@ MinimizeProblem minimize_problem(const StudyTask& task,
   };
   if (uses_gradients(input)) {
     problem.jacobian = [&task, responses](const VectorX& x) {
-      JacobianAnswer answer = task.evaluator.gradient(x, responses);
+      optimize::JacobianAnswer answer = task.evaluator.gradient(x, responses);
       if (!answer.failure) {
         answer.jacobian =
             Eigen::MatrixXd(answer.jacobian(responses, Eigen::all));
@@ -56,7 +56,7 @@ MinimizeProblem minimize_problem(const StudyTask& task,
   return problem;
 }
 
-Constraint told(const ConstraintState& state) {
+Constraint told(const optimize::ConstraintState& state) {
   const bool above = state.value > 0.5 * (state.lower + state.upper);
   const bool upper =
       !std::isfinite(state.lower) || (std::isfinite(state.upper) && above);
@@ -66,29 +66,33 @@ Constraint told(const ConstraintState& state) {
           .satisfied = state.satisfied};
 }
 
-MinimizeOptions minimize_options(const StudyTask& task, std::string& phase) {
-  const StudyEntry& study = task.input.study;
+optimize::MinimizeOptions minimize_options(const StudyTask& task,
+                                           std::string& phase) {
+  const case_data::StudyEntry& study = task.input.study;
   return {.method = study.method,
           .optimality_tolerance = study.tolerance,
           .max_evaluations = study.max_evaluations,
           .time_limit = task.options.time_limit,
           .monitor = task.options.monitor,
-          .announce = [&phase](EvaluationPhase next) { phase = name_of(next); },
+          .announce =
+              [&phase](optimize::EvaluationPhase next) {
+                phase = optimize::name_of(next);
+              },
           .prefetch = prefetch_of(task)};
 }
 
 StudyOutcome minimize(const StudyTask& task) {
   std::string phase = "start";
-  const MinimizeReport report = meniscus::minimize(
+  const optimize::MinimizeReport report = meniscus::optimize::minimize(
       minimize_problem(task, phase), minimize_options(task, phase));
   StudyOutcome outcome{.status = status_of(report.termination),
                        .message = report.message,
                        .best = report.best,
                        .objective = report.objective};
-  for (const ConstraintState& state : report.constraints) {
+  for (const optimize::ConstraintState& state : report.constraints) {
     outcome.constraints.push_back(told(state));
   }
   return outcome;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -7,7 +7,7 @@
 #include "core/monitor.h"
 #include "core/timer.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 /// Hands on what it hears. While muted the stages' own progress is not told:
 /// side by side they would talk all at once. May be called from several
@@ -95,4 +95,4 @@ class LimitedMonitor : public Monitor {
   Timer timer_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -9,13 +9,13 @@
 #include "pipeline/case_data/study_kinds.h"
 #include "pipeline/store/incumbent.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
 /// Evaluations that the study asks for at most, where that is known.
-std::optional<int> planned_of(const Case& input) {
-  const auto planned = row_of(input.study.kind).planned;
+std::optional<int> planned_of(const case_data::Case& input) {
+  const auto planned = case_data::row_of(input.study.kind).planned;
   return planned == nullptr ? std::nullopt
                             : std::optional<int>(planned(input.study));
 }
@@ -31,23 +31,25 @@ std::string duration_text(double seconds) {
                       : fmt::format("{} h", (whole + 3599) / 3600);
 }
 
-StudyTeller::StudyTeller(const Case& input, std::string model,
+StudyTeller::StudyTeller(const case_data::Case& input, std::string model,
                          double time_limit)
     : input_(input),
       model_(std::move(model)),
       time_limit_(time_limit),
       planned_(planned_of(input)) {}
 
-DesignStanding StudyTeller::standing_of(const EvaluationRecord& record) const {
+DesignStanding StudyTeller::standing_of(
+    const store::EvaluationRecord& record) const {
   DesignStanding standing{.evaluation = record.number};
   if (record.failure) {
     return standing;
   }
-  const StudyEntry& study = input_.study;
-  if (study.kind == StudyKind::Match) {
+  const case_data::StudyEntry& study = input_.study;
+  if (study.kind == case_data::StudyKind::Match) {
     standing.objective = record.mismatch;
   } else if (study.objective) {
-    const Standing found = meniscus::standing_of(study, record.responses);
+    const store::Standing found =
+        meniscus::store::standing_of(study, record.responses);
     standing.objective = found.objective;
     if (!study.constraints.empty()) {
       standing.violation = found.violation;
@@ -58,12 +60,12 @@ DesignStanding StudyTeller::standing_of(const EvaluationRecord& record) const {
 
 bool StudyTeller::better(const DesignStanding& a,
                          const DesignStanding& b) const {
-  return is_better(
+  return store::is_better(
       {.violation = a.violation.value_or(0.0), .objective = *a.objective},
       {.violation = b.violation.value_or(0.0), .objective = *b.objective});
 }
 
-void StudyTeller::remember(const EvaluationRecord& record) {
+void StudyTeller::remember(const store::EvaluationRecord& record) {
   if (record.model != model_) {
     return;
   }
@@ -75,7 +77,7 @@ void StudyTeller::remember(const EvaluationRecord& record) {
   }
 }
 
-StudyNews StudyTeller::tell(const EvaluationRecord& record) {
+StudyNews StudyTeller::tell(const store::EvaluationRecord& record) {
   remember(record);
   if (++timed_ == 1) {
     first_ = timer_.seconds();
@@ -83,21 +85,21 @@ StudyNews StudyTeller::tell(const EvaluationRecord& record) {
   return news(record);
 }
 
-StudyNews StudyTeller::news(const EvaluationRecord& record) const {
+StudyNews StudyTeller::news(const store::EvaluationRecord& record) const {
   StudyNews news;
   news.record = &record;
   news.standing = standing_of(record);
   news.best = best_;
   if (const std::optional<int>& fit = input_.study.fit) {
     news.objective_name = input_.responses[static_cast<std::size_t>(*fit)].name;
-    news.objective_unit = response_unit(input_, *fit);
-  } else if (input_.study.kind == StudyKind::Match) {
+    news.objective_unit = case_data::response_unit(input_, *fit);
+  } else if (input_.study.kind == case_data::StudyKind::Match) {
     news.objective_name = "mismatch";
   } else if (input_.study.objective) {
     const int response = *input_.study.objective;
     news.objective_name =
         input_.responses[static_cast<std::size_t>(response)].name;
-    news.objective_unit = response_unit(input_, response);
+    news.objective_unit = case_data::response_unit(input_, response);
   }
   news.evaluations = evaluations_;
   news.failed = failed_;
@@ -127,12 +129,12 @@ std::string standing_text(const StudyNews& news) {
     text += (text.empty() ? "" : ", ") + part;
   };
   if (news.standing.violation) {
-    add(*news.standing.violation <= kFeasible
+    add(*news.standing.violation <= store::kFeasible
             ? "keeps all constraints"
             : fmt::format("violation {:.2g}", *news.standing.violation));
   }
   if (news.best && news.best->evaluation != news.standing.evaluation) {
-    const bool kept = news.best->violation.value_or(0.0) <= kFeasible;
+    const bool kept = news.best->violation.value_or(0.0) <= store::kFeasible;
     add(fmt::format(
         "best so far {} = {}{} (evaluation {})", news.objective_name,
         quantity_text(*news.best->objective, news.objective_unit),
@@ -148,4 +150,4 @@ std::string standing_text(const StudyNews& news) {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

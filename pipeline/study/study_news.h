@@ -10,7 +10,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/store/study_store.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 /// How one design stands. Of a match `objective` is the largest mismatch; a
 /// study that looks for nothing has none. `violation`: the largest of the
@@ -23,7 +23,7 @@ struct DesignStanding {
 };
 
 struct StudyNews {
-  const EvaluationRecord* record = nullptr;  // the evaluation; on loan
+  const store::EvaluationRecord* record = nullptr;  // the evaluation; on loan
   DesignStanding standing;             // of it; empty where the design failed
   std::optional<DesignStanding> best;  // of this model, so far
   std::string objective_name;          // "mismatch", or a response
@@ -43,22 +43,23 @@ class StudyTeller {
  public:
   /// `model`: the one whose records count. `time_limit`: of the study from now
   /// [s], 0: none. `input` must outlive this.
-  StudyTeller(const Case& input, std::string model, double time_limit = 0.0);
+  StudyTeller(const case_data::Case& input, std::string model,
+              double time_limit = 0.0);
 
   /// Accounts for a record that was found in the database; of another model:
   /// nothing happens.
-  void remember(const EvaluationRecord& record);
+  void remember(const store::EvaluationRecord& record);
   /// The same of one that was computed now. It must outlive the answer.
-  StudyNews tell(const EvaluationRecord& record);
+  StudyNews tell(const store::EvaluationRecord& record);
   /// How things stand, `record` being the last that was accounted for.
-  StudyNews news(const EvaluationRecord& record) const;
+  StudyNews news(const store::EvaluationRecord& record) const;
 
  private:
-  DesignStanding standing_of(const EvaluationRecord& record) const;
+  DesignStanding standing_of(const store::EvaluationRecord& record) const;
   bool better(const DesignStanding& a, const DesignStanding& b) const;
   std::optional<double> time_left() const;
 
-  const Case& input_;
+  const case_data::Case& input_;
   std::string model_;
   double time_limit_;
   std::optional<int> planned_;
@@ -77,4 +78,4 @@ std::string duration_text(double seconds);
 /// evaluation's own line; may be empty.
 std::string standing_text(const StudyNews& news);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -6,7 +6,7 @@
 #include "optimize/pareto.h"
 #include "pipeline/study/run_kind.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -25,14 +25,16 @@ class FrontSearch {
     return task_.options.time_limit == 0.0 ||
            timer_.seconds() < task_.options.time_limit;
   }
-  MinimizeReport minimum(MinimizeProblem problem, const VectorX& from);
-  void keep(const MinimizeReport& report, bool swapped);
-  void walk(const MinimizeReport& first, const MinimizeReport& last);
+  optimize::MinimizeReport minimum(optimize::MinimizeProblem problem,
+                                   const VectorX& from);
+  void keep(const optimize::MinimizeReport& report, bool swapped);
+  void walk(const optimize::MinimizeReport& first,
+            const optimize::MinimizeReport& last);
   void conclude(StudyOutcome& outcome);
 
   const StudyTask& task_;
   std::string phase_ = "start";
-  MinimizeProblem problem_;
+  optimize::MinimizeProblem problem_;
   int second_;  // constraint that holds the second objective
   Timer timer_;
   bool out_of_time_ = false;
@@ -40,25 +42,25 @@ class FrontSearch {
   std::vector<std::vector<Constraint>> constraints_;  // of those
 };
 
-MinimizeReport FrontSearch::minimum(MinimizeProblem problem,
-                                    const VectorX& from) {
+optimize::MinimizeReport FrontSearch::minimum(optimize::MinimizeProblem problem,
+                                              const VectorX& from) {
   problem.variables = variables_of(task_.input, from);
-  MinimizeOptions options = minimize_options(task_, phase_);
+  optimize::MinimizeOptions options = minimize_options(task_, phase_);
   if (options.time_limit > 0.0) {
     options.time_limit = std::max(options.time_limit - timer_.seconds(), 1e-3);
   }
-  return meniscus::minimize(problem, options);
+  return meniscus::optimize::minimize(problem, options);
 }
 
 /// `swapped`: the report is of the exchanged problem.
-void FrontSearch::keep(const MinimizeReport& report, bool swapped) {
+void FrontSearch::keep(const optimize::MinimizeReport& report, bool swapped) {
   if (!report.feasible) {
     return;
   }
   FrontPoint point{.design = report.best,
                    .first = report.values[0],
                    .second = report.values[second_ + 1],
-                   .end = name_of(report.termination)};
+                   .end = optimize::name_of(report.termination)};
   if (swapped) {
     std::swap(point.first, point.second);
   }
@@ -73,8 +75,8 @@ void FrontSearch::keep(const MinimizeReport& report, bool swapped) {
 }
 
 /// From the least first objective to the least second one.
-void FrontSearch::walk(const MinimizeReport& first,
-                       const MinimizeReport& last) {
+void FrontSearch::walk(const optimize::MinimizeReport& first,
+                       const optimize::MinimizeReport& last) {
   const double worst = first.values[second_ + 1];
   const double best = last.values[0];
   const int between = task_.input.study.count - 2;
@@ -82,13 +84,13 @@ void FrontSearch::walk(const MinimizeReport& first,
     return;  // one design has the least of both
   }
   VectorX from = first.best;
-  for (const double level : epsilon_levels(best, worst, between)) {
+  for (const double level : optimize::epsilon_levels(best, worst, between)) {
     if (!time_left()) {
       out_of_time_ = true;
       return;
     }
-    const MinimizeReport report =
-        minimum(with_upper_bound(problem_, second_, level), from);
+    const optimize::MinimizeReport report =
+        minimum(optimize::with_upper_bound(problem_, second_, level), from);
     keep(report, false);
     if (report.feasible) {
       from = report.best;
@@ -102,7 +104,7 @@ void FrontSearch::conclude(StudyOutcome& outcome) {
   for (const FrontPoint& point : found_) {
     values.push_back(Eigen::Vector2d(point.first, point.second));
   }
-  std::vector<int> front = pareto_front(values);
+  std::vector<int> front = optimize::pareto_front(values);
   std::sort(front.begin(), front.end(),
             [&](int a, int b) { return found_[a].first < found_[b].first; });
   FrontFigures figures;
@@ -131,7 +133,7 @@ void FrontSearch::conclude(StudyOutcome& outcome) {
   }
   const auto unsure = std::count_if(
       figures.points.begin(), figures.points.end(), [](const FrontPoint& p) {
-        return p.end != name_of(Termination::Converged);
+        return p.end != optimize::name_of(optimize::Termination::Converged);
       });
   if (unsure > 0) {
     outcome.warnings.push_back(fmt::format(
@@ -143,7 +145,7 @@ void FrontSearch::conclude(StudyOutcome& outcome) {
 }
 
 StudyOutcome FrontSearch::run() {
-  const MinimizeReport first = minimum(problem_, task_.start);
+  const optimize::MinimizeReport first = minimum(problem_, task_.start);
   keep(first, false);
   StudyOutcome outcome;
   if (!first.feasible) {
@@ -154,8 +156,8 @@ StudyOutcome FrontSearch::run() {
     return outcome;
   }
   if (time_left()) {
-    const MinimizeReport last =
-        minimum(exchanged(problem_, second_), first.best);
+    const optimize::MinimizeReport last =
+        minimum(optimize::exchanged(problem_, second_), first.best);
     keep(last, true);
     if (last.feasible) {
       walk(first, last);
@@ -170,4 +172,4 @@ StudyOutcome FrontSearch::run() {
 
 StudyOutcome pareto(const StudyTask& task) { return FrontSearch(task).run(); }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

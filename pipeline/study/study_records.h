@@ -7,14 +7,16 @@
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/store/study_store.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
-EvaluationRecord make_record(const Case& input, const Evaluation& evaluation);
+store::EvaluationRecord make_record(const case_data::Case& input,
+                                    const forward::Evaluation& evaluation);
 
 /// Inputs, responses and failure of a record; the figures stay in its text.
-Evaluation to_evaluation(const EvaluationRecord& record);
+forward::Evaluation to_evaluation(const store::EvaluationRecord& record);
 
 /// One line: "evaluation 3 (step): support_x = 12.3; left_deflection = ...".
-std::string describe(const Case& input, const EvaluationRecord& record);
+std::string describe(const case_data::Case& input,
+                     const store::EvaluationRecord& record);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -8,7 +8,7 @@
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/study_records.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -19,7 +19,7 @@ struct OutOfReach {
 
 }  // namespace
 
-StudyStage::StudyStage(const Case& input, StudyStore& store,
+StudyStage::StudyStage(const case_data::Case& input, store::StudyStore& store,
                        const StudyOptions& options, const StageModel& model)
     : input_(input),
       store_(store),
@@ -38,8 +38,8 @@ StudyStage::StudyStage(const Case& input, StudyStore& store,
     start_ = evaluator_.model().frozen();
     return;
   }
-  const EvaluationRecord record =
-      evaluator_.evaluate(initial_design(input_), "start");
+  const store::EvaluationRecord record =
+      evaluator_.evaluate(case_data::initial_design(input_), "start");
   failure_ = record.failure;
   start_ = to_evaluation(record);
   count(record);
@@ -47,7 +47,7 @@ StudyStage::StudyStage(const Case& input, StudyStore& store,
     evaluator_.judge_by([fit = *input_.study.fit](const VectorX& responses) {
       return responses[fit];
     });
-  } else if (!failure_ && input_.study.kind == StudyKind::Match) {
+  } else if (!failure_ && input_.study.kind == case_data::StudyKind::Match) {
     targets_.emplace(input_, model_.reference.value_or(record.responses));
     evaluator_.judge_by([this](const VectorX& responses) {
       return targets_->mismatch(responses).maxCoeff();
@@ -71,9 +71,9 @@ VectorX StudyStage::begin() {
   return *options_.start;
 }
 
-std::optional<Refreeze> StudyStage::wanted(const VectorX& best,
-                                           bool converged) const {
-  return wanted_refreeze(
+std::optional<store::Refreeze> StudyStage::wanted(const VectorX& best,
+                                                  bool converged) const {
+  return store::wanted_refreeze(
       {.input = input_,
        .records = records(),
        .model = model_.name,
@@ -82,7 +82,7 @@ std::optional<Refreeze> StudyStage::wanted(const VectorX& best,
        .converged = converged});
 }
 
-void StudyStage::count(const EvaluationRecord& record) {
+void StudyStage::count(const store::EvaluationRecord& record) {
   if (std::find(asked_.begin(), asked_.end(), record.number) == asked_.end()) {
     asked_.push_back(record.number);
   }
@@ -90,14 +90,14 @@ void StudyStage::count(const EvaluationRecord& record) {
 
 /// Ends the study after so many designs that invert elements, when the mesh is
 /// what holds it up.
-void StudyStage::leave_at_walls(const EvaluationRecord& record) {
+void StudyStage::leave_at_walls(const store::EvaluationRecord& record) {
   constexpr int kPatience = 6;
   if (!record.failure ||
       record.failure->kind != FailureKind::ElementsInverted ||
       ++inverted_ < kPatience) {
     return;
   }
-  const VectorX best = best_record(input_, records()).inputs;
+  const VectorX best = store::best_record(input_, records()).inputs;
   if (wanted(best, false)) {
     throw OutOfReach{best};
   }
@@ -108,18 +108,18 @@ void StudyStage::conduct(Leave leave) {
   evaluator_.reset_counts();  // the kinds of study ask for the start again
   left_early_ = false;
   inverted_ = 0;
-  evaluator_.watch_by([this, leave](const EvaluationRecord& record) {
+  evaluator_.watch_by([this, leave](const store::EvaluationRecord& record) {
     count(record);
     if (leave == Leave::Early) {
       leave_at_walls(record);
     }
   });
   try {
-    outcome_ = meniscus::conduct({.input = input_,
-                                  .evaluator = evaluator_,
-                                  .options = options_,
-                                  .targets = targets(),
-                                  .start = start});
+    outcome_ = meniscus::study::conduct({.input = input_,
+                                         .evaluator = evaluator_,
+                                         .options = options_,
+                                         .targets = targets(),
+                                         .start = start});
   } catch (const OutOfReach& left) {
     left_early_ = true;
     outcome_ = {.status = RunStatus::Infeasible,
@@ -129,7 +129,8 @@ void StudyStage::conduct(Leave leave) {
   evaluator_.watch_by({});
 }
 
-CoarseStage run_coarse_stage(const Case& input, StudyStore& store,
+CoarseStage run_coarse_stage(const case_data::Case& input,
+                             store::StudyStore& store,
                              const StudyOptions& options) {
   const double factor = input.study.coarse_first;
   CoarseStage result;
@@ -148,7 +149,7 @@ CoarseStage run_coarse_stage(const Case& input, StudyStore& store,
     result.figures.design = stage.outcome().best;
     result.figures.message = stage.outcome().message;
     result.figures.evaluations =
-        count_of_model(store.all(), stage.model_name());
+        store::count_of_model(store.all(), stage.model_name());
     result.figures.gradients = stage.evaluator().counts().gradients;
     result.seconds = stage.evaluator().seconds();
   } catch (const MeshError& error) {
@@ -157,4 +158,4 @@ CoarseStage run_coarse_stage(const Case& input, StudyStore& store,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -12,11 +12,11 @@
 #include "pipeline/study/run_kind.h"
 #include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 struct StageModel {
-  std::string name = kStudyModel;  // in the database
-  double edge_factor = 1.0;        // as in ForwardModelOptions
+  std::string name = store::kStudyModel;  // in the database
+  double edge_factor = 1.0;               // as in ForwardModelOptions
   /// Responses that a match's residuals are measured by; none: those of the
   /// initial design.
   std::optional<VectorX> reference = {};
@@ -26,13 +26,13 @@ class StudyStage {
  public:
   /// Freezes the model and evaluates the initial design. All references must
   /// outlive the stage; throws what ForwardModel's constructor throws.
-  StudyStage(const Case& input, StudyStore& store, const StudyOptions& options,
-             const StageModel& model = {});
+  StudyStage(const case_data::Case& input, store::StudyStore& store,
+             const StudyOptions& options, const StageModel& model = {});
 
   /// Why it cannot begin; then nothing below may be asked but evaluator().
   const std::optional<Failure>& failure() const { return failure_; }
   /// The initial design, or what there is of it.
-  const Evaluation& start() const { return start_; }
+  const forward::Evaluation& start() const { return start_; }
 
   /// Does what the case's study asks, from options.start where that can be
   /// evaluated, else from the initial design. `Leave::Early`: ends it, without
@@ -41,7 +41,8 @@ class StudyStage {
   enum class Leave { Late, Early };
   void conduct(Leave leave = Leave::Late);
   /// What a new model is wanted for, as things stand.
-  std::optional<Refreeze> wanted(const VectorX& best, bool converged) const;
+  std::optional<store::Refreeze> wanted(const VectorX& best,
+                                        bool converged) const;
   const StudyOutcome& outcome() const { return outcome_; }
   /// Designs that the stage has asked for.
   int evaluations() const { return static_cast<int>(asked_.size()); }
@@ -58,12 +59,14 @@ class StudyStage {
  private:
   VectorX begin();
 
-  void count(const EvaluationRecord& record);
-  std::vector<EvaluationRecord> records() const { return store_.some(asked_); }
-  void leave_at_walls(const EvaluationRecord& record);
+  void count(const store::EvaluationRecord& record);
+  std::vector<store::EvaluationRecord> records() const {
+    return store_.some(asked_);
+  }
+  void leave_at_walls(const store::EvaluationRecord& record);
 
-  const Case& input_;
-  const StudyStore& store_;
+  const case_data::Case& input_;
+  const store::StudyStore& store_;
   // Numbers in the database of designs asked for, each once: not all that it
   // holds, which on a resumed run knows what comes later.
   std::vector<int> asked_;
@@ -71,7 +74,7 @@ class StudyStage {
   StageModel model_;
   DesignEvaluator evaluator_;
   std::optional<Failure> failure_;
-  Evaluation start_;
+  forward::Evaluation start_;
   std::optional<MatchTargets> targets_;
   StudyOutcome outcome_;
   bool left_early_ = false;
@@ -84,9 +87,10 @@ class StudyStage {
 struct CoarseStage {
   std::optional<VectorX> best;
   CoarseFigures figures;
-  StageSeconds seconds;
+  forward::StageSeconds seconds;
 };
-CoarseStage run_coarse_stage(const Case& input, StudyStore& store,
+CoarseStage run_coarse_stage(const case_data::Case& input,
+                             store::StudyStore& store,
                              const StudyOptions& options);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -7,7 +7,7 @@
 #include "pipeline/store/incumbent.h"
 #include "pipeline/study/run_kind.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -15,8 +15,8 @@ namespace {
 std::vector<VectorX> grid_designs(const StudyTask& task) {
   std::vector<int> levels = task.input.study.levels;
   std::replace(levels.begin(), levels.end(), 0, 1);
-  std::vector<VectorX> designs =
-      designs_of(variables_of(task.input, task.start), grid_samples(levels));
+  std::vector<VectorX> designs = optimize::designs_of(
+      variables_of(task.input, task.start), optimize::grid_samples(levels));
   for (VectorX& design : designs) {
     for (std::size_t k = 0; k < levels.size(); ++k) {
       if (task.input.study.levels[k] == 0) {
@@ -29,20 +29,21 @@ std::vector<VectorX> grid_designs(const StudyTask& task) {
 }
 
 std::vector<VectorX> designs_of_sweep(const StudyTask& task) {
-  const StudyEntry& study = task.input.study;
+  const case_data::StudyEntry& study = task.input.study;
   if (study.method == "grid") {
     return grid_designs(task);
   }
   const int variables = static_cast<int>(task.input.design.size());
-  return designs_of(
+  return optimize::designs_of(
       variables_of(task.input, task.start),
-      study.method == "sobol"
-          ? sobol_samples(variables, study.count)
-          : latin_hypercube_samples(variables, study.count,
+      study.method == "sobol" ? optimize::sobol_samples(variables, study.count)
+                              : optimize::latin_hypercube_samples(
+                                    variables, study.count,
                                     static_cast<std::uint64_t>(study.seed)));
 }
 
-Constraint constraint_of(const Case& input, const ConstraintEntry& entry,
+Constraint constraint_of(const case_data::Case& input,
+                         const case_data::ConstraintEntry& entry,
                          double value) {
   const bool upper =
       !std::isfinite(entry.lower) ||
@@ -50,24 +51,24 @@ Constraint constraint_of(const Case& input, const ConstraintEntry& entry,
   return {.name = input.responses[entry.response].name,
           .value = value,
           .bound = upper ? entry.upper : entry.lower,
-          .satisfied = violation_of(entry, value) <= kFeasible};
+          .satisfied = store::violation_of(entry, value) <= store::kFeasible};
 }
 
 /// The best design by objective and constraints, and what it comes to.
 void choose_best(const StudyTask& task,
-                 const std::vector<EvaluationRecord>& records,
+                 const std::vector<store::EvaluationRecord>& records,
                  StudyOutcome& outcome) {
-  const StudyEntry& study = task.input.study;
-  const EvaluationRecord* best =
-      study.objective ? best_by_objective(study, records) : nullptr;
+  const case_data::StudyEntry& study = task.input.study;
+  const store::EvaluationRecord* best =
+      study.objective ? store::best_by_objective(study, records) : nullptr;
   if (best == nullptr) {
     return;
   }
-  const Standing standing = standing_of(study, best->responses);
+  const store::Standing standing = store::standing_of(study, best->responses);
   outcome.best = best->inputs;
   outcome.objective = standing.objective;
   outcome.constraints.reserve(study.constraints.size());
-  for (const ConstraintEntry& entry : study.constraints) {
+  for (const case_data::ConstraintEntry& entry : study.constraints) {
     outcome.constraints.push_back(
         constraint_of(task.input, entry, best->responses[entry.response]));
   }
@@ -88,7 +89,7 @@ void choose_best(const StudyTask& task,
 
 StudyOutcome sweep(const StudyTask& task) {
   const std::vector<VectorX> designs = designs_of_sweep(task);
-  const std::vector<EvaluationRecord> records =
+  const std::vector<store::EvaluationRecord> records =
       task.evaluator.evaluate_all(designs, "sweep");
   StudyOutcome outcome{.best = task.start};
   outcome.sweep = sweep_figures(static_cast<int>(designs.size()), records);
@@ -118,4 +119,4 @@ StudyOutcome sweep(const StudyTask& task) {
   return outcome;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -4,13 +4,13 @@
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/study/run_kind.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
 /// Normal designs about the start; only what scatters takes a dimension.
 std::vector<VectorX> scattered_designs(const StudyTask& task) {
-  const StudyEntry& study = task.input.study;
+  const case_data::StudyEntry& study = task.input.study;
   std::vector<Eigen::Index> moving;
   moving.reserve(study.deviations.size());
   for (std::size_t j = 0; j < study.deviations.size(); ++j) {
@@ -19,17 +19,17 @@ std::vector<VectorX> scattered_designs(const StudyTask& task) {
     }
   }
   const int dimension = static_cast<int>(moving.size());
-  Samples samples =
+  optimize::Samples samples =
       study.method == "sobol"
-          ? sobol_samples(dimension, study.count)
-          : latin_hypercube_samples(dimension, study.count,
-                                    static_cast<std::uint64_t>(study.seed));
+          ? optimize::sobol_samples(dimension, study.count)
+          : optimize::latin_hypercube_samples(
+                dimension, study.count, static_cast<std::uint64_t>(study.seed));
   for (VectorX& sample : samples) {
     VectorX all = VectorX::Constant(task.start.size(), 0.5);
     all(moving) = sample;
     sample = std::move(all);
   }
-  return normal_designs(
+  return optimize::normal_designs(
       task.start,
       Eigen::Map<const VectorX>(study.deviations.data(), task.start.size()),
       samples);
@@ -41,29 +41,29 @@ bool spread_by_gradient(const StudyTask& task, ToleranceFigures& figures,
   if (!uses_gradients(task.input)) {
     return true;  // samples alone
   }
-  figures.responses = studied_responses(task.input);
-  const JacobianAnswer answer =
+  figures.responses = case_data::studied_responses(task.input);
+  const optimize::JacobianAnswer answer =
       task.evaluator.gradient(task.start, figures.responses);
   if (answer.failure) {
     outcome.message =
         "no gradient at the initial design: " + answer.failure->message;
     return false;
   }
-  figures.linear =
-      linear_spread(answer.jacobian(figures.responses, Eigen::all),
-                    Eigen::Map<const VectorX>(
-                        task.input.study.deviations.data(), task.start.size()));
+  figures.linear = optimize::linear_spread(
+      answer.jacobian(figures.responses, Eigen::all),
+      Eigen::Map<const VectorX>(task.input.study.deviations.data(),
+                                task.start.size()));
   return true;
 }
 
 /// The sampled confirmation, and what the study comes to with it.
 void confirm(const StudyTask& task, ToleranceFigures& figures,
              StudyOutcome& outcome) {
-  const std::vector<EvaluationRecord> records =
+  const std::vector<store::EvaluationRecord> records =
       task.evaluator.evaluate_all(scattered_designs(task), "sample");
   std::vector<VectorX> values;
   values.reserve(records.size());
-  for (const EvaluationRecord& record : records) {
+  for (const store::EvaluationRecord& record : records) {
     if (!record.failure) {
       values.push_back(record.responses);
     }
@@ -71,7 +71,7 @@ void confirm(const StudyTask& task, ToleranceFigures& figures,
   figures.samples = static_cast<int>(records.size());
   figures.failed = figures.samples - static_cast<int>(values.size());
   if (values.size() >= 2) {
-    figures.sampled = sampled_spread(values);
+    figures.sampled = optimize::sampled_spread(values);
   }
   if (figures.samples < task.input.study.count) {
     outcome.status = RunStatus::Stopped;
@@ -120,4 +120,4 @@ StudyOutcome tolerance(const StudyTask& task) {
   return outcome;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -7,7 +7,7 @@
 
 #include "pipeline/forward/responses.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -26,7 +26,7 @@ void widen(ResponseRange& range, double value, const VectorX& design,
   range.mean += value;
 }
 
-Json place_json(const Case& input, const VectorX& design) {
+Json place_json(const case_data::Case& input, const VectorX& design) {
   Json json = Json::object();
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     json[input.design[k].name] = design[static_cast<Eigen::Index>(k)];
@@ -34,7 +34,7 @@ Json place_json(const Case& input, const VectorX& design) {
   return json;
 }
 
-std::string place_text(const Case& input, const VectorX& design) {
+std::string place_text(const case_data::Case& input, const VectorX& design) {
   std::string text;
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     text +=
@@ -46,13 +46,13 @@ std::string place_text(const Case& input, const VectorX& design) {
 
 }  // namespace
 
-SweepFigures sweep_figures(int designs,
-                           const std::vector<EvaluationRecord>& records) {
+SweepFigures sweep_figures(
+    int designs, const std::vector<store::EvaluationRecord>& records) {
   SweepFigures figures{.designs = designs,
                        .looked_at = static_cast<int>(records.size())};
   std::map<std::string, int> failures;
   int answered = 0;
-  for (const EvaluationRecord& record : records) {
+  for (const store::EvaluationRecord& record : records) {
     if (record.failure) {
       ++figures.failed;
       ++failures[name_of(record.failure->kind)];
@@ -73,7 +73,7 @@ SweepFigures sweep_figures(int designs,
   return figures;
 }
 
-nlohmann::ordered_json sweep_json(const Case& input,
+nlohmann::ordered_json sweep_json(const case_data::Case& input,
                                   const SweepFigures& figures) {
   Json json = {{"method", input.study.method},
                {"designs", figures.designs},
@@ -96,7 +96,8 @@ nlohmann::ordered_json sweep_json(const Case& input,
   return json;
 }
 
-std::string sweep_text(const Case& input, const SweepFigures& figures) {
+std::string sweep_text(const case_data::Case& input,
+                       const SweepFigures& figures) {
   std::string text = fmt::format("  sweep of {} designs", figures.designs);
   if (figures.looked_at < figures.designs) {
     text += fmt::format(", {} looked at", figures.looked_at);
@@ -108,7 +109,7 @@ std::string sweep_text(const Case& input, const SweepFigures& figures) {
   text += "\n";
   for (std::size_t k = 0; k < figures.responses.size(); ++k) {
     const ResponseRange& range = figures.responses[k];
-    std::string unit = response_unit(input, static_cast<int>(k));
+    std::string unit = case_data::response_unit(input, static_cast<int>(k));
     unit.insert(0, unit.empty() ? "" : " ");
     text += fmt::format(
         "  {:<20} mean {:.6g}{}\n"
@@ -121,4 +122,4 @@ std::string sweep_text(const Case& input, const SweepFigures& figures) {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

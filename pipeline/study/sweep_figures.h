@@ -10,7 +10,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/store/study_store.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 struct ResponseRange {
   double least = 0.0;
@@ -32,13 +32,14 @@ struct SweepFigures {
 
 /// `records`: of the designs looked at, in order; `designs`: of all.
 SweepFigures sweep_figures(int designs,
-                           const std::vector<EvaluationRecord>& records);
+                           const std::vector<store::EvaluationRecord>& records);
 
 /// The part `sweep` of result.json (docs/results.md).
-nlohmann::ordered_json sweep_json(const Case& input,
+nlohmann::ordered_json sweep_json(const case_data::Case& input,
                                   const SweepFigures& figures);
 
 /// A line per response for people.
-std::string sweep_text(const Case& input, const SweepFigures& figures);
+std::string sweep_text(const case_data::Case& input,
+                       const SweepFigures& figures);
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-namespace meniscus {
+namespace meniscus::study {
 
 /// The smaller of two limits [s], where 0 is none.
 inline double smaller_limit(double a, double b) {
   return a > 0.0 && b > 0.0 ? std::min(a, b) : std::max(a, b);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

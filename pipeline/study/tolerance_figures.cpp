@@ -8,7 +8,7 @@
 
 #include "pipeline/forward/responses.h"
 
-namespace meniscus {
+namespace meniscus::study {
 
 namespace {
 
@@ -26,7 +26,7 @@ Eigen::Index row_of(const ToleranceFigures& figures, int response) {
   return at == figures.responses.end() ? -1 : at - figures.responses.begin();
 }
 
-Json sampled_json(const SampledSpread& sampled, Eigen::Index k) {
+Json sampled_json(const optimize::SampledSpread& sampled, Eigen::Index k) {
   return {{"mean", sampled.mean[k]},
           {"mean_error", sampled.mean_error[k]},
           {"deviation", sampled.deviation[k]},
@@ -37,7 +37,7 @@ Json sampled_json(const SampledSpread& sampled, Eigen::Index k) {
 
 }  // namespace
 
-std::vector<std::string> tolerance_warnings(const Case& input,
+std::vector<std::string> tolerance_warnings(const case_data::Case& input,
                                             const ToleranceFigures& figures) {
   std::vector<std::string> warnings;
   if (!figures.sampled) {
@@ -62,7 +62,7 @@ std::vector<std::string> tolerance_warnings(const Case& input,
   return warnings;
 }
 
-nlohmann::ordered_json tolerance_json(const Case& input,
+nlohmann::ordered_json tolerance_json(const case_data::Case& input,
                                       const ToleranceFigures& figures) {
   Json json = {{"deviations", Json::object()},
                {"samples", figures.samples},
@@ -90,10 +90,12 @@ nlohmann::ordered_json tolerance_json(const Case& input,
   return json;
 }
 
-std::string tolerance_text(const Case& input, const ToleranceFigures& figures) {
+std::string tolerance_text(const case_data::Case& input,
+                           const ToleranceFigures& figures) {
   std::string text;
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
-    const std::string unit = response_unit(input, static_cast<int>(k));
+    const std::string unit =
+        case_data::response_unit(input, static_cast<int>(k));
     text += fmt::format("  {:<20} deviation", input.responses[k].name);
     const Eigen::Index row = row_of(figures, static_cast<int>(k));
     if (row >= 0) {
@@ -118,4 +120,4 @@ std::string tolerance_text(const Case& input, const ToleranceFigures& figures) {
   return text;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::study

@@ -2,28 +2,30 @@
 
 #include <mutex>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/timer.h"
-#include "core/atomic_file.h"
-#include "pipeline/study/film_frames.h"
 #include "pipeline/forward/forward_model.h"
+#include "pipeline/forward/walls.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_folder.h"
-#include "pipeline/forward/walls.h"
-#include "report/page/report_page.h"
+#include "pipeline/study/film_frames.h"
 #include "report/output/run_output.h"
+#include "report/page/report_page.h"
 
-namespace meniscus {
+namespace meniscus::output {
 
 namespace fs = std::filesystem;
 
 namespace {
 
-StudyStore open_prepared(const Case& input, const FolderRunOptions& options) {
+store::StudyStore open_prepared(const case_data::Case& input,
+                                const FolderRunOptions& options) {
   prepare_run_folder(input, options.folder);
-  return open_run(input, options.folder,
-                  options.resume ? RunBegins::Resumed : RunBegins::Anew,
-                  options.program_version);
+  return results::open_run(
+      input, options.folder,
+      options.resume ? results::RunBegins::Resumed : results::RunBegins::Anew,
+      options.program_version);
 }
 
 /// Of a study; a family's members have no time limit of their own.
@@ -40,47 +42,49 @@ RunOutputOptions output_options(const FolderRunOptions& options,
 void write_run_page(const fs::path& folder, const FolderRunOptions& options,
                     const FolderRunListener& listener) {
   if (options.report) {
-    write_report_or_warn(folder, {.versions = options.page_versions},
-                         listener.monitor, listener.page_warning);
+    page::write_report_or_warn(folder, {.versions = options.page_versions},
+                               listener.monitor, listener.page_warning);
   }
 }
 
 }  // namespace
 
-void prepare_run_folder(const Case& input, const fs::path& folder) {
-  refuse_walls(input);
-  require_solver(input);
+void prepare_run_folder(const case_data::Case& input, const fs::path& folder) {
+  forward::refuse_walls(input);
+  forward::require_solver(input);
   make_folder(folder);
 }
 
-FolderRun::FolderRun(const Case& input, FolderRunOptions options)
+FolderRun::FolderRun(const case_data::Case& input, FolderRunOptions options)
     : input_(input),
       options_(std::move(options)),
       store_(open_prepared(input, options_)) {}
 
 /// Meshes and pictures first, result.json last: it tells that all is there.
-RunResult FolderRun::study(const FolderRunListener& listener,
-                           RunOutput& output) {
-  EvaluationFields fields;
-  RunResult result = run_study(
-      input_, store_,
-      {.time_limit = options_.time_limit,
-       .estimate_errors = options_.estimate_errors,
-       .frames = options_.frames ? kMostFrames : 0,
-       .jobs = options_.jobs,
-       .listener = listener.evaluated,
-       .answered =
-           [&](const EvaluationFields& answer) { output.begin(answer); },
-       .monitor = listener.monitor},
-      &fields);
+study::RunResult FolderRun::study(const FolderRunListener& listener,
+                                  RunOutput& output) {
+  forward::EvaluationFields fields;
+  study::RunResult result =
+      study::run_study(input_, store_,
+                       {.time_limit = options_.time_limit,
+                        .estimate_errors = options_.estimate_errors,
+                        .frames = options_.frames ? study::kMostFrames : 0,
+                        .jobs = options_.jobs,
+                        .listener = listener.evaluated,
+                        .answered =
+                            [&](const forward::EvaluationFields& answer) {
+                              output.begin(answer);
+                            },
+                        .monitor = listener.monitor},
+                       &fields);
   result.warnings.insert(result.warnings.begin(), options_.warnings.begin(),
                          options_.warnings.end());
   const Timer timer;
   output.finish(fields, result);
   result.output_seconds = timer.seconds();
   result.total_seconds += result.output_seconds;
-  write_summary(input_, result, store_.all(), options_.program_version,
-                options_.folder);
+  results::write_summary(input_, result, store_.all(), options_.program_version,
+                         options_.folder);
   if (listener.finished) {
     listener.finished(result);
   }
@@ -89,15 +93,16 @@ RunResult FolderRun::study(const FolderRunListener& listener,
 }
 
 /// The state of a run that ended early, for people and for a resumed one.
-RunResult FolderRun::keep(const FolderRunListener& listener, RunStatus status,
-                          const std::string& reason) {
-  RunResult result =
-      kept_result(input_, store_, status, reason, options_.resume_word);
+study::RunResult FolderRun::keep(const FolderRunListener& listener,
+                                 study::RunStatus status,
+                                 const std::string& reason) {
+  study::RunResult result = results::kept_result(input_, store_, status, reason,
+                                                 options_.resume_word);
   if (listener.ended_early) {
     listener.ended_early(result);
   }
-  write_summary(input_, result, store_.all(), options_.program_version,
-                options_.folder);
+  results::write_summary(input_, result, store_.all(), options_.program_version,
+                         options_.folder);
   write_run_page(options_.folder, options_, listener);
   return result;
 }
@@ -109,23 +114,24 @@ FolderRunResult FolderRun::run(const FolderRunListener& listener) {
   } catch (const Interrupted&) {
     const std::string reason =
         listener.stop_reason ? listener.stop_reason() : "stopped on request";
-    return {keep(listener, RunStatus::Interrupted, reason),
+    return {keep(listener, study::RunStatus::Interrupted, reason),
             std::current_exception()};
   } catch (const IoError& error) {
     // A full disk may well refuse result.json too; the study is safe.
-    return {keep(listener, RunStatus::Error, error.what()),
+    return {keep(listener, study::RunStatus::Error, error.what()),
             std::current_exception()};
   }
 }
 
-FamilyResult run_family_into_folder(const Case& input,
-                                    const FolderRunOptions& options,
-                                    const FolderRunListener& listener) {
+results::FamilyResult run_family_into_folder(
+    const case_data::Case& input, const FolderRunOptions& options,
+    const FolderRunListener& listener) {
   std::mutex writing;  // one private display, one CAD kernel at a time
   const Timer timer;
-  const auto write_member = [&](const Case& member,
-                                const EvaluationFields& fields,
-                                const fs::path& folder, RunResult& outcome) {
+  const auto write_member = [&](const case_data::Case& member,
+                                const forward::EvaluationFields& fields,
+                                const fs::path& folder,
+                                study::RunResult& outcome) {
     const std::lock_guard<std::mutex> guard(writing);
     RunOutputOptions chosen = output_options(options, listener);
     chosen.time_limit = 0.0;  // of all members, not of each
@@ -137,22 +143,23 @@ FamilyResult run_family_into_folder(const Case& input,
     }
     RunOutput(member, folder, chosen).finish(fields, outcome);
   };
-  return run_family(input, {.folder = options.folder,
-                            .program_version = options.program_version,
-                            .resume = options.resume,
-                            .jobs = options.jobs,
-                            .threads = options.threads,
-                            .time_limit = options.time_limit,
-                            .frames = options.frames ? kMostFrames : 0,
-                            .listener = listener.evaluated,
-                            .monitor = listener.monitor,
-                            .write_files = write_member});
+  return results::run_family(input,
+                             {.folder = options.folder,
+                              .program_version = options.program_version,
+                              .resume = options.resume,
+                              .jobs = options.jobs,
+                              .threads = options.threads,
+                              .time_limit = options.time_limit,
+                              .frames = options.frames ? study::kMostFrames : 0,
+                              .listener = listener.evaluated,
+                              .monitor = listener.monitor,
+                              .write_files = write_member});
 }
 
-void write_family_pages(const FamilyResult& result,
+void write_family_pages(const results::FamilyResult& result,
                         const FolderRunOptions& options,
                         const FolderRunListener& listener) {
-  for (const FamilyRow& row : result.rows) {
+  for (const results::FamilyRow& row : result.rows) {
     const fs::path folder = options.folder / row.folder;
     if (fs::exists(folder / "result.json")) {
       write_run_page(folder, options, listener);
@@ -161,4 +168,4 @@ void write_family_pages(const FamilyResult& result,
   write_run_page(options.folder, options, listener);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::output

@@ -11,10 +11,10 @@
 
 #include "core/monitor.h"
 #include "pipeline/results/family.h"
-#include "pipeline/study/study.h"
 #include "pipeline/store/study_store.h"
+#include "pipeline/study/study.h"
 
-namespace meniscus {
+namespace meniscus::output {
 
 class RunOutput;
 
@@ -43,25 +43,26 @@ struct FolderRunOptions {
 /// thread) are called on the thread that runs.
 struct FolderRunListener {
   Monitor* monitor = nullptr;  // not owned
-  StudyListener evaluated = {};
+  study::StudyListener evaluated = {};
   /// result.json is written, the page is not yet.
-  std::function<void(const RunResult&)> finished = {};
+  std::function<void(const study::RunResult&)> finished = {};
   /// The run was stopped or a file refused; result.json comes after this, and a
   /// full disk may refuse that too.
-  std::function<void(const RunResult&)> ended_early = {};
+  std::function<void(const study::RunResult&)> ended_early = {};
   std::function<void(const std::string&)> page_warning = {};
   /// Who stopped the run, for its message; asked once it was.
   std::function<std::string()> stop_reason = {};
 };
 
 struct FolderRunResult {
-  RunResult result;
+  study::RunResult result;
   std::exception_ptr error;  // Interrupted or IoError that ended it early
 };
 
 /// Refuses what no run can compute and makes the folder. Throws InvalidInput,
 /// IoError.
-void prepare_run_folder(const Case& input, const std::filesystem::path& folder);
+void prepare_run_folder(const case_data::Case& input,
+                        const std::filesystem::path& folder);
 
 /// A study that is no family.
 class FolderRun {
@@ -69,7 +70,7 @@ class FolderRun {
   /// Prepares the folder and opens the study in it, locked for as long as this
   /// lives. `input` must outlive it. Throws as prepare_run_folder(),
   /// open_run().
-  FolderRun(const Case& input, FolderRunOptions options);
+  FolderRun(const case_data::Case& input, FolderRunOptions options);
 
   /// Once. An interruption or an IoError is kept in the folder's result.json
   /// and returned; anything else that ends the study passes through, as does
@@ -77,24 +78,24 @@ class FolderRun {
   FolderRunResult run(const FolderRunListener& listener);
 
  private:
-  RunResult study(const FolderRunListener& listener, RunOutput& output);
-  RunResult keep(const FolderRunListener& listener, RunStatus status,
-                 const std::string& reason);
+  study::RunResult study(const FolderRunListener& listener, RunOutput& output);
+  study::RunResult keep(const FolderRunListener& listener,
+                        study::RunStatus status, const std::string& reason);
 
-  const Case& input_;
+  const case_data::Case& input_;
   FolderRunOptions options_;
-  StudyStore store_;
+  store::StudyStore store_;
 };
 
 /// The family's members with their meshes and pictures, into a folder that is
 /// prepared; no page. Throws what run_family() throws.
-FamilyResult run_family_into_folder(const Case& input,
-                                    const FolderRunOptions& options,
-                                    const FolderRunListener& listener);
+results::FamilyResult run_family_into_folder(const case_data::Case& input,
+                                             const FolderRunOptions& options,
+                                             const FolderRunListener& listener);
 
 /// The pages of the members that have a result, then the family's own.
-void write_family_pages(const FamilyResult& result,
+void write_family_pages(const results::FamilyResult& result,
                         const FolderRunOptions& options,
                         const FolderRunListener& listener);
 
-}  // namespace meniscus
+}  // namespace meniscus::output

@@ -10,11 +10,11 @@
 #include "pipeline/study/film_frames.h"
 #include "report/output/run_pictures.h"
 
-namespace meniscus {
+namespace meniscus::output {
 
 namespace fs = std::filesystem;
 
-RunOutput::RunOutput(const Case& input, fs::path folder,
+RunOutput::RunOutput(const case_data::Case& input, fs::path folder,
                      const RunOutputOptions& options)
     : input_(input),
       folder_(std::move(folder)),
@@ -22,20 +22,21 @@ RunOutput::RunOutput(const Case& input, fs::path folder,
       monitor_(options.monitor != nullptr ? *options.monitor
                                           : silent_monitor()) {}
 
-void RunOutput::begin(const EvaluationFields& fields) {
+void RunOutput::begin(const forward::EvaluationFields& fields) {
   if (options_.pictures && !fields.mesh.nodes.empty()) {
     pictures_.emplace(run_pictures(input_, fields, folder_),
-                      PictureOptions{.monitor = options_.monitor});
+                      picture::PictureOptions{.monitor = options_.monitor});
   }
 }
 
-void RunOutput::finish(const EvaluationFields& fields, RunResult& result) {
+void RunOutput::finish(const forward::EvaluationFields& fields,
+                       study::RunResult& result) {
   const Timer timer;
   std::vector<fs::path> exported;
   if (!fields.mesh.nodes.empty()) {
     monitor_.progress({.stage = "output", .detail = "writing meshes"});
-    write_meshes(input_, fields, folder_);
-    write_frames(input_, fields.history, folder_);
+    results::write_meshes(input_, fields, folder_);
+    study::write_frames(input_, fields.history, folder_);
     exported = export_all(result);
     if (options_.pictures) {
       draw_rest(fields, result);
@@ -43,23 +44,24 @@ void RunOutput::finish(const EvaluationFields& fields, RunResult& result) {
   }
   if (result.best && !fields.mesh.nodes.empty()) {
     result.output_seconds = timer.seconds();
-    result.ledger = make_ledger(input_, result, fields, folder_, exported);
+    result.ledger =
+        results::make_ledger(input_, result, fields, folder_, exported);
   }
-  for (const std::string& name : write_unfilled(fields, folder_)) {
+  for (const std::string& name : results::write_unfilled(fields, folder_)) {
     result.warnings.push_back("look at the surface in " + name);
   }
 }
 
 /// The answer in the formats asked for, as `meniscus export` writes it.
-std::vector<fs::path> RunOutput::export_all(RunResult& result) {
+std::vector<fs::path> RunOutput::export_all(study::RunResult& result) {
   std::vector<fs::path> files;
   for (const std::string& format : options_.exports) {
     monitor_.progress({.stage = "output", .detail = "writing " + format});
     try {
-      files.push_back(
-          export_part(folder_, {.format = format,
-                                .program_version = options_.program_version,
-                                .monitor = options_.monitor}));
+      files.push_back(results::export_part(
+          folder_, {.format = format,
+                    .program_version = options_.program_version,
+                    .monitor = options_.monitor}));
     } catch (const Interrupted&) {
       throw;
     } catch (const IoError&) {
@@ -73,7 +75,8 @@ std::vector<fs::path> RunOutput::export_all(RunResult& result) {
 }
 
 /// What was begun, and what needs the frames.
-void RunOutput::draw_rest(const EvaluationFields& fields, RunResult& result) {
+void RunOutput::draw_rest(const forward::EvaluationFields& fields,
+                          study::RunResult& result) {
   const bool late =
       options_.time_limit > 0.0 && result.total_seconds >= options_.time_limit;
   if (late) {
@@ -98,15 +101,15 @@ void RunOutput::draw_rest(const EvaluationFields& fields, RunResult& result) {
   }
   std::vector<std::string> captions;
   captions.reserve(fields.history.size());
-  for (const FilmFrame& frame : fields.history) {
-    captions.push_back(frame_caption(input_, frame));
+  for (const forward::FilmFrame& frame : fields.history) {
+    captions.push_back(study::frame_caption(input_, frame));
   }
   std::vector<std::string> solids;
-  for (const CapSpec& cap : fields.inputs.film_system.caps) {
+  for (const films::CapSpec& cap : fields.inputs.film_system.caps) {
     solids.push_back(cap.name);
   }
   warn(draw_frames(input_.title, solids, fields.history, captions, folder_,
                    monitor_));
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::output

@@ -10,7 +10,7 @@
 #include "pipeline/study/study.h"
 #include "report/picture/picture.h"
 
-namespace meniscus {
+namespace meniscus::output {
 
 struct RunOutputOptions {
   bool pictures = true;
@@ -26,28 +26,30 @@ struct RunOutputOptions {
 class RunOutput {
  public:
   /// `input` must outlive it.
-  RunOutput(const Case& input, std::filesystem::path folder,
+  RunOutput(const case_data::Case& input, std::filesystem::path folder,
             const RunOutputOptions& options);
 
   /// For StudyOptions::answered: the pictures are begun, beside what the study
   /// still has to compute.
-  void begin(const EvaluationFields& fields);
+  void begin(const forward::EvaluationFields& fields);
 
   /// Meshes of the best design, films of the history, exports, pictures and the
   /// ledger, or the surface that could not be filled; warnings go to `result`,
   /// also of an export that does not work out.
   /// Throws IoError, Interrupted.
-  void finish(const EvaluationFields& fields, RunResult& result);
+  void finish(const forward::EvaluationFields& fields,
+              study::RunResult& result);
 
  private:
-  std::vector<std::filesystem::path> export_all(RunResult& result);
-  void draw_rest(const EvaluationFields& fields, RunResult& result);
+  std::vector<std::filesystem::path> export_all(study::RunResult& result);
+  void draw_rest(const forward::EvaluationFields& fields,
+                 study::RunResult& result);
 
-  const Case& input_;
+  const case_data::Case& input_;
   std::filesystem::path folder_;
   RunOutputOptions options_;
   Monitor& monitor_;
-  std::optional<PicturesBeside> pictures_;
+  std::optional<picture::PicturesBeside> pictures_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::output

@@ -9,18 +9,18 @@
 #include "pipeline/forward/forward_model.h"
 #include "report/picture/picture_job.h"
 
-namespace meniscus {
+namespace meniscus::output {
 
 /// film.png, part.png and overview.png in `folder`, of a design whose stresses
 /// are known; they need no other file.
-std::vector<PictureJob> run_pictures(const Case& input,
-                                     const EvaluationFields& fields,
-                                     const std::filesystem::path& folder);
+std::vector<picture::PictureJob> run_pictures(
+    const case_data::Case& input, const forward::EvaluationFields& fields,
+    const std::filesystem::path& folder);
 
 /// The same of what stands in `folder`: film.vtp, part.vtu, part_surface.vtp;
 /// `numbers`: of the run's answer.
-std::vector<PictureJob> stored_run_pictures(
-    const Case& input, const EvaluatedCase& numbers,
+std::vector<picture::PictureJob> stored_run_pictures(
+    const case_data::Case& input, const case_data::EvaluatedCase& numbers,
     const std::filesystem::path& folder);
 
 /// film.png from the film.vtp in `folder`; `solids`: its surfaces that are no
@@ -34,11 +34,10 @@ std::vector<std::string> draw_film(const std::string& title,
 
 /// frames/film_NNNN.png, one of each frame that write_frames() left in
 /// `folder`, all from one fixed camera; `captions`: a line for each.
-std::vector<std::string> draw_frames(const std::string& title,
-                                     const std::vector<std::string>& solids,
-                                     const std::vector<FilmFrame>& frames,
-                                     const std::vector<std::string>& captions,
-                                     const std::filesystem::path& folder,
-                                     Monitor& monitor);
+std::vector<std::string> draw_frames(
+    const std::string& title, const std::vector<std::string>& solids,
+    const std::vector<forward::FilmFrame>& frames,
+    const std::vector<std::string>& captions,
+    const std::filesystem::path& folder, Monitor& monitor);
 
-}  // namespace meniscus
+}  // namespace meniscus::output

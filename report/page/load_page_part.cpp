@@ -10,7 +10,7 @@
 #include "report/page/page_mesh.h"
 #include "report/page/vtk_input.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 namespace fs = std::filesystem;
 
@@ -127,7 +127,7 @@ class NodeMeans {
   std::vector<int> counts_;
 };
 
-double modulus_of(const Material& material) {
+double modulus_of(const element::Material& material) {
   return material.orthotropic ? material.orthotropic->youngs_moduli.maxCoeff()
                               : material.youngs_modulus;
 }
@@ -143,7 +143,8 @@ double volume_of(const VtkInput& part, const int* ids) {
 }
 
 /// Energy density and stress error at the nodes of part.vtu.
-void find_energies(const VtkInput& part, const std::vector<Material>& materials,
+void find_energies(const VtkInput& part,
+                   const std::vector<element::Material>& materials,
                    PageMesh& mesh) {
   const auto size = static_cast<std::size_t>(part.cell_size);
   const std::size_t elements = part.cells.size() / size;
@@ -154,7 +155,8 @@ void find_energies(const VtkInput& part, const std::vector<Material>& materials,
   if (region == nullptr || error == nullptr || stress == nullptr) {
     return;
   }
-  const std::vector<ElasticLaw> laws = elastic_laws(materials);
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws(materials);
   NodeMeans density(part.points.size());
   NodeMeans errors(part.points.size());
   for (std::size_t e = 0; e < elements; ++e) {
@@ -169,10 +171,10 @@ void find_energies(const VtkInput& part, const std::vector<Material>& materials,
             ? (*error)[e] * std::sqrt(modulus_of(materials[r]) / volume)
             : 0.0;
     for (std::size_t k = 0; k < size; ++k) {
-      Stress s;
+      element::Stress s;
       std::copy_n(stress->begin() + 6 * static_cast<std::ptrdiff_t>(ids[k]), 6,
                   s.begin());
-      density.add(ids[k], 0.5 * complementary_product(s, s, laws[r]));
+      density.add(ids[k], 0.5 * element::complementary_product(s, s, laws[r]));
       errors.add(ids[k], wrong);
     }
   }
@@ -182,7 +184,8 @@ void find_energies(const VtkInput& part, const std::vector<Material>& materials,
 
 /// The surface's triangles, elements and fields by part.vtu's nodes.
 void add_inside(const VtkInput& surface, const fs::path& path,
-                const std::vector<Material>& materials, PageMesh& mesh) {
+                const std::vector<element::Material>& materials,
+                PageMesh& mesh) {
   const VtkInput part = read_vtk(path, {"point_stress"});
   if (part.cell_size != kTetCorners && part.cell_size != kTetNodes) {
     refuse_file(path, "holds no tetrahedra");
@@ -216,7 +219,7 @@ void add_inside(const VtkInput& surface, const fs::path& path,
 }  // namespace
 
 PageMesh load_page_part(const fs::path& surface_path, const fs::path& part_path,
-                        const std::vector<Material>& materials) {
+                        const std::vector<element::Material>& materials) {
   const VtkInput surface = read_vtk(surface_path);
   PageMesh mesh;
   read_triangles(surface, surface_path, mesh);
@@ -230,4 +233,4 @@ PageMesh load_page_part(const fs::path& surface_path, const fs::path& part_path,
   return mesh;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::page

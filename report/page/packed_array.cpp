@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 using Json = nlohmann::ordered_json;
 
@@ -102,4 +102,4 @@ Json pack_ids(const std::vector<int>& ids) {
           {"data", base64(bytes)}};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace meniscus {
+namespace meniscus::page {
 
 /// RFC 4648, with padding.
 std::string base64(std::string_view bytes);
@@ -23,4 +23,4 @@ nlohmann::ordered_json pack_reals(const std::vector<double>& values,
 /// Whole numbers from 0 in the fewest of 1, 2 or 4 bytes each.
 nlohmann::ordered_json pack_ids(const std::vector<int>& ids);
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -9,7 +9,7 @@
 #include "pipeline/case_data/study_kinds.h"
 #include "report/page/packed_array.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 using Json = nlohmann::ordered_json;
 
@@ -23,7 +23,8 @@ Json number(double value) {
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-std::string load_case_of(const Case& input, const ResponseEntry& response) {
+std::string load_case_of(const case_data::Case& input,
+                         const case_data::ResponseEntry& response) {
   return response.load_case >= 0 &&
                  response.load_case < static_cast<int>(input.load_cases.size())
              ? input.load_cases[static_cast<std::size_t>(response.load_case)]
@@ -31,10 +32,10 @@ std::string load_case_of(const Case& input, const ResponseEntry& response) {
              : "";
 }
 
-Json study_json(const Case& input) {
-  const StudyEntry& study = input.study;
-  const std::vector<std::string> names = response_names(input);
-  Json json = {{"kind", row_of(study.kind).name},
+Json study_json(const case_data::Case& input) {
+  const case_data::StudyEntry& study = input.study;
+  const std::vector<std::string> names = case_data::response_names(input);
+  Json json = {{"kind", case_data::row_of(study.kind).name},
                {"method", study.method},
                {"equal", study.equal},
                {"targets", Json::object()},
@@ -48,7 +49,7 @@ Json study_json(const Case& input) {
   };
   json["objective"] = named(study.objective);
   json["second"] = named(study.second);
-  for (const ConstraintEntry& bound : study.constraints) {
+  for (const case_data::ConstraintEntry& bound : study.constraints) {
     json["constraints"].push_back(
         {{"response", names[static_cast<std::size_t>(bound.response)]},
          {"min", number(bound.lower)},
@@ -58,8 +59,8 @@ Json study_json(const Case& input) {
 }
 
 /// Closed curves at even parameters; parametric ones know no range.
-bool has_range(const Curve& curve) {
-  return !std::holds_alternative<ParametricCurve>(curve.shape);
+bool has_range(const curves::Curve& curve) {
+  return !std::holds_alternative<curves::ParametricCurve>(curve.shape);
 }
 
 std::vector<double> even_parameters() {
@@ -77,18 +78,20 @@ Json pack_points(const Points& points) {
 }
 
 /// Adds each curve's motion by one design variable.
-void add_motion(const Case& input, const VectorX& design, int variable,
-                const EvaluatedCase& numbers, Json& curves) {
-  const EvaluatedCase rate = rates(input, design, variable);
+void add_motion(const case_data::Case& input, const VectorX& design,
+                int variable, const case_data::EvaluatedCase& numbers,
+                Json& curves) {
+  const case_data::EvaluatedCase rate =
+      case_data::rates(input, design, variable);
   const std::vector<double> t = even_parameters();
   std::size_t k = 0;
   for (std::size_t c = 0; c < numbers.film_system.curves.size(); ++c) {
-    const Curve& curve = numbers.film_system.curves[c];
+    const curves::Curve& curve = numbers.film_system.curves[c];
     if (!has_range(curve)) {
       continue;
     }
     const Points moved =
-        point_rates(curve.shape, rate.film_system.curves[c].shape, t);
+        curves::point_rates(curve.shape, rate.film_system.curves[c].shape, t);
     if (flat(moved).norm() > 0.0) {
       const std::string& name =
           input.design[static_cast<std::size_t>(variable)].name;
@@ -100,40 +103,40 @@ void add_motion(const Case& input, const VectorX& design, int variable,
 
 }  // namespace
 
-Json page_case(const Case& input) {
+Json page_case(const case_data::Case& input) {
   Json json = {{"path", input.path},           {"text", input.text},
                {"overrides", input.overrides}, {"hash", input.hash},
                {"design", Json::array()},      {"responses", Json::array()},
                {"study", study_json(input)}};
-  for (const DesignVariable& d : input.design) {
+  for (const case_data::DesignVariable& d : input.design) {
     json["design"].push_back({{"name", d.name},
                               {"initial", d.initial},
                               {"lower", number(d.lower)},
                               {"upper", number(d.upper)}});
   }
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
-    const ResponseEntry& response = input.responses[k];
+    const case_data::ResponseEntry& response = input.responses[k];
     json["responses"].push_back(
         {{"name", response.name},
-         {"unit", response_unit(input, static_cast<int>(k))},
+         {"unit", case_data::response_unit(input, static_cast<int>(k))},
          {"on", response.surface},
          {"load_case", load_case_of(input, response)}});
   }
   return json;
 }
 
-Json page_curves(const Case& input, const VectorX& design) {
+Json page_curves(const case_data::Case& input, const VectorX& design) {
   Json curves = Json::array();
   try {
-    const EvaluatedCase numbers = evaluate(input, design);
-    for (const Curve& curve : numbers.film_system.curves) {
+    const case_data::EvaluatedCase numbers = case_data::evaluate(input, design);
+    for (const curves::Curve& curve : numbers.film_system.curves) {
       if (!has_range(curve)) {
         continue;
       }
       Points points;
       points.reserve(kCurvePoints);
       for (const double t : even_parameters()) {
-        points.push_back(point_at(curve.shape, t));
+        points.push_back(curves::point_at(curve.shape, t));
       }
       curves.push_back({{"name", curve.name},
                         {"points", pack_points(points)},
@@ -148,18 +151,19 @@ Json page_curves(const Case& input, const VectorX& design) {
   return curves;
 }
 
-Json page_loads(const Case& input, const EvaluatedCase& numbers) {
+Json page_loads(const case_data::Case& input,
+                const case_data::EvaluatedCase& numbers) {
   Json cases = Json::array();
-  for (const LoadCase& load_case : numbers.load_cases) {
+  for (const loads::LoadCase& load_case : numbers.load_cases) {
     Json items = Json::array();
     const auto add = [&](const std::string& on, const char* kind, Json vector) {
       items.push_back(
           {{"on", on}, {"kind", kind}, {"vector", std::move(vector)}});
     };
-    for (const SurfaceForce& force : load_case.forces) {
+    for (const loads::SurfaceForce& force : load_case.forces) {
       add(force.surface, "force", vector_json(force.total));
     }
-    for (const RemoteLoad& load : load_case.remote_loads) {
+    for (const loads::RemoteLoad& load : load_case.remote_loads) {
       if (load.force.norm() > 0.0) {
         add(load.surface, "force", vector_json(load.force));
       }
@@ -167,16 +171,16 @@ Json page_loads(const Case& input, const EvaluatedCase& numbers) {
         add(load.surface, "moment", vector_json(load.moment));
       }
     }
-    for (const SurfacePressure& pressure : load_case.pressures) {
+    for (const loads::SurfacePressure& pressure : load_case.pressures) {
       add(pressure.surface, "pressure", Json());
     }
-    for (const SurfaceTraction& traction : load_case.tractions) {
+    for (const loads::SurfaceTraction& traction : load_case.tractions) {
       add(traction.surface, "traction", Json());
     }
-    for (const Support& support : load_case.supports) {
+    for (const loads::Support& support : load_case.supports) {
       add(support.surface, "support", Json());
     }
-    for (const SpringBed& bed : load_case.springs) {
+    for (const loads::SpringBed& bed : load_case.springs) {
       add(bed.surface, "spring", Json());
     }
     cases.push_back({{"name", load_case.name},
@@ -186,19 +190,20 @@ Json page_loads(const Case& input, const EvaluatedCase& numbers) {
   return cases;
 }
 
-Json page_gradients(const Case& input,
-                    const std::vector<EvaluationRecord>& records,
+Json page_gradients(const case_data::Case& input,
+                    const std::vector<store::EvaluationRecord>& records,
                     const VectorX& design) {
-  const EvaluationRecord* nearest = nullptr;
+  const store::EvaluationRecord* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
-  for (const EvaluationRecord& record : records) {
-    if (record.model != kStudyModel || record.gradient.size() == 0 ||
+  for (const store::EvaluationRecord& record : records) {
+    if (record.model != store::kStudyModel || record.gradient.size() == 0 ||
         record.inputs.size() != design.size()) {
       continue;
     }
     double distance = 0.0;
     for (Eigen::Index k = 0; k < design.size(); ++k) {
-      const DesignVariable& d = input.design[static_cast<std::size_t>(k)];
+      const case_data::DesignVariable& d =
+          input.design[static_cast<std::size_t>(k)];
       distance += std::pow(
           (record.inputs[k] - design[k]) / std::max(d.upper - d.lower, 1e-300),
           2);
@@ -224,4 +229,4 @@ Json page_gradients(const Case& input,
           {"rows", std::move(rows)}};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -6,7 +6,7 @@
 
 #include "report/page/packed_array.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 using Json = nlohmann::ordered_json;
 
@@ -38,4 +38,4 @@ void add_evolved(const Json& film, Json& page) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace meniscus {
+namespace meniscus::page {
 
 /// `film`: film.json (pipeline/results/evolved_film.h). Adds to `page`: a
 /// `result` with title, units, status and the film's figures, as a run has
@@ -12,4 +12,4 @@ namespace meniscus {
 void add_evolved(const nlohmann::ordered_json& film,
                  nlohmann::ordered_json& page);
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -12,7 +12,7 @@
 #include "report/page/packed_array.h"
 #include "report/page/vtk_input.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
@@ -276,4 +276,4 @@ Json page_findings(const fs::path& folder) {
   return json;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::page

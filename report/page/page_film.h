@@ -11,7 +11,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 /// Mean curvature H = (k1 + k2) / 2 at each vertex [1/length], positive for a
 /// sphere with outward normals: half the cotangent Laplacian of the position
@@ -48,4 +48,4 @@ nlohmann::ordered_json frames_json(const std::filesystem::path& folder,
 /// it (unfilled_surface.vtp) where that is there.
 nlohmann::ordered_json page_findings(const std::filesystem::path& folder);
 
-}  // namespace meniscus
+}  // namespace meniscus::page

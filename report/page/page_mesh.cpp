@@ -8,7 +8,7 @@
 
 #include "report/page/packed_array.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 namespace {
 
@@ -188,4 +188,4 @@ nlohmann::ordered_json to_json(const PageMesh& mesh) {
   return json;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::page

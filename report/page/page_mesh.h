@@ -12,7 +12,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "fea/element/material.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 /// A part with its fields at the nodes that a page can show: those of the
 /// surface, and the corners inside. Fields are empty where the files have none.
@@ -41,7 +41,7 @@ struct PageMesh {
 /// another part.
 PageMesh load_page_part(const std::filesystem::path& surface,
                         const std::filesystem::path& part,
-                        const std::vector<Material>& materials);
+                        const std::vector<element::Material>& materials);
 
 /// Drops the nodes that no triangle or element names.
 void keep_used_nodes(PageMesh& mesh);
@@ -59,4 +59,4 @@ double page_bytes(const PageMesh& mesh);
 
 nlohmann::ordered_json to_json(const PageMesh& mesh);
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -17,10 +17,10 @@ extern const char meniscus_page_begin[];
 extern const char meniscus_page_end[];
 }
 
-namespace meniscus {
+namespace meniscus::page {
 
 std::string_view page_template() {
   return {meniscus_page_begin, meniscus_page_end};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace meniscus {
+namespace meniscus::page {
 
 /// HTML with kPageDataMark once, where the data go; empty when the program was
 /// built without npm.
@@ -12,4 +12,4 @@ std::string_view page_template();
 /// Stands as JSON text of its own in the template.
 inline constexpr std::string_view kPageDataMark = "\"@MENISCUS_DATA@\"";
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -8,15 +8,15 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json.h"
 #include "pipeline/store/stored_case.h"
 #include "report/page/page_case.h"
 #include "report/page/page_evolved.h"
 #include "report/page/page_film.h"
 #include "report/page/page_mesh.h"
 #include "report/page/page_template.h"
-#include "core/json.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
@@ -94,10 +94,10 @@ PageMesh fit(PageMesh mesh, double bytes, std::string& note) {
 
 /// One run in a folder, as far as the page needs it.
 struct StoredRun {
-  Case input;
-  std::vector<EvaluationRecord> records;
+  case_data::Case input;
+  std::vector<store::EvaluationRecord> records;
   VectorX design;
-  std::vector<Material> materials;
+  std::vector<element::Material> materials;
 };
 
 std::optional<StoredRun> stored_run(const fs::path& folder, const Json& result,
@@ -108,26 +108,26 @@ std::optional<StoredRun> stored_run(const fs::path& folder, const Json& result,
         "and boundary curves are missing here.");
     return std::nullopt;
   }
-  const StudyStore store = StudyStore::read(folder.string());
-  StoredRun run{.input = restore_case(store.meta()),
+  const store::StudyStore store = store::StudyStore::read(folder.string());
+  StoredRun run{.input = store::restore_case(store.meta()),
                 .records = store.all(),
                 .design = {},
                 .materials = {}};
-  run.design = initial_design(run.input);
+  run.design = case_data::initial_design(run.input);
   for (std::size_t k = 0; k < run.input.design.size(); ++k) {
     const Json::json_pointer at("/parameters/" + run.input.design[k].name);
     if (result.contains(at) && result[at].is_number()) {
       run.design[static_cast<Eigen::Index>(k)] = result[at].get<double>();
     }
   }
-  run.materials = evaluate(run.input, run.design).materials;
+  run.materials = case_data::evaluate(run.input, run.design).materials;
   return run;
 }
 
-std::vector<std::string> solids_of(const Case& input) {
+std::vector<std::string> solids_of(const case_data::Case& input) {
   std::vector<std::string> names;
   names.reserve(input.caps.size());
-  for (const CapEntry& cap : input.caps) {
+  for (const case_data::CapEntry& cap : input.caps) {
     names.push_back(cap.spec.name);
   }
   return names;
@@ -135,7 +135,7 @@ std::vector<std::string> solids_of(const Case& input) {
 
 /// Adds `parts` with one mesh when the run has one.
 void add_part(const fs::path& folder, const std::string& name,
-              const std::vector<Material>& materials, double bytes,
+              const std::vector<element::Material>& materials, double bytes,
               Json& page) {
   if (!has_file(folder / "part_surface.vtp")) {
     return;
@@ -171,7 +171,7 @@ void add_films(const fs::path& folder, const std::vector<std::string>& solids,
 /// Where the curves were at each frame's design.
 void add_frame_curves(const StoredRun& run, Json& frames) {
   for (Json& frame : frames["frames"]) {
-    for (const EvaluationRecord& record : run.records) {
+    for (const store::EvaluationRecord& record : run.records) {
       if (record.number == frame["evaluation"].get<int>()) {
         frame["curves"] = Json::array();
         for (Json& curve : page_curves(run.input, record.inputs)) {
@@ -190,7 +190,8 @@ void add_run(const fs::path& folder, Room room, Json& page) {
     solids = solids_of(run->input);
     page["case"] = page_case(run->input);
     page["curves"] = page_curves(run->input, run->design);
-    page["loads"] = page_loads(run->input, evaluate(run->input, run->design));
+    page["loads"] =
+        page_loads(run->input, case_data::evaluate(run->input, run->design));
     page["gradients"] = page_gradients(run->input, run->records, run->design);
   }
   if (has_file(folder / "history.csv")) {
@@ -202,7 +203,8 @@ void add_run(const fs::path& folder, Room room, Json& page) {
     add_frame_curves(*run, page["frames"]);
   }
   add_part(folder, page["result"].value("case", ""),
-           run ? run->materials : std::vector<Material>{}, room.left(), page);
+           run ? run->materials : std::vector<element::Material>{}, room.left(),
+           page);
   page["notes"] = notes;
 }
 
@@ -215,8 +217,8 @@ void add_family(const fs::path& folder, const Room& room, Json& page) {
     const fs::path relative = member.value("folder", "");
     const fs::path place = folder / relative;
     if (first && has_file(place / "study.sqlite")) {
-      const StudyStore store = StudyStore::read(place.string());
-      page["case"] = page_case(restore_case(store.meta()));
+      const store::StudyStore store = store::StudyStore::read(place.string());
+      page["case"] = page_case(store::restore_case(store.meta()));
       first = false;
     }
     const std::size_t before = page["parts"].size();
@@ -369,4 +371,4 @@ void write_report_or_warn(const fs::path& folder, const ReportOptions& options,
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -10,7 +10,7 @@
 
 #include "core/monitor.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 /// Bytes that a page may have.
 inline constexpr double kMostPageBytes = 8e6;
@@ -37,4 +37,4 @@ void write_report_or_warn(const std::filesystem::path& folder,
                           const ReportOptions& options, Monitor* monitor,
                           const std::function<void(const std::string&)>& warn);
 
-}  // namespace meniscus
+}  // namespace meniscus::page

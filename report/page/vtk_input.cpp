@@ -19,7 +19,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 namespace fs = std::filesystem;
 
@@ -158,4 +158,4 @@ VtkInput read_vtk(const fs::path& path,
              : read_with<vtkXMLPolyDataReader>(path, skipped);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -8,7 +8,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::page {
 
 /// What one file holds: cells of one size, all of a cell's points before the
 /// next; arrays by name, all components of an item before the next.
@@ -33,4 +33,4 @@ VtkInput read_vtk(const std::filesystem::path& path,
 [[noreturn]] void refuse_file(const std::filesystem::path& path,
                               const std::string& what);
 
-}  // namespace meniscus
+}  // namespace meniscus::page

@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "core/find_program.h"
 
-namespace meniscus {
+namespace meniscus::picture {
 
 namespace fs = std::filesystem;
 
@@ -201,4 +201,4 @@ PicturesBeside::~PicturesBeside() {
 
 std::vector<std::string> PicturesBeside::wait() { return warnings_.get(); }
 
-}  // namespace meniscus
+}  // namespace meniscus::picture

@@ -15,7 +15,7 @@
 #include "core/monitor.h"
 #include "report/picture/picture_job.h"
 
-namespace meniscus {
+namespace meniscus::picture {
 
 struct PictureOptions {
   double time_limit = 60.0;  // of all jobs together [s], wall clock
@@ -50,4 +50,4 @@ class PicturesBeside {
   std::future<std::vector<std::string>> warnings_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::picture

@@ -7,7 +7,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::picture {
 
 /// A labelled surface and, for a part, what its nodes carry (else empty).
 struct PictureSurface {
@@ -24,4 +24,4 @@ struct PictureTets {
   std::vector<std::array<int, 4>> corners;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::picture

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::picture {
 
 using Cbor = nlohmann::json;  // sent as CBOR, which knows plain bytes
 
@@ -257,4 +257,4 @@ std::vector<PictureJob> picture_jobs_from_bytes(const std::string& bytes) {
   }
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::picture

@@ -8,7 +8,7 @@
 #include "core/types.h"
 #include "report/picture/picture_data.h"
 
-namespace meniscus {
+namespace meniscus::picture {
 
 enum class PictureKind {
   Part,     // the deflected part coloured by von Mises stress
@@ -63,4 +63,4 @@ bool is_hidden(const std::string& surface,
 std::string to_bytes(const std::vector<PictureJob>& jobs);
 std::vector<PictureJob> picture_jobs_from_bytes(const std::string& bytes);
 
-}  // namespace meniscus
+}  // namespace meniscus::picture

@@ -9,7 +9,7 @@
 #include <vtkTextProperty.h>
 #include <vtkTextRenderer.h>
 
-namespace meniscus {
+namespace meniscus::render {
 
 namespace {
 
@@ -134,4 +134,4 @@ int Canvas::taken(const PixelBox& box) const {
   return count;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

@@ -6,7 +6,7 @@
 
 #include "report/render/colour_map.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 enum class Justify { Left, Centre, Right };
 /// Where text stands to its position's height.
@@ -61,4 +61,4 @@ class Canvas {
   std::vector<unsigned char> bytes_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::render

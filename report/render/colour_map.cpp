@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace meniscus {
+namespace meniscus::render {
 
 Colour viridis(double t) {
   constexpr std::array<std::array<double, 3>, 11> kStops = {{{68, 1, 84},
@@ -38,4 +38,4 @@ double round_down_nice(double value) {
   return power;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

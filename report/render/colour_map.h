@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace meniscus {
+namespace meniscus::render {
 
 using Colour = std::array<double, 3>;  // red, green, blue, 0..1
 
@@ -14,4 +14,4 @@ Colour viridis(double t);
 /// 1, 2 or 5 times a power of ten: the largest not above `value` > 0.
 double round_down_nice(double value);
 
-}  // namespace meniscus
+}  // namespace meniscus::render

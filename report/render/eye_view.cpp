@@ -7,7 +7,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 namespace {
 
@@ -119,4 +119,4 @@ double seen_aspect(const Points& shown, const Vec3& view) {
   return size.x() > 0.0 ? size.y() / size.x() : 1.0;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

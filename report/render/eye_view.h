@@ -3,7 +3,7 @@
 
 #include "core/types.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 /// Fractions of a panel, from its lower left corner.
 struct Box {
@@ -45,4 +45,4 @@ EyeView fit_view(const Points& shown, const Vec3& view, const Box& box,
 /// points or width.
 double seen_aspect(const Points& shown, const Vec3& view);
 
-}  // namespace meniscus
+}  // namespace meniscus::render

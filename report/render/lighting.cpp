@@ -8,7 +8,7 @@
 #include <vtkNew.h>
 #include <vtkRenderer.h>
 
-namespace meniscus {
+namespace meniscus::render {
 
 namespace {
 
@@ -68,4 +68,4 @@ Colour Lights::shade(const Colour& colour, const Vec3& normal,
   return seen;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

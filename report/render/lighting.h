@@ -9,7 +9,7 @@
 #include "core/types.h"
 #include "report/render/colour_map.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 /// How a surface answers to light (Phong).
 struct Finish {
@@ -36,4 +36,4 @@ class Lights {
   std::vector<Light> lights_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::render

@@ -15,7 +15,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "report/render/shaded_surface.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 namespace {
 
@@ -293,4 +293,4 @@ PaintedScene paint(std::vector<PaintedShape> shapes, const EyeView& view) {
   return painter.take();
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

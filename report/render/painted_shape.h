@@ -11,7 +11,7 @@
 
 class vtkPolyData;
 
-namespace meniscus {
+namespace meniscus::render {
 
 using Paint = std::array<double, 4>;  // red, green, blue, opacity, 0..1
 
@@ -52,4 +52,4 @@ struct PaintedScene {
 /// Refines what is coarser than a few pixels.
 PaintedScene paint(std::vector<PaintedShape> shapes, const EyeView& view);
 
-}  // namespace meniscus
+}  // namespace meniscus::render

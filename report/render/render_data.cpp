@@ -24,7 +24,7 @@
 
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 namespace {
 
@@ -64,7 +64,7 @@ std::vector<std::string> names_in(vtkPolyData* data) {
   return names;
 }
 
-void read_point_fields(vtkPolyData* data, PictureSurface& surface) {
+void read_point_fields(vtkPolyData* data, picture::PictureSurface& surface) {
   const vtkIdType count = data->GetNumberOfPoints();
   vtkPointData* fields = data->GetPointData();
   if (auto* u = fields->GetArray("displacement");
@@ -85,7 +85,7 @@ void read_point_fields(vtkPolyData* data, PictureSurface& surface) {
 
 }  // namespace
 
-PictureSurface load_surface(const std::string& path) {
+picture::PictureSurface load_surface(const std::string& path) {
   require_file(path);
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(path.c_str());
@@ -98,7 +98,7 @@ PictureSurface load_surface(const std::string& path) {
   if (labels == nullptr) {
     refuse(path, "has no cell data 'surface'");
   }
-  PictureSurface surface;
+  picture::PictureSurface surface;
   surface.mesh.points = points_of(data);
   surface.mesh.labels = names_in(data);
   const int names = static_cast<int>(surface.mesh.labels.size());
@@ -118,7 +118,7 @@ PictureSurface load_surface(const std::string& path) {
   return surface;
 }
 
-PictureTets load_tets(const std::string& path) {
+picture::PictureTets load_tets(const std::string& path) {
   require_file(path);
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(path.c_str());
@@ -128,7 +128,7 @@ PictureTets load_tets(const std::string& path) {
   reader->GetCellDataArraySelection()->DisableAllArrays();
   reader->Update();
   vtkUnstructuredGrid* grid = reader->GetOutput();
-  PictureTets tets;
+  picture::PictureTets tets;
   tets.nodes = points_of(grid);
   vtkNew<vtkIdList> ids;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
@@ -168,7 +168,7 @@ Side side_of(const std::array<int, 4>& tet, const Triangle& face) {
 }
 
 /// Faces of one kept element only, in order of their keys.
-std::vector<Side> bare_sides(const PictureTets& tets,
+std::vector<Side> bare_sides(const picture::PictureTets& tets,
                              const std::vector<char>& kept) {
   std::vector<Side> sides;
   sides.reserve(4 * tets.corners.size());
@@ -194,7 +194,7 @@ std::vector<Side> bare_sides(const PictureTets& tets,
 
 }  // namespace
 
-SurfaceMesh cut_open(const PictureTets& tets, const Vec3& normal) {
+SurfaceMesh cut_open(const picture::PictureTets& tets, const Vec3& normal) {
   std::vector<double> height(tets.nodes.size());
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < height.size(); ++i) {
@@ -252,7 +252,8 @@ SurfaceMesh without(const SurfaceMesh& mesh,
   std::vector<int> number(mesh.points.size(), -1);
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     const int label = mesh.facet_label[f];
-    if (is_hidden(mesh.labels[static_cast<std::size_t>(label)], hidden)) {
+    if (picture::is_hidden(mesh.labels[static_cast<std::size_t>(label)],
+                           hidden)) {
       continue;
     }
     Triangle facet = mesh.facets[f];
@@ -298,4 +299,4 @@ std::vector<Edge> rim_edges(const SurfaceMesh& mesh) {
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

@@ -7,18 +7,18 @@
 #include "core/geometry/surface_mesh.h"
 #include "report/picture/picture_job.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 /// Throws InvalidInput, naming the file, when it cannot be read or lacks the
 /// cell data `surface`.
-PictureSurface load_surface(const std::string& path);
+picture::PictureSurface load_surface(const std::string& path);
 
 /// The tetrahedra of a .vtu. Throws InvalidInput.
-PictureTets load_tets(const std::string& path);
+picture::PictureTets load_tets(const std::string& path);
 
 /// What a job shows: what it holds, else what the file says.
 template <class Data, class Load>
-std::shared_ptr<const Data> shape_of(const PictureSource<Data>& source,
+std::shared_ptr<const Data> shape_of(const picture::PictureSource<Data>& source,
                                      const Load& load) {
   return source.data ? source.data
                      : std::make_shared<const Data>(load(source.file));
@@ -27,7 +27,7 @@ std::shared_ptr<const Data> shape_of(const PictureSource<Data>& source,
 /// The facets left of a mesh of which the half on the side of `normal` was
 /// taken away (whole elements): label 0 are outer faces, label 1 the faces laid
 /// open.
-SurfaceMesh cut_open(const PictureTets& tets, const Vec3& normal);
+SurfaceMesh cut_open(const picture::PictureTets& tets, const Vec3& normal);
 
 /// What is left of a mesh without the surfaces that are hidden
 /// (report/picture/picture_job.h), and without the points that only they had.
@@ -37,4 +37,4 @@ SurfaceMesh without(const SurfaceMesh& mesh,
 /// Edges where two surfaces meet or a surface ends.
 std::vector<Edge> rim_edges(const SurfaceMesh& mesh);
 
-}  // namespace meniscus
+}  // namespace meniscus::render

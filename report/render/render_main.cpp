@@ -17,7 +17,7 @@
 #include "report/render/render_views.h"
 #include "report/render/save_picture.h"
 
-namespace meniscus {
+namespace meniscus::render {
 namespace {
 
 constexpr Colour kGrey = {0.38, 0.42, 0.48};
@@ -39,12 +39,12 @@ std::string grouped(std::size_t count) {
   return text;
 }
 
-void draw_one(const PictureJob& job) {
+void draw_one(const picture::PictureJob& job) {
   Panel panel({0, 0, 1, 1}, job.width, job.height);
   ViewLayout layout;
   layout.text = std::max(12, job.height / 42);
   std::string line;
-  if (job.kind == PictureKind::Part) {
+  if (job.kind == picture::PictureKind::Part) {
     const auto part = shape_of(job.part_surface, load_surface);
     const PartFigures figures = draw_part(panel, job, *part, layout);
     line = fmt::format(
@@ -54,7 +54,7 @@ void draw_one(const PictureJob& job) {
   } else {
     layout.model = {0.05, 0.05, 0.95, 0.87};
     const auto film = shape_of(job.film, load_surface);
-    PictureSurface shown;
+    picture::PictureSurface shown;
     shown.mesh = without(film->mesh, job.hidden);
     draw_film(panel, job, shown);
     line = job.caption;
@@ -74,7 +74,8 @@ struct OverviewLayout {
 };
 
 /// A part taller than a panel is wide gets a taller picture.
-OverviewLayout overview_layout(const PictureJob& job, const Points& film) {
+OverviewLayout overview_layout(const picture::PictureJob& job,
+                               const Points& film) {
   constexpr double kHead = 0.14;    // x the height asked for: titles
   constexpr double kFoot = 0.22;    // bar and legends
   constexpr double kTallest = 1.9;  // x the height asked for
@@ -94,7 +95,7 @@ OverviewLayout overview_layout(const PictureJob& job, const Points& film) {
   return layout;
 }
 
-void draw_overview(const PictureJob& job) {
+void draw_overview(const picture::PictureJob& job) {
   const auto surface = shape_of(job.film, load_surface);
   const OverviewLayout overview = overview_layout(job, surface->mesh.points);
   const ViewLayout& layout = overview.view;
@@ -145,18 +146,18 @@ void draw_overview(const PictureJob& job) {
 
 int run() {
   const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-  std::vector<PictureJob> jobs;
+  std::vector<picture::PictureJob> jobs;
   try {
-    jobs = picture_jobs_from_bytes(text);
+    jobs = picture::picture_jobs_from_bytes(text);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
   }
   vtkObject::GlobalWarningDisplayOff();
   int code = 0;
-  for (const PictureJob& job : jobs) {
+  for (const picture::PictureJob& job : jobs) {
     try {
-      if (job.kind == PictureKind::Overview) {
+      if (job.kind == picture::PictureKind::Overview) {
         draw_overview(job);
       } else {
         draw_one(job);
@@ -170,6 +171,6 @@ int run() {
 }
 
 }  // namespace
-}  // namespace meniscus
+}  // namespace meniscus::render
 
-int main() { return meniscus::run(); }
+int main() { return meniscus::render::run(); }

@@ -21,7 +21,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-namespace meniscus {
+namespace meniscus::render {
 
 namespace {
 
@@ -288,4 +288,4 @@ void Panel::place_label(const Label& label, Canvas& canvas) const {
   canvas.write(text, best.x(), best.y(), style.colour);
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

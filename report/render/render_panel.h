@@ -14,7 +14,7 @@
 class vtkPolyData;
 class vtkRenderer;
 
-namespace meniscus {
+namespace meniscus::render {
 
 class Panel {
  public:
@@ -87,4 +87,4 @@ class Panel {
   vtkSmartPointer<vtkRenderer> renderer_;
 };
 
-}  // namespace meniscus
+}  // namespace meniscus::render

@@ -15,12 +15,12 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
-#include "report/render/shaded_surface.h"
+#include "core/geometry/edge_key.h"
 #include "core/math/union_find.h"
+#include "report/render/shaded_surface.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 namespace {
 
@@ -143,8 +143,8 @@ SurfaceMesh ground_block(const SurfaceMesh& mesh, const std::string& name,
   return block;
 }
 
-void draw_supports(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
-                   double diagonal) {
+void draw_supports(Panel& panel, const picture::PictureJob& job,
+                   const SurfaceMesh& mesh, double diagonal) {
   for (const std::string& name : job.supports) {
     if (patch_of(mesh, name).found) {
       const SurfaceMesh block = ground_block(mesh, name, diagonal);
@@ -161,13 +161,13 @@ void draw_supports(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
   }
 }
 
-void draw_loads(Panel& panel, const PictureJob& job, const SurfaceMesh& mesh,
-                double diagonal, int text) {
+void draw_loads(Panel& panel, const picture::PictureJob& job,
+                const SurfaceMesh& mesh, double diagonal, int text) {
   double largest = 0.0;
-  for (const PictureLoad& load : job.loads) {
+  for (const picture::PictureLoad& load : job.loads) {
     largest = std::max(largest, load.direction.norm());
   }
-  for (const PictureLoad& load : job.loads) {
+  for (const picture::PictureLoad& load : job.loads) {
     const Patch patch = patch_of(mesh, load.surface);
     if (!patch.found || load.direction.norm() == 0.0) {
       continue;
@@ -234,8 +234,8 @@ std::pair<double, std::string> readable_unit(double top,
 
 }  // namespace
 
-bool draw_film(Panel& panel, const PictureJob& job,
-               const PictureSurface& film) {
+bool draw_film(Panel& panel, const picture::PictureJob& job,
+               const picture::PictureSurface& film) {
   const SurfaceMesh& mesh = film.mesh;
   const double diagonal = bounding_diagonal(mesh.points);
   const Vec3 eye = job.view.normalized();
@@ -285,8 +285,8 @@ bool draw_film(Panel& panel, const PictureJob& job,
   return any;
 }
 
-void draw_cut_mesh(Panel& panel, const PictureJob& job,
-                   const PictureTets& tets) {
+void draw_cut_mesh(Panel& panel, const picture::PictureJob& job,
+                   const picture::PictureTets& tets) {
   // The cut faces the eye and stays upright: what stands before it goes.
   const Vec3 flat(0.0, job.view.y(), 0.0);
   const Vec3 normal = flat.norm() > 0.1 * job.view.norm()
@@ -308,8 +308,9 @@ void draw_cut_mesh(Panel& panel, const PictureJob& job,
   panel.show(tets.nodes);
 }
 
-PartFigures draw_part(Panel& panel, const PictureJob& job,
-                      const PictureSurface& part, const ViewLayout& layout) {
+PartFigures draw_part(Panel& panel, const picture::PictureJob& job,
+                      const picture::PictureSurface& part,
+                      const ViewLayout& layout) {
   const SurfaceMesh& rest = part.mesh;
   if (part.displacement.empty() || part.von_mises.empty()) {
     throw InvalidInput(fmt::format(
@@ -356,4 +357,4 @@ PartFigures draw_part(Panel& panel, const PictureJob& job,
           *std::max_element(part.von_mises.begin(), part.von_mises.end())};
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

@@ -6,7 +6,7 @@
 #include "report/render/render_data.h"
 #include "report/render/render_panel.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 /// Text sizes [pixel] and the place for the model, by picture.
 struct ViewLayout {
@@ -18,11 +18,12 @@ struct ViewLayout {
 /// Films translucent, the more opaque the flatter the eye looks at them;
 /// solids opaque; rims as tubes. Returns whether there is any film: a part of
 /// plane faces alone has none.
-bool draw_film(Panel& panel, const PictureJob& job, const PictureSurface& film);
+bool draw_film(Panel& panel, const picture::PictureJob& job,
+               const picture::PictureSurface& film);
 
 /// The near half taken away, element by element.
-void draw_cut_mesh(Panel& panel, const PictureJob& job,
-                   const PictureTets& tets);
+void draw_cut_mesh(Panel& panel, const picture::PictureJob& job,
+                   const picture::PictureTets& tets);
 
 /// Deflected by a round factor, coloured by von Mises stress, with the shape
 /// at rest, supports, loads and a colour bar.
@@ -31,8 +32,9 @@ struct PartFigures {
   double largest = 0.0;  // displacement [length]
   double peak = 0.0;     // von Mises stress [pressure]
 };
-PartFigures draw_part(Panel& panel, const PictureJob& job,
-                      const PictureSurface& part, const ViewLayout& layout);
+PartFigures draw_part(Panel& panel, const picture::PictureJob& job,
+                      const picture::PictureSurface& part,
+                      const ViewLayout& layout);
 
 inline constexpr Colour kFilmColour = {0.36, 0.70, 0.93};
 inline constexpr Colour kRimColour = {0.07, 0.20, 0.42};
@@ -40,4 +42,4 @@ inline constexpr Colour kCapColour = {0.96, 0.68, 0.28};
 inline constexpr Colour kOutsideColour = {0.62, 0.73, 0.84};
 inline constexpr Colour kInsideColour = {0.97, 0.80, 0.52};
 
-}  // namespace meniscus
+}  // namespace meniscus::render

@@ -15,7 +15,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 namespace {
 
@@ -97,4 +97,4 @@ void save_picture(const std::vector<Panel*>& panels, int width, int height,
                     static_cast<std::size_t>(bytes->GetNumberOfValues())});
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

@@ -6,10 +6,10 @@
 
 #include "report/render/render_panel.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 /// The panels as a PNG file. Throws IoError.
 void save_picture(const std::vector<Panel*>& panels, int width, int height,
                   const std::string& path);
 
-}  // namespace meniscus
+}  // namespace meniscus::render

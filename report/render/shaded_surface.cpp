@@ -8,7 +8,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyDataNormals.h>
 
-namespace meniscus {
+namespace meniscus::render {
 
 namespace {
 
@@ -74,4 +74,4 @@ ShadedSurface shade(const SurfaceMesh& mesh,
   return result;
 }
 
-}  // namespace meniscus
+}  // namespace meniscus::render

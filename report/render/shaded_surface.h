@@ -7,7 +7,7 @@
 
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus {
+namespace meniscus::render {
 
 /// Sharper is drawn as a crease [deg].
 inline constexpr double kCreaseAngle = 50.0;
@@ -21,4 +21,4 @@ struct ShadedSurface {
 ShadedSurface shade(const SurfaceMesh& mesh,
                     const std::vector<char>& use_label);
 
-}  // namespace meniscus
+}  // namespace meniscus::render

@@ -31,10 +31,10 @@ int exit_code_of(const std::function<void()>& action) {
 TEST(Signals, TheFirstSetsTheFlag) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     EXPECT_EQ(exit_code_of([signal] {
-                catch_stop_signals();
-                const bool none = stop_signal() == 0;
+                app::catch_stop_signals();
+                const bool none = app::stop_signal() == 0;
                 raise(signal);
-                _exit(none && stop_signal() == signal ? 7 : 1);
+                _exit(none && app::stop_signal() == signal ? 7 : 1);
               }),
               7);
   }
@@ -42,7 +42,7 @@ TEST(Signals, TheFirstSetsTheFlag) {
 
 TEST(Signals, TheSecondEndsTheProcess) {
   EXPECT_EQ(exit_code_of([] {
-              catch_stop_signals();
+              app::catch_stop_signals();
               raise(SIGTERM);
               raise(SIGINT);
             }),
@@ -52,17 +52,17 @@ TEST(Signals, TheSecondEndsTheProcess) {
 TEST(Signals, WhatWasIgnoredStaysIgnored) {
   EXPECT_EQ(exit_code_of([] {
               std::signal(SIGHUP, SIG_IGN);
-              catch_stop_signals();
+              app::catch_stop_signals();
               raise(SIGHUP);
-              _exit(stop_signal() == 0 ? 7 : 1);
+              _exit(app::stop_signal() == 0 ? 7 : 1);
             }),
             7);
 }
 
 TEST(Signals, HaveNames) {
-  EXPECT_STREQ(name_of_signal(SIGINT), "Ctrl-C");
-  EXPECT_STREQ(name_of_signal(SIGTERM), "SIGTERM");
-  EXPECT_STREQ(name_of_signal(SIGHUP), "SIGHUP");
+  EXPECT_STREQ(app::name_of_signal(SIGINT), "Ctrl-C");
+  EXPECT_STREQ(app::name_of_signal(SIGTERM), "SIGTERM");
+  EXPECT_STREQ(app::name_of_signal(SIGHUP), "SIGHUP");
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ class TerminalMonitorTest : public testing::Test {
     std::free(text_);
   }
 
-  TerminalMonitorOptions options(MonitorStyle style) {
+  app::TerminalMonitorOptions options(app::MonitorStyle style) {
     return {.style = style,
             .stream = stream_,
             .clock = [this] { return time_; },
@@ -45,7 +45,7 @@ class TerminalMonitorTest : public testing::Test {
 };
 
 TEST_F(TerminalMonitorTest, PipesGetTheFirstLineOfAStageAndSignsOfLife) {
-  TerminalMonitor monitor(options(MonitorStyle::Lines));
+  app::TerminalMonitor monitor(options(app::MonitorStyle::Lines));
   for (int i = 0; i < 25; ++i) {
     time_ = 100.0 + i;
     monitor.progress({"film", "step " + std::to_string(i), -1.0});
@@ -55,7 +55,7 @@ TEST_F(TerminalMonitorTest, PipesGetTheFirstLineOfAStageAndSignsOfLife) {
 }
 
 TEST_F(TerminalMonitorTest, EventsTellMoreThanTheOuterStage) {
-  TerminalMonitor monitor(options(MonitorStyle::Terminal));
+  app::TerminalMonitor monitor(options(app::MonitorStyle::Terminal));
   monitor.progress({"match", "before", -1.0});
   monitor.tell({.line = "evaluation 1: good",
                 .status = "match: evaluation 1",
@@ -69,9 +69,9 @@ TEST_F(TerminalMonitorTest, EventsTellMoreThanTheOuterStage) {
 
 TEST_F(TerminalMonitorTest, AutomaticStyleTakesAPipeForLines) {
   std::FILE* file = std::tmpfile();
-  TerminalMonitorOptions automatic;
+  app::TerminalMonitorOptions automatic;
   automatic.stream = file;
-  { TerminalMonitor(automatic).progress({"film", "step 1", -1.0}); }
+  { app::TerminalMonitor(automatic).progress({"film", "step 1", -1.0}); }
   std::rewind(file);
   char line[64] = {};
   ASSERT_NE(std::fgets(line, sizeof line, file), nullptr);
@@ -81,7 +81,7 @@ TEST_F(TerminalMonitorTest, AutomaticStyleTakesAPipeForLines) {
 
 TEST_F(TerminalMonitorTest, TerminalsRedrawOneLine) {
   {
-    TerminalMonitor monitor(options(MonitorStyle::Terminal));
+    app::TerminalMonitor monitor(options(app::MonitorStyle::Terminal));
     monitor.progress({"film", "step 1", -1.0});
     monitor.progress({"film", "step 2", -1.0});  // too soon to be drawn
     time_ += 0.2;
@@ -96,14 +96,14 @@ TEST_F(TerminalMonitorTest, TerminalsRedrawOneLine) {
 }
 
 TEST_F(TerminalMonitorTest, KeepsTheOuterStageInView) {
-  TerminalMonitor monitor(options(MonitorStyle::Terminal));
+  app::TerminalMonitor monitor(options(app::MonitorStyle::Terminal));
   monitor.progress({"match", "best 0.2", -1.0});
   monitor.progress({"fea", "iteration 3", -1.0});
   EXPECT_THAT(shown(), HasSubstr("match: best 0.2 | fea: iteration 3"));
 }
 
 TEST_F(TerminalMonitorTest, TellsTheTimeLeft) {
-  TerminalMonitor monitor(options(MonitorStyle::Lines));
+  app::TerminalMonitor monitor(options(app::MonitorStyle::Lines));
   monitor.progress({"fea", "", 0.0});
   time_ += 10.0;
   monitor.progress({"fea", "solving", 0.25});
@@ -111,14 +111,14 @@ TEST_F(TerminalMonitorTest, TellsTheTimeLeft) {
 }
 
 TEST_F(TerminalMonitorTest, CutsTheStatusToTheTerminal) {
-  TerminalMonitor monitor(options(MonitorStyle::Terminal));
+  app::TerminalMonitor monitor(options(app::MonitorStyle::Terminal));
   monitor.progress({"film", std::string(30, 'a') + "\nÄÖÜÄÖÜÄÖÜ", -1.0});
   // 39 columns of text; two bytes for each umlaut
   EXPECT_EQ(shown(), "film: " + std::string(30, 'a') + " ÄÖ");
 }
 
 TEST_F(TerminalMonitorTest, QuietShowsErrorsOnly) {
-  TerminalMonitor monitor(options(MonitorStyle::Quiet));
+  app::TerminalMonitor monitor(options(app::MonitorStyle::Quiet));
   monitor.progress({"film", "step 1", -1.0});
   monitor.log(Severity::Info, "hello");
   monitor.log(Severity::Warning, "careful");
@@ -129,10 +129,10 @@ TEST_F(TerminalMonitorTest, QuietShowsErrorsOnly) {
 TEST_F(TerminalMonitorTest, LogsJsonLines) {
   const auto path = std::filesystem::temp_directory_path() /
                     ("meniscus_log_" + std::to_string(std::rand()));
-  TerminalMonitorOptions with_log = options(MonitorStyle::Lines);
+  app::TerminalMonitorOptions with_log = options(app::MonitorStyle::Lines);
   with_log.log_file = path.string();
   {
-    TerminalMonitor monitor(with_log);
+    app::TerminalMonitor monitor(with_log);
     monitor.log(Severity::Debug, "a \"quoted\" detail");
     monitor.progress({"fea", "iteration 1", 0.5});
     monitor.progress({"fea", "iteration 2", 0.6});
@@ -164,7 +164,7 @@ TEST_F(TerminalMonitorTest, ALogThatAKillCutShortGoesOnInALineOfItsOwn) {
                     ("meniscus_log_" + std::to_string(std::rand()));
   std::ofstream(path) << "{\"whole\": 1}\n{\"cut";
   {
-    JsonLog log(path.string());
+    app::JsonLog log(path.string());
     EXPECT_TRUE(log.write({{"event", "message"}}));
   }
   std::ifstream file(path);
@@ -175,15 +175,15 @@ TEST_F(TerminalMonitorTest, ALogThatAKillCutShortGoesOnInALineOfItsOwn) {
 }
 
 TEST_F(TerminalMonitorTest, ALogThatCannotBeOpenedIsRefused) {
-  TerminalMonitorOptions with_log = options(MonitorStyle::Lines);
+  app::TerminalMonitorOptions with_log = options(app::MonitorStyle::Lines);
   with_log.log_file = "/nonexistent folder/log";
-  EXPECT_THROW(TerminalMonitor{with_log}, IoError);
+  EXPECT_THROW(app::TerminalMonitor{with_log}, IoError);
 }
 
 TEST_F(TerminalMonitorTest, AFullDiskEndsTheLogNotTheRun) {
-  TerminalMonitorOptions with_log = options(MonitorStyle::Lines);
+  app::TerminalMonitorOptions with_log = options(app::MonitorStyle::Lines);
   with_log.log_file = "/dev/full";
-  TerminalMonitor monitor(with_log);
+  app::TerminalMonitor monitor(with_log);
   monitor.log(Severity::Info, "one");
   monitor.log(Severity::Info, "two");
   EXPECT_THAT(shown(), HasSubstr("'/dev/full' ends here"));
@@ -192,13 +192,14 @@ TEST_F(TerminalMonitorTest, AFullDiskEndsTheLogNotTheRun) {
 
 TEST_F(TerminalMonitorTest, AsksItsStopFunction) {
   bool stop = false;
-  TerminalMonitorOptions stoppable = options(MonitorStyle::Lines);
+  app::TerminalMonitorOptions stoppable = options(app::MonitorStyle::Lines);
   stoppable.stop = [&stop] { return stop; };
-  const TerminalMonitor monitor(stoppable);
+  const app::TerminalMonitor monitor(stoppable);
   EXPECT_FALSE(monitor.stop_requested());
   stop = true;
   EXPECT_TRUE(monitor.stop_requested());
-  EXPECT_FALSE(TerminalMonitor(options(MonitorStyle::Quiet)).stop_requested());
+  EXPECT_FALSE(
+      app::TerminalMonitor(options(app::MonitorStyle::Quiet)).stop_requested());
 }
 
 }  // namespace

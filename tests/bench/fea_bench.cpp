@@ -13,8 +13,9 @@ namespace {
 struct Part {
   TetMesh base;
   TetMesh moved;  // about 1 % of the size away
-  std::vector<Material> materials = {{"aluminium", 70000.0, 0.33, 2.7e-9, {}}};
-  std::vector<LoadCase> cases;
+  std::vector<element::Material> materials = {
+      {"aluminium", 70000.0, 0.33, 2.7e-9, {}}};
+  std::vector<loads::LoadCase> cases;
 };
 
 /// A bar of 2 x 1 x 1 with `cells` cells across: 12 cells^3 elements.
@@ -23,11 +24,11 @@ Part make_part(int cells, int load_cases) {
   part.base = shapes::straight_quadratic(
       shapes::brick({200.0, 100.0, 100.0}, 2 * cells, cells, cells));
   part.moved = shapes::sheared(part.base, 0.05);
-  LoadCase down{.name = "down",
-                .supports = {{"x0", true, true, true}},
-                .forces = {{"x1", {0.0, 0.0, -1000.0}}},
-                .pressures = {}};
-  LoadCase side = down;
+  loads::LoadCase down{.name = "down",
+                       .supports = {{"x0", true, true, true}},
+                       .forces = {{"x1", {0.0, 0.0, -1000.0}}},
+                       .pressures = {}};
+  loads::LoadCase side = down;
   side.name = "side";
   side.forces[0].total = {0.0, 500.0, 100.0};
   part.cases = {down, side};
@@ -36,7 +37,7 @@ Part make_part(int cells, int load_cases) {
 }
 
 void report(benchmark::State& state, const Part& part,
-            const ElasticSolution& solution) {
+            const equations::ElasticSolution& solution) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
@@ -54,7 +55,7 @@ void first_solve(benchmark::State& state) {
   const Part part = make_part(static_cast<int>(state.range(0)),
                               static_cast<int>(state.range(1)));
   for (auto _ : state) {
-    const ElasticModel model(part.base, part.materials, part.cases);
+    const elastic::ElasticModel model(part.base, part.materials, part.cases);
     report(state, part, model.base_solution());
   }
 }
@@ -62,9 +63,9 @@ void first_solve(benchmark::State& state) {
 void next_design(benchmark::State& state) {
   const Part part = make_part(static_cast<int>(state.range(0)),
                               static_cast<int>(state.range(1)));
-  const ElasticModel model(part.base, part.materials, part.cases);
+  const elastic::ElasticModel model(part.base, part.materials, part.cases);
   for (auto _ : state) {
-    const ElasticSolution solution = model.solve(part.moved);
+    const equations::ElasticSolution solution = model.solve(part.moved);
     report(state, part, solution);
   }
 }
@@ -73,7 +74,8 @@ void stress(benchmark::State& state) {
   const Part part = make_part(static_cast<int>(state.range(0)), 1);
   const VectorX u = flat(part.base.nodes);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(recover_stress(part.base, part.materials, u));
+    benchmark::DoNotOptimize(
+        stress::recover_stress(part.base, part.materials, u));
   }
 }
 

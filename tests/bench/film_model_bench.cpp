@@ -8,14 +8,15 @@
 namespace meniscus {
 namespace {
 
-FilmSystem two_arm(double support_x) {
+films::FilmSystem two_arm(double support_x) {
   const double s = std::sqrt(3.0) / 2.0;
-  FilmSystem system;
+  films::FilmSystem system;
   system.curves = {
-      {"support", Circle{Vec3(support_x, 0, 0), Vec3(0, 0, -1), 35}},
-      {"left", Circle{Vec3(-120, 0, 72), Vec3(-s, 0, 0.5), 50}},
-      {"right", Circle{Vec3(120, 0, 72), Vec3(s, 0, 0.5), 50}}};
-  system.films = {{"skin", FilmKind::Branch, {"support", "left", "right"}, 1}};
+      {"support", curves::Circle{Vec3(support_x, 0, 0), Vec3(0, 0, -1), 35}},
+      {"left", curves::Circle{Vec3(-120, 0, 72), Vec3(-s, 0, 0.5), 50}},
+      {"right", curves::Circle{Vec3(120, 0, 72), Vec3(s, 0, 0.5), 50}}};
+  system.films = {
+      {"skin", films::FilmKind::Branch, {"support", "left", "right"}, 1}};
   system.caps = {
       {"foot", "support"}, {"left_pad", "left"}, {"right_pad", "right"}};
   system.bodies = {
@@ -30,14 +31,14 @@ double edge_of(const benchmark::State& state) {
 void film_freeze(benchmark::State& state) {
   for (const auto& iteration : state) {
     static_cast<void>(iteration);
-    const FilmModel model = FilmModel::freeze(
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
         two_arm(0.0), {.edge = edge_of(state), .refinements = 1});
     state.counters["facets"] = model.reference().report.facets;
   }
 }
 
 void film_next_design(benchmark::State& state) {
-  const FilmModel model = FilmModel::freeze(
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
       two_arm(0.0), {.edge = edge_of(state), .refinements = 1});
   for (const auto& iteration : state) {
     static_cast<void>(iteration);

@@ -28,9 +28,9 @@ SurfaceMesh ball(int levels) {
 /// A ball of `levels` refinements; elements of an edge in 1/100 mm.
 void fill_ball(benchmark::State& state, int levels) {
   const SurfaceMesh surface = ball(levels);
-  Tetrahedralization result;
+  mesh_tet::Tetrahedralization result;
   for (auto _ : state) {
-    result = tetrahedralize(
+    result = mesh_tet::tetrahedralize(
         surface, {.edge = static_cast<double>(state.range(0)) / 100.0});
   }
   state.counters["tets"] = result.mesh.element_count();
@@ -51,7 +51,7 @@ BENCHMARK_CAPTURE(fill_ball, fine_surface, 5)
 
 struct Model {
   SurfaceMesh surface = ball(4);
-  TetMesh mesh = tetrahedralize(surface, {.edge = 4.85}).mesh;
+  TetMesh mesh = mesh_tet::tetrahedralize(surface, {.edge = 4.85}).mesh;
 };
 
 const Model& model() {
@@ -62,7 +62,8 @@ const Model& model() {
 void motion_setup(benchmark::State& state) {
   const Model& m = model();
   for (auto _ : state) {
-    const MeshMotion motion(m.mesh, static_cast<int>(m.surface.points.size()));
+    const mesh_tet::MeshMotion motion(
+        m.mesh, static_cast<int>(m.surface.points.size()));
     benchmark::DoNotOptimize(&motion);
   }
 }
@@ -70,7 +71,8 @@ BENCHMARK(motion_setup)->Unit(benchmark::kMillisecond);
 
 void motion_move(benchmark::State& state) {
   const Model& m = model();
-  const MeshMotion motion(m.mesh, static_cast<int>(m.surface.points.size()));
+  const mesh_tet::MeshMotion motion(m.mesh,
+                                    static_cast<int>(m.surface.points.size()));
   for (auto _ : state) {
     benchmark::DoNotOptimize(motion.move(m.surface.points));
   }
@@ -91,7 +93,7 @@ QuadraticSurface curved(const SurfaceMesh& base) {
 void quadratic_make(benchmark::State& state) {
   const QuadraticSurface surface = curved(model().surface);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(make_quadratic(model().mesh, surface));
+    benchmark::DoNotOptimize(mesh_tet::make_quadratic(model().mesh, surface));
   }
 }
 BENCHMARK(quadratic_make)->Unit(benchmark::kMillisecond);
@@ -99,10 +101,10 @@ BENCHMARK(quadratic_make)->Unit(benchmark::kMillisecond);
 void quadratic_move_and_check(benchmark::State& state) {
   const QuadraticSurface surface = curved(model().surface);
   std::vector<char> curve;
-  TetMesh mesh = make_quadratic(model().mesh, surface, &curve);
+  TetMesh mesh = mesh_tet::make_quadratic(model().mesh, surface, &curve);
   for (auto _ : state) {
-    move_quadratic(mesh, model().mesh.nodes, surface, curve);
-    benchmark::DoNotOptimize(find_inverted(mesh));
+    mesh_tet::move_quadratic(mesh, model().mesh.nodes, surface, curve);
+    benchmark::DoNotOptimize(mesh_tet::find_inverted(mesh));
   }
 }
 BENCHMARK(quadratic_move_and_check)->Unit(benchmark::kMillisecond);

@@ -27,13 +27,13 @@ std::string line(const char* what, double seconds, double solve, int iterations,
       seconds, seconds / solve, iterations, values);
 }
 
-std::string buckle(const char* what, const ElasticModel& model,
+std::string buckle(const char* what, const elastic::ElasticModel& model,
                    const ElasticPart& part, double solve,
-                   const BucklingOptions& options) {
+                   const modes::BucklingOptions& options) {
   const double start = cpu_seconds();
-  const BucklingModes modes =
-      buckling_modes(model, part.mesh, {part.load_case}, 0,
-                     model.base_solution().displacements[0], options);
+  const modes::BucklingModes modes =
+      modes::buckling_modes(model, part.mesh, {part.load_case}, 0,
+                            model.base_solution().displacements[0], options);
   std::string values = modes.failure ? ": " + modes.failure->message : ":";
   for (const double factor : modes.factors) {
     values += fmt::format(" {:.6g}", factor);
@@ -41,11 +41,11 @@ std::string buckle(const char* what, const ElasticModel& model,
   return line(what, cpu_seconds() - start, solve, modes.iterations, values);
 }
 
-std::string vibrate(const ElasticModel& model, const ElasticPart& part,
+std::string vibrate(const elastic::ElasticModel& model, const ElasticPart& part,
                     double solve) {
   const double start = cpu_seconds();
-  const NaturalModes modes =
-      natural_modes(model, part.mesh, {part.load_case}, 0);
+  const modes::NaturalModes modes =
+      modes::natural_modes(model, part.mesh, {part.load_case}, 0);
   std::string values = modes.failure ? ": " + modes.failure->message : ":";
   for (const double f : modes.frequencies) {
     values += fmt::format(" {:.6g}", f);
@@ -57,8 +57,9 @@ std::string vibrate(const ElasticModel& model, const ElasticPart& part,
 std::string measure(const ElasticWork& work, double scale) {
   const ElasticPart part = work.make(scale);
   const double start = cpu_seconds();
-  const ElasticModel model(part.mesh, part.materials, {part.load_case});
-  const ElasticReport& report = model.base_solution().report;
+  const elastic::ElasticModel model(part.mesh, part.materials,
+                                    {part.load_case});
+  const equations::ElasticReport& report = model.base_solution().report;
   const double first = cpu_seconds() - start;
   const double solve = first * report.solve_seconds /
                        (report.solve_seconds + report.setup_seconds);

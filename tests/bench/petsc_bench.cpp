@@ -15,7 +15,7 @@ namespace meniscus {
 namespace {
 
 std::string row(const std::string& name, double seconds,
-                const ElasticReport& report, double difference) {
+                const equations::ElasticReport& report, double difference) {
   double largest = 0.0;
   for (const double bytes : report.process_memory) {
     largest = std::max(largest, bytes);
@@ -34,13 +34,14 @@ std::string measure(const ElasticWork& work, double scale, int most) {
   for (int processes = 0; processes <= most;
        processes = processes == 0 ? 1 : 2 * processes) {
     const Timer timer;
-    const ElasticModel model(
+    const elastic::ElasticModel model(
         part.mesh, part.materials, {part.load_case},
-        processes == 0 ? ElasticOptions{}
-                       : ElasticOptions{.solver = SolverKind::Distributed,
-                                        .processes = processes});
+        processes == 0 ? equations::ElasticOptions{}
+                       : equations::ElasticOptions{
+                             .solver = equations::SolverKind::Distributed,
+                             .processes = processes});
     const double seconds = timer.seconds();
-    const ElasticSolution& solution = model.base_solution();
+    const equations::ElasticSolution& solution = model.base_solution();
     if (solution.failure) {
       return text + solution.failure->message + "\n";
     }

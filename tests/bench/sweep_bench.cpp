@@ -44,15 +44,17 @@ constexpr Setting kSettings[] = {
 /// Seconds of the sweep alone, and the elements.
 std::string sweep_seconds(const Setting& setting, int designs) {
   omp_set_num_threads(setting.threads);
-  const Case input = read_case(MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml",
-                               {std::string("resolution.fea=") + kEdge,
-                                std::string("resolution.film=") + kFilmEdge});
+  const case_data::Case input =
+      reader::read_case(MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml",
+                        {std::string("resolution.fea=") + kEdge,
+                         std::string("resolution.film=") + kFilmEdge});
   const TempFolder folder;
-  StudyStore store =
-      StudyStore::start(folder.path().string(), {.case_hash = input.hash});
-  DesignEvaluator evaluator(input, store, {.jobs = setting.jobs});
-  const std::vector<VectorX> points = designs_of(
-      variables_of(input, initial_design(input)), sobol_samples(1, designs));
+  store::StudyStore store = store::StudyStore::start(folder.path().string(),
+                                                     {.case_hash = input.hash});
+  study::DesignEvaluator evaluator(input, store, {.jobs = setting.jobs});
+  const std::vector<VectorX> points = optimize::designs_of(
+      study::variables_of(input, case_data::initial_design(input)),
+      optimize::sobol_samples(1, designs));
   const Timer timer;
   const auto records = evaluator.evaluate_all(points, "sweep");
   const double seconds = timer.seconds();

@@ -57,26 +57,26 @@ void two_arm(benchmark::State& state) {
   const auto size = static_cast<std::size_t>(state.range(0));
   const std::string edge = kEdges[size];
   const std::string film = std::to_string(std::stod(edge) / 2.0);
-  const Case input =
-      read_case(MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml",
-                {"resolution.fea=" + edge, "resolution.film=" + film});
+  const case_data::Case input =
+      reader::read_case(MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml",
+                        {"resolution.fea=" + edge, "resolution.film=" + film});
   for (const auto& iteration : state) {
     static_cast<void>(iteration);
-    const ForwardModel model(input);
+    const forward::ForwardModel model(input);
     if (model.failure()) {
       state.SkipWithError(model.failure()->message.c_str());
       return;
     }
-    const Evaluation& base = model.frozen();
-    EvaluationFields fields;
+    const forward::Evaluation& base = model.frozen();
+    forward::EvaluationFields fields;
     const Timer timer;
-    const Evaluation next =
+    const forward::Evaluation next =
         model.evaluate(VectorX::Constant(1, kNextDesign), &fields);
     const double seconds = timer.seconds();
     const Timer stress_timer;
     benchmark::DoNotOptimize(
-        recover_stress(fields.mesh, fields.inputs.materials,
-                       fields.solution.displacements.front()));
+        stress::recover_stress(fields.mesh, fields.inputs.materials,
+                               fields.solution.displacements.front()));
     const double stress = stress_timer.seconds();
     const std::array<double, 13> values = {
         static_cast<double>(next.film.facets),

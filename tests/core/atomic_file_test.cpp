@@ -146,18 +146,18 @@ TEST(AtomicFile, NoWriterLeavesHalfAFile) {
   const TempFolder folder;
   const SurfaceMesh ball = shapes::sphere(1.0, 3);
   const TetMesh brick = shapes::brick(Vec3(1, 1, 1), 6, 6, 6);
-  CalculixDeck deck;
+  io::CalculixDeck deck;
   deck.materials = {{"m", 1.0, 0.3, 0.0}};
   EXPECT_TRUE(
-      fails_cleanly_when_full([&] { write_vtp(folder / "a.vtp", ball); }));
+      fails_cleanly_when_full([&] { io::write_vtp(folder / "a.vtp", ball); }));
   EXPECT_TRUE(
-      fails_cleanly_when_full([&] { write_vtu(folder / "a.vtu", brick); }));
+      fails_cleanly_when_full([&] { io::write_vtu(folder / "a.vtu", brick); }));
   EXPECT_TRUE(fails_cleanly_when_full(
-      [&] { write_boundary_vtp(folder / "b.vtp", brick); }));
+      [&] { io::write_boundary_vtp(folder / "b.vtp", brick); }));
   EXPECT_TRUE(
-      fails_cleanly_when_full([&] { write_stl(folder / "a.stl", ball); }));
+      fails_cleanly_when_full([&] { io::write_stl(folder / "a.stl", ball); }));
   EXPECT_TRUE(fails_cleanly_when_full(
-      [&] { write_calculix_inp(folder / "a.inp", brick, deck); }));
+      [&] { io::write_calculix_inp(folder / "a.inp", brick, deck); }));
   EXPECT_EQ(files_in(folder.path()), 0);
 }
 

@@ -13,6 +13,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {
   using namespace meniscus;
+  using namespace meniscus::datafile;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   std::string written;
   try {

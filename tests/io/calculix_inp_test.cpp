@@ -19,15 +19,15 @@ TetMesh brick() {
       shapes::sheared(shapes::brick(Vec3(1e-3, 2e7, 3), 2, 1, 1), 0.1));
 }
 
-CalculixDeck deck() {
-  CalculixDeck deck;
+io::CalculixDeck deck() {
+  io::CalculixDeck deck;
   deck.materials = {{"steel", 210000.0, 0.3, 7.85e-9}};
   deck.steps = {{"service", {{"z0", {}, true, true, true}}, {}, {{"z1", 2}}}};
   return deck;
 }
 
-CalculixDeck on_springs() {
-  CalculixDeck result = deck();
+io::CalculixDeck on_springs() {
+  io::CalculixDeck result = deck();
   result.steps.push_back({"sprung"});
   result.springs = {
       {1e-7 / 3.0, {{{0, 1, 2}, Points(3, Vec3(-1.0, 2e-9, 3e7) / 3.0)}}, {1}}};
@@ -36,7 +36,7 @@ CalculixDeck on_springs() {
 
 // CalculiX reads 20 characters of every number and 132 of a line.
 TEST(CalculixInp, KeepsFieldsAndLinesShort) {
-  std::istringstream lines(calculix_deck(brick(), on_springs()));
+  std::istringstream lines(io::calculix_deck(brick(), on_springs()));
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("*")) {
       continue;
@@ -53,9 +53,9 @@ TEST(CalculixInp, KeepsFieldsAndLinesShort) {
 TEST(CalculixInp, MakesNamesThatCalculixTakesAndKeepsThemApart) {
   TetMesh mesh = brick();
   mesh.labels = {"left pad", "Left_Pad", "größe", "1st", "z0", "z1"};
-  CalculixDeck input = deck();
+  io::CalculixDeck input = deck();
   input.comments = {"title\n*NODE, in a title"};
-  const std::string text = calculix_deck(mesh, input);
+  const std::string text = io::calculix_deck(mesh, input);
   EXPECT_THAT(text, HasSubstr("*NSET, NSET=LEFT_PAD\n"));
   EXPECT_THAT(text, HasSubstr("*NSET, NSET=LEFT_PAD_2\n"));
   EXPECT_THAT(text, HasSubstr("*NSET, NSET=GR____E\n"));
@@ -65,15 +65,16 @@ TEST(CalculixInp, MakesNamesThatCalculixTakesAndKeepsThemApart) {
 }
 
 TEST(CalculixInp, IsTheSameEveryTime) {
-  EXPECT_EQ(calculix_deck(brick(), deck()), calculix_deck(brick(), deck()));
+  EXPECT_EQ(io::calculix_deck(brick(), deck()),
+            io::calculix_deck(brick(), deck()));
 }
 
 template <class Change>
 std::string refusal(const Change& change) {
-  CalculixDeck input = deck();
+  io::CalculixDeck input = deck();
   change(input);
   try {
-    calculix_deck(brick(), input);
+    io::calculix_deck(brick(), input);
   } catch (const InvalidInput& error) {
     return error.what();
   }

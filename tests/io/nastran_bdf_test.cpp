@@ -26,17 +26,17 @@ double nastran_value(std::string text) {
 }
 
 TEST(NastranReal, HasAPointAndElevenDigits) {
-  EXPECT_EQ(nastran_real(0.0), "0.");
-  EXPECT_EQ(nastran_real(71700.0), "71700.");
-  EXPECT_EQ(nastran_real(-2.8e-9), "-2.8E-9");
-  EXPECT_EQ(nastran_real(1e300), "1.E+300");
-  EXPECT_EQ(nastran_real(-0.25), "-0.25");
+  EXPECT_EQ(io::nastran_real(0.0), "0.");
+  EXPECT_EQ(io::nastran_real(71700.0), "71700.");
+  EXPECT_EQ(io::nastran_real(-2.8e-9), "-2.8E-9");
+  EXPECT_EQ(io::nastran_real(1e300), "1.E+300");
+  EXPECT_EQ(io::nastran_real(-0.25), "-0.25");
   constexpr double kEleven = 6e-11;
   constexpr double kTen = 6e-10;  // beside exponents of three figures
   for (int power = -300; power <= 300; ++power) {
     for (const double lead : {1.0 / 3.0, -2.0 / 3.0, 0.99999999999999}) {
       const double value = lead * std::pow(10.0, power);
-      const std::string text = nastran_real(value);
+      const std::string text = io::nastran_real(value);
       EXPECT_LE(text.size(), 16U) << text;
       EXPECT_NE(text.find('.'), std::string::npos) << text;
       EXPECT_NEAR(nastran_value(text) / value, 1.0,
@@ -52,7 +52,7 @@ class NastranBdf : public testing::Test {
       : mesh_(
             shapes::straight_quadratic(shapes::brick(Vec3(1, 2, 3), 1, 1, 1))) {
     mesh_.labels[0] = "süd";
-    DeckStep step{.name = "push"};
+    io::DeckStep step{.name = "push"};
     step.supports = {{.surface = "süd", .fix_x = true, .fix_z = true}};
     deck_.materials = {{.name = "steel",
                         .youngs_modulus = 210000.0,
@@ -61,10 +61,10 @@ class NastranBdf : public testing::Test {
     deck_.steps = {step};
   }
 
-  std::string text() const { return nastran_bdf(mesh_, deck_); }
+  std::string text() const { return io::nastran_bdf(mesh_, deck_); }
 
   TetMesh mesh_;
-  AnalysisDeck deck_;
+  io::AnalysisDeck deck_;
 };
 
 TEST_F(NastranBdf, HasFixedFieldsOfPlainAscii) {
@@ -88,9 +88,9 @@ TEST_F(NastranBdf, HasFixedFieldsOfPlainAscii) {
 }
 
 TEST_F(NastranBdf, CombinesLoadsOfAStep) {
-  DeckStep& step = deck_.steps[0];
+  io::DeckStep& step = deck_.steps[0];
   step.gravity = Vec3(0, 0, -9810.0);
-  step.spin = DeckSpin{Vec3(1, 0, 0), Vec3::UnitZ(), 2.0 * EIGEN_PI};
+  step.spin = io::DeckSpin{Vec3(1, 0, 0), Vec3::UnitZ(), 2.0 * EIGEN_PI};
   step.pressures = {{"süd", 5.0}};
   const std::string deck = text();
   EXPECT_THAT(deck, HasSubstr("LOAD          10      1.      1.      11      "

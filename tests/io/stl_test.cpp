@@ -26,7 +26,7 @@ Vec3 vector_at(const std::string& bytes, std::size_t offset) {
 TEST(Stl, HasTheSizeAndTheVolumeOfItsSurface) {
   const TempFolder folder;
   const SurfaceMesh mesh = shapes::box(Vec3(20, 30, 40), 3);
-  write_stl(folder / "box.stl", mesh, {"box", "mm"});
+  io::write_stl(folder / "box.stl", mesh, {"box", "mm"});
   const std::string bytes = read_file(folder / "box.stl");
   ASSERT_EQ(bytes.size(), 84 + 50 * mesh.facets.size());
   EXPECT_THAT(bytes.substr(0, 80),
@@ -53,7 +53,7 @@ TEST(Stl, CutsALongNameBetweenCharacters) {
     for (int i = 0; i < length; ++i) {
       name += "ü";
     }
-    write_stl(folder / "a.stl", mesh, {name, "mm"});
+    io::write_stl(folder / "a.stl", mesh, {name, "mm"});
     const std::string bytes = read_file(folder / "a.stl");
     EXPECT_EQ(bytes.size(), 84u + 50u * 12u);
     EXPECT_THAT(bytes.substr(0, 80), testing::HasSubstr("ü unit=mm"));
@@ -63,14 +63,14 @@ TEST(Stl, CutsALongNameBetweenCharacters) {
 TEST(Stl, RefusesWhatItCannotHold) {
   const TempFolder folder;
   SurfaceMesh mesh = shapes::box(Vec3(1, 1, 1), 1);
-  EXPECT_THROW(write_stl(folder / "a.stl", SurfaceMesh{}), InvalidInput);
+  EXPECT_THROW(io::write_stl(folder / "a.stl", SurfaceMesh{}), InvalidInput);
   mesh.points[0].x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(write_stl(folder / "a.stl", mesh), InvalidInput);
+  EXPECT_THROW(io::write_stl(folder / "a.stl", mesh), InvalidInput);
   mesh.points[0].x() = 1e39;
-  EXPECT_THROW(write_stl(folder / "a.stl", mesh), InvalidInput);
+  EXPECT_THROW(io::write_stl(folder / "a.stl", mesh), InvalidInput);
   mesh.points[0].x() = 0.0;
   mesh.facets[3][1] = 99;
-  EXPECT_THROW(write_stl(folder / "a.stl", mesh), InvalidInput);
+  EXPECT_THROW(io::write_stl(folder / "a.stl", mesh), InvalidInput);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.stl"));
 }
 

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 constexpr double kRounding = 1e-12;  // of sums of a few hundred numbers
 
-FileNotes notes(const std::string& unit) {
+io::FileNotes notes(const std::string& unit) {
   return {.program = "Meniscus 1.2",
           .title = "A b\nlock",
           .unit = unit,
@@ -38,13 +38,13 @@ TEST(Obj, ComesBackWithNamesAndAllDigits) {
   const TempFolder folder;
   SurfaceMesh ball = shapes::sphere(0.1 + 0.2, 2);
   ball.labels = {"north cap"};
-  write_obj(folder / "a.obj", ball, {.notes = notes("mm"), .bodies = {}});
+  io::write_obj(folder / "a.obj", ball, {.notes = notes("mm"), .bodies = {}});
   const std::string text = read_file(folder / "a.obj");
   EXPECT_THAT(text, testing::AllOf(HasSubstr("# written by Meniscus 1.2\n"),
                                    HasSubstr("# case: A b lock\n"),
                                    HasSubstr("# unit of length: mm\n"),
                                    HasSubstr("o body_1\ng north_cap\n")));
-  const SurfaceMesh again = read_obj(folder / "a.obj");
+  const SurfaceMesh again = io::read_obj(folder / "a.obj");
   EXPECT_EQ(again.points, ball.points);
   EXPECT_EQ(again.facets, ball.facets);
   EXPECT_EQ(again.labels, std::vector<std::string>({"north_cap"}));
@@ -53,14 +53,15 @@ TEST(Obj, ComesBackWithNamesAndAllDigits) {
 TEST(Obj, EachBodyIsAClosedObject) {
   const TempFolder folder;
   const SurfaceMesh mesh = two_cubes();
-  write_obj(folder / "a.obj", mesh, {.notes = {}, .bodies = {"steel", "foam"}});
+  io::write_obj(folder / "a.obj", mesh,
+                {.notes = {}, .bodies = {"steel", "foam"}});
   const std::string text = read_file(folder / "a.obj");
   const std::size_t second = text.find("o foam");
   ASSERT_NE(second, std::string::npos);
   const std::size_t first = text.find("o steel");
   for (const std::string& body :
        {text.substr(0, second), text.substr(0, first) + text.substr(second)}) {
-    const SurfaceMesh one = read_obj_text(body, "a.obj");
+    const SurfaceMesh one = io::read_obj_text(body, "a.obj");
     EXPECT_EQ(one.facets.size(), 12U);
     EXPECT_NEAR(enclosed_volume(one), 1.0, kRounding);
     EXPECT_GE(one.label_of("inside"), 0);
@@ -68,7 +69,7 @@ TEST(Obj, EachBodyIsAClosedObject) {
 }
 
 TEST(Obj, TakesWhatOtherProgramsWrite) {
-  const SurfaceMesh mesh = read_obj_text(
+  const SurfaceMesh mesh = io::read_obj_text(
       "# cube\r\nmtllib a.mtl\r\no cube\r\nv 0 0 0\r\nv 1 0 0 1\r\nv 1 1 0\r\n"
       "v 0 1 0\r\nvt 0 0\r\nvn 0 0 1\r\nusemtl red\r\ns off\r\n"
       "f 1/1/1 2/1/1 \\\r\n 3/1/1 4/1/1\r\ng roof top\r\nv 0 0 +1\r\n"
@@ -94,7 +95,7 @@ TEST(Obj, WrongFilesAreToldByLine) {
       {std::string("\0\1", 2), "a.obj:1: found"}};
   for (const auto& [text, message] : told) {
     try {
-      read_obj_text(text, "a.obj");
+      io::read_obj_text(text, "a.obj");
       FAIL() << text;
     } catch (const InvalidInput& error) {
       EXPECT_THAT(error.what(), HasSubstr(message));
@@ -164,8 +165,8 @@ TEST(ThreeMf, IsReadByItsLibraryWithUnitNamesAndVolume) {
                                               {"m", NMR::MODELUNIT_METER},
                                               {"in", NMR::MODELUNIT_INCH}};
   for (const auto& [unit, number] : units) {
-    write_3mf(folder / "a.3mf", ball,
-              {.notes = notes(unit), .bodies = {"bäll"}});
+    io::write_3mf(folder / "a.3mf", ball,
+                  {.notes = notes(unit), .bodies = {"bäll"}});
     const Read read = read_3mf(folder / "a.3mf");
     EXPECT_EQ(read.unit, number);
     EXPECT_EQ(read.names, std::vector<std::string>({"bäll"}));
@@ -179,8 +180,8 @@ TEST(ThreeMf, IsReadByItsLibraryWithUnitNamesAndVolume) {
 
 TEST(ThreeMf, HasAClosedObjectForEachBody) {
   const TempFolder folder;
-  write_3mf(folder / "a.3mf", two_cubes(),
-            {.notes = notes("mm"), .bodies = {"steel", "foam"}});
+  io::write_3mf(folder / "a.3mf", two_cubes(),
+                {.notes = notes("mm"), .bodies = {"steel", "foam"}});
   const Read read = read_3mf(folder / "a.3mf");
   EXPECT_EQ(read.names, std::vector<std::string>({"steel", "foam"}));
   EXPECT_TRUE(read.closed);
@@ -193,17 +194,17 @@ TEST(ThreeMf, HasAClosedObjectForEachBody) {
 TEST(ThreeMf, IsTheSameBytesAgainAndRefusesWhatItCannotHold) {
   const TempFolder folder;
   SurfaceMesh mesh = two_cubes();
-  write_3mf(folder / "a.3mf", mesh, {.notes = notes("mm"), .bodies = {}});
-  write_3mf(folder / "b.3mf", mesh, {.notes = notes("mm"), .bodies = {}});
+  io::write_3mf(folder / "a.3mf", mesh, {.notes = notes("mm"), .bodies = {}});
+  io::write_3mf(folder / "b.3mf", mesh, {.notes = notes("mm"), .bodies = {}});
   EXPECT_EQ(read_file(folder / "a.3mf"), read_file(folder / "b.3mf"));
   const auto refused = [&] {
-    EXPECT_THROW(
-        write_3mf(folder / "c.3mf", mesh, {.notes = notes("mm"), .bodies = {}}),
-        InvalidInput);
+    EXPECT_THROW(io::write_3mf(folder / "c.3mf", mesh,
+                               {.notes = notes("mm"), .bodies = {}}),
+                 InvalidInput);
   };
-  EXPECT_THROW(
-      write_3mf(folder / "c.3mf", mesh, {.notes = notes("ft"), .bodies = {}}),
-      InvalidInput);
+  EXPECT_THROW(io::write_3mf(folder / "c.3mf", mesh,
+                             {.notes = notes("ft"), .bodies = {}}),
+               InvalidInput);
   mesh.points[0].x() = std::numeric_limits<double>::quiet_NaN();
   refused();
   mesh = two_cubes();

@@ -28,8 +28,8 @@
 namespace meniscus::vtk_files_test {
 namespace {
 
-Field ramp(const std::string& name, std::size_t count, int components) {
-  Field field{name, "MPa", components, {}};
+io::Field ramp(const std::string& name, std::size_t count, int components) {
+  io::Field field{name, "MPa", components, {}};
   field.values.resize(count * static_cast<std::size_t>(components));
   std::iota(field.values.begin(), field.values.end(), 0.1);
   return field;
@@ -60,14 +60,14 @@ TEST_P(VtuTest, ComesBackBitForBit) {
   if (GetParam() == 2) {
     mesh = shapes::straight_quadratic(mesh);
   }
-  MeshFields fields;
+  io::MeshFields fields;
   fields.points = {ramp("displacement", mesh.nodes.size(), 3),
                    ramp("stress", mesh.nodes.size(), 6),
                    ramp("von_mises", mesh.nodes.size(), 1)};
   fields.cells = {
       ramp("density", static_cast<std::size_t>(mesh.element_count()), 1)};
   fields.notes = {{"title", "Zweiarm-Träger"}, {"length_unit", "mm"}};
-  write_vtu(folder / "part.vtu", mesh, fields);
+  io::write_vtu(folder / "part.vtu", mesh, fields);
   const auto grid =
       read_back<vtkXMLUnstructuredGridReader>(folder / "part.vtu");
   ASSERT_EQ(grid->GetNumberOfPoints(),
@@ -102,14 +102,14 @@ TEST_P(VtuTest, BoundaryIsClosedAndKeepsLabelsAndFields) {
   if (GetParam() == 2) {
     mesh = shapes::straight_quadratic(mesh);
   }
-  const BoundarySurface boundary = boundary_surface(mesh);
+  const io::BoundarySurface boundary = io::boundary_surface(mesh);
   constexpr double kRounding = 1e-13;
   EXPECT_NEAR(enclosed_volume(boundary.mesh), 6.0, 6 * kRounding);
   EXPECT_NEAR(surface_area(boundary.mesh, mesh.label_of("z1")), 2.0,
               2 * kRounding);
-  MeshFields fields;
+  io::MeshFields fields;
   fields.points = {ramp("displacement", mesh.nodes.size(), 3)};
-  write_boundary_vtp(folder / "part_surface.vtp", mesh, fields);
+  io::write_boundary_vtp(folder / "part_surface.vtp", mesh, fields);
   const auto data =
       read_back<vtkXMLPolyDataReader>(folder / "part_surface.vtp");
   auto* values = data->GetPointData()->GetArray("displacement");
@@ -126,9 +126,9 @@ INSTANTIATE_TEST_SUITE_P(Orders, VtuTest, ::testing::Values(1, 2));
 TEST(Vtp, FilmComesBackWithLabels) {
   const TempFolder folder;
   const SurfaceMesh mesh = shapes::box(Vec3(1, 2, 3), 2);
-  MeshFields fields;
+  io::MeshFields fields;
   fields.points = {ramp("mean_curvature", mesh.points.size(), 1)};
-  write_vtp(folder / "film.vtp", mesh, fields);
+  io::write_vtp(folder / "film.vtp", mesh, fields);
   const auto data = read_back<vtkXMLPolyDataReader>(folder / "film.vtp");
   ASSERT_EQ(data->GetNumberOfPolys(),
             static_cast<vtkIdType>(mesh.facets.size()));
@@ -153,7 +153,7 @@ TEST(Vtp, FindingsSurviveBrokenSurfaces) {
                  {10, 11},
                  Vec3::Constant(std::nan("")),
                  "crossing"};
-  write_findings_vtp(folder / "findings.vtp", mesh, findings);
+  io::write_findings_vtp(folder / "findings.vtp", mesh, findings);
   const auto data = read_back<vtkXMLPolyDataReader>(folder / "findings.vtp");
   EXPECT_EQ(data->GetNumberOfVerts(), 1);
   EXPECT_EQ(data->GetCellData()->GetArray("finding")->GetNumberOfTuples(),
@@ -164,16 +164,16 @@ TEST(Vtp, FindingsSurviveBrokenSurfaces) {
 TEST(Vtp, RefusesFieldsAndIdsThatDoNotFit) {
   const TempFolder folder;
   SurfaceMesh mesh = shapes::box(Vec3(1, 1, 1), 1);
-  MeshFields fields;
+  io::MeshFields fields;
   fields.points = {ramp("u", mesh.points.size() - 1, 3)};
-  EXPECT_THROW(write_vtp(folder / "a.vtp", mesh, fields), InvalidInput);
+  EXPECT_THROW(io::write_vtp(folder / "a.vtp", mesh, fields), InvalidInput);
   fields.points[0].components = 0;
-  EXPECT_THROW(write_vtp(folder / "a.vtp", mesh, fields), InvalidInput);
+  EXPECT_THROW(io::write_vtp(folder / "a.vtp", mesh, fields), InvalidInput);
   mesh.facets[0][0] = -3;
-  EXPECT_THROW(write_vtp(folder / "a.vtp", mesh), InvalidInput);
+  EXPECT_THROW(io::write_vtp(folder / "a.vtp", mesh), InvalidInput);
   mesh.facets[0][0] = 0;
   mesh.facet_label.pop_back();
-  EXPECT_THROW(write_vtp(folder / "a.vtp", mesh), InvalidInput);
+  EXPECT_THROW(io::write_vtp(folder / "a.vtp", mesh), InvalidInput);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.vtp"));
 }
 

@@ -51,7 +51,7 @@ void expect_bodies(const SurfaceMesh& surface, const TetMesh& mesh,
 TEST(Bodies, TwoHalvesShareTheirInterface) {
   const SurfaceMesh surface =
       shapes::cubes({2, 1, 1}, 4, [](int i, int, int) { return i; });
-  const auto result = tetrahedralize(surface);
+  const auto result = mesh_tet::tetrahedralize(surface);
   ASSERT_FALSE(result.failure) << result.failure->message;
   expect_bodies(surface, result.mesh, {1.0, 1.0});
 }
@@ -59,7 +59,7 @@ TEST(Bodies, TwoHalvesShareTheirInterface) {
 TEST(Bodies, EightMeetAtAPoint) {
   const SurfaceMesh surface = shapes::cubes(
       {2, 2, 2}, 3, [](int i, int j, int k) { return 4 * i + 2 * j + k; });
-  const auto result = tetrahedralize(surface);
+  const auto result = mesh_tet::tetrahedralize(surface);
   ASSERT_FALSE(result.failure) << result.failure->message;
   expect_bodies(surface, result.mesh, std::vector<double>(8, 1.0));
 }
@@ -73,7 +73,7 @@ TEST(Bodies, CoreInAHollowInABody) {
         }
         return i == 2 ? -1 : i == 1 ? 1 : 2;
       });
-  const auto result = tetrahedralize(surface);
+  const auto result = mesh_tet::tetrahedralize(surface);
   ASSERT_FALSE(result.failure) << result.failure->message;
   expect_bodies(surface, result.mesh, {42.0, 1.0, 1.0});
 }
@@ -91,7 +91,7 @@ TEST(Bodies, ApartAndFloating) {
         const int depth = std::min({ring(i), ring(j), ring(k)});
         return depth == 0 ? 0 : depth == 1 ? -1 : 1;  // 1 floats in a cavity
       });
-  const auto result = tetrahedralize(surface, {.edge = 1.0});
+  const auto result = mesh_tet::tetrahedralize(surface, {.edge = 1.0});
   ASSERT_FALSE(result.failure) << result.failure->message;
   expect_bodies(surface, result.mesh, {98.0, 1.0, 25.0});
 }
@@ -109,7 +109,7 @@ TEST(Bodies, RandomCubes) {
         shapes::cubes({2, 2, 2}, 2, [&](int i, int j, int k) {
           return body[static_cast<std::size_t>(4 * i + 2 * j + k)];
         });
-    const auto result = tetrahedralize(surface);
+    const auto result = mesh_tet::tetrahedralize(surface);
     if (result.failure) {  // bodies that touch themselves along an edge
       EXPECT_EQ(result.failure->kind, FailureKind::SurfaceInvalid);
       ASSERT_FALSE(result.findings.empty());
@@ -133,7 +133,7 @@ TEST(Bodies, OnesThatDisagreeAreRefused) {
   SurfaceMesh surface =
       shapes::cubes({2, 1, 1}, 2, [](int i, int, int) { return i; });
   surface.facet_bodies[3].behind = 5;
-  const auto result = tetrahedralize(surface);
+  const auto result = mesh_tet::tetrahedralize(surface);
   ASSERT_TRUE(result.failure);
   EXPECT_EQ(result.failure->kind, FailureKind::SurfaceInvalid);
   EXPECT_FALSE(result.findings.empty());
@@ -165,7 +165,7 @@ double region_volume(const TetMesh& mesh, int region) {
       x[n] = mesh.nodes[mesh.element(e)[n]];
     }
     if (mesh.element_region[e] == region) {
-      volume += mean_determinant(corner_jacobians(x)) / 6.0;
+      volume += mesh_tet::mean_determinant(mesh_tet::corner_jacobians(x)) / 6.0;
     }
   }
   return volume;
@@ -183,14 +183,14 @@ TEST(Bodies, TenNodeElementsCurveAtTheInterfaceToo) {
       curved.mid.push_back(a.norm() *
                            (a + curved.base.points[e[1]]).normalized());
     }
-    const auto result = tetrahedralize(curved.base);
+    const auto result = mesh_tet::tetrahedralize(curved.base);
     ASSERT_FALSE(result.failure) << result.failure->message;
     int straightened = -1;
     const TetMesh mesh =
-        make_quadratic(result.mesh, curved, nullptr, &straightened);
+        mesh_tet::make_quadratic(result.mesh, curved, nullptr, &straightened);
     // Of elements between two curved surfaces, a few on the coarse ball.
     EXPECT_LT(straightened, level == 0 ? 10 : 1);
-    EXPECT_EQ(find_inverted(mesh), -1);
+    EXPECT_EQ(mesh_tet::find_inverted(mesh), -1);
     EXPECT_EQ(mesh.element_region, result.mesh.element_region);
     EXPECT_EQ(mesh.face_front, result.mesh.face_front);
     error[level] = std::abs(region_volume(mesh, 1) - kExact);
@@ -201,16 +201,17 @@ TEST(Bodies, TenNodeElementsCurveAtTheInterfaceToo) {
 
 TEST(Bodies, MotionCarriesTheInterface) {
   const SurfaceMesh surface = ball_with_core(3);
-  const auto result = tetrahedralize(surface);
+  const auto result = mesh_tet::tetrahedralize(surface);
   ASSERT_FALSE(result.failure) << result.failure->message;
-  const MeshMotion motion(result.mesh, static_cast<int>(surface.points.size()));
+  const mesh_tet::MeshMotion motion(result.mesh,
+                                    static_cast<int>(surface.points.size()));
   SurfaceMesh moved = surface;
   for (std::size_t p = 642; p < moved.points.size(); ++p) {
     moved.points[p].x() += 0.3;  // the core alone
   }
   TetMesh mesh = result.mesh;
   mesh.nodes = motion.move(moved.points);
-  EXPECT_EQ(find_inverted(mesh), -1);
+  EXPECT_EQ(mesh_tet::find_inverted(mesh), -1);
   const std::vector<double> before = region_volumes(result.mesh);
   const std::vector<double> after = region_volumes(mesh);
   EXPECT_NEAR(after[0], before[0], kRounding * before[0]);

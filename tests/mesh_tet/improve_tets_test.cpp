@@ -35,9 +35,9 @@ TEST(ImproveTets, MovesADisplacedNodeBack) {
   std::swap(mesh.nodes[inner], mesh.nodes[last]);
   const Points straight = mesh.nodes;
   mesh.nodes[last] = Vec3(0.95, 0.93, 0.9);
-  const double poor = tet_quality(mesh).min_dihedral_deg;
-  improve_tets(mesh, last, {.below_deg = 30.0, .rounds = 1});
-  EXPECT_GT(tet_quality(mesh).min_dihedral_deg, 2.0 * poor);
+  const double poor = mesh_tet::tet_quality(mesh).min_dihedral_deg;
+  mesh_tet::improve_tets(mesh, last, {.below_deg = 30.0, .rounds = 1});
+  EXPECT_GT(mesh_tet::tet_quality(mesh).min_dihedral_deg, 2.0 * poor);
   for (int n = 0; n < last; ++n) {
     EXPECT_EQ(mesh.nodes[n], straight[n]);
   }
@@ -81,16 +81,16 @@ TEST(ImproveTets, RandomPartsHaveNoBadElements) {
   for (int i = 0; i < kParts; ++i) {
     SCOPED_TRACE(i);
     const SurfaceMesh surface = random_part(static_cast<unsigned>(i));
-    const auto result = tetrahedralize(surface);
+    const auto result = mesh_tet::tetrahedralize(surface);
     ASSERT_FALSE(result.failure) << result.failure->message;
     EXPECT_GE(result.quality.min_dihedral_deg, kLeast);
     EXPECT_LE(result.quality.max_dihedral_deg, kMost);
     const auto raw =
-        tetrahedralize(surface, {.improve_below_deg = 0.0,
-                                 .bounds = {.min_dihedral_deg = 0.0,
-                                            .max_dihedral_deg = 180.0,
-                                            .max_radius_edge = 1e300,
-                                            .max_aspect = 1e300}});
+        mesh_tet::tetrahedralize(surface, {.improve_below_deg = 0.0,
+                                           .bounds = {.min_dihedral_deg = 0.0,
+                                                      .max_dihedral_deg = 180.0,
+                                                      .max_radius_edge = 1e300,
+                                                      .max_aspect = 1e300}});
     ASSERT_FALSE(raw.failure) << raw.failure->message;
     EXPECT_GE(result.quality.min_dihedral_deg, raw.quality.min_dihedral_deg);
     better += result.quality.min_dihedral_deg > raw.quality.min_dihedral_deg;
@@ -110,10 +110,11 @@ TEST(ImproveTets, StretchedSurfaceBecomesUsable) {
     p = Vec3(150 * p.x(), 45 * arm * p.y(),
              35 * arm * p.z() + 72 * p.x() * p.x());
   }
-  const auto result = tetrahedralize(surface);
+  const auto result = mesh_tet::tetrahedralize(surface);
   ASSERT_FALSE(result.failure) << result.failure->message;
   // Refused without improvement, or worse.
-  const auto raw = tetrahedralize(surface, {.improve_below_deg = 0.0});
+  const auto raw =
+      mesh_tet::tetrahedralize(surface, {.improve_below_deg = 0.0});
   if (!raw.failure) {
     EXPECT_GT(result.quality.min_dihedral_deg,
               1.5 * raw.quality.min_dihedral_deg);

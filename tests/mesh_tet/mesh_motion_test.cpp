@@ -31,7 +31,7 @@ Part make_part() {
     p = Vec3(150 * p.x(), 80 * arm * p.y(),
              70 * arm * p.z() + 50 * p.x() * p.x());
   }
-  auto result = tetrahedralize(part.surface);
+  auto result = mesh_tet::tetrahedralize(part.surface);
   EXPECT_FALSE(result.failure) << result.failure->message;
   part.mesh = std::move(result.mesh);
   part.points = static_cast<int>(part.surface.points.size());
@@ -50,13 +50,13 @@ Points random_points(std::size_t count, unsigned seed) {
 
 TEST(MeshMotion, ReferenceStaysBitForBit) {
   const Part part = make_part();
-  const MeshMotion motion(part.mesh, part.points);
+  const mesh_tet::MeshMotion motion(part.mesh, part.points);
   EXPECT_EQ(motion.move(part.surface.points), part.mesh.nodes);
 }
 
 TEST(MeshMotion, TranslationIsExact) {
   const Part part = make_part();
-  const MeshMotion motion(part.mesh, part.points);
+  const mesh_tet::MeshMotion motion(part.mesh, part.points);
   const Vec3 shift(10, -20, 30);
   Points surface = part.surface.points;
   for (Vec3& p : surface) {
@@ -71,7 +71,7 @@ TEST(MeshMotion, TranslationIsExact) {
 
 TEST(MeshMotion, IsLinearAndTransposed) {
   const Part part = make_part();
-  const MeshMotion motion(part.mesh, part.points);
+  const mesh_tet::MeshMotion motion(part.mesh, part.points);
   const Points u = random_points(part.surface.points.size(), 1);
   const Points g = random_points(part.mesh.nodes.size(), 2);
   const auto moved = [&](double factor) {
@@ -94,8 +94,8 @@ TEST(MeshMotion, IsLinearAndTransposed) {
 
 TEST(MeshMotion, FootMovesFarWithoutInversion) {
   const Part part = make_part();
-  const MeshMotion motion(part.mesh, part.points);
-  const double before = tet_quality(part.mesh).min_dihedral_deg;
+  const mesh_tet::MeshMotion motion(part.mesh, part.points);
+  const double before = mesh_tet::tet_quality(part.mesh).min_dihedral_deg;
   for (const Vec3& shift :
        {Vec3(40, 0, 0), Vec3(-40, 0, 0), Vec3(0, 40, 0), Vec3(0, 0, -40)}) {
     Points surface = part.surface.points;
@@ -107,13 +107,13 @@ TEST(MeshMotion, FootMovesFarWithoutInversion) {
     for (int e = 0; e < moved.element_count(); ++e) {
       ASSERT_GT(corner_volume(moved, e), 0.0) << shift.transpose();
     }
-    EXPECT_GT(tet_quality(moved).min_dihedral_deg, 0.3 * before);
+    EXPECT_GT(mesh_tet::tet_quality(moved).min_dihedral_deg, 0.3 * before);
   }
 }
 
 TEST(MeshMotion, MeshWithoutInnerNodes) {
   const TetMesh brick = shapes::brick(Vec3::Ones(), 1, 1, 1);
-  const MeshMotion motion(brick, 8);
+  const mesh_tet::MeshMotion motion(brick, 8);
   Points surface = brick.nodes;
   surface[3] *= 2.0;
   EXPECT_EQ(motion.move(surface), surface);
@@ -122,15 +122,15 @@ TEST(MeshMotion, MeshWithoutInnerNodes) {
 
 TEST(MeshMotion, RefusesWhatDoesNotFit) {
   const TetMesh brick = shapes::brick(Vec3::Ones(), 1, 1, 1);
-  const MeshMotion motion(brick, 8);
+  const mesh_tet::MeshMotion motion(brick, 8);
   EXPECT_THROW(motion.move(Points(7)), MeshError);
   EXPECT_THROW(motion.transpose(Points(9)), MeshError);
-  EXPECT_THROW(MeshMotion(brick, 9), MeshError);
+  EXPECT_THROW(mesh_tet::MeshMotion(brick, 9), MeshError);
   TetMesh flat_brick = brick;
   for (Vec3& p : flat_brick.nodes) {
     p.z() = 0.0;
   }
-  EXPECT_THROW(MeshMotion(flat_brick, 4), MeshError);
+  EXPECT_THROW(mesh_tet::MeshMotion(flat_brick, 4), MeshError);
 }
 
 }  // namespace

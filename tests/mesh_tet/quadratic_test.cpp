@@ -35,7 +35,7 @@ double quadratic_volume(const TetMesh& mesh) {
     for (int n = 0; n < 10; ++n) {
       x[n] = mesh.nodes[mesh.element(e)[n]];
     }
-    volume += mean_determinant(corner_jacobians(x)) / 6.0;
+    volume += mesh_tet::mean_determinant(mesh_tet::corner_jacobians(x)) / 6.0;
   }
   return volume;
 }
@@ -47,7 +47,7 @@ struct Ball {
 
 Ball make_ball(int levels) {
   const SurfaceMesh base = shapes::sphere(1.0, levels);
-  auto result = tetrahedralize(base);
+  auto result = mesh_tet::tetrahedralize(base);
   EXPECT_FALSE(result.failure);
   return {on_sphere(base, 1.0), std::move(result.mesh)};
 }
@@ -58,13 +58,13 @@ TEST(Quadratic, StraightSidesHaveConstantJacobian) {
   const TetMesh mesh = shapes::straight_quadratic(linear);
   double volume = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
-    EXPECT_EQ(jacobian_ratio(mesh, e), 1.0);
+    EXPECT_EQ(mesh_tet::jacobian_ratio(mesh, e), 1.0);
     volume += corner_volume(linear, e);
   }
   EXPECT_NEAR(quadratic_volume(mesh), volume,
               kQuadraticRounding * volume * 100);
-  EXPECT_EQ(find_inverted(mesh), -1);
-  EXPECT_EQ(find_inverted(linear), -1);
+  EXPECT_EQ(mesh_tet::find_inverted(mesh), -1);
+  EXPECT_EQ(mesh_tet::find_inverted(linear), -1);
 }
 
 TEST(Quadratic, CurvedBallHasItsVolumeAtFourthOrder) {
@@ -73,9 +73,9 @@ TEST(Quadratic, CurvedBallHasItsVolumeAtFourthOrder) {
   for (int level = 0; level < 3; ++level) {
     const Ball ball = make_ball(level + 1);
     int straightened = -1;
-    const TetMesh mesh =
-        make_quadratic(ball.linear, ball.surface, nullptr, &straightened);
-    EXPECT_EQ(find_inverted(mesh), -1);
+    const TetMesh mesh = mesh_tet::make_quadratic(ball.linear, ball.surface,
+                                                  nullptr, &straightened);
+    EXPECT_EQ(mesh_tet::find_inverted(mesh), -1);
     EXPECT_EQ(straightened, 0);
     error[level] = std::abs(quadratic_volume(mesh) - exact);
   }
@@ -87,7 +87,8 @@ TEST(Quadratic, CurvedBallHasItsVolumeAtFourthOrder) {
 TEST(Quadratic, FacesAndNodesFollowTheSurface) {
   const Ball ball = make_ball(2);
   std::vector<char> curve;
-  const TetMesh mesh = make_quadratic(ball.linear, ball.surface, &curve);
+  const TetMesh mesh =
+      mesh_tet::make_quadratic(ball.linear, ball.surface, &curve);
   ASSERT_EQ(curve.size(), ball.surface.edges.size());
   for (std::size_t i = 0; i < curve.size(); ++i) {
     EXPECT_EQ(curve[i], 1);
@@ -101,7 +102,7 @@ TEST(Quadratic, FacesAndNodesFollowTheSurface) {
     }
   }
   TetMesh moved = mesh;
-  move_quadratic(moved, ball.linear.nodes, ball.surface, curve);
+  mesh_tet::move_quadratic(moved, ball.linear.nodes, ball.surface, curve);
   EXPECT_EQ(moved.nodes, mesh.nodes);
 }
 
@@ -111,30 +112,32 @@ TEST(Quadratic, PoorElementsAreStraightenedAndStayChosen) {
   mid *= 0.2;
   std::vector<char> curve;
   int straightened = 0;
-  const TetMesh mesh =
-      make_quadratic(ball.linear, ball.surface, &curve, &straightened);
+  const TetMesh mesh = mesh_tet::make_quadratic(ball.linear, ball.surface,
+                                                &curve, &straightened);
   EXPECT_GT(straightened, 0);
   EXPECT_EQ(curve[17], 0);
   EXPECT_EQ(std::count(curve.begin(), curve.end(), 0), straightened);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    EXPECT_GT(jacobian_ratio(mesh, e), kLeastCurvedJacobian - 0.01);
+    EXPECT_GT(mesh_tet::jacobian_ratio(mesh, e),
+              mesh_tet::kLeastCurvedJacobian - 0.01);
   }
   const std::vector<char> chosen = curve;
-  const TetMesh again = make_quadratic(ball.linear, ball.surface, &curve);
+  const TetMesh again =
+      mesh_tet::make_quadratic(ball.linear, ball.surface, &curve);
   EXPECT_EQ(curve, chosen);
   EXPECT_EQ(again.nodes, mesh.nodes);
   std::vector<char> all(curve.size(), 1);
-  const TetMesh bad = make_quadratic(ball.linear, ball.surface, &all);
-  const int inverted = find_inverted(bad);
+  const TetMesh bad = mesh_tet::make_quadratic(ball.linear, ball.surface, &all);
+  const int inverted = mesh_tet::find_inverted(bad);
   ASSERT_GE(inverted, 0);
-  EXPECT_LT(jacobian_ratio(bad, inverted), 0.01);
+  EXPECT_LT(mesh_tet::jacobian_ratio(bad, inverted), 0.01);
 }
 
 TEST(Quadratic, TransposeMatchesTheMap) {
   const Ball ball = make_ball(1);
   std::vector<char> curve(ball.surface.edges.size(), 1);
   curve[3] = curve[8] = 0;
-  TetMesh mesh = make_quadratic(ball.linear, ball.surface, &curve);
+  TetMesh mesh = mesh_tet::make_quadratic(ball.linear, ball.surface, &curve);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto draw = [&](std::size_t count) {
@@ -148,8 +151,8 @@ TEST(Quadratic, TransposeMatchesTheMap) {
   const Points weights = draw(mesh.nodes.size());
   QuadraticSurface moved = ball.surface;
   moved.mid = draw(moved.mid.size());
-  move_quadratic(mesh, corners, moved, curve);
-  const auto back = transpose_quadratic(mesh, weights, curve);
+  mesh_tet::move_quadratic(mesh, corners, moved, curve);
+  const auto back = mesh_tet::transpose_quadratic(mesh, weights, curve);
   const double forward = flat(weights).dot(flat(mesh.nodes));
   const double backward = flat(back.corners).dot(flat(corners)) +
                           flat(back.mid).dot(flat(moved.mid));
@@ -173,7 +176,7 @@ TEST(Jacobian, BoundAgreesWithDenseSampling) {
                 (trial % 10) / 10.0;
       }
     }
-    const CornerJacobians jacobians = corner_jacobians(x);
+    const mesh_tet::CornerJacobians jacobians = mesh_tet::corner_jacobians(x);
     double least = 1e300;
     constexpr int kSteps = 10;
     for (int i = 0; i <= kSteps; ++i) {
@@ -187,13 +190,13 @@ TEST(Jacobian, BoundAgreesWithDenseSampling) {
         }
       }
     }
-    const bool above = determinant_above(jacobians, 0.0);
+    const bool above = mesh_tet::determinant_above(jacobians, 0.0);
     positive += above ? 1 : 0;
     if (above) {
       EXPECT_GT(least, 0.0);
     } else {
       // Halving thrice leaves a doubt of a few percent of the mean.
-      EXPECT_LT(least, 0.1 * mean_determinant(jacobians));
+      EXPECT_LT(least, 0.1 * mesh_tet::mean_determinant(jacobians));
     }
   }
   EXPECT_GT(positive, 30);
@@ -203,11 +206,12 @@ TEST(Jacobian, BoundAgreesWithDenseSampling) {
 TEST(Quadratic, RefusesWhatDoesNotFit) {
   const Ball ball = make_ball(1);
   const QuadraticSurface other = on_sphere(shapes::sphere(1.0, 0), 1.0);
-  EXPECT_THROW(make_quadratic(ball.linear, other), MeshError);
+  EXPECT_THROW(mesh_tet::make_quadratic(ball.linear, other), MeshError);
   std::vector<char> few(3, 1);
-  EXPECT_THROW(make_quadratic(ball.linear, ball.surface, &few), MeshError);
-  const TetMesh mesh = make_quadratic(ball.linear, ball.surface);
-  EXPECT_THROW(make_quadratic(mesh, ball.surface), MeshError);
+  EXPECT_THROW(mesh_tet::make_quadratic(ball.linear, ball.surface, &few),
+               MeshError);
+  const TetMesh mesh = mesh_tet::make_quadratic(ball.linear, ball.surface);
+  EXPECT_THROW(mesh_tet::make_quadratic(mesh, ball.surface), MeshError);
 }
 
 }  // namespace

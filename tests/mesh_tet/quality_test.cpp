@@ -35,7 +35,7 @@ TetMesh cap(double height) {
 
 TEST(TetQuality, FindsTheWorstOfEachMeasure) {
   TetMesh mesh = shapes::brick(Vec3(1, 1, 1), 2, 2, 2);
-  const TetQuality regular = tet_quality(mesh);
+  const mesh_tet::TetQuality regular = mesh_tet::tet_quality(mesh);
   EXPECT_NEAR(regular.min_dihedral_deg, 45.0, 1e-10);
   EXPECT_NEAR(regular.max_dihedral_deg, 90.0, 1e-10);
   const auto& bins = regular.dihedral_histogram;
@@ -46,7 +46,7 @@ TEST(TetQuality, FindsTheWorstOfEachMeasure) {
       mesh.nodes[n] = Vec3(0.98, 0.97, 0.96);
     }
   }
-  const TetQuality moved = tet_quality(mesh);
+  const mesh_tet::TetQuality moved = mesh_tet::tet_quality(mesh);
   EXPECT_LT(moved.min_dihedral_deg, 5.0);
   for (const int worst :
        {moved.worst_element, moved.aspect_element, moved.radius_edge_element}) {
@@ -58,7 +58,7 @@ TEST(TetQuality, FindsTheWorstOfEachMeasure) {
 
 TEST(TetQuality, AspectAndRadiusEdgeOfAFlatCap) {
   constexpr double kHeight = 1e-3;
-  const TetQuality quality = tet_quality(cap(kHeight));
+  const mesh_tet::TetQuality quality = mesh_tet::tet_quality(cap(kHeight));
   EXPECT_NEAR(quality.max_aspect, std::sqrt(2.0) / kHeight, 0.01 / kHeight);
   EXPECT_GT(quality.max_radius_edge, 100.0);
   EXPECT_GT(quality.max_dihedral_deg, 179.0);
@@ -66,23 +66,23 @@ TEST(TetQuality, AspectAndRadiusEdgeOfAFlatCap) {
 
 TEST(QualityBounds, NameMeasureValueAndPlace) {
   const TetMesh mesh = cap(0.01);
-  const TetQuality quality = tet_quality(mesh);
-  EXPECT_FALSE(find_breach(quality, {}));
-  const auto flat = find_breach(quality, {.min_dihedral_deg = 5.0});
+  const mesh_tet::TetQuality quality = mesh_tet::tet_quality(mesh);
+  EXPECT_FALSE(mesh_tet::find_breach(quality, {}));
+  const auto flat = mesh_tet::find_breach(quality, {.min_dihedral_deg = 5.0});
   ASSERT_TRUE(flat);
   EXPECT_THAT(flat->what, HasSubstr("least is 5"));
-  const auto wide = find_breach(quality, {.max_dihedral_deg = 170.0});
+  const auto wide = mesh_tet::find_breach(quality, {.max_dihedral_deg = 170.0});
   ASSERT_TRUE(wide);
   EXPECT_EQ(wide->element, 0);
-  EXPECT_TRUE(find_breach(quality, {.max_aspect = 20.0}));
-  EXPECT_TRUE(find_breach(quality, {.max_radius_edge = 5.0}));
-  EXPECT_THAT(place_of(mesh, 0), HasSubstr("'base'"));
-  EXPECT_THAT(place_of(mesh, 0), HasSubstr("(0.333333, 0.333333"));
+  EXPECT_TRUE(mesh_tet::find_breach(quality, {.max_aspect = 20.0}));
+  EXPECT_TRUE(mesh_tet::find_breach(quality, {.max_radius_edge = 5.0}));
+  EXPECT_THAT(mesh_tet::place_of(mesh, 0), HasSubstr("'base'"));
+  EXPECT_THAT(mesh_tet::place_of(mesh, 0), HasSubstr("(0.333333, 0.333333"));
 }
 
 TEST(QualityBounds, MeshesBelowThemAreRefusedWithThePlace) {
-  const auto result = tetrahedralize(shapes::sphere(1.0, 2),
-                                     {.bounds = {.min_dihedral_deg = 40.0}});
+  const auto result = mesh_tet::tetrahedralize(
+      shapes::sphere(1.0, 2), {.bounds = {.min_dihedral_deg = 40.0}});
   ASSERT_TRUE(result.failure);
   EXPECT_EQ(result.failure->kind, FailureKind::MeshingFailed);
   EXPECT_THAT(result.failure->message, HasSubstr("the least is 40"));
@@ -91,15 +91,15 @@ TEST(QualityBounds, MeshesBelowThemAreRefusedWithThePlace) {
 
 TEST(MotionCheck, SoundMeshesPass) {
   const TetMesh mesh = shapes::brick(Vec3(1, 1, 1), 3, 3, 3);
-  TetQuality quality;
-  EXPECT_FALSE(check_moved(mesh, {}, &quality));
+  mesh_tet::TetQuality quality;
+  EXPECT_FALSE(mesh_tet::check_moved(mesh, {}, &quality));
   EXPECT_NEAR(quality.min_dihedral_deg, 45.0, 1e-10);
-  EXPECT_FALSE(check_moved(shapes::straight_quadratic(mesh)));
+  EXPECT_FALSE(mesh_tet::check_moved(shapes::straight_quadratic(mesh)));
 }
 
 TEST(MotionCheck, NamesWhatIsWrong) {
   const auto expect = [](const TetMesh& mesh, const char* words) {
-    const auto failure = check_moved(mesh);
+    const auto failure = mesh_tet::check_moved(mesh);
     ASSERT_TRUE(failure) << words;
     EXPECT_EQ(failure->kind, FailureKind::ElementsInverted);
     EXPECT_THAT(failure->message, HasSubstr(words));
@@ -119,7 +119,7 @@ TEST(MotionCheck, NamesWhatIsWrong) {
 // with the volumes of sub-tetrahedra that a ten-node element is cut into.
 TEST(MotionCheck, NoInvertedElementGoesUnseen) {
   const SurfaceMesh base = shapes::sphere(1.0, 2);
-  const auto filled = tetrahedralize(base);
+  const auto filled = mesh_tet::tetrahedralize(base);
   ASSERT_FALSE(filled.failure);
   QuadraticSurface surface;
   surface.base = base;
@@ -133,8 +133,9 @@ TEST(MotionCheck, NoInvertedElementGoesUnseen) {
   };
   curve(base.points);
   std::vector<char> flags;
-  TetMesh mesh = make_quadratic(filled.mesh, surface, &flags);
-  const MeshMotion motion(filled.mesh, static_cast<int>(base.points.size()));
+  TetMesh mesh = mesh_tet::make_quadratic(filled.mesh, surface, &flags);
+  const mesh_tet::MeshMotion motion(filled.mesh,
+                                    static_cast<int>(base.points.size()));
   int sound = 0;
   int bad = 0;
   for (int step = 0; step <= 20; ++step) {
@@ -145,13 +146,13 @@ TEST(MotionCheck, NoInvertedElementGoesUnseen) {
       p.x() *= 1.0 - 0.25 * amount * p.y();
     }
     curve(moved);
-    move_quadratic(mesh, motion.move(moved), surface, flags);
+    mesh_tet::move_quadratic(mesh, motion.move(moved), surface, flags);
     bool inverted = false;
     for (int e = 0; e < mesh.element_count(); ++e) {
       inverted = inverted || !(corner_volume(mesh, e) > 0.0) ||
-                 jacobian_ratio(mesh, e) < 0.0;
+                 mesh_tet::jacobian_ratio(mesh, e) < 0.0;
     }
-    const auto failure = check_moved(mesh);
+    const auto failure = mesh_tet::check_moved(mesh);
     EXPECT_TRUE(failure || !inverted) << step;
     (failure ? bad : sound) += 1;
   }

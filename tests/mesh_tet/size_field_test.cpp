@@ -29,8 +29,8 @@ double edge_of(const TetMesh& mesh, int e) {
 /// Sorted ratios of the edges of elements to the size asked for at their
 /// centroids, of the elements in `part`.
 template <class Part>
-std::vector<double> ratios(const TetMesh& mesh, const EdgeAtPlace& size,
-                           Part part) {
+std::vector<double> ratios(const TetMesh& mesh,
+                           const mesh_tet::EdgeAtPlace& size, Part part) {
   std::vector<double> result;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const Vec3 at = centroid(mesh, e);
@@ -68,7 +68,7 @@ double cone(const Vec3& x) {
 TEST(SizeField, IsMetInsideABall) {
   // The surface's edge is 0.15: elements beside it follow that.
   const SurfaceMesh surface = shapes::sphere(1.0, 3);
-  const auto result = tetrahedralize(surface, {.size = cone});
+  const auto result = mesh_tet::tetrahedralize(surface, {.size = cone});
   ASSERT_FALSE(result.failure) << result.failure->message;
   expect_size(
       ratios(result.mesh, cone, [](const Vec3& x) { return x.norm() < 0.75; }));
@@ -87,7 +87,7 @@ TEST(SizeField, IsMetInEveryUnit) {
   const auto size = [&](const Vec3& x) {
     return unit * (0.08 + 0.2 * std::abs(x.x() / unit - 30.0));
   };
-  const auto result = tetrahedralize(surface, {.size = size});
+  const auto result = mesh_tet::tetrahedralize(surface, {.size = size});
   ASSERT_FALSE(result.failure) << result.failure->message;
   expect_size(ratios(result.mesh, size, [&](const Vec3& x) {
     return (x - 30.0 * unit * Vec3(1, -1, 1)).norm() < 0.6 * unit;
@@ -102,7 +102,7 @@ TEST(SizeField, WorksAcrossBodiesAndAroundCavities) {
   const auto size = [](const Vec3& x) {
     return 0.12 + 0.4 * std::abs(x.x() - 2.5);
   };
-  const auto result = tetrahedralize(surface, {.size = size});
+  const auto result = mesh_tet::tetrahedralize(surface, {.size = size});
   ASSERT_FALSE(result.failure) << result.failure->message;
   std::array<double, 2> volumes{};
   for (int e = 0; e < result.mesh.element_count(); ++e) {
@@ -119,8 +119,9 @@ TEST(SizeField, WorksAcrossBodiesAndAroundCavities) {
 TEST(SizeField, EdgeIsTheUpperBound) {
   const SurfaceMesh surface = shapes::sphere(1.0, 3);
   const auto constant = [](const Vec3&) { return 10.0; };
-  const auto coarse = tetrahedralize(surface, {.size = constant});
-  const auto fine = tetrahedralize(surface, {.edge = 0.1, .size = constant});
+  const auto coarse = mesh_tet::tetrahedralize(surface, {.size = constant});
+  const auto fine =
+      mesh_tet::tetrahedralize(surface, {.edge = 0.1, .size = constant});
   ASSERT_FALSE(coarse.failure);
   ASSERT_FALSE(fine.failure);
   EXPECT_GT(fine.mesh.element_count(), 3 * coarse.mesh.element_count());
@@ -128,8 +129,8 @@ TEST(SizeField, EdgeIsTheUpperBound) {
 
 TEST(SizeField, RepeatsBitForBit) {
   const SurfaceMesh surface = shapes::sphere(1.0, 2);
-  const auto first = tetrahedralize(surface, {.size = cone});
-  const auto second = tetrahedralize(surface, {.size = cone});
+  const auto first = mesh_tet::tetrahedralize(surface, {.size = cone});
+  const auto second = mesh_tet::tetrahedralize(surface, {.size = cone});
   ASSERT_FALSE(first.failure);
   EXPECT_EQ(first.mesh.elements, second.mesh.elements);
   EXPECT_EQ(first.mesh.nodes, second.mesh.nodes);
@@ -140,23 +141,24 @@ TEST(SizeField, RefusesSizesThatAreNone) {
   for (const double bad :
        {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     const auto size = [&](const Vec3& x) { return x.x() > 0.5 ? bad : 0.3; };
-    EXPECT_THROW(tetrahedralize(surface, {.size = size}), InvalidInput);
+    EXPECT_THROW(mesh_tet::tetrahedralize(surface, {.size = size}),
+                 InvalidInput);
   }
   const auto tiny = [](const Vec3&) { return 1e-5; };
-  const auto result = tetrahedralize(surface, {.size = tiny});
+  const auto result = mesh_tet::tetrahedralize(surface, {.size = tiny});
   ASSERT_TRUE(result.failure);
   EXPECT_EQ(result.failure->kind, FailureKind::MeshingFailed);
 }
 
 TEST(RefineTets, SplitsWhereAsked) {
   const SurfaceMesh surface = shapes::sphere(1.0, 3);
-  const auto coarse = tetrahedralize(surface);
+  const auto coarse = mesh_tet::tetrahedralize(surface);
   ASSERT_FALSE(coarse.failure);
   std::vector<double> edge;
   for (const Vec3& p : coarse.mesh.nodes) {
     edge.push_back((p - Vec3(0.2, 0.1, 0)).norm() < 0.4 ? 0.05 : 1.0);
   }
-  const auto fine = refine_tets(surface, coarse.mesh, edge);
+  const auto fine = mesh_tet::refine_tets(surface, coarse.mesh, edge);
   ASSERT_FALSE(fine.failure) << fine.failure->message;
   const auto inside = [](const Vec3& x) {
     return (x - Vec3(0.2, 0.1, 0)).norm() < 0.35;
@@ -174,15 +176,15 @@ TEST(RefineTets, SplitsWhereAsked) {
 
 TEST(RefineTets, RefusesWhatDoesNotFit) {
   const SurfaceMesh surface = shapes::sphere(1.0, 1);
-  const auto result = tetrahedralize(surface);
+  const auto result = mesh_tet::tetrahedralize(surface);
   ASSERT_FALSE(result.failure);
   std::vector<double> edge(result.mesh.nodes.size(), 0.1);
-  EXPECT_THROW(refine_tets(shapes::sphere(1.0, 2), result.mesh, edge),
+  EXPECT_THROW(mesh_tet::refine_tets(shapes::sphere(1.0, 2), result.mesh, edge),
                InvalidInput);
   edge[3] = 0.0;
-  EXPECT_THROW(refine_tets(surface, result.mesh, edge), InvalidInput);
+  EXPECT_THROW(mesh_tet::refine_tets(surface, result.mesh, edge), InvalidInput);
   edge.pop_back();
-  EXPECT_THROW(refine_tets(surface, result.mesh, edge), InvalidInput);
+  EXPECT_THROW(mesh_tet::refine_tets(surface, result.mesh, edge), InvalidInput);
 }
 
 }  // namespace

@@ -17,9 +17,10 @@ namespace {
 constexpr double kPrompt = 2.0;
 
 /// A mesh that takes many seconds.
-Tetrahedralization fill_finely(TetrahedralizeOptions options) {
+mesh_tet::Tetrahedralization fill_finely(
+    mesh_tet::TetrahedralizeOptions options) {
   options.edge = 0.01;
-  return tetrahedralize(shapes::sphere(1.0, 5), options);
+  return mesh_tet::tetrahedralize(shapes::sphere(1.0, 5), options);
 }
 
 class StopAfter : public Monitor {
@@ -55,7 +56,8 @@ TEST(TetgenLimits, MemoryLimitIsNamed) {
 
 TEST(TetgenLimits, TooManyElementsAreRefusedAtOnce) {
   const Timer timer;
-  const auto result = tetrahedralize(shapes::sphere(1.0, 2), {.edge = 1e-4});
+  const auto result =
+      mesh_tet::tetrahedralize(shapes::sphere(1.0, 2), {.edge = 1e-4});
   ASSERT_TRUE(result.failure);
   EXPECT_EQ(result.failure->kind, FailureKind::MeshingFailed);
   EXPECT_LT(timer.seconds(), kPrompt);
@@ -71,7 +73,7 @@ TEST(TetgenLimits, MonitorStopsTheChild) {
 TEST(TetgenLimits, MissingHelperIsAnIoError) {
   const EnvironmentVariable variable("MENISCUS_TETGEN", "/nowhere/tetgen");
   try {
-    tetrahedralize(shapes::sphere(1.0, 1));
+    mesh_tet::tetrahedralize(shapes::sphere(1.0, 1));
     FAIL() << "no exception";
   } catch (const IoError& error) {
     EXPECT_NE(std::string(error.what()).find("/nowhere/tetgen"),
@@ -82,7 +84,7 @@ TEST(TetgenLimits, MissingHelperIsAnIoError) {
 TEST(TetgenLimits, WrongHelperIsAFailure) {
   for (const char* program : {"/bin/true", "/bin/false", "/bin/cat"}) {
     const EnvironmentVariable variable("MENISCUS_TETGEN", program);
-    const auto result = tetrahedralize(shapes::sphere(1.0, 1));
+    const auto result = mesh_tet::tetrahedralize(shapes::sphere(1.0, 1));
     ASSERT_TRUE(result.failure) << program;
     EXPECT_EQ(result.failure->kind, FailureKind::MeshingFailed);
   }
@@ -90,12 +92,12 @@ TEST(TetgenLimits, WrongHelperIsAFailure) {
 
 TEST(TetgenLimits, TwoAtOnce) {
   const SurfaceMesh surface = shapes::sphere(1.0, 3);
-  const auto expected = tetrahedralize(surface);
-  std::array<Tetrahedralization, 2> results;
+  const auto expected = mesh_tet::tetrahedralize(surface);
+  std::array<mesh_tet::Tetrahedralization, 2> results;
   {
     std::vector<std::jthread> threads;
     for (auto& result : results) {
-      threads.emplace_back([&] { result = tetrahedralize(surface); });
+      threads.emplace_back([&] { result = mesh_tet::tetrahedralize(surface); });
     }
   }
   for (const auto& result : results) {

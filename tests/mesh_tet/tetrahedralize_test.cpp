@@ -37,7 +37,7 @@ SurfaceMesh joined(SurfaceMesh mesh, const SurfaceMesh& part, const Vec3& shift,
   return mesh;
 }
 
-void expect_fills(const Tetrahedralization& result,
+void expect_fills(const mesh_tet::Tetrahedralization& result,
                   const SurfaceMesh& surface) {
   ASSERT_FALSE(result.failure) << result.failure->message;
   const TetMesh& mesh = result.mesh;
@@ -69,18 +69,19 @@ void expect_fills(const Tetrahedralization& result,
   for (int e = 0; e < mesh.element_count(); ++e) {
     EXPECT_GT(corner_volume(mesh, e), 0.0);
   }
-  EXPECT_GE(result.quality.min_dihedral_deg, QualityBounds{}.min_dihedral_deg);
+  EXPECT_GE(result.quality.min_dihedral_deg,
+            mesh_tet::QualityBounds{}.min_dihedral_deg);
   EXPECT_GT(result.quality.min_volume, 0.0);
 }
 
 TEST(Tetrahedralize, FillsBox) {
   const SurfaceMesh surface = shapes::box(Vec3(1, 2, 3), 5);
-  expect_fills(tetrahedralize(surface), surface);
+  expect_fills(mesh_tet::tetrahedralize(surface), surface);
 }
 
 TEST(Tetrahedralize, FillsSphereWithGoodElements) {
   const SurfaceMesh surface = shapes::sphere(2.0, 3);
-  const Tetrahedralization result = tetrahedralize(surface);
+  const mesh_tet::Tetrahedralization result = mesh_tet::tetrahedralize(surface);
   expect_fills(result, surface);
   EXPECT_GT(result.quality.min_dihedral_deg, 10.0);
   EXPECT_LT(result.quality.max_dihedral_deg, 165.0);
@@ -89,7 +90,7 @@ TEST(Tetrahedralize, FillsSphereWithGoodElements) {
 TEST(Tetrahedralize, ElementsHaveTheSizeOfTheirEdge) {
   const SurfaceMesh surface = shapes::sphere(74.0, 3);
   for (const double edge : {8.0, 16.0}) {
-    const auto result = tetrahedralize(surface, {.edge = edge});
+    const auto result = mesh_tet::tetrahedralize(surface, {.edge = edge});
     ASSERT_FALSE(result.failure) << result.failure->message;
     const double mean = enclosed_volume(surface) / result.mesh.element_count();
     // The surface's own edge of 11 counts too.
@@ -103,21 +104,21 @@ TEST(Tetrahedralize, CavityAndSecondPart) {
   const SurfaceMesh ball = shapes::sphere(1.0, 2);
   SurfaceMesh surface = shapes::sphere(3.0, 3);
   surface = joined(surface, ball, Vec3(1, 0.5, 0), true);
-  expect_fills(tetrahedralize(surface), surface);
+  expect_fills(mesh_tet::tetrahedralize(surface), surface);
   surface = joined(surface, ball, Vec3(6, 0, 0), false);
-  expect_fills(tetrahedralize(surface), surface);
+  expect_fills(mesh_tet::tetrahedralize(surface), surface);
 }
 
 TEST(Tetrahedralize, UnitsDoNotMatter) {
   const SurfaceMesh base = shapes::sphere(1.0, 2);
-  const auto expected = tetrahedralize(base);
+  const auto expected = mesh_tet::tetrahedralize(base);
   ASSERT_FALSE(expected.failure);
   for (const double factor : {std::exp2(-30), std::exp2(30)}) {
     SurfaceMesh scaled = base;
     for (Vec3& p : scaled.points) {
       p *= factor;
     }
-    const auto result = tetrahedralize(scaled);
+    const auto result = mesh_tet::tetrahedralize(scaled);
     expect_fills(result, scaled);
     EXPECT_EQ(result.mesh.elements, expected.mesh.elements);
   }
@@ -125,8 +126,8 @@ TEST(Tetrahedralize, UnitsDoNotMatter) {
 
 TEST(Tetrahedralize, SameInputSameBits) {
   const SurfaceMesh surface = shapes::sphere(1.3, 3);
-  const auto first = tetrahedralize(surface);
-  const auto second = tetrahedralize(surface);
+  const auto first = mesh_tet::tetrahedralize(surface);
+  const auto second = mesh_tet::tetrahedralize(surface);
   ASSERT_FALSE(first.failure);
   EXPECT_EQ(first.mesh.elements, second.mesh.elements);
   EXPECT_EQ(first.mesh.nodes, second.mesh.nodes);
@@ -135,14 +136,14 @@ TEST(Tetrahedralize, SameInputSameBits) {
 TEST(Tetrahedralize, RefusesOptionsOutOfRange) {
   const SurfaceMesh surface = shapes::sphere(1.0, 1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const TetrahedralizeOptions& options :
-       {TetrahedralizeOptions{.edge = 0.0},
+  for (const mesh_tet::TetrahedralizeOptions& options :
+       {mesh_tet::TetrahedralizeOptions{.edge = 0.0},
         {.edge = nan},
         {.radius_edge_ratio = 0.5},
         {.min_dihedral_deg = 40.0},
         {.time_limit = 0.0},
         {.memory_limit = -1.0}}) {
-    EXPECT_THROW(tetrahedralize(surface, options), InvalidInput);
+    EXPECT_THROW(mesh_tet::tetrahedralize(surface, options), InvalidInput);
   }
 }
 
@@ -152,7 +153,7 @@ TEST(TetQuality, RegularTetrahedron) {
                 Vec3(-1, -1, 1)};
   mesh.elements = {0, 1, 2, 3};
   const double exact = std::acos(1.0 / 3.0) * 180.0 / M_PI;
-  const TetQuality quality = tet_quality(mesh);
+  const mesh_tet::TetQuality quality = mesh_tet::tet_quality(mesh);
   EXPECT_NEAR(quality.min_dihedral_deg, exact, 1e-12 * exact);
   EXPECT_NEAR(quality.max_dihedral_deg, exact, 1e-12 * exact);
   EXPECT_NEAR(quality.max_radius_edge, std::sqrt(6.0) / 4.0, kMesherRounding);

@@ -43,8 +43,8 @@ Work run(int thread_count) {
              0.35 * arm * p.z() + 0.72 * p.x() * p.x());
   }
   Work work;
-  work.mesh = tetrahedralize(surface).mesh;
-  work.fine = tetrahedralize(
+  work.mesh = mesh_tet::tetrahedralize(surface).mesh;
+  work.fine = mesh_tet::tetrahedralize(
                   surface,
                   {.size = [](const Vec3& x) { return 0.05 + 0.2 * x.norm(); }})
                   .mesh;
@@ -54,8 +54,9 @@ Work run(int thread_count) {
   for (const Edge& e : curved.edges) {
     curved.mid.push_back(0.501 * (surface.points[e[0]] + surface.points[e[1]]));
   }
-  work.quadratic = make_quadratic(work.mesh, curved);
-  const MeshMotion motion(work.mesh, static_cast<int>(surface.points.size()));
+  work.quadratic = mesh_tet::make_quadratic(work.mesh, curved);
+  const mesh_tet::MeshMotion motion(work.mesh,
+                                    static_cast<int>(surface.points.size()));
   Points target = surface.points;
   for (Vec3& p : target) {
     p *= 1.1 + 0.1 * p.x();

@@ -267,7 +267,8 @@ double mesh_volume(const TetMesh& mesh) {
 /// A mesh of the surface's volume and quality, or a typed failure in words.
 bool check(const SurfaceMesh& surface, Outcome outcome) {
   const Timer timer;
-  const auto result = tetrahedralize(surface, {.time_limit = kTimeLimit});
+  const auto result =
+      mesh_tet::tetrahedralize(surface, {.time_limit = kTimeLimit});
   EXPECT_LT(timer.seconds(), kTimeLimit + 1.0);
   if (result.failure) {
     EXPECT_NE(outcome, Outcome::Mesh) << result.failure->message;
@@ -280,7 +281,8 @@ bool check(const SurfaceMesh& surface, Outcome outcome) {
   EXPECT_NE(outcome, Outcome::Failure);
   const double expected = enclosed_volume(surface);
   EXPECT_NEAR(mesh_volume(result.mesh), expected, 1e-9 * expected);
-  EXPECT_GE(result.quality.min_dihedral_deg, QualityBounds{}.min_dihedral_deg);
+  EXPECT_GE(result.quality.min_dihedral_deg,
+            mesh_tet::QualityBounds{}.min_dihedral_deg);
   return true;
 }
 

@@ -22,8 +22,8 @@ bool survives(const SurfaceMesh& surface, const std::string& name,
               std::optional<double> edge = {}) {
   SCOPED_TRACE(name);
   const Timer timer;
-  const auto result =
-      tetrahedralize(surface, {.edge = edge, .time_limit = kTimeForUgly});
+  const auto result = mesh_tet::tetrahedralize(
+      surface, {.edge = edge, .time_limit = kTimeForUgly});
   EXPECT_LT(timer.seconds(), kTimeForUgly + 1.0);
   if (result.failure) {
     EXPECT_TRUE(result.failure->kind == FailureKind::SurfaceInvalid ||

@@ -1,5 +1,6 @@
 #include "optimize/check_gradient.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -9,12 +10,12 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::vector<Variable> kVariables = {{"a", 0.7, 0.0, 2.0},
-                                          {"b", 1.0, -1.0, 1.0}};
+const std::vector<optimize::Variable> kVariables = {{"a", 0.7, 0.0, 2.0},
+                                                    {"b", 1.0, -1.0, 1.0}};
 const std::vector<std::string> kResponses = {"wave", "product"};
 
-VectorAnswer evaluate(const VectorX& x) {
-  VectorAnswer answer;
+optimize::VectorAnswer evaluate(const VectorX& x) {
+  optimize::VectorAnswer answer;
   answer.values.resize(2);
   answer.values << std::sin(x[0]) + std::exp(x[1]), x[0] * x[1];
   return answer;
@@ -27,8 +28,8 @@ Eigen::MatrixXd exact() {
 }
 
 TEST(CheckGradient, PassesTheExactOneAlsoAtABound) {
-  const GradientCheckReport report =
-      check_gradient(kVariables, kResponses, evaluate, exact());
+  const optimize::GradientCheckReport report =
+      optimize::check_gradient(kVariables, kResponses, evaluate, exact());
   EXPECT_TRUE(report.passed) << report.message;
   ASSERT_EQ(report.rows.size(), 4U);
   EXPECT_EQ(report.rows[1].response, "wave");
@@ -41,43 +42,68 @@ TEST(CheckGradient, PassesTheExactOneAlsoAtABound) {
 TEST(CheckGradient, NamesTheWrongOne) {
   Eigen::MatrixXd wrong = exact();
   wrong(1, 0) *= 1.0 + 1e-3;
-  const GradientCheckReport report =
-      check_gradient(kVariables, kResponses, evaluate, wrong);
+  const optimize::GradientCheckReport report =
+      optimize::check_gradient(kVariables, kResponses, evaluate, wrong);
   EXPECT_FALSE(report.passed);
   EXPECT_FALSE(report.rows[2].passed);
   EXPECT_TRUE(report.rows[0].passed);
   EXPECT_THAT(report.message, HasSubstr("d product / d a"));
 }
 
+/// As distances to a scan have them: a slope that jumps 5e-5 beside the design,
+/// and a function of some noise. Large steps agree on a slope half the jump off
+/// and better than small ones do.
+TEST(CheckGradient, AKinkNearbyDoesNotCondemnTheRightOne) {
+  constexpr double kJump = 4e-5;
+  constexpr double kNoise = 3e-12;
+  const auto bent = [](const VectorX& x) {
+    optimize::VectorAnswer answer;
+    const double t = x[0] - 0.5;
+    answer.values = VectorX::Constant(
+        1, t + kJump * std::max(0.0, t - 5e-5) + kNoise * std::sin(1e7 * t));
+    return answer;
+  };
+  const auto check = [&](double given) {
+    return optimize::check_gradient({{"a", 0.5, 0.0, 1.0}}, {"bent"}, bent,
+                                    Eigen::MatrixXd::Constant(1, 1, given),
+                                    {.tolerance = 5e-6})
+        .passed;
+  };
+  EXPECT_TRUE(check(1.0));
+  EXPECT_FALSE(check(1.0 + 0.5 * kJump));
+  EXPECT_FALSE(check(1.0 + kJump));
+}
+
 TEST(CheckGradient, NeighboursThatFailDoNotPass) {
   const auto function = [](const VectorX& x) {
-    VectorAnswer answer = evaluate(x);
+    optimize::VectorAnswer answer = evaluate(x);
     if (x[0] != 0.7) {
       answer.failure = Failure{FailureKind::FilmPinched, "neck"};
     }
     return answer;
   };
-  const GradientCheckReport report =
-      check_gradient(kVariables, kResponses, function, exact());
+  const optimize::GradientCheckReport report =
+      optimize::check_gradient(kVariables, kResponses, function, exact());
   EXPECT_FALSE(report.rows[0].passed);
   EXPECT_TRUE(std::isnan(report.rows[0].difference));
   EXPECT_TRUE(report.rows[1].passed);
 }
 
 TEST(CheckGradient, RefusesWrongSizesAndFailingCentre) {
-  EXPECT_THROW(
-      check_gradient(kVariables, kResponses, evaluate, Eigen::MatrixXd(1, 2)),
-      InvalidInput);
-  EXPECT_THROW(check_gradient(kVariables, kResponses, evaluate, exact(),
-                              {.steps = {1e-3}}),
+  EXPECT_THROW(optimize::check_gradient(kVariables, kResponses, evaluate,
+                                        Eigen::MatrixXd(1, 2)),
+               InvalidInput);
+  EXPECT_THROW(optimize::check_gradient(kVariables, kResponses, evaluate,
+                                        exact(), {.steps = {1e-3}}),
                InvalidInput);
   const auto failing = [](const VectorX&) {
-    VectorAnswer answer;
+    optimize::VectorAnswer answer;
     answer.failure = Failure{FailureKind::FilmPinched, "neck"};
     return answer;
   };
-  EXPECT_THROW(check_gradient(kVariables, kResponses, failing, exact()),
-               InvalidInput);
+  EXPECT_THROW(
+      optimize::check_gradient(kVariables, kResponses, failing, exact()),
+      InvalidInput);
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ using tests::vector_of;
 TEST(FamilyTree, JoinsEachMemberToItsNearest) {
   // Lengths 100, 400, 110, 390 at one load: two pairs, joined by 110 - 390.
   const auto steps =
-      family_tree({vector_of({100.0, 5.0}), vector_of({400.0, 5.0}),
-                   vector_of({110.0, 5.0}), vector_of({390.0, 5.0})});
+      optimize::family_tree({vector_of({100.0, 5.0}), vector_of({400.0, 5.0}),
+                             vector_of({110.0, 5.0}), vector_of({390.0, 5.0})});
   ASSERT_EQ(steps.size(), 4U);
   EXPECT_EQ(steps[0].member, 0);
   EXPECT_FALSE(steps[0].parent);
@@ -33,13 +33,13 @@ TEST(FamilyTree, JoinsEachMemberToItsNearest) {
 }
 
 TEST(FamilyTree, DoesNotDependOnUnits) {
-  std::vector<VectorX> metres = latin_hypercube_samples(3, 20, 5);
+  std::vector<VectorX> metres = optimize::latin_hypercube_samples(3, 20, 5);
   std::vector<VectorX> other = metres;
   for (VectorX& member : other) {
     member = member.cwiseProduct(vector_of({1024.0, 0.5, 4096.0}));
   }
-  const auto a = family_tree(metres);
-  const auto b = family_tree(other);
+  const auto a = optimize::family_tree(metres);
+  const auto b = optimize::family_tree(other);
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].member, b[i].member);
     EXPECT_EQ(a[i].parent, b[i].parent);
@@ -52,7 +52,7 @@ TEST(FamilyTree, IsNoLongerThanAnyOther) {
       vector_of({0.0, 0.0}), vector_of({1.0, 0.2}), vector_of({0.4, 1.0}),
       vector_of({0.7, 0.6})};
   double length = 0.0;
-  for (const FamilyStep& step : family_tree(members)) {
+  for (const optimize::FamilyStep& step : optimize::family_tree(members)) {
     length += step.distance;
   }
   for (int a = 0; a < 4; ++a) {
@@ -86,14 +86,15 @@ TEST(FamilyTree, IsNoLongerThanAnyOther) {
 }
 
 TEST(FamilyTree, ParentsComeFirstAndWavesHoldEveryone) {
-  const auto steps = family_tree(latin_hypercube_samples(4, 30, 3));
+  const auto steps =
+      optimize::family_tree(optimize::latin_hypercube_samples(4, 30, 3));
   std::vector<bool> seen(30, false);
-  for (const FamilyStep& step : steps) {
+  for (const optimize::FamilyStep& step : steps) {
     EXPECT_TRUE(!step.parent || seen[static_cast<std::size_t>(*step.parent)]);
     seen[static_cast<std::size_t>(step.member)] = true;
   }
   std::size_t count = 0;
-  for (const auto& wave : family_waves(steps)) {
+  for (const auto& wave : optimize::family_waves(steps)) {
     EXPECT_FALSE(wave.empty());
     count += wave.size();
   }
@@ -101,15 +102,16 @@ TEST(FamilyTree, ParentsComeFirstAndWavesHoldEveryone) {
 }
 
 TEST(FamilyTree, EqualMembersAndEmptyFamilies) {
-  EXPECT_TRUE(family_tree({}).empty());
-  EXPECT_TRUE(family_waves({}).empty());
-  const auto steps = family_tree(std::vector<VectorX>(3, vector_of({2.0})));
+  EXPECT_TRUE(optimize::family_tree({}).empty());
+  EXPECT_TRUE(optimize::family_waves({}).empty());
+  const auto steps =
+      optimize::family_tree(std::vector<VectorX>(3, vector_of({2.0})));
   EXPECT_EQ(steps[2].parent, 0);
   EXPECT_EQ(steps[2].distance, 0.0);
-  EXPECT_THROW(family_tree({vector_of({1.0}), vector_of({1.0, 2.0})}),
+  EXPECT_THROW(optimize::family_tree({vector_of({1.0}), vector_of({1.0, 2.0})}),
                InvalidInput);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(family_tree({vector_of({1.0}), vector_of({kNaN})}),
+  EXPECT_THROW(optimize::family_tree({vector_of({1.0}), vector_of({kNaN})}),
                InvalidInput);
 }
 

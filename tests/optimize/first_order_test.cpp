@@ -18,7 +18,8 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 TEST(NonnegativeLeastSquares, MeetsItsOwnConditions) {
   // x >= 0, the gain A'(b - A x) <= 0, and both not at once.
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const Samples rows = latin_hypercube_samples(9, 14, seed);
+    const optimize::Samples rows =
+        optimize::latin_hypercube_samples(9, 14, seed);
     Eigen::MatrixXd A(14, 8);
     VectorX b(14);
     for (Eigen::Index i = 0; i < 14; ++i) {
@@ -27,20 +28,21 @@ TEST(NonnegativeLeastSquares, MeetsItsOwnConditions) {
       b[i] = row[8];
     }
     A.col(5) = A.col(2);  // a dependent column does no harm
-    const VectorX x = nonnegative_least_squares(A, b);
+    const VectorX x = optimize::nonnegative_least_squares(A, b);
     const VectorX gain = A.transpose() * (b - A * x);
     EXPECT_GE(x.minCoeff(), 0.0);
     EXPECT_LE(gain.maxCoeff(), 1e-12);
     EXPECT_LE(x.cwiseProduct(gain).cwiseAbs().maxCoeff(), 1e-12);
   }
-  EXPECT_EQ(
-      nonnegative_least_squares(Eigen::MatrixXd(3, 0), VectorX::Ones(3)).size(),
-      0);
+  EXPECT_EQ(optimize::nonnegative_least_squares(Eigen::MatrixXd(3, 0),
+                                                VectorX::Ones(3))
+                .size(),
+            0);
 }
 
 // f = x + 2 y over x + y >= 1, in the box [0, 4]^2: the minimum is (1, 0).
-FirstOrderInput corner(double x, double y) {
-  FirstOrderInput input;
+optimize::FirstOrderInput corner(double x, double y) {
+  optimize::FirstOrderInput input;
   input.x = vector_of({x, y});
   input.lower = vector_of({0.0, 0.0});
   input.upper = vector_of({4.0, 4.0});
@@ -55,7 +57,8 @@ FirstOrderInput corner(double x, double y) {
 }
 
 TEST(FirstOrder, VanishesAtTheMinimumWithItsMultipliers) {
-  const FirstOrderReport report = first_order(corner(1.0, 0.0));
+  const optimize::FirstOrderReport report =
+      optimize::first_order(corner(1.0, 0.0));
   EXPECT_LT(report.residual, 1e-14);
   EXPECT_NEAR(report.multipliers[0], -1.0, 1e-13);        // a lower bound
   EXPECT_NEAR(report.bound_multipliers[1], -1.0, 1e-13);  // y's lower bound
@@ -66,18 +69,20 @@ TEST(FirstOrder, VanishesAtTheMinimumWithItsMultipliers) {
 TEST(FirstOrder, IsAboutTheGainThatIsLeft) {
   // Off the corner by d, the objective can still fall by 2 d or so.
   for (const double d : {1e-2, 1e-4, 1e-6}) {
-    const FirstOrderReport report = first_order(corner(1.0 + d, d));
+    const optimize::FirstOrderReport report =
+        optimize::first_order(corner(1.0 + d, d));
     EXPECT_GT(report.residual, 0.2 * d);
     EXPECT_LT(report.residual, 5.0 * d);
   }
-  EXPECT_GT(first_order(corner(2.0, 2.0)).residual, 0.5);
-  const FirstOrderReport outside = first_order(corner(0.4, 0.0));
+  EXPECT_GT(optimize::first_order(corner(2.0, 2.0)).residual, 0.5);
+  const optimize::FirstOrderReport outside =
+      optimize::first_order(corner(0.4, 0.0));
   EXPECT_NEAR(outside.violation, 0.6, 1e-15);
 }
 
 TEST(FirstOrder, DoesNotDependOnUnits) {
-  const FirstOrderInput input = corner(1.2, 0.3);
-  FirstOrderInput other = input;
+  const optimize::FirstOrderInput input = corner(1.2, 0.3);
+  optimize::FirstOrderInput other = input;
   const double length = 1000.0;
   const double mass = 1e-3;
   const double stress = 50.0;
@@ -91,16 +96,16 @@ TEST(FirstOrder, DoesNotDependOnUnits) {
   other.constraint_lower *= stress;
   other.constraint_scale *= stress;
   other.objective_scale *= mass;
-  const FirstOrderReport a = first_order(input);
-  const FirstOrderReport b = first_order(other);
+  const optimize::FirstOrderReport a = optimize::first_order(input);
+  const optimize::FirstOrderReport b = optimize::first_order(other);
   EXPECT_NEAR(a.residual, b.residual, 1e-12);
   EXPECT_NEAR(a.multipliers[0] * mass / stress, b.multipliers[0], 1e-15);
 }
 
 TEST(FirstOrder, RefusesSizesThatDoNotFit) {
-  FirstOrderInput input = corner(1.0, 0.0);
+  optimize::FirstOrderInput input = corner(1.0, 0.0);
   input.constraint_scale = vector_of({1.0, 1.0});
-  EXPECT_THROW(first_order(input), InvalidInput);
+  EXPECT_THROW(optimize::first_order(input), InvalidInput);
 }
 
 }  // namespace

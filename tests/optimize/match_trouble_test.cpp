@@ -14,26 +14,26 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-const std::vector<Variable> kUnit = {{"width", 0.0, 0.0, 10.0}};
+const std::vector<optimize::Variable> kUnit = {{"width", 0.0, 0.0, 10.0}};
 
-ResidualAnswer answer_of(double residual) {
-  ResidualAnswer answer;
+optimize::ResidualAnswer answer_of(double residual) {
+  optimize::ResidualAnswer answer;
   answer.residuals = VectorX::Constant(1, residual);
   answer.mismatch = answer.residuals.cwiseAbs();
   return answer;
 }
 
-ResidualAnswer pinched() {
-  ResidualAnswer answer;
+optimize::ResidualAnswer pinched() {
+  optimize::ResidualAnswer answer;
   answer.failure = Failure{FailureKind::FilmPinched, "the neck closes"};
   return answer;
 }
 
 // The message of the InvalidInput that a match throws.
-std::string refusal(const std::vector<Variable>& variables,
-                    const MatchOptions& options) {
+std::string refusal(const std::vector<optimize::Variable>& variables,
+                    const optimize::MatchOptions& options) {
   try {
-    match(
+    optimize::match(
         variables, [](const VectorX& x) { return answer_of(x[0]); }, options);
   } catch (const InvalidInput& error) {
     return error.what();
@@ -43,7 +43,7 @@ std::string refusal(const std::vector<Variable>& variables,
 
 class MatchTrouble : public testing::TestWithParam<const char*> {
  protected:
-  MatchOptions options() const {
+  optimize::MatchOptions options() const {
     return {.method = GetParam(), .max_evaluations = 300};
   }
 };
@@ -60,9 +60,11 @@ TEST_P(MatchTrouble, StepsBackFromARegionThatFails) {
     return answer_of((x[0] - 4.0) * (0.5 + x[0] / 8.0));
   };
   testing::internal::CaptureStderr();
-  const MatchReport report = match(kUnit, function, options());
+  const optimize::MatchReport report =
+      optimize::match(kUnit, function, options());
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_NEAR(report.best[0], 4.0, 2e-3);
   EXPECT_EQ(report.failed_evaluations, failed);
 }
@@ -71,23 +73,27 @@ TEST_P(MatchTrouble, StepsBackFromNaN) {
   const auto function = [](const VectorX& x) {
     return answer_of(x[0] > 5.0 ? kNaN : (x[0] - 4.0) * (0.5 + x[0] / 8.0));
   };
-  const MatchReport report = match(kUnit, function, options());
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MatchReport report =
+      optimize::match(kUnit, function, options());
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
 }
 
 TEST_P(MatchTrouble, AFailingStartIsLeft) {
   const auto function = [](const VectorX& x) {
     return x[0] < 1.0 ? pinched() : answer_of(x[0] - 4.0);
   };
-  const MatchReport report = match(kUnit, function, options());
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MatchReport report =
+      optimize::match(kUnit, function, options());
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_GE(report.failed_evaluations, 1);
 }
 
 TEST_P(MatchTrouble, EveryPointInfeasibleSaysWhatToChange) {
-  const MatchReport report = match(
+  const optimize::MatchReport report = optimize::match(
       kUnit, [](const VectorX&) { return pinched(); }, options());
-  EXPECT_EQ(report.termination, Termination::NoFeasible);
+  EXPECT_EQ(report.termination, optimize::Termination::NoFeasible);
   EXPECT_EQ(report.best.size(), 0);
   EXPECT_EQ(report.failed_evaluations, report.evaluations);
   EXPECT_LE(report.evaluations, 20);
@@ -97,29 +103,29 @@ TEST_P(MatchTrouble, EveryPointInfeasibleSaysWhatToChange) {
 }
 
 TEST_P(MatchTrouble, AllNaNIsNoFeasible) {
-  const MatchReport report = match(
+  const optimize::MatchReport report = optimize::match(
       kUnit, [](const VectorX&) { return answer_of(kNaN); }, options());
-  EXPECT_EQ(report.termination, Termination::NoFeasible);
+  EXPECT_EQ(report.termination, optimize::Termination::NoFeasible);
   EXPECT_THAT(report.message, HasSubstr("not_a_number"));
 }
 
 TEST_P(MatchTrouble, AConstantFunctionSaysSo) {
-  const MatchReport report = match(
+  const optimize::MatchReport report = optimize::match(
       kUnit, [](const VectorX&) { return answer_of(0.4); }, options());
-  EXPECT_EQ(report.termination, Termination::Constant);
+  EXPECT_EQ(report.termination, optimize::Termination::Constant);
   EXPECT_EQ(report.answer.residuals[0], 0.4);
   EXPECT_THAT(report.message, HasSubstr("does not change"));
 }
 
 TEST_P(MatchTrouble, WhatTheFunctionThrowsArrives) {
   int calls = 0;
-  const auto function = [&calls](const VectorX& x) -> ResidualAnswer {
+  const auto function = [&calls](const VectorX& x) -> optimize::ResidualAnswer {
     if (++calls == 3) {
       throw IoError("disk full");
     }
     return answer_of((x[0] - 4.0) * (0.5 + x[0] / 8.0));
   };
-  EXPECT_THROW(match(kUnit, function, options()), IoError);
+  EXPECT_THROW(optimize::match(kUnit, function, options()), IoError);
   EXPECT_EQ(calls, 3);
 }
 
@@ -131,13 +137,13 @@ TEST_P(MatchTrouble, StopsOnRequest) {
   int calls = 0;
   StopAfter monitor;
   monitor.calls = &calls;
-  MatchOptions with_monitor = options();
+  optimize::MatchOptions with_monitor = options();
   with_monitor.monitor = &monitor;
   const auto function = [&calls](const VectorX& x) {
     ++calls;
     return answer_of((x[0] - 4.0) * (0.5 + x[0] / 8.0));
   };
-  EXPECT_THROW(match(kUnit, function, with_monitor), Interrupted);
+  EXPECT_THROW(optimize::match(kUnit, function, with_monitor), Interrupted);
   EXPECT_EQ(calls, 2);
 }
 
@@ -150,59 +156,62 @@ TEST_P(MatchTrouble, KeepsTheIncumbentAtTheEvaluationLimit) {
     best = std::min(best, residual);
     return answer_of(residual);
   };
-  MatchOptions limited = options();
+  optimize::MatchOptions limited = options();
   limited.max_evaluations = 7;
-  const MatchReport report = match(kUnit, function, limited);
+  const optimize::MatchReport report =
+      optimize::match(kUnit, function, limited);
   EXPECT_LE(calls, 7);
   EXPECT_EQ(report.answer.residuals[0], best);
   if (calls == 7) {
-    EXPECT_EQ(report.termination, Termination::LimitReached);
+    EXPECT_EQ(report.termination, optimize::Termination::LimitReached);
     EXPECT_THAT(report.message, HasSubstr("limit of 7 evaluations"));
   }
 }
 
 TEST_P(MatchTrouble, OneEvaluationIsEnoughForAnAnswer) {
-  MatchOptions limited = options();
+  optimize::MatchOptions limited = options();
   limited.max_evaluations = 1;
-  const MatchReport report = match(
+  const optimize::MatchReport report = optimize::match(
       kUnit, [](const VectorX& x) { return answer_of(x[0] - 4.0); }, limited);
-  EXPECT_EQ(report.termination, Termination::LimitReached);
+  EXPECT_EQ(report.termination, optimize::Termination::LimitReached);
   EXPECT_EQ(report.best[0], 0.0);
 }
 
 TEST_P(MatchTrouble, TheTimeLimitHolds) {
-  MatchOptions limited = options();
+  optimize::MatchOptions limited = options();
   limited.time_limit = 1e-9;
   int calls = 0;
   const auto function = [&calls](const VectorX& x) {
     ++calls;
     return answer_of(x[0] - 4.0);
   };
-  const MatchReport report = match(kUnit, function, limited);
-  EXPECT_EQ(report.termination, Termination::LimitReached);
+  const optimize::MatchReport report =
+      optimize::match(kUnit, function, limited);
+  EXPECT_EQ(report.termination, optimize::Termination::LimitReached);
   EXPECT_THAT(report.message, HasSubstr("time limit"));
   EXPECT_EQ(calls, 1);
 }
 
 TEST_P(MatchTrouble, EqualBoundsHoldAVariable) {
-  const std::vector<Variable> variables = {{"held", 3.0, 3.0, 3.0},
-                                           {"free", 0.0, 0.0, 10.0}};
-  const MatchReport report = match(
+  const std::vector<optimize::Variable> variables = {{"held", 3.0, 3.0, 3.0},
+                                                     {"free", 0.0, 0.0, 10.0}};
+  const optimize::MatchReport report = optimize::match(
       variables,
       [](const VectorX& x) {
         EXPECT_EQ(x[0], 3.0);
         return answer_of((x[0] + x[1] - 7.0) * (0.5 + x[1] / 8.0));
       },
       options());
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_NEAR(report.best[1], 4.0, 2e-3);
 }
 
 TEST_P(MatchTrouble, AllBoundsEqualSaysWhatToChange) {
-  const MatchReport report = match(
+  const optimize::MatchReport report = optimize::match(
       {{"w", 1.0, 1.0, 1.0}}, [](const VectorX& x) { return answer_of(x[0]); },
       options());
-  EXPECT_EQ(report.termination, Termination::NoFreedom);
+  EXPECT_EQ(report.termination, optimize::Termination::NoFreedom);
   EXPECT_EQ(report.evaluations, 1);
   EXPECT_EQ(report.best[0], 1.0);
   EXPECT_THAT(report.message, AllOf(HasSubstr("'w'"), HasSubstr("Widen")));
@@ -229,21 +238,21 @@ TEST(MatchInput, RefusesWhatCannotWork) {
 TEST(MatchInput, RefusesAnswersThatChangeSize) {
   int calls = 0;
   const auto function = [&calls](const VectorX&) {
-    ResidualAnswer answer;
+    optimize::ResidualAnswer answer;
     answer.residuals = VectorX::Ones(++calls);
     answer.mismatch = answer.residuals;
     return answer;
   };
-  EXPECT_THROW(match(kUnit, function, {}), InvalidInput);
+  EXPECT_THROW(optimize::match(kUnit, function, {}), InvalidInput);
 }
 
 TEST(MatchPhases, AreAnnounced) {
   std::string phases;
-  MatchOptions options;
-  options.announce = [&phases](EvaluationPhase phase) {
-    phases += std::string(name_of(phase)) + " ";
+  optimize::MatchOptions options;
+  options.announce = [&phases](optimize::EvaluationPhase phase) {
+    phases += std::string(optimize::name_of(phase)) + " ";
   };
-  match(
+  optimize::match(
       {{"w", 0.5, 0.0, 10.0}},
       [](const VectorX& x) {
         return x[0] < 1.0 ? pinched() : answer_of(x[0] - 4.0);
@@ -256,8 +265,10 @@ TEST(MatchDifferences, UseTheOtherSideWhenANeighbourFails) {
   const auto function = [](const VectorX& x) {
     return x[0] > 5.0 ? pinched() : answer_of(x[0] - 2.0);
   };
-  const MatchReport report = match({{"w", 5.0, 0.0, 10.0}}, function, {});
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MatchReport report =
+      optimize::match({{"w", 5.0, 0.0, 10.0}}, function, {});
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_EQ(report.evaluations, 4);
   EXPECT_EQ(report.failed_evaluations, 1);
 }

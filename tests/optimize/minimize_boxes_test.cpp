@@ -18,13 +18,13 @@ constexpr int kEvaluations = 90;
 
 // A bent tunnel: what is more than 0.3 off y = x^2 cannot be evaluated. From
 // (-2, 4) straight steps hit its walls, and only small boxes lead along it.
-MinimizeProblem tunnel() {
-  MinimizeProblem problem{
+optimize::MinimizeProblem tunnel() {
+  optimize::MinimizeProblem problem{
       .variables = {{"x", -2.0, -4.0, 6.0}, {"y", 4.0, -10.0, 20.0}},
       .objective = "mass",
       .constraints = {{"floor", 0.0, kUnbounded, 1.0},
                       {"lid", -kUnbounded, 0.2, 1.0}}};
-  problem.function = [](const VectorX& x) -> VectorAnswer {
+  problem.function = [](const VectorX& x) -> optimize::VectorAnswer {
     const double above = x[1] - x[0] * x[0];
     if (std::abs(above) > 0.3) {
       return {.values = {},
@@ -33,7 +33,7 @@ MinimizeProblem tunnel() {
     const double mass = 30.0 - 2.0 * x[0] + 0.1 * x[0] * x[0];
     return {.values = vector_of({mass, above, above}), .failure = {}};
   };
-  problem.jacobian = [](const VectorX& x) -> JacobianAnswer {
+  problem.jacobian = [](const VectorX& x) -> optimize::JacobianAnswer {
     Eigen::MatrixXd jacobian(3, 2);
     jacobian << -2.0 + 0.2 * x[0], 0.0,  //
         -2.0 * x[0], 1.0,                //
@@ -48,9 +48,10 @@ class Tunnel : public testing::TestWithParam<const char*> {};
 TEST_P(Tunnel, IsFollowedToItsEnd) {
   // The mass falls with x, and x^2 <= y <= 20.
   const double end = std::sqrt(20.0);
-  const MinimizeReport report =
-      minimize(tunnel(), {.method = GetParam(), .max_evaluations = 1000});
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MinimizeReport report = optimize::minimize(
+      tunnel(), {.method = GetParam(), .max_evaluations = 1000});
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_NEAR(report.best[0], end, 1e-4) << report.message;
   if (GetParam() == std::string("slsqp")) {  // others take shorter steps
     EXPECT_GT(report.failed_evaluations, 0);
@@ -59,17 +60,17 @@ TEST_P(Tunnel, IsFollowedToItsEnd) {
 }
 
 // (x - 2)^2 + (y - 1)^2 along x = y: least, 1/2, at (3/2, 3/2).
-MinimizeProblem along_diagonal(const VectorX& start) {
-  MinimizeProblem problem;
+optimize::MinimizeProblem along_diagonal(const VectorX& start) {
+  optimize::MinimizeProblem problem;
   problem.variables = {{"x", start[0], -5.0, 5.0}, {"y", start[1], -5.0, 5.0}};
   problem.objective = "distance";
   problem.constraints = {{.name = "x - y", .lower = 0.0, .upper = 0.0}};
-  problem.function = [](const VectorX& x) -> VectorAnswer {
+  problem.function = [](const VectorX& x) -> optimize::VectorAnswer {
     const double distance =
         (x[0] - 2.0) * (x[0] - 2.0) + (x[1] - 1.0) * (x[1] - 1.0);
     return {.values = vector_of({distance, x[0] - x[1]}), .failure = {}};
   };
-  problem.jacobian = [](const VectorX& x) -> JacobianAnswer {
+  problem.jacobian = [](const VectorX& x) -> optimize::JacobianAnswer {
     Eigen::MatrixXd jacobian(2, 2);
     jacobian << 2.0 * (x[0] - 2.0), 2.0 * (x[1] - 1.0),  //
         1.0, -1.0;
@@ -84,9 +85,10 @@ class OneSided : public testing::TestWithParam<const char*> {};
 // minimum lies on the free side, and the side has to turn.
 TEST_P(OneSided, EquationsAreKeptFromEitherSide) {
   for (const VectorX& start : {vector_of({3.0, 0.0}), vector_of({0.0, 3.0})}) {
-    const MinimizeReport report =
-        minimize(along_diagonal(start), {.method = GetParam()});
-    EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+    const optimize::MinimizeReport report =
+        optimize::minimize(along_diagonal(start), {.method = GetParam()});
+    EXPECT_EQ(report.termination, optimize::Termination::Converged)
+        << report.message;
     EXPECT_NEAR(report.objective, 0.5, 1e-4) << report.message;
     EXPECT_LE(report.evaluations, kEvaluations) << report.message;
   }

@@ -43,12 +43,13 @@ TEST_P(ByGradients, IsSolvedToTheFirstOrderConditions) {
   const bool creeps = (known.name == "rosenbrock" || known.name == "hs6") &&
                       method() != std::string("slsqp");
   const double tolerance = creeps ? 1e-3 : 1e-5;
-  const MinimizeReport report =
-      minimize(known.problem, {.method = method(),
-                               .optimality_tolerance = tolerance,
-                               .max_evaluations = 3000});
+  const optimize::MinimizeReport report =
+      optimize::minimize(known.problem, {.method = method(),
+                                         .optimality_tolerance = tolerance,
+                                         .max_evaluations = 3000});
   RecordProperty("evaluations", report.evaluations);
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_TRUE(report.feasible);
   EXPECT_LT(relative(report.objective, known.least),
             creeps ? 2e-3 : kByGradients + kPublished);
@@ -65,12 +66,13 @@ TEST_P(ByGradients, IsSolvedToTheFirstOrderConditions) {
 TEST_P(ByGradients, IsSolvedByDifferences) {
   StandardProblem known = problem();
   known.problem.jacobian = {};
-  const MinimizeReport report =
-      minimize(known.problem, {.method = method(),
-                               .optimality_tolerance = 1e-4,
-                               .max_evaluations = 10000,
-                               .difference_step = 1e-6});
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MinimizeReport report =
+      optimize::minimize(known.problem, {.method = method(),
+                                         .optimality_tolerance = 1e-4,
+                                         .max_evaluations = 10000,
+                                         .difference_step = 1e-6});
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_LT(relative(report.objective, known.least), 1e-4);
   EXPECT_EQ(report.gradient_evaluations, 0);
 }
@@ -78,10 +80,11 @@ TEST_P(ByGradients, IsSolvedByDifferences) {
 TEST_P(WithoutGradients, IsSolvedToTheStepTolerance) {
   StandardProblem known = problem();
   known.problem.jacobian = {};
-  const MinimizeReport report =
-      minimize(known.problem, {.method = method(), .max_evaluations = 200000});
+  const optimize::MinimizeReport report = optimize::minimize(
+      known.problem, {.method = method(), .max_evaluations = 200000});
   RecordProperty("evaluations", report.evaluations);
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_TRUE(report.feasible);
   EXPECT_LT(relative(report.objective, known.least), kWithoutGradients);
 }
@@ -111,10 +114,11 @@ TEST_P(Global, FindsTheLowestOfSixValleys) {
   for (const bool fenced : {false, true}) {
     const StandardProblem known =
         fenced ? tests::fenced_camel() : tests::camel(-1.6, 1.7);
-    const MinimizeReport report =
-        minimize(known.problem,
-                 {.method = GetParam(), .max_evaluations = 2000, .seed = 7});
-    EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+    const optimize::MinimizeReport report = optimize::minimize(
+        known.problem,
+        {.method = GetParam(), .max_evaluations = 2000, .seed = 7});
+    EXPECT_EQ(report.termination, optimize::Termination::Converged)
+        << report.message;
     EXPECT_LT(relative(report.objective, known.least), 1e-6);
     EXPECT_LE(report.evaluations, 2000);
   }
@@ -124,16 +128,16 @@ INSTANTIATE_TEST_SUITE_P(Methods, Global,
                          testing::Values("isres", "crs2", "direct_l"));
 
 TEST(Minimize, ALocalMethodStaysInItsValley) {
-  const MinimizeReport report =
-      minimize(tests::camel(-1.6, 1.7).problem, {.method = "bobyqa"});
+  const optimize::MinimizeReport report =
+      optimize::minimize(tests::camel(-1.6, 1.7).problem, {.method = "bobyqa"});
   EXPECT_GT(report.objective, -1.0);
 }
 
 TEST(Minimize, KnowsTheMultipliers) {
   // HS43 at (0, 1, 2, -1): constraints a and c hold with 1 and 2.
   const StandardProblem known = tests::standard_problems()[4];
-  const MinimizeReport report =
-      minimize(known.problem, {.optimality_tolerance = 1e-7});
+  const optimize::MinimizeReport report =
+      optimize::minimize(known.problem, {.optimality_tolerance = 1e-7});
   ASSERT_EQ(report.constraints.size(), 3U);
   EXPECT_NEAR(report.constraints[0].multiplier, 1.0, 1e-4);
   EXPECT_NEAR(report.constraints[1].multiplier, 0.0, 1e-4);
@@ -144,13 +148,14 @@ TEST(Minimize, KnowsTheMultipliers) {
 
 TEST(Minimize, AMultiplierIsWhatABoundCosts) {
   StandardProblem known = tests::standard_problems()[6];
-  const MinimizeOptions options{.optimality_tolerance = 1e-8};
-  const MinimizeReport report = minimize(known.problem, options);
+  const optimize::MinimizeOptions options{.optimality_tolerance = 1e-8};
+  const optimize::MinimizeReport report =
+      optimize::minimize(known.problem, options);
   const double step = 1e-3;
   known.problem.constraints[0].upper = 1.0 + step;
-  const double above = minimize(known.problem, options).objective;
+  const double above = optimize::minimize(known.problem, options).objective;
   known.problem.constraints[0].upper = 1.0 - step;
-  const double below = minimize(known.problem, options).objective;
+  const double below = optimize::minimize(known.problem, options).objective;
   EXPECT_NEAR(report.constraints[0].multiplier, -(above - below) / (2.0 * step),
               1e-5);
 }
@@ -158,26 +163,26 @@ TEST(Minimize, AMultiplierIsWhatABoundCosts) {
 TEST(Minimize, DoesNotDependOnUnits) {
   // Lengths in micrometres, the objective in thousandths: the same sequence.
   const StandardProblem known = tests::standard_problems()[5];
-  MinimizeProblem other = known.problem;
+  optimize::MinimizeProblem other = known.problem;
   const double unit = 1024.0;  // exact
-  for (Variable& variable : other.variables) {
+  for (optimize::Variable& variable : other.variables) {
     variable.initial *= unit;
     variable.lower *= unit;
     variable.upper *= unit;
   }
   other.function = [&known, unit](const VectorX& x) {
-    VectorAnswer answer = known.problem.function(x / unit);
+    optimize::VectorAnswer answer = known.problem.function(x / unit);
     answer.values[0] *= 4096.0;
     return answer;
   };
   other.jacobian = [&known, unit](const VectorX& x) {
-    JacobianAnswer answer = known.problem.jacobian(x / unit);
+    optimize::JacobianAnswer answer = known.problem.jacobian(x / unit);
     answer.jacobian /= unit;
     answer.jacobian.row(0) *= 4096.0;
     return answer;
   };
-  const MinimizeReport a = minimize(known.problem);
-  const MinimizeReport b = minimize(other);
+  const optimize::MinimizeReport a = optimize::minimize(known.problem);
+  const optimize::MinimizeReport b = optimize::minimize(other);
   EXPECT_EQ(a.evaluations, b.evaluations);
   EXPECT_LT((a.best - b.best / unit).norm(), 1e-9);
 }
@@ -186,8 +191,9 @@ TEST(Minimize, AStartAtTheMinimumEndsAtOnce) {
   StandardProblem known = tests::standard_problems()[0];
   known.problem.variables[0].initial = 1.0;
   known.problem.variables[1].initial = 1.0;
-  const MinimizeReport report = minimize(known.problem);
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MinimizeReport report = optimize::minimize(known.problem);
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   // The gradient is exactly zero: probes tell a minimum from a constant.
   EXPECT_LE(report.evaluations, 4);
   EXPECT_EQ(report.best, vector_of({1.0, 1.0}));
@@ -195,14 +201,15 @@ TEST(Minimize, AStartAtTheMinimumEndsAtOnce) {
 
 TEST(Minimize, PrecisionFinerThanTheMeshIsSaid) {
   StandardProblem known = tests::standard_problems()[6];
-  const MinimizeReport report =
-      minimize(known.problem, {.value_error = vector_of({0.01, 0.03})});
+  const optimize::MinimizeReport report = optimize::minimize(
+      known.problem, {.value_error = vector_of({0.01, 0.03})});
   EXPECT_THAT(report.message,
               AllOf(HasSubstr("below the mesh's own error"),
                     HasSubstr("'deflection' stands"), HasSubstr("0.03")));
-  EXPECT_EQ(precision_note(known.problem, report, 0.1, vector_of({0.01, 0.0})),
+  EXPECT_EQ(optimize::precision_note(known.problem, report, 0.1,
+                                     vector_of({0.01, 0.0})),
             "");
-  EXPECT_EQ(precision_note(known.problem, report, 0.1, {}), "");
+  EXPECT_EQ(optimize::precision_note(known.problem, report, 0.1, {}), "");
 }
 
 TEST(StandardProblems, HaveExactJacobians) {

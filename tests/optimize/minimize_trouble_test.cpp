@@ -19,14 +19,14 @@ using tests::vector_of;
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-VectorAnswer pinched_answer() {
+optimize::VectorAnswer pinched_answer() {
   return {.values = {},
           .failure = Failure{FailureKind::FilmPinched, "the neck closes"}};
 }
-VectorAnswer values(const VectorX& all) {
+optimize::VectorAnswer values(const VectorX& all) {
   return {.values = all, .failure = {}};
 }
-JacobianAnswer one_row(double a, double b) {
+optimize::JacobianAnswer one_row(double a, double b) {
   Eigen::MatrixXd jacobian(1, 2);
   jacobian << a, b;
   return {.jacobian = jacobian, .failure = {}};
@@ -37,11 +37,11 @@ double bowl(const VectorX& x) {
   return 2.0 + std::pow(x[0] - 6.0, 2) + 3.0 * std::pow(x[1] - 3.0, 2) +
          0.5 * (x[0] - 6.0) * (x[1] - 3.0);
 }
-JacobianAnswer bowl_slope(const VectorX& x) {
+optimize::JacobianAnswer bowl_slope(const VectorX& x) {
   return one_row(2.0 * (x[0] - 6.0) + 0.5 * (x[1] - 3.0),
                  6.0 * (x[1] - 3.0) + 0.5 * (x[0] - 6.0));
 }
-MinimizeProblem bowl_problem() {
+optimize::MinimizeProblem bowl_problem() {
   return {{{"a", 1.0, 0.0, 10.0}, {"b", 1.0, 0.0, 10.0}},
           "mass",
           {},
@@ -51,32 +51,37 @@ MinimizeProblem bowl_problem() {
 
 class Trouble : public testing::TestWithParam<const char*> {
  protected:
-  MinimizeOptions options() const {
+  optimize::MinimizeOptions options() const {
     return {.method = GetParam(), .max_evaluations = 2000};
   }
-  MinimizeMethod method() const { return *find_minimize_method(GetParam()); }
+  optimize::MinimizeMethod method() const {
+    return *optimize::find_minimize_method(GetParam());
+  }
   bool global() const { return method().global; }
 };
 
 TEST_P(Trouble, ARegionThatFailsIsSteppedBackFrom) {
   // The first steps of most methods land beyond x + y = 11.
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX& x) {
     return x.sum() > 11.0 ? pinched_answer() : values(vector_of({bowl(x)}));
   };
-  const MinimizeReport report = minimize(problem, options());
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_NEAR(report.objective, 2.0, 1e-3) << report.message;
 }
 
 TEST_P(Trouble, AMinimumBesideAWallIsFoundAndTheWallNamed) {
   // Half of the space fails, and the bowl leans against it.
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX& x) {
     return x[0] > 5.0 ? pinched_answer() : values(vector_of({bowl(x)}));
   };
   const double least = bowl(vector_of({5.0, 3.0 + 0.5 / 6.0}));
-  const MinimizeReport report = minimize(problem, options());
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
   EXPECT_LT(report.best[0], 5.0 + 1e-12);
   // A gradient cannot slide along a wall that only failures show, the simplex
   // that takes over can.
@@ -87,30 +92,35 @@ TEST_P(Trouble, AMinimumBesideAWallIsFoundAndTheWallNamed) {
 }
 
 TEST_P(Trouble, NaNIsAPointThatFails) {
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX& x) {
     return values(vector_of({x.sum() > 11.0 ? kNotANumber : bowl(x)}));
   };
-  const MinimizeReport report = minimize(problem, options());
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_NEAR(report.objective, 2.0, 1e-3);
 }
 
 TEST_P(Trouble, AFailingStartIsLeft) {
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX& x) {
     return x[0] < 2.0 ? pinched_answer() : values(vector_of({bowl(x)}));
   };
-  const MinimizeReport report = minimize(problem, options());
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_NEAR(report.objective, 2.0, 1e-3);
 }
 
 TEST_P(Trouble, EveryPointFailingSaysWhatToChange) {
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX&) { return pinched_answer(); };
-  const MinimizeReport report = minimize(problem, options());
-  EXPECT_EQ(report.termination, Termination::NoFeasible);
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
+  EXPECT_EQ(report.termination, optimize::Termination::NoFeasible);
   EXPECT_EQ(report.best.size(), 0);
   EXPECT_LE(report.evaluations, 20);
   EXPECT_THAT(report.message,
@@ -119,23 +129,26 @@ TEST_P(Trouble, EveryPointFailingSaysWhatToChange) {
 }
 
 TEST_P(Trouble, NaNEverywhereNamesTheExpression) {
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX&) {
     return values(vector_of({kNotANumber}));
   };
-  const MinimizeReport report = minimize(problem, options());
-  EXPECT_EQ(report.termination, Termination::NoFeasible);
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
+  EXPECT_EQ(report.termination, optimize::Termination::NoFeasible);
   EXPECT_THAT(report.message,
               AllOf(HasSubstr("not_a_number"), HasSubstr("'mass' is nan"),
                     HasSubstr("division by zero")));
 }
 
 TEST_P(Trouble, AConstantObjectiveSaysSo) {
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.function = [](const VectorX&) { return values(vector_of({0.4})); };
   problem.jacobian = [](const VectorX&) { return one_row(0.0, 0.0); };
-  const MinimizeReport report = minimize(problem, options());
-  EXPECT_EQ(report.termination, Termination::Constant) << report.message;
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
+  EXPECT_EQ(report.termination, optimize::Termination::Constant)
+      << report.message;
   EXPECT_LE(report.evaluations, 14);
   EXPECT_EQ(report.objective, 0.4);
   EXPECT_THAT(report.message, AllOf(HasSubstr("no design variable changes"),
@@ -144,7 +157,7 @@ TEST_P(Trouble, AConstantObjectiveSaysSo) {
 
 TEST_P(Trouble, ConstraintsThatExcludeEachOtherAreNamed) {
   // a + b >= 8 and a + b <= 4, b <= 100.
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.constraints = {{"stiffness", 8.0, kNoBound, {}},
                          {"stress", -kNoBound, 4.0, {}},
                          {"height", -kNoBound, 100.0, {}}};
@@ -154,12 +167,13 @@ TEST_P(Trouble, ConstraintsThatExcludeEachOtherAreNamed) {
   problem.jacobian = [](const VectorX& x) {
     Eigen::MatrixXd jacobian(4, 2);
     jacobian << bowl_slope(x).jacobian, 1.0, 1.0, 1.0, 1.0, 0.0, 1.0;
-    return JacobianAnswer{.jacobian = jacobian, .failure = {}};
+    return optimize::JacobianAnswer{.jacobian = jacobian, .failure = {}};
   };
-  const MinimizeReport report = minimize(problem, options());
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
   // Global and simplex methods try until the budget is spent.
-  EXPECT_TRUE(report.termination == Termination::Infeasible ||
-              report.termination == Termination::LimitReached)
+  EXPECT_TRUE(report.termination == optimize::Termination::Infeasible ||
+              report.termination == optimize::Termination::LimitReached)
       << report.message;
   EXPECT_FALSE(report.feasible);
   EXPECT_THAT(report.message,
@@ -171,22 +185,24 @@ TEST_P(Trouble, ConstraintsThatExcludeEachOtherAreNamed) {
 }
 
 TEST_P(Trouble, HeldVariablesStay) {
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.variables[1] = {"b", 2.0, 2.0, 2.0};
-  const MinimizeReport report = minimize(problem, options());
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_EQ(report.best[1], 2.0);
   EXPECT_NEAR(report.best[0], 6.25, 2e-3);
   problem.variables[0] = {"a", 1.0, 1.0, 1.0};
-  const MinimizeReport none = minimize(problem, options());
-  EXPECT_EQ(none.termination, Termination::NoFreedom);
+  const optimize::MinimizeReport none = optimize::minimize(problem, options());
+  EXPECT_EQ(none.termination, optimize::Termination::NoFreedom);
   EXPECT_EQ(none.evaluations, 1);
   EXPECT_EQ(none.objective, bowl(vector_of({1.0, 2.0})));
   EXPECT_THAT(none.message, AllOf(HasSubstr("'a'"), HasSubstr("Widen")));
 }
 
 TEST_P(Trouble, AJumpDoesNotLoseTheBestPoint) {
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   double best = kNoBound;
   problem.function = [&best](const VectorX& x) {
     const double jump = std::floor(3.0 * x[0]) * 0.7 +
@@ -194,7 +210,8 @@ TEST_P(Trouble, AJumpDoesNotLoseTheBestPoint) {
     best = std::min(best, bowl(x) + jump);
     return values(vector_of({bowl(x) + jump}));
   };
-  const MinimizeReport report = minimize(problem, options());
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, options());
   // A point that meets the conditions goes before one better by 1e-4 x scale.
   EXPECT_LE(report.objective, best + 1e-4 * bowl(vector_of({1.0, 1.0})));
   EXPECT_LE(report.evaluations, 2000);
@@ -202,14 +219,14 @@ TEST_P(Trouble, AJumpDoesNotLoseTheBestPoint) {
 
 TEST_P(Trouble, WhatTheFunctionThrowsArrives) {
   int calls = 0;
-  MinimizeProblem problem = bowl_problem();
-  problem.function = [&calls](const VectorX& x) -> VectorAnswer {
+  optimize::MinimizeProblem problem = bowl_problem();
+  problem.function = [&calls](const VectorX& x) -> optimize::VectorAnswer {
     if (++calls == 3) {
       throw IoError("disk full");
     }
     return values(vector_of({bowl(x)}));
   };
-  EXPECT_THROW(minimize(problem, options()), IoError);
+  EXPECT_THROW(optimize::minimize(problem, options()), IoError);
   EXPECT_EQ(calls, 3);
 }
 
@@ -221,14 +238,14 @@ TEST_P(Trouble, StopsOnRequest) {
   int calls = 0;
   StopAfter monitor;
   monitor.calls = &calls;
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.function = [&calls](const VectorX& x) {
     ++calls;
     return values(vector_of({bowl(x)}));
   };
-  MinimizeOptions with_monitor = options();
+  optimize::MinimizeOptions with_monitor = options();
   with_monitor.monitor = &monitor;
-  EXPECT_THROW(minimize(problem, with_monitor), Interrupted);
+  EXPECT_THROW(optimize::minimize(problem, with_monitor), Interrupted);
   EXPECT_EQ(calls, 2);
 }
 
@@ -236,25 +253,27 @@ TEST_P(Trouble, BudgetsHoldAndTheIncumbentIsKept) {
   for (const int budget : {1, 2, 3, 5}) {
     double best = kNoBound;
     int calls = 0;
-    MinimizeProblem problem = bowl_problem();
+    optimize::MinimizeProblem problem = bowl_problem();
     problem.function = [&](const VectorX& x) {
       ++calls;
       best = std::min(best, bowl(x));
       return values(vector_of({bowl(x)}));
     };
-    MinimizeOptions limited = options();
+    optimize::MinimizeOptions limited = options();
     limited.max_evaluations = budget;
-    const MinimizeReport report = minimize(problem, limited);
+    const optimize::MinimizeReport report =
+        optimize::minimize(problem, limited);
     EXPECT_LE(calls, budget);
     EXPECT_EQ(report.evaluations, calls);
     EXPECT_EQ(report.objective, best);
-    EXPECT_EQ(report.termination, Termination::LimitReached);
+    EXPECT_EQ(report.termination, optimize::Termination::LimitReached);
     EXPECT_THAT(report.message, HasSubstr("limit of"));
   }
-  MinimizeOptions limited = options();
+  optimize::MinimizeOptions limited = options();
   limited.time_limit = 1e-9;
-  const MinimizeReport report = minimize(bowl_problem(), limited);
-  EXPECT_EQ(report.termination, Termination::LimitReached);
+  const optimize::MinimizeReport report =
+      optimize::minimize(bowl_problem(), limited);
+  EXPECT_EQ(report.termination, optimize::Termination::LimitReached);
   EXPECT_THAT(report.message, HasSubstr("time limit"));
 }
 
@@ -263,39 +282,40 @@ struct Tape {
   std::vector<VectorX> points;
   std::vector<VectorX> slopes;
 
-  MinimizeReport run(MinimizeProblem problem, const MinimizeOptions& options) {
-    const VectorFunction function = problem.function;
+  optimize::MinimizeReport run(optimize::MinimizeProblem problem,
+                               const optimize::MinimizeOptions& options) {
+    const optimize::VectorFunction function = problem.function;
     problem.function = [this, function](const VectorX& x) {
       points.push_back(x);
       return function(x);
     };
     if (problem.jacobian) {
-      const JacobianFunction jacobian = problem.jacobian;
+      const optimize::JacobianFunction jacobian = problem.jacobian;
       problem.jacobian = [this, jacobian](const VectorX& x) {
         slopes.push_back(x);
         return jacobian(x);
       };
     }
-    return minimize(problem, options);
+    return optimize::minimize(problem, options);
   }
 };
 
 TEST_P(Trouble, TheSequenceRepeatsBitForBitAndNoPointTwice) {
   for (const bool fails : {false, true}) {
-    MinimizeProblem problem = tests::standard_problems()[6].problem;
+    optimize::MinimizeProblem problem = tests::standard_problems()[6].problem;
     if (fails) {
-      const VectorFunction whole = problem.function;
+      const optimize::VectorFunction whole = problem.function;
       problem.function = [whole](const VectorX& x) {
         return x[0] < 5.5 ? pinched_answer() : whole(x);
       };
       problem.variables[0].initial = 7.0;
     }
-    MinimizeOptions limited = options();
+    optimize::MinimizeOptions limited = options();
     limited.max_evaluations = 120;
     Tape first;
     Tape second;
-    const MinimizeReport a = first.run(problem, limited);
-    const MinimizeReport b = second.run(problem, limited);
+    const optimize::MinimizeReport a = first.run(problem, limited);
+    const optimize::MinimizeReport b = second.run(problem, limited);
     EXPECT_EQ(first.points, second.points);
     EXPECT_EQ(first.slopes, second.slopes);
     EXPECT_EQ(a.best, b.best);
@@ -318,8 +338,9 @@ TEST_P(Trouble, ALongerBudgetContinuesTheSameSequence) {
   if (global()) {
     return;  // its share of the budget ends the wide search earlier
   }
-  const MinimizeProblem problem = tests::standard_problems()[5].problem;
-  MinimizeOptions limited = options();
+  const optimize::MinimizeProblem problem =
+      tests::standard_problems()[5].problem;
+  optimize::MinimizeOptions limited = options();
   limited.max_evaluations = 9;
   Tape first;
   Tape second;
@@ -336,23 +357,24 @@ INSTANTIATE_TEST_SUITE_P(Methods, Trouble,
                                          "isres", "crs2", "direct_l"));
 
 TEST(MinimizeInput, RefusesWhatCannotWork) {
-  const auto refusal = [](const MinimizeProblem& problem,
-                          const MinimizeOptions& options) -> std::string {
+  const auto refusal =
+      [](const optimize::MinimizeProblem& problem,
+         const optimize::MinimizeOptions& options) -> std::string {
     try {
-      minimize(problem, options);
+      optimize::minimize(problem, options);
     } catch (const InvalidInput& error) {
       return error.what();
     }
     return "accepted";
   };
-  const MinimizeProblem good = bowl_problem();
+  const optimize::MinimizeProblem good = bowl_problem();
   EXPECT_THAT(
       refusal(good, {.method = "newton"}),
       AllOf(HasSubstr("'newton'"), HasSubstr("slsqp"), HasSubstr("isres")));
   EXPECT_THAT(refusal(good, {.optimality_tolerance = 0.0}),
               HasSubstr("optimality_tolerance"));
   EXPECT_THAT(refusal(good, {.max_evaluations = 0}), HasSubstr("at least 1"));
-  MinimizeProblem bad = good;
+  optimize::MinimizeProblem bad = good;
   bad.variables.clear();
   EXPECT_THAT(refusal(bad, {}), HasSubstr("no design variable"));
   bad = good;
@@ -363,43 +385,46 @@ TEST(MinimizeInput, RefusesWhatCannotWork) {
   EXPECT_THAT(refusal(bad, {}), HasSubstr("1 values; expected 2"));
   bad = good;
   bad.jacobian = [](const VectorX&) {
-    return JacobianAnswer{.jacobian = Eigen::MatrixXd::Zero(2, 2),
-                          .failure = {}};
+    return optimize::JacobianAnswer{.jacobian = Eigen::MatrixXd::Zero(2, 2),
+                                    .failure = {}};
   };
   EXPECT_THAT(refusal(bad, {}), HasSubstr("Jacobian is 2 x 2"));
 }
 
 TEST(MinimizeJacobian, OneThatFailsIsReplacedByDifferences) {
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.jacobian = [](const VectorX&) {
-    return JacobianAnswer{
+    return optimize::JacobianAnswer{
         .jacobian = {}, .failure = Failure{FailureKind::SolverFailed, "dual"}};
   };
-  const MinimizeReport report =
-      minimize(problem, {.optimality_tolerance = 1e-3});
-  EXPECT_EQ(report.termination, Termination::Converged) << report.message;
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, {.optimality_tolerance = 1e-3});
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
   EXPECT_NEAR(report.objective, 2.0, 1e-3);
 }
 
 TEST(MinimizePhases, AreAnnouncedAndNeighboursTold) {
-  MinimizeProblem problem = bowl_problem();
+  optimize::MinimizeProblem problem = bowl_problem();
   problem.jacobian = {};
   std::vector<VectorX> told;
-  std::vector<EvaluationPhase> phases;
+  std::vector<optimize::EvaluationPhase> phases;
   Tape tape;
-  tape.run(problem,
-           {.optimality_tolerance = 1e-3,
-            .announce = [&](EvaluationPhase phase) { phases.push_back(phase); },
-            .prefetch =
-                [&](const std::vector<VectorX>& points) {
-                  told.insert(told.end(), points.begin(), points.end());
-                }});
+  tape.run(
+      problem,
+      {.optimality_tolerance = 1e-3,
+       .announce =
+           [&](optimize::EvaluationPhase phase) { phases.push_back(phase); },
+       .prefetch =
+           [&](const std::vector<VectorX>& points) {
+             told.insert(told.end(), points.begin(), points.end());
+           }});
   ASSERT_GE(told.size(), 2U);
-  EXPECT_EQ(phases[0], EvaluationPhase::Start);
-  EXPECT_EQ(phases[1], EvaluationPhase::Difference);
+  EXPECT_EQ(phases[0], optimize::EvaluationPhase::Start);
+  EXPECT_EQ(phases[1], optimize::EvaluationPhase::Difference);
   EXPECT_EQ(tape.points[1], told[0]);
   EXPECT_EQ(tape.points[2], told[1]);
-  EXPECT_EQ(phases[3], EvaluationPhase::Step);
+  EXPECT_EQ(phases[3], optimize::EvaluationPhase::Step);
 }
 
 }  // namespace

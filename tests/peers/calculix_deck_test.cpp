@@ -28,8 +28,8 @@ class CalculixDeckTest : public ::testing::TestWithParam<int> {
     return GetParam() == 1 ? linear : shapes::straight_quadratic(linear);
   }
 
-  static CalculixDeck deck() {
-    CalculixDeck deck;
+  static io::CalculixDeck deck() {
+    io::CalculixDeck deck;
     deck.comments = {"brick under pressure", "units mm-N-MPa"};
     deck.materials = {{"aluminium", 71700.0, 0.33, 2.8e-9}};
     return deck;
@@ -57,7 +57,7 @@ Vec3 mean_over(const TetMesh& mesh, const std::string& surface,
 // supported nodes out of its reactions.
 TEST_P(CalculixDeckTest, PressureOnEverySideIsTakenUpByTheSupport) {
   const TetMesh brick = mesh();
-  CalculixDeck input = deck();
+  io::CalculixDeck input = deck();
   const std::vector<std::string> sides = {"x0", "x1", "y0", "y1", "z0", "z1"};
   for (std::size_t s = 0; s < sides.size(); ++s) {
     input.steps.push_back({"pressure on " + sides[s],
@@ -65,7 +65,7 @@ TEST_P(CalculixDeckTest, PressureOnEverySideIsTakenUpByTheSupport) {
                            {},
                            {{sides[s], 3.0}}});
   }
-  const auto results = run_calculix(calculix_deck(brick, input),
+  const auto results = run_calculix(io::calculix_deck(brick, input),
                                     static_cast<int>(brick.nodes.size()));
   ASSERT_EQ(results.size(), sides.size());
   const std::vector<double> areas = {1200, 800, 600};
@@ -83,14 +83,14 @@ TEST_P(CalculixDeckTest, PressureOnEverySideIsTakenUpByTheSupport) {
 // Sliding supports and an end pressure: uniaxial stress, exact to print.
 TEST_P(CalculixDeckTest, UniaxialPressureGivesTheExactShortening) {
   const TetMesh brick = mesh();
-  CalculixDeck input = deck();
+  io::CalculixDeck input = deck();
   input.steps.push_back({"press",
                          {{"x0", {}, true, false, false},
                           {"y0", {}, false, true, false},
                           {"z0", {}, false, false, true}},
                          {},
                          {{"z1", 100.0}}});
-  const auto results = run_calculix(calculix_deck(brick, input),
+  const auto results = run_calculix(io::calculix_deck(brick, input),
                                     static_cast<int>(brick.nodes.size()));
   ASSERT_EQ(results.size(), 1u);
   const double strain = 100.0 / 71700.0;
@@ -105,8 +105,8 @@ TEST_P(CalculixDeckTest, UniaxialPressureGivesTheExactShortening) {
 
 TEST_P(CalculixDeckTest, NodalForcesAndExplicitNodesArrive) {
   const TetMesh brick = mesh();
-  CalculixDeck input = deck();
-  DeckStep step{"pull", {{"", {}, true, true, true}}, {}, {}};
+  io::CalculixDeck input = deck();
+  io::DeckStep step{"pull", {{"", {}, true, true, true}}, {}, {}};
   step.nodal_forces = VectorX::Zero(3 * brick.nodes.size());
   for (std::size_t i = 0; i < brick.nodes.size(); ++i) {
     if (brick.nodes[i].z() == 0.0) {
@@ -119,7 +119,7 @@ TEST_P(CalculixDeckTest, NodalForcesAndExplicitNodesArrive) {
   }
   const VectorX forces = step.nodal_forces;
   input.steps.push_back(step);
-  const auto results = run_calculix(calculix_deck(brick, input),
+  const auto results = run_calculix(io::calculix_deck(brick, input),
                                     static_cast<int>(brick.nodes.size()));
   Vec3 total = Vec3::Zero();
   for (std::size_t i = 0; i < brick.nodes.size(); ++i) {

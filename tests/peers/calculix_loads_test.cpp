@@ -77,43 +77,43 @@ const std::vector<Part>& parts() {
   return kParts;
 }
 
-Material aluminium() {
-  Material m{"aluminium", 71700.0, 0.33, 2.8e-9, {}};
+element::Material aluminium() {
+  element::Material m{"aluminium", 71700.0, 0.33, 2.8e-9, {}};
   m.thermal_expansion.setConstant(2.3e-5);
   return m;
 }
 
-Material laminate() {
-  Material m{"laminate", 0.0, 0.0, 1.6e-9, {}};
-  m.orthotropic = Orthotropic{{120000.0, 9000.0, 7000.0},
-                              {0.3, 0.25, 0.4},
-                              {4500.0, 4000.0, 3000.0},
-                              {{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}}};
+element::Material laminate() {
+  element::Material m{"laminate", 0.0, 0.0, 1.6e-9, {}};
+  m.orthotropic = element::Orthotropic{{120000.0, 9000.0, 7000.0},
+                                       {0.3, 0.25, 0.4},
+                                       {4500.0, 4000.0, 3000.0},
+                                       {{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}}};
   m.thermal_expansion = {1e-6, 2.5e-5, 3e-5};
   return m;
 }
 
 /// Force, pressure, gravity and spin, temperature.
-std::vector<LoadCase> load_cases(const Part& part) {
-  LoadCase force;
+std::vector<loads::LoadCase> load_cases(const Part& part) {
+  loads::LoadCase force;
   force.name = "force";
   force.supports = {{part.foot, true, true, true}};
-  LoadCase pressure = force;
-  LoadCase weight = force;
-  LoadCase heat = force;
+  loads::LoadCase pressure = force;
+  loads::LoadCase weight = force;
+  loads::LoadCase heat = force;
   force.forces = {{part.head, {300.0, -200.0, 500.0}}};
   pressure.name = "pressure";
   pressure.pressures = {{part.side, 3.0}};
   weight.name = "weight";
   weight.gravity = {2000.0, -3000.0, -9810.0};
-  weight.spin = Spin{{5.0, -3.0, 2.0}, {1.0, 0.5, 2.0}, 300.0};
+  weight.spin = loads::Spin{{5.0, -3.0, 2.0}, {1.0, 0.5, 2.0}, 300.0};
   heat.name = "heat";
-  heat.temperature = Temperature{.field =
-                                     [](const Vec3& x) {
-                                       return 80.0 + 1.5 * x.x() - 0.7 * x.y() +
-                                              0.02 * x.z() * x.z();
-                                     },
-                                 .reference = 20.0};
+  heat.temperature = loads::Temperature{
+      .field =
+          [](const Vec3& x) {
+            return 80.0 + 1.5 * x.x() - 0.7 * x.y() + 0.02 * x.z() * x.z();
+          },
+      .reference = 20.0};
   return {force, pressure, weight, heat};
 }
 
@@ -131,22 +131,24 @@ TEST_P(InCalculix, EveryLoadGivesTheSameDisplacementsAndStresses) {
   }
   const Part& part = parts()[GetParam().part];
   const TetMesh mesh = part.make(GetParam().order);
-  const Material material = GetParam().orthotropic ? laminate() : aluminium();
-  const std::vector<LoadCase> cases = load_cases(part);
-  CalculixDeck deck = calculix_deck_of({material}, cases, mesh);
-  deck.output = DeckOutput::Print;
-  const auto theirs = run_calculix(calculix_deck(mesh, deck),
+  const element::Material material =
+      GetParam().orthotropic ? laminate() : aluminium();
+  const std::vector<loads::LoadCase> cases = load_cases(part);
+  io::CalculixDeck deck = results::calculix_deck_of({material}, cases, mesh);
+  deck.output = io::DeckOutput::Print;
+  const auto theirs = run_calculix(io::calculix_deck(mesh, deck),
                                    static_cast<int>(mesh.nodes.size()));
   ASSERT_EQ(theirs.size(), cases.size());
-  const ElasticModel model(mesh, {material}, cases, {.tolerance = 1e-11});
+  const elastic::ElasticModel model(mesh, {material}, cases,
+                                    {.tolerance = 1e-11});
   ASSERT_FALSE(model.base_solution().failure)
       << model.base_solution().failure->message;
   for (std::size_t c = 0; c < cases.size(); ++c) {
     const VectorX& u = model.base_solution().displacements[c];
     const double apart = relative_difference(u, theirs[c].displacement);
     EXPECT_LE(apart, kDisplacement) << cases[c].name;
-    const PointStress stress =
-        point_stress(mesh, {material}, u, temperature_change(mesh, cases[c]));
+    const element::PointStress stress = element::point_stress(
+        mesh, {material}, u, loads::temperature_change(mesh, cases[c]));
     const double stress_apart =
         relative_difference(stress.stress, theirs[c].stress);
     EXPECT_LE(stress_apart, kStress) << cases[c].name;
@@ -166,38 +168,40 @@ TEST(ObliqueInCalculix, SlidingPlanesGiveTheSameDisplacements) {
   for (Vec3& x : mesh.nodes) {
     x = turn * x;
   }
-  LoadCase load_case;
+  loads::LoadCase load_case;
   load_case.name = "slide";
-  load_case.supports = {{.surface = "x0", .kind = SupportKind::Normal},
-                        {.surface = "y0", .kind = SupportKind::Symmetry},
-                        {.surface = "z0", .kind = SupportKind::Normal}};
+  load_case.supports = {{.surface = "x0", .kind = loads::SupportKind::Normal},
+                        {.surface = "y0", .kind = loads::SupportKind::Symmetry},
+                        {.surface = "z0", .kind = loads::SupportKind::Normal}};
   load_case.pressures = {{"z1", 5.0}};
   load_case.gravity = {0.0, 0.0, -9.81e6};
-  CalculixDeck deck = calculix_deck_of({aluminium()}, {load_case}, mesh);
-  deck.output = DeckOutput::Print;
-  const auto theirs = run_calculix(calculix_deck(mesh, deck),
+  io::CalculixDeck deck =
+      results::calculix_deck_of({aluminium()}, {load_case}, mesh);
+  deck.output = io::DeckOutput::Print;
+  const auto theirs = run_calculix(io::calculix_deck(mesh, deck),
                                    static_cast<int>(mesh.nodes.size()));
-  const ElasticModel model(mesh, {aluminium()}, {load_case});
+  const elastic::ElasticModel model(mesh, {aluminium()}, {load_case});
   const VectorX& u = model.base_solution().displacements[0];
   EXPECT_LE(relative_difference(u, theirs.at(0).displacement), kDisplacement);
 }
 
 /// Beds of every kind under two of three load cases; the third is clamped.
-std::vector<LoadCase> on_springs(const Part& part) {
-  LoadCase components{.name = "components"};
+std::vector<loads::LoadCase> on_springs(const Part& part) {
+  loads::LoadCase components{.name = "components"};
   components.springs = {{part.foot, {40.0, 25.0, 60.0}},
                         {.surface = part.side, .normal = 3.0}};
   components.forces = {{part.head, {300.0, -200.0, 500.0}}};
-  LoadCase clamped{.name = "clamped"};
+  loads::LoadCase clamped{.name = "clamped"};
   clamped.supports = {{part.foot, true, true, true}};
   clamped.pressures = {{part.side, 3.0}};
-  LoadCase oblique{.name = "oblique"};
-  oblique.springs = {{.surface = part.foot,
-                      .components = {9e4, 4e4, 7e4},
-                      .measure = SpringMeasure::Total,
-                      .axes = LocalAxes{{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}}}};
+  loads::LoadCase oblique{.name = "oblique"};
+  oblique.springs = {
+      {.surface = part.foot,
+       .components = {9e4, 4e4, 7e4},
+       .measure = loads::SpringMeasure::Total,
+       .axes = element::LocalAxes{{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}}}};
   oblique.gravity = {2000.0, -3000.0, -9810.0};
-  LoadCase again = oblique;
+  loads::LoadCase again = oblique;
   again.name = "again";
   again.forces = {{part.head, {10.0, 20.0, -30.0}}};
   return {components, clamped, oblique, again};
@@ -210,17 +214,18 @@ TEST(SpringsInCalculix, GiveTheSameDisplacementsInEveryStep) {
   for (const Part& part : parts()) {
     for (const int order : {1, 2}) {
       const TetMesh mesh = part.make(order);
-      const std::vector<LoadCase> cases = on_springs(part);
-      CalculixDeck deck = calculix_deck_of({aluminium()}, cases, mesh);
+      const std::vector<loads::LoadCase> cases = on_springs(part);
+      io::CalculixDeck deck =
+          results::calculix_deck_of({aluminium()}, cases, mesh);
       EXPECT_EQ(deck.springs.size(), 7U);  // 3 + 1, 3 for two load cases
-      deck.output = DeckOutput::Print;
-      const auto theirs = run_calculix(calculix_deck(mesh, deck),
+      deck.output = io::DeckOutput::Print;
+      const auto theirs = run_calculix(io::calculix_deck(mesh, deck),
                                        static_cast<int>(mesh.nodes.size()));
       ASSERT_EQ(theirs.size(), cases.size());
       for (std::size_t c = 0; c < cases.size(); ++c) {
         // A model takes load cases that are held alike.
-        const ElasticModel model(mesh, {aluminium()}, {cases[c]},
-                                 {.tolerance = 1e-11});
+        const elastic::ElasticModel model(mesh, {aluminium()}, {cases[c]},
+                                          {.tolerance = 1e-11});
         const VectorX& u = model.base_solution().displacements[0];
         const double apart = relative_difference(u, theirs[c].displacement);
         EXPECT_LE(apart, kDisplacement)

@@ -18,14 +18,16 @@ namespace {
 // CalculiX prints seven digits.
 constexpr double kFactor = 1e-5;
 
-Material aluminium() { return {"aluminium", 71700.0, 0.33, 2.8e-9, {}}; }
+element::Material aluminium() {
+  return {"aluminium", 71700.0, 0.33, 2.8e-9, {}};
+}
 
-Material laminate() {
-  Material m{"laminate", 0.0, 0.0, 1.6e-9, {}};
-  m.orthotropic = Orthotropic{{120000.0, 9000.0, 7000.0},
-                              {0.3, 0.25, 0.4},
-                              {4500.0, 4000.0, 3000.0},
-                              {{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}}};
+element::Material laminate() {
+  element::Material m{"laminate", 0.0, 0.0, 1.6e-9, {}};
+  m.orthotropic = element::Orthotropic{{120000.0, 9000.0, 7000.0},
+                                       {0.3, 0.25, 0.4},
+                                       {4500.0, 4000.0, 3000.0},
+                                       {{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}}};
   return m;
 }
 
@@ -62,13 +64,14 @@ class EigenvaluesInCalculix : public testing::TestWithParam<Job> {
   }
 
   std::string deck() const {
-    CalculixDeck result = calculix_deck_of({material_}, cases_, mesh_);
-    result.output = DeckOutput::Nothing;
-    return calculix_deck(mesh_, result);
+    io::CalculixDeck result =
+        results::calculix_deck_of({material_}, cases_, mesh_);
+    result.output = io::DeckOutput::Nothing;
+    return io::calculix_deck(mesh_, result);
   }
 
-  static LoadCase pushed() {
-    LoadCase load_case;
+  static loads::LoadCase pushed() {
+    loads::LoadCase load_case;
     load_case.name = "push";
     load_case.supports = {{"x0", true, true, true}};
     load_case.forces = {{"x1", {-500.0, 30.0, 0.0}}};
@@ -76,16 +79,17 @@ class EigenvaluesInCalculix : public testing::TestWithParam<Job> {
   }
 
   TetMesh mesh_ = part(GetParam().order, GetParam().bent);
-  Material material_ = GetParam().orthotropic ? laminate() : aluminium();
-  std::vector<LoadCase> cases_ = {pushed()};
+  element::Material material_ =
+      GetParam().orthotropic ? laminate() : aluminium();
+  std::vector<loads::LoadCase> cases_ = {pushed()};
 };
 
 TEST_P(EigenvaluesInCalculix, FrequenciesAreTheSame) {
   const auto theirs = run_calculix_eigenvalues(deck(), "*FREQUENCY\n6");
   ASSERT_EQ(theirs.size(), 6U);
-  const NaturalModes ours =
-      natural_modes(mesh_, {material_}, cases_[0],
-                    {.count = 6, .mass = MassRule::StiffnessPoints});
+  const modes::NaturalModes ours = modes::natural_modes(
+      mesh_, {material_}, cases_[0],
+      {.count = 6, .mass = solver::MassRule::StiffnessPoints});
   ASSERT_EQ(ours.frequencies.size(), 6U);
   for (std::size_t k = 0; k < 6; ++k) {
     const double square =
@@ -98,10 +102,10 @@ TEST_P(EigenvaluesInCalculix, BucklingFactorsAreTheSame) {
   const auto theirs =
       run_calculix_eigenvalues(deck(), "*BUCKLE\n2,1e-8,20,1000");
   ASSERT_EQ(theirs.size(), 2U);
-  const ElasticModel model(mesh_, {material_}, cases_);
-  const BucklingModes ours =
-      buckling_modes(model, mesh_, cases_, 0,
-                     model.base_solution().displacements[0], {.count = 2});
+  const elastic::ElasticModel model(mesh_, {material_}, cases_);
+  const modes::BucklingModes ours = modes::buckling_modes(
+      model, mesh_, cases_, 0, model.base_solution().displacements[0],
+      {.count = 2});
   ASSERT_EQ(ours.factors.size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_NEAR(ours.factors[k] / theirs[k], 1.0, kFactor) << k;

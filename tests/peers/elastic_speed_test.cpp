@@ -47,7 +47,8 @@ TEST_P(ElasticSpeed, BeatsCalculix) {
 }
 
 /// Seconds of one run, the next design included.
-double seconds_of(const ElasticWork& work, double scale, SolverKind solver) {
+double seconds_of(const ElasticWork& work, double scale,
+                  equations::SolverKind solver) {
   const ElasticRun run = run_elastic(work.make, scale, 1, solver);
   EXPECT_TRUE(run.solved) << run.message;
   return run.first_cpu + run.next_cpu;
@@ -73,11 +74,12 @@ TEST_P(ElasticSpeed, AutomaticIsNearTheBestSolver) {
     };
     for (int i = 0; i < kRounds || (i < kMostRounds && !is_near()); ++i) {
       const ElasticWork& work = GetParam();
-      direct = std::min(direct, seconds_of(work, scale, SolverKind::Cholesky));
-      multigrid =
-          std::min(multigrid, seconds_of(work, scale, SolverKind::Multigrid));
-      automatic =
-          std::min(automatic, seconds_of(work, scale, SolverKind::Automatic));
+      direct = std::min(
+          direct, seconds_of(work, scale, equations::SolverKind::Cholesky));
+      multigrid = std::min(
+          multigrid, seconds_of(work, scale, equations::SolverKind::Multigrid));
+      automatic = std::min(
+          automatic, seconds_of(work, scale, equations::SolverKind::Automatic));
     }
     EXPECT_TRUE(is_near()) << "scale " << scale << ": factor " << direct
                            << " s, multigrid " << multigrid << " s, automatic "

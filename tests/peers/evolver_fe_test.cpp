@@ -68,8 +68,8 @@ class EvolverFe : public ::testing::Test {
     return made;
   }
 
-  void expect_same(const FilmComplex& complex) {
-    const std::string text = fe_text(complex);
+  void expect_same(const films::FilmComplex& complex) {
+    const std::string text = datafile::fe_text(complex);
     const Measured measured = measure(text);
     EXPECT_EQ(measured.vertices, complex.mesh.points.size());
     EXPECT_EQ(measured.edges, sums::edges(complex));
@@ -82,7 +82,8 @@ class EvolverFe : public ::testing::Test {
     expect_near(measured.energy, sums::energy(complex), "energy");
     expect_near(measured.area, sums::area(complex), "area");
     expect_near(measured.volume, volume, "volume");
-    const FilmComplex again = complex_of(read_fe(text, "again.fe"));
+    const films::FilmComplex again =
+        datafile::complex_of(datafile::read_fe(text, "again.fe"));
     expect_near(sums::energy(again), sums::energy(complex), "read again");
   }
 
@@ -151,7 +152,8 @@ bodies
 
 TEST_F(EvolverFe, AgreesOnAFileWithEverything) {
   const Measured measured = measure(kRich);
-  const FilmComplex complex = complex_of(read_fe(kRich, "rich.fe"));
+  const films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(kRich, "rich.fe"));
   expect_near(sums::energy(complex), measured.energy, "energy");
   expect_near(sums::volume(complex, 0), measured.volume, "volume");
   expect_same(complex);
@@ -160,7 +162,8 @@ TEST_F(EvolverFe, AgreesOnAFileWithEverything) {
 TEST_F(EvolverFe, AgreesOnSymmetricContent) {
   const std::string text = std::string("symmetric_content\n") + kRich;
   const Measured measured = measure(text);
-  const FilmComplex complex = complex_of(read_fe(text, "rich.fe"));
+  const films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(text, "rich.fe"));
   expect_near(sums::energy(complex), measured.energy, "energy");
   expect_near(sums::volume(complex, 0), measured.volume, "volume");
   expect_same(complex);
@@ -198,7 +201,8 @@ TEST_F(EvolverFe, AgreesOnExpressionsInEveryForm) {
         "1 1 2 constraint 1\n2 2 3\n3 3 1\nfaces\n1 1 2 3\n",
         formula);
     SCOPED_TRACE(formula);
-    const FilmComplex complex = complex_of(read_fe(text, "formula.fe"));
+    const films::FilmComplex complex =
+        datafile::complex_of(datafile::read_fe(text, "formula.fe"));
     expect_near(sums::energy(complex), measure(text).energy, "energy");
     expect_same(complex);
   }
@@ -222,7 +226,8 @@ TEST_F(EvolverFe, AgreesOnItsOwnDumps) {
         measure(text.str(), fmt::format("gogo\ndump \"{}\"", dump.string()));
     std::ostringstream dumped;
     dumped << std::ifstream(dump).rdbuf();
-    const FilmComplex complex = complex_of(read_fe(dumped.str(), "film.dmp"));
+    const films::FilmComplex complex =
+        datafile::complex_of(datafile::read_fe(dumped.str(), "film.dmp"));
     EXPECT_EQ(measured.facets, complex.mesh.facets.size());
     // Dumps have 15 digits.
     constexpr double kDumped = 1e-11;
@@ -234,11 +239,11 @@ TEST_F(EvolverFe, AgreesOnItsOwnDumps) {
 
 // Facets beside curves of every shape; nothing slides.
 TEST_F(EvolverFe, AgreesOnCurvesAndTensionFields) {
-  FilmComplex complex;
-  Circle circle;
+  films::FilmComplex complex;
+  curves::Circle circle;
   circle.normal = Vec3(1, 2, 2);
   circle.radius = 1.5;
-  Ellipse ellipse;
+  curves::Ellipse ellipse;
   ellipse.center = Vec3(0, 0, 3);
   ellipse.radius_2 = 0.4;
   complex.curves = {{"ring", circle}, {"oval", ellipse}};
@@ -246,8 +251,9 @@ TEST_F(EvolverFe, AgreesOnCurvesAndTensionFields) {
   for (int c = 0; c < 2; ++c) {
     for (int k = 0; k < kAround; ++k) {
       const double t = static_cast<double>(k) / kAround;
-      complex.vertices.push_back({VertexKind::OnCurve, c, t, -1});
-      complex.mesh.points.push_back(point_at(complex.curves[c].shape, t));
+      complex.vertices.push_back({films::VertexKind::OnCurve, c, t, -1});
+      complex.mesh.points.push_back(
+          curves::point_at(complex.curves[c].shape, t));
     }
   }
   complex.mesh.labels = {"skin", "thick"};
@@ -263,15 +269,15 @@ TEST_F(EvolverFe, AgreesOnCurvesAndTensionFields) {
     complex.mesh.facets.push_back({next, kAround + next, kAround + k});
     complex.mesh.facet_label.push_back(0);
     complex.mesh.facet_label.push_back(1);
-    complex.edges.push_back({k, next, VertexKind::OnCurve, 0});
+    complex.edges.push_back({k, next, films::VertexKind::OnCurve, 0});
     complex.edges.push_back(
-        {kAround + next, kAround + k, VertexKind::OnCurve, 1});
+        {kAround + next, kAround + k, films::VertexKind::OnCurve, 1});
   }
   complex.bodies.resize(1);
   complex.bodies[0].sides = {{0, 1}, {1, 1}};
   complex.bodies[0].pressure = 0.25;
   // Evolver counts -pV of a given pressure as energy.
-  const Measured measured = measure(fe_text(complex));
+  const Measured measured = measure(datafile::fe_text(complex));
   expect_near(measured.area, sums::area(complex), "area");
   complex.bodies[0].pressure.reset();
   expect_same(complex);

@@ -85,8 +85,9 @@ std::string missing(const std::string& name) {
              : "";
 }
 
-double energy_of(const FilmComplex& complex) {
-  return FilmEnergy(complex).value(complex.mesh.points, targets_of(complex));
+double energy_of(const films::FilmComplex& complex) {
+  return energy::FilmEnergy(complex).value(complex.mesh.points,
+                                           energy::targets_of(complex));
 }
 
 struct Dumped {
@@ -102,21 +103,22 @@ TEST_P(EvolverDump, IsAtRest) {
     MENISCUS_NOT_HERE(why);
   }
   const Ran ran = run_evolver(sample(sampled.name), sampled.commands);
-  const FilmComplex complex = complex_of(read_fe(ran.dump, "film.dmp"));
-  const FilmEnergy energy(complex);
+  const films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(ran.dump, "film.dmp"));
+  const energy::FilmEnergy energy(complex);
   const Points& points = complex.mesh.points;
-  const FilmTargets targets = targets_of(complex);
+  const films::FilmTargets targets = energy::targets_of(complex);
   EXPECT_EQ(ran.facets, complex.mesh.facets.size());
   EXPECT_NEAR(energy_of(complex), ran.energy, kDumped * ran.energy);
   EXPECT_NEAR(energy.volumes(points).head(energy.bodies()).sum(), ran.volume,
               kDumped * (1.0 + ran.volume));
 
   // No step at all: the residual along the normals that Evolver left.
-  const FilmState before =
-      settle_in_normals(energy, complex, targets, points,
-                        {.residual_factor = 0.0, .max_iterations = 0});
-  const FilmState after =
-      settle_in_normals(energy, complex, targets, points, {});
+  const settle::FilmState before =
+      settle::settle_in_normals(energy, complex, targets, points,
+                                {.residual_factor = 0.0, .max_iterations = 0});
+  const settle::FilmState after =
+      settle::settle_in_normals(energy, complex, targets, points, {});
   RecordProperty("energy", fmt::format("{:.15g}", ran.energy));
   RecordProperty("residual_before",
                  fmt::format("{:.2e}", before.report.residual));
@@ -163,8 +165,8 @@ TEST_P(RawSample, EndsNoHigherThanEvolver) {
   const Ran ran = run_evolver(text, raw.commands);
   const TempFolder folder;
   std::ofstream(folder / "raw.fe") << text;
-  const DatafileResult found =
-      evolve_datafile(folder / "raw.fe", {.refinements = raw.refinements});
+  const results::DatafileResult found = results::evolve_datafile(
+      folder / "raw.fe", {.refinements = raw.refinements});
   ASSERT_FALSE(found.failure) << found.report.verdict;
   EXPECT_EQ(ran.facets, found.complex.mesh.facets.size());
   EXPECT_LT(found.report.energy, (1.0 + kAbove) * ran.energy);
@@ -204,12 +206,12 @@ TEST(EvolverSamples, CatPopsIntoTwoPolygons) {
       "r; u; r; g 400; t .05; o; g 20; hessian_seek; hessian_seek;");
   const TempFolder folder;
   std::ofstream(folder / "cat.fe") << sample("cat");
-  const DatafileResult found =
-      evolve_datafile(folder / "cat.fe", {.refinements = 2});
+  const results::DatafileResult found =
+      results::evolve_datafile(folder / "cat.fe", {.refinements = 2});
   ASSERT_TRUE(found.failure);
   EXPECT_EQ(found.failure->kind, FailureKind::FilmPinched);
-  const DatafileResult disks =
-      evolve_datafile(folder / "cat.fe", {.refinements = 2, .pop = true});
+  const results::DatafileResult disks = results::evolve_datafile(
+      folder / "cat.fe", {.refinements = 2, .pop = true});
   EXPECT_FALSE(disks.failure) << disks.report.verdict;
   EXPECT_LT(disks.report.energy, (1.0 + kAbove) * ran.energy);
   constexpr double kRadius = 1.5088795;
@@ -229,8 +231,8 @@ TEST(EvolverSamples, OctaPopsToTheCentralPoint) {
       run_evolver(sample("octa"), "gogo; hessian_seek; hessian_seek;");
   const TempFolder folder;
   std::ofstream(folder / "octa.fe") << sample("octa");
-  const DatafileResult found =
-      evolve_datafile(folder / "octa.fe", {.pop = true});
+  const results::DatafileResult found =
+      results::evolve_datafile(folder / "octa.fe", {.pop = true});
   EXPECT_FALSE(found.failure) << found.report.verdict;
   // All films are flat: their area does not depend on their facets.
   constexpr double kFlat = 16.0 * std::numbers::sqrt2;
@@ -246,14 +248,17 @@ TEST(EvolverSamples, TankexRunsOutOfItsTank) {
     MENISCUS_NOT_HERE(why);
   }
   const Ran ran = run_evolver(sample("tankex"), "g 5; r; g 5; r; g 5;");
-  const FilmComplex dumped = complex_of(read_fe(ran.dump, "tankex.dmp"));
+  const films::FilmComplex dumped =
+      datafile::complex_of(datafile::read_fe(ran.dump, "tankex.dmp"));
   EXPECT_NEAR(energy_of(dumped), ran.energy, kDumped * ran.energy);
-  EXPECT_NEAR(FilmEnergy(dumped).volumes(dumped.mesh.points)[0], ran.volume,
-              kDumped);
+  EXPECT_NEAR(energy::FilmEnergy(dumped).volumes(dumped.mesh.points)[0],
+              ran.volume, kDumped);
   const Ran later = run_evolver(ran.dump, "g 500;");
   EXPECT_LT(later.energy, 0.99 * ran.energy);
-  FilmComplex complex = complex_of(read_fe(sample("tankex"), "tankex.fe"));
-  const FilmState found = find_equilibrium(complex, {.refinements = 2});
+  films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(sample("tankex"), "tankex.fe"));
+  const settle::FilmState found =
+      settle::find_equilibrium(complex, {.refinements = 2});
   ASSERT_TRUE(found.failure);
   EXPECT_NE(found.failure->kind, FailureKind::FilmUnstable);
 }

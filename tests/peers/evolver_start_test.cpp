@@ -18,7 +18,7 @@ constexpr double kPrinted = 1e-12;  // relative: 15 digits, hundreds of terms
 // Linear facets at about a thousand: area is off by half a per cent at most.
 constexpr double kCoarse = 5e-3;
 
-double film_area(const FilmComplex& complex) {
+double film_area(const films::FilmComplex& complex) {
   double area = 0.0;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     if (complex.surfaces[complex.mesh.facet_label[f]].liquid) {
@@ -38,7 +38,7 @@ struct Expected {
   const char* descent = kDescent;
 };
 
-void expect_same_film(const FilmComplex& start,
+void expect_same_film(const films::FilmComplex& start,
                       const std::vector<double>& volumes,
                       const Expected& expected) {
   if (!have_evolver()) {
@@ -60,19 +60,19 @@ void expect_same_film(const FilmComplex& start,
 }
 
 TEST(EvolverStart, Catenoid) {
-  const FilmComplex start = test_films::catenoid_start();
+  const films::FilmComplex start = test_films::catenoid_start();
   expect_same_film(start, {},
                    {film_area(start), test_films::catenoid(1.0, 1.0).area});
 }
 
 TEST(EvolverStart, Cube) {
-  const FilmComplex start = test_films::cube_start();
+  const films::FilmComplex start = test_films::cube_start();
   expect_same_film(start, {1.0}, {6.0, test_films::sphere_of_volume(1.0).area});
 }
 
 TEST(EvolverStart, Strut) {
   constexpr double kArea = 26.89002;  // at volume 14, extrapolated
-  const FilmComplex start = test_films::strut_start();
+  const films::FilmComplex start = test_films::strut_start();
   // All facets, caps included, as cones to the origin.
   double volume = 0.0;
   for (const Triangle& t : start.mesh.facets) {
@@ -83,15 +83,15 @@ TEST(EvolverStart, Strut) {
 }
 
 TEST(EvolverStart, TripleDisk) {
-  const FilmComplex start = test_films::triple_disk_start();
+  const films::FilmComplex start = test_films::triple_disk_start();
   expect_same_film(start, {},
                    {film_area(start), test_films::triple_disk().area});
 }
 
 TEST(EvolverStart, Frames) {
-  const FilmComplex cube = test_films::cube_frame_start();
+  const films::FilmComplex cube = test_films::cube_frame_start();
   expect_same_film(cube, {}, {film_area(cube), test_films::kCubeFrameArea});
-  const FilmComplex tetrahedron = test_films::tetrahedral_frame_start();
+  const films::FilmComplex tetrahedron = test_films::tetrahedral_frame_start();
   expect_same_film(tetrahedron, {},
                    {film_area(tetrahedron), test_films::kTetrahedralFrameArea});
 }

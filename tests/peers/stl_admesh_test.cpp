@@ -19,7 +19,7 @@ TEST(StlAdmesh, FindsTheSurfaceClosedAndItsVolume) {
   }
   const TempFolder folder;
   const SurfaceMesh mesh = shapes::sphere(25.0, 3);
-  write_stl(folder / "ball.stl", mesh, {"ball", "mm"});
+  io::write_stl(folder / "ball.stl", mesh, {"ball", "mm"});
   ChildOptions options;
   options.argv = {"admesh", (folder / "ball.stl").string()};
   options.environment = {{"LC_ALL", "C"}};

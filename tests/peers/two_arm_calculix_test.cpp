@@ -16,36 +16,38 @@ constexpr double kPressure = 5.0;  // MPa
 class TwoArmInCalculix : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    input_ = read_case(MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml",
-                       {"resolution.fea=18", "resolution.film=9"});
-    const ForwardModel model(input_);
+    input_ = reader::read_case(MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml",
+                               {"resolution.fea=18", "resolution.film=9"});
+    const forward::ForwardModel model(input_);
     ASSERT_FALSE(model.failure()) << model.failure()->message;
     // Away from the frozen design, so that moved meshes are compared.
-    const Evaluation evaluation =
+    const forward::Evaluation evaluation =
         model.evaluate(VectorX::Constant(1, 13.0), &fields_);
     ASSERT_FALSE(evaluation.failure) << evaluation.failure->message;
   }
 
-  static LoadCase case_with(std::vector<SurfaceForce> forces,
-                            std::vector<SurfacePressure> pressures) {
-    LoadCase load_case = fields_.inputs.load_cases.front();
+  static loads::LoadCase case_with(
+      std::vector<loads::SurfaceForce> forces,
+      std::vector<loads::SurfacePressure> pressures) {
+    loads::LoadCase load_case = fields_.inputs.load_cases.front();
     load_case.forces = std::move(forces);
     load_case.pressures = std::move(pressures);
     return load_case;
   }
 
-  static VectorX ours(const LoadCase& load_case) {
-    const ElasticModel model(fields_.mesh, fields_.inputs.materials,
-                             {load_case});
+  static VectorX ours(const loads::LoadCase& load_case) {
+    const elastic::ElasticModel model(fields_.mesh, fields_.inputs.materials,
+                                      {load_case});
     return model.base_solution().displacements.front();
   }
 
-  static CalculixStep calculix(const LoadCase& load_case) {
-    EvaluatedCase numbers = fields_.inputs;
+  static CalculixStep calculix(const loads::LoadCase& load_case) {
+    case_data::EvaluatedCase numbers = fields_.inputs;
     numbers.load_cases = {load_case};
-    CalculixDeck deck = calculix_deck_of(input_, numbers, fields_.mesh);
-    deck.output = DeckOutput::Print;
-    return run_calculix(calculix_deck(fields_.mesh, deck),
+    io::CalculixDeck deck =
+        results::calculix_deck_of(input_, numbers, fields_.mesh);
+    deck.output = io::DeckOutput::Print;
+    return run_calculix(io::calculix_deck(fields_.mesh, deck),
                         static_cast<int>(fields_.mesh.nodes.size()))
         .front();
   }
@@ -59,8 +61,8 @@ class TwoArmInCalculix : public testing::Test {
     EXPECT_LT(difference, kAgreement);
   }
 
-  static inline Case input_;
-  static inline EvaluationFields fields_;
+  static inline case_data::Case input_;
+  static inline forward::EvaluationFields fields_;
 };
 
 TEST_F(TwoArmInCalculix, GivesTheSameDisplacements) {
@@ -68,7 +70,8 @@ TEST_F(TwoArmInCalculix, GivesTheSameDisplacements) {
   const CalculixStep step = calculix(fields_.inputs.load_cases.front());
   expect_same(fields_.solution.displacements.front(), step.displacement);
   Vec3 loads = Vec3::Zero();
-  for (const SurfaceForce& f : fields_.inputs.load_cases.front().forces) {
+  for (const loads::SurfaceForce& f :
+       fields_.inputs.load_cases.front().forces) {
     loads += f.total;
   }
   EXPECT_LT((step.reaction + loads).norm(), 1e-5 * loads.norm());
@@ -79,11 +82,12 @@ TEST_F(TwoArmInCalculix, GivesTheSameDisplacements) {
 TEST_F(TwoArmInCalculix, LoadsAPadAsCalculixDoes) {
   ASSERT_TRUE(have_calculix());
   for (const char* pad : {"left_pad", "right_pad"}) {
-    const LoadCase pressed = case_with({}, {{pad, kPressure}});
+    const loads::LoadCase pressed = case_with({}, {{pad, kPressure}});
     const VectorX theirs = calculix(pressed).displacement;
     expect_same(ours(pressed), theirs);
 
-    const SurfaceWeights weights = surface_weights(fields_.mesh, pad);
+    const loads::SurfaceWeights weights =
+        loads::surface_weights(fields_.mesh, pad);
     const double side = pad[0] == 'l' ? -1.0 : 1.0;
     const double angle = 60.0 * EIGEN_PI / 180.0;
     const Vec3 normal(side * std::sin(angle), 0.0, std::cos(angle));

@@ -111,7 +111,7 @@ inline std::string strut_without_head() {
 }
 
 inline std::vector<std::string> problems_of(const std::string& text) {
-  return read_case_text(text, "case.toml").problems;
+  return reader::read_case_text(text, "case.toml").problems;
 }
 
 }  // namespace meniscus

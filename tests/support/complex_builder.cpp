@@ -22,12 +22,12 @@ int ComplexBuilder::solid(const std::string& name) {
   return static_cast<int>(complex_.surfaces.size()) - 1;
 }
 
-int ComplexBuilder::curve(const std::string& name, CurveShape shape) {
+int ComplexBuilder::curve(const std::string& name, curves::CurveShape shape) {
   complex_.curves.push_back({name, std::move(shape)});
   return static_cast<int>(complex_.curves.size()) - 1;
 }
 
-int ComplexBuilder::vertex(const Vec3& place, VertexKind kind) {
+int ComplexBuilder::vertex(const Vec3& place, films::VertexKind kind) {
   complex_.mesh.points.push_back(place);
   complex_.vertices.push_back({.kind = kind});
   return static_cast<int>(complex_.vertices.size()) - 1;
@@ -35,8 +35,8 @@ int ComplexBuilder::vertex(const Vec3& place, VertexKind kind) {
 
 int ComplexBuilder::on_curve(int curve, double t) {
   const double wrapped = t - std::floor(t);
-  const int v = vertex(point_at(complex_.curves[curve].shape, wrapped),
-                       VertexKind::OnCurve);
+  const int v = vertex(curves::point_at(complex_.curves[curve].shape, wrapped),
+                       films::VertexKind::OnCurve);
   complex_.vertices[v].curve = curve;
   complex_.vertices[v].t = wrapped;
   return v;
@@ -54,11 +54,11 @@ void ComplexBuilder::quad(int surface, int a, int b, int c, int d) {
 
 void ComplexBuilder::quad_about_centre(int surface, int a, int b, int c,
                                        int d) {
-  fan(surface, {a, b, c, d}, VertexKind::Free);
+  fan(surface, {a, b, c, d}, films::VertexKind::Free);
 }
 
 void ComplexBuilder::fan(int surface, const std::vector<int>& ring,
-                         VertexKind kind) {
+                         films::VertexKind kind) {
   Vec3 sum = Vec3::Zero();
   for (const int v : ring) {
     sum += place(v);
@@ -77,14 +77,14 @@ std::vector<int> ComplexBuilder::rim(int curve, int n, double offset) {
   for (int i = 0; i < n; ++i) {
     complex_.edges.push_back({.a = ring[i],
                               .b = ring[(i + 1) % n],
-                              .kind = VertexKind::OnCurve,
+                              .kind = films::VertexKind::OnCurve,
                               .curve = curve});
   }
   return ring;
 }
 
 void ComplexBuilder::fixed_edge(int a, int b) {
-  complex_.edges.push_back({.a = a, .b = b, .kind = VertexKind::Fixed});
+  complex_.edges.push_back({.a = a, .b = b, .kind = films::VertexKind::Fixed});
 }
 
 void ComplexBuilder::band(int surface, const std::vector<int>& lower,

@@ -14,8 +14,9 @@ class ComplexBuilder {
   /// Each returns the index of what it adds.
   int liquid(const std::string& name, double tension = 1.0);
   int solid(const std::string& name);
-  int curve(const std::string& name, CurveShape shape);
-  int vertex(const Vec3& place, VertexKind kind = VertexKind::Free);
+  int curve(const std::string& name, curves::CurveShape shape);
+  int vertex(const Vec3& place,
+             films::VertexKind kind = films::VertexKind::Free);
   int on_curve(int curve, double t);
 
   void facet(int surface, int a, int b, int c);
@@ -25,7 +26,7 @@ class ComplexBuilder {
   void quad_about_centre(int surface, int a, int b, int c, int d);
   /// Facets from each piece of the closed `ring` to a new vertex in its
   /// middle; `ring` runs counter-clockwise about the facets' normal.
-  void fan(int surface, const std::vector<int>& ring, VertexKind kind);
+  void fan(int surface, const std::vector<int>& ring, films::VertexKind kind);
 
   /// A ring of `n` vertices of a curve at t = i / n + offset, its edges marked.
   std::vector<int> rim(int curve, int n, double offset = 0.0);
@@ -43,12 +44,12 @@ class ComplexBuilder {
              int n);
 
   const Vec3& place(int vertex) const { return complex_.mesh.points[vertex]; }
-  FilmComplex& complex() { return complex_; }
+  films::FilmComplex& complex() { return complex_; }
 
  private:
   int corner(const Vec3& place);
 
-  FilmComplex complex_;
+  films::FilmComplex complex_;
   std::vector<int> corners_;  // vertices that plates share
 };
 

@@ -75,7 +75,7 @@ inline TetMesh moved(TetMesh mesh, const VectorX& direction, double t) {
 template <class OfMesh>
 void expect_partials(const TetMesh& mesh, const VectorX& u,
                      const OfMesh& functional, Check check = {}) {
-  const Functional here = functional(mesh, u);
+  const element::Functional here = functional(mesh, u);
   const VectorX dx = wave(mesh, 0.4);
   ASSERT_EQ(here.by_nodes.size(), mesh.nodes.size());
   check.exact = flat(here.by_nodes).dot(dx);

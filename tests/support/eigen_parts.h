@@ -19,19 +19,19 @@ inline VectorX irregular(Eigen::Index size, double seed) {
 }
 
 /// A u by the solver's product.
-inline VectorX product(const ElementTable& table, const NodalMatrix& A,
-                       const VectorX& u) {
+inline VectorX product(const solver::ElementTable& table,
+                       const solver::NodalMatrix& A, const VectorX& u) {
   Eigen::Matrix4Xd x = Eigen::Matrix4Xd::Zero(4, table.pattern.nodes);
   x.topRows<3>() = u.reshaped(3, table.pattern.nodes);
   Eigen::Matrix4Xd y = x;
-  multiply<1>(table.pattern, A, x.data(), y.data());
+  solver::multiply<1>(table.pattern, A, x.data(), y.data());
   return Eigen::Matrix3Xd(y.topRows<3>()).reshaped();
 }
 
 /// The whole matrix without the unknowns marked in `held`, which may be empty.
 /// at(node a, node b, i, j, value) is called by fill(entry).
 template <class Fill>
-Eigen::SparseMatrix<double> sparse(const ElementTable& table,
+Eigen::SparseMatrix<double> sparse(const solver::ElementTable& table,
                                    const std::vector<char>& held,
                                    const Fill& fill) {
   std::vector<int> number(3L * table.pattern.nodes, 0);
@@ -50,10 +50,10 @@ Eigen::SparseMatrix<double> sparse(const ElementTable& table,
   return A;
 }
 
-inline Eigen::SparseMatrix<double> sparse(const ElementTable& table,
-                                          const NodalMatrix& A,
+inline Eigen::SparseMatrix<double> sparse(const solver::ElementTable& table,
+                                          const solver::NodalMatrix& A,
                                           const std::vector<char>& held = {}) {
-  const BlockPattern& p = table.pattern;
+  const solver::BlockPattern& p = table.pattern;
   return sparse(table, held, [&](const auto& entry) {
     for (int i = 0; i < p.nodes; ++i) {
       for (int c = 0; c < 3; ++c) {
@@ -67,10 +67,10 @@ inline Eigen::SparseMatrix<double> sparse(const ElementTable& table,
   });
 }
 
-inline Eigen::SparseMatrix<double> sparse(const ElementTable& table,
-                                          const BlockMatrix<double>& A,
+inline Eigen::SparseMatrix<double> sparse(const solver::ElementTable& table,
+                                          const solver::BlockMatrix<double>& A,
                                           const std::vector<char>& held = {}) {
-  const BlockPattern& p = table.pattern;
+  const solver::BlockPattern& p = table.pattern;
   return sparse(table, held, [&](const auto& entry) {
     for (int i = 0; i < p.nodes; ++i) {
       for (int r = 0; r < 3; ++r) {

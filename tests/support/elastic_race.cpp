@@ -23,7 +23,9 @@ namespace meniscus {
 
 namespace {
 
-Material aluminium() { return {"aluminium", 70000.0, 0.33, 2.7e-9, {}}; }
+element::Material aluminium() {
+  return {"aluminium", 70000.0, 0.33, 2.7e-9, {}};
+}
 
 ElasticPart loaded(TetMesh mesh, const std::string& held,
                    const std::string& pulled) {
@@ -54,7 +56,8 @@ int cells(double count, double scale) {
 TetMesh tet_block(double count, double scale) {
   const double edge = 100.0 / cells(count, scale);
   SurfaceMesh surface = shapes::box({200.0, 100.0, 100.0}, cells(count, scale));
-  Tetrahedralization result = tetrahedralize(surface, {.edge = edge});
+  mesh_tet::Tetrahedralization result =
+      mesh_tet::tetrahedralize(surface, {.edge = edge});
   if (result.failure) {
     throw std::runtime_error(result.failure->message);
   }
@@ -89,30 +92,30 @@ double cpu_seconds() {
 double recovery_seconds(const TetMesh& mesh, const ElasticPart& part,
                         const VectorX& u) {
   const Timer timer;
-  recover_stress(mesh, part.materials, u);
+  stress::recover_stress(mesh, part.materials, u);
   return timer.seconds();
 }
 
-void require(const ElasticSolution& solution) {
+void require(const equations::ElasticSolution& solution) {
   if (solution.failure) {
     throw std::runtime_error(solution.failure->message);
   }
 }
 
 std::string solve(ElasticPart (*make)(double), double scale, int threads,
-                  SolverKind solver) {
+                  equations::SolverKind solver) {
   keep_freed_memory();  // as the program does
   omp_set_num_threads(threads);
   const ElasticPart part = make(scale);
   const double start = cpu_seconds();
-  const ElasticModel model(part.mesh, part.materials, {part.load_case},
-                           {.solver = solver});
-  const ElasticSolution& base = model.base_solution();
+  const elastic::ElasticModel model(part.mesh, part.materials, {part.load_case},
+                                    {.solver = solver});
+  const equations::ElasticSolution& base = model.base_solution();
   require(base);
   const double stress =
       recovery_seconds(part.mesh, part, base.displacements[0]);
   const double first = cpu_seconds();
-  const ElasticSolution next = model.solve(part.moved);
+  const equations::ElasticSolution next = model.solve(part.moved);
   require(next);
   const double next_stress =
       recovery_seconds(part.moved, part, next.displacements[0]);
@@ -124,17 +127,18 @@ std::string solve(ElasticPart (*make)(double), double scale, int threads,
       next.report.solve_seconds, next_stress, first - start, end - first);
 }
 
-CalculixDeck deck_of(const ElasticPart& part) {
-  CalculixDeck deck;
+io::CalculixDeck deck_of(const ElasticPart& part) {
+  io::CalculixDeck deck;
   deck.materials = {{.name = "aluminium",
                      .youngs_modulus = part.materials[0].youngs_modulus,
                      .poisson_ratio = part.materials[0].poisson_ratio}};
-  DeckStep step{.name = "service"};
+  io::DeckStep step{.name = "service"};
   step.supports = {{.surface = part.load_case.supports[0].surface,
                     .fix_x = true,
                     .fix_y = true,
                     .fix_z = true}};
-  step.nodal_forces = nodal_forces(part.mesh, part.load_case, part.materials);
+  step.nodal_forces =
+      loads::nodal_forces(part.mesh, part.load_case, part.materials);
   deck.steps = {step};
   return deck;
 }
@@ -142,18 +146,21 @@ CalculixDeck deck_of(const ElasticPart& part) {
 std::string compare(ElasticPart (*make)(double), double scale,
                     double time_limit) {
   const ElasticPart part = make(scale);
-  CalculixDeck deck = deck_of(part);
-  deck.output = DeckOutput::Print;
+  io::CalculixDeck deck = deck_of(part);
+  deck.output = io::DeckOutput::Print;
   const std::vector<CalculixStep> theirs = run_calculix(
-      calculix_deck(part.mesh, deck), static_cast<int>(part.mesh.nodes.size()),
+      io::calculix_deck(part.mesh, deck),
+      static_cast<int>(part.mesh.nodes.size()),
       {.time_limit = time_limit, .threads = omp_get_max_threads()});
-  const ElasticModel model(part.mesh, part.materials, {part.load_case});
+  const elastic::ElasticModel model(part.mesh, part.materials,
+                                    {part.load_case});
   require(model.base_solution());
   const VectorX& u = model.base_solution().displacements[0];
   return fmt::format(
       "{} {}", relative_difference(u, theirs.at(0).displacement),
-      relative_difference(point_stress(part.mesh, part.materials, u).stress,
-                          theirs.at(0).stress));
+      relative_difference(
+          element::point_stress(part.mesh, part.materials, u).stress,
+          theirs.at(0).stress));
 }
 
 }  // namespace
@@ -173,7 +180,7 @@ ElasticPart large_block(double scale) {
 }
 
 ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads,
-                       SolverKind solver) {
+                       equations::SolverKind solver) {
   const MeasuredChild child =
       measure_forked([&] { return solve(make, scale, threads, solver); });
   ElasticRun run;
@@ -194,10 +201,10 @@ CalculixTime time_calculix(ElasticPart (*make)(double), double scale,
   const TempFolder folder;
   const MeasuredChild written = measure_forked([&] {
     const ElasticPart part = make(scale);
-    CalculixDeck deck = deck_of(part);
+    io::CalculixDeck deck = deck_of(part);
     deck.solver = solver;
-    deck.output = DeckOutput::Nothing;
-    write_calculix_inp(folder / "job.inp", part.mesh, deck);
+    deck.output = io::DeckOutput::Nothing;
+    io::write_calculix_inp(folder / "job.inp", part.mesh, deck);
     return std::string();
   });
   CalculixTime time;

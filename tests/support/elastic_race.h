@@ -14,8 +14,8 @@ namespace meniscus {
 struct ElasticPart {
   TetMesh mesh;
   TetMesh moved;  // about 1 % of its size away
-  std::vector<Material> materials;
-  LoadCase load_case;
+  std::vector<element::Material> materials;
+  loads::LoadCase load_case;
 };
 
 struct ElasticWork {
@@ -64,8 +64,9 @@ struct ElasticRun {
   double next_cpu = 0.0;    // the same of the next design
   double peak_bytes = 0.0;  // of the whole process, both meshes included
 };
-ElasticRun run_elastic(ElasticPart (*make)(double), double scale, int threads,
-                       SolverKind solver = SolverKind::Automatic);
+ElasticRun run_elastic(
+    ElasticPart (*make)(double), double scale, int threads,
+    equations::SolverKind solver = equations::SolverKind::Automatic);
 
 struct CalculixTime {
   bool ended = false;

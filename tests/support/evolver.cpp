@@ -26,7 +26,7 @@ std::string hessians(int count) {
 
 // The force of the pressure on a vertex: a third of its facets' area vectors.
 // Films of one body only, all with their normals outward.
-std::string residual_commands(const FilmComplex& start) {
+std::string residual_commands(const films::FilmComplex& start) {
   const bool one_body = start.bodies.size() == 1 && start.integrals.empty();
   if (!start.bodies.empty() && !one_body) {
     return "";
@@ -69,7 +69,8 @@ std::optional<double> printed(const std::string& output,
 
 bool have_evolver() { return find_program("evolver").has_value(); }
 
-std::string evolver_commands(const FilmComplex& start, const EvolverJob& job) {
+std::string evolver_commands(const films::FilmComplex& start,
+                             const EvolverJob& job) {
   std::string text =
       "before := total_energy; printf \"\\nstart_energy %.15g\\n\", before;\n";
   for (std::size_t b = 0; b < start.bodies.size(); ++b) {
@@ -104,7 +105,7 @@ std::string evolver_commands(const FilmComplex& start, const EvolverJob& job) {
   return text;
 }
 
-EvolverRun run_evolver(const FilmComplex& start, const EvolverJob& job) {
+EvolverRun run_evolver(const films::FilmComplex& start, const EvolverJob& job) {
   const TempFolder folder;
   std::ofstream(folder / "start.fe") << evolver_datafile(start);
   std::ofstream(folder / "job.cmd") << evolver_commands(start, job);

@@ -49,17 +49,18 @@ struct EvolverRun {
 /// level; they are left out, and their share of the volume is the bodies'
 /// volconst, which costs Surface Evolver nothing. For the starts of
 /// film_complexes.h; throws std::runtime_error for what it cannot say.
-std::string evolver_datafile(const FilmComplex& complex);
+std::string evolver_datafile(const films::FilmComplex& complex);
 
 /// What the left-out caps of a body hold after nested refinements: the columns
 /// under them [length^3].
-double evolver_cap_volume(const FilmComplex& complex, const ComplexBody& body,
-                          int refinements);
+double evolver_cap_volume(const films::FilmComplex& complex,
+                          const films::ComplexBody& body, int refinements);
 
 /// The commands of a job.
-std::string evolver_commands(const FilmComplex& start, const EvolverJob& job);
+std::string evolver_commands(const films::FilmComplex& start,
+                             const EvolverJob& job);
 
 /// Runs a job to its end; one that fails or diverges is a result.
-EvolverRun run_evolver(const FilmComplex& start, const EvolverJob& job);
+EvolverRun run_evolver(const films::FilmComplex& start, const EvolverJob& job);
 
 }  // namespace meniscus

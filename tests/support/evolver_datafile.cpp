@@ -14,19 +14,20 @@ namespace meniscus {
 
 namespace {
 
-bool is_boundary(const FilmComplex& complex, int curve) {
+bool is_boundary(const films::FilmComplex& complex, int curve) {
   return curve >= 0 &&
-         std::holds_alternative<Circle>(complex.curves[curve].shape);
+         std::holds_alternative<curves::Circle>(complex.curves[curve].shape);
 }
 
 // Circles about the z direction, as the starts have them; t = 0 is at +x.
-std::string boundaries(const FilmComplex& complex) {
+std::string boundaries(const films::FilmComplex& complex) {
   std::string text;
   for (std::size_t c = 0; c < complex.curves.size(); ++c) {
     if (!is_boundary(complex, static_cast<int>(c))) {
       continue;
     }
-    const Circle& circle = std::get<Circle>(complex.curves[c].shape);
+    const curves::Circle& circle =
+        std::get<curves::Circle>(complex.curves[c].shape);
     if (circle.normal.cross(Vec3::UnitZ()).norm() != 0.0) {
       throw std::runtime_error("evolver datafile: a circle is not level");
     }
@@ -41,18 +42,19 @@ std::string boundaries(const FilmComplex& complex) {
 
 // One numbered constraint per constraint set; its energy integral is that of
 // the edges that carry the set.
-std::string constraints(const FilmComplex& complex) {
+std::string constraints(const films::FilmComplex& complex) {
   std::string text;
   for (std::size_t s = 0; s < complex.constraint_sets.size(); ++s) {
     if (complex.constraint_sets[s].size() != 1) {
       throw std::runtime_error("evolver datafile: one level set per vertex");
     }
-    const LevelSet& set = complex.level_sets[complex.constraint_sets[s][0]];
+    const films::LevelSet& set =
+        complex.level_sets[complex.constraint_sets[s][0]];
     text += fmt::format("constraint {}\nformula: {} = 0\n", s + 1,
                         set.formula.text());
-    for (const ComplexEdge& edge : complex.edges) {
+    for (const films::ComplexEdge& edge : complex.edges) {
       if (edge.constraints == static_cast<int>(s) && edge.integrals >= 0) {
-        const VectorField& field =
+        const films::VectorField& field =
             complex.integrals[complex.integral_sets[edge.integrals].at(0)]
                 .field;
         text += fmt::format("energy:\ne1: {}\ne2: {}\ne3: {}\n",
@@ -72,7 +74,7 @@ struct Numbers {
   std::vector<int> vertex;            // from 1; 0: not in a film
 };
 
-Numbers number(const FilmComplex& complex) {
+Numbers number(const films::FilmComplex& complex) {
   Numbers numbers;
   std::vector<Triangle> facets;
   numbers.vertex.assign(complex.vertices.size(), 0);
@@ -84,7 +86,7 @@ Numbers number(const FilmComplex& complex) {
   }
   list_edges(facets, numbers.edges, numbers.facet_edges);
   std::set<Edge> marked;  // integrals run as these do
-  for (const ComplexEdge& edge : complex.edges) {
+  for (const films::ComplexEdge& edge : complex.edges) {
     marked.insert({edge.a, edge.b});
   }
   for (Edge& edge : numbers.edges) {
@@ -104,13 +106,14 @@ Numbers number(const FilmComplex& complex) {
   return numbers;
 }
 
-std::string vertices(const FilmComplex& complex, const Numbers& numbers) {
+std::string vertices(const films::FilmComplex& complex,
+                     const Numbers& numbers) {
   std::string text = "vertices\n";
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
     if (numbers.vertex[v] == 0) {
       continue;
     }
-    const ComplexVertex& vertex = complex.vertices[v];
+    const films::ComplexVertex& vertex = complex.vertices[v];
     const Vec3& p = complex.mesh.points[v];
     text += fmt::format("{} ", numbers.vertex[v]);
     if (is_boundary(complex, vertex.curve)) {
@@ -119,7 +122,7 @@ std::string vertices(const FilmComplex& complex, const Numbers& numbers) {
       continue;
     }
     text += fmt::format("{:.17g} {:.17g} {:.17g}", p.x(), p.y(), p.z());
-    if (vertex.kind != VertexKind::Free) {
+    if (vertex.kind != films::VertexKind::Free) {
       text += " fixed";
     }
     if (vertex.constraints >= 0) {
@@ -130,9 +133,9 @@ std::string vertices(const FilmComplex& complex, const Numbers& numbers) {
   return text;
 }
 
-std::string edges(const FilmComplex& complex, const Numbers& numbers) {
-  std::map<Edge, const ComplexEdge*> marked;
-  for (const ComplexEdge& edge : complex.edges) {
+std::string edges(const films::FilmComplex& complex, const Numbers& numbers) {
+  std::map<Edge, const films::ComplexEdge*> marked;
+  for (const films::ComplexEdge& edge : complex.edges) {
     marked[edge_key(edge.a, edge.b)] = &edge;
   }
   std::string text = "\nedges\n";
@@ -142,10 +145,10 @@ std::string edges(const FilmComplex& complex, const Numbers& numbers) {
     text +=
         fmt::format("{} {} {}", e + 1, numbers.vertex[a], numbers.vertex[b]);
     if (found != marked.end()) {
-      const ComplexEdge& edge = *found->second;
+      const films::ComplexEdge& edge = *found->second;
       if (is_boundary(complex, edge.curve)) {
         text += fmt::format(" boundary {} fixed", edge.curve + 1);
-      } else if (edge.kind != VertexKind::Free) {
+      } else if (edge.kind != films::VertexKind::Free) {
         text += " fixed";
       }
       if (edge.constraints >= 0) {
@@ -157,7 +160,7 @@ std::string edges(const FilmComplex& complex, const Numbers& numbers) {
   return text;
 }
 
-std::string faces(const FilmComplex& complex, const Numbers& numbers) {
+std::string faces(const films::FilmComplex& complex, const Numbers& numbers) {
   std::string text = "\nfaces\n";
   for (std::size_t i = 0; i < numbers.films.size(); ++i) {
     const int f = numbers.films[i];
@@ -175,13 +178,13 @@ std::string faces(const FilmComplex& complex, const Numbers& numbers) {
   return text;
 }
 
-std::string bodies(const FilmComplex& complex, const Numbers& numbers) {
+std::string bodies(const films::FilmComplex& complex, const Numbers& numbers) {
   std::string text = complex.bodies.empty() ? "" : "\nbodies\n";
   for (std::size_t b = 0; b < complex.bodies.size(); ++b) {
-    const ComplexBody& body = complex.bodies[b];
+    const films::ComplexBody& body = complex.bodies[b];
     text += fmt::format("{}", b + 1);
     for (std::size_t i = 0; i < numbers.films.size(); ++i) {
-      for (const BodySide& side : body.sides) {
+      for (const films::BodySide& side : body.sides) {
         if (side.surface == complex.mesh.facet_label[numbers.films[i]]) {
           text += fmt::format(" {}{}", side.sign < 0 ? "-" : "", i + 1);
         }
@@ -204,10 +207,10 @@ std::string bodies(const FilmComplex& complex, const Numbers& numbers) {
 
 }  // namespace
 
-double evolver_cap_volume(const FilmComplex& complex, const ComplexBody& body,
-                          int refinements) {
+double evolver_cap_volume(const films::FilmComplex& complex,
+                          const films::ComplexBody& body, int refinements) {
   double volume = 0.0;
-  for (const BodySide& side : body.sides) {
+  for (const films::BodySide& side : body.sides) {
     if (complex.surfaces[side.surface].liquid) {
       continue;
     }
@@ -244,7 +247,7 @@ double evolver_cap_volume(const FilmComplex& complex, const ComplexBody& body,
   return volume;
 }
 
-std::string evolver_datafile(const FilmComplex& complex) {
+std::string evolver_datafile(const films::FilmComplex& complex) {
   const Numbers numbers = number(complex);
   return "gravity_constant 0\n\n" + boundaries(complex) + constraints(complex) +
          vertices(complex, numbers) + edges(complex, numbers) +

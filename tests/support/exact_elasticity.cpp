@@ -38,7 +38,7 @@ void for_surface_points(const TetMesh& mesh, const std::string& surface,
                         const Visit& visit) {
   static const std::vector<FacePoint> kRule = face_rule();
   constexpr double kSlope[3][2] = {{-1.0, -1.0}, {1.0, 0.0}, {0.0, 1.0}};
-  const int label = surface_label(mesh, surface);
+  const int label = element::surface_label(mesh, surface);
   const int count = mesh.nodes_per_face();
   for (int f = 0; f < mesh.face_count(); ++f) {
     if (mesh.face_label[f] != label) {
@@ -69,8 +69,8 @@ void for_surface_points(const TetMesh& mesh, const std::string& surface,
   }
 }
 
-Mat3 tensor(const Stress& s) {
-  return stress_tensor(Eigen::Map<const Vec6>(s.data()));
+Mat3 tensor(const element::Stress& s) {
+  return element::stress_tensor(Eigen::Map<const element::Vec6>(s.data()));
 }
 
 /// Calls visit(element, nodal shapes, L, place, volume) at the points of the
@@ -83,13 +83,13 @@ void for_volume_points(const TetMesh& mesh, const Visit& visit) {
     for (int a = 0; a < Nodes; ++a) {
       x[a] = mesh.nodes[ids[a]];
     }
-    for (const auto& [L, weight] : fine_tet_rule()) {
-      const auto N = tet_shapes<Nodes>(L);
+    for (const auto& [L, weight] : element::fine_tet_rule()) {
+      const auto N = element::tet_shapes<Nodes>(L);
       Vec3 place = Vec3::Zero();
       for (int a = 0; a < Nodes; ++a) {
         place += N[a] * x[a];
       }
-      const double det = gradient_at<Nodes>(x, x, L).determinant;
+      const double det = element::gradient_at<Nodes>(x, x, L).determinant;
       visit(e, x, N, L, place, weight * det / 6.0);
     }
   }
@@ -98,7 +98,7 @@ void for_volume_points(const TetMesh& mesh, const Visit& visit) {
 template <int Nodes>
 void add_body_force(const TetMesh& mesh, const Field& field, VectorX& f) {
   for_volume_points<Nodes>(
-      mesh, [&](int e, const auto&, const auto& N, const Barycentric&,
+      mesh, [&](int e, const auto&, const auto& N, const element::Barycentric&,
                 const Vec3& place, double volume) {
         const Vec3 b = field.at(place).body_force;
         for (int a = 0; a < Nodes; ++a) {
@@ -110,38 +110,38 @@ void add_body_force(const TetMesh& mesh, const Field& field, VectorX& f) {
 template <int Nodes>
 Norms norms(const TetMesh& mesh, const Field& field, const VectorX& u) {
   Norms sum;
-  const ElasticLaw law = elastic_law(field.material());
-  for_volume_points<Nodes>(
-      mesh, [&](int e, const auto& x, const auto& N, const Barycentric& L,
-                const Vec3& place, double volume) {
-        std::array<Vec3, Nodes> nodal;
-        Vec3 here = Vec3::Zero();
-        for (int a = 0; a < Nodes; ++a) {
-          nodal[a] = u.segment<3>(3L * mesh.element(e)[a]);
-          here += N[a] * nodal[a];
-        }
-        const State exact = field.at(place);
-        const Stress found =
-            stress_of_gradient(gradient_at<Nodes>(x, nodal, L).gradient, law);
-        Stress d;
-        for (int k = 0; k < 6; ++k) {
-          d[k] = found[k] - exact.stress[k];
-        }
-        sum.l2 += volume * (here - exact.u).squaredNorm();
-        sum.energy += volume * complementary_product(d, d, law);
-        sum.l2_exact += volume * exact.u.squaredNorm();
-        sum.energy_exact +=
-            volume * complementary_product(exact.stress, exact.stress, law);
-      });
+  const element::ElasticLaw law = element::elastic_law(field.material());
+  for_volume_points<Nodes>(mesh, [&](int e, const auto& x, const auto& N,
+                                     const element::Barycentric& L,
+                                     const Vec3& place, double volume) {
+    std::array<Vec3, Nodes> nodal;
+    Vec3 here = Vec3::Zero();
+    for (int a = 0; a < Nodes; ++a) {
+      nodal[a] = u.segment<3>(3L * mesh.element(e)[a]);
+      here += N[a] * nodal[a];
+    }
+    const State exact = field.at(place);
+    const element::Stress found = element::stress_of_gradient(
+        element::gradient_at<Nodes>(x, nodal, L).gradient, law);
+    element::Stress d;
+    for (int k = 0; k < 6; ++k) {
+      d[k] = found[k] - exact.stress[k];
+    }
+    sum.l2 += volume * (here - exact.u).squaredNorm();
+    sum.energy += volume * element::complementary_product(d, d, law);
+    sum.l2_exact += volume * exact.u.squaredNorm();
+    sum.energy_exact += volume * element::complementary_product(
+                                     exact.stress, exact.stress, law);
+  });
   return {std::sqrt(sum.l2), std::sqrt(sum.energy), std::sqrt(sum.l2_exact),
           std::sqrt(sum.energy_exact)};
 }
 
 }  // namespace
 
-Field::Field(const Material& material, Displacement displacement)
+Field::Field(const element::Material& material, Displacement displacement)
     : material_(material),
-      lame_(lame(material)),
+      lame_(element::lame(material)),
       displacement_(std::move(displacement)) {}
 
 State Field::at(const Vec3& x) const {
@@ -154,7 +154,7 @@ State Field::at(const Vec3& x) const {
     state.u[i] = u[i].value;
     H.row(i) = u[i].gradient.transpose();
   }
-  state.stress = stress_of_gradient(H, ElasticLaw(lame_));
+  state.stress = element::stress_of_gradient(H, element::ElasticLaw(lame_));
   for (int i = 0; i < 3; ++i) {
     // div stress = (lambda + mu) grad div u + mu laplace u
     double slope = 0.0;

@@ -21,20 +21,20 @@ using Displacement = std::function<DualVec(const DualVec&)>;
 
 struct State {
   Vec3 u;
-  Stress stress;
+  element::Stress stress;
   Vec3 body_force;  // -div stress
 };
 
 /// A field in an isotropic material.
 class Field {
  public:
-  Field(const Material& material, Displacement displacement);
+  Field(const element::Material& material, Displacement displacement);
   State at(const Vec3& x) const;
-  const Material& material() const { return material_; }
+  const element::Material& material() const { return material_; }
 
  private:
-  Material material_;
-  Lame lame_;
+  element::Material material_;
+  element::Lame lame_;
   Displacement displacement_;
 };
 
@@ -56,20 +56,20 @@ struct Norms {
 Norms error_norms(const TetMesh& mesh, const Field& field, const VectorX& u);
 
 /// Lame: pressure in the bore of a thick cylinder about z, plane strain.
-Field thick_cylinder(const Material& material, double a, double b,
+Field thick_cylinder(const element::Material& material, double a, double b,
                      double pressure);
 
 /// Lame: pressure inside a thick sphere.
-Field thick_sphere(const Material& material, double a, double b,
+Field thick_sphere(const element::Material& material, double a, double b,
                    double pressure);
 
 /// Kirsch: circular hole of radius `a` about z in a plate pulled along x,
 /// plane strain.
-Field hole_in_plate(const Material& material, double a, double pull);
+Field hole_in_plate(const element::Material& material, double a, double pull);
 
 /// Goodier: spherical cavity of radius 1 in a solid pulled along z. Built from
 /// Kelvin's doublet and a harmonic quadrupole; the three constants follow from
 /// a cavity free of traction.
-Field spherical_cavity(const Material& material, double pull);
+Field spherical_cavity(const element::Material& material, double pull);
 
 }  // namespace meniscus::exact

@@ -22,8 +22,8 @@ DualVec sum(const DualVec& a, const DualVec& b) {
 
 /// Displacement around a cavity for a far pull S along z and constants of the
 /// point source, Kelvin's doublet and the quadrupole.
-DualVec around_cavity(const Material& m, double pull, const Vec3& constants,
-                      const DualVec& x) {
+DualVec around_cavity(const element::Material& m, double pull,
+                      const Vec3& constants, const DualVec& x) {
   const double nu = m.poisson_ratio;
   const Dual r2 = dot(x, x);
   const Dual r = sqrt(r2);
@@ -43,7 +43,8 @@ DualVec around_cavity(const Material& m, double pull, const Vec3& constants,
 
 }  // namespace
 
-Field thick_cylinder(const Material& m, double a, double b, double pressure) {
+Field thick_cylinder(const element::Material& m, double a, double b,
+                     double pressure) {
   const double nu = m.poisson_ratio;
   const double c =
       (1.0 + nu) * pressure * a * a / (m.youngs_modulus * (b * b - a * a));
@@ -54,7 +55,8 @@ Field thick_cylinder(const Material& m, double a, double b, double pressure) {
           }};
 }
 
-Field thick_sphere(const Material& m, double a, double b, double pressure) {
+Field thick_sphere(const element::Material& m, double a, double b,
+                   double pressure) {
   const double nu = m.poisson_ratio;
   const double c =
       pressure * a * a * a / (m.youngs_modulus * (b * b * b - a * a * a));
@@ -65,9 +67,9 @@ Field thick_sphere(const Material& m, double a, double b, double pressure) {
           }};
 }
 
-Field hole_in_plate(const Material& m, double a, double pull) {
+Field hole_in_plate(const element::Material& m, double a, double pull) {
   const double kappa = 3.0 - 4.0 * m.poisson_ratio;
-  const double mu = lame(m).mu;
+  const double mu = element::lame(m).mu;
   // Szabo and Babuska, Finite Element Analysis (1991), in Cartesian terms:
   // cos 3t and sin 3t from cos t = x / r, sin t = y / r.
   return {m, [=](const DualVec& x) -> DualVec {
@@ -88,7 +90,7 @@ Field hole_in_plate(const Material& m, double a, double pull) {
           }};
 }
 
-Field spherical_cavity(const Material& m, double pull) {
+Field spherical_cavity(const element::Material& m, double pull) {
   const auto field = [m](double far, const Vec3& constants) {
     return Field(m, [m, far, constants](const DualVec& x) {
       return around_cavity(m, far, constants, x);
@@ -101,8 +103,9 @@ Field spherical_cavity(const Material& m, double pull) {
                                       Vec3(0.6, 0.0, 0.8)};
   for (int p = 0; p < 3; ++p) {
     const auto traction = [&](const Field& f) -> Vec3 {
-      const Stress s = f.at(places[p]).stress;
-      return stress_tensor(Eigen::Map<const Vec6>(s.data())) * places[p];
+      const element::Stress s = f.at(places[p]).stress;
+      return element::stress_tensor(Eigen::Map<const element::Vec6>(s.data())) *
+             places[p];
     };
     b.segment<3>(3L * p) = -traction(field(pull, Vec3::Zero()));
     for (int k = 0; k < 3; ++k) {

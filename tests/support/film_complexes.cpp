@@ -13,8 +13,8 @@ namespace {
 
 using std::numbers::pi;
 
-CurveShape ring_at(double z, double radius = 1.0, double x = 0.0) {
-  return Circle{Vec3(x, 0.0, z), Vec3::UnitZ(), radius};
+curves::CurveShape ring_at(double z, double radius = 1.0, double x = 0.0) {
+  return curves::Circle{Vec3(x, 0.0, z), Vec3::UnitZ(), radius};
 }
 
 // Free vertices on the circle of radius r at height z about the z axis.
@@ -78,7 +78,7 @@ constexpr unsigned kAllFaces = 0b111111;
 
 }  // namespace
 
-FilmComplex catenoid_start(int around, int rows) {
+films::FilmComplex catenoid_start(int around, int rows) {
   ComplexBuilder builder;
   const int film = builder.liquid("film");
   const int low = builder.curve("low", ring_at(-0.5));
@@ -98,7 +98,7 @@ FilmComplex catenoid_start(int around, int rows) {
   return builder.complex();
 }
 
-FilmComplex cube_start(int n) {
+films::FilmComplex cube_start(int n) {
   ComplexBuilder builder;
   const int film = builder.liquid("film");
   box_faces(builder, film, Vec3::Zero(), Vec3::Ones(), n, kAllFaces);
@@ -107,30 +107,30 @@ FilmComplex cube_start(int n) {
   return builder.complex();
 }
 
-FilmComplex strut_start() {
+films::FilmComplex strut_start() {
   constexpr int kAround = 20;
   constexpr int kRows = 6;
   ComplexBuilder builder;
   const int film = builder.liquid("film");
   const int foot = builder.solid("foot");
   const int head = builder.solid("head");
-  const int square =
-      builder.curve("square", Polygon{{Vec3(1, -1, 0), Vec3(1, 1, 0),
-                                       Vec3(-1, 1, 0), Vec3(-1, -1, 0)}});
+  const int square = builder.curve(
+      "square", curves::Polygon{{Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0),
+                                 Vec3(-1, -1, 0)}});
   const int circle = builder.curve("circle", ring_at(4.0, 0.6, 0.8));
   const std::vector<int> lower = builder.rim(square, kAround);
   // The square begins at a corner, at -45 degrees.
   const std::vector<int> upper = builder.rim(circle, kAround, -0.125);
   ruled_bands(builder, film, lower, upper, kRows);
-  builder.fan(foot, reversed(lower), VertexKind::InCap);
-  builder.fan(head, upper, VertexKind::InCap);
+  builder.fan(foot, reversed(lower), films::VertexKind::InCap);
+  builder.fan(head, upper, films::VertexKind::InCap);
   builder.complex().bodies = {{.name = "strut",
                                .sides = {{film, 1}, {foot, 1}, {head, 1}},
                                .volume = 14.0}};
   return builder.complex();
 }
 
-FilmComplex triple_disk_start() {
+films::FilmComplex triple_disk_start() {
   constexpr int kAround = 12;
   ComplexBuilder builder;
   const int lower = builder.liquid("lower");
@@ -143,11 +143,11 @@ FilmComplex triple_disk_start() {
   const std::vector<int> middle = free_ring(builder, kAround, 0.8, 0.0);
   builder.band(lower, bottom, middle);
   builder.band(upper, middle, top);
-  builder.fan(disk, middle, VertexKind::Free);
+  builder.fan(disk, middle, films::VertexKind::Free);
   return builder.complex();
 }
 
-FilmComplex cube_frame_start() {
+films::FilmComplex cube_frame_start() {
   ComplexBuilder builder;
   std::array<int, 4> top{};
   std::array<int, 4> bottom{};
@@ -156,8 +156,8 @@ FilmComplex cube_frame_start() {
       {{1, -1}, {1, 1}, {-1, 1}, {-1, -1}}};
   for (int i = 0; i < 4; ++i) {
     const auto [x, y] = kCorner[i];
-    top[i] = builder.vertex(0.5 * Vec3(x, y, 1), VertexKind::Fixed);
-    bottom[i] = builder.vertex(0.5 * Vec3(x, y, -1), VertexKind::Fixed);
+    top[i] = builder.vertex(0.5 * Vec3(x, y, 1), films::VertexKind::Fixed);
+    bottom[i] = builder.vertex(0.5 * Vec3(x, y, -1), films::VertexKind::Fixed);
     inner[i] = builder.vertex(0.1 * Vec3(x, y, 0));
   }
   for (int i = 0; i < 4; ++i) {
@@ -177,7 +177,7 @@ FilmComplex cube_frame_start() {
   return builder.complex();
 }
 
-FilmComplex tetrahedral_frame_start() {
+films::FilmComplex tetrahedral_frame_start() {
   ComplexBuilder builder;
   std::array<int, 4> corner{};
   std::array<int, 4> spoke{};  // middles of the triple lines
@@ -186,14 +186,14 @@ FilmComplex tetrahedral_frame_start() {
   const Vec3 off(0.2, 0.1, -0.15);
   const int centre = builder.vertex(off);
   for (int i = 0; i < 4; ++i) {
-    corner[i] = builder.vertex(places[i], VertexKind::Fixed);
+    corner[i] = builder.vertex(places[i], films::VertexKind::Fixed);
     spoke[i] = builder.vertex(0.5 * (places[i] + off));
   }
   for (int i = 0; i < 4; ++i) {
     for (int j = i + 1; j < 4; ++j) {
       const int film = builder.liquid(fmt::format("film{}{}", i, j));
-      const int middle =
-          builder.vertex(0.5 * (places[i] + places[j]), VertexKind::Fixed);
+      const int middle = builder.vertex(0.5 * (places[i] + places[j]),
+                                        films::VertexKind::Fixed);
       builder.fixed_edge(corner[i], middle);
       builder.fixed_edge(middle, corner[j]);
       builder.facet(film, corner[i], middle, spoke[i]);
@@ -205,7 +205,7 @@ FilmComplex tetrahedral_frame_start() {
   return builder.complex();
 }
 
-FilmComplex double_bubble_start(int n) {
+films::FilmComplex double_bubble_start(int n) {
   ComplexBuilder builder;
   const int left = builder.liquid("left");
   const int right = builder.liquid("right");
@@ -222,19 +222,19 @@ FilmComplex double_bubble_start(int n) {
   return builder.complex();
 }
 
-FilmComplex sessile_cap_start(double angle, int n) {
+films::FilmComplex sessile_cap_start(double angle, int n) {
   ComplexBuilder builder;
   const int film = builder.liquid("film");
   box_faces(builder, film, Vec3::Zero(), Vec3::Ones(), n,
             kAllFaces & ~0b010000U);
-  FilmComplex& complex = builder.complex();
+  films::FilmComplex& complex = builder.complex();
   complex.level_sets = {
       {.name = "plane", .formula = Expression::parse("z", {"x", "y", "z"})}};
   complex.constraint_sets = {{0}};
   // Counter-clockwise along the rim, y dx adds up to minus the wetted area.
   complex.integrals = {
       {.name = "wall",
-       .role = LineIntegral::Role::Energy,
+       .role = films::LineIntegral::Role::Energy,
        .field = {Expression::parse(fmt::format("{:.17g} * y", std::cos(angle)),
                                    {"x", "y", "z"}),
                  Expression(), Expression()}}};
@@ -254,11 +254,11 @@ FilmComplex sessile_cap_start(double angle, int n) {
     }
   }
   complex.bodies = {{.name = "drop", .sides = {{film, 1}}, .volume = 1.0}};
-  complex.volume_rule = VolumeRule::Column;
+  complex.volume_rule = films::VolumeRule::Column;
   return complex;
 }
 
-FilmComplex tube_start(const TubeSpec& spec) {
+films::FilmComplex tube_start(const TubeSpec& spec) {
   ComplexBuilder builder;
   const int film = builder.liquid("film");
   const int foot = builder.solid("foot");
@@ -268,8 +268,8 @@ FilmComplex tube_start(const TubeSpec& spec) {
   const std::vector<int> lower = builder.rim(low, spec.around);
   const std::vector<int> upper = builder.rim(high, spec.around);
   ruled_bands(builder, film, lower, upper, spec.rows);
-  builder.fan(foot, reversed(lower), VertexKind::InCap);
-  builder.fan(head, upper, VertexKind::InCap);
+  builder.fan(foot, reversed(lower), films::VertexKind::InCap);
+  builder.fan(head, upper, films::VertexKind::InCap);
   builder.complex().bodies = {{.name = "tube",
                                .sides = {{film, 1}, {foot, 1}, {head, 1}},
                                .volume = spec.volume,
@@ -286,13 +286,13 @@ double prism_pressure(const TubeSpec& spec) {
   return 1.0 / (spec.radius * std::cos(pi / spec.around));
 }
 
-FilmComplex long_tube_saddle(int around, int rows) {
+films::FilmComplex long_tube_saddle(int around, int rows) {
   TubeSpec spec{.length = 6.5, .around = around, .rows = rows};
   spec.volume = prism_volume(spec);
   return tube_start(spec);
 }
 
-FilmComplex thin_catenoid_saddle(int around, int rows) {
+films::FilmComplex thin_catenoid_saddle(int around, int rows) {
   // c cosh(0.5 / c) falls to its least value at c = 0.4168; the thin branch is
   // left of it.
   double low = 0.1;
@@ -301,10 +301,10 @@ FilmComplex thin_catenoid_saddle(int around, int rows) {
     const double c = 0.5 * (low + high);
     (c * std::cosh(0.5 / c) > 1.0 ? low : high) = c;
   }
-  FilmComplex complex = catenoid_start(around, rows);
+  films::FilmComplex complex = catenoid_start(around, rows);
   const double c = low;
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    if (complex.vertices[v].kind == VertexKind::Free) {
+    if (complex.vertices[v].kind == films::VertexKind::Free) {
       Vec3& p = complex.mesh.points[v];
       // Rows closer where the profile is narrow: equal steps of arclength.
       const double s = 2.0 * p.z() * c * std::sinh(0.5 / c);
@@ -316,14 +316,14 @@ FilmComplex thin_catenoid_saddle(int around, int rows) {
   return complex;
 }
 
-FilmComplex fins_start(const std::vector<double>& degrees, int along) {
+films::FilmComplex fins_start(const std::vector<double>& degrees, int along) {
   ComplexBuilder builder;
   std::vector<int> line;
   for (int i = 0; i <= along; ++i) {
     line.push_back(builder.vertex(Vec3(0, 0, 4.0 * i / along)));
   }
   for (const int end : {0, along}) {
-    builder.complex().vertices[line[end]].kind = VertexKind::Fixed;
+    builder.complex().vertices[line[end]].kind = films::VertexKind::Fixed;
   }
   for (const double angle : degrees) {
     const double a = angle * pi / 180.0;
@@ -331,7 +331,8 @@ FilmComplex fins_start(const std::vector<double>& degrees, int along) {
     const int film = builder.liquid("fin" + std::to_string(int(angle)));
     std::vector<int> rim;
     for (const int v : line) {
-      rim.push_back(builder.vertex(builder.place(v) + out, VertexKind::Fixed));
+      rim.push_back(
+          builder.vertex(builder.place(v) + out, films::VertexKind::Fixed));
     }
     for (int i = 0; i < along; ++i) {
       builder.quad(film, line[i], rim[i], rim[i + 1], line[i + 1]);

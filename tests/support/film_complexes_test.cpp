@@ -37,10 +37,11 @@ std::map<Edge, EdgeUse> edge_uses(const SurfaceMesh& mesh) {
   return uses;
 }
 
-double body_volume(const FilmComplex& complex, const ComplexBody& body) {
+double body_volume(const films::FilmComplex& complex,
+                   const films::ComplexBody& body) {
   double sum = 0.0;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
-    for (const BodySide& side : body.sides) {
+    for (const films::BodySide& side : body.sides) {
       if (side.surface == complex.mesh.facet_label[f]) {
         const Triangle& t = complex.mesh.facets[f];
         const Points& p = complex.mesh.points;
@@ -51,7 +52,7 @@ double body_volume(const FilmComplex& complex, const ComplexBody& body) {
   return sum;
 }
 
-int liquid_facets(const FilmComplex& complex) {
+int liquid_facets(const films::FilmComplex& complex) {
   int count = 0;
   for (const int label : complex.mesh.facet_label) {
     count += complex.surfaces[label].liquid ? 1 : 0;
@@ -61,12 +62,12 @@ int liquid_facets(const FilmComplex& complex) {
 
 // Conforming, one way round within a surface, open only along marked edges,
 // every marked edge an edge, bodies closed, rims on their curves.
-void expect_sound(const FilmComplex& complex, int triple_edges) {
+void expect_sound(const films::FilmComplex& complex, int triple_edges) {
   ASSERT_EQ(complex.vertices.size(), complex.mesh.points.size());
   ASSERT_EQ(complex.surfaces.size(), complex.mesh.labels.size());
   std::set<Edge> marked;
   const std::map<Edge, EdgeUse> uses = edge_uses(complex.mesh);
-  for (const ComplexEdge& edge : complex.edges) {
+  for (const films::ComplexEdge& edge : complex.edges) {
     const Edge key = edge_key(edge.a, edge.b);
     EXPECT_TRUE(marked.insert(key).second) << "marked twice";
     EXPECT_TRUE(uses.contains(key)) << edge.a << "-" << edge.b;
@@ -83,16 +84,16 @@ void expect_sound(const FilmComplex& complex, int triple_edges) {
   }
   EXPECT_EQ(triple, triple_edges);
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    const ComplexVertex& vertex = complex.vertices[v];
-    if (vertex.kind == VertexKind::OnCurve) {
-      EXPECT_EQ(point_at(complex.curves[vertex.curve].shape, vertex.t),
+    const films::ComplexVertex& vertex = complex.vertices[v];
+    if (vertex.kind == films::VertexKind::OnCurve) {
+      EXPECT_EQ(curves::point_at(complex.curves[vertex.curve].shape, vertex.t),
                 complex.mesh.points[v]);
     }
   }
 }
 
 TEST(FilmComplexes, Catenoid) {
-  const FilmComplex complex = test_films::catenoid_start();
+  const films::FilmComplex complex = test_films::catenoid_start();
   expect_sound(complex, 0);
   EXPECT_EQ(complex.mesh.facets.size(), 60U);
   EXPECT_NEAR(surface_area(complex.mesh), 30.0 * std::sin(pi / 15.0),
@@ -100,7 +101,7 @@ TEST(FilmComplexes, Catenoid) {
 }
 
 TEST(FilmComplexes, Cube) {
-  const FilmComplex complex = test_films::cube_start();
+  const films::FilmComplex complex = test_films::cube_start();
   expect_sound(complex, 0);
   EXPECT_EQ(complex.mesh.facets.size(), 216U);
   EXPECT_NEAR(surface_area(complex.mesh), 6.0, kRounding);
@@ -108,7 +109,7 @@ TEST(FilmComplexes, Cube) {
 }
 
 TEST(FilmComplexes, Strut) {
-  const FilmComplex complex = test_films::strut_start();
+  const films::FilmComplex complex = test_films::strut_start();
   expect_sound(complex, 0);
   EXPECT_EQ(liquid_facets(complex), 240);
   EXPECT_NEAR(surface_area(complex.mesh, complex.mesh.label_of("foot")), 4.0,
@@ -122,7 +123,7 @@ TEST(FilmComplexes, Strut) {
 }
 
 TEST(FilmComplexes, TripleDisk) {
-  const FilmComplex complex = test_films::triple_disk_start();
+  const films::FilmComplex complex = test_films::triple_disk_start();
   expect_sound(complex, 12);
   EXPECT_EQ(complex.mesh.facets.size(), 60U);
   EXPECT_NEAR(surface_area(complex.mesh, complex.mesh.label_of("disk")),
@@ -130,7 +131,7 @@ TEST(FilmComplexes, TripleDisk) {
 }
 
 TEST(FilmComplexes, CubeFrame) {
-  const FilmComplex complex = test_films::cube_frame_start();
+  const films::FilmComplex complex = test_films::cube_frame_start();
   expect_sound(complex, 12);
   EXPECT_EQ(complex.mesh.facets.size(), 40U);
   EXPECT_EQ(complex.edges.size(), 12U);
@@ -142,7 +143,7 @@ TEST(FilmComplexes, CubeFrame) {
 }
 
 TEST(FilmComplexes, TetrahedralFrame) {
-  const FilmComplex complex = test_films::tetrahedral_frame_start();
+  const films::FilmComplex complex = test_films::tetrahedral_frame_start();
   expect_sound(complex, 8);
   EXPECT_EQ(complex.mesh.facets.size(), 24U);
   EXPECT_EQ(complex.edges.size(), 12U);
@@ -150,25 +151,25 @@ TEST(FilmComplexes, TetrahedralFrame) {
 }
 
 TEST(FilmComplexes, DoubleBubble) {
-  const FilmComplex complex = test_films::double_bubble_start(2);
+  const films::FilmComplex complex = test_films::double_bubble_start(2);
   expect_sound(complex, 8);
   EXPECT_EQ(complex.mesh.facets.size(), 11U * 4 * 4);
   EXPECT_NEAR(surface_area(complex.mesh), 11.0, kRounding);
-  for (const ComplexBody& body : complex.bodies) {
+  for (const films::ComplexBody& body : complex.bodies) {
     EXPECT_NEAR(body_volume(complex, body), 1.0, kRounding);
   }
 }
 
 TEST(FilmComplexes, SessileCap) {
   const double angle = pi / 3.0;
-  const FilmComplex complex = test_films::sessile_cap_start(angle, 2);
+  const films::FilmComplex complex = test_films::sessile_cap_start(angle, 2);
   expect_sound(complex, 0);
   EXPECT_EQ(complex.mesh.facets.size(), 5U * 4 * 4);
   EXPECT_EQ(complex.edges.size(), 8U);
   EXPECT_NEAR(body_volume(complex, complex.bodies[0]), 1.0, kRounding);
   // The rim's integral is linear along each edge: its middle gives it exactly.
   double wall = 0.0;
-  for (const ComplexEdge& edge : complex.edges) {
+  for (const films::ComplexEdge& edge : complex.edges) {
     const Vec3& a = complex.mesh.points[edge.a];
     const Vec3& b = complex.mesh.points[edge.b];
     const Vec3 middle = 0.5 * (a + b);
@@ -183,7 +184,7 @@ TEST(FilmComplexes, SessileCap) {
 
 TEST(FilmComplexes, Tube) {
   const test_films::TubeSpec spec{.radius = 0.5, .length = 3.0, .volume = 2.0};
-  const FilmComplex complex = test_films::tube_start(spec);
+  const films::FilmComplex complex = test_films::tube_start(spec);
   expect_sound(complex, 0);
   EXPECT_EQ(liquid_facets(complex), 2 * spec.around * spec.rows);
   EXPECT_NEAR(body_volume(complex, complex.bodies[0]),
@@ -192,11 +193,11 @@ TEST(FilmComplexes, Tube) {
 }
 
 TEST(FilmComplexes, Saddles) {
-  const FilmComplex tube = test_films::long_tube_saddle();
+  const films::FilmComplex tube = test_films::long_tube_saddle();
   expect_sound(tube, 0);
   EXPECT_NEAR(*tube.bodies[0].volume, body_volume(tube, tube.bodies[0]),
               kRounding);
-  const FilmComplex catenoid = test_films::thin_catenoid_saddle(48, 24);
+  const films::FilmComplex catenoid = test_films::thin_catenoid_saddle(48, 24);
   expect_sound(catenoid, 0);
   double waist = 1.0;
   for (const Vec3& p : catenoid.mesh.points) {

@@ -53,10 +53,11 @@ void add(SurfaceMesh& mesh, const Triangle& t, int label) {
   mesh.facet_label.push_back(label);
 }
 
-RimCurve circle(double radius, double z) {
-  return RimCurve({{EllipseCurve{Vec3(0, 0, z), radius * Vec3::UnitX(),
-                                 radius * Vec3::UnitY()},
-                    0.0, kTurn}});
+solid::RimCurve circle(double radius, double z) {
+  return solid::RimCurve(
+      {{solid::EllipseCurve{Vec3(0, 0, z), radius * Vec3::UnitX(),
+                            radius * Vec3::UnitY()},
+        0.0, kTurn}});
 }
 
 /// The film from points of the disk, and the floor as a fan.
@@ -85,11 +86,11 @@ FilmPart over_floor(int rings,
 
 }  // namespace
 
-FilmSolid solid_of(const FilmPart& part) {
-  return film_solid({.mesh = part.mesh,
-                     .rims = part.rims,
-                     .caps = part.caps,
-                     .edge = part.edge});
+solid::FilmSolid solid_of(const FilmPart& part) {
+  return solid::film_solid({.mesh = part.mesh,
+                            .rims = part.rims,
+                            .caps = part.caps,
+                            .edge = part.edge});
 }
 
 FilmPart dome(int rings, const Height& height) {
@@ -173,9 +174,9 @@ FilmPart spool(int around, double height,
       }
     }
     for (const int i : {0, rings}) {
-      NamedRim rim{i == 0 ? "low" : "high",
-                   circle(r(height * i / rings), height * i / rings),
-                   {}};
+      solid::NamedRim rim{i == 0 ? "low" : "high",
+                          circle(r(height * i / rings), height * i / rings),
+                          {}};
       for (int j = 0; j < around; ++j) {
         rim.vertices.push_back(id(i, j));
       }
@@ -264,31 +265,33 @@ FilmPart square_dome(int half, double rise) {
   for (std::size_t k = 0; k < rim.size(); ++k) {
     add(mesh, {rim[(k + 1) % rim.size()], rim[k], middle}, 1);
   }
-  std::vector<RimPiece> sides;
+  std::vector<solid::RimPiece> sides;
   const Points corners = {
       {-20, -20, 0}, {20, -20, 0}, {20, 20, 0}, {-20, 20, 0}};
   for (int k = 0; k < 4; ++k) {
     sides.push_back(
-        {StraightLine{corners[k], (corners[(k + 1) % 4] - corners[k]) / 40.0},
+        {solid::StraightLine{corners[k],
+                             (corners[(k + 1) % 4] - corners[k]) / 40.0},
          0.0, 40.0});
   }
-  part.rims.push_back({"rim", RimCurve(std::move(sides)), rim});
+  part.rims.push_back({"rim", solid::RimCurve(std::move(sides)), rim});
   return part;
 }
 
-void expect_closed(const Brep& brep) {
+void expect_closed(const solid::Brep& brep) {
   std::vector<int> uses(brep.edges.size(), 0);
-  for (const BrepFace& face : brep.faces) {
+  for (const solid::BrepFace& face : brep.faces) {
     for (const auto& loop : face.loops) {
-      std::vector<BrepUse> real;
-      std::copy_if(loop.begin(), loop.end(), std::back_inserter(real),
-                   [](const BrepUse& use) { return use.edge != kPole; });
+      std::vector<solid::BrepUse> real;
+      std::copy_if(
+          loop.begin(), loop.end(), std::back_inserter(real),
+          [](const solid::BrepUse& use) { return use.edge != solid::kPole; });
       for (std::size_t k = 0; k < real.size(); ++k) {
-        const BrepUse& use = real[k];
-        const BrepUse& next = real[(k + 1) % real.size()];
+        const solid::BrepUse& use = real[k];
+        const solid::BrepUse& next = real[(k + 1) % real.size()];
         uses[use.edge] += use.forward ? 1 : 100;
-        const BrepEdge& e = brep.edges[use.edge];
-        const BrepEdge& f = brep.edges[next.edge];
+        const solid::BrepEdge& e = brep.edges[use.edge];
+        const solid::BrepEdge& f = brep.edges[next.edge];
         EXPECT_EQ(use.forward ? e.to : e.from, next.forward ? f.from : f.to);
       }
     }

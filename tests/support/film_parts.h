@@ -11,12 +11,12 @@ namespace meniscus {
 
 struct FilmPart {
   SurfaceMesh mesh;
-  std::vector<NamedRim> rims;
+  std::vector<solid::NamedRim> rims;
   std::vector<std::string> caps;
   double edge = 0.0;
 };
 
-FilmSolid solid_of(const FilmPart& part);
+solid::FilmSolid solid_of(const FilmPart& part);
 
 using Height = std::function<double(double x, double y)>;
 
@@ -42,6 +42,6 @@ FilmPart spool(int around, double height,
 FilmPart square_dome(int half, double rise);
 
 /// Every edge once each way, loops closed.
-void expect_closed(const Brep& brep);
+void expect_closed(const solid::Brep& brep);
 
 }  // namespace meniscus

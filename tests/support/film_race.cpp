@@ -29,7 +29,7 @@ double user_seconds() {
          1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
-int film_facets(const FilmComplex& complex) {
+int film_facets(const films::FilmComplex& complex) {
   int count = 0;
   for (const int label : complex.mesh.facet_label) {
     count += complex.surfaces[label].liquid ? 1 : 0;
@@ -37,17 +37,17 @@ int film_facets(const FilmComplex& complex) {
   return count;
 }
 
-std::string settle(const FilmComplex& start, int refinements) {
+std::string settle_film(const films::FilmComplex& start, int refinements) {
   keep_freed_memory();  // as the program does
-  FilmComplex complex = start;
+  films::FilmComplex complex = start;
   omp_set_num_threads(1);
   const double before = user_seconds();
   const auto begin = std::chrono::steady_clock::now();
-  const FilmState state = find_refined(complex, refinements);
+  const settle::FilmState state = find_refined(complex, refinements);
   const std::chrono::duration<double> wall =
       std::chrono::steady_clock::now() - begin;
   const double user = user_seconds() - before;
-  const FilmReport& report = state.report;
+  const settle::FilmReport& report = state.report;
   const bool settled = !state.failure && report.index == 0 &&
                        report.residual <= report.residual_bound;
   return fmt::format(
@@ -77,15 +77,15 @@ const std::vector<SpeedWork>& speed_works() {
   return works;
 }
 
-FilmState find_refined(FilmComplex& complex, int refinements) {
-  return find_equilibrium(complex,
-                          {.refinements = refinements,
-                           .settle = {.residual_factor = kResidualFactor}});
+settle::FilmState find_refined(films::FilmComplex& complex, int refinements) {
+  return settle::find_equilibrium(
+      complex, {.refinements = refinements,
+                .settle = {.residual_factor = kResidualFactor}});
 }
 
-FilmRun run_film(const FilmComplex& start, int refinements) {
+FilmRun run_film(const films::FilmComplex& start, int refinements) {
   const MeasuredChild child =
-      measure_forked([&] { return settle(start, refinements); });
+      measure_forked([&] { return settle_film(start, refinements); });
   FilmRun run;
   run.peak_bytes = child.peak_bytes;
   run.user_seconds = child.user_seconds;

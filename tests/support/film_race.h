@@ -16,7 +16,7 @@ namespace meniscus {
 /// A film and how many times faster than Surface Evolver it has to settle.
 struct SpeedWork {
   std::string name;
-  FilmComplex (*start)() = nullptr;
+  films::FilmComplex (*start)() = nullptr;
   int refinements = 0;     // at full size
   std::string descent;     // Surface Evolver's, per level
   double least_tuned = 0;  // ratios of user CPU time
@@ -47,11 +47,11 @@ struct FilmRun {
 
 /// find_equilibrium() after nested refinements, to 1e-10 x tension x mean
 /// edge; `complex` becomes the film.
-FilmState find_refined(FilmComplex& complex, int refinements);
+settle::FilmState find_refined(films::FilmComplex& complex, int refinements);
 
 /// Settles `start` after nested refinements, one thread, in a child process of
 /// its own.
-FilmRun run_film(const FilmComplex& start, int refinements);
+FilmRun run_film(const films::FilmComplex& start, int refinements);
 
 /// The run of least user time of `count`, each `run()`: what else the machine
 /// did only adds to it.

@@ -11,14 +11,15 @@ namespace meniscus::shapes {
 /// Film "tube" of tension 1 between circles of radius R at z = -L/2 and L/2,
 /// n points around and m rows along, radius profile(z); normals outward.
 template <typename Profile>
-FilmComplex tube(double radius, double length, int n, int m,
-                 const Profile& profile) {
-  FilmComplex complex;
+films::FilmComplex tube(double radius, double length, int n, int m,
+                        const Profile& profile) {
+  films::FilmComplex complex;
   complex.mesh.labels = {"tube"};
   complex.surfaces = {{"tube", true, 1.0}};
   for (const double z : {-0.5 * length, 0.5 * length}) {
-    complex.curves.push_back({z < 0 ? "bottom" : "top",
-                              Circle{Vec3(0, 0, z), Vec3::UnitZ(), radius}});
+    complex.curves.push_back(
+        {z < 0 ? "bottom" : "top",
+         curves::Circle{Vec3(0, 0, z), Vec3::UnitZ(), radius}});
   }
   for (int j = 0; j <= m; ++j) {
     const double z = length * (static_cast<double>(j) / m - 0.5);
@@ -29,8 +30,9 @@ FilmComplex tube(double radius, double length, int n, int m,
       const double r = rim ? radius : profile(z);
       complex.mesh.points.emplace_back(r * std::cos(angle), r * std::sin(angle),
                                        z);
-      complex.vertices.push_back({rim ? VertexKind::OnCurve : VertexKind::Free,
-                                  rim ? (j == 0 ? 0 : 1) : -1, rim ? t : 0.0});
+      complex.vertices.push_back(
+          {rim ? films::VertexKind::OnCurve : films::VertexKind::Free,
+           rim ? (j == 0 ? 0 : 1) : -1, rim ? t : 0.0});
     }
   }
   const auto add = [&](int a, int b, int c, int label) {
@@ -54,7 +56,7 @@ FilmComplex tube(double radius, double length, int n, int m,
 }
 
 /// Closes a tube with flat caps (fans) and makes it the body "part".
-inline void close_tube(FilmComplex& complex, int n) {
+inline void close_tube(films::FilmComplex& complex, int n) {
   const auto points = static_cast<int>(complex.mesh.points.size());
   complex.mesh.labels = {"tube", "floor", "lid"};
   complex.surfaces.push_back({"floor", false, 0.0});
@@ -63,7 +65,7 @@ inline void close_tube(FilmComplex& complex, int n) {
     const int first = cap == 0 ? 0 : points - n;
     const auto center = static_cast<int>(complex.mesh.points.size());
     complex.mesh.points.emplace_back(0, 0, complex.mesh.points[first].z());
-    complex.vertices.push_back({VertexKind::InCap, -1, 0.0});
+    complex.vertices.push_back({films::VertexKind::InCap, -1, 0.0});
     for (int i = 0; i < n; ++i) {
       const int a = first + i;
       const int b = first + (i + 1) % n;
@@ -72,21 +74,21 @@ inline void close_tube(FilmComplex& complex, int n) {
       complex.mesh.facet_label.push_back(1 + cap);
     }
   }
-  ComplexBody body;
+  films::ComplexBody body;
   body.name = "part";
   body.sides = {{0, 1}, {1, 1}, {2, 1}};
   complex.bodies.push_back(body);
 }
 
 /// The surface as one floating film that encloses the body "drop".
-inline FilmComplex drop(const SurfaceMesh& mesh, double volume) {
-  FilmComplex complex;
+inline films::FilmComplex drop(const SurfaceMesh& mesh, double volume) {
+  films::FilmComplex complex;
   complex.mesh = mesh;
   complex.mesh.labels = {"film"};
   complex.mesh.facet_label.assign(mesh.facets.size(), 0);
   complex.surfaces = {{"film", true, 1.0}};
   complex.vertices.resize(mesh.points.size());
-  ComplexBody body;
+  films::ComplexBody body;
   body.name = "drop";
   body.sides = {{0, 1}};
   body.volume = volume;

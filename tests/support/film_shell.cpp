@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "evolve/walls/thicken.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -118,8 +118,8 @@ SurfaceMesh coarse_wall(const Film& film, const Points& front,
 
 TetMesh film_shell(const QuadraticSurface& surface, const ShellSpec& spec) {
   const Film film = film_of(surface, surface.base.label_of(spec.film));
-  const ThickWall thick =
-      thicken(refined(film), {.thickness = Expression(spec.thickness)});
+  const walls::ThickWall thick =
+      walls::thicken(refined(film), {.thickness = Expression(spec.thickness)});
   if (!thick.findings.empty()) {
     throw MeshError(summary(thick.findings));
   }
@@ -142,11 +142,12 @@ TetMesh film_shell(const QuadraticSurface& surface, const ShellSpec& spec) {
     const double across = 0.5 * ((p < n ? 1.0 : 0.0) + (q < n ? 1.0 : 0.0));
     wall.mid.push_back(across * front[m] + (1.0 - across) * back[m]);
   }
-  const Tetrahedralization filled = tetrahedralize(wall.base);
+  const mesh_tet::Tetrahedralization filled =
+      mesh_tet::tetrahedralize(wall.base);
   if (filled.failure) {
     throw MeshError(filled.failure->message);
   }
-  return make_quadratic(filled.mesh, wall);
+  return mesh_tet::make_quadratic(filled.mesh, wall);
 }
 
 }  // namespace meniscus::test_films

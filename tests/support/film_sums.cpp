@@ -14,7 +14,7 @@ double at(const Expression& expression, const Vec3& p) {
   return expression.evaluate(std::array{p.x(), p.y(), p.z()});
 }
 
-Vec3 at(const VectorField& field, const Vec3& p) {
+Vec3 at(const films::VectorField& field, const Vec3& p) {
   return {at(field[0], p), at(field[1], p), at(field[2], p)};
 }
 
@@ -37,8 +37,8 @@ std::array<double, 2> gauss(int k, int n) {
   return {x, 2.0 / ((1.0 - x * x) * slope * slope)};
 }
 
-double along(const FilmComplex& complex, const VectorField& field,
-             const ComplexEdge& edge) {
+double along(const films::FilmComplex& complex, const films::VectorField& field,
+             const films::ComplexEdge& edge) {
   const Vec3& a = complex.mesh.points[edge.a];
   const Vec3& b = complex.mesh.points[edge.b];
   double sum = 0.0;
@@ -49,7 +49,7 @@ double along(const FilmComplex& complex, const VectorField& field,
   return sum;
 }
 
-Vec3 normal(const LevelSet& level, const Vec3& p) {
+Vec3 normal(const films::LevelSet& level, const Vec3& p) {
   return level.formula
       .evaluate(std::array{Dual::variable(p.x(), 0, 3),
                            Dual::variable(p.y(), 1, 3),
@@ -57,15 +57,15 @@ Vec3 normal(const LevelSet& level, const Vec3& p) {
       .gradient.normalized();
 }
 
-double gap(const FilmComplex& complex, const ComplexEdge& edge) {
+double gap(const films::FilmComplex& complex, const films::ComplexEdge& edge) {
   const Vec3& a = complex.mesh.points[edge.a];
   const Vec3& b = complex.mesh.points[edge.b];
   double sum = 0.0;
-  if (edge.kind != VertexKind::Free || edge.constraints < 0) {
+  if (edge.kind != films::VertexKind::Free || edge.constraints < 0) {
     return sum;
   }
   for (const int index : complex.constraint_sets[edge.constraints]) {
-    const LevelSet& level = complex.level_sets[index];
+    const films::LevelSet& level = complex.level_sets[index];
     if (level.convex) {
       sum += complex.gap_constant * (b - a).norm() *
              (std::abs((b - a).dot(normal(level, a))) +
@@ -109,16 +109,16 @@ struct Corners {
   Vec3 vector() const { return 0.5 * (b - a).cross(c - a); }
 };
 
-Corners corners(const FilmComplex& complex, std::size_t facet) {
+Corners corners(const films::FilmComplex& complex, std::size_t facet) {
   const Triangle& t = complex.mesh.facets[facet];
   return {complex.mesh.points[t[0]], complex.mesh.points[t[1]],
           complex.mesh.points[t[2]]};
 }
 
 // Sign of the facet in the body: 1, -1, or 0.
-int sign_in(const FilmComplex& complex, int body, std::size_t facet) {
+int sign_in(const films::FilmComplex& complex, int body, std::size_t facet) {
   int sign = 0;
-  for (const BodySide& side : complex.bodies[body].sides) {
+  for (const films::BodySide& side : complex.bodies[body].sides) {
     if (side.surface == complex.mesh.facet_label[facet]) {
       sign += side.sign;
     }
@@ -126,7 +126,7 @@ int sign_in(const FilmComplex& complex, int body, std::size_t facet) {
   return sign;
 }
 
-double weight(const FilmComplex& complex, int body) {
+double weight(const films::FilmComplex& complex, int body) {
   const double specific = -complex.gravity.z() * complex.bodies[body].density;
   double sum = 0.0;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
@@ -141,7 +141,7 @@ double weight(const FilmComplex& complex, int body) {
 
 }  // namespace
 
-double area(const FilmComplex& complex) {
+double area(const films::FilmComplex& complex) {
   double sum = 0.0;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     sum += corners(complex, f).vector().norm();
@@ -149,8 +149,8 @@ double area(const FilmComplex& complex) {
   return sum;
 }
 
-double quantity(const FilmComplex& complex, int index) {
-  const FilmQuantity& q = complex.quantities[index];
+double quantity(const films::FilmComplex& complex, int index) {
+  const films::FilmQuantity& q = complex.quantities[index];
   double sum = 0.0;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     if (!q.surfaces.empty() &&
@@ -159,11 +159,11 @@ double quantity(const FilmComplex& complex, int index) {
       continue;
     }
     const Corners t = corners(complex, f);
-    if (q.kind == FilmQuantity::Kind::VectorIntegral) {
+    if (q.kind == films::FilmQuantity::Kind::VectorIntegral) {
       sum += mean(t.a, t.b, t.c, [&](const Vec3& p) {
         return at(q.field, p).dot(t.vector());
       });
-    } else if (q.kind == FilmQuantity::Kind::ScalarIntegral) {
+    } else if (q.kind == films::FilmQuantity::Kind::ScalarIntegral) {
       sum += t.vector().norm() * mean(t.a, t.b, t.c, [&](const Vec3& p) {
                return at(q.scalar, p);
              });
@@ -174,10 +174,10 @@ double quantity(const FilmComplex& complex, int index) {
   return sum;
 }
 
-double energy(const FilmComplex& complex) {
+double energy(const films::FilmComplex& complex) {
   double sum = 0.0;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
-    const ComplexSurface& surface =
+    const films::ComplexSurface& surface =
         complex.surfaces[complex.mesh.facet_label[f]];
     const Corners t = corners(complex, f);
     sum += t.vector().norm() *
@@ -190,20 +190,20 @@ double energy(const FilmComplex& complex) {
   for (std::size_t b = 0; b < complex.bodies.size(); ++b) {
     sum += weight(complex, static_cast<int>(b));
   }
-  for (const ComplexEdge& edge : complex.edges) {
+  for (const films::ComplexEdge& edge : complex.edges) {
     sum += gap(complex, edge);
     if (edge.integrals < 0) {
       continue;
     }
     for (const int index : complex.integral_sets[edge.integrals]) {
-      const LineIntegral& integral = complex.integrals[index];
-      if (integral.role == LineIntegral::Role::Energy) {
+      const films::LineIntegral& integral = complex.integrals[index];
+      if (integral.role == films::LineIntegral::Role::Energy) {
         sum += along(complex, integral.field, edge);
       }
     }
   }
   for (std::size_t q = 0; q < complex.quantities.size(); ++q) {
-    if (complex.quantities[q].role == FilmQuantity::Role::Energy) {
+    if (complex.quantities[q].role == films::FilmQuantity::Role::Energy) {
       sum += complex.quantities[q].modulus *
              quantity(complex, static_cast<int>(q));
     }
@@ -211,14 +211,14 @@ double energy(const FilmComplex& complex) {
   return sum;
 }
 
-double volume(const FilmComplex& complex, int body) {
+double volume(const films::FilmComplex& complex, int body) {
   double sum = complex.bodies[body].volume_offset;
   std::map<Edge, int> runs;  // with sign in the body, both ways of each edge
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     const int sign = sign_in(complex, body, f);
     const Corners t = corners(complex, f);
     const Vec3 middle = (t.a + t.b + t.c) / 3.0;
-    sum += sign * (complex.volume_rule == VolumeRule::Cone
+    sum += sign * (complex.volume_rule == films::VolumeRule::Cone
                        ? middle.dot(t.vector()) / 3.0
                        : middle.z() * t.vector().z());
     const Triangle& v = complex.mesh.facets[f];
@@ -227,13 +227,13 @@ double volume(const FilmComplex& complex, int body) {
       runs[{v[(k + 1) % 3], v[k]}] -= sign;
     }
   }
-  for (const ComplexEdge& edge : complex.edges) {
+  for (const films::ComplexEdge& edge : complex.edges) {
     if (edge.integrals < 0) {
       continue;
     }
     for (const int index : complex.integral_sets[edge.integrals]) {
-      const LineIntegral& integral = complex.integrals[index];
-      if (integral.role == LineIntegral::Role::Content) {
+      const films::LineIntegral& integral = complex.integrals[index];
+      if (integral.role == films::LineIntegral::Role::Content) {
         sum += runs[{edge.a, edge.b}] * along(complex, integral.field, edge);
       }
     }
@@ -241,7 +241,7 @@ double volume(const FilmComplex& complex, int body) {
   return sum;
 }
 
-int edges(const FilmComplex& complex) {
+int edges(const films::FilmComplex& complex) {
   std::vector<Edge> list;
   std::vector<Triangle> facet_edges;
   list_edges(complex.mesh.facets, list, facet_edges);

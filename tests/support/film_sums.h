@@ -6,17 +6,17 @@
 
 namespace meniscus::sums {
 
-double area(const FilmComplex& complex);  // of all facets [length^2]
+double area(const films::FilmComplex& complex);  // of all facets [length^2]
 
 /// Tension times area, weight of bodies, line integrals with five Gauss
 /// points an edge, quantities that are energies.
-double energy(const FilmComplex& complex);
+double energy(const films::FilmComplex& complex);
 
-double volume(const FilmComplex& complex, int body);  // content included
+double volume(const films::FilmComplex& complex, int body);  // content included
 
 /// Value of quantity `index` without its modulus.
-double quantity(const FilmComplex& complex, int index);
+double quantity(const films::FilmComplex& complex, int index);
 
-int edges(const FilmComplex& complex);  // of facets, each once
+int edges(const films::FilmComplex& complex);  // of facets, each once
 
 }  // namespace meniscus::sums

@@ -10,18 +10,19 @@ namespace meniscus::systems {
 
 /// The two-arm bracket (cases/two_arm): three circles, one skin, one volume.
 /// Lengths in mm.
-inline FilmSystem two_arm(double support_x, double volume = 1.7e6,
-                          double reach = 120.0, double rim = 50.0) {
+inline films::FilmSystem two_arm(double support_x, double volume = 1.7e6,
+                                 double reach = 120.0, double rim = 50.0) {
   const double angle = std::numbers::pi / 3.0;
-  FilmSystem system;
+  films::FilmSystem system;
   system.curves = {
-      {"support", Circle{Vec3(support_x, 0, 0), Vec3(0, 0, -1), 35.0}},
-      {"left", Circle{Vec3(-reach, 0, 72),
-                      Vec3(-std::sin(angle), 0, std::cos(angle)), rim}},
-      {"right", Circle{Vec3(reach, 0, 72),
-                       Vec3(std::sin(angle), 0, std::cos(angle)), rim}}};
+      {"support", curves::Circle{Vec3(support_x, 0, 0), Vec3(0, 0, -1), 35.0}},
+      {"left", curves::Circle{Vec3(-reach, 0, 72),
+                              Vec3(-std::sin(angle), 0, std::cos(angle)), rim}},
+      {"right",
+       curves::Circle{Vec3(reach, 0, 72),
+                      Vec3(std::sin(angle), 0, std::cos(angle)), rim}}};
   system.films = {
-      {"skin", FilmKind::Branch, {"support", "left", "right"}, 1.0}};
+      {"skin", films::FilmKind::Branch, {"support", "left", "right"}, 1.0}};
   system.caps = {
       {"support_pad", "support"}, {"left_pad", "left"}, {"right_pad", "right"}};
   system.bodies = {{"part",
@@ -33,18 +34,19 @@ inline FilmSystem two_arm(double support_x, double volume = 1.7e6,
 
 /// The strut of cases/strut_family: a square foot with rounded corners, a round
 /// end that stands off and leans. Lengths in mm.
-inline FilmSystem leaning_strut(double length = 70.0, double offset = 8.0,
-                                double tilt = 10.0) {
+inline films::FilmSystem leaning_strut(double length = 70.0,
+                                       double offset = 8.0,
+                                       double tilt = 10.0) {
   const double angle = tilt * std::numbers::pi / 180.0;
   const double base = 38.0;
   const double head = 14.0;
-  FilmSystem system;
+  films::FilmSystem system;
   system.curves = {
-      {"foot",
-       Rectangle{Vec3::Zero(), Vec3(0, 0, -1), Vec3::UnitX(), base, base, 5.0}},
-      {"eye", Circle{Vec3(offset, 0, length),
-                     Vec3(std::sin(angle), 0, std::cos(angle)), head}}};
-  system.films = {{"skin", FilmKind::Branch, {"foot", "eye"}, 1.0}};
+      {"foot", curves::Rectangle{Vec3::Zero(), Vec3(0, 0, -1), Vec3::UnitX(),
+                                 base, base, 5.0}},
+      {"eye", curves::Circle{Vec3(offset, 0, length),
+                             Vec3(std::sin(angle), 0, std::cos(angle)), head}}};
+  system.films = {{"skin", films::FilmKind::Branch, {"foot", "eye"}, 1.0}};
   system.caps = {{"foot_pad", "foot"}, {"eye_pad", "eye"}};
   system.bodies = {
       {"part",
@@ -55,12 +57,13 @@ inline FilmSystem leaning_strut(double length = 70.0, double offset = 8.0,
 }
 
 /// Film between two rings of radius 1, without a body.
-inline FilmSystem catenoid(double spacing) {
-  FilmSystem system;
+inline films::FilmSystem catenoid(double spacing) {
+  films::FilmSystem system;
   system.curves = {
-      {"bottom", Circle{Vec3(0, 0, -0.5 * spacing), Vec3(0, 0, -1), 1.0}},
-      {"top", Circle{Vec3(0, 0, 0.5 * spacing), Vec3(0, 0, 1), 1.0}}};
-  system.films = {{"film", FilmKind::Loft, {"bottom", "top"}, 1.0}};
+      {"bottom",
+       curves::Circle{Vec3(0, 0, -0.5 * spacing), Vec3(0, 0, -1), 1.0}},
+      {"top", curves::Circle{Vec3(0, 0, 0.5 * spacing), Vec3(0, 0, 1), 1.0}}};
+  system.films = {{"film", films::FilmKind::Loft, {"bottom", "top"}, 1.0}};
   return system;
 }
 

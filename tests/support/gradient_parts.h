@@ -24,36 +24,37 @@ inline TetMesh block(int order) {
 }
 
 /// An isotropic and an orthotropic one, both of which expand.
-inline std::vector<Material> materials() {
-  Material metal{"metal", 70.0, 0.33, 2.7, {}};
+inline std::vector<element::Material> materials() {
+  element::Material metal{"metal", 70.0, 0.33, 2.7, {}};
   metal.thermal_expansion.setConstant(2e-3);
-  Material ply{"ply", 0.0, 0.0, 1.6, {}};
-  ply.orthotropic = Orthotropic{.youngs_moduli = {120.0, 9.0, 11.0},
-                                .poisson_ratios = {0.3, 0.25, 0.4},
-                                .shear_moduli = {5.0, 4.0, 3.0},
-                                .axes = {{1.0, 0.4, 0.2}, {0.0, 1.0, 0.5}}};
+  element::Material ply{"ply", 0.0, 0.0, 1.6, {}};
+  ply.orthotropic =
+      element::Orthotropic{.youngs_moduli = {120.0, 9.0, 11.0},
+                           .poisson_ratios = {0.3, 0.25, 0.4},
+                           .shear_moduli = {5.0, 4.0, 3.0},
+                           .axes = {{1.0, 0.4, 0.2}, {0.0, 1.0, 0.5}}};
   ply.thermal_expansion = {-1e-4, 3e-3, 2.5e-3};
   return {metal, ply};
 }
 
-inline LoadCase held(const char* name) {
-  LoadCase load_case;
+inline loads::LoadCase held(const char* name) {
+  loads::LoadCase load_case;
   load_case.name = name;
   load_case.supports = {parts::hold("x0")};
   return load_case;
 }
 
-inline LoadCase warm() {
-  LoadCase load_case = held("warm");
-  load_case.temperature = Temperature{
+inline loads::LoadCase warm() {
+  loads::LoadCase load_case = held("warm");
+  load_case.temperature = loads::Temperature{
       .field = [](const Vec3& x) { return 20.0 + 5.0 * x.x() * x.y(); },
       .reference = 15.0,
       .slope = [](const Vec3& x) { return Vec3(5.0 * x.y(), 5.0 * x.x(), 0); }};
   return load_case;
 }
 
-inline LoadCase with_fields() {
-  LoadCase load_case = held("fields");
+inline loads::LoadCase with_fields() {
+  loads::LoadCase load_case = held("fields");
   load_case.pressures = {
       {.surface = "z1",
        .field = [](const Vec3& x) { return 1.0 + x.x() * x.x() - x.y(); },
@@ -71,8 +72,8 @@ inline LoadCase with_fields() {
 }
 
 /// A load case of each kind of load.
-inline std::vector<LoadCase> load_cases() {
-  std::vector<LoadCase> all;
+inline std::vector<loads::LoadCase> load_cases() {
+  std::vector<loads::LoadCase> all;
   all.push_back(held("force"));
   all.back().forces = {{"x1", {1.0, 2.0, -3.0}}, {"y1", {0.5, 0.0, 0.2}}};
   all.push_back(held("pressure"));
@@ -81,7 +82,7 @@ inline std::vector<LoadCase> load_cases() {
   all.push_back(with_fields());
   all.push_back(held("weight"));
   all.back().gravity = {0.3, -0.2, -9.8};
-  all.back().spin = Spin{{0.1, -0.4, 0.2}, {0.2, 0.3, 1.0}, 2.0};
+  all.back().spin = loads::Spin{{0.1, -0.4, 0.2}, {0.2, 0.3, 1.0}, 2.0};
   all.push_back(held("remote"));
   all.back().remote_loads = {{.surface = "x1",
                               .point = {3.0, 0.7, -0.4},

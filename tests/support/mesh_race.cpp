@@ -68,7 +68,7 @@ SurfaceMesh bracket(int levels) {
 }
 
 void write_smesh(const std::filesystem::path& path, const SurfaceMesh& surface,
-                 const Frame& frame) {
+                 const mesh_tet::Frame& frame) {
   std::ofstream file(path);
   file << fmt::format("{} 3 0 0\n", surface.points.size());
   for (std::size_t i = 0; i < surface.points.size(); ++i) {
@@ -101,7 +101,8 @@ std::vector<MeshWork> mesh_works(int coarser) {
 MeshRun run_mesher(const MeshWork& work, int runs) {
   return fastest_of(runs, [&] {
     const MeasuredChild child = measure_forked([&] {
-      const auto result = tetrahedralize(work.surface, {.edge = work.edge});
+      const auto result =
+          mesh_tet::tetrahedralize(work.surface, {.edge = work.edge});
       if (result.failure) {
         throw MeshError(result.failure->message);
       }
@@ -122,11 +123,11 @@ bool have_tetgen() { return find_program("tetgen").has_value(); }
 
 MeshRun run_tetgen_program(const MeshWork& work, int runs) {
   const TempFolder folder;
-  const Frame frame(work.surface.points, work.edge);
+  const mesh_tet::Frame frame(work.surface.points, work.edge);
   write_smesh(folder / "part.smesh", work.surface, frame);
-  const TetrahedralizeOptions options{.edge = work.edge};
+  const mesh_tet::TetrahedralizeOptions options{.edge = work.edge};
   std::string switches =
-      "-" + fill_switches(work.surface, frame, options) + "NEF";
+      "-" + mesh_tet::fill_switches(work.surface, frame, options) + "NEF";
   std::erase(switches, 'Q');  // so that it prints its time
   return fastest_of(runs, [&] {
     const MeasuredChild child = measure_program(

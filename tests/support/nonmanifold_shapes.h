@@ -7,9 +7,9 @@
 #include <set>
 #include <vector>
 
-#include "evolve/films/film_complex.h"
 #include "core/geometry/edge_key.h"
 #include "core/math/union_find.h"
+#include "evolve/films/film_complex.h"
 
 namespace meniscus::nonmanifold {
 
@@ -90,10 +90,10 @@ inline int components(const SurfaceMesh& mesh) {
 }
 
 /// Free vertices without constraints moved by up to `size` a coordinate.
-inline void shake(FilmComplex& complex, double size, unsigned seed) {
+inline void shake(films::FilmComplex& complex, double size, unsigned seed) {
   std::mt19937 random(seed);
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    if (complex.vertices[v].kind == VertexKind::Free &&
+    if (complex.vertices[v].kind == films::VertexKind::Free &&
         complex.vertices[v].constraints < 0) {
       for (int k = 0; k < 3; ++k) {
         complex.mesh.points[v][k] +=

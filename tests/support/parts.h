@@ -9,14 +9,16 @@
 
 namespace meniscus::parts {
 
-inline Material steel() { return {"steel", 210000.0, 0.3, 7.8e-9, {}}; }
+inline element::Material steel() {
+  return {"steel", 210000.0, 0.3, 7.8e-9, {}};
+}
 
-inline Support hold(const std::string& surface) {
+inline loads::Support hold(const std::string& surface) {
   return {surface, true, true, true};
 }
 
-inline LoadCase pulled(const Vec3& force) {
-  LoadCase load_case;
+inline loads::LoadCase pulled(const Vec3& force) {
+  loads::LoadCase load_case;
   load_case.name = "main";
   load_case.supports = {hold("x0")};
   load_case.forces = {{"x1", force}};
@@ -43,19 +45,20 @@ inline TetMesh distorted_brick(const Vec3& size, int n) {
 }
 
 /// The mesh's stiffness in its own numbering.
-inline ElementTable table_of(const TetMesh& mesh) {
-  return make_element_table(one_chunk(static_cast<int>(mesh.nodes.size())),
-                            mesh.nodes_per_element(), mesh.elements,
-                            mesh.element_region);
+inline solver::ElementTable table_of(const TetMesh& mesh) {
+  return solver::make_element_table(
+      solver::one_chunk(static_cast<int>(mesh.nodes.size())),
+      mesh.nodes_per_element(), mesh.elements, mesh.element_region);
 }
 
 /// K u by the solver's product.
-inline VectorX product(const ElementTable& table,
-                       const BlockMatrix<double>& matrix, const VectorX& u) {
+inline VectorX product(const solver::ElementTable& table,
+                       const solver::BlockMatrix<double>& matrix,
+                       const VectorX& u) {
   Eigen::Matrix4Xd x = Eigen::Matrix4Xd::Zero(4, table.pattern.nodes);
   x.topRows<3>() = u.reshaped(3, table.pattern.nodes);
   Eigen::Matrix4Xd y = x;
-  multiply<3, 1>(table.pattern, matrix, x.data(), y.data());
+  solver::multiply<3, 1>(table.pattern, matrix, x.data(), y.data());
   return Eigen::Matrix3Xd(y.topRows<3>()).reshaped();
 }
 
@@ -73,8 +76,8 @@ inline TetMesh quarter_tube(int n, double height) {
   return mesh;
 }
 
-inline LoadCase tube_pressure(double pressure) {
-  LoadCase load_case;
+inline loads::LoadCase tube_pressure(double pressure) {
+  loads::LoadCase load_case;
   load_case.name = "bore";
   load_case.supports = {{"y0", false, true, false},
                         {"y1", true, false, false},

@@ -8,7 +8,8 @@ namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // Row by row.
-JacobianAnswer rows(Eigen::Index columns, std::initializer_list<double> all) {
+optimize::JacobianAnswer rows(Eigen::Index columns,
+                              std::initializer_list<double> all) {
   Eigen::MatrixXd matrix(static_cast<Eigen::Index>(all.size()) / columns,
                          columns);
   Eigen::Index k = 0;
@@ -19,12 +20,13 @@ JacobianAnswer rows(Eigen::Index columns, std::initializer_list<double> all) {
   return {.jacobian = matrix, .failure = {}};
 }
 
-VectorAnswer values(std::initializer_list<double> all) {
+optimize::VectorAnswer values(std::initializer_list<double> all) {
   return {.values = vector_of(all), .failure = {}};
 }
 
-std::vector<Variable> box(const VectorX& start, double lower, double upper) {
-  std::vector<Variable> variables;
+std::vector<optimize::Variable> box(const VectorX& start, double lower,
+                                    double upper) {
+  std::vector<optimize::Variable> variables;
   variables.reserve(static_cast<std::size_t>(start.size()));
   for (const double x : start) {
     variables.push_back(
@@ -175,7 +177,7 @@ StandardProblem cantilever() {
            },
            [](const VectorX& x) {
              const VectorX c = vector_of({61.0, 37.0, 19.0, 7.0, 1.0});
-             JacobianAnswer answer;
+             optimize::JacobianAnswer answer;
              answer.jacobian.resize(2, 5);
              for (Eigen::Index j = 0; j < 5; ++j) {
                answer.jacobian(0, j) = 0.0624;
@@ -221,7 +223,7 @@ StandardProblem fenced_camel() {
   StandardProblem fenced = camel(-1.6, 1.7);
   fenced.name = "fenced camel";
   fenced.problem.constraints = {{"sum", 0.0, kInf, 1.0}};
-  const VectorFunction open = fenced.problem.function;
+  const optimize::VectorFunction open = fenced.problem.function;
   fenced.problem.function = [open](const VectorX& p) {
     return values({open(p).values[0], p[0] + p[1]});
   };

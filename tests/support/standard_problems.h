@@ -10,7 +10,7 @@ namespace meniscus::tests {
 
 struct StandardProblem {
   std::string name;
-  MinimizeProblem problem;
+  optimize::MinimizeProblem problem;
   double least = 0.0;  // objective at the optimum
   VectorX solution;    // one of them
   bool equations = false;

@@ -11,22 +11,22 @@ namespace meniscus::systems {
 
 namespace {
 
-Curve circle(const char* name, const Vec3& center, const Vec3& normal,
-             double radius) {
-  return {name, Circle{center, normal, radius}};
+curves::Curve circle(const char* name, const Vec3& center, const Vec3& normal,
+                     double radius) {
+  return {name, curves::Circle{center, normal, radius}};
 }
 
 }  // namespace
 
-FilmSystem bracket() {
+films::FilmSystem bracket() {
   const double s = std::sin(std::numbers::pi / 3.0);
-  FilmSystem system;
+  films::FilmSystem system;
   system.curves = {
       circle("support", Vec3::Zero(), -Vec3::UnitZ(), 35.0),
       circle("left", Vec3(-120.0, 0.0, 72.0), Vec3(-s, 0.0, 0.5), 50.0),
       circle("right", Vec3(120.0, 0.0, 72.0), Vec3(s, 0.0, 0.5), 50.0)};
   system.films = {
-      {"skin", FilmKind::Branch, {"support", "left", "right"}, 1.0}};
+      {"skin", films::FilmKind::Branch, {"support", "left", "right"}, 1.0}};
   system.caps = {
       {"support_pad", "support"}, {"left_pad", "left"}, {"right_pad", "right"}};
   system.bodies = {
@@ -34,52 +34,52 @@ FilmSystem bracket() {
   return system;
 }
 
-FilmSystem catenoid() {
-  FilmSystem system;
+films::FilmSystem catenoid() {
+  films::FilmSystem system;
   system.curves = {circle("low", -0.5 * Vec3::UnitZ(), Vec3::UnitZ(), 1.0),
                    circle("high", 0.5 * Vec3::UnitZ(), Vec3::UnitZ(), 1.0)};
-  system.films = {{"film", FilmKind::Loft, {"low", "high"}, 1.0}};
+  system.films = {{"film", films::FilmKind::Loft, {"low", "high"}, 1.0}};
   return system;
 }
 
-FilmSystem cylinder(double length) {
-  FilmSystem system;
+films::FilmSystem cylinder(double length) {
+  films::FilmSystem system;
   system.curves = {circle("low", Vec3::Zero(), -Vec3::UnitZ(), 1.0),
                    circle("high", length * Vec3::UnitZ(), Vec3::UnitZ(), 1.0)};
-  system.films = {{"film", FilmKind::Loft, {"low", "high"}, 1.0}};
+  system.films = {{"film", films::FilmKind::Loft, {"low", "high"}, 1.0}};
   system.caps = {{"bottom", "low"}, {"top", "high"}};
   system.bodies = {{"body", {"film", "bottom", "top"}, {}, 1.0}};
   return system;
 }
 
-FilmSystem strut() {
-  FilmSystem system;
-  Rectangle square;
+films::FilmSystem strut() {
+  films::FilmSystem system;
+  curves::Rectangle square;
   square.width = 2.0;
   square.height = 2.0;
   system.curves = {{"square", square},
                    circle("circle", Vec3(0.8, 0.0, 4.0), Vec3::UnitZ(), 0.6)};
-  system.films = {{"film", FilmKind::Loft, {"square", "circle"}, 1.0}};
+  system.films = {{"film", films::FilmKind::Loft, {"square", "circle"}, 1.0}};
   system.caps = {{"base", "square"}, {"top", "circle"}};
   system.bodies = {{"body", {"film", "base", "top"}, 14.0, {}}};
   return system;
 }
 
-FilmSystem bulkhead() {
-  FilmSystem system;
+films::FilmSystem bulkhead() {
+  films::FilmSystem system;
   system.curves = {circle("low", -2.0 * Vec3::UnitZ(), Vec3::UnitZ(), 1.0),
                    circle("middle", Vec3::Zero(), Vec3::UnitZ(), 1.2),
                    circle("high", 2.0 * Vec3::UnitZ(), Vec3::UnitZ(), 1.0)};
-  system.films = {{"lower", FilmKind::Loft, {"low", "middle"}, 1.0},
-                  {"upper", FilmKind::Loft, {"middle", "high"}, 1.0},
-                  {"wall", FilmKind::Disk, {"middle"}, 1.0}};
+  system.films = {{"lower", films::FilmKind::Loft, {"low", "middle"}, 1.0},
+                  {"upper", films::FilmKind::Loft, {"middle", "high"}, 1.0},
+                  {"wall", films::FilmKind::Disk, {"middle"}, 1.0}};
   system.caps = {{"bottom", "low"}, {"top", "high"}};
   system.bodies = {{"below", {"lower", "wall", "bottom"}, 7.0, {}},
                    {"above", {"upper", "wall", "top"}, 8.0, {}}};
   return system;
 }
 
-Quality quality(const FilmComplex& complex, Part part) {
+Quality quality(const films::FilmComplex& complex, Part part) {
   const SurfaceMesh& mesh = complex.mesh;
   Quality q{180.0, 180.0, 1e300, 0.0, 0.0};
   int edges = 0;
@@ -89,12 +89,13 @@ Quality quality(const FilmComplex& complex, Part part) {
       continue;
     }
     const Triangle& t = mesh.facets[f];
-    const double angle = smallest_angle(mesh.points[t[0]], mesh.points[t[1]],
-                                        mesh.points[t[2]]) *
-                         180.0 / std::numbers::pi;
+    const double angle =
+        films::smallest_angle(mesh.points[t[0]], mesh.points[t[1]],
+                              mesh.points[t[2]]) *
+        180.0 / std::numbers::pi;
     q.smallest_angle = std::min(q.smallest_angle, angle);
     const bool inner = std::none_of(t.begin(), t.end(), [&](int v) {
-      return complex.vertices[v].kind == VertexKind::OnCurve;
+      return complex.vertices[v].kind == films::VertexKind::OnCurve;
     });
     if (inner) {
       q.smallest_inner_angle = std::min(q.smallest_inner_angle, angle);
@@ -140,13 +141,14 @@ int open_edges(const SurfaceMesh& mesh) {
 double smallest_angle_deg(const SurfaceMesh& mesh) {
   double least = 180.0;
   for (const Triangle& t : mesh.facets) {
-    least = std::min(least, smallest_angle(mesh.points[t[0]], mesh.points[t[1]],
+    least = std::min(least,
+                     films::smallest_angle(mesh.points[t[0]], mesh.points[t[1]],
                                            mesh.points[t[2]]));
   }
   return least * 180.0 / std::numbers::pi;
 }
 
-bool identical(const FilmComplex& a, const FilmComplex& b) {
+bool identical(const films::FilmComplex& a, const films::FilmComplex& b) {
   const auto same_points = [](const Points& p, const Points& q) {
     return p.size() == q.size() &&
            std::equal(
@@ -157,10 +159,11 @@ bool identical(const FilmComplex& a, const FilmComplex& b) {
   };
   const bool same_vertices =
       a.vertices.size() == b.vertices.size() &&
-      std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(),
-                 [](const ComplexVertex& u, const ComplexVertex& v) {
-                   return u.kind == v.kind && u.curve == v.curve && u.t == v.t;
-                 });
+      std::equal(
+          a.vertices.begin(), a.vertices.end(), b.vertices.begin(),
+          [](const films::ComplexVertex& u, const films::ComplexVertex& v) {
+            return u.kind == v.kind && u.curve == v.curve && u.t == v.t;
+          });
   return same_points(a.mesh.points, b.mesh.points) && same_vertices &&
          a.mesh.facets == b.mesh.facets &&
          a.mesh.facet_label == b.mesh.facet_label;

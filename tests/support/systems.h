@@ -6,19 +6,19 @@
 namespace meniscus::systems {
 
 /// Circles of radius 35 and twice 50; one branch film, three caps, one body.
-FilmSystem bracket();
+films::FilmSystem bracket();
 
 /// Two unit circles at z = -0.5 and 0.5 and the film between; no body.
-FilmSystem catenoid();
+films::FilmSystem catenoid();
 
 /// Unit circles `length` apart, film, caps, one body.
-FilmSystem cylinder(double length);
+films::FilmSystem cylinder(double length);
 
 /// Square of side 2 at z = 0 to a circle r = 0.6 at (0.8, 0, 4), capped.
-FilmSystem strut();
+films::FilmSystem strut();
 
 /// Two chambers on one axis that share a disk film (a bulkhead).
-FilmSystem bulkhead();
+films::FilmSystem bulkhead();
 
 struct Quality {
   double smallest_angle = 0.0;        // [deg] of all facets counted
@@ -30,7 +30,7 @@ struct Quality {
 
 /// Of the facets with liquid surfaces, or of those of caps.
 enum class Part { Films, Caps };
-Quality quality(const FilmComplex& complex, Part part);
+Quality quality(const films::FilmComplex& complex, Part part);
 
 /// Vertices - edges + facets of what is used.
 int euler_characteristic(const SurfaceMesh& mesh);
@@ -42,6 +42,6 @@ int open_edges(const SurfaceMesh& mesh);
 double smallest_angle_deg(const SurfaceMesh& mesh);
 
 /// Equal in every bit.
-bool identical(const FilmComplex& a, const FilmComplex& b);
+bool identical(const films::FilmComplex& a, const films::FilmComplex& b);
 
 }  // namespace meniscus::systems

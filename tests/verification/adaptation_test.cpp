@@ -45,27 +45,29 @@ constexpr double kBetter = 0.97;
 struct Solved {
   TetMesh mesh;
   double energy = 0.0;  // strain energy
-  EnergyError error;
+  stress::EnergyError error;
   int elements = 0;
 };
 
 Solved solve(const QuadraticSurface& surface,
-             const TetrahedralizeOptions& options) {
-  const Tetrahedralization filled = tetrahedralize(surface.base, options);
+             const mesh_tet::TetrahedralizeOptions& options) {
+  const mesh_tet::Tetrahedralization filled =
+      mesh_tet::tetrahedralize(surface.base, options);
   EXPECT_FALSE(filled.failure) << filled.failure->message;
-  Solved result{.mesh = make_quadratic(filled.mesh, surface)};
-  LoadCase bend{.name = "bend"};
+  Solved result{.mesh = mesh_tet::make_quadratic(filled.mesh, surface)};
+  loads::LoadCase bend{.name = "bend"};
   bend.supports = {{"top", true, true, true}};
   bend.forces = {{"end", {0.0, -1.0, 0.0}}};
-  const Material steel = parts::steel();
-  const ElasticModel model(result.mesh, {steel}, {bend});
+  const element::Material steel = parts::steel();
+  const elastic::ElasticModel model(result.mesh, {steel}, {bend});
   EXPECT_FALSE(model.base_solution().failure);
   const VectorX& u = model.base_solution().displacements[0];
-  result.energy = 0.5 * nodal_forces(result.mesh, bend).dot(u);
-  result.error = estimate_error(
+  result.energy = 0.5 * loads::nodal_forces(result.mesh, bend).dot(u);
+  result.error = stress::estimate_error(
       result.mesh, {steel},
       {u,
-       recover_by_patches(result.mesh, point_stress(result.mesh, {steel}, u)),
+       stress::recover_by_patches(
+           result.mesh, element::point_stress(result.mesh, {steel}, u)),
        {}});
   result.elements = result.mesh.element_count();
   return result;
@@ -76,13 +78,14 @@ Solved adapted(const NestedSurface& nested, const Solved& coarse) {
   for (const double e : coarse.error.element) {
     share.push_back(e * e / (coarse.error.error * coarse.error.error));
   }
-  const RefinementPlan plan = plan_refinement(coarse.mesh, share);
+  const forward::RefinementPlan plan =
+      forward::plan_refinement(coarse.mesh, share);
   const double edge = mean_edge_length(nested.surface().base);
   return solve(nested.split(plan.split),
                {.edge = edge,
                 .size = plan.size,
-                .radius_edge_ratio = kGradedRadiusEdge,
-                .min_dihedral_deg = kGradedDihedral});
+                .radius_edge_ratio = forward::kGradedRadiusEdge,
+                .min_dihedral_deg = forward::kGradedDihedral});
 }
 
 TEST(Adaptation, ErrsLessThanUniformMeshesOfAsManyElements) {

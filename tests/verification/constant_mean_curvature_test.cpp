@@ -118,12 +118,13 @@ void expect_order(const std::string& what, const std::vector<double>& errors,
 TEST(ConstantMeanCurvature, EachFilmIsItsClosedForm) {
   const std::vector<Exact> exact = exact_films();
   std::vector<Errors> errors(exact.size());
-  const Case input = read_case(kCase);
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
+  const case_data::Case input = reader::read_case(kCase);
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
   for (int level = 0; level < kLevels; ++level) {
-    const FilmModel model = FilmModel::freeze(
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
         numbers.film_system, {.edge = kEdge, .refinements = level});
-    const FilmState& film = model.reference();
+    const settle::FilmState& film = model.reference();
     ASSERT_FALSE(film.failure) << film.report.verdict;
     EXPECT_EQ(film.report.index, 0);
     const SurfaceMesh mesh = model.fine_mesh(film.points);
@@ -132,7 +133,7 @@ TEST(ConstantMeanCurvature, EachFilmIsItsClosedForm) {
       errors[k].area.push_back(
           surface_area(mesh, mesh.label_of(exact[k].film)) / exact[k].area -
           1.0);
-      for (const BodyState& body : film.report.bodies) {
+      for (const settle::BodyState& body : film.report.bodies) {
         if (body.name == exact[k].body) {
           errors[k].pressure.push_back((body.pressure - exact[k].pressure) /
                                        0.1);

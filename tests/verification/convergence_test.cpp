@@ -34,14 +34,14 @@ struct Answer {
 
 Answer answer(int edge) {
   const TempFolder folder;
-  const Case input = read_case(
+  const case_data::Case input = reader::read_case(
       MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml",
       {fmt::format("resolution.fea={}", edge),
        fmt::format("resolution.film={}", edge / 2), "study.tolerance=1e-6"});
-  StudyStore store =
-      StudyStore::start(folder.path().string(), {.case_hash = input.hash});
-  const RunResult result = run_study(input, store, {});
-  EXPECT_EQ(result.status, RunStatus::Converged) << result.message;
+  store::StudyStore store = store::StudyStore::start(folder.path().string(),
+                                                     {.case_hash = input.hash});
+  const study::RunResult result = study::run_study(input, store, {});
+  EXPECT_EQ(result.status, study::RunStatus::Converged) << result.message;
   Answer found;
   found.size = std::pow(result.best->tet.elements, -1.0 / 3.0);
   found.value << result.best->design[0], result.best->responses;

@@ -19,9 +19,9 @@ using std::numbers::pi;
 // factor of a rectangle is 5/6 for all loads.
 constexpr double kShear = 5.0 / 6.0;
 
-Material cork() { return {"cork", 1000.0, 0.0, 2e-3, {}}; }
+element::Material cork() { return {"cork", 1000.0, 0.0, 2e-3, {}}; }
 
-double shear_modulus(const Material& m) {
+double shear_modulus(const element::Material& m) {
   return 0.5 * m.youngs_modulus / (1.0 + m.poisson_ratio);
 }
 
@@ -32,8 +32,8 @@ TetMesh half_beam(double length, int along, int across) {
       shapes::brick({length, 1.0, 0.5}, along, across, 1));
 }
 
-LoadCase pinned_half(double push) {
-  LoadCase load_case;
+loads::LoadCase pinned_half(double push) {
+  loads::LoadCase load_case;
   load_case.name = "pinned";
   load_case.supports = {{"x0", true, false, false},
                         {"x1", false, true, false},
@@ -44,11 +44,11 @@ LoadCase pinned_half(double push) {
 
 double pinned_factor(double length, int along, int across) {
   const TetMesh mesh = half_beam(length, along, across);
-  const std::vector<LoadCase> cases = {pinned_half(1.0)};
-  const ElasticModel model(mesh, {cork()}, cases);
-  const BucklingModes modes =
-      buckling_modes(model, mesh, cases, 0,
-                     model.base_solution().displacements[0], {.largest = 1e5});
+  const std::vector<loads::LoadCase> cases = {pinned_half(1.0)};
+  const elastic::ElasticModel model(mesh, {cork()}, cases);
+  const modes::BucklingModes modes = modes::buckling_modes(
+      model, mesh, cases, 0, model.base_solution().displacements[0],
+      {.largest = 1e5});
   EXPECT_FALSE(modes.failure);
   return modes.factors.at(0);
 }
@@ -57,7 +57,7 @@ double pinned_factor(double length, int along, int across) {
 /// and the work of the axial gradient, sigma u_x,x^2, which a solid has and a
 /// beam leaves out: EI becomes EI (1 - P / EA).
 double pinned_load(double length) {
-  const Material m = cork();
+  const element::Material m = cork();
   const double area = 0.5;
   const double bending = m.youngs_modulus * area / 12.0;
   const double shear = kShear * shear_modulus(m) * area;
@@ -101,10 +101,10 @@ TEST(EulerColumn, ClampedSteelIsEulersLoad) {
   const double length = 20.0;
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({length, 1.0, 1.2}, 20, 2, 2));
-  const Material steel = parts::steel();
-  const std::vector<LoadCase> cases = {parts::pulled({-1.0, 0.0, 0.0})};
-  const ElasticModel model(mesh, {steel}, cases);
-  const BucklingModes modes = buckling_modes(
+  const element::Material steel = parts::steel();
+  const std::vector<loads::LoadCase> cases = {parts::pulled({-1.0, 0.0, 0.0})};
+  const elastic::ElasticModel model(mesh, {steel}, cases);
+  const modes::BucklingModes modes = modes::buckling_modes(
       model, mesh, cases, 0, model.base_solution().displacements[0],
       {.count = 2, .largest = 1e5});
   ASSERT_EQ(modes.factors.size(), 2U);
@@ -121,25 +121,25 @@ TEST(EulerColumn, ClampedSteelIsEulersLoad) {
 double hot_plate_factor(int along, int across) {
   const TetMesh mesh = shapes::straight_quadratic(
       shapes::brick({10.0, 10.0, 1.0}, along, along, across));
-  Material m = cork();
+  element::Material m = cork();
   const double E = m.youngs_modulus;
-  m.orthotropic = Orthotropic{.youngs_moduli = Vec3::Constant(E),
-                              .poisson_ratios = Vec3::Zero(),
-                              .shear_moduli = Vec3::Constant(0.5 * E)};
+  m.orthotropic = element::Orthotropic{.youngs_moduli = Vec3::Constant(E),
+                                       .poisson_ratios = Vec3::Zero(),
+                                       .shear_moduli = Vec3::Constant(0.5 * E)};
   m.thermal_expansion = {1.0 / E, 1.0 / E, 0.0};  // not in thickness
-  LoadCase hot;
+  loads::LoadCase hot;
   hot.name = "hot";
   hot.supports = {{"x0", true, false, false},
                   {"y0", false, true, false},
                   {"x1", false, true, true},
                   {"y1", true, false, true}};
   hot.pressures = {{"x1", 1.0}, {"y1", 1.0}};
-  hot.temperature = Temperature{.value = 1.0};
-  const std::vector<LoadCase> cases = {hot};
-  const ElasticModel model(mesh, {m}, cases);
-  const BucklingModes modes =
-      buckling_modes(model, mesh, cases, 0,
-                     model.base_solution().displacements[0], {.largest = 1e5});
+  hot.temperature = loads::Temperature{.value = 1.0};
+  const std::vector<loads::LoadCase> cases = {hot};
+  const elastic::ElasticModel model(mesh, {m}, cases);
+  const modes::BucklingModes modes = modes::buckling_modes(
+      model, mesh, cases, 0, model.base_solution().displacements[0],
+      {.largest = 1e5});
   EXPECT_FALSE(modes.failure);
   return modes.factors.at(0);
 }
@@ -147,7 +147,7 @@ double hot_plate_factor(int along, int across) {
 /// N = D k^2 with k^2 = 2 (pi / a)^2, Mindlin's shear and D (1 - N / (E t)),
 /// as of the column.
 double hot_plate_load() {
-  const Material m = cork();
+  const element::Material m = cork();
   const double k2 = 2.0 * std::pow(pi / 20.0, 2);
   const double shear = kShear * shear_modulus(m);
   double N = 0.0;
@@ -171,7 +171,7 @@ TEST(HotPlate, BucklesAtMindlinsLoadWithOrderFour) {
 /// omega of a pinned Timoshenko beam's first bending, half length given:
 /// r w^4 - (1 + I k^2 / A (1 + E / kG)) w^2 + E I k^4 / (rho A) = 0.
 double pinned_omega(double length) {
-  const Material m = cork();
+  const element::Material m = cork();
   const double k2 = std::pow(0.5 * pi / length, 2);
   const double inertia = 1.0 / 12.0;  // I / A
   const double shear = kShear * shear_modulus(m);
@@ -183,9 +183,9 @@ double pinned_omega(double length) {
 
 TEST(PinnedBeam, FrequencyIsTimoshenkosWithOrderFour) {
   const auto error = [](double length, int along, int across) {
-    const NaturalModes modes =
-        natural_modes(half_beam(length, along, across), {cork()},
-                      pinned_half(1.0), {.count = 1});
+    const modes::NaturalModes modes =
+        modes::natural_modes(half_beam(length, along, across), {cork()},
+                             pinned_half(1.0), {.count = 1});
     return std::pow(2.0 * pi * modes.frequencies.at(0) / pinned_omega(length),
                     2) -
            1.0;
@@ -200,7 +200,7 @@ TEST(PinnedBeam, FrequencyIsTimoshenkosWithOrderFour) {
 
 /// Huang's frequency equation of a clamped Timoshenko beam (J. Appl. Mech. 28,
 /// 1961): its root next to `omega`.
-double clamped_omega(const Material& m, double length, double inertia,
+double clamped_omega(const element::Material& m, double length, double inertia,
                      double shear_factor, double omega) {
   const double r2 = inertia / (length * length);
   const double s2 = r2 * m.youngs_modulus / (shear_factor * shear_modulus(m));
@@ -227,11 +227,11 @@ double clamped_omega(const Material& m, double length, double inertia,
 
 TEST(Cantilever, BendingFrequenciesAreTimoshenkos) {
   const double length = 12.0;
-  const Material m = cork();
+  const element::Material m = cork();
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({length, 1.0, 1.3}, 18, 3, 3));
-  const NaturalModes modes =
-      natural_modes(mesh, {m}, parts::pulled(Vec3::Zero()), {.count = 4});
+  const modes::NaturalModes modes = modes::natural_modes(
+      mesh, {m}, parts::pulled(Vec3::Zero()), {.count = 4});
   ASSERT_EQ(modes.frequencies.size(), 4U);
   // Bending across the thin and the thick side in turn, first and second.
   const std::array<double, 4> inertia = {1.0 / 12.0, 1.69 / 12.0, 1.0 / 12.0,
@@ -253,14 +253,15 @@ double axial_error(int order, int n) {
   if (order == 2) {
     mesh = shapes::straight_quadratic(mesh);
   }
-  LoadCase tube;
+  loads::LoadCase tube;
   for (const char* side : {"y0", "y1"}) {
     tube.supports.push_back({side, false, true, true});
   }
   for (const char* side : {"z0", "z1"}) {
     tube.supports.push_back({side, false, true, true});
   }
-  const NaturalModes modes = natural_modes(mesh, {cork()}, tube, {.count = 1});
+  const modes::NaturalModes modes =
+      modes::natural_modes(mesh, {cork()}, tube, {.count = 1});
   EXPECT_EQ(modes.rigid_motions, 1);
   const double exact =
       pi / length * std::sqrt(cork().youngs_modulus / cork().density);
@@ -281,11 +282,11 @@ TEST(FreeBar, AxialFrequencyConvergesWithTwiceTheElementsOrder) {
 /// change of volume, no traction on any side for any Poisson's ratio, omega =
 /// p sqrt(2 G / rho) with p = pi / a. Three of them, one per pair of sides.
 double lame_error(int n) {
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({1.0, 1.0, 1.0}, n, n, n));
-  const NaturalModes modes =
-      natural_modes(mesh, {steel}, LoadCase{.name = "free"}, {.count = 14});
+  const modes::NaturalModes modes = modes::natural_modes(
+      mesh, {steel}, loads::LoadCase{.name = "free"}, {.count = 14});
   EXPECT_EQ(modes.rigid_motions, 6);
   const double exact =
       pi * std::sqrt(2.0 * shear_modulus(steel) / steel.density);
@@ -313,7 +314,7 @@ TEST(FreeCube, LameModesConvergeWithOrderFour) {
 // sqrt(G / rho).
 TEST(FreeBar, TorsionOfARoundBarIsExact) {
   const double length = 4.0;
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({2.0, 2.0, length}, 4, 4, 8));
   for (Vec3& x : mesh.nodes) {  // the square onto the disk, ring by ring
@@ -326,8 +327,8 @@ TEST(FreeBar, TorsionOfARoundBarIsExact) {
     x = Vec3(a * (1.0 - mix + mix * scale), b * (1.0 - mix + mix * scale),
              x.z());
   }
-  const NaturalModes modes =
-      natural_modes(mesh, {steel}, LoadCase{.name = "free"}, {.count = 8});
+  const modes::NaturalModes modes = modes::natural_modes(
+      mesh, {steel}, loads::LoadCase{.name = "free"}, {.count = 8});
   EXPECT_EQ(modes.rigid_motions, 6);
   const double exact =
       0.5 / length * std::sqrt(shear_modulus(steel) / steel.density);

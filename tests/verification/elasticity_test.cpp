@@ -11,7 +11,7 @@ namespace {
 TEST(Cantilever, DeflectionConvergesToTimoshenkosBeam) {
   const double length = 10.0;
   const double force = 1.0;
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   const double E = steel.youngs_modulus;
   const double nu = steel.poisson_ratio;
   const double k = 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu);
@@ -23,9 +23,10 @@ TEST(Cantilever, DeflectionConvergesToTimoshenkosBeam) {
   for (const int n : {1, 2, 4}) {
     const TetMesh mesh = shapes::straight_quadratic(
         shapes::brick({length, 1.0, 1.0}, 5 * n, n, n));
-    const ElasticModel model(mesh, {steel}, {parts::pulled({0, 0, -force})});
+    const elastic::ElasticModel model(mesh, {steel},
+                                      {parts::pulled({0, 0, -force})});
     ASSERT_FALSE(model.base_solution().failure);
-    const double deflection = mean_displacement(
+    const double deflection = loads::mean_displacement(
         mesh, "x1", {0.0, 0.0, -1.0}, model.base_solution().displacements[0]);
     EXPECT_GT(deflection, last);  // stiffness falls as the mesh refines
     last = deflection;
@@ -38,7 +39,7 @@ TEST(Cantilever, DeflectionConvergesToTimoshenkosBeam) {
 /// Lame's thick cylinder a = 1, b = 2, plane strain, pressure in the bore.
 TEST(ThickCylinder, CurvedElementsConverge) {
   const double p = 100.0;
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   const double E = steel.youngs_modulus;
   const double nu = steel.poisson_ratio;
   const auto radial = [&](double r) {
@@ -48,10 +49,10 @@ TEST(ThickCylinder, CurvedElementsConverge) {
   std::vector<double> stress_error;
   for (const int n : {2, 4, 8}) {
     const TetMesh mesh = parts::quarter_tube(n, 1.0 / n);
-    const ElasticModel model(mesh, {steel}, {parts::tube_pressure(p)});
+    const elastic::ElasticModel model(mesh, {steel}, {parts::tube_pressure(p)});
     ASSERT_FALSE(model.base_solution().failure);
     const VectorX& u = model.base_solution().displacements[0];
-    const StressField stress = recover_stress(mesh, {steel}, u);
+    const stress::StressField stress = stress::recover_stress(mesh, {steel}, u);
     double sum = 0.0;
     double hoop = 0.0;
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
@@ -79,7 +80,7 @@ TEST(ThickCylinder, CurvedElementsConverge) {
 /// The same cylinder with four-node elements: L2 order 2.
 TEST(ThickCylinder, FourNodeElementsConverge) {
   const double p = 100.0;
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   const double nu = steel.poisson_ratio;
   std::vector<double> error;
   for (const int n : {4, 8, 16}) {
@@ -88,7 +89,7 @@ TEST(ThickCylinder, FourNodeElementsConverge) {
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
       mesh.nodes[i] = curved.nodes[i];
     }
-    const ElasticModel model(mesh, {steel}, {parts::tube_pressure(p)});
+    const elastic::ElasticModel model(mesh, {steel}, {parts::tube_pressure(p)});
     ASSERT_FALSE(model.base_solution().failure);
     const VectorX& u = model.base_solution().displacements[0];
     double sum = 0.0;

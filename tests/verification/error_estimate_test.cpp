@@ -23,16 +23,16 @@ struct Problem {
   const char* name;
   exact::Field field;
   TetMesh (*mesh)(int n);
-  std::vector<Support> supports;
+  std::vector<loads::Support> supports;
   std::vector<std::string> loaded;  // surfaces with the field's tractions
   exact::BodyForce body;
   std::string response_surface;
   Vec3 direction;
 };
 
-Support fix_x(const char* s) { return {s, true, false, false}; }
-Support fix_y(const char* s) { return {s, false, true, false}; }
-Support fix_z(const char* s) { return {s, false, false, true}; }
+loads::Support fix_x(const char* s) { return {s, true, false, false}; }
+loads::Support fix_y(const char* s) { return {s, false, true, false}; }
+loads::Support fix_z(const char* s) { return {s, false, false, true}; }
 
 /// Each component vanishes on its plane through the origin.
 exact::Field manufactured() {
@@ -45,7 +45,7 @@ exact::Field manufactured() {
 }
 
 std::vector<Problem> problems() {
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   return {{"thick sphere",
            exact::thick_sphere(steel, 1.0, 2.0, 100.0),
            [](int n) { return shapes::octant_shell(1.0, 2.0, 2 * n, n); },
@@ -89,29 +89,30 @@ class Estimate : public testing::TestWithParam<int> {};
 
 TEST_P(Estimate, IsCloseToTheTrueError) {
   const Problem p = problems()[GetParam()];
-  const Material material = p.field.material();
+  const element::Material material = p.field.material();
   double last = 0.0;
   for (const int n : {4, 8}) {
     const TetMesh mesh = p.mesh(n);
-    LoadCase primal{.name = "load", .supports = p.supports};
+    loads::LoadCase primal{.name = "load", .supports = p.supports};
     primal.nodal = exact::loads(mesh, p.field, p.loaded, p.body);
-    LoadCase dual{.name = "dual", .supports = p.supports};
+    loads::LoadCase dual{.name = "dual", .supports = p.supports};
     dual.forces = {{p.response_surface, p.direction.normalized()}};
-    const ElasticModel model(mesh, {material}, {primal, dual});
+    const elastic::ElasticModel model(mesh, {material}, {primal, dual});
     ASSERT_FALSE(model.base_solution().failure);
     const VectorX& u = model.base_solution().displacements[0];
     const VectorX& z = model.base_solution().displacements[1];
-    const RecoveredStress su =
-        recover_by_patches(mesh, point_stress(mesh, {material}, u));
-    const RecoveredStress sz =
-        recover_by_patches(mesh, point_stress(mesh, {material}, z));
-    const EnergyError energy = estimate_error(mesh, {material}, {u, su, {}});
+    const stress::RecoveredStress su = stress::recover_by_patches(
+        mesh, element::point_stress(mesh, {material}, u));
+    const stress::RecoveredStress sz = stress::recover_by_patches(
+        mesh, element::point_stress(mesh, {material}, z));
+    const stress::EnergyError energy =
+        stress::estimate_error(mesh, {material}, {u, su, {}});
     const exact::Norms norms = exact::error_norms(mesh, p.field, u);
     const double ratio = energy.error / norms.energy;
-    const ResponseError response =
-        response_error(mesh, {material}, {u, su, {}}, {z, sz, {}});
+    const stress::ResponseError response =
+        stress::response_error(mesh, {material}, {u, su, {}}, {z, sz, {}});
     const double value =
-        mean_displacement(mesh, p.response_surface, p.direction, u);
+        loads::mean_displacement(mesh, p.response_surface, p.direction, u);
     const double error = exact::mean_displacement(
                              mesh, p.field, p.response_surface, p.direction) -
                          value;
@@ -155,16 +156,19 @@ TetMesh four_node(const TetMesh& mesh) {
 TEST(EstimateOfFourNodeElements, IsCloseToTheTrueError) {
   for (const int which : {1, 2, 3}) {
     const Problem p = problems()[which];
-    const Material material = p.field.material();
+    const element::Material material = p.field.material();
     const TetMesh mesh = four_node(p.mesh(8));
-    LoadCase load{.name = "load", .supports = p.supports};
+    loads::LoadCase load{.name = "load", .supports = p.supports};
     load.nodal = exact::loads(mesh, p.field, p.loaded, p.body);
-    const ElasticModel model(mesh, {material}, {load});
+    const elastic::ElasticModel model(mesh, {material}, {load});
     ASSERT_FALSE(model.base_solution().failure);
     const VectorX& u = model.base_solution().displacements[0];
-    const EnergyError energy = estimate_error(
+    const stress::EnergyError energy = stress::estimate_error(
         mesh, {material},
-        {u, recover_by_patches(mesh, point_stress(mesh, {material}, u)), {}});
+        {u,
+         stress::recover_by_patches(mesh,
+                                    element::point_stress(mesh, {material}, u)),
+         {}});
     const exact::Norms norms = exact::error_norms(mesh, p.field, u);
     std::cout << fmt::format(
         "{}, four-node: {} elements, energy error {:.3e} of {:.3e}, "

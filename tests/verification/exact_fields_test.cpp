@@ -11,12 +11,13 @@ namespace {
 constexpr double kRounding = 1e-12;
 
 Vec3 traction(const exact::Field& field, const Vec3& x, const Vec3& normal) {
-  const Stress s = field.at(x).stress;
-  return stress_tensor(Eigen::Map<const Vec6>(s.data())) * normal;
+  const element::Stress s = field.at(x).stress;
+  return element::stress_tensor(Eigen::Map<const element::Vec6>(s.data())) *
+         normal;
 }
 
 TEST(ExactField, CylinderAndSphereCarryTheirPressures) {
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   const exact::Field tube = exact::thick_cylinder(steel, 1.0, 2.0, 3.0);
   const exact::Field shell = exact::thick_sphere(steel, 1.0, 2.0, 3.0);
   const Vec3 n(0.6, 0.8, 0.0);
@@ -45,7 +46,7 @@ TEST(ExactField, HoleInAPlateIsKirschs) {
 }
 
 TEST(ExactField, SphericalCavityIsGoodiers) {
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   const double nu = steel.poisson_ratio;
   const exact::Field solid = exact::spherical_cavity(steel, 2.0);
   for (const double t : {0.0, 0.3, 1.1, 1.5}) {

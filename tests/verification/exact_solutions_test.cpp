@@ -17,14 +17,14 @@ namespace {
 // fine.
 constexpr double kOrderSlack = 0.25;
 
-Support held_x(const char* s) { return {s, true, false, false}; }
-Support held_y(const char* s) { return {s, false, true, false}; }
-Support held_z(const char* s) { return {s, false, false, true}; }
+loads::Support held_x(const char* s) { return {s, true, false, false}; }
+loads::Support held_y(const char* s) { return {s, false, true, false}; }
+loads::Support held_z(const char* s) { return {s, false, false, true}; }
 
-VectorX solve(const TetMesh& mesh, const Material& material,
-              LoadCase load_case) {
+VectorX solve(const TetMesh& mesh, const element::Material& material,
+              loads::LoadCase load_case) {
   load_case.name = "exact";
-  const ElasticModel model(mesh, {material}, {load_case});
+  const elastic::ElasticModel model(mesh, {material}, {load_case});
   EXPECT_FALSE(model.base_solution().failure);
   return model.base_solution().displacements[0];
 }
@@ -48,7 +48,7 @@ struct Orders {
 Orders observe(const char* name, const exact::Field& field,
                const std::vector<int>& sizes,
                const std::function<TetMesh(int)>& mesh_of,
-               const std::function<LoadCase(const TetMesh&)>& load_of) {
+               const std::function<loads::LoadCase(const TetMesh&)>& load_of) {
   exact::Norms last;
   Orders orders;
   for (const int n : sizes) {
@@ -91,7 +91,7 @@ TEST_P(Manufactured, ErrorsFallAtTheirOrders) {
         return p == 1 ? mesh : shapes::straight_quadratic(mesh);
       },
       [&](const TetMesh& mesh) {
-        LoadCase load{.supports = {parts::hold("x0")}};
+        loads::LoadCase load{.supports = {parts::hold("x0")}};
         load.nodal = exact::loads(mesh, field, {"x1", "y0", "y1", "z0", "z1"},
                                   exact::BodyForce::Included);
         return load;
@@ -113,7 +113,7 @@ TetMesh straightened(TetMesh mesh) {
   return mesh;
 }
 
-LoadCase sphere_pressure(const TetMesh& /*mesh*/) {
+loads::LoadCase sphere_pressure(const TetMesh& /*mesh*/) {
   return {.supports = {held_x("x0"), held_y("y0"), held_z("z0")},
           .pressures = {{.surface = "inner", .pressure = 100.0}}};
 }
@@ -138,7 +138,8 @@ TEST(ThickSphere, HoopStressesConverge) {
   for (const int n : {4, 8}) {
     const TetMesh mesh = shapes::octant_shell(1.0, 2.0, 2 * n, n);
     const VectorX u = solve(mesh, parts::steel(), sphere_pressure(mesh));
-    const StressField stress = recover_stress(mesh, {parts::steel()}, u);
+    const stress::StressField stress =
+        stress::recover_stress(mesh, {parts::steel()}, u);
     const double inside =
         stress.nodal[node_at(mesh, {1.0, 0.0, 0.0})][1] / (p * 5.0 / 7.0) - 1.0;
     const double outside =
@@ -161,7 +162,7 @@ struct Peak {
   const char* name;
   exact::Field field;
   TetMesh (*mesh)(int n);
-  std::vector<Support> supports;
+  std::vector<loads::Support> supports;
   Vec3 place;
   int component;
   double exact;  // [pressure]
@@ -171,16 +172,18 @@ void expect_peak(const Peak& peak) {
   double last = 0.0;
   for (const int n : {2, 4, 8}) {
     const TetMesh mesh = peak.mesh(n);
-    LoadCase load{.supports = peak.supports};
+    loads::LoadCase load{.supports = peak.supports};
     load.nodal =
         exact::loads(mesh, peak.field, {"outer"}, exact::BodyForce::None);
     const VectorX u = solve(mesh, parts::steel(), load);
-    const PointStress points = point_stress(mesh, {parts::steel()}, u);
+    const element::PointStress points =
+        element::point_stress(mesh, {parts::steel()}, u);
     const int node = node_at(mesh, peak.place);
-    const double found = nodal_stress(mesh, recover_by_patches(mesh, points))
-                             .nodal[node][peak.component];
+    const double found =
+        stress::nodal_stress(mesh, stress::recover_by_patches(mesh, points))
+            .nodal[node][peak.component];
     const double averaged =
-        average_stress(mesh, points).nodal[node][peak.component];
+        stress::average_stress(mesh, points).nodal[node][peak.component];
     const double error = std::abs(found / peak.exact - 1.0);
     std::cout << fmt::format(
         "{} n {}: {} elements, peak {:.4f} (averages {:.4f}), exact {:.4f}\n",

@@ -20,24 +20,24 @@ namespace {
 
 struct Work {
   std::string name;
-  FilmComplex start;
-  FindOptions options;
+  films::FilmComplex start;
+  settle::FindOptions options;
 };
 
 /// A drop under gravity, wetting its floor at 75 degrees, below a ceiling that
 /// it touches.
-FilmComplex drop_between_walls() {
-  FilmComplex complex =
+films::FilmComplex drop_between_walls() {
+  films::FilmComplex complex =
       test_films::sessile_cap_start(75.0 * std::numbers::pi / 180);
   complex.bodies[0].density = 1.0;
   complex.gravity = Vec3(0.0, 0.0, -1.0);
   complex.level_sets.push_back(
       {.name = "ceiling",
        .formula = Expression::parse("0.55 - z", {"x", "y", "z"}),
-       .side = LevelSet::Side::AtLeast});
+       .side = films::LevelSet::Side::AtLeast});
   complex.constraint_sets.push_back({1});
   complex.surfaces[0].constraints = 1;
-  for (ComplexVertex& vertex : complex.vertices) {
+  for (films::ComplexVertex& vertex : complex.vertices) {
     if (vertex.constraints < 0) {
       vertex.constraints = 1;
       vertex.held = false;
@@ -76,10 +76,11 @@ class Digest {
 };
 
 /// Points, facets and every number of the report but its seconds.
-std::string settle(const Work& work) {
-  FilmComplex complex = work.start;
-  const FilmState state = find_equilibrium(complex, work.options);
-  const FilmReport& report = state.report;
+std::string settled_text(const Work& work) {
+  films::FilmComplex complex = work.start;
+  const settle::FilmState state =
+      settle::find_equilibrium(complex, work.options);
+  const settle::FilmReport& report = state.report;
   Digest digest;
   for (const Points* points : std::initializer_list<const Points*>{
            &state.points, &complex.mesh.points}) {
@@ -98,7 +99,7 @@ std::string settle(const Work& work) {
                                  report.smallest_neck, report.neck_position.x(),
                                  report.neck_position.y(),
                                  report.neck_position.z()});
-  for (const BodyState& body : report.bodies) {
+  for (const settle::BodyState& body : report.bodies) {
     digest.add(
         std::vector<double>{body.volume, body.target_volume, body.pressure});
   }
@@ -116,13 +117,13 @@ int main(int, char** words) {
   const std::vector<meniscus::Work> works = meniscus::works();
   std::vector<std::string> first;
   for (const meniscus::Work& work : works) {
-    first.push_back(meniscus::settle(work));
+    first.push_back(meniscus::settled_text(work));
     fmt::print("{}\n", first.back());
   }
   for (std::size_t k = 0; k + 1 < works.size(); k += 2) {
     std::string beside;
-    std::thread other([&] { beside = meniscus::settle(works[k + 1]); });
-    const std::string again = meniscus::settle(works[k]);
+    std::thread other([&] { beside = meniscus::settled_text(works[k + 1]); });
+    const std::string again = meniscus::settled_text(works[k]);
     other.join();
     if (again != first[k] || beside != first[k + 1]) {
       fmt::print("second run differs:\n{}\n{}\n", again, beside);

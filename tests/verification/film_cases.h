@@ -10,36 +10,36 @@
 
 #include <fmt/core.h>
 
+#include "core/geometry/edge_key.h"
 #include "evolve/groom/refine.h"
 #include "evolve/settle/find_equilibrium.h"
-#include "core/geometry/edge_key.h"
 
 namespace meniscus::test_films {
 
 struct Found {
-  FilmComplex complex;
-  FilmState state;
+  films::FilmComplex complex;
+  settle::FilmState state;
 
-  const FilmReport& report() const { return state.report; }
+  const settle::FilmReport& report() const { return state.report; }
   double pressure(int body = 0) const {
     return state.report.bodies[body].pressure;
   }
 };
 
 /// The engine without a recipe: residual 1e-10 tension x mean edge.
-inline Found settled(FilmComplex start, int refinements) {
-  FindOptions options;
+inline Found settled(films::FilmComplex start, int refinements) {
+  settle::FindOptions options;
   options.refinements = refinements;
   options.settle.residual_factor = 1e-10;
   Found found{std::move(start), {}};
-  found.state = find_equilibrium(found.complex, options);
+  found.state = settle::find_equilibrium(found.complex, options);
   return found;
 }
 
 /// `start` refined before the engine sees it, as a user's own mesh would be.
-inline FilmComplex raw_fine(FilmComplex start, int refinements) {
+inline films::FilmComplex raw_fine(films::FilmComplex start, int refinements) {
   for (int k = 0; k < refinements; ++k) {
-    start = refine(start).complex;
+    start = groom::refine(start).complex;
   }
   return start;
 }
@@ -51,7 +51,7 @@ struct TripleAngles {
   double mean = 0.0;   // mean absolute departure [degree]
 };
 
-inline TripleAngles triple_angles(const FilmComplex& complex) {
+inline TripleAngles triple_angles(const films::FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
   std::map<Edge, std::vector<Vec3>> arms;  // conormals at an edge
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {

@@ -54,7 +54,7 @@ using More = std::function<double(const Found&)>;
 
 // Three films, each refined once more than the one before; `more`: another
 // error that falls at second order. Returns the finest.
-Found expect_second_order(const FilmComplex& start, int first,
+Found expect_second_order(const films::FilmComplex& start, int first,
                           const Exact& exact, const More& more = {}) {
   std::vector<double> area;
   std::vector<double> energy;
@@ -64,10 +64,10 @@ Found expect_second_order(const FilmComplex& start, int first,
   for (int k = first; k < first + 3; ++k) {
     found = test_films::settled(start, k);
     expect_settled(found);
-    const FilmReport& report = found.report();
+    const settle::FilmReport& report = found.report();
     area.push_back(report.area - exact.area.value_or(0.0));
     energy.push_back(report.energy - exact.energy.value_or(0.0));
-    for (const BodyState& body : report.bodies) {
+    for (const settle::BodyState& body : report.bodies) {
       if (exact.pressure && body.name == report.bodies[0].name) {
         pressure.push_back(body.pressure - *exact.pressure);
       }
@@ -92,7 +92,7 @@ Found expect_second_order(const FilmComplex& start, int first,
 
 // Facets are chords of the film: their angles are off by their own bend, which
 // falls at first order.
-void expect_120_degrees(const FilmComplex& start, int first) {
+void expect_120_degrees(const films::FilmComplex& start, int first) {
   double before = std::numeric_limits<double>::infinity();
   constexpr double kHalving =
       0.6;  // first order, and room for the frame's ends
@@ -117,7 +117,7 @@ double rms_error(const Found& found,
   double sum = 0.0;
   int count = 0;
   for (std::size_t v = 0; v < found.complex.vertices.size(); ++v) {
-    if (found.complex.vertices[v].kind == VertexKind::Free) {
+    if (found.complex.vertices[v].kind == films::VertexKind::Free) {
       const double e = error(found.complex.mesh.points[v]);
       sum += e * e;
       ++count;
@@ -170,7 +170,7 @@ More profile_error(const test_films::Meridian& exact) {
   };
 }
 
-FilmComplex tube_for(const test_films::Meridian& exact) {
+films::FilmComplex tube_for(const test_films::Meridian& exact) {
   return test_films::tube_start({.radius = exact.rim().r,
                                  .length = 2.0 * exact.rim().z,
                                  .volume = exact.volume});
@@ -203,9 +203,9 @@ TEST(FilmConvergence, PlaneIsExact) {
   const Vec3 v = Vec3(2.0, 1.0, -2.0) / 3.0 * 3.0;
   const Vec3 corner(0.3, -0.2, 0.1);
   const int rim = builder.curve(
-      "rim", Polygon{{corner, corner + u, corner + u + v, corner + v}});
-  builder.fan(film, builder.rim(rim, 12), VertexKind::Free);
-  FilmComplex& start = builder.complex();
+      "rim", curves::Polygon{{corner, corner + u, corner + u + v, corner + v}});
+  builder.fan(film, builder.rim(rim, 12), films::VertexKind::Free);
+  films::FilmComplex& start = builder.complex();
   start.mesh.points.back() += 0.7 * u.cross(v).normalized() + 0.1 * u;
   const Found found = test_films::settled(start, 3);
   expect_settled(found);
@@ -246,7 +246,7 @@ TEST(FilmConvergence, TripleDisk) {
   EXPECT_NEAR(exact.waist, 0.6386863468, rounding);
   EXPECT_NEAR(exact.area, 6.03860031878515, rounding);
   expect_second_order(test_films::triple_disk_start(), 2, {.area = exact.area});
-  const FilmComplex start = test_films::triple_disk_start();
+  const films::FilmComplex start = test_films::triple_disk_start();
   // Vertices of the triple line are those with three surfaces.
   std::vector<double> radius;
   for (int k = 2; k < 5; ++k) {

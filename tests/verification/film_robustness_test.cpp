@@ -21,16 +21,16 @@ constexpr double kFaceting = 16.0;
 
 /// One find_equilibrium() with default options on `start` refined `times`
 /// times before the engine sees it: no level, scale or tolerance is given.
-Found found_raw(FilmComplex start, int times) {
+Found found_raw(films::FilmComplex start, int times) {
   Found found{test_films::raw_fine(std::move(start), times), {}};
-  found.state = find_equilibrium(found.complex, {});
-  const FilmReport& report = found.report();
+  found.state = settle::find_equilibrium(found.complex, {});
+  const settle::FilmReport& report = found.report();
   EXPECT_FALSE(found.state.failure);
   EXPECT_EQ(report.verdict, "stable");
   EXPECT_EQ(report.index, 0);
   EXPECT_GT(report.min_eigenvalue, 0.0);
   EXPECT_LE(report.residual, report.residual_bound);
-  for (const BodyState& body : report.bodies) {
+  for (const settle::BodyState& body : report.bodies) {
     EXPECT_NEAR(body.volume, body.target_volume, 1e-9 * body.target_volume);
   }
   return found;
@@ -43,7 +43,7 @@ void expect_energy(const Found& found, double exact) {
 
 void expect_pressure(const Found& found, double exact) {
   const double facets = found.report().facets;
-  for (const BodyState& body : found.report().bodies) {
+  for (const settle::BodyState& body : found.report().bodies) {
     EXPECT_NEAR(body.pressure, exact, kFaceting / facets * exact);
   }
 }

@@ -35,12 +35,14 @@ constexpr double kGain = 1e-4;  // x the mass
 // The study's objective and constraints on one model, the last design kept.
 class Loop {
  public:
-  explicit Loop(const Case& input)
-      : input_(input), model_(input), rows_(studied_responses(input)) {}
+  explicit Loop(const case_data::Case& input)
+      : input_(input),
+        model_(input),
+        rows_(case_data::studied_responses(input)) {}
 
   bool usable() const { return !model_.failure(); }
 
-  VectorAnswer values(const VectorX& x) {
+  optimize::VectorAnswer values(const VectorX& x) {
     fields_ = {};
     last_ = model_.evaluate(x, &fields_, &adjoint_);
     if (last_.failure) {
@@ -49,21 +51,22 @@ class Loop {
     return {.values = last_.responses(rows_), .failure = {}};
   }
 
-  JacobianAnswer jacobian(const VectorX& x) {
+  optimize::JacobianAnswer jacobian(const VectorX& x) {
     if (last_.design != x) {
       values(x);
     }
-    DesignGradient found = model_.gradient(last_, fields_, adjoint_, rows_);
+    forward::DesignGradient found =
+        model_.gradient(last_, fields_, adjoint_, rows_);
     return {.jacobian = std::move(found.jacobian), .failure = found.failure};
   }
 
-  MinimizeProblem problem() {
-    MinimizeProblem problem;
-    for (const DesignVariable& v : input_.design) {
+  optimize::MinimizeProblem problem() {
+    optimize::MinimizeProblem problem;
+    for (const case_data::DesignVariable& v : input_.design) {
       problem.variables.push_back({v.name, v.initial, v.lower, v.upper});
     }
     problem.objective = "mass";
-    for (const ConstraintEntry& entry : input_.study.constraints) {
+    for (const case_data::ConstraintEntry& entry : input_.study.constraints) {
       problem.constraints.push_back(
           {.name = input_.responses[entry.response].name,
            .lower = entry.lower,
@@ -75,12 +78,12 @@ class Loop {
   }
 
  private:
-  const Case& input_;
-  ForwardModel model_;
+  const case_data::Case& input_;
+  forward::ForwardModel model_;
   std::vector<int> rows_;
-  Evaluation last_;
-  EvaluationFields fields_;
-  AdjointState adjoint_;
+  forward::Evaluation last_;
+  forward::EvaluationFields fields_;
+  forward::AdjointState adjoint_;
 };
 
 VectorX start(std::initializer_list<double> numbers) {
@@ -88,16 +91,16 @@ VectorX start(std::initializer_list<double> numbers) {
                                    static_cast<Eigen::Index>(numbers.size()));
 }
 
-MinimizeReport minimum_from(Loop& loop, const VectorX& x) {
-  MinimizeProblem problem = loop.problem();
+optimize::MinimizeReport minimum_from(Loop& loop, const VectorX& x) {
+  optimize::MinimizeProblem problem = loop.problem();
   for (std::size_t j = 0; j < problem.variables.size(); ++j) {
     problem.variables[j].initial = x[static_cast<Eigen::Index>(j)];
   }
-  return minimize(problem, {.optimality_tolerance = kOptimality});
+  return optimize::minimize(problem, {.optimality_tolerance = kOptimality});
 }
 
 // How far each constraint is missed, in scales, signed; 0 where it is kept.
-VectorX missed(const MinimizeProblem& problem, const VectorX& values,
+VectorX missed(const optimize::MinimizeProblem& problem, const VectorX& values,
                const VectorX& scales) {
   VectorX miss(scales.size());
   for (Eigen::Index i = 0; i < miss.size(); ++i) {
@@ -113,7 +116,7 @@ VectorX missed(const MinimizeProblem& problem, const VectorX& values,
 // 1965); nothing where that leads out of the bounds or to no film.
 class Restorer {
  public:
-  Restorer(Loop& loop, const MinimizeReport& optimum)
+  Restorer(Loop& loop, const optimize::MinimizeReport& optimum)
       : loop_(loop), problem_(loop.problem()) {
     const auto count = static_cast<Eigen::Index>(problem_.constraints.size());
     const auto n = static_cast<Eigen::Index>(problem_.variables.size());
@@ -139,7 +142,7 @@ class Restorer {
     const VectorX ranges = high_ - low_;
     Eigen::MatrixXd J = jacobian_;
     for (int k = 0; k < kCorrections; ++k) {
-      const VectorAnswer answer = loop_.values(x);
+      const optimize::VectorAnswer answer = loop_.values(x);
       if (answer.failure) {
         return std::nullopt;
       }
@@ -178,7 +181,7 @@ class Restorer {
 
  private:
   Loop& loop_;
-  MinimizeProblem problem_;
+  optimize::MinimizeProblem problem_;
   VectorX scales_;
   VectorX low_;
   VectorX high_;
@@ -188,23 +191,25 @@ class Restorer {
 };
 
 TEST(TwoArmSized, TwoStartsComeToOneMassAndNoSampleIsLighter) {
-  const Case input =
-      read_case(kCase, {"resolution.fea=24", "resolution.film=12"});
+  const case_data::Case input =
+      reader::read_case(kCase, {"resolution.fea=24", "resolution.film=12"});
   Loop loop(input);
   ASSERT_TRUE(loop.usable());
-  const MinimizeReport optimum = minimum_from(
+  const optimize::MinimizeReport optimum = minimum_from(
       loop, start({0, 28, 27, 27, 65, 65, 25, 25, 58, 3.6e5, 2.3e5, 2.3e5}));
-  ASSERT_EQ(optimum.termination, Termination::Converged) << optimum.message;
+  ASSERT_EQ(optimum.termination, optimize::Termination::Converged)
+      << optimum.message;
   EXPECT_LE(optimum.first_order->residual, kOptimality);
-  const MinimizeReport other = minimum_from(
+  const optimize::MinimizeReport other = minimum_from(
       loop, start({15, 26, 26, 28, 75, 60, 25, 26, 66, 4.2e5, 2.1e5, 2.0e5}));
-  EXPECT_EQ(other.termination, Termination::Converged) << other.message;
+  EXPECT_EQ(other.termination, optimize::Termination::Converged)
+      << other.message;
   EXPECT_LE(other.first_order->residual, kOptimality);
   EXPECT_NEAR(other.objective / optimum.objective, 1.0, kOneMass);
 
   const Restorer restorer(loop, optimum);
   int feasible = 0;
-  for (const VectorX& t : latin_hypercube_samples(
+  for (const VectorX& t : optimize::latin_hypercube_samples(
            static_cast<int>(input.design.size()), 4 * kSamples, 1)) {
     if (feasible == kSamples) {
       break;

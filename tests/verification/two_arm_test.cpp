@@ -17,26 +17,26 @@ namespace {
 constexpr const char* kCase = MENISCUS_SOURCE_DIR "/cases/two_arm/case.toml";
 constexpr double kSymmetry = 0.5;  // mm; what the issue of the case allows
 
-Case two_arm(std::vector<std::string> overrides) {
+case_data::Case two_arm(std::vector<std::string> overrides) {
   for (const char* edge : {"resolution.fea=16", "resolution.film=8"}) {
     overrides.emplace_back(edge);
   }
-  return read_case(kCase, overrides);
+  return reader::read_case(kCase, overrides);
 }
 
-RunResult run(const std::vector<std::string>& overrides) {
+study::RunResult run(const std::vector<std::string>& overrides) {
   const TempFolder folder;
-  const Case input = two_arm(overrides);
-  StudyStore store =
-      StudyStore::start(folder.path().string(), {.case_hash = input.hash});
-  return run_study(input, store, {.estimate_errors = false});
+  const case_data::Case input = two_arm(overrides);
+  store::StudyStore store = store::StudyStore::start(folder.path().string(),
+                                                     {.case_hash = input.hash});
+  return study::run_study(input, store, {.estimate_errors = false});
 }
 
 VectorX at(double support_x) { return VectorX::Constant(1, support_x); }
 
 TEST(TwoArm, MatchesFromAMismatchOfAQuarterTowardsTheHeavierLoad) {
-  const RunResult result = run({});
-  ASSERT_EQ(result.status, RunStatus::Converged) << result.message;
+  const study::RunResult result = run({});
+  ASSERT_EQ(result.status, study::RunStatus::Converged) << result.message;
   const VectorX& before = result.start->responses;
   EXPECT_GT(std::abs(before[0] - before[1]),
             0.25 * 0.5 * (std::abs(before[0]) + std::abs(before[1])));
@@ -51,24 +51,24 @@ TEST(TwoArm, MatchesFromAMismatchOfAQuarterTowardsTheHeavierLoad) {
 }
 
 TEST(TwoArm, BobyqaReachesTheAnswerOfCeres) {
-  const RunResult ceres = run({});
-  const RunResult bobyqa = run({"study.method=bobyqa"});
-  ASSERT_EQ(bobyqa.status, RunStatus::Converged) << bobyqa.message;
+  const study::RunResult ceres = run({});
+  const study::RunResult bobyqa = run({"study.method=bobyqa"});
+  ASSERT_EQ(bobyqa.status, study::RunStatus::Converged) << bobyqa.message;
   EXPECT_NEAR(bobyqa.best->design[0], ceres.best->design[0], kSymmetry);
 }
 
 TEST(TwoArm, SwappedLoadsMirrorTheAnswer) {
-  const RunResult plain = run({"study.tolerance=1e-5"});
-  const RunResult swapped =
+  const study::RunResult plain = run({"study.tolerance=1e-5"});
+  const study::RunResult swapped =
       run({"study.tolerance=1e-5", "load_left=60000", "load_right=40000"});
-  ASSERT_EQ(swapped.status, RunStatus::Converged) << swapped.message;
+  ASSERT_EQ(swapped.status, study::RunStatus::Converged) << swapped.message;
   EXPECT_NEAR(swapped.best->design[0], -plain.best->design[0], kSymmetry);
 }
 
 TEST(TwoArm, EqualLoadsLeaveTheSupportInTheMiddle) {
-  const RunResult equal =
+  const study::RunResult equal =
       run({"study.tolerance=1e-5", "load_left=50000", "load_right=50000"});
-  ASSERT_EQ(equal.status, RunStatus::Converged) << equal.message;
+  ASSERT_EQ(equal.status, study::RunStatus::Converged) << equal.message;
   EXPECT_NEAR(equal.best->design[0], 0.0, kSymmetry);
 }
 
@@ -89,7 +89,7 @@ double departure(const VectorX& values, int degree) {
 }
 
 TEST(TwoArm, TheDesignMapIsSmooth) {
-  const ForwardModel model(two_arm({}));
+  const forward::ForwardModel model(two_arm({}));
   ASSERT_FALSE(model.failure()) << model.failure()->message;
   const VectorX start = model.evaluate(at(0.0)).responses;
   const double at_start = std::pow(start[0] - start[1], 2);
@@ -100,7 +100,7 @@ TEST(TwoArm, TheDesignMapIsSmooth) {
   VectorX difference(kSamples);
   for (int k = 0; k < kSamples; ++k) {
     const double x = kAnswer + kWidth * (k / (kSamples - 1.0) - 0.5);
-    const Evaluation e = model.evaluate(at(x));
+    const forward::Evaluation e = model.evaluate(at(x));
     ASSERT_FALSE(e.failure) << e.failure->message;
     left[k] = e.responses[0];
     difference[k] = e.responses[0] - e.responses[1];
@@ -120,7 +120,7 @@ TEST(TwoArm, TheDesignMapIsSmooth) {
 }
 
 TEST(TwoArm, EvaluatingABAGivesTheSameBits) {
-  const ForwardModel model(two_arm({}));
+  const forward::ForwardModel model(two_arm({}));
   const VectorX first = model.evaluate(at(10.0)).responses;
   const VectorX other = model.evaluate(at(-20.0)).responses;
   const VectorX again = model.evaluate(at(10.0)).responses;
@@ -130,23 +130,23 @@ TEST(TwoArm, EvaluatingABAGivesTheSameBits) {
 }
 
 TEST(TwoArm, TheFilmIsStableOverTheBounds) {
-  const ForwardModel model(two_arm({}));
+  const forward::ForwardModel model(two_arm({}));
   for (const double x : {-40.0, -20.0, 0.0, 20.0, 40.0}) {
-    const Evaluation e = model.evaluate(at(x));
+    const forward::Evaluation e = model.evaluate(at(x));
     ASSERT_FALSE(e.failure) << x << ": " << e.failure->message;
     EXPECT_EQ(e.film.index, 0) << x;
     EXPECT_GT(e.film.min_eigenvalue, 0.0) << x;
     EXPECT_LE(e.film.residual, e.film.residual_bound) << x;
-    const BodyState& body = e.film.bodies.front();
+    const settle::BodyState& body = e.film.bodies.front();
     EXPECT_NEAR(body.volume, body.target_volume, 1e-10 * body.target_volume);
     EXPECT_LE(e.fea.reaction_imbalance, 1e-9) << x;
   }
 }
 
 TEST(TwoArm, TooLittleVolumeFarOutCannotBeEvaluated) {
-  const ForwardModel model(two_arm({"bodies.part.volume=1.55e6"}));
+  const forward::ForwardModel model(two_arm({"bodies.part.volume=1.55e6"}));
   ASSERT_FALSE(model.failure()) << model.failure()->message;
-  const Evaluation e = model.evaluate(at(40.0));
+  const forward::Evaluation e = model.evaluate(at(40.0));
   ASSERT_TRUE(e.failure);
   EXPECT_TRUE(e.failure->kind == FailureKind::FilmPinched ||
               e.failure->kind == FailureKind::FilmUnstable)

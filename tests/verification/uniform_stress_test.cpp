@@ -30,28 +30,29 @@ constexpr double kUniform = 5e-4;
 constexpr double kOrder = 1.0;       // of the variation in the thickness
 constexpr double kOrderBand = 0.35;  // elements of the size of the thickness
 
-const Material kAluminium{.name = "aluminium",
-                          .youngs_modulus = 71700.0,
-                          .poisson_ratio = 0.33,
-                          .density = 2.8e-9};
+const element::Material kAluminium{.name = "aluminium",
+                                   .youngs_modulus = 71700.0,
+                                   .poisson_ratio = 0.33,
+                                   .density = 2.8e-9};
 
 /// The films of the case at one edge length.
 struct Films {
   QuadraticSurface surface;
-  FilmReport report;
+  settle::FilmReport report;
 };
 
 Films films_at(double edge) {
-  const Case input = read_case(kCase);
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
-  const FilmModel model =
-      FilmModel::freeze(numbers.film_system, {.edge = edge, .refinements = 1});
+  const case_data::Case input = reader::read_case(kCase);
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      numbers.film_system, {.edge = edge, .refinements = 1});
   EXPECT_FALSE(model.reference().failure) << model.reference().report.verdict;
   return {model.surface(model.reference().points), model.reference().report};
 }
 
 double pressure_of(const Films& films, const std::string& body) {
-  for (const BodyState& state : films.report.bodies) {
+  for (const settle::BodyState& state : films.report.bodies) {
     if (state.name == body) {
       return state.pressure;  // 2 T H with the tension T = 1 N/mm
     }
@@ -82,24 +83,27 @@ TetMesh mesh_of(const Films& films, const Shell& shell, double thickness) {
 
 /// Springs so soft that they only keep the shell from floating off: a millionth
 /// of the pressure at the displacement of the free shell.
-std::vector<SpringBed> floating(double thickness) {
+std::vector<loads::SpringBed> floating(double thickness) {
   const double soft = 1e-6 * kAluminium.youngs_modulus * thickness / 400.0;
   return {{.surface = "front", .components = Vec3::Constant(soft)}};
 }
 
-Uniformity stress_under(const TetMesh& mesh, const LoadCase& load_case) {
-  const ElasticModel model(mesh, {kAluminium}, {load_case});
-  const ElasticSolution& solution = model.base_solution();
+stress::Uniformity stress_under(const TetMesh& mesh,
+                                const loads::LoadCase& load_case) {
+  const elastic::ElasticModel model(mesh, {kAluminium}, {load_case});
+  const equations::ElasticSolution& solution = model.base_solution();
   EXPECT_FALSE(solution.failure);
-  return stress_uniformity(
+  return stress::stress_uniformity(
              mesh, {kAluminium},
-             point_stress(mesh, {kAluminium}, solution.displacements[0]))
+             element::point_stress(mesh, {kAluminium},
+                                   solution.displacements[0]))
       .von_mises;
 }
 
 /// Pressure 2 H s inside and traction s along the conormals of both rims.
-LoadCase paper_load(const TetMesh& mesh, double pressure, double thickness) {
-  LoadCase load_case;
+loads::LoadCase paper_load(const TetMesh& mesh, double pressure,
+                           double thickness) {
+  loads::LoadCase load_case;
   load_case.name = "paper";
   load_case.springs = floating(thickness);
   if (std::abs(pressure) > 1e-9) {
@@ -126,8 +130,8 @@ const std::vector<Shell>& shells() {
 }
 
 /// The low rim clamped, a force on what is far from it.
-LoadCase cantilever(const Shell& shell, const Vec3& force) {
-  LoadCase load_case;
+loads::LoadCase cantilever(const Shell& shell, const Vec3& force) {
+  loads::LoadCase load_case;
   load_case.name = "another";
   load_case.supports = {{"low", true, true, true}};
   load_case.forces = {{shell.film == "sphere" ? "front" : "high", force}};
@@ -135,8 +139,9 @@ LoadCase cantilever(const Shell& shell, const Vec3& force) {
 }
 
 /// The paper's pressure, but the rims clamped in place of the traction.
-LoadCase clamped(const TetMesh& mesh, double pressure, double thickness) {
-  LoadCase load_case;
+loads::LoadCase clamped(const TetMesh& mesh, double pressure,
+                        double thickness) {
+  loads::LoadCase load_case;
   load_case.name = "clamped";
   for (const char* rim : {"low", "high"}) {
     if (mesh.label_of(rim) >= 0) {
@@ -148,7 +153,7 @@ LoadCase clamped(const TetMesh& mesh, double pressure, double thickness) {
   return load_case;
 }
 
-std::string figures(const Uniformity& stress) {
+std::string figures(const stress::Uniformity& stress) {
   return fmt::format(
       "mean {:8.4f} MPa, variation {:.5f}, Gini {:.4f}, p95/p50 {:.4f}, "
       "peak/mean {:.4f}",
@@ -165,7 +170,7 @@ std::vector<std::vector<double>> variations(
     for (std::size_t k = 0; k < shells().size(); ++k) {
       const Shell& shell = shells()[k];
       const TetMesh mesh = mesh_of(films, shell, thickness);
-      const Uniformity stress = stress_under(
+      const stress::Uniformity stress = stress_under(
           mesh, paper_load(mesh, pressure_of(films, shell.body), thickness));
       result[k].push_back(stress.coefficient_of_variation);
       EXPECT_NEAR(stress.mean, kStress, 0.1 * thickness * kStress);
@@ -205,8 +210,8 @@ TEST(UniformStress, IsOfThatLoadAlone) {
     const double paper =
         stress_under(mesh, paper_load(mesh, pressure, kThickness))
             .coefficient_of_variation;
-    const auto told = [&](const char* load, const LoadCase& load_case) {
-      const Uniformity stress = stress_under(mesh, load_case);
+    const auto told = [&](const char* load, const loads::LoadCase& load_case) {
+      const stress::Uniformity stress = stress_under(mesh, load_case);
       fmt::print("  {:9} {:9}: {}\n", shell.film, load, figures(stress));
       return stress.coefficient_of_variation;
     };

@@ -24,12 +24,13 @@ double radius_at(double z) {
 FilmPart waisted(int around) { return spool(around, kHeight, radius_at); }
 
 /// Farthest that the faces lie from the exact surface of revolution.
-double error_of(const Brep& brep) {
+double error_of(const solid::Brep& brep) {
   double error = 0.0;
-  for (const BrepFace& face : brep.faces) {
-    const auto* surface = std::get_if<SplineSurface>(&face.surface);
+  for (const solid::BrepFace& face : brep.faces) {
+    const auto* surface = std::get_if<solid::SplineSurface>(&face.surface);
     for (int k = 0; k < 400 && surface != nullptr; ++k) {
-      const Vec3 p = jet_of(*surface, {(k / 20) / 19.0, (k % 20) / 19.0}).point;
+      const Vec3 p =
+          solid::jet_of(*surface, {(k / 20) / 19.0, (k % 20) / 19.0}).point;
       error =
           std::max(error, std::abs(std::hypot(p[0], p[1]) - radius_at(p[2])));
     }
@@ -39,7 +40,7 @@ double error_of(const Brep& brep) {
 
 TEST(FilmSolid, TubeBecomesFourPatchesAndTwoDisks) {
   constexpr int kAround = 48;
-  const FilmSolid solid = solid_of(waisted(kAround));
+  const solid::FilmSolid solid = solid_of(waisted(kAround));
   EXPECT_EQ(solid.report.patches, 4);
   EXPECT_EQ(solid.report.planes, 2);
   expect_closed(solid.brep);
@@ -61,12 +62,12 @@ TEST(FilmSolid, FacesComeToTheSmoothSurfaceFasterThanFacets) {
 }
 
 TEST(FilmSolid, IsTheSameTwice) {
-  const FilmSolid a = solid_of(waisted(24));
-  const FilmSolid b = solid_of(waisted(24));
+  const solid::FilmSolid a = solid_of(waisted(24));
+  const solid::FilmSolid b = solid_of(waisted(24));
   ASSERT_EQ(a.brep.faces.size(), b.brep.faces.size());
   for (std::size_t f = 2; f < a.brep.faces.size(); ++f) {
-    EXPECT_EQ(std::get<SplineSurface>(a.brep.faces[f].surface).poles,
-              std::get<SplineSurface>(b.brep.faces[f].surface).poles);
+    EXPECT_EQ(std::get<solid::SplineSurface>(a.brep.faces[f].surface).poles,
+              std::get<solid::SplineSurface>(b.brep.faces[f].surface).poles);
   }
 }
 
@@ -89,13 +90,14 @@ TEST(FilmSolid, NamesAFilmThatItCannotCut) {
 }
 
 /// Farthest that B-spline faces lie from `off` = 0.
-double farthest(const Brep& brep,
+double farthest(const solid::Brep& brep,
                 const std::function<double(const Vec3&)>& off) {
   double most = 0.0;
-  for (const BrepFace& face : brep.faces) {
-    const auto* surface = std::get_if<SplineSurface>(&face.surface);
+  for (const solid::BrepFace& face : brep.faces) {
+    const auto* surface = std::get_if<solid::SplineSurface>(&face.surface);
     for (int k = 0; k < 400 && surface != nullptr; ++k) {
-      const Vec3 p = jet_of(*surface, {(k / 20) / 19.0, (k % 20) / 19.0}).point;
+      const Vec3 p =
+          solid::jet_of(*surface, {(k / 20) / 19.0, (k % 20) / 19.0}).point;
       most = std::max(most, std::abs(off(p)));
     }
   }
@@ -108,7 +110,7 @@ double leaning(double x, double y) {
 
 TEST(FilmSolid, DomeBecomesFivePatches) {
   const FilmPart part = dome(10, leaning);
-  const FilmSolid solid = solid_of(part);
+  const solid::FilmSolid solid = solid_of(part);
   EXPECT_EQ(solid.report.patches, 5);
   EXPECT_EQ(solid.report.planes, 1);
   EXPECT_EQ(solid.report.spheres, 0);
@@ -126,7 +128,7 @@ TEST(FilmSolid, DomeBecomesFivePatches) {
 
 TEST(FilmSolid, SeamsOfADomeEndInItsRimsCorners) {
   const FilmPart part = square_dome(6, 8.0);
-  const FilmSolid solid = solid_of(part);
+  const solid::FilmSolid solid = solid_of(part);
   EXPECT_EQ(solid.report.patches, 5);
   expect_closed(solid.brep);
   // No vertices on the rim but the four corners.
@@ -138,7 +140,7 @@ TEST(FilmSolid, SeamsOfADomeEndInItsRimsCorners) {
 TEST(FilmSolid, ClosedFilmBecomesACubesSides) {
   const Vec3 half(14.0, 10.0, 18.0);
   const FilmPart part = ellipsoid(8, half);
-  const FilmSolid solid = solid_of(part);
+  const solid::FilmSolid solid = solid_of(part);
   EXPECT_EQ(solid.report.patches, 6);
   EXPECT_EQ(solid.brep.vertices.size(), 8);
   EXPECT_EQ(solid.brep.edges.size(), 12);
@@ -162,7 +164,7 @@ TEST(FilmSolid, RefusesABentCap) {
 
 TEST(FilmSolid, FacetedHasAFaceForEachFacet) {
   const FilmPart s = waisted(12);
-  const Brep brep = faceted_solid(s.mesh);
+  const solid::Brep brep = solid::faceted_solid(s.mesh);
   EXPECT_EQ(brep.faces.size(), s.mesh.facets.size());
   expect_closed(brep);
 }

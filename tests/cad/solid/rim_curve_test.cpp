@@ -13,18 +13,18 @@ namespace {
 constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 
 /// Two straight sides and two half circles.
-RimCurve stadium() {
-  return RimCurve(
-      {{StraightLine{Vec3(-2, -1, 0), Vec3::UnitX()}, 0.0, 4.0},
-       {EllipseCurve{Vec3(2, 0, 0), Vec3::UnitX(), Vec3::UnitY()},
+solid::RimCurve stadium() {
+  return solid::RimCurve(
+      {{solid::StraightLine{Vec3(-2, -1, 0), Vec3::UnitX()}, 0.0, 4.0},
+       {solid::EllipseCurve{Vec3(2, 0, 0), Vec3::UnitX(), Vec3::UnitY()},
         -0.25 * kWholeTurn, 0.25 * kWholeTurn},
-       {StraightLine{Vec3(2, 1, 0), -Vec3::UnitX()}, 0.0, 4.0},
-       {EllipseCurve{Vec3(-2, 0, 0), -Vec3::UnitX(), -Vec3::UnitY()},
+       {solid::StraightLine{Vec3(2, 1, 0), -Vec3::UnitX()}, 0.0, 4.0},
+       {solid::EllipseCurve{Vec3(-2, 0, 0), -Vec3::UnitX(), -Vec3::UnitY()},
         -0.25 * kWholeTurn, 0.25 * kWholeTurn}});
 }
 
 TEST(RimCurve, KnowsLengthAndPlaces) {
-  const RimCurve curve = stadium();
+  const solid::RimCurve curve = stadium();
   EXPECT_NEAR(curve.length(), 8.0 + kWholeTurn, 1e-12);
   for (int k = 0; k < 40; ++k) {
     const double s = curve.length() * k / 40.0;
@@ -45,18 +45,18 @@ TEST(RimCurve, SplineThroughPointsClosesSmoothly) {
     points.emplace_back(std::cos(angle), std::sin(angle),
                         0.2 * std::cos(2.0 * angle));
   }
-  const RimCurve curve = rim_through(points);
+  const solid::RimCurve curve = solid::rim_through(points);
   ASSERT_EQ(curve.piece_count(), 1);
   EXPECT_FALSE(curve.is_sharp(0));
   constexpr double kTolerance = 1e-5;  // the poles' third differences, a little
   for (const Vec3& p : points) {
     EXPECT_NEAR((curve.point(curve.nearest(p)) - p).norm(), 0.0, kTolerance);
   }
-  const RimPiece& piece = curve.piece(0);
-  EXPECT_NEAR(
-      (point_of(piece.curve, piece.first) - point_of(piece.curve, piece.last))
-          .norm(),
-      0.0, kTolerance);
+  const solid::RimPiece& piece = curve.piece(0);
+  EXPECT_NEAR((solid::point_of(piece.curve, piece.first) -
+               solid::point_of(piece.curve, piece.last))
+                  .norm(),
+              0.0, kTolerance);
 }
 
 TEST(RimCurve, CornersStayCorners) {
@@ -70,7 +70,7 @@ TEST(RimCurve, CornersStayCorners) {
                                    : Vec3(0, 1 - s, 0));
     }
   }
-  const RimCurve curve = rim_through(points);
+  const solid::RimCurve curve = solid::rim_through(points);
   ASSERT_EQ(curve.piece_count(), 4);
   for (int k = 0; k < 4; ++k) {
     EXPECT_TRUE(curve.is_sharp(k));
@@ -80,12 +80,12 @@ TEST(RimCurve, CornersStayCorners) {
 }
 
 TEST(RimEdges, WishesNearEachOtherBecomeOneVertex) {
-  const RimCurve curve = stadium();
-  RimEdges edges(curve);
+  const solid::RimCurve curve = stadium();
+  solid::RimEdges edges(curve);
   edges.want(1.0);
   edges.want(1.05);
   edges.want(4.02);  // the end of the first side
-  Brep brep;
+  solid::Brep brep;
   edges.build(0.1, brep);
   EXPECT_EQ(brep.vertices.size(), 5U);
   EXPECT_EQ(brep.edges.size(), 5U);
@@ -94,11 +94,13 @@ TEST(RimEdges, WishesNearEachOtherBecomeOneVertex) {
   ASSERT_EQ(steps.size(), 4U);
   EXPECT_FALSE(steps[0].forward);
   EXPECT_NEAR(edges.way(1.0, 4.0, false), curve.length() - 3.0, 1e-12);
-  for (const BrepEdge& edge : brep.edges) {
+  for (const solid::BrepEdge& edge : brep.edges) {
     EXPECT_LT(
-        (point_of(edge.curve, edge.first) - brep.vertices[edge.from]).norm(),
+        (solid::point_of(edge.curve, edge.first) - brep.vertices[edge.from])
+            .norm(),
         1e-12);
-    EXPECT_LT((point_of(edge.curve, edge.last) - brep.vertices[edge.to]).norm(),
+    EXPECT_LT((solid::point_of(edge.curve, edge.last) - brep.vertices[edge.to])
+                  .norm(),
               1e-12);
   }
 }

@@ -24,9 +24,9 @@ constexpr double kFitted = 5e-4;
 
 class SimpleFaces : public testing::Test {
  protected:
-  StepReport written(const FilmSolid& solid) {
+  step::StepReport written(const solid::FilmSolid& solid) {
     expect_closed(solid.brep);
-    return write_step(file_, solid.brep, {.name = "part", .unit = "mm"});
+    return step::write_step(file_, solid.brep, {.name = "part", .unit = "mm"});
   }
   std::string text() const {
     std::ifstream in(file_);
@@ -37,14 +37,14 @@ class SimpleFaces : public testing::Test {
 };
 
 TEST_F(SimpleFaces, TubeBetweenEqualCirclesIsACylinder) {
-  const FilmSolid solid =
+  const solid::FilmSolid solid =
       solid_of(spool(36, 40.0, [](double) { return 15.0; }));
   EXPECT_EQ(solid.report.cylinders, 1);
   EXPECT_EQ(solid.report.planes, 2);
   EXPECT_EQ(solid.report.patches, 0);
   EXPECT_LT(solid.report.film_to_solid, kExact);
   const double exact = kPi * 15.0 * 15.0 * 40.0;
-  const StepReport report = written(solid);
+  const step::StepReport report = written(solid);
   EXPECT_NEAR(report.volume, exact, kExact * exact);
   EXPECT_NEAR(report.mass_center[2], 20.0, kExact * 40.0);
   EXPECT_THAT(text(), testing::HasSubstr("CYLINDRICAL_SURFACE"));
@@ -52,7 +52,7 @@ TEST_F(SimpleFaces, TubeBetweenEqualCirclesIsACylinder) {
 }
 
 TEST_F(SimpleFaces, BoreIsACylinderThatLooksInward) {
-  const FilmSolid solid = solid_of(spool(
+  const solid::FilmSolid solid = solid_of(spool(
       36, 40.0, [](double) { return 16.0; }, true));
   EXPECT_EQ(solid.report.cylinders, 2);
   const double exact = kPi * (16.0 * 16.0 - 4.0 * 4.0) * 40.0;
@@ -63,7 +63,7 @@ TEST_F(SimpleFaces, ZoneOfASphereBetweenTwoCircles) {
   const auto radius = [](double z) {
     return std::sqrt(25.0 * 25.0 - (z - 10.0) * (z - 10.0));
   };
-  const FilmSolid solid = solid_of(spool(48, 30.0, radius));
+  const solid::FilmSolid solid = solid_of(spool(48, 30.0, radius));
   EXPECT_EQ(solid.report.spheres, 1);
   const auto cap = [](double z) { return kPi * (625.0 * z - z * z * z / 3.0); };
   const double exact = cap(20.0) - cap(-10.0);
@@ -72,7 +72,7 @@ TEST_F(SimpleFaces, ZoneOfASphereBetweenTwoCircles) {
 
 TEST_F(SimpleFaces, DomesAreSpheresAlsoBeyondTheHalf) {
   for (const double rise : {6.0, 20.0, 45.0}) {
-    const FilmSolid solid = solid_of(ball_cap(12, rise));
+    const solid::FilmSolid solid = solid_of(ball_cap(12, rise));
     EXPECT_EQ(solid.report.spheres, 1) << rise;
     EXPECT_EQ(solid.report.planes, 1);
     EXPECT_EQ(solid.report.patches, 0);
@@ -83,26 +83,27 @@ TEST_F(SimpleFaces, DomesAreSpheresAlsoBeyondTheHalf) {
 }
 
 TEST_F(SimpleFaces, ClosedFilmIsAWholeSphere) {
-  const FilmSolid solid = solid_of(ellipsoid(8, Vec3::Constant(12.0)));
+  const solid::FilmSolid solid = solid_of(ellipsoid(8, Vec3::Constant(12.0)));
   EXPECT_EQ(solid.report.spheres, 1);
   EXPECT_EQ(solid.brep.faces.size(), 1);
   const double exact = 4.0 / 3.0 * kPi * std::pow(12.0, 3);
-  const StepReport report = written(solid);
+  const step::StepReport report = written(solid);
   EXPECT_NEAR(report.volume, exact, kFitted * exact);
   EXPECT_NEAR((report.mass_center - Vec3(3, 2, 1)).norm(), 0.0, 1e-7);
   // Read again it is the same ball.
-  const SurfaceMesh read = read_step_part(file_, {.unit = "mm", .edge = 1.0});
+  const SurfaceMesh read =
+      step::read_step_part(file_, {.unit = "mm", .edge = 1.0});
   EXPECT_NEAR(enclosed_volume(read) / exact, 1.0, 0.01);
 }
 
 TEST_F(SimpleFaces, FlatFilmIsAPlane) {
-  const FilmSolid solid =
+  const solid::FilmSolid solid =
       solid_of(spool(36, 40.0, [](double z) { return 15.0 + 0.1 * z; }));
   EXPECT_EQ(solid.report.cylinders, 0);  // a cone is none
   EXPECT_EQ(solid.report.patches, 4);
   FilmPart tube = spool(36, 40.0, [](double) { return 15.0; });
   tube.caps = {"bottom"};  // the top is a film across its rim
-  const FilmSolid closed = solid_of(tube);
+  const solid::FilmSolid closed = solid_of(tube);
   EXPECT_EQ(closed.report.planes, 2);
   EXPECT_EQ(closed.report.simple.size(), 2);
   const double exact = kPi * 15.0 * 15.0 * 40.0;
@@ -111,7 +112,7 @@ TEST_F(SimpleFaces, FlatFilmIsAPlane) {
 
 TEST_F(SimpleFaces, NearlyIsNotEnough) {
   // Off by a twentieth of an edge: more than the film's own error.
-  const FilmSolid solid = solid_of(spool(36, 40.0, [](double z) {
+  const solid::FilmSolid solid = solid_of(spool(36, 40.0, [](double z) {
     return 15.0 + 0.15 * std::sin(kPi * z / 40.0);
   }));
   EXPECT_EQ(solid.report.cylinders, 0);
@@ -120,10 +121,10 @@ TEST_F(SimpleFaces, NearlyIsNotEnough) {
 }
 
 TEST_F(SimpleFaces, OtherUnitsOnlyScale) {
-  const FilmSolid solid = solid_of(spool(
+  const solid::FilmSolid solid = solid_of(spool(
       36, 40.0, [](double) { return 16.0; }, true));
-  const StepReport report =
-      write_step(file_, solid.brep, {.name = "part", .unit = "in"});
+  const step::StepReport report =
+      step::write_step(file_, solid.brep, {.name = "part", .unit = "in"});
   const double exact = kPi * (16.0 * 16.0 - 4.0 * 4.0) * 40.0;
   EXPECT_NEAR(report.volume, exact, kExact * exact);
 }

@@ -14,8 +14,8 @@ namespace meniscus::step_writer_test {
 namespace {
 
 /// A box with a corner at the origin, of planes and lines.
-Brep box(const Vec3& size) {
-  Brep brep;
+solid::Brep box(const Vec3& size) {
+  solid::Brep brep;
   for (int k = 0; k < 8; ++k) {
     brep.vertices.emplace_back((k & 1) * size[0], (k / 2 % 2) * size[1],
                                (k / 4) * size[2]);
@@ -33,7 +33,7 @@ Brep box(const Vec3& size) {
     const Vec3 from = brep.vertices[std::min(a, b)];
     const Vec3 way = brep.vertices[std::max(a, b)] - from;
     brep.edges.push_back({std::min(a, b), std::max(a, b),
-                          StraightLine{from, way.normalized()}, 0.0,
+                          solid::StraightLine{from, way.normalized()}, 0.0,
                           way.norm()});
     return static_cast<int>(brep.edges.size()) - 1;
   };
@@ -41,9 +41,9 @@ Brep box(const Vec3& size) {
     const Vec3 a = brep.vertices[corners[0]];
     const Vec3 u = brep.vertices[corners[1]] - a;
     const Vec3 v = brep.vertices[corners[3]] - a;
-    BrepFace face{"side_" + std::to_string(brep.faces.size()),
-                  PlaneSurface{a, Vec3(u.cross(v)).normalized()},
-                  {{}}};
+    solid::BrepFace face{"side_" + std::to_string(brep.faces.size()),
+                         solid::PlaneSurface{a, Vec3(u.cross(v)).normalized()},
+                         {{}}};
     for (int k = 0; k < 4; ++k) {
       const int from = corners[k];
       const int to = corners[(k + 1) % 4];
@@ -61,8 +61,8 @@ class StepWriter : public testing::Test {
 
 TEST_F(StepWriter, WritesAClosedSolidWithNamesAndUnit) {
   const auto file = folder_.path() / "box.step";
-  const StepReport report =
-      write_step(file, box({1.0, 2.0, 3.0}), {.name = "A box", .unit = "m"});
+  const step::StepReport report = step::write_step(
+      file, box({1.0, 2.0, 3.0}), {.name = "A box", .unit = "m"});
   EXPECT_EQ(report.shells, 1);
   EXPECT_NEAR(report.volume, 6.0, 1e-12);
   EXPECT_LT((report.mass_center - Vec3(0.5, 1.0, 1.5)).norm(), 1e-12);
@@ -77,40 +77,42 @@ TEST_F(StepWriter, WritesAClosedSolidWithNamesAndUnit) {
 TEST_F(StepWriter, WritesTheSameBitsTwice) {
   const auto one = folder_.path() / "one.step";
   const auto two = folder_.path() / "two.step";
-  write_step(one, box({1.0, 2.0, 3.0}), {.name = "box"});
-  write_step(two, box({1.0, 2.0, 3.0}), {.name = "box"});
+  step::write_step(one, box({1.0, 2.0, 3.0}), {.name = "box"});
+  step::write_step(two, box({1.0, 2.0, 3.0}), {.name = "box"});
   EXPECT_EQ(read_file(one), read_file(two));
 }
 
 TEST_F(StepWriter, WhatIsWrittenIsReadWithItsNames) {
   const auto file = folder_.path() / "box.step";
-  write_step(file, box({1.0, 2.0, 3.0}), {.name = "box", .unit = "in"});
-  const SurfaceMesh mesh = read_step_part(file, {.unit = "in", .edge = 0.5});
+  step::write_step(file, box({1.0, 2.0, 3.0}), {.name = "box", .unit = "in"});
+  const SurfaceMesh mesh =
+      step::read_step_part(file, {.unit = "in", .edge = 0.5});
   EXPECT_EQ(mesh.points.size(), 8U);
   EXPECT_EQ(mesh.facets.size(), 12U);
   EXPECT_NEAR(enclosed_volume(mesh), 6.0, 1e-12);
   ASSERT_EQ(mesh.labels.size(), 6U);
   EXPECT_NEAR(surface_area(mesh, mesh.label_of("side_0")), 2.0, 1e-12);
-  const SurfaceMesh metric = read_step_part(file, {.unit = "mm", .edge = 10});
+  const SurfaceMesh metric =
+      step::read_step_part(file, {.unit = "mm", .edge = 10});
   EXPECT_NEAR(enclosed_volume(metric), 6.0 * 25.4 * 25.4 * 25.4, 1e-8);
 }
 
 /// Of a loop, closing side included.
-double perimeter(const StepLoop& loop) {
+double perimeter(const step::StepLoop& loop) {
   double length = 0.0;
-  for (const StepPiece& piece : loop.pieces) {
+  for (const step::StepPiece& piece : loop.pieces) {
     length += piece.length;
-    EXPECT_EQ(piece.kind, StepPiece::Kind::Line);
+    EXPECT_EQ(piece.kind, step::StepPiece::Kind::Line);
   }
   return length;
 }
 
 TEST_F(StepWriter, EdgesAndRimsAreReadAsLoops) {
   const auto file = folder_.path() / "box.step";
-  write_step(file, box({1.0, 2.0, 3.0}), {.unit = "in"});
-  const StepEdges edges(file, "in");
+  step::write_step(file, box({1.0, 2.0, 3.0}), {.unit = "in"});
+  const step::StepEdges edges(file, "in");
   // The first face uses the first four edges: about z = 0.
-  const StepLoop loop = edges.loop({"4", "2", "1", "3"});
+  const step::StepLoop loop = edges.loop({"4", "2", "1", "3"});
   EXPECT_FALSE(loop.whole);
   ASSERT_EQ(loop.pieces.size(), 4U);
   EXPECT_NEAR(perimeter(loop), 6.0, 1e-12);
@@ -120,7 +122,7 @@ TEST_F(StepWriter, EdgesAndRimsAreReadAsLoops) {
                   .norm(),
               1e-12);
   }
-  EXPECT_NEAR(perimeter(StepEdges(file, "mm").rim("side_1")), 6.0 * 25.4,
+  EXPECT_NEAR(perimeter(step::StepEdges(file, "mm").rim("side_1")), 6.0 * 25.4,
               1e-10);
   EXPECT_THROW(edges.loop({"1"}), InvalidInput);
   EXPECT_THROW(edges.loop({"1", "2", "3"}), InvalidInput);
@@ -132,13 +134,13 @@ TEST_F(StepWriter, EdgesAndRimsAreReadAsLoops) {
 /// Rims run counter-clockwise seen from outside.
 TEST_F(StepWriter, RimsOfPlanesRunAroundTheirOutwardNormal) {
   const auto file = folder_.path() / "box.step";
-  write_step(file, box({1.0, 2.0, 3.0}));
-  const StepEdges edges(file, "mm");
+  step::write_step(file, box({1.0, 2.0, 3.0}));
+  const step::StepEdges edges(file, "mm");
   const Vec3 middle(0.5, 1.0, 1.5);
   for (int f = 0; f < 6; ++f) {
-    const StepLoop loop = edges.rim("side_" + std::to_string(f));
+    const step::StepLoop loop = edges.rim("side_" + std::to_string(f));
     Vec3 area = Vec3::Zero();
-    for (const StepPiece& piece : loop.pieces) {
+    for (const step::StepPiece& piece : loop.pieces) {
       area += 0.5 * piece.samples.front().cross(piece.samples.back());
     }
     EXPECT_GT(area.dot(loop.pieces[0].samples.front() - middle), 0.0) << f;
@@ -148,22 +150,23 @@ TEST_F(StepWriter, RimsOfPlanesRunAroundTheirOutwardNormal) {
 TEST_F(StepWriter, ReadersRefuseWhatIsNoStep) {
   const auto file = folder_.path() / "text.step";
   write_file(file, "solid x\n");
-  EXPECT_THROW(read_step_part(file, {.edge = 1.0}), InvalidInput);
+  EXPECT_THROW(step::read_step_part(file, {.edge = 1.0}), InvalidInput);
   write_file(file, "ISO-10303-21;\nHEADER;\n");
-  EXPECT_THROW(read_step_part(file, {.edge = 1.0}), InvalidInput);
-  EXPECT_THROW(read_step_part(folder_.path() / "none", {.edge = 1.0}), IoError);
-  write_step(file, box({1.0, 1.0, 1.0}));
-  EXPECT_THROW(read_step_part(file, {.edge = 0.0}), InvalidInput);
+  EXPECT_THROW(step::read_step_part(file, {.edge = 1.0}), InvalidInput);
+  EXPECT_THROW(step::read_step_part(folder_.path() / "none", {.edge = 1.0}),
+               IoError);
+  step::write_step(file, box({1.0, 1.0, 1.0}));
+  EXPECT_THROW(step::read_step_part(file, {.edge = 0.0}), InvalidInput);
 }
 
 TEST_F(StepWriter, RefusesWhatIsNoSolid) {
   const auto file = folder_.path() / "open.step";
-  Brep open = box({1.0, 1.0, 1.0});
+  solid::Brep open = box({1.0, 1.0, 1.0});
   open.faces.pop_back();
-  EXPECT_THROW(write_step(file, open), MeshError);
-  Brep inside_out = box({1.0, 1.0, -1.0});
-  EXPECT_THROW(write_step(file, inside_out), MeshError);
-  EXPECT_THROW(write_step(file, box({1.0, 1.0, 1.0}), {.unit = "ell"}),
+  EXPECT_THROW(step::write_step(file, open), MeshError);
+  solid::Brep inside_out = box({1.0, 1.0, -1.0});
+  EXPECT_THROW(step::write_step(file, inside_out), MeshError);
+  EXPECT_THROW(step::write_step(file, box({1.0, 1.0, 1.0}), {.unit = "ell"}),
                InvalidInput);
   EXPECT_FALSE(std::filesystem::exists(file));
 }

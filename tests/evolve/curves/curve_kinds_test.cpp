@@ -16,17 +16,17 @@ using ::testing::HasSubstr;
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-12;  // some operations on numbers near 1
 
-std::string refusal(const CurveShape& shape) {
+std::string refusal(const curves::CurveShape& shape) {
   try {
-    validate({"rim", shape});
+    curves::validate({"rim", shape});
   } catch (const InvalidInput& error) {
     return error.what();
   }
   return "";
 }
 
-Spline circle_through(int count) {
-  Spline spline;
+curves::Spline circle_through(int count) {
+  curves::Spline spline;
   for (int k = 0; k < count; ++k) {
     // Uneven on purpose: knots at chords take it.
     const double angle = 2.0 * kPi * (k + 0.2 * (k % 2)) / count;
@@ -41,7 +41,7 @@ double error_on_circle(int count) {
     t.push_back(i / 1000.0);
   }
   double worst = 0.0;
-  for (const Vec3& p : points_at(circle_through(count), t)) {
+  for (const Vec3& p : curves::points_at(circle_through(count), t)) {
     worst = std::max(worst, std::abs(p.norm() - 1.0));
   }
   return worst;
@@ -55,7 +55,7 @@ TEST(Spline, ComesNearACircleWithTheFourthPowerOfItsPoints) {
 }
 
 TEST(Spline, GoesThroughItsPointsWithContinuousCurvature) {
-  const Spline spline{
+  const curves::Spline spline{
       {{2, 0, 0}, {0, 1, 0.3}, {-3, 0, 0}, {-2.5, -0.6, 0}, {0, -1, 0}}};
   double chords = 0.0;
   for (std::size_t k = 0; k < spline.points.size(); ++k) {
@@ -64,12 +64,14 @@ TEST(Spline, GoesThroughItsPointsWithContinuousCurvature) {
   double along = 0.0;
   for (std::size_t k = 0; k < spline.points.size(); ++k) {
     const double t = along / chords;
-    EXPECT_LT((point_at(spline, t) - spline.points[k]).norm(), kRounding);
+    EXPECT_LT((curves::point_at(spline, t) - spline.points[k]).norm(),
+              kRounding);
     // Second differences on both sides of the knot.
     constexpr double kStep = 1e-4;
     const auto second = [&](double at) -> Vec3 {
-      return (point_at(spline, at + kStep) - 2.0 * point_at(spline, at) +
-              point_at(spline, at - kStep)) /
+      return (curves::point_at(spline, at + kStep) -
+              2.0 * curves::point_at(spline, at) +
+              curves::point_at(spline, at - kStep)) /
              (kStep * kStep);
     };
     const Vec3 jump = second(t + kStep) - second(t - kStep);
@@ -79,81 +81,85 @@ TEST(Spline, GoesThroughItsPointsWithContinuousCurvature) {
 }
 
 TEST(Polyline, ArcsAreArcsOfCircles) {
-  const Polyline slot{
+  const curves::Polyline slot{
       {{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}},
       {std::nullopt, Vec3(3, 0, 0), std::nullopt, Vec3(-3, 0, 0)}};
   EXPECT_EQ(refusal(slot), "");
-  EXPECT_NEAR(length_of(slot), 8.0 + 2.0 * kPi, kRounding);
+  EXPECT_NEAR(curves::length_of(slot), 8.0 + 2.0 * kPi, kRounding);
   for (int i = 0; i < 400; ++i) {
-    const Vec3 p = point_at(slot, i / 400.0);
+    const Vec3 p = curves::point_at(slot, i / 400.0);
     EXPECT_NEAR(std::hypot(std::max(std::abs(p.x()) - 2.0, 0.0), p.y()),
                 std::abs(p.x()) > 2.0 ? 1.0 : std::abs(p.y()), kRounding);
   }
   // Three quarters of a circle: the long way, because the point says so.
-  const Polyline cap{{{1, 0, 0}, {0, 1, 0}}, {Vec3(-1, 0, 0), std::nullopt}};
-  EXPECT_NEAR(length_of(cap), 1.5 * kPi + std::sqrt(2.0), kRounding);
-  EXPECT_LT((point_at(cap, 0.25) + Vec3(1, 1, 0).normalized()).norm(),
+  const curves::Polyline cap{{{1, 0, 0}, {0, 1, 0}},
+                             {Vec3(-1, 0, 0), std::nullopt}};
+  EXPECT_NEAR(curves::length_of(cap), 1.5 * kPi + std::sqrt(2.0), kRounding);
+  EXPECT_LT((curves::point_at(cap, 0.25) + Vec3(1, 1, 0).normalized()).norm(),
             kRounding);
 }
 
-CurveCopy copy_of(CurveShape shape) {
-  CurveCopy copy;
-  copy.of = std::make_shared<const Curve>("first", std::move(shape));
+curves::CurveCopy copy_of(curves::CurveShape shape) {
+  curves::CurveCopy copy;
+  copy.of = std::make_shared<const curves::Curve>("first", std::move(shape));
   return copy;
 }
 
 TEST(CurveCopy, MovesInTheOrderThatItSays) {
-  CurveCopy copy = copy_of(Circle{Vec3(2, 0, 0), Vec3::UnitZ(), 1.0});
+  curves::CurveCopy copy =
+      copy_of(curves::Circle{Vec3(2, 0, 0), Vec3::UnitZ(), 1.0});
   copy.scale = Vec3(2, 1, 1);
   copy.mirror = Vec3::UnitY();
   copy.angle = 0.5 * kPi;
   copy.about = Vec3(1, 0, 0);
   copy.move = Vec3(0, 0, 5);
   // (3, 0, 0) -> (5, 0, 0) -> the same -> (1, 4, 0) -> (1, 4, 5)
-  EXPECT_LT((point_at(copy, 0.0) - Vec3(1, 4, 5)).norm(), kRounding);
+  EXPECT_LT((curves::point_at(copy, 0.0) - Vec3(1, 4, 5)).norm(), kRounding);
   // (2, 1, 0) -> (3, 1, 0) -> (3, -1, 0) -> (2, 2, 0)
-  EXPECT_LT((point_at(copy, 0.25) - Vec3(2, 2, 5)).norm(), kRounding);
+  EXPECT_LT((curves::point_at(copy, 0.25) - Vec3(2, 2, 5)).norm(), kRounding);
 }
 
 TEST(CurveCopy, OfACopyAddsUp) {
-  CurveCopy once = copy_of(Circle{});
+  curves::CurveCopy once = copy_of(curves::Circle{});
   once.move = Vec3(1, 2, 3);
-  CurveCopy twice = copy_of(once);
+  curves::CurveCopy twice = copy_of(once);
   twice.move = Vec3(1, 2, 3);
   for (const double t : {0.0, 0.3, 0.9}) {
-    EXPECT_LT(
-        (point_at(twice, t) - point_at(Circle{}, t) - Vec3(2, 4, 6)).norm(),
-        kRounding);
+    EXPECT_LT((curves::point_at(twice, t) -
+               curves::point_at(curves::Circle{}, t) - Vec3(2, 4, 6))
+                  .norm(),
+              kRounding);
   }
 }
 
 TEST(CurveCopy, OffsetsAreAsFarAsTheySay) {
-  Ellipse ellipse;
+  curves::Ellipse ellipse;
   ellipse.radius_1 = 3.0;
-  const Polyline slot{
+  const curves::Polyline slot{
       {{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}},
       {std::nullopt, Vec3(3, 0, 0), std::nullopt, Vec3(-3, 0, 0)}};
-  Rectangle round;
+  curves::Rectangle round;
   round.width = 4.0;
   round.height = 2.0;
   round.corner_radius = 0.8;
   // Splines are off by their points' fourth power.
   for (const auto& [shape, accuracy] :
-       {std::pair(CurveShape(Circle{}), 1e-12),
-        std::pair(CurveShape(round), 1e-12), std::pair(CurveShape(slot), 1e-12),
-        std::pair(CurveShape(ellipse), 1e-6),
-        std::pair(CurveShape(circle_through(32)), 1e-4)}) {
+       {std::pair(curves::CurveShape(curves::Circle{}), 1e-12),
+        std::pair(curves::CurveShape(round), 1e-12),
+        std::pair(curves::CurveShape(slot), 1e-12),
+        std::pair(curves::CurveShape(ellipse), 1e-6),
+        std::pair(curves::CurveShape(circle_through(32)), 1e-4)}) {
     for (const double offset : {-0.2, 0.3}) {
-      CurveCopy copy = copy_of(shape);
+      curves::CurveCopy copy = copy_of(shape);
       copy.offset = offset;
       EXPECT_EQ(refusal(copy), "");
       std::vector<double> t(4000);
       for (std::size_t k = 0; k < t.size(); ++k) {
         t[k] = static_cast<double>(k) / static_cast<double>(t.size());
       }
-      const Points first = points_at(shape, t);
+      const Points first = curves::points_at(shape, t);
       for (const double at : {0.01, 0.13, 0.3, 0.62, 0.88}) {
-        const Vec3 there = point_at(copy, at);
+        const Vec3 there = curves::point_at(copy, at);
         double nearest = std::numeric_limits<double>::infinity();
         for (const Vec3& p : first) {
           nearest = std::min(nearest, (p - there).norm());
@@ -161,32 +167,37 @@ TEST(CurveCopy, OffsetsAreAsFarAsTheySay) {
         // The nearest of the samples is off by half a step squared.
         EXPECT_NEAR(nearest, std::abs(offset), accuracy + 1e-5);
       }
-      EXPECT_EQ(length_of(copy) > length_of(shape), offset > 0.0);
+      EXPECT_EQ(curves::length_of(copy) > curves::length_of(shape),
+                offset > 0.0);
     }
   }
-  CurveCopy corner = copy_of(Polygon{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}});
+  curves::CurveCopy corner =
+      copy_of(curves::Polygon{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}});
   corner.offset = 0.1;
-  EXPECT_LT((point_at(corner, 0.0) - Vec3(-0.1, -0.1, 0)).norm(), kRounding);
+  EXPECT_LT((curves::point_at(corner, 0.0) - Vec3(-0.1, -0.1, 0)).norm(),
+            kRounding);
 }
 
 TEST(Curve, RefusesWhatIsNoneOfTheseKinds) {
-  EXPECT_THAT(refusal(Spline{{{0, 0, 0}, {1, 0, 0}}}),
+  EXPECT_THAT(refusal(curves::Spline{{{0, 0, 0}, {1, 0, 0}}}),
               HasSubstr("spline has 2 points"));
-  EXPECT_THAT(refusal(Spline{{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}}}),
-              HasSubstr("points 1 and 2 are equal"));
-  EXPECT_THAT(refusal(Polyline{{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}},
+  EXPECT_THAT(
+      refusal(curves::Spline{{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}}}),
+      HasSubstr("points 1 and 2 are equal"));
+  EXPECT_THAT(
+      refusal(curves::Polyline{{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}},
                                {Vec3(1, 0, 0), std::nullopt, std::nullopt}}),
-              HasSubstr("on a line"));
-  CurveCopy copy = copy_of(Circle{});
+      HasSubstr("on a line"));
+  curves::CurveCopy copy = copy_of(curves::Circle{});
   copy.offset = -1.0;
   EXPECT_THAT(refusal(copy), HasSubstr("offset by -1: curve 'first': radius"));
   copy.offset.reset();
   copy.scale.x() = 0.0;
   EXPECT_THAT(refusal(copy), HasSubstr("scale is 0"));
-  copy = copy_of(Circle{});
+  copy = copy_of(curves::Circle{});
   copy.axis.setZero();
   EXPECT_THAT(refusal(copy), HasSubstr("axis is zero"));
-  copy = copy_of(copy_of(Circle{}));
+  copy = copy_of(copy_of(curves::Circle{}));
   copy.offset = 1.0;
   EXPECT_THAT(refusal(copy), HasSubstr("a copy has no offset"));
 }

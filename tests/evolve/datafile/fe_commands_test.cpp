@@ -10,10 +10,10 @@ namespace meniscus::fe_commands_test {
 namespace {
 
 using ::testing::StartsWith;
-using Kind = FeStatement::Kind;
+using Kind = datafile::FeStatement::Kind;
 
-std::vector<FeStatement> parse(const std::string& text) {
-  return parse_commands(text, "a.fe", 10);
+std::vector<datafile::FeStatement> parse(const std::string& text) {
+  return datafile::parse_commands(text, "a.fe", 10);
 }
 
 std::string message_of(const std::string& text) {
@@ -60,20 +60,20 @@ adjust
   EXPECT_EQ(all[0].kind, Kind::Define);
   EXPECT_EQ(all[0].body[1].values[0].number, 3.0);
   std::vector<Kind> kinds;
-  for (const FeStatement& statement : all[1].body) {
+  for (const datafile::FeStatement& statement : all[1].body) {
     kinds.push_back(statement.kind);
   }
   EXPECT_EQ(kinds, (std::vector<Kind>{
                        Kind::Assign, Kind::For, Kind::Foreach, Kind::DoWhile,
                        Kind::Set, Kind::Unset, Kind::Elements, Kind::Attribute,
                        Kind::AddLoad, Kind::Toggle, Kind::Assign}));
-  const FeStatement& loop = all[1].body[1];
+  const datafile::FeStatement& loop = all[1].body[1];
   ASSERT_EQ(loop.body.size(), 3);
   EXPECT_EQ(loop.body[1].name, "+=");
-  const FeStatement& choice = loop.body[2].body[0];
+  const datafile::FeStatement& choice = loop.body[2].body[0];
   EXPECT_EQ(choice.kind, Kind::If);
   EXPECT_EQ(choice.body.size(), 2);
-  const FeStatement& set = all[1].body[4];
+  const datafile::FeStatement& set = all[1].body[4];
   EXPECT_EQ(set.name, "y");
   EXPECT_EQ(set.values.size(), 1);
   EXPECT_EQ(set.elements.where.size(), 1);

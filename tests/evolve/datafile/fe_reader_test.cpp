@@ -30,7 +30,7 @@ faces
 
 std::string message_of_text(const std::string& text) {
   try {
-    complex_of(read_fe(text, "a.fe"));
+    datafile::complex_of(datafile::read_fe(text, "a.fe"));
   } catch (const InvalidInput& error) {
     return error.what();
   }
@@ -42,7 +42,9 @@ double value(const std::string& formula, const std::string& top = "") {
   std::string text = top + kTriangle;
   const std::string old = "3 0 1 0";
   text.replace(text.find(old), old.size(), "3 " + formula + " 1 0");
-  return complex_of(read_fe(text, "a.fe")).mesh.points[2].x();
+  return datafile::complex_of(datafile::read_fe(text, "a.fe"))
+      .mesh.points[2]
+      .x();
 }
 
 TEST(FeReader, FollowsEvolversPrecedence) {
@@ -76,7 +78,8 @@ TEST(FeReader, SplitsExpressionsWhereASignLeans) {
       "parameter aa = 3\nvertices\n1 aa -aa (1 -1) fixed\n"
       "2 aa - aa, aa-2, 2 fixed\n3 5 + 1 -2 -aa\nedges\n1 1 2\n2 2 3\n3 3 1\n"
       "faces\n1 1 2 3\n";
-  const FilmComplex complex = complex_of(read_fe(text, "a.fe"));
+  const films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(text, "a.fe"));
   EXPECT_EQ(complex.mesh.points[0], Vec3(3, -3, 0));
   EXPECT_EQ(complex.mesh.points[1], Vec3(0, 1, 2));
   EXPECT_EQ(complex.mesh.points[2], Vec3(6, -2, -3));
@@ -87,7 +90,8 @@ TEST(FeReader, SkipsCommentsSplicesLinesAndExpandsMacros) {
       "// first\r\n/* second\n third */ #define ONE (1)\n#define TWO ONE+ONE\n"
       "VERTICES: /* here */\n1 0 0 \\\n 0 FIXED\n2 ONE 0 0 Fixed // x\n"
       "3 TWO -ONE TWO*2\nEdges\n1 1 2\n2 2 3\n3 3 1\nfaces\n1 1 2 3\n";
-  const FilmComplex complex = complex_of(read_fe(text, "a.fe"));
+  const films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(text, "a.fe"));
   EXPECT_EQ(complex.mesh.points[2], Vec3(2, -1, 3));  // text, not value
 }
 
@@ -96,11 +100,12 @@ TEST(FeReader, TakesOtherParameterValues) {
       "PARAMETER Width = 2\nparameter half = width/2\n" + kTriangle;
   std::string wide = text;
   wide.replace(wide.find("3 0 1 0"), 7, "3 half 1 0");
-  const FeFile file = read_fe(wide, "a.fe");
-  EXPECT_EQ(complex_of(file).mesh.points[2].x(), 1.0);
-  EXPECT_EQ(complex_of(file, {{"WIDTH", 8.0}}).mesh.points[2].x(), 4.0);
-  EXPECT_EQ(complex_of(file, {{"G", 8.0}}).gravity.z(), -8.0);
-  EXPECT_THROW(complex_of(file, {{"widht", 8.0}}), InvalidInput);
+  const datafile::FeFile file = datafile::read_fe(wide, "a.fe");
+  EXPECT_EQ(datafile::complex_of(file).mesh.points[2].x(), 1.0);
+  EXPECT_EQ(datafile::complex_of(file, {{"WIDTH", 8.0}}).mesh.points[2].x(),
+            4.0);
+  EXPECT_EQ(datafile::complex_of(file, {{"G", 8.0}}).gravity.z(), -8.0);
+  EXPECT_THROW(datafile::complex_of(file, {{"widht", 8.0}}), InvalidInput);
 }
 
 TEST(FeReader, PutsVerticesOntoConstraints) {
@@ -111,7 +116,8 @@ TEST(FeReader, PutsVerticesOntoConstraints) {
       kTriangle;
   std::string on = text;
   on.replace(on.find("3 0 1 0"), 7, "3 0 1 0 constraints ball, 7");
-  const FilmComplex complex = complex_of(read_fe(on, "a.fe"));
+  const films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(on, "a.fe"));
   constexpr double kRounding = 1e-14;
   EXPECT_NEAR(complex.mesh.points[2].z(), 1.0, kRounding);
   EXPECT_NEAR(complex.mesh.points[2].norm(), 2.0, kRounding);
@@ -147,10 +153,10 @@ bodies
 read
 gogo := { g 5 }
 )";
-  const FeFile file = read_fe(text, "a.fe");
+  const datafile::FeFile file = datafile::read_fe(text, "a.fe");
   EXPECT_EQ(file.commands_line, 25);
   EXPECT_THAT(file.commands, HasSubstr("gogo := { g 5 }"));
-  const FilmComplex complex = complex_of(file);
+  const films::FilmComplex complex = datafile::complex_of(file);
   ASSERT_EQ(complex.mesh.facets.size(), 8);
   ASSERT_EQ(complex.surfaces.size(), 3);
   EXPECT_EQ(complex.mesh.labels,
@@ -159,7 +165,7 @@ gogo := { g 5 }
   EXPECT_FALSE(complex.surfaces[0].refine);
   EXPECT_EQ(complex.surfaces[2].tension, 2.0);
   EXPECT_EQ(complex.mesh.points[5], Vec3(0.5, 0.5, 0.0));
-  EXPECT_EQ(complex.vertices[5].kind, VertexKind::Fixed);
+  EXPECT_EQ(complex.vertices[5].kind, films::VertexKind::Fixed);
   EXPECT_EQ(complex.edges.size(), 4 + 4);  // fixed ones, and spokes
   ASSERT_EQ(complex.bodies.size(), 1);
   EXPECT_EQ(complex.bodies[0].name, "body_3");
@@ -167,7 +173,7 @@ gogo := { g 5 }
   EXPECT_EQ(complex.bodies[0].pressure, 2.0);
   EXPECT_EQ(complex.bodies[0].density, 1.5);
   EXPECT_EQ(complex.gravity, Vec3(0, 0, -1));
-  EXPECT_EQ(complex.volume_rule, VolumeRule::Column);
+  EXPECT_EQ(complex.volume_rule, films::VolumeRule::Column);
   constexpr double kRounding = 1e-15;
   EXPECT_NEAR(sums::volume(complex, 0), 1.0 / 3.0, kRounding);
 }
@@ -179,7 +185,8 @@ TEST(FeReader, EvaluatesEdgeAttributesPerEdge) {
       kTriangle;
   text.replace(text.find("2 2 3"), 5, "2 2 3 constraint 1 angle 3");
   text.replace(text.find("3 3 1"), 5, "3 3 1 constraint -1 angle 5");
-  const FilmComplex complex = complex_of(read_fe(text, "a.fe"));
+  const films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(text, "a.fe"));
   EXPECT_EQ(complex.integrals.size(), 2);
   constexpr double kRounding = 1e-14;
   // dx is -1 along edge 2 and 0 along edge 3; area 1/2.
@@ -192,9 +199,9 @@ TEST(FeReader, RecalculatesFormulasAlone) {
       "x2: rad*sin(p1)\nx3: 0\nquantity qq info_only method "
       "facet_scalar_integral global scalar_integrand: rad\n" +
       kTriangle;
-  const FeFile file = read_fe(text, "a.fe");
-  FilmComplex complex = complex_of(file);
-  recalculate(complex, file, {{"rad", 3.0}});
+  const datafile::FeFile file = datafile::read_fe(text, "a.fe");
+  films::FilmComplex complex = datafile::complex_of(file);
+  datafile::recalculate(complex, file, {{"rad", 3.0}});
   constexpr double kRounding = 1e-15;
   EXPECT_NEAR(sums::quantity(complex, 0), 1.5, kRounding);
   EXPECT_EQ(complex.mesh.points[1], Vec3(1, 0, 0));
@@ -209,8 +216,10 @@ TEST(FeReader, WritesWhatItReads) {
       kTriangle;
   text.replace(text.find("3 0 1 0"), 7, "3 0 1 0.5 constraint 1");
   text.replace(text.find("1 1 2 3\n"), 8, "1 1 2 3 qq\n");
-  const FilmComplex complex = complex_of(read_fe(text, "a.fe"));
-  const FilmComplex again = complex_of(read_fe(fe_text(complex), "b.fe"));
+  const films::FilmComplex complex =
+      datafile::complex_of(datafile::read_fe(text, "a.fe"));
+  const films::FilmComplex again = datafile::complex_of(
+      datafile::read_fe(datafile::fe_text(complex), "b.fe"));
   EXPECT_EQ(again.mesh.points, complex.mesh.points);
   EXPECT_EQ(again.mesh.facets, complex.mesh.facets);
   constexpr double kRounding = 1e-15;

@@ -44,17 +44,19 @@ TEST_P(FeSamples, LoadWithEvolversCountsAreaAndEnergy) {
     MENISCUS_NOT_HERE("the samples of Debian's evolver-doc are not installed");
   }
   // As the program loads them: commands outside macros are run.
-  const FilmComplex complex =
-      run_fe_script(read_fe(text, expected.name + ".fe"), {}, {}).complex;
+  const films::FilmComplex complex =
+      datafile::run_fe_script(datafile::read_fe(text, expected.name + ".fe"),
+                              {}, {})
+          .complex;
   EXPECT_EQ(complex.mesh.points.size(), expected.vertices);
   EXPECT_EQ(sums::edges(complex), expected.edges);
   EXPECT_EQ(complex.mesh.facets.size(), expected.facets);
   EXPECT_EQ(complex.bodies.size(), expected.bodies);
-  const FilmEnergy energy(complex);
+  const energy::FilmEnergy energy(complex);
   const Points& points = complex.mesh.points;
   EXPECT_NEAR(sums::area(complex), expected.area,
               kTwelveDigits * expected.area);
-  EXPECT_NEAR(energy.value(points, targets_of(complex)), expected.energy,
+  EXPECT_NEAR(energy.value(points, energy::targets_of(complex)), expected.energy,
               kTwelveDigits * expected.energy);
 }
 
@@ -91,7 +93,8 @@ TEST_P(FeRefusedSamples, NameWhatIsNotSupportedAndWhere) {
     MENISCUS_NOT_HERE("the samples of Debian's evolver-doc are not installed");
   }
   try {
-    run_fe_script(read_fe(text, GetParam().name + ".fe"), {}, {});
+    datafile::run_fe_script(datafile::read_fe(text, GetParam().name + ".fe"),
+                            {}, {});
     FAIL() << "it was read";
   } catch (const InvalidInput& error) {
     EXPECT_THAT(error.what(), ::testing::StartsWith(GetParam().message));

@@ -50,11 +50,13 @@ bodies
 read
 )";
 
-FeScriptResult run(const std::string& commands,
-                   const FeScriptOptions& options = {.macro = "gogo"}) {
-  static std::vector<std::unique_ptr<FeFile>> keep;
-  keep.push_back(std::make_unique<FeFile>(read_fe(kCube + commands, "a.fe")));
-  return run_fe_script(*keep.back(), {}, options);
+datafile::FeScriptResult run(const std::string& commands,
+                             const datafile::FeScriptOptions& options = {
+                                 .macro = "gogo"}) {
+  static std::vector<std::unique_ptr<datafile::FeFile>> keep;
+  keep.push_back(std::make_unique<datafile::FeFile>(
+      datafile::read_fe(kCube + commands, "a.fe")));
+  return datafile::run_fe_script(*keep.back(), {}, options);
 }
 
 std::string output_of(const std::string& body) {
@@ -62,7 +64,7 @@ std::string output_of(const std::string& body) {
 }
 
 std::string message_of_script(const std::string& commands,
-                              const FeScriptOptions& options = {
+                              const datafile::FeScriptOptions& options = {
                                   .macro = "gogo"}) {
   try {
     run(commands, options);
@@ -111,26 +113,26 @@ TEST(FeScript, ReadsAndSetsElements) {
 
 TEST(FeScript, RefinesChosenEdges) {
   // Each of the cube's 12 edges cuts two facets.
-  const FeScriptResult result =
+  const datafile::FeScriptResult result =
       run("gogo := { refine edges where length > 0.9 }");
   EXPECT_EQ(result.complex.mesh.points.size(), 14 + 12);
   EXPECT_EQ(result.complex.mesh.facets.size(), 24 + 24);
 }
 
 TEST(FeScript, EvolvesTowardsTheSphere) {
-  const FeScriptResult result =
+  const datafile::FeScriptResult result =
       run("gogo := { g 5; r; g 5; hessian; r; g 5; hessian; hessian }");
   EXPECT_EQ(result.complex.mesh.facets.size(), 384);
   const double area =
-      FilmEnergy(result.complex).area(result.complex.mesh.points);
+      energy::FilmEnergy(result.complex).area(result.complex.mesh.points);
   // Surface Evolver's own macro ends at 4.85446.
   EXPECT_NEAR(area, 4.85446, 2e-4);
   EXPECT_GT(result.iterations, 15);
 }
 
 TEST(FeScript, ConjugateGradientsComeLower) {
-  const auto area = [](const FeScriptResult& r) {
-    return FilmEnergy(r.complex).area(r.complex.mesh.points);
+  const auto area = [](const datafile::FeScriptResult& r) {
+    return energy::FilmEnergy(r.complex).area(r.complex.mesh.points);
   };
   const double plain = area(run("gogo := { r 2; g 30 }"));
   const double conjugate = area(run("gogo := { r 2; U; g 30 }"));
@@ -139,7 +141,7 @@ TEST(FeScript, ConjugateGradientsComeLower) {
 
 TEST(FeScript, RunsTheMacroAskedFor) {
   EXPECT_EQ(run("two := { print 2 }; gogo := { two; two }").output, "2\n2\n");
-  FeScriptOptions options;
+  datafile::FeScriptOptions options;
   options.macro = "two";
   EXPECT_EQ(run("two := { print 2 }", options).output, "2\n");
   EXPECT_THAT(message_of_script("two := { g }"),
@@ -163,11 +165,11 @@ TEST(FeScript, RefusesByNameAndLine) {
 }
 
 TEST(FeScript, EndlessMacrosAreStopped) {
-  FeScriptOptions few{.macro = "gogo"};
+  datafile::FeScriptOptions few{.macro = "gogo"};
   few.most_steps = 1000;
   EXPECT_THAT(message_of_script("gogo := { while 1 do nn := 1 }", few),
               HasSubstr("does not end within 1000 commands"));
-  FeScriptOptions little{.macro = "gogo"};
+  datafile::FeScriptOptions little{.macro = "gogo"};
   little.most_work = 1e5;
   EXPECT_THAT(message_of_script("gogo := { r 3; { nn := 1 } 100000 }", little),
               HasSubstr("more than 1e+05 facets times steps"));

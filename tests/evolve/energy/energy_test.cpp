@@ -18,8 +18,8 @@ Expression over(const std::string& text) {
 }
 
 /// A tube with caps that is nowhere symmetric.
-FilmComplex skewed_tube() {
-  FilmComplex complex = shapes::tube(
+films::FilmComplex skewed_tube() {
+  films::FilmComplex complex = shapes::tube(
       1.0, 1.5, 9, 5, [](double z) { return 1.0 + 0.2 * z + 0.1 * z * z; });
   shapes::close_tube(complex, 9);
   for (Vec3& p : complex.mesh.points) {
@@ -30,75 +30,76 @@ FilmComplex skewed_tube() {
 
 /// The tube without its lid, its top rim on a ball and its bottom rim sliding
 /// on a curve, with every term that a film can carry.
-FilmComplex loaded_tube() {
-  FilmComplex complex = skewed_tube();
+films::FilmComplex loaded_tube() {
+  films::FilmComplex complex = skewed_tube();
   complex.surfaces[0].tension_field = over("1 + 0.3*sin(x) + y*z");
   complex.gravity = Vec3(0.3, -0.2, -1.0);
   complex.bodies[0].density = 0.8;
-  complex.volume_rule = VolumeRule::Column;
+  complex.volume_rule = films::VolumeRule::Column;
   std::erase_if(complex.bodies[0].sides,
-                [](const BodySide& side) { return side.surface == 2; });
+                [](const films::BodySide& side) { return side.surface == 2; });
   complex.level_sets = {{"ball", over("x^2 + y^2 + z^2 - 2"), {}}};
   complex.constraint_sets = {{0}};
   complex.integrals = {{"contact",
-                        LineIntegral::Role::Energy,
+                        films::LineIntegral::Role::Energy,
                         {over("0.3*y*z"), over("x^2"), over("sin(x)")}},
                        {"content",
-                        LineIntegral::Role::Content,
+                        films::LineIntegral::Role::Content,
                         {over("0"), over("x*z"), over("0.1*y")}}};
   complex.integral_sets = {{0, 1}};
-  complex.curves.push_back({"slide", Ellipse{Vec3(0, 0, -0.8), Vec3(0, 0.1, 1),
-                                             Vec3(1, 0.2, 0), 1.1, 0.9}});
+  complex.curves.push_back(
+      {"slide", curves::Ellipse{Vec3(0, 0, -0.8), Vec3(0, 0.1, 1),
+                                Vec3(1, 0.2, 0), 1.1, 0.9}});
   std::vector<int> top;
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    ComplexVertex& vertex = complex.vertices[v];
-    if (vertex.kind == VertexKind::OnCurve && vertex.curve == 1) {
-      vertex = {VertexKind::Free, -1, 0.0, 0};
+    films::ComplexVertex& vertex = complex.vertices[v];
+    if (vertex.kind == films::VertexKind::OnCurve && vertex.curve == 1) {
+      vertex = {films::VertexKind::Free, -1, 0.0, 0};
       top.push_back(static_cast<int>(v));
-    } else if (vertex.kind == VertexKind::OnCurve) {
-      vertex.kind = VertexKind::Slides;
+    } else if (vertex.kind == films::VertexKind::OnCurve) {
+      vertex.kind = films::VertexKind::Slides;
       vertex.curve = 2;
       vertex.t += 0.01;
     }
   }
   for (std::size_t i = 0; i < top.size(); ++i) {
-    ComplexEdge edge;
+    films::ComplexEdge edge;
     edge.a = top[i];
     edge.b = top[(i + 1) % top.size()];
     edge.constraints = 0;
     edge.integrals = 0;
     complex.edges.push_back(edge);
   }
-  FilmQuantity flux{"flux", FilmQuantity::Role::Energy,
-                    FilmQuantity::Kind::VectorIntegral};
+  films::FilmQuantity flux{"flux", films::FilmQuantity::Role::Energy,
+                           films::FilmQuantity::Kind::VectorIntegral};
   flux.field = {over("y*z"), over("x*x*z"), over("cos(x)")};
   flux.modulus = 0.4;
-  FilmQuantity scalar{"scalar", FilmQuantity::Role::Held,
-                      FilmQuantity::Kind::ScalarIntegral};
+  films::FilmQuantity scalar{"scalar", films::FilmQuantity::Role::Held,
+                             films::FilmQuantity::Kind::ScalarIntegral};
   scalar.scalar = over("x*y + z^2");
   complex.quantities = {flux, scalar};
   return complex;
 }
 
 struct Loaded {
-  FilmComplex complex;
-  FilmEnergy energy;
+  films::FilmComplex complex;
+  energy::FilmEnergy energy;
   Points base;
   Points directions;
-  FilmTargets targets;
+  films::FilmTargets targets;
   VectorX pressure;
 
-  explicit Loaded(FilmComplex made)
+  explicit Loaded(films::FilmComplex made)
       : complex(std::move(made)),
         energy(complex),
         base(complex.mesh.points),
-        targets(targets_of(complex)) {
+        targets(energy::targets_of(complex)) {
     energy.space().project(base);
     pressure = VectorX::Constant(energy.functionals(), 0.7);
     directions = energy.space().directions(base);
     for (int i = 0; i < energy.unknowns(); ++i) {
       const int v = energy.vertices()[i];
-      if (complex.vertices[v].kind == VertexKind::Free &&
+      if (complex.vertices[v].kind == films::VertexKind::Free &&
           complex.vertices[v].constraints < 0) {
         directions[i] =
             Vec3(std::sin(3.0 * i), std::cos(5.0 * i), std::sin(1.0 + 7.0 * i))
@@ -130,10 +131,10 @@ struct Loaded {
 
 TEST(FilmEnergy, AreaAndVolumeAreThoseOfTheSurface) {
   const SurfaceMesh box = shapes::box(Vec3(1, 2, 3), 3);
-  FilmComplex complex = shapes::drop(box, 6.0);
+  films::FilmComplex complex = shapes::drop(box, 6.0);
   complex.surfaces[0].tension = 2.0;
-  const FilmEnergy energy(complex);
-  EXPECT_NEAR(energy.value(box.points, targets_of(complex)), 44.0,
+  const energy::FilmEnergy energy(complex);
+  EXPECT_NEAR(energy.value(box.points, energy::targets_of(complex)), 44.0,
               44 * kRounding);
   EXPECT_NEAR(energy.volumes(box.points)[0], 6.0, 6 * kRounding);
 }
@@ -177,7 +178,7 @@ void check_derivatives(const Loaded& film) {
 
 // Line integrals that close such a body count on cones to the origin itself.
 TEST(FilmEnergy, ConesOfOpenBodiesStandOnTheOrigin) {
-  FilmComplex complex;
+  films::FilmComplex complex;
   complex.mesh.points = {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
   complex.mesh.facets = {{0, 1, 2}};
   complex.mesh.facet_label = {0};
@@ -186,8 +187,8 @@ TEST(FilmEnergy, ConesOfOpenBodiesStandOnTheOrigin) {
   complex.surfaces.resize(1);
   complex.bodies.resize(1);
   complex.bodies[0].sides = {{0, 1}};
-  complex.volume_rule = VolumeRule::Cone;
-  const FilmEnergy energy(complex);
+  complex.volume_rule = films::VolumeRule::Cone;
+  const energy::FilmEnergy energy(complex);
   const Points& x = complex.mesh.points;
   EXPECT_NEAR(energy.volumes(x)[0], 1.0, kRounding);
   EXPECT_NEAR(energy.functional_gradient(x, 0)[0].x(), 1.0, kRounding);
@@ -203,7 +204,7 @@ TEST(FilmEnergy, DerivativesOfEveryTermAndWallMatchDifferences) {
 
 TEST(FilmEnergy, NormalsOfASphereAreRadial) {
   const SurfaceMesh sphere = shapes::sphere(2.0, 3);
-  const FilmEnergy energy(shapes::drop(sphere, 1.0));
+  const energy::FilmEnergy energy(shapes::drop(sphere, 1.0));
   const Points normals = energy.space().directions(sphere.points);
   for (int i = 0; i < energy.unknowns(); ++i) {
     EXPECT_GT(normals[i].dot(sphere.points[energy.vertices()[i]]), 1.999);
@@ -213,9 +214,9 @@ TEST(FilmEnergy, NormalsOfASphereAreRadial) {
 }
 
 TEST(FilmEnergy, RefusesCornersOutOfRange) {
-  FilmComplex complex = shapes::drop(shapes::sphere(1.0, 0), 1.0);
+  films::FilmComplex complex = shapes::drop(shapes::sphere(1.0, 0), 1.0);
   complex.mesh.facets[3][1] = 99;
-  EXPECT_THROW(FilmEnergy{complex}, MeshError);
+  EXPECT_THROW(energy::FilmEnergy{complex}, MeshError);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 using std::numbers::pi;
 
 /// A closed film that is nowhere symmetric.
-FilmComplex skewed_drop(int levels = 2) {
+films::FilmComplex skewed_drop(int levels = 2) {
   SurfaceMesh mesh = shapes::sphere(1.0, levels);
   for (Vec3& p : mesh.points) {
     p = Vec3(0.8 * p.x() + 0.1 * p.y() * p.z() + 0.2, 1.1 * p.y(),
@@ -28,11 +28,12 @@ FilmComplex skewed_drop(int levels = 2) {
   return shapes::drop(mesh, 3.0);
 }
 
-std::vector<PoleShape> all_shapes() {
-  return {PointPole{Vec3(0.3, 0.1, -0.2)},
-          SegmentPole{Vec3(-2, -0.5, 0.1), Vec3(2, 0.4, 0.3)},
-          PolylinePole{{Vec3(-9, 2, 0), Vec3(4, 1.5, 0.2), Vec3(9, 3, 0.3)}},
-          PlanePole{Vec3(0, 0, 0.4), Vec3(0.1, 0.2, 1)}};
+std::vector<films::PoleShape> all_shapes() {
+  return {
+      films::PointPole{Vec3(0.3, 0.1, -0.2)},
+      films::SegmentPole{Vec3(-2, -0.5, 0.1), Vec3(2, 0.4, 0.3)},
+      films::PolylinePole{{Vec3(-9, 2, 0), Vec3(4, 1.5, 0.2), Vec3(9, 3, 0.3)}},
+      films::PlanePole{Vec3(0, 0, 0.4), Vec3(0.1, 0.2, 1)}};
 }
 
 double distance_to(const Vec3& at, const Vec3& from, const Vec3& to) {
@@ -41,17 +42,17 @@ double distance_to(const Vec3& at, const Vec3& from, const Vec3& to) {
   return (at - from - t * (to - from)).norm();
 }
 
-double distance(const PoleShape& shape, const Vec3& at) {
-  if (const auto* point = std::get_if<PointPole>(&shape)) {
+double distance(const films::PoleShape& shape, const Vec3& at) {
+  if (const auto* point = std::get_if<films::PointPole>(&shape)) {
     return (at - point->at).norm();
   }
-  if (const auto* s = std::get_if<SegmentPole>(&shape)) {
+  if (const auto* s = std::get_if<films::SegmentPole>(&shape)) {
     return distance_to(at, s->from, s->to);
   }
-  if (const auto* plane = std::get_if<PlanePole>(&shape)) {
+  if (const auto* plane = std::get_if<films::PlanePole>(&shape)) {
     return std::abs((at - plane->at).dot(plane->normal.normalized()));
   }
-  const Points& points = std::get<PolylinePole>(shape).points;
+  const Points& points = std::get<films::PolylinePole>(shape).points;
   double least = 1e300;
   for (std::size_t i = 1; i < points.size(); ++i) {
     least = std::min(least, distance_to(at, points[i - 1], points[i]));
@@ -64,9 +65,10 @@ double value_at(const Expression& phi, const Vec3& at) {
 }
 
 TEST(Fields, PotentialFollowsTheDistanceToEveryShape) {
-  for (const PoleShape& shape : all_shapes()) {
-    const FieldSpec field{"pole", shape, 1.5, 3.0, 0.4, PerArea{}};
-    const Expression phi = field_expression(field);
+  for (const films::PoleShape& shape : all_shapes()) {
+    const films::FieldSpec field{"pole", shape, 1.5,
+                                 3.0,    0.4,   films::PerArea{}};
+    const Expression phi = energy::field_expression(field);
     for (int i = 0; i < 50; ++i) {
       const Vec3 at(3 * std::sin(7.0 * i), 3 * std::cos(3.0 * i),
                     2 * std::sin(1.0 + 5.0 * i));
@@ -78,14 +80,14 @@ TEST(Fields, PotentialFollowsTheDistanceToEveryShape) {
 
 /// The field's energy alone: tension 0.
 struct FieldEnergy {
-  FilmComplex complex;
-  FilmEnergy energy;
-  FilmTargets targets;
+  films::FilmComplex complex;
+  energy::FilmEnergy energy;
+  films::FilmTargets targets;
 
-  explicit FieldEnergy(FilmComplex made)
+  explicit FieldEnergy(films::FilmComplex made)
       : complex(std::move(made)),
         energy(complex),
-        targets(targets_of(complex)) {
+        targets(energy::targets_of(complex)) {
     targets.tension.assign(targets.tension.size(), 0.0);
   }
   double at(const Points& points) const {
@@ -93,9 +95,9 @@ struct FieldEnergy {
   }
 };
 
-FieldEnergy energy_of(const FieldSpec& field, int levels = 2) {
-  FilmComplex complex = skewed_drop(levels);
-  complex.quantities = {field_quantity(complex, field)};
+FieldEnergy energy_of(const films::FieldSpec& field, int levels = 2) {
+  films::FilmComplex complex = skewed_drop(levels);
+  complex.quantities = {energy::field_quantity(complex, field)};
   return FieldEnergy(std::move(complex));
 }
 
@@ -153,9 +155,9 @@ Errors sweep(const FieldEnergy& field) {
 // Second order until rounding rules. The planes where segments are not smooth
 // lie outside this film.
 TEST(Fields, DerivativesMatchDifferencesOverASweepOfSteps) {
-  const std::vector<std::variant<PerArea, PerVolume>> kinds = {
-      PerArea{}, PerVolume{"drop"}};
-  for (const PoleShape& shape : all_shapes()) {
+  const std::vector<std::variant<films::PerArea, films::PerVolume>> kinds = {
+      films::PerArea{}, films::PerVolume{"drop"}};
+  for (const films::PoleShape& shape : all_shapes()) {
     for (const auto& per : kinds) {
       SCOPED_TRACE(shape.index());
       SCOPED_TRACE(per.index());
@@ -171,8 +173,8 @@ TEST(Fields, DerivativesMatchDifferencesOverASweepOfSteps) {
 TEST(Fields, ForcesPullAttractedFilmsTowardsThePole) {
   for (const double strength : {1.0, -1.0}) {
     const FieldEnergy field =
-        energy_of({"pole", PlanePole{Vec3(0, 0, 5), Vec3::UnitZ()}, strength,
-                   2.0, 1.0, PerVolume{}});
+        energy_of({"pole", films::PlanePole{Vec3(0, 0, 5), Vec3::UnitZ()},
+                   strength, 2.0, 1.0, films::PerVolume{}});
     Vec3 force = Vec3::Zero();
     for (const Vec3& g :
          field.energy.gradient(field.complex.mesh.points, field.targets)) {
@@ -183,11 +185,11 @@ TEST(Fields, ForcesPullAttractedFilmsTowardsThePole) {
 }
 
 TEST(Fields, ConstantFieldMeasuresTheVolumeWhereverRaysStart) {
-  FilmComplex complex = skewed_drop();
+  films::FilmComplex complex = skewed_drop();
   const double volume = enclosed_volume(complex.mesh);
   for (const Vec3& origin : {Vec3(0, 0, 0), Vec3(3, -2, 1)}) {
-    FilmQuantity quantity =
-        pressure_quantity(complex, "push", "drop", Expression(2.0));
+    films::FilmQuantity quantity =
+        energy::pressure_quantity(complex, "push", "drop", Expression(2.0));
     quantity.origin = origin;
     complex.quantities = {quantity};
     const FieldEnergy field(complex);
@@ -198,11 +200,12 @@ TEST(Fields, ConstantFieldMeasuresTheVolumeWhereverRaysStart) {
 // Polynomials of degree 4 are within every rule, and curved facets are none:
 // the flux is exact, so it cannot depend on the origin.
 TEST(Fields, BodyIntegralsDoNotDependOnTheOrigin) {
-  FilmComplex complex = skewed_drop();
+  films::FilmComplex complex = skewed_drop();
   std::vector<double> found;
   for (const Vec3& origin : {Vec3(0, 0, 0), Vec3(0.5, 0.1, 1), Vec3(2, 1, 0)}) {
-    FilmQuantity quantity = pressure_quantity(
-        complex, "push", "drop", place_expression("1 + x*y*z + x^2 + z^4"));
+    films::FilmQuantity quantity = energy::pressure_quantity(
+        complex, "push", "drop",
+        energy::place_expression("1 + x*y*z + x^2 + z^4"));
     quantity.origin = origin;
     complex.quantities = {quantity};
     found.push_back(FieldEnergy(complex).at(complex.mesh.points));
@@ -221,15 +224,16 @@ TEST(Fields, PolesInASphereAtSecondOrder) {
   double before_volume = 0.0;
   double before_area = 0.0;
   for (const int levels : {2, 3, 4}) {
-    FilmComplex complex = shapes::drop(shapes::sphere(1.0, levels), 1.0);
-    const auto error = [&](const std::variant<PerArea, PerVolume>& per,
-                           double exact) {
-      complex.quantities = {
-          field_quantity(complex, {"pole", PointPole{}, 1.0, 2.0, core, per})};
-      return FieldEnergy(complex).at(complex.mesh.points) - exact;
-    };
-    const double by_volume = error(PerVolume{}, volume);
-    const double by_area = error(PerArea{}, area);
+    films::FilmComplex complex = shapes::drop(shapes::sphere(1.0, levels), 1.0);
+    const auto error =
+        [&](const std::variant<films::PerArea, films::PerVolume>& per,
+            double exact) {
+          complex.quantities = {energy::field_quantity(
+              complex, {"pole", films::PointPole{}, 1.0, 2.0, core, per})};
+          return FieldEnergy(complex).at(complex.mesh.points) - exact;
+        };
+    const double by_volume = error(films::PerVolume{}, volume);
+    const double by_area = error(films::PerArea{}, area);
     if (levels > 2) {
       EXPECT_NEAR(std::log2(before_volume / by_volume), 2.0, 0.2);
       EXPECT_NEAR(std::log2(before_area / by_area), 2.0, 0.2);
@@ -241,8 +245,8 @@ TEST(Fields, PolesInASphereAtSecondOrder) {
 }
 
 /// A flat film across a square of side 2, n x n cells, rim fixed.
-FilmComplex square_film(int n) {
-  FilmComplex complex;
+films::FilmComplex square_film(int n) {
+  films::FilmComplex complex;
   complex.mesh.labels = {"film"};
   complex.surfaces = {{"film", true, 1.0}};
   for (int j = 0; j <= n; ++j) {
@@ -250,7 +254,7 @@ FilmComplex square_film(int n) {
       complex.mesh.points.emplace_back(2.0 * i / n - 1, 2.0 * j / n - 1, 0.0);
       const bool rim = i == 0 || j == 0 || i == n || j == n;
       complex.vertices.push_back(
-          {rim ? VertexKind::Fixed : VertexKind::Free, -1, 0.0});
+          {rim ? films::VertexKind::Fixed : films::VertexKind::Free, -1, 0.0});
     }
   }
   for (int j = 0; j < n; ++j) {
@@ -266,13 +270,13 @@ FilmComplex square_film(int n) {
 }
 
 double middle_height(double strength, int n) {
-  FilmComplex complex = square_film(n);
-  complex.quantities = {field_quantity(
-      complex,
-      {"pole", PointPole{Vec3(0, 0, 0.5)}, strength, 2.0, 0.5, PerArea{}})};
-  const FilmEnergy energy(complex);
-  const FilmState state = settle_in_normals(
-      energy, complex, targets_of(complex), complex.mesh.points, {});
+  films::FilmComplex complex = square_film(n);
+  complex.quantities = {energy::field_quantity(
+      complex, {"pole", films::PointPole{Vec3(0, 0, 0.5)}, strength, 2.0, 0.5,
+                films::PerArea{}})};
+  const energy::FilmEnergy energy(complex);
+  const settle::FilmState state = settle::settle_in_normals(
+      energy, complex, energy::targets_of(complex), complex.mesh.points, {});
   EXPECT_FALSE(state.failure) << state.report.verdict;
   EXPECT_LE(state.report.residual, state.report.residual_bound);
   EXPECT_EQ(state.report.index, 0);
@@ -295,7 +299,7 @@ TEST(Fields, AttractedFilmConvergesAtSecondOrder) {
 TEST(Fields, MacaulayBracketsSwitchAndRamp) {
   const Vec3 way(0, 3, 4);  // s = 0.6 y + 0.8 z
   const auto at = [&](double power, double s) {
-    return value_at(place_expression(macaulay(way, 0.5, power)),
+    return value_at(energy::place_expression(energy::macaulay(way, 0.5, power)),
                     s * way / 5.0 + Vec3(7, 0, 0));
   };
   EXPECT_EQ(at(0, 0.4), 0.0);
@@ -307,13 +311,15 @@ TEST(Fields, MacaulayBracketsSwitchAndRamp) {
   for (const double s : {-4.0, 0.49, 0.5, 0.51, 4.0}) {
     for (const double power : {1.0, 2.0}) {
       const double smooth =
-          value_at(place_expression(smooth_macaulay(way, 0.5, power, 1e-3)),
+          value_at(energy::place_expression(
+                       energy::smooth_macaulay(way, 0.5, power, 1e-3)),
                    s * way / 5.0);
       EXPECT_NEAR(smooth, at(power, s), power == 1 ? 5.1e-4 : 1e-5);
       EXPECT_GT(smooth, 0.0);
     }
   }
-  EXPECT_EQ(value_at(place_expression(smooth_macaulay(way, 0.5, 0, 0.1)),
+  EXPECT_EQ(value_at(energy::place_expression(
+                         energy::smooth_macaulay(way, 0.5, 0, 0.1)),
                      0.5 * way / 5.0),
             0.5);
 }
@@ -358,11 +364,11 @@ double ramp_profile(double ramp, double half, double at) {
 // Rows of vertices lie on z = 0, where the tension has its corner.
 double ramp_error(int n) {
   const double ramp = 0.5;
-  FilmComplex complex =
+  films::FilmComplex complex =
       shapes::tube(1.0, 0.8, n, n / 4, [](double) { return 0.95; });
-  complex.surfaces[0].tension_field = place_expression(
-      fmt::format("1+{}*{}", ramp, macaulay(Vec3::UnitZ(), 0.0, 1.0)));
-  const FilmState state = find_equilibrium(complex, {});
+  complex.surfaces[0].tension_field = energy::place_expression(
+      fmt::format("1+{}*{}", ramp, energy::macaulay(Vec3::UnitZ(), 0.0, 1.0)));
+  const settle::FilmState state = settle::find_equilibrium(complex, {});
   EXPECT_FALSE(state.failure) << state.report.verdict;
   const Vec3& p = state.points[(n / 8) * n];
   return std::hypot(p.x(), p.y()) - ramp_profile(ramp, 0.4, p.z());
@@ -376,43 +382,44 @@ TEST(Fields, FilmOfRampedTensionFollowsItsBalanceAtSecondOrder) {
 }
 
 TEST(Fields, RefusesWhatMakesNoField) {
-  const FilmComplex complex = skewed_drop(0);
-  FieldSpec field{"pole", PointPole{}, 1.0, 2.0, 0.0, PerArea{}};
-  EXPECT_THROW(field_quantity(complex, field), InvalidInput);
+  const films::FilmComplex complex = skewed_drop(0);
+  films::FieldSpec field{"pole", films::PointPole{}, 1.0, 2.0,
+                         0.0,    films::PerArea{}};
+  EXPECT_THROW(energy::field_quantity(complex, field), InvalidInput);
   field.core = 1.0;
   field.power = -1.0;
-  EXPECT_THROW(field_quantity(complex, field), InvalidInput);
+  EXPECT_THROW(energy::field_quantity(complex, field), InvalidInput);
   field.power = 2.0;
   field.strength = std::nan("");
-  EXPECT_THROW(field_quantity(complex, field), InvalidInput);
+  EXPECT_THROW(energy::field_quantity(complex, field), InvalidInput);
   field.strength = 1.0;
-  field.shape = SegmentPole{Vec3::Zero(), Vec3::Zero()};
-  EXPECT_THROW(field_quantity(complex, field), InvalidInput);
-  field.shape = PolylinePole{Points(1, Vec3::Zero())};
-  EXPECT_THROW(field_quantity(complex, field), InvalidInput);
+  field.shape = films::SegmentPole{Vec3::Zero(), Vec3::Zero()};
+  EXPECT_THROW(energy::field_quantity(complex, field), InvalidInput);
+  field.shape = films::PolylinePole{Points(1, Vec3::Zero())};
+  EXPECT_THROW(energy::field_quantity(complex, field), InvalidInput);
   Points spiral;
   for (int i = 0; i < 500; ++i) {
     spiral.emplace_back(std::cos(0.1 * i), std::sin(0.1 * i), 0.01 * i);
   }
-  field.shape = PolylinePole{spiral};
-  EXPECT_THROW(field_quantity(complex, field), InvalidInput);
+  field.shape = films::PolylinePole{spiral};
+  EXPECT_THROW(energy::field_quantity(complex, field), InvalidInput);
   spiral.resize(30);
-  field.shape = PolylinePole{spiral};
-  EXPECT_NO_THROW(field_quantity(complex, field));
-  field.shape = PlanePole{Vec3::Zero(), Vec3::Zero()};
-  EXPECT_THROW(field_quantity(complex, field), InvalidInput);
-  field.shape = PointPole{};
-  field.per = PerArea{{"filn"}};
+  field.shape = films::PolylinePole{spiral};
+  EXPECT_NO_THROW(energy::field_quantity(complex, field));
+  field.shape = films::PlanePole{Vec3::Zero(), Vec3::Zero()};
+  EXPECT_THROW(energy::field_quantity(complex, field), InvalidInput);
+  field.shape = films::PointPole{};
+  field.per = films::PerArea{{"filn"}};
   try {
-    field_quantity(complex, field);
+    energy::field_quantity(complex, field);
     ADD_FAILURE() << "accepted a surface that is not there";
   } catch (const InvalidInput& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("film"));
   }
-  EXPECT_THROW(macaulay(Vec3::Zero(), 0, 1), InvalidInput);
-  EXPECT_THROW(macaulay(Vec3::UnitX(), 0, -1), InvalidInput);
-  EXPECT_THROW(smooth_macaulay(Vec3::UnitX(), 0, 1, 0), InvalidInput);
-  EXPECT_THROW(place_expression("x + w"), InvalidInput);
+  EXPECT_THROW(energy::macaulay(Vec3::Zero(), 0, 1), InvalidInput);
+  EXPECT_THROW(energy::macaulay(Vec3::UnitX(), 0, -1), InvalidInput);
+  EXPECT_THROW(energy::smooth_macaulay(Vec3::UnitX(), 0, 1, 0), InvalidInput);
+  EXPECT_THROW(energy::place_expression("x + w"), InvalidInput);
 }
 
 }  // namespace

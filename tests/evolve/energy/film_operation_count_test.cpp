@@ -51,9 +51,9 @@ CountedVector minus(const CountedVector& a) {
 
 /// A closed drop of tension 1.3 that is nowhere symmetric.
 struct Drop {
-  FilmComplex complex = shapes::drop(shapes::sphere(1.0, 2), 4.0);
+  films::FilmComplex complex = shapes::drop(shapes::sphere(1.0, 2), 4.0);
   Points points;
-  FilmTargets targets;
+  films::FilmTargets targets;
 
   Drop() {
     for (Vec3& p : complex.mesh.points) {
@@ -61,7 +61,7 @@ struct Drop {
     }
     points = complex.mesh.points;
     complex.surfaces[0].tension = 1.3;
-    targets = targets_of(complex);
+    targets = energy::targets_of(complex);
   }
   CountedVector at(int v) const { return vector_of(points[v]); }
   CountedVector edge(const Triangle& t, int k) const {
@@ -83,7 +83,7 @@ Counted textbook_energy(const Drop& drop) {
 
 TEST(FilmOperationCount, AnEnergy) {
   const Drop drop;
-  const FilmEnergy energy(drop.complex);
+  const energy::FilmEnergy energy(drop.complex);
   double value = 0.0;
   const double account =
       accounted([&] { value = energy.value(drop.points, drop.targets); });
@@ -95,7 +95,7 @@ TEST(FilmOperationCount, AnEnergy) {
 
 TEST(FilmOperationCount, ItsSlope) {
   const Drop drop;
-  const FilmEnergy energy(drop.complex);
+  const energy::FilmEnergy energy(drop.complex);
   Points slope;
   const double account =
       accounted([&] { slope = energy.gradient(drop.points, drop.targets); });
@@ -122,7 +122,7 @@ TEST(FilmOperationCount, ItsSlope) {
 
 TEST(FilmOperationCount, AVolume) {
   const Drop drop;
-  const FilmEnergy energy(drop.complex);
+  const energy::FilmEnergy energy(drop.complex);
   VectorX volumes;
   const double account =
       accounted([&] { volumes = energy.volumes(drop.points); });
@@ -143,7 +143,7 @@ TEST(FilmOperationCount, AVolume) {
 
 TEST(FilmOperationCount, TheSlopeOfAVolume) {
   const Drop drop;
-  const FilmEnergy energy(drop.complex);
+  const energy::FilmEnergy energy(drop.complex);
   Points slope;
   const double account =
       accounted([&] { slope = energy.functional_gradient(drop.points, 0); });
@@ -167,7 +167,7 @@ TEST(FilmOperationCount, TheSlopeOfAVolume) {
 
 TEST(FilmOperationCount, AreasAboutVertices) {
   const Drop drop;
-  const FilmEnergy energy(drop.complex);
+  const energy::FilmEnergy energy(drop.complex);
   VectorX areas;
   const double account =
       accounted([&] { areas = energy.lumped_area(drop.points); });
@@ -189,7 +189,7 @@ TEST(FilmOperationCount, AreasAboutVertices) {
 
 TEST(FilmOperationCount, TurnsAgainstFolding) {
   const Drop drop;
-  const FilmEnergy energy(drop.complex);
+  const energy::FilmEnergy energy(drop.complex);
   Points turned = drop.points;
   for (Vec3& x : turned) {
     x += 0.1 * Vec3(x.y(), x.z() * x.x(), x.x());
@@ -247,7 +247,7 @@ std::vector<Counted> textbook_element(const std::array<CountedVector, 3>& x,
 
 TEST(FilmOperationCount, AHessian) {
   const Drop drop;
-  const FilmEnergy energy(drop.complex);
+  const energy::FilmEnergy energy(drop.complex);
   const Points directions = energy.space().directions(drop.points);
   const double pressure = 0.7 * energy.side(0, 0);
   const VectorX pressures = VectorX::Constant(1, 0.7);

@@ -30,12 +30,12 @@ void append(SurfaceMesh& mesh, const SurfaceMesh& more, const std::string& name,
   }
 }
 
-void append(FilmComplex& complex, const FilmComplex& more,
+void append(films::FilmComplex& complex, const films::FilmComplex& more,
             const std::string& name) {
   const auto curves = static_cast<int>(complex.curves.size());
   append(complex.mesh, more.mesh, name, Vec3::Zero());
   complex.surfaces.push_back({name, true, 1.0});
-  for (ComplexVertex vertex : more.vertices) {
+  for (films::ComplexVertex vertex : more.vertices) {
     vertex.curve += vertex.curve >= 0 ? curves : 0;
     complex.vertices.push_back(vertex);
   }
@@ -44,8 +44,8 @@ void append(FilmComplex& complex, const FilmComplex& more,
 }
 
 /// Tubes between rings of radius R, 0.8 apart, for every R.
-FilmComplex tubes(const std::vector<double>& radii, double growth) {
-  FilmComplex complex;
+films::FilmComplex tubes(const std::vector<double>& radii, double growth) {
+  films::FilmComplex complex;
   double length = 0.8;
   for (const double radius : radii) {
     append(complex,
@@ -57,10 +57,10 @@ FilmComplex tubes(const std::vector<double>& radii, double growth) {
 }
 
 /// At rest. Films near each other are none of a solver's business.
-FilmComplex settled(FilmComplex complex) {
-  const FilmEnergy energy(complex);
-  const FilmState state = settle_in_normals(
-      energy, complex, targets_of(complex), complex.mesh.points, {});
+films::FilmComplex settled(films::FilmComplex complex) {
+  const energy::FilmEnergy energy(complex);
+  const settle::FilmState state = settle::settle_in_normals(
+      energy, complex, energy::targets_of(complex), complex.mesh.points, {});
   EXPECT_LE(state.report.residual, state.report.residual_bound);
   EXPECT_EQ(state.report.index, 0);
   complex.mesh.points = state.points;
@@ -70,10 +70,10 @@ FilmComplex settled(FilmComplex complex) {
 // Scaled curve pairs: each film is the next one scaled, c cosh(z / c) with
 // cosh(0.4 / c) = 1 / c for the first.
 TEST(Nesting, ScaledCatenoidsSettledTogetherDoNotCross) {
-  FilmComplex complex = tubes({1.0, 1.2, 1.44}, 1.2);
-  complex = refine(settled(std::move(complex))).complex;
+  films::FilmComplex complex = tubes({1.0, 1.2, 1.44}, 1.2);
+  complex = groom::refine(settled(std::move(complex))).complex;
   complex = settled(std::move(complex));
-  const NestingReport report = check_nesting(complex);
+  const films::NestingReport report = films::check_nesting(complex);
   EXPECT_TRUE(report.apart) << report.verdict;
   EXPECT_THAT(report.order, ElementsAre("film_100", "film_120", "film_144"));
   EXPECT_EQ(report.inside.size(), 3U);
@@ -90,18 +90,18 @@ TEST(Nesting, ScaledCatenoidsSettledTogetherDoNotCross) {
 // where both have the radius 0.956.
 TEST(Nesting, FilmsThatCrossAreNamedWithTheirPlace) {
   const auto straight = [](double) { return 1.0; };
-  FilmComplex complex;
+  films::FilmComplex complex;
   append(complex, shapes::tube(1.0, 0.8, 24, 6, straight), "lower");
-  FilmComplex upper = shapes::tube(1.02, 0.816, 24, 6, straight);
+  films::FilmComplex upper = shapes::tube(1.02, 0.816, 24, 6, straight);
   for (Vec3& p : upper.mesh.points) {
     p.z() += 0.5;
   }
-  for (Curve& curve : upper.curves) {
-    std::get<Circle>(curve.shape).center.z() += 0.5;
+  for (curves::Curve& curve : upper.curves) {
+    std::get<curves::Circle>(curve.shape).center.z() += 0.5;
   }
   append(complex, upper, "upper");
   complex = settled(std::move(complex));
-  const NestingReport report = check_nesting(complex);
+  const films::NestingReport report = films::check_nesting(complex);
   EXPECT_FALSE(report.apart);
   ASSERT_FALSE(report.crossings.empty());
   EXPECT_GT(report.crossing_pairs, 20);
@@ -121,7 +121,7 @@ TEST(Nesting, ConcentricSpheresAreOrderedInsideOut) {
   append(mesh, shapes::sphere(0.5, 3), "inner", Vec3(0.1, 0, 0));
   append(mesh, shapes::sphere(1.0, 3), "middle", Vec3(0.2, 0, 0));
   append(mesh, shapes::sphere(1.0, 2), "beside", Vec3(5, 0, 0));
-  const NestingReport report = check_nesting(mesh);
+  const films::NestingReport report = films::check_nesting(mesh);
   EXPECT_TRUE(report.apart) << report.verdict;
   EXPECT_THAT(report.order, ElementsAre("inner", "middle", "outer", "beside"));
   EXPECT_EQ(report.inside.size(), 3U);
@@ -134,7 +134,7 @@ TEST(Nesting, GapIsThatOfEveryPairOfFacets) {
   SurfaceMesh mesh;
   append(mesh, shapes::box(Vec3(1, 1, 1), 3), "low", Vec3::Zero());
   append(mesh, shapes::sphere(0.5, 2), "high", Vec3(1.1, 1.3, 1.9));
-  const NestingReport report = check_nesting(mesh);
+  const films::NestingReport report = films::check_nesting(mesh);
   const Vec3 corner(1, 1, 1);
   EXPECT_NEAR(report.gaps[0].gap, (Vec3(1.1, 1.3, 1.9) - corner).norm() - 0.5,
               0.02);
@@ -142,12 +142,13 @@ TEST(Nesting, GapIsThatOfEveryPairOfFacets) {
 }
 
 TEST(Nesting, FilmsThatShareARimAreJoinedNotCrossing) {
-  FilmComplex complex = shapes::tube(1, 1, 12, 4, [](double) { return 1.0; });
+  films::FilmComplex complex =
+      shapes::tube(1, 1, 12, 4, [](double) { return 1.0; });
   complex.mesh.labels.push_back("upper");
   for (std::size_t f = 48; f < 96; ++f) {
     complex.mesh.facet_label[f] = 1;
   }
-  const NestingReport report = check_nesting(complex.mesh);
+  const films::NestingReport report = films::check_nesting(complex.mesh);
   EXPECT_TRUE(report.apart) << report.verdict;
   EXPECT_TRUE(report.gaps[0].joined);
   EXPECT_TRUE(report.inside.empty());
@@ -155,12 +156,12 @@ TEST(Nesting, FilmsThatShareARimAreJoinedNotCrossing) {
 
 TEST(Nesting, RefusesBrokenMeshes) {
   SurfaceMesh mesh = shapes::sphere(1.0, 0);
-  EXPECT_THROW(check_nesting(mesh, {3}), MeshError);
+  EXPECT_THROW(films::check_nesting(mesh, {3}), MeshError);
   mesh.points[0].x() = std::nan("");
-  EXPECT_THROW(check_nesting(mesh), MeshError);
+  EXPECT_THROW(films::check_nesting(mesh), MeshError);
   mesh = shapes::sphere(1.0, 0);
   mesh.facets[2][1] = 999;
-  EXPECT_THROW(check_nesting(mesh), MeshError);
+  EXPECT_THROW(films::check_nesting(mesh), MeshError);
 }
 
 }  // namespace

@@ -13,21 +13,22 @@
 namespace meniscus::split_surface_test {
 namespace {
 
-FilmComplex plain_tube() {
+films::FilmComplex plain_tube() {
   return shapes::tube(1.0, 1.0, 24, 8, [](double) { return 1.0; });
 }
 
 // A solid belt leaves two catenoids, each from a ring to the belt: the film
 // moves, the belt does not, and refinement keeps it.
 TEST(SplitSurface, SolidRegionStaysAndHoldsTheFilm) {
-  FilmComplex complex = plain_tube();
-  const int belt = split_surface(
-      complex, "tube", place_expression("0.13 - abs(z)"), {"belt", false});
+  films::FilmComplex complex = plain_tube();
+  const int belt = films::split_surface(
+      complex, "tube", energy::place_expression("0.13 - abs(z)"),
+      {"belt", false});
   EXPECT_EQ(belt, 1);
   EXPECT_EQ(complex.edges.size(), 48U);
-  FindOptions options;
+  settle::FindOptions options;
   options.refinements = 2;
-  const FilmState state = find_equilibrium(complex, options);
+  const settle::FilmState state = settle::find_equilibrium(complex, options);
   EXPECT_FALSE(state.failure) << state.report.verdict;
   double waist = 1.0;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
@@ -46,33 +47,37 @@ TEST(SplitSurface, SolidRegionStaysAndHoldsTheFilm) {
 }
 
 TEST(SplitSurface, RegionsOfOneTensionAreTheOldFilm) {
-  FilmComplex complex = plain_tube();
-  const FilmState whole = [&] {
-    FilmComplex copy = complex;
-    return find_equilibrium(copy, {});
+  films::FilmComplex complex = plain_tube();
+  const settle::FilmState whole = [&] {
+    films::FilmComplex copy = complex;
+    return settle::find_equilibrium(copy, {});
   }();
-  split_surface(complex, "tube", place_expression("z"), {"upper", true, 1.0});
-  const FilmState parts = find_equilibrium(complex, {});
+  films::split_surface(complex, "tube", energy::place_expression("z"),
+                       {"upper", true, 1.0});
+  const settle::FilmState parts = settle::find_equilibrium(complex, {});
   EXPECT_FALSE(parts.failure) << parts.report.verdict;
   EXPECT_NEAR(parts.report.energy, whole.report.energy, 1e-12);
 }
 
 TEST(SplitSurface, TensionOfARegionCounts) {
-  FilmComplex complex = plain_tube();
+  films::FilmComplex complex = plain_tube();
   const double area = surface_area(complex.mesh);
-  split_surface(complex, "tube", place_expression("z"), {"upper", true, 3.0});
-  const FilmEnergy energy(complex);
-  EXPECT_NEAR(energy.value(complex.mesh.points, targets_of(complex)),
+  films::split_surface(complex, "tube", energy::place_expression("z"),
+                       {"upper", true, 3.0});
+  const energy::FilmEnergy energy(complex);
+  EXPECT_NEAR(energy.value(complex.mesh.points, energy::targets_of(complex)),
               2.0 * area, 1e-12 * area);
 }
 
 TEST(SplitSurface, BodiesAndQuantitiesKeepTheRegion) {
-  FilmComplex complex = shapes::drop(shapes::sphere(1.0, 2), 4.0);
-  FilmQuantity area{"area", FilmQuantity::Role::Info, FilmQuantity::Kind::Area};
+  films::FilmComplex complex = shapes::drop(shapes::sphere(1.0, 2), 4.0);
+  films::FilmQuantity area{"area", films::FilmQuantity::Role::Info,
+                           films::FilmQuantity::Kind::Area};
   area.surfaces = {0};
   complex.quantities = {area};
-  split_surface(complex, "film", place_expression("x - 0.2"), {"side", false});
-  const FilmEnergy energy(complex);
+  films::split_surface(complex, "film", energy::place_expression("x - 0.2"),
+                       {"side", false});
+  const energy::FilmEnergy energy(complex);
   EXPECT_NEAR(energy.volumes(complex.mesh.points)[0],
               enclosed_volume(complex.mesh), 1e-13);
   EXPECT_NEAR(energy.quantities(complex.mesh.points)[0],
@@ -80,11 +85,12 @@ TEST(SplitSurface, BodiesAndQuantitiesKeepTheRegion) {
 }
 
 TEST(SplitSurface, RefusesWhatMakesNoRegion) {
-  FilmComplex complex = plain_tube();
-  const Expression upper = place_expression("z");
+  films::FilmComplex complex = plain_tube();
+  const Expression upper = energy::place_expression("z");
   const auto refused = [&](const std::string& surface, const Expression& where,
-                           const Region& region) {
-    EXPECT_THROW(split_surface(complex, surface, where, region), InvalidInput);
+                           const films::Region& region) {
+    EXPECT_THROW(films::split_surface(complex, surface, where, region),
+                 InvalidInput);
   };
   refused("tub", upper, {"a", true, 1.0});
   refused("tube", upper, {"tube", true, 1.0});
@@ -92,9 +98,9 @@ TEST(SplitSurface, RefusesWhatMakesNoRegion) {
   refused("tube", upper, {"a", true, std::nan("")});
   refused("tube", Expression(1.0), {"a", true, 1.0});
   refused("tube", Expression(-1.0), {"a", false});
-  refused("tube", place_expression("sqrt(z)"), {"a", false});
+  refused("tube", energy::place_expression("sqrt(z)"), {"a", false});
   EXPECT_EQ(complex.surfaces.size(), 1U);
-  split_surface(complex, "tube", upper, {"a", false});
+  films::split_surface(complex, "tube", upper, {"a", false});
   refused("a", upper, {"b", false});
 }
 

@@ -12,20 +12,21 @@ namespace {
 constexpr double kRounding = 1e-12;  // of coordinates of order 1, after a solve
 
 struct Tube {
-  FilmComplex complex;
-  Carry carry;
+  films::FilmComplex complex;
+  frozen::Carry carry;
 
-  Tube() : complex(make()), carry(complex, FilmEnergy(complex).order()) {}
+  Tube()
+      : complex(make()), carry(complex, energy::FilmEnergy(complex).order()) {}
 
-  static FilmComplex make() {
-    FilmComplex complex =
+  static films::FilmComplex make() {
+    films::FilmComplex complex =
         shapes::tube(1.0, 2.0, 16, 8, [](double) { return 1.0; });
     shapes::close_tube(complex, 16);
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-      if (complex.vertices[v].kind == VertexKind::OnCurve) {
+      if (complex.vertices[v].kind == films::VertexKind::OnCurve) {
         complex.mesh.points[v] =
-            point_at(complex.curves[complex.vertices[v].curve].shape,
-                     complex.vertices[v].t);
+            curves::point_at(complex.curves[complex.vertices[v].curve].shape,
+                             complex.vertices[v].t);
       }
     }
     return complex;
@@ -33,8 +34,8 @@ struct Tube {
 
   Points at(const Vec3& top_center, const Vec3& top_normal,
             double top_radius) const {
-    std::vector<Curve> curves = complex.curves;
-    curves[1].shape = Circle{top_center, top_normal, top_radius};
+    std::vector<curves::Curve> curves = complex.curves;
+    curves[1].shape = curves::Circle{top_center, top_normal, top_radius};
     return carry.at(carry.rim_moves(curves), 1.0);
   }
 };
@@ -47,10 +48,10 @@ TEST(Carry, NoMoveGivesTheReferenceBitForBit) {
 
 TEST(Carry, MovingEveryCurveAlikeMovesEveryVertexSo) {
   const Tube tube;
-  std::vector<Curve> curves = tube.complex.curves;
+  std::vector<curves::Curve> curves = tube.complex.curves;
   const Vec3 shift(0.3, -0.2, 0.7);
-  for (Curve& curve : curves) {
-    std::get<Circle>(curve.shape).center += shift;
+  for (curves::Curve& curve : curves) {
+    std::get<curves::Circle>(curve.shape).center += shift;
   }
   const Points moved = tube.carry.at(tube.carry.rim_moves(curves), 1.0);
   for (std::size_t v = 0; v < moved.size(); ++v) {

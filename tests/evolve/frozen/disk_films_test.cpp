@@ -17,17 +17,17 @@ constexpr double kEdge = 0.2;
 // Of flat facets of this size on a sphere; it falls with their square.
 constexpr double kFacets = 0.01;
 
-FilmSystem cap_under_film(std::optional<double> volume,
-                          std::optional<double> pressure) {
-  FilmSystem system;
-  system.curves = {{"rim", Circle{}}};
-  system.films = {{"dome", FilmKind::Disk, {"rim"}, 2.0, {}}};
+films::FilmSystem cap_under_film(std::optional<double> volume,
+                                 std::optional<double> pressure) {
+  films::FilmSystem system;
+  system.curves = {{"rim", curves::Circle{}}};
+  system.films = {{"dome", films::FilmKind::Disk, {"rim"}, 2.0, {}}};
   system.caps = {{"floor", "rim"}};
   system.bodies = {{"drop", {"floor", "dome"}, volume, pressure}};
   return system;
 }
 
-double highest(const FilmModel& model) {
+double highest(const frozen::FilmModel& model) {
   double z = 0.0;
   for (const Vec3& p : model.reference().points) {
     z = std::max(z, p.z());
@@ -40,8 +40,8 @@ double highest(const FilmModel& model) {
 TEST(DiskFilm, UnderPressureIsASphericalCap) {
   constexpr double kHeight = 0.5;
   const double radius = (1.0 + kHeight * kHeight) / (2.0 * kHeight);
-  const FilmModel model = FilmModel::freeze(cap_under_film({}, 4.0 / radius),
-                                            {.edge = kEdge, .refinements = 1});
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      cap_under_film({}, 4.0 / radius), {.edge = kEdge, .refinements = 1});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   EXPECT_NEAR(highest(model), kHeight, kFacets * kHeight);
   EXPECT_NEAR(model.reference().report.bodies[0].volume,
@@ -52,8 +52,8 @@ TEST(DiskFilm, OfAVolumeHasThePressureOfItsSphere) {
   for (const double height : {0.3, 1.2}) {  // flat, and more than a half
     const double radius = (1.0 + height * height) / (2.0 * height);
     const double volume = kPi * height * (3.0 + height * height) / 6.0;
-    const FilmModel model =
-        FilmModel::freeze(cap_under_film(volume, {}), {.edge = kEdge});
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(cap_under_film(volume, {}), {.edge = kEdge});
     ASSERT_FALSE(model.reference().failure)
         << model.reference().failure->message;
     EXPECT_NEAR(highest(model), height, 2.0 * kFacets * height);
@@ -63,11 +63,12 @@ TEST(DiskFilm, OfAVolumeHasThePressureOfItsSphere) {
 }
 
 TEST(DiskFilm, TwoOnOneCurveMakeALens) {
-  FilmSystem system = cap_under_film(2.0, {});
+  films::FilmSystem system = cap_under_film(2.0, {});
   system.caps.clear();
-  system.films.push_back({"belly", FilmKind::Disk, {"rim"}, 2.0, {}});
+  system.films.push_back({"belly", films::FilmKind::Disk, {"rim"}, 2.0, {}});
   system.bodies = {{"lens", {"dome", "belly"}, 2.0, {}}};
-  const FilmModel model = FilmModel::freeze(system, {.edge = kEdge});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(system, {.edge = kEdge});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   double lowest = 0.0;
   for (const Vec3& p : model.reference().points) {
@@ -80,17 +81,18 @@ TEST(DiskFilm, TwoOnOneCurveMakeALens) {
 // Two lofts meet on a curve that both name: one body, closed, and a kink where
 // the curve holds them.
 TEST(JoinedFilms, TwoLoftsShareTheirMiddleCurve) {
-  FilmSystem system;
+  films::FilmSystem system;
   const auto ring = [](double z, double radius) {
-    return Circle{Vec3(0, 0, z), Vec3::UnitZ(), radius};
+    return curves::Circle{Vec3(0, 0, z), Vec3::UnitZ(), radius};
   };
   system.curves = {
       {"low", ring(0, 1.0)}, {"waist", ring(1, 0.6)}, {"high", ring(2, 1.0)}};
-  system.films = {{"lower", FilmKind::Loft, {"low", "waist"}, 1.0, {}},
-                  {"upper", FilmKind::Loft, {"high", "waist"}, 1.0, {}}};
+  system.films = {{"lower", films::FilmKind::Loft, {"low", "waist"}, 1.0, {}},
+                  {"upper", films::FilmKind::Loft, {"high", "waist"}, 1.0, {}}};
   system.caps = {{"floor", "low"}, {"lid", "high"}};
   system.bodies = {{"part", {"lower", "upper", "floor", "lid"}, 4.5, {}}};
-  const FilmModel model = FilmModel::freeze(system, {.edge = kEdge});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(system, {.edge = kEdge});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   EXPECT_NEAR(model.reference().report.bodies[0].volume, 4.5, 1e-9);
   EXPECT_GE(model.rim("waist").size(), 18U);
@@ -98,8 +100,8 @@ TEST(JoinedFilms, TwoLoftsShareTheirMiddleCurve) {
   EXPECT_NEAR(enclosed_volume(mesh), 4.5, 1e-9);
 }
 
-Polygon sides(int count) {
-  Polygon polygon;
+curves::Polygon sides(int count) {
+  curves::Polygon polygon;
   for (int k = 0; k < count; ++k) {
     const double a = 2.0 * kPi * k / count;
     polygon.points.emplace_back(std::cos(a), std::sin(a), 0.0);
@@ -107,11 +109,11 @@ Polygon sides(int count) {
   return polygon;
 }
 
-std::size_t facets_of(const CurveShape& rim) {
-  FilmSystem system = cap_under_film(1.0, {});
+std::size_t facets_of(const curves::CurveShape& rim) {
+  films::FilmSystem system = cap_under_film(1.0, {});
   system.curves[0].shape = rim;
-  const FilmModel model =
-      FilmModel::freeze(system, {.edge = kEdge, .refinements = 0});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(system, {.edge = kEdge, .refinements = 0});
   EXPECT_FALSE(model.reference().failure);
   return model.boundary(model.reference().points).facets.size();
 }
@@ -119,32 +121,33 @@ std::size_t facets_of(const CurveShape& rim) {
 // Corners stay, but sides shorter than an edge are not split, and facets grow
 // away from them.
 TEST(ManySides, MakeNoMeshThatIsMuchFinerThanAsked) {
-  const std::size_t round = facets_of(Circle{});
+  const std::size_t round = facets_of(curves::Circle{});
   EXPECT_LT(facets_of(sides(40)), 2 * round);   // sides of 0.8 edges
   EXPECT_LT(facets_of(sides(120)), 5 * round);  // of a quarter
 }
 
 TEST(CurveContact, FindsCrossingsAndTouches) {
-  const Polygon bow{{{0, 0, 0}, {3, 2, 0}, {3, 0, 0}, {0, 1, 0}}};
-  const auto at = meets_itself(bow);
+  const curves::Polygon bow{{{0, 0, 0}, {3, 2, 0}, {3, 0, 0}, {0, 1, 0}}};
+  const auto at = curves::meets_itself(bow);
   ASSERT_TRUE(at);
   EXPECT_LT((*at - Vec3(1.0, 2.0 / 3.0, 0)).norm(), 1e-9);
-  EXPECT_FALSE(meets_itself(sides(5)));
-  EXPECT_FALSE(meets_itself(Spline{sides(40).points}));
-  const CurveShape one = Circle{};
+  EXPECT_FALSE(curves::meets_itself(sides(5)));
+  EXPECT_FALSE(curves::meets_itself(curves::Spline{sides(40).points}));
+  const curves::CurveShape one = curves::Circle{};
   const auto other = [](double x, double z) {
-    return CurveShape(Circle{Vec3(x, 0, z), Vec3::UnitZ(), 1.0});
+    return curves::CurveShape(
+        curves::Circle{Vec3(x, 0, z), Vec3::UnitZ(), 1.0});
   };
-  const CurveShape tangent = other(2.0, 0.0);
-  const CurveShape near = other(2.001, 0.0);
-  const CurveShape across = other(1.0, 0.0);
-  const CurveShape above = other(0.0, 0.001);
-  const CurveShape same = other(0.0, 0.0);
-  EXPECT_EQ(meetings_of({&one, &tangent}).size(), 1U);
-  EXPECT_EQ(meetings_of({&one, &near}).size(), 0U);
-  EXPECT_EQ(meetings_of({&one, &across}).size(), 1U);
-  EXPECT_EQ(meetings_of({&one, &above}).size(), 0U);
-  EXPECT_EQ(meetings_of({&one, &same}).size(), 1U);
+  const curves::CurveShape tangent = other(2.0, 0.0);
+  const curves::CurveShape near = other(2.001, 0.0);
+  const curves::CurveShape across = other(1.0, 0.0);
+  const curves::CurveShape above = other(0.0, 0.001);
+  const curves::CurveShape same = other(0.0, 0.0);
+  EXPECT_EQ(curves::meetings_of({&one, &tangent}).size(), 1U);
+  EXPECT_EQ(curves::meetings_of({&one, &near}).size(), 0U);
+  EXPECT_EQ(curves::meetings_of({&one, &across}).size(), 1U);
+  EXPECT_EQ(curves::meetings_of({&one, &above}).size(), 0U);
+  EXPECT_EQ(curves::meetings_of({&one, &same}).size(), 1U);
 }
 
 }  // namespace

@@ -38,10 +38,10 @@ Points shifted(const Points& x, const Points& d, double step) {
 
 /// A capped tube, nowhere symmetric, whose waist carries a disk: three films
 /// along a line of free vertices.
-FilmComplex tube_with_disk() {
+films::FilmComplex tube_with_disk() {
   constexpr int kAround = 8;
   constexpr int kRows = 4;
-  FilmComplex complex = shapes::tube(
+  films::FilmComplex complex = shapes::tube(
       1.0, 1.0, kAround, kRows, [](double z) { return 0.9 + 0.3 * z * z; });
   shapes::close_tube(complex, kAround);
   complex.mesh.labels.emplace_back("disk");
@@ -62,15 +62,15 @@ FilmComplex tube_with_disk() {
 }
 
 struct Film {
-  FilmComplex complex = tube_with_disk();
-  FilmEnergy energy{complex};
-  FilmTargets targets = targets_of(complex);
+  films::FilmComplex complex = tube_with_disk();
+  energy::FilmEnergy energy{complex};
+  films::FilmTargets targets = energy::targets_of(complex);
   const Points& x = complex.mesh.points;
 };
 
 TEST(FilmAdjoint, DirectionsAreTransposedThroughNormalsAndLines) {
   const Film film;
-  const FilmSpace& space = film.energy.space();
+  const energy::FilmSpace& space = film.energy.space();
   bool lines = false;
   for (int v = 0; v < space.vertex_count(); ++v) {
     lines = lines || space.rank(v) == 2;
@@ -92,16 +92,16 @@ TEST(FilmAdjoint, ProductsAreDifferencesOfGradients) {
   Film film;
   film.complex.surfaces[0].tension_field =
       Expression::parse("1+0.3*sin(x)+0.2*y*z", {"x", "y", "z"});
-  FilmQuantity flux{"flux", FilmQuantity::Role::Energy,
-                    FilmQuantity::Kind::VectorIntegral};
+  films::FilmQuantity flux{"flux", films::FilmQuantity::Role::Energy,
+                           films::FilmQuantity::Kind::VectorIntegral};
   for (int k = 0; k < 3; ++k) {
     flux.field[k] = Expression::parse("x*y+z^2", {"x", "y", "z"});
   }
   film.complex.quantities = {flux};
-  const FilmEnergy energy(film.complex);
-  const FilmTargets targets = targets_of(film.complex);
+  const energy::FilmEnergy energy(film.complex);
+  const films::FilmTargets targets = energy::targets_of(film.complex);
   const VectorX pressure = VectorX::Constant(energy.functionals(), 0.7);
-  const FilmProducts products(energy, targets, pressure);
+  const energy::FilmProducts products(energy, targets, pressure);
   const Points d = waves(film.x.size(), 2);
   const auto slope = [&](double step) {
     const Points x = shifted(film.x, d, step);
@@ -122,10 +122,10 @@ TEST(FilmAdjoint, ProductsAreDifferencesOfGradients) {
 
 TEST(FilmAdjoint, CarryIsTransposed) {
   const Film film;
-  const Carry carry(film.complex, film.energy.order());
+  const frozen::Carry carry(film.complex, film.energy.order());
   Points moves = waves(film.x.size(), 3);
   for (std::size_t v = 0; v < moves.size(); ++v) {
-    if (film.complex.vertices[v].kind != VertexKind::OnCurve) {
+    if (film.complex.vertices[v].kind != films::VertexKind::OnCurve) {
       moves[v].setZero();
     }
   }
@@ -139,8 +139,8 @@ TEST(FilmAdjoint, CarryIsTransposed) {
 /// With a field, whose third derivatives are differences themselves.
 TEST(FilmAdjoint, ThirdDerivativesAreDifferencesOfProducts) {
   Film film;
-  FilmQuantity flux{"flux", FilmQuantity::Role::Energy,
-                    FilmQuantity::Kind::VectorIntegral};
+  films::FilmQuantity flux{"flux", films::FilmQuantity::Role::Energy,
+                           films::FilmQuantity::Kind::VectorIntegral};
   for (int k = 0; k < 3; ++k) {
     flux.field[k] = Expression::parse("sin(x*y)+z^3", {"x", "y", "z"});
   }
@@ -148,9 +148,9 @@ TEST(FilmAdjoint, ThirdDerivativesAreDifferencesOfProducts) {
     if (with_field) {
       film.complex.quantities = {flux};
     }
-    const FilmEnergy energy(film.complex);
+    const energy::FilmEnergy energy(film.complex);
     const VectorX pressure = VectorX::Constant(energy.functionals(), 0.7);
-    const FilmProducts products(energy, film.targets, pressure);
+    const energy::FilmProducts products(energy, film.targets, pressure);
     const Points d = waves(film.x.size(), 2);
     const Points to = waves(film.x.size(), 8);
     const auto bend = [&](double step) {
@@ -178,10 +178,10 @@ TEST(FilmAdjoint, ThirdDerivativesAreDifferencesOfProducts) {
 }
 
 /// At rest from `base`, along its own normals.
-FilmState rest(const Film& film, const Points& base) {
-  FilmState state =
-      settle_along(film.energy, film.complex, film.targets, base,
-                   film.energy.space().directions(base), {}, 0.0, {});
+settle::FilmState rest(const Film& film, const Points& base) {
+  settle::FilmState state =
+      settle::settle_along(film.energy, film.complex, film.targets, base,
+                           film.energy.space().directions(base), {}, 0.0, {});
   EXPECT_FALSE(state.failure) << state.report.verdict;
   return state;
 }
@@ -190,17 +190,18 @@ FilmState rest(const Film& film, const Points& base) {
 TEST(FilmAdjoint, OfFilmsThatMeetAlongAFreeLine) {
   Film film;
   film.targets.bodies[0].volume = film.energy.volumes(film.x)[0];
-  const FilmState at_rest = rest(film, film.x);
+  const settle::FilmState at_rest = rest(film, film.x);
   const Points directions = film.energy.space().directions(film.x);
   const VectorX pressure =
       VectorX::Constant(1, at_rest.report.bodies[0].pressure);
-  const FilmAdjoint adjoint(film.energy, film.targets, film.x, directions,
-                            at_rest.points, at_rest.heights, pressure);
-  FilmCovector by;
+  const frozen::FilmAdjoint adjoint(film.energy, film.targets, film.x,
+                                    directions, at_rest.points, at_rest.heights,
+                                    pressure);
+  frozen::FilmCovector by;
   by.points = waves(film.x.size(), 6);
   by.pressures = VectorX::Constant(1, 0.8);
-  const FilmAdjoint::Result gradient = adjoint.transpose(by);
-  const auto j = [&](const FilmState& state) {
+  const frozen::FilmAdjoint::Result gradient = adjoint.transpose(by);
+  const auto j = [&](const settle::FilmState& state) {
     return flat(by.points).dot(flat(state.points)) +
            by.pressures[0] * state.report.bodies[0].pressure;
   };
@@ -228,18 +229,19 @@ TEST(FilmAdjoint, OfFilmsThatMeetAlongAFreeLine) {
 // A round tube's modes come in pairs; the volume takes one more away.
 TEST(LowestModes, AreThoseOfTheDenseProblem) {
   constexpr int kModes = 6;
-  FilmComplex complex =
+  films::FilmComplex complex =
       shapes::tube(1.0, 1.0, 8, 6, [](double) { return 1.0; });
   shapes::close_tube(complex, 8);
   complex.bodies[0].volume = 3.0;
-  const FilmEnergy energy(complex);
-  const FilmTargets targets = targets_of(complex);
+  const energy::FilmEnergy energy(complex);
+  const films::FilmTargets targets = energy::targets_of(complex);
   const Points& x = complex.mesh.points;
-  const SaddleSystem saddle(energy, targets, x, energy.space().directions(x),
-                            VectorX::Constant(1, 0.5));
+  const energy::SaddleSystem saddle(energy, targets, x,
+                                    energy.space().directions(x),
+                                    VectorX::Constant(1, 0.5));
   ASSERT_TRUE(saddle.factored());
   ASSERT_EQ(saddle.system().index(), 0);
-  const LowestModes found =
+  const energy::LowestModes found =
       saddle.system().lowest_modes(saddle.metric(), kModes);
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(saddle.constraints());
   const Eigen::Index n = energy.unknowns();

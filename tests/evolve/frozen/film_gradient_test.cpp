@@ -14,7 +14,7 @@
 namespace meniscus::film_gradient_test {
 namespace {
 
-using Design = std::function<FilmSystem(double)>;
+using Design = std::function<films::FilmSystem(double)>;
 
 /// Films are converged to rounding, so differences lose about half of their
 /// figures; 6e-9 is the worst found.
@@ -26,9 +26,9 @@ double ripple(std::size_t i) { return std::sin(1.7 * static_cast<double>(i)); }
 
 /// A response that sees everything: the mean of weighted places, and all
 /// figures.
-FilmCovector covector(const FilmModel& model) {
-  const FilmState& film = model.reference();
-  FilmCovector by;
+frozen::FilmCovector covector(const frozen::FilmModel& model) {
+  const settle::FilmState& film = model.reference();
+  frozen::FilmCovector by;
   const std::size_t count = film.points.size();
   for (std::size_t v = 0; v < count; ++v) {
     by.points.emplace_back(
@@ -46,8 +46,8 @@ FilmCovector covector(const FilmModel& model) {
   return by;
 }
 
-double value(const FilmModel& model, const FilmCovector& by,
-             const FilmState& film) {
+double value(const frozen::FilmModel& model, const frozen::FilmCovector& by,
+             const settle::FilmState& film) {
   double sum = flat(by.points).dot(flat(film.points)) +
                by.areas.dot(model.areas(film.points)) +
                by.energy * film.report.energy;
@@ -60,14 +60,14 @@ double value(const FilmModel& model, const FilmCovector& by,
 }
 
 /// Rates of a design that is linear in its variable.
-void subtract(const CurveShape& low, CurveShape& high) {
-  if (auto* c = std::get_if<Circle>(&high)) {
-    const auto& from = std::get<Circle>(low);
+void subtract(const curves::CurveShape& low, curves::CurveShape& high) {
+  if (auto* c = std::get_if<curves::Circle>(&high)) {
+    const auto& from = std::get<curves::Circle>(low);
     c->center -= from.center;
     c->normal -= from.normal;
     c->radius -= from.radius;
-  } else if (auto* r = std::get_if<Rectangle>(&high)) {
-    const auto& from = std::get<Rectangle>(low);
+  } else if (auto* r = std::get_if<curves::Rectangle>(&high)) {
+    const auto& from = std::get<curves::Rectangle>(low);
     r->center -= from.center;
     r->normal -= from.normal;
     r->axis -= from.axis;
@@ -77,9 +77,9 @@ void subtract(const CurveShape& low, CurveShape& high) {
   }
 }
 
-FilmSystem rates_of(const Design& design) {
-  const FilmSystem low = design(0.0);
-  FilmSystem rates = design(1.0);
+films::FilmSystem rates_of(const Design& design) {
+  const films::FilmSystem low = design(0.0);
+  films::FilmSystem rates = design(1.0);
   for (std::size_t c = 0; c < rates.curves.size(); ++c) {
     subtract(low.curves[c].shape, rates.curves[c].shape);
   }
@@ -98,22 +98,23 @@ FilmSystem rates_of(const Design& design) {
 }
 
 /// A response, with its derivatives by the film.
-using Response =
-    std::function<FilmResponse(const FilmState&, const FilmSystem&)>;
+using Response = std::function<frozen::FilmResponse(const settle::FilmState&,
+                                                    const films::FilmSystem&)>;
 
 /// At variable `at`, away from the frozen design. Differences of step `step`
 /// and below agree, and halving it leaves a quarter of what is not linear.
-void expect_exact(const FilmModel& model, const Design& design, double at,
-                  double step, const Response& response) {
+void expect_exact(const frozen::FilmModel& model, const Design& design,
+                  double at, double step, const Response& response) {
   ASSERT_FALSE(model.reference().failure) << model.reference().report.verdict;
   const auto film = [&](double p) {
-    FilmState state = model.settle(design(p));
+    settle::FilmState state = model.settle(design(p));
     EXPECT_FALSE(state.failure) << state.report.verdict;
     return state;
   };
-  const FilmState here = film(at);
-  const FilmCovector by = response(here, design(at)).by;
-  const FilmGradient gradient = model.transpose(here, design(at), {by}).front();
+  const settle::FilmState here = film(at);
+  const frozen::FilmCovector by = response(here, design(at)).by;
+  const frozen::FilmGradient gradient =
+      model.transpose(here, design(at), {by}).front();
   const double slope = model.rate(gradient, design(at), rates_of(design));
   const auto j = [&](double p) { return response(film(p), design(p)).value; };
   double closest = 1e300;
@@ -128,58 +129,62 @@ void expect_exact(const FilmModel& model, const Design& design, double at,
   EXPECT_NEAR(std::log2(std::abs(first / second)), 2.0, 0.1);
 }
 
-void expect_exact(const FilmModel& model, const Design& design, double at,
-                  double step) {
-  const FilmCovector by = covector(model);
-  expect_exact(model, design, at, step,
-               [&](const FilmState& film, const FilmSystem& /*system*/) {
-                 return FilmResponse{value(model, by, film), by};
-               });
+void expect_exact(const frozen::FilmModel& model, const Design& design,
+                  double at, double step) {
+  const frozen::FilmCovector by = covector(model);
+  expect_exact(
+      model, design, at, step,
+      [&](const settle::FilmState& film, const films::FilmSystem& /*system*/) {
+        return frozen::FilmResponse{value(model, by, film), by};
+      });
 }
 
-FilmSystem moved_rings(double p) {
-  FilmSystem system = systems::catenoid(1.0);
+films::FilmSystem moved_rings(double p) {
+  films::FilmSystem system = systems::catenoid(1.0);
   system.curves[0].shape =
-      Circle{Vec3(0.2 * p, 0.1 * p, -0.5 + 0.1 * p),
-             Vec3(0.15 * p, -0.1 * p, -1.0), 1.0 + 0.2 * p};
+      curves::Circle{Vec3(0.2 * p, 0.1 * p, -0.5 + 0.1 * p),
+                     Vec3(0.15 * p, -0.1 * p, -1.0), 1.0 + 0.2 * p};
   return system;
 }
 
 TEST(FilmGradient, OfACatenoidBetweenMovingRings) {
   for (const int refinements : {0, 1}) {
-    const FilmModel model = FilmModel::freeze(
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
         moved_rings(0), {.edge = 0.25, .refinements = refinements});
     expect_exact(model, moved_rings, 0.3, 1e-2);
   }
 }
 
-FilmSystem blown(double p) {
-  FilmSystem system = systems::cylinder(1.5);
-  system.curves[1].shape = Circle{Vec3(0.2 * p, 0, 1.5 + 0.1 * p),
-                                  Vec3(0.1 * p, 0.1 * p, 1.0), 1.0 - 0.1 * p};
+films::FilmSystem blown(double p) {
+  films::FilmSystem system = systems::cylinder(1.5);
+  system.curves[1].shape =
+      curves::Circle{Vec3(0.2 * p, 0, 1.5 + 0.1 * p),
+                     Vec3(0.1 * p, 0.1 * p, 1.0), 1.0 - 0.1 * p};
   system.films[0].tension = 1.0 + 0.3 * p;
   system.bodies[0].pressure = 0.8 + 0.4 * p;
   return system;
 }
 
 TEST(FilmGradient, AtAGivenPressure) {
-  const FilmModel model = FilmModel::freeze(blown(0), {.edge = 0.3});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(blown(0), {.edge = 0.3});
   expect_exact(model, blown, 0.2, 1e-2);
 }
 
 // Lengths of 100: the same weights, in mm.
-FilmSystem bracket(double p) {
+films::FilmSystem bracket(double p) {
   return systems::two_arm(20.0 * p, 1.7e6 + 1e5 * p, 120.0, 50.0 - 2.0 * p);
 }
 
 TEST(FilmGradient, OfTheBracketAtAGivenVolume) {
-  const FilmModel model = FilmModel::freeze(bracket(0), {.edge = 16.0});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(bracket(0), {.edge = 16.0});
   expect_exact(model, bracket, 0.4, 1e-2);
 }
 
-FilmSystem strut(double p) {
-  FilmSystem system = systems::strut();
-  auto& square = std::get<Rectangle>(system.curves[0].shape);
+films::FilmSystem strut(double p) {
+  films::FilmSystem system = systems::strut();
+  auto& square = std::get<curves::Rectangle>(system.curves[0].shape);
   square.width = 2.0 + 0.2 * p;
   square.corner_radius = 0.3 + 0.1 * p;
   square.axis = Vec3(1.0, 0.3 * p, 0.0);
@@ -188,14 +193,16 @@ FilmSystem strut(double p) {
 }
 
 TEST(FilmGradient, OfAStrutOnARoundedRectangle) {
-  const FilmModel model = FilmModel::freeze(strut(0), {.edge = 0.4});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(strut(0), {.edge = 0.4});
   expect_exact(model, strut, 0.3, 1e-2);
 }
 
-FilmSystem chambers(double p) {
-  FilmSystem system = systems::bulkhead();
-  std::get<Circle>(system.curves[1].shape).center = Vec3(0.1 * p, 0, 0.2 * p);
-  std::get<Circle>(system.curves[1].shape).radius = 1.2 + 0.1 * p;
+films::FilmSystem chambers(double p) {
+  films::FilmSystem system = systems::bulkhead();
+  std::get<curves::Circle>(system.curves[1].shape).center =
+      Vec3(0.1 * p, 0, 0.2 * p);
+  std::get<curves::Circle>(system.curves[1].shape).radius = 1.2 + 0.1 * p;
   system.films[1].tension = 1.0 + 0.2 * p;
   system.films[2].tension = 1.0 - 0.1 * p;
   system.bodies[0].volume = 7.0 + 0.4 * p;
@@ -203,17 +210,19 @@ FilmSystem chambers(double p) {
 }
 
 TEST(FilmGradient, OfTwoChambersWithABulkhead) {
-  const FilmModel model = FilmModel::freeze(chambers(0), {.edge = 0.4});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(chambers(0), {.edge = 0.4});
   expect_exact(model, chambers, 0.3, 1e-2);
   // One of them a void at a pressure of its own.
   const Design vented = [](double p) {
-    FilmSystem system = chambers(p);
+    films::FilmSystem system = chambers(p);
     system.bodies[1].volume.reset();
     system.bodies[1].pressure = 0.9 + 0.1 * p;
     system.bodies[1].is_void = true;
     return system;
   };
-  const FilmModel with_void = FilmModel::freeze(vented(0), {.edge = 0.4});
+  const frozen::FilmModel with_void =
+      frozen::FilmModel::freeze(vented(0), {.edge = 0.4});
   expect_exact(with_void, vented, 0.3, 1e-2);
 }
 
@@ -221,35 +230,37 @@ Expression over(const char* text) {
   return Expression::parse(text, {"x", "y", "z"});
 }
 
-FilmSystem in_fields(double p) {
-  FilmSystem system = systems::cylinder(1.0);
-  system.curves[1].shape =
-      Circle{Vec3(0.1 * p, 0, 1.0 + 0.2 * p), Vec3::UnitZ(), 1.0 - 0.1 * p};
+films::FilmSystem in_fields(double p) {
+  films::FilmSystem system = systems::cylinder(1.0);
+  system.curves[1].shape = curves::Circle{Vec3(0.1 * p, 0, 1.0 + 0.2 * p),
+                                          Vec3::UnitZ(), 1.0 - 0.1 * p};
   system.films[0].tension_field = over("1+0.2*z+0.1*sin(x)");
   system.bodies[0].pressure = 0.4 + 0.2 * p;
-  system.fields = {{"middle", PlanePole{Vec3(0, 0, 0.5), Vec3::UnitZ()}, 0.2,
-                    2.0, 0.4, PerArea{{"film"}}},
-                   {"inside", PointPole{Vec3(0.2, 0, 0.4)}, 0.1, 2.0, 0.5,
-                    PerVolume{"body"}}};
+  system.fields = {{"middle", films::PlanePole{Vec3(0, 0, 0.5), Vec3::UnitZ()},
+                    0.2, 2.0, 0.4, films::PerArea{{"film"}}},
+                   {"inside", films::PointPole{Vec3(0.2, 0, 0.4)}, 0.1, 2.0,
+                    0.5, films::PerVolume{"body"}}};
   system.pressures = {{"gas", "body", over("0.2*z")}};
   return system;
 }
 
 TEST(FilmGradient, InTensionAndEnergyFields) {
-  const FilmModel model =
-      FilmModel::freeze(in_fields(0), {.edge = 0.6, .refinements = 0});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(in_fields(0), {.edge = 0.6, .refinements = 0});
   expect_exact(model, in_fields, 0.3, 1e-2);
 }
 
 // Young and Laplace without a mesh: the energy at rest grows with the volume
 // by the pressure, with a tension by the area.
 TEST(FilmGradient, OfTheEnergyIsPressureAndArea) {
-  const FilmModel model = FilmModel::freeze(chambers(0), {.edge = 0.4});
-  const FilmSystem system = chambers(0.3);
-  const FilmState film = model.settle(system);
-  FilmCovector energy;
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(chambers(0), {.edge = 0.4});
+  const films::FilmSystem system = chambers(0.3);
+  const settle::FilmState film = model.settle(system);
+  frozen::FilmCovector energy;
   energy.energy = 1.0;
-  const FilmGradient gradient = model.transpose(film, system, {energy}).front();
+  const frozen::FilmGradient gradient =
+      model.transpose(film, system, {energy}).front();
   const VectorX areas = model.areas(film.points);
   // Of a film at rest; its residual is below 1e-9.
   constexpr double kAtRest = 1e-9;
@@ -262,8 +273,9 @@ TEST(FilmGradient, OfTheEnergyIsPressureAndArea) {
 }
 
 TEST(FilmMargin, BoundsTheLowestEigenvalueFromBelow) {
-  const FilmModel model = FilmModel::freeze(bracket(0), {.edge = 16.0});
-  const FilmState film = model.settle(bracket(0.4));
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(bracket(0), {.edge = 16.0});
+  const settle::FilmState film = model.settle(bracket(0.4));
   const double least = film.report.min_eigenvalue;
   double before = -1e300;
   for (const double sharpness : {5.0, 20.0, 1000.0}) {
@@ -284,24 +296,28 @@ TEST(FilmMargin, BoundsTheLowestEigenvalueFromBelow) {
 }
 
 TEST(FilmMargin, HasAnExactGradient) {
-  const auto margin = [](const FilmModel& model) -> Response {
-    return [&model](const FilmState& film, const FilmSystem& system) {
+  const auto margin = [](const frozen::FilmModel& model) -> Response {
+    return [&model](const settle::FilmState& film,
+                    const films::FilmSystem& system) {
       return model.margin(film, system);
     };
   };
-  const FilmModel arms = FilmModel::freeze(bracket(0), {.edge = 16.0});
+  const frozen::FilmModel arms =
+      frozen::FilmModel::freeze(bracket(0), {.edge = 16.0});
   expect_exact(arms, bracket, 0.4, 4e-3, margin(arms));
-  const FilmModel tube = FilmModel::freeze(blown(0), {.edge = 0.3});
+  const frozen::FilmModel tube =
+      frozen::FilmModel::freeze(blown(0), {.edge = 0.3});
   expect_exact(tube, blown, 0.2, 4e-3, margin(tube));
-  const FilmModel twin = FilmModel::freeze(chambers(0), {.edge = 0.4});
+  const frozen::FilmModel twin =
+      frozen::FilmModel::freeze(chambers(0), {.edge = 0.4});
   expect_exact(twin, chambers, 0.3, 4e-3, margin(twin));
 }
 
 // The catenoid's waist c = 0.848338 has k = 1 / c both ways.
 TEST(FilmRadius, OfACatenoidIsThatOfItsWaist) {
   constexpr double kWaist = 0.848338;
-  const FilmModel model =
-      FilmModel::freeze(systems::catenoid(1.0), {.edge = 0.1});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(systems::catenoid(1.0), {.edge = 0.1});
   const Points& film = model.reference().points;
   // Both curvatures count, over a waist that is a part of the film.
   EXPECT_NEAR(model.smallest_radius(film, 64).value, kWaist, 0.02 * kWaist);
@@ -310,27 +326,31 @@ TEST(FilmRadius, OfACatenoidIsThatOfItsWaist) {
 }
 
 TEST(FilmRadius, HasAnExactGradient) {
-  const auto radius = [](const FilmModel& model) -> Response {
-    return [&model](const FilmState& film, const FilmSystem& /*system*/) {
+  const auto radius = [](const frozen::FilmModel& model) -> Response {
+    return [&model](const settle::FilmState& film,
+                    const films::FilmSystem& /*system*/) {
       return model.smallest_radius(film.points);
     };
   };
-  const FilmModel arms = FilmModel::freeze(bracket(0), {.edge = 16.0});
+  const frozen::FilmModel arms =
+      frozen::FilmModel::freeze(bracket(0), {.edge = 16.0});
   expect_exact(arms, bracket, 0.4, 1e-2, radius(arms));
-  const FilmModel rings = FilmModel::freeze(moved_rings(0), {.edge = 0.25});
+  const frozen::FilmModel rings =
+      frozen::FilmModel::freeze(moved_rings(0), {.edge = 0.25});
   expect_exact(rings, moved_rings, 0.3, 1e-2, radius(rings));
 }
 
 TEST(FilmGradient, HasTheSameBitsInAnyCompany) {
-  const FilmModel model = FilmModel::freeze(bracket(0), {.edge = 16.0});
-  const FilmSystem system = bracket(0.4);
-  const FilmState film = model.settle(system);
-  const FilmCovector by = covector(model);
-  FilmCovector energy;
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(bracket(0), {.edge = 16.0});
+  const films::FilmSystem system = bracket(0.4);
+  const settle::FilmState film = model.settle(system);
+  const frozen::FilmCovector by = covector(model);
+  frozen::FilmCovector energy;
   energy.energy = 1.0;
   const auto alone = model.transpose(film, system, {by});
-  std::vector<FilmGradient> others;
-  std::vector<FilmGradient> again;
+  std::vector<frozen::FilmGradient> others;
+  std::vector<frozen::FilmGradient> again;
   std::thread a([&] { others = model.transpose(film, system, {energy}); });
   std::thread b([&] { again = model.transpose(film, system, {energy, by}); });
   a.join();
@@ -343,8 +363,8 @@ TEST(FilmGradient, HasTheSameBitsInAnyCompany) {
 }
 
 TEST(FilmGradient, OfTheMeshedSurfaceIsItsTranspose) {
-  FilmModel model =
-      FilmModel::freeze(bracket(0), {.edge = 16.0, .refinements = 2});
+  frozen::FilmModel model =
+      frozen::FilmModel::freeze(bracket(0), {.edge = 16.0, .refinements = 2});
   for (const bool split : {false, true}) {
     if (split) {
       std::vector<char> marked(
@@ -371,9 +391,10 @@ TEST(FilmGradient, OfTheMeshedSurfaceIsItsTranspose) {
 }
 
 TEST(FilmGradient, RefusesWhatDoesNotFit) {
-  const FilmModel model = FilmModel::freeze(moved_rings(0), {.edge = 0.25});
-  const FilmState film = model.settle(moved_rings(0.1));
-  FilmCovector by;
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(moved_rings(0), {.edge = 0.25});
+  const settle::FilmState film = model.settle(moved_rings(0.1));
+  frozen::FilmCovector by;
   EXPECT_NO_THROW(model.transpose(film, moved_rings(0.1), {by}));
   EXPECT_THROW(model.transpose(film, moved_rings(0.2), {by}), InvalidInput);
   by.points.resize(3, Vec3::Zero());
@@ -382,13 +403,13 @@ TEST(FilmGradient, RefusesWhatDoesNotFit) {
   by.volumes = VectorX::Ones(1);
   EXPECT_THROW(model.transpose(film, moved_rings(0.1), {by}), InvalidInput);
   by.volumes.resize(0);
-  FilmState failed = film;
+  settle::FilmState failed = film;
   failed.failure = Failure{FailureKind::FilmNotFound, "gone"};
   EXPECT_THROW(model.transpose(failed, moved_rings(0.1), {by}), InvalidInput);
-  const FilmGradient gradient =
+  const frozen::FilmGradient gradient =
       model.transpose(film, moved_rings(0.1), {by}).front();
-  FilmSystem rates = moved_rings(0.1);
-  rates.curves[0].shape = Rectangle{};
+  films::FilmSystem rates = moved_rings(0.1);
+  rates.curves[0].shape = curves::Rectangle{};
   EXPECT_THROW(static_cast<void>(model.rate(gradient, moved_rings(0.1), rates)),
                InvalidInput);
 }

@@ -14,11 +14,12 @@ namespace {
 
 // Tension 1 / r makes the energy of a surface of revolution 2 pi x the length
 // of its profile: the film between two rings is a cone.
-FilmSystem cone(double low, double high = 0.6, double height = 1.0) {
-  FilmSystem system;
-  system.curves = {{"low", Circle{Vec3::Zero(), -Vec3::UnitZ(), low}},
-                   {"high", Circle{Vec3(0, 0, height), Vec3::UnitZ(), high}}};
-  system.films = {{"film", FilmKind::Loft, {"low", "high"}, 1.0}};
+films::FilmSystem cone(double low, double high = 0.6, double height = 1.0) {
+  films::FilmSystem system;
+  system.curves = {
+      {"low", curves::Circle{Vec3::Zero(), -Vec3::UnitZ(), low}},
+      {"high", curves::Circle{Vec3(0, 0, height), Vec3::UnitZ(), high}}};
+  system.films = {{"film", films::FilmKind::Loft, {"low", "high"}, 1.0}};
   system.films[0].tension_field =
       Expression::parse("1/sqrt(x^2+y^2)", {"x", "y", "z"});
   return system;
@@ -31,8 +32,8 @@ double cone_energy(double low, double high = 0.6, double height = 1.0) {
 TEST(TensionField, MakesAConeAtSecondOrder) {
   std::array<double, 2> error{};
   for (const int k : {0, 1}) {
-    const FilmModel model =
-        FilmModel::freeze(cone(1.0), {.edge = 0.1, .refinements = k});
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(cone(1.0), {.edge = 0.1, .refinements = k});
     ASSERT_FALSE(model.reference().failure)
         << model.reference().failure->message;
     EXPECT_EQ(model.reference().report.index, 0);
@@ -45,10 +46,10 @@ TEST(TensionField, MakesAConeAtSecondOrder) {
 // Another design than the frozen one: the same cone, and its energy's slope
 // over the design is the closed form's to the order of the mesh.
 TEST(TensionField, FollowsTheDesign) {
-  const FilmModel model =
-      FilmModel::freeze(cone(1.0), {.edge = 0.1, .refinements = 1});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(cone(1.0), {.edge = 0.1, .refinements = 1});
   const auto energy = [&](double low) {
-    const FilmState state = model.settle(cone(low));
+    const settle::FilmState state = model.settle(cone(low));
     EXPECT_FALSE(state.failure) << state.failure->message;
     return state.report.energy;
   };
@@ -61,8 +62,9 @@ TEST(TensionField, FollowsTheDesign) {
 }
 
 TEST(TensionField, BelongsToTheModel) {
-  const FilmModel model = FilmModel::freeze(cone(1.0), {.edge = 0.2});
-  FilmSystem other = cone(1.0);
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(cone(1.0), {.edge = 0.2});
+  films::FilmSystem other = cone(1.0);
   other.films[0].tension_field =
       Expression::parse("2/sqrt(x^2+y^2)", {"x", "y", "z"});
   EXPECT_THROW(model.settle(other), InvalidInput);
@@ -72,40 +74,41 @@ TEST(TensionField, BelongsToTheModel) {
 
 TEST(TensionField, MustStayAboveZero) {
   for (const char* text : {"z-0.5", "log(z-0.5)", "1/(z-z)"}) {
-    FilmSystem system = cone(1.0);
+    films::FilmSystem system = cone(1.0);
     system.films[0].tension_field = Expression::parse(text, {"x", "y", "z"});
-    EXPECT_THROW(FilmModel::freeze(system, {.edge = 0.2}), InvalidInput)
+    EXPECT_THROW(frozen::FilmModel::freeze(system, {.edge = 0.2}), InvalidInput)
         << text;
   }
   // A film that grows to where there is none left.
-  FilmSystem system = cone(1.0);
+  films::FilmSystem system = cone(1.0);
   system.films[0].tension_field =
       Expression::parse("1.1-sqrt(x^2+y^2)", {"x", "y", "z"});
-  EXPECT_THROW(FilmModel::freeze(system, {.edge = 0.2}), InvalidInput);
+  EXPECT_THROW(frozen::FilmModel::freeze(system, {.edge = 0.2}), InvalidInput);
   // Good at the frozen design, not where another one takes the film.
   const auto ring = [](double height) {
-    FilmSystem result = cone(1.0, 1.0, height);
+    films::FilmSystem result = cone(1.0, 1.0, height);
     result.films[0].tension_field =
         Expression::parse("if(z<0.6,1,-1)", {"x", "y", "z"});
     return result;
   };
-  const FilmModel model = FilmModel::freeze(ring(0.5), {.edge = 0.2});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(ring(0.5), {.edge = 0.2});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
-  const FilmState state = model.settle(ring(0.7));
+  const settle::FilmState state = model.settle(ring(0.7));
   ASSERT_TRUE(state.failure);
   EXPECT_EQ(state.failure->kind, FailureKind::NotANumber);
 }
 
-FilmSystem tube(double radius) {
-  FilmSystem system = cone(radius, 1.0);
+films::FilmSystem tube(double radius) {
+  films::FilmSystem system = cone(radius, 1.0);
   system.films[0].tension_field.reset();
   system.caps = {{"bottom", "low"}, {"top", "high"}};
   system.bodies = {{"tube", {"film", "bottom", "top"}, std::nullopt, 0.8}};
   return system;
 }
 
-FilmSystem inflated(double radius) {
-  FilmSystem system = tube(radius);
+films::FilmSystem inflated(double radius) {
+  films::FilmSystem system = tube(radius);
   system.bodies[0].pressure = 0.0;
   system.pressures = {
       {"gas", "tube", Expression::parse("0.8+0*x", {"x", "y", "z"})}};
@@ -114,12 +117,13 @@ FilmSystem inflated(double radius) {
 
 // A pressure field that is a number is the body's own pressure.
 TEST(FieldEnergy, OfConstantPressureIsThePressure) {
-  const FilmModelOptions options{.edge = 0.2};
-  const FilmModel plain = FilmModel::freeze(tube(1.0), options);
-  const FilmModel field = FilmModel::freeze(inflated(1.0), options);
+  const frozen::FilmModelOptions options{.edge = 0.2};
+  const frozen::FilmModel plain = frozen::FilmModel::freeze(tube(1.0), options);
+  const frozen::FilmModel field =
+      frozen::FilmModel::freeze(inflated(1.0), options);
   for (const double radius : {1.0, 0.9}) {
-    const FilmState a = plain.settle(tube(radius));
-    const FilmState b = field.settle(inflated(radius));
+    const settle::FilmState a = plain.settle(tube(radius));
+    const settle::FilmState b = field.settle(inflated(radius));
     ASSERT_FALSE(a.failure || b.failure);
     EXPECT_NEAR(b.report.area, a.report.area, 1e-8 * a.report.area);
     EXPECT_NEAR(b.report.energy,
@@ -130,12 +134,14 @@ TEST(FieldEnergy, OfConstantPressureIsThePressure) {
 
 // A film is cheaper on a plane that attracts it, so there is more of it there.
 TEST(FieldEnergy, PolesMoveTheFilmAndBelongToTheModel) {
-  FilmSystem system = tube(1.0);
-  system.fields = {{"middle", PlanePole{Vec3(0, 0, 0.5), Vec3::UnitZ()}, 0.3,
-                    2.0, 0.3, PerArea{{"film"}}}};
-  const FilmModel model = FilmModel::freeze(system, {.edge = 0.2});
+  films::FilmSystem system = tube(1.0);
+  system.fields = {{"middle", films::PlanePole{Vec3(0, 0, 0.5), Vec3::UnitZ()},
+                    0.3, 2.0, 0.3, films::PerArea{{"film"}}}};
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(system, {.edge = 0.2});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
-  const FilmModel without = FilmModel::freeze(tube(1.0), {.edge = 0.2});
+  const frozen::FilmModel without =
+      frozen::FilmModel::freeze(tube(1.0), {.edge = 0.2});
   EXPECT_GT(model.reference().report.bodies[0].volume,
             1.01 * without.reference().report.bodies[0].volume);
   EXPECT_FALSE(model.settle(system).failure);

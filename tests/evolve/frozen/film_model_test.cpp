@@ -16,8 +16,9 @@ namespace {
 using systems::two_arm;
 
 /// Frozen once: every test asks the same model.
-const FilmModel& bracket() {
-  static const FilmModel model = FilmModel::freeze(two_arm(0), {.edge = 8.0});
+const frozen::FilmModel& bracket() {
+  static const frozen::FilmModel model =
+      frozen::FilmModel::freeze(two_arm(0), {.edge = 8.0});
   return model;
 }
 
@@ -35,7 +36,7 @@ double smallest_angle_deg(const SurfaceMesh& mesh) {
 
 TEST(FilmModel, BracketIsStableOverItsBounds) {
   for (const double x : {-40.0, -20.0, 0.0, 20.0, 40.0}) {
-    const FilmState state = bracket().settle(two_arm(x));
+    const settle::FilmState state = bracket().settle(two_arm(x));
     ASSERT_FALSE(state.failure) << x << ": " << state.report.verdict;
     EXPECT_EQ(state.report.index, 0);
     EXPECT_GT(state.report.min_eigenvalue, 0.0);
@@ -46,7 +47,7 @@ TEST(FilmModel, BracketIsStableOverItsBounds) {
 }
 
 TEST(FilmModel, ReferenceIsTheInitialDesign) {
-  const FilmState state = bracket().settle(two_arm(0));
+  const settle::FilmState state = bracket().settle(two_arm(0));
   EXPECT_TRUE(state.points == bracket().reference().points);
   EXPECT_LT(state.heights.cwiseAbs().maxCoeff(), 1e-3);
 }
@@ -58,9 +59,9 @@ TEST(FilmModel, MirroredDesignsHaveEqualAreas) {
 }
 
 TEST(FilmModel, NoHistoryAndNoThreadsShow) {
-  const FilmState first = bracket().settle(two_arm(10));
-  FilmState other;
-  FilmState again;
+  const settle::FilmState first = bracket().settle(two_arm(10));
+  settle::FilmState other;
+  settle::FilmState again;
   std::thread a([&] { other = bracket().settle(two_arm(-7)); });
   std::thread b([&] { again = bracket().settle(two_arm(10)); });
   a.join();
@@ -88,7 +89,7 @@ TEST(FilmModel, AreaIsASmoothFunctionOfTheDesign) {
 }
 
 TEST(FilmModel, SurfaceIsClosedWithGoodFacetsAndFlatPads) {
-  const FilmState state = bracket().settle(two_arm(30));
+  const settle::FilmState state = bracket().settle(two_arm(30));
   const QuadraticSurface surface = bracket().surface(state.points);
   EXPECT_NEAR(enclosed_volume(surface.base), 1.7e6, 0.03 * 1.7e6);
   EXPECT_GT(smallest_angle_deg(surface.base), 25.0);
@@ -112,7 +113,7 @@ TEST(FilmModel, SurfaceIsClosedWithGoodFacetsAndFlatPads) {
 }
 
 TEST(FilmModel, ThinDesignFailsCleanly) {
-  const FilmState state = bracket().settle(two_arm(40, 1.0e6));
+  const settle::FilmState state = bracket().settle(two_arm(40, 1.0e6));
   ASSERT_TRUE(state.failure);
   EXPECT_THAT(state.failure->message, testing::HasSubstr("neck"));
   EXPECT_THAT(state.failure->message, testing::HasSubstr("would help"));
@@ -120,25 +121,25 @@ TEST(FilmModel, ThinDesignFailsCleanly) {
 
 // Pinched films settle too: only the neck tells.
 TEST(FilmModel, SettledButPinchedFilmIsRecognised) {
-  const FilmState state = bracket().settle(two_arm(40, 1.55e6));
+  const settle::FilmState state = bracket().settle(two_arm(40, 1.55e6));
   ASSERT_TRUE(state.failure) << state.report.verdict;
   EXPECT_EQ(state.failure->kind, FailureKind::FilmPinched);
 }
 
 TEST(FilmModel, SlenderArmsFailWithTheNeck) {
-  const FilmModel model =
-      FilmModel::freeze(two_arm(0, 0.9e6, 220.0, 25.0), {.edge = 10.0});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(two_arm(0, 0.9e6, 220.0, 25.0), {.edge = 10.0});
   ASSERT_TRUE(model.reference().failure);
   EXPECT_THAT(model.reference().failure->message, testing::HasSubstr("neck"));
   EXPECT_THROW(model.settle(two_arm(0, 0.9e6, 220.0, 25.0)), InvalidInput);
 }
 
 TEST(FilmModel, CatenoidHasItsLimit) {
-  const FilmModel inside =
-      FilmModel::freeze(systems::catenoid(1.31), {.edge = 0.1});
+  const frozen::FilmModel inside =
+      frozen::FilmModel::freeze(systems::catenoid(1.31), {.edge = 0.1});
   EXPECT_FALSE(inside.reference().failure) << inside.reference().report.verdict;
-  const FilmModel beyond =
-      FilmModel::freeze(systems::catenoid(1.34), {.edge = 0.1});
+  const frozen::FilmModel beyond =
+      frozen::FilmModel::freeze(systems::catenoid(1.34), {.edge = 0.1});
   EXPECT_TRUE(beyond.reference().failure);
 }
 
@@ -151,30 +152,31 @@ class Impatient : public Monitor {
 TEST(FilmModel, StopsWhenAsked) {
   Impatient monitor;
   EXPECT_THROW(
-      FilmModel::freeze(two_arm(0), {.edge = 8.0, .monitor = &monitor}),
+      frozen::FilmModel::freeze(two_arm(0), {.edge = 8.0, .monitor = &monitor}),
       Interrupted);
   EXPECT_THROW(bracket().settle(two_arm(5), {.monitor = &monitor}),
                Interrupted);
 }
 
 TEST(FilmModel, RefusesAnEdgeThatLeavesNoFreeVertex) {
-  EXPECT_THROW(FilmModel::freeze(systems::catenoid(0.05), {.edge = 1.0}),
-               InvalidInput);
+  EXPECT_THROW(
+      frozen::FilmModel::freeze(systems::catenoid(0.05), {.edge = 1.0}),
+      InvalidInput);
 }
 
 // The skin's hull holds about 1.9e6: half and twice of it.
 TEST(FilmModel, StartsFarFromTheTargetVolume) {
   for (const double volume : {1.25e6, 3.8e6}) {
-    const FilmModel model =
-        FilmModel::freeze(two_arm(0, volume), {.edge = 8.0});
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(two_arm(0, volume), {.edge = 8.0});
     ASSERT_FALSE(model.reference().failure) << model.reference().report.verdict;
     EXPECT_NEAR(model.reference().report.bodies[0].volume, volume,
                 1e-10 * volume);
   }
 }
 
-FilmSystem strut(double volume) {
-  FilmSystem system = systems::strut();
+films::FilmSystem strut(double volume) {
+  films::FilmSystem system = systems::strut();
   system.bodies[0].pressure.reset();
   system.bodies[0].volume = volume;
   return system;
@@ -185,24 +187,27 @@ FilmSystem strut(double volume) {
 TEST(FilmModel, StrutAtSecondOrder) {
   std::vector<double> error;
   for (const double edge : {0.3, 0.15}) {
-    const FilmModel model = FilmModel::freeze(strut(14.0), {.edge = edge});
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(strut(14.0), {.edge = edge});
     ASSERT_FALSE(model.reference().failure) << model.reference().report.verdict;
     error.push_back(model.reference().report.area - 26.89002);
     EXPECT_NEAR(model.reference().report.bodies[0].pressure, 1.0771, 0.005);
   }
   EXPECT_GT(std::log2(std::abs(error[0] / error[1])), 1.6);
-  EXPECT_FALSE(
-      FilmModel::freeze(strut(13.0), {.edge = 0.2}).reference().failure);
-  EXPECT_TRUE(
-      FilmModel::freeze(strut(12.5), {.edge = 0.2}).reference().failure);
+  EXPECT_FALSE(frozen::FilmModel::freeze(strut(13.0), {.edge = 0.2})
+                   .reference()
+                   .failure);
+  EXPECT_TRUE(frozen::FilmModel::freeze(strut(12.5), {.edge = 0.2})
+                  .reference()
+                  .failure);
 }
 
 // Coarse facets beside the foot's corners: normals that turn at every step kept
 // Newton from its bound at some edges (13 mm among them).
 TEST(FilmModel, StrutAtEveryCoarseEdge) {
   for (double edge = 11.0; edge < 14.1; edge += 0.5) {
-    const FilmModel model = FilmModel::freeze(systems::leaning_strut(),
-                                              {.edge = edge, .refinements = 0});
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        systems::leaning_strut(), {.edge = edge, .refinements = 0});
     EXPECT_FALSE(model.reference().failure)
         << edge << ": " << model.reference().report.verdict;
   }
@@ -210,7 +215,7 @@ TEST(FilmModel, StrutAtEveryCoarseEdge) {
 
 // A mirror-symmetric saddle that settles to rounding: only the index tells.
 TEST(FilmModel, SymmetricSaddleIsUnstable) {
-  const FilmState state = bracket().settle(two_arm(0, 1.1e6));
+  const settle::FilmState state = bracket().settle(two_arm(0, 1.1e6));
   ASSERT_TRUE(state.failure);
   EXPECT_EQ(state.failure->kind, FailureKind::FilmUnstable);
   EXPECT_EQ(state.report.index, 1);
@@ -219,14 +224,15 @@ TEST(FilmModel, SymmetricSaddleIsUnstable) {
 }
 
 TEST(FilmModel, RefusesDesignsOfAnotherSystem) {
-  FilmSystem renamed = two_arm(0);
+  films::FilmSystem renamed = two_arm(0);
   renamed.curves[0].name = "foot";
   EXPECT_THROW(bracket().settle(renamed), InvalidInput);
-  FilmSystem pressed = two_arm(0);
+  films::FilmSystem pressed = two_arm(0);
   pressed.bodies[0].volume.reset();
   pressed.bodies[0].pressure = 0.01;
   EXPECT_THROW(bracket().settle(pressed), InvalidInput);
-  EXPECT_THROW(FilmModel::freeze(two_arm(0), {.edge = 0.0}), InvalidInput);
+  EXPECT_THROW(frozen::FilmModel::freeze(two_arm(0), {.edge = 0.0}),
+               InvalidInput);
 }
 
 TEST(FilmModel, RefusesNumbersThatNoFilmCanFollow) {
@@ -235,10 +241,10 @@ TEST(FilmModel, RefusesNumbersThatNoFilmCanFollow) {
   EXPECT_THROW(bracket().settle(two_arm(0, nan)), InvalidInput);
   EXPECT_THROW(bracket().settle(two_arm(0, -1.0)), InvalidInput);
   EXPECT_THROW(bracket().settle(two_arm(0, 1.7e6, 120.0, -50.0)), InvalidInput);
-  FilmSystem slack = two_arm(0);
+  films::FilmSystem slack = two_arm(0);
   slack.films[0].tension = 0.0;
   EXPECT_THROW(bracket().settle(slack), InvalidInput);
-  EXPECT_THROW(FilmModel::freeze(slack, {.edge = 8.0}), InvalidInput);
+  EXPECT_THROW(frozen::FilmModel::freeze(slack, {.edge = 8.0}), InvalidInput);
 }
 
 }  // namespace

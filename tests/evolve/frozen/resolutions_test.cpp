@@ -22,41 +22,42 @@ using nonmanifold::triple_lines;
 // Each film is meshed anew: its error's constant varies a little with that.
 constexpr double kSecondOrder = 1.7;
 
-FilmComplex settled(FilmComplex complex, int refinements) {
-  const FilmState state =
-      find_equilibrium(complex, {.refinements = refinements});
+films::FilmComplex settled(films::FilmComplex complex, int refinements) {
+  const settle::FilmState state =
+      settle::find_equilibrium(complex, {.refinements = refinements});
   EXPECT_FALSE(state.failure) << state.report.verdict;
   return complex;
 }
 
-void expect_on_curves(const FilmComplex& complex) {
+void expect_on_curves(const films::FilmComplex& complex) {
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    const ComplexVertex& vertex = complex.vertices[v];
-    if (vertex.kind == VertexKind::OnCurve) {
-      const Vec3 place = point_at(complex.curves[vertex.curve].shape, vertex.t);
+    const films::ComplexVertex& vertex = complex.vertices[v];
+    if (vertex.kind == films::VertexKind::OnCurve) {
+      const Vec3 place =
+          curves::point_at(complex.curves[vertex.curve].shape, vertex.t);
       EXPECT_LT((complex.mesh.points[v] - place).norm(), 1e-12);
     }
   }
 }
 
 /// Films at edge lengths each half of the one before; returns the finest.
-FilmResolution expect_second_order(const FilmComplex& film,
-                                   const std::vector<double>& edges,
-                                   double exact) {
-  std::vector<FilmResolution> films = at_edges(film, edges);
+frozen::FilmResolution expect_second_order(const films::FilmComplex& film,
+                                           const std::vector<double>& edges,
+                                           double exact) {
+  std::vector<frozen::FilmResolution> films = frozen::at_edges(film, edges);
   double before = 0.0;
   for (std::size_t k = 0; k < films.size(); ++k) {
-    const FilmReport& report = films[k].state.report;
+    const settle::FilmReport& report = films[k].state.report;
     SCOPED_TRACE(edges[k]);
     EXPECT_EQ(films[k].edge, edges[k]);
     EXPECT_EQ(report.verdict, "stable");
     EXPECT_LE(report.residual, report.residual_bound);
-    EXPECT_NO_THROW(check_complex(films[k].complex));
+    EXPECT_NO_THROW(groom::check_complex(films[k].complex));
     EXPECT_NEAR(mean_edge_length(films[k].complex.mesh), edges[k],
                 0.15 * edges[k]);
     EXPECT_EQ(films[k].complex.mesh.labels, film.mesh.labels);
     expect_on_curves(films[k].complex);
-    for (const BodyState& body : report.bodies) {
+    for (const settle::BodyState& body : report.bodies) {
       EXPECT_NEAR(body.volume, body.target_volume, 1e-9 * body.target_volume);
     }
     const double error = std::abs(report.energy - exact);
@@ -75,14 +76,14 @@ TEST(Resolutions, CatenoidAtThreeEdges) {
 }
 
 TEST(Resolutions, BodyKeepsItsVolume) {
-  const FilmComplex film = settled(test_films::cube_start(), 1);
+  const films::FilmComplex film = settled(test_films::cube_start(), 1);
   expect_second_order(film, {0.16, 0.08, 0.04},
                       test_films::sphere_of_volume(1.0).area);
 }
 
 TEST(Resolutions, TripleLineStays) {
-  const FilmComplex film = settled(test_films::triple_disk_start(), 2);
-  const FilmResolution finest = expect_second_order(
+  const films::FilmComplex film = settled(test_films::triple_disk_start(), 2);
+  const frozen::FilmResolution finest = expect_second_order(
       film, {0.12, 0.06, 0.03}, test_films::triple_disk().area);
   EXPECT_EQ(triple_lines(finest.complex.mesh).of_films,
             triple_lines(film.mesh).of_films);
@@ -90,8 +91,8 @@ TEST(Resolutions, TripleLineStays) {
 
 // Rims keep their edges, so the film may be coarser between them only.
 TEST(Resolutions, CoarserThanTheFilm) {
-  const FilmComplex film = settled(test_films::catenoid_start(), 3);
-  const FilmResolution coarse = at_edge(film, 0.12);
+  const films::FilmComplex film = settled(test_films::catenoid_start(), 3);
+  const frozen::FilmResolution coarse = frozen::at_edge(film, 0.12);
   EXPECT_EQ(coarse.state.report.verdict, "stable");
   EXPECT_LT(coarse.complex.mesh.facets.size(), film.mesh.facets.size());
   EXPECT_NEAR(coarse.state.report.energy, test_films::catenoid(1.0, 1.0).area,
@@ -101,16 +102,16 @@ TEST(Resolutions, CoarserThanTheFilm) {
 
 // One edge's film does not depend on the others.
 TEST(Resolutions, AreIndependent) {
-  const FilmComplex film = settled(test_films::catenoid_start(), 1);
-  const Points among = at_edges(film, {0.2, 0.1})[1].state.points;
-  EXPECT_EQ(among, at_edge(film, 0.1).state.points);
+  const films::FilmComplex film = settled(test_films::catenoid_start(), 1);
+  const Points among = frozen::at_edges(film, {0.2, 0.1})[1].state.points;
+  EXPECT_EQ(among, frozen::at_edge(film, 0.1).state.points);
 }
 
 TEST(Resolutions, RefuseWhatIsNoLength) {
-  const FilmComplex film = test_films::catenoid_start();
+  const films::FilmComplex film = test_films::catenoid_start();
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const double edge : {0.0, -1.0, kNan, 1e-9}) {
-    EXPECT_THROW(at_edge(film, edge), InvalidInput) << edge;
+    EXPECT_THROW(frozen::at_edge(film, edge), InvalidInput) << edge;
   }
 }
 

@@ -24,15 +24,16 @@ constexpr double kRingFacets = 0.01;
 /// Two coaxial tubes, 0.8 long: the outer between circles of radius 1 (the
 /// upper one `grown` larger), the inner between circles of radius 0.6, rings
 /// between them; inside the inner one a void with caps of its own.
-FilmSystem tube(double grown = 0.0, double lifted = 0.0) {
-  FilmSystem system;
+films::FilmSystem tube(double grown = 0.0, double lifted = 0.0) {
+  films::FilmSystem system;
   system.curves = {
-      {"out_low", Circle{{0, 0, 0}, Vec3::UnitZ(), 1.0}},
-      {"out_high", Circle{{0, 0, 0.8}, Vec3::UnitZ(), 1.0 + grown}},
-      {"in_low", Circle{{0, 0, lifted}, Vec3::UnitZ(), 0.6}},
-      {"in_high", Circle{{0, 0, 0.8 - lifted}, Vec3::UnitZ(), 0.6}}};
-  system.films = {{"outer", FilmKind::Branch, {"out_low", "out_high"}, 1.0, {}},
-                  {"inner", FilmKind::Branch, {"in_low", "in_high"}, 1.0, {}}};
+      {"out_low", curves::Circle{{0, 0, 0}, Vec3::UnitZ(), 1.0}},
+      {"out_high", curves::Circle{{0, 0, 0.8}, Vec3::UnitZ(), 1.0 + grown}},
+      {"in_low", curves::Circle{{0, 0, lifted}, Vec3::UnitZ(), 0.6}},
+      {"in_high", curves::Circle{{0, 0, 0.8 - lifted}, Vec3::UnitZ(), 0.6}}};
+  system.films = {
+      {"outer", films::FilmKind::Branch, {"out_low", "out_high"}, 1.0, {}},
+      {"inner", films::FilmKind::Branch, {"in_low", "in_high"}, 1.0, {}}};
   system.caps = {{"low", "out_low", "in_low"},
                  {"high", "out_high", "in_high"},
                  {"low_lid", "in_low"},
@@ -43,14 +44,15 @@ FilmSystem tube(double grown = 0.0, double lifted = 0.0) {
   return system;
 }
 
-double area_of(const FilmModel& model, const Points& points,
+double area_of(const frozen::FilmModel& model, const Points& points,
                const std::string& label) {
   const SurfaceMesh mesh = model.fine_mesh(points);
   return surface_area(mesh, mesh.label_of(label));
 }
 
 TEST(Ring, BetweenCirclesOfOnePlaneIsFlatAndHasItsArea) {
-  const FilmModel model = FilmModel::freeze(tube(), {.edge = kRingEdge});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(tube(), {.edge = kRingEdge});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   const Points& points = model.reference().points;
   EXPECT_NEAR(area_of(model, points, "high"), kHalfTurn * (1.0 - 0.36),
@@ -63,13 +65,13 @@ TEST(Ring, BetweenCirclesOfOnePlaneIsFlatAndHasItsArea) {
       }
     }
   }
-  check_complex(build_start(tube(), kRingEdge));
+  groom::check_complex(start::build_start(tube(), kRingEdge));
 }
 
 TEST(Ring, BetweenPlanesIsAFrustum) {
   constexpr double kLift = 0.15;
-  const FilmModel model =
-      FilmModel::freeze(tube(0.0, kLift), {.edge = kRingEdge});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(tube(0.0, kLift), {.edge = kRingEdge});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   const double slant = std::hypot(0.4, kLift);
   EXPECT_NEAR(area_of(model, model.reference().points, "low"),
@@ -77,8 +79,9 @@ TEST(Ring, BetweenPlanesIsAFrustum) {
 }
 
 TEST(Ring, StaysFlatWhereItsRimsGo) {
-  const FilmModel model = FilmModel::freeze(tube(), {.edge = kRingEdge});
-  const FilmState moved = model.settle(tube(0.2));
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(tube(), {.edge = kRingEdge});
+  const settle::FilmState moved = model.settle(tube(0.2));
   ASSERT_FALSE(moved.failure) << moved.failure->message;
   EXPECT_NEAR(area_of(model, moved.points, "high"), kHalfTurn * (1.44 - 0.36),
               2.0 * kRingFacets);
@@ -86,7 +89,8 @@ TEST(Ring, StaysFlatWhereItsRimsGo) {
 
 // The solid is what lies between the films; the void is left out, its lids too.
 TEST(Ring, ClosesASolidAroundAVoid) {
-  const FilmModel model = FilmModel::freeze(tube(), {.edge = kRingEdge});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(tube(), {.edge = kRingEdge});
   const SurfaceMesh part = model.boundary(model.reference().points);
   EXPECT_TRUE(check_surface(part).empty());
   EXPECT_NEAR(enclosed_volume(part), 1.55, 1e-6);
@@ -99,9 +103,9 @@ TEST(Ring, ClosesASolidAroundAVoid) {
 }
 
 TEST(Ring, ToACurveThatDoesNotExistIsRefused) {
-  FilmSystem system = tube();
+  films::FilmSystem system = tube();
   system.caps[0].inner = "nowhere";
-  EXPECT_THROW(build_start(system, kRingEdge), InvalidInput);
+  EXPECT_THROW(start::build_start(system, kRingEdge), InvalidInput);
 }
 
 /// Two parallel squares of side 1, n x n x 2 facets each, `apart`; the upper
@@ -136,7 +140,8 @@ SurfaceMesh sheets(double apart, double wave = 0.0) {
 TEST(Gap, OfParallelSheetsIsTheirDistanceLessTheSmoothing) {
   constexpr double kApart = 0.3;
   for (const double smoothing : {1e-2, 1e-3, 1e-4}) {
-    const FilmResponse gap = gap_between(sheets(kApart), 0, 1, smoothing);
+    const frozen::FilmResponse gap =
+        frozen::gap_between(sheets(kApart), 0, 1, smoothing);
     EXPECT_LE(gap.value, kApart + 1e-15);
     EXPECT_GE(gap.value, kApart - smoothing * std::log(2.0 * 81.0) - 1e-12);
   }
@@ -144,7 +149,7 @@ TEST(Gap, OfParallelSheetsIsTheirDistanceLessTheSmoothing) {
 
 TEST(Gap, HasTheDerivativeOfItsDifferences) {
   const SurfaceMesh mesh = sheets(0.3, 0.1);
-  const FilmResponse gap = gap_between(mesh, 0, 1, 0.01);
+  const frozen::FilmResponse gap = frozen::gap_between(mesh, 0, 1, 0.01);
   Points way;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const auto t = static_cast<double>(v);
@@ -156,7 +161,7 @@ TEST(Gap, HasTheDerivativeOfItsDifferences) {
     for (std::size_t v = 0; v < way.size(); ++v) {
       moved.points[v] += s * way[v];
     }
-    return gap_between(moved, 0, 1, 0.01).value;
+    return frozen::gap_between(moved, 0, 1, 0.01).value;
   };
   double exact = 0.0;
   for (std::size_t v = 0; v < way.size(); ++v) {
@@ -169,41 +174,41 @@ TEST(Gap, HasTheDerivativeOfItsDifferences) {
 TEST(Gap, OfFilmsThatCrossOrTouchIsRefusedWithThePlace) {
   for (const double apart : {-0.02, 0.0}) {
     try {
-      gap_between(sheets(apart, 0.1), 0, 1, 0.01);
+      frozen::gap_between(sheets(apart, 0.1), 0, 1, 0.01);
       FAIL() << "not refused at " << apart;
     } catch (const InvalidInput& error) {
       EXPECT_THAT(error.what(), testing::ContainsRegex("cross|touch"));
       EXPECT_THAT(error.what(), testing::HasSubstr("'lower' and 'upper'"));
     }
   }
-  EXPECT_THROW(gap_between(sheets(0.1), 0, 0, 0.01), InvalidInput);
-  EXPECT_THROW(gap_between(sheets(0.1), 0, 2, 0.01), InvalidInput);
-  EXPECT_THROW(gap_between(sheets(0.1), 0, 1, 0.0), InvalidInput);
+  EXPECT_THROW(frozen::gap_between(sheets(0.1), 0, 0, 0.01), InvalidInput);
+  EXPECT_THROW(frozen::gap_between(sheets(0.1), 0, 2, 0.01), InvalidInput);
+  EXPECT_THROW(frozen::gap_between(sheets(0.1), 0, 1, 0.0), InvalidInput);
 }
 
 // Through the film: rims move, both films follow, the gap with them.
 TEST(Gap, OfSettledFilmsHasAnExactDerivative) {
-  const FilmModel model =
-      FilmModel::freeze(tube(), {.edge = 0.25, .refinements = 0});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(tube(), {.edge = 0.25, .refinements = 0});
   ASSERT_FALSE(model.reference().failure);
   const auto gap_at = [&](double grown) {
     return model.gap(model.settle(tube(grown)).points, "outer", "inner", 0.02);
   };
   constexpr double kAt = 0.07;
   constexpr double kStep = 1e-5;
-  const FilmState state = model.settle(tube(kAt));
-  FilmSystem rates = tube();
-  for (Curve& curve : rates.curves) {
-    curve.shape = Circle{Vec3::Zero(), Vec3::Zero(),
-                         curve.name == "out_high" ? 1.0 : 0.0};
+  const settle::FilmState state = model.settle(tube(kAt));
+  films::FilmSystem rates = tube();
+  for (curves::Curve& curve : rates.curves) {
+    curve.shape = curves::Circle{Vec3::Zero(), Vec3::Zero(),
+                                 curve.name == "out_high" ? 1.0 : 0.0};
   }
-  for (BodySpec& body : rates.bodies) {
+  for (films::BodySpec& body : rates.bodies) {
     body.volume = 0.0;
   }
-  for (FilmSpec& film : rates.films) {
+  for (films::FilmSpec& film : rates.films) {
     film.tension = 0.0;
   }
-  const FilmResponse gap = gap_at(kAt);
+  const frozen::FilmResponse gap = gap_at(kAt);
   const auto back = model.transpose(state, tube(kAt), {gap.by});
   const double exact = model.rate(back[0], tube(kAt), rates);
   const double differences =

@@ -36,13 +36,13 @@ int most_films(const SurfaceMesh& mesh) {
 TEST(PopEdges, MakesTwoTripleLinesOfFourFilms) {
   for (const int along : {1, 2, 7}) {
     SCOPED_TRACE(along);
-    FilmComplex complex = fins_start({0, 60, 180, 240}, along);
+    films::FilmComplex complex = fins_start({0, 60, 180, 240}, along);
     ASSERT_EQ(most_films(complex.mesh), 4);
-    const PopReport report = pop_edges(complex);
+    const groom::PopReport report = groom::pop_edges(complex);
     EXPECT_EQ(report.popped, 1);
     EXPECT_EQ(report.refused, 0);
     EXPECT_EQ(most_films(complex.mesh), 3);
-    check_complex(complex);
+    groom::check_complex(complex);
     ASSERT_EQ(complex.surfaces.size(), 5U);
     EXPECT_EQ(complex.surfaces[4].name, "popped1");
     // Those at 60 degrees went together, whichever of the two pairs.
@@ -61,20 +61,20 @@ TEST(PopEdges, MakesTwoTripleLinesOfFourFilms) {
 }
 
 TEST(PopEdges, TakesFilmsOffUntilThreeAreLeft) {
-  FilmComplex complex = fins_start({0, 50, 115, 180, 240, 300}, 4);
-  const PopReport report = pop_edges(complex);
+  films::FilmComplex complex = fins_start({0, 50, 115, 180, 240, 300}, 4);
+  const groom::PopReport report = groom::pop_edges(complex);
   EXPECT_EQ(report.popped, 3);
   EXPECT_EQ(most_films(complex.mesh), 3);
-  check_complex(complex);
+  groom::check_complex(complex);
   EXPECT_EQ(triple_lines(complex.mesh).of_films.size(), 4U);
-  EXPECT_EQ(pop_edges(complex).popped, 0);
+  EXPECT_EQ(groom::pop_edges(complex).popped, 0);
 }
 
 TEST(PopEdges, PopsAClosedLine) {
   // Four bands along the unit circle: inwards, up, outwards, down.
   constexpr int kAround = 12;
   test_films::ComplexBuilder builder;
-  const auto ring = [&](double radius, double z, VertexKind kind) {
+  const auto ring = [&](double radius, double z, films::VertexKind kind) {
     std::vector<int> points;
     for (int i = 0; i < kAround; ++i) {
       const double a = 2.0 * pi * i / kAround;
@@ -83,20 +83,21 @@ TEST(PopEdges, PopsAClosedLine) {
     }
     return points;
   };
-  const std::vector<int> line = ring(1.0, 0.0, VertexKind::Free);
+  const std::vector<int> line = ring(1.0, 0.0, films::VertexKind::Free);
   const std::array<std::array<double, 2>, 4> ends = {
       {{0.6, 0.1}, {0.7, 0.4}, {1.5, 0.0}, {1.0, -0.5}}};
   for (std::size_t band = 0; band < ends.size(); ++band) {
-    const auto rim = ring(ends[band][0], ends[band][1], VertexKind::Fixed);
+    const auto rim =
+        ring(ends[band][0], ends[band][1], films::VertexKind::Fixed);
     builder.band(builder.liquid("band" + std::to_string(band)), line, rim);
     for (int i = 0; i < kAround; ++i) {
       builder.fixed_edge(rim[i], rim[(i + 1) % kAround]);
     }
   }
-  FilmComplex complex = builder.complex();
+  films::FilmComplex complex = builder.complex();
   EXPECT_EQ(count_edges(complex.mesh, 4), kAround);
-  EXPECT_EQ(pop_edges(complex).popped, 1);
-  check_complex(complex);
+  EXPECT_EQ(groom::pop_edges(complex).popped, 1);
+  groom::check_complex(complex);
   EXPECT_EQ(count_edges(complex.mesh, 4), 0);
   EXPECT_EQ(count_edges(complex.mesh, 3), 2 * kAround);
   // The first two bands make the smallest angle.
@@ -106,18 +107,18 @@ TEST(PopEdges, PopsAClosedLine) {
 }
 
 TEST(PopEdges, LeavesMarkedLinesAlone) {
-  FilmComplex complex = fins_start({0, 90, 180, 270}, 3);
+  films::FilmComplex complex = fins_start({0, 90, 180, 270}, 3);
   complex.edges.push_back({.a = 1, .b = 2});
-  const PopReport report = pop_edges(complex);
+  const groom::PopReport report = groom::pop_edges(complex);
   EXPECT_EQ(report.popped, 2);  // above and below it
   EXPECT_EQ(report.refused, 1);
   EXPECT_EQ(count_edges(complex.mesh, 4), 1);
   EXPECT_EQ(nonmanifold::edge_facets(complex.mesh).at({1, 2}).size(), 4U);
-  check_complex(complex);
+  groom::check_complex(complex);
 }
 
 // Four unit cubes about the z axis; their common edge has four films.
-FilmComplex four_cubes() {
+films::FilmComplex four_cubes() {
   test_films::ComplexBuilder builder;
   constexpr int kPieces = 2;
   const std::array<Vec3, 4> corner = {Vec3(0, 0, 0), Vec3(-1, 0, 0),
@@ -125,7 +126,7 @@ FilmComplex four_cubes() {
   const Vec3 x = Vec3::UnitX();
   const Vec3 y = Vec3::UnitY();
   const Vec3 z = Vec3::UnitZ();
-  std::array<std::vector<BodySide>, 4> sides;
+  std::array<std::vector<films::BodySide>, 4> sides;
   for (int i = 0; i < 4; ++i) {
     const int skin = builder.liquid("skin" + std::to_string(i));
     const Vec3& o = corner[i];
@@ -155,7 +156,7 @@ FilmComplex four_cubes() {
   wall(2, 3, -y, y, z);            // normal +x
   wall(3, 0, Vec3::Zero(), z, x);  // normal +y
   for (int i = 0; i < 4; ++i) {
-    ComplexBody body;
+    films::ComplexBody body;
     body.name = "cube" + std::to_string(i);
     body.sides = sides[i];
     body.volume = 1.0;
@@ -164,17 +165,17 @@ FilmComplex four_cubes() {
   return builder.complex();
 }
 
-double volume_of(const FilmComplex& complex, int body) {
-  return enclosed_volume(body_surface(complex, complex.bodies[body]));
+double volume_of(const films::FilmComplex& complex, int body) {
+  return enclosed_volume(films::body_surface(complex, complex.bodies[body]));
 }
 
 TEST(PopEdges, GivesTheNewFilmTheBodiesThatItParts) {
-  FilmComplex complex = four_cubes();
-  check_complex(complex);
+  films::FilmComplex complex = four_cubes();
+  groom::check_complex(complex);
   EXPECT_EQ(most_films(complex.mesh), 4);
-  EXPECT_EQ(pop_edges(complex).popped, 1);
+  EXPECT_EQ(groom::pop_edges(complex).popped, 1);
   EXPECT_EQ(most_films(complex.mesh), 3);
-  check_complex(complex);
+  groom::check_complex(complex);
   double sum = 0.0;
   for (int b = 0; b < 4; ++b) {
     EXPECT_NEAR(volume_of(complex, b), 1.0, 0.1);
@@ -182,8 +183,8 @@ TEST(PopEdges, GivesTheNewFilmTheBodiesThatItParts) {
   }
   EXPECT_NEAR(sum, 4.0, kRounding);
   int parts = 0;
-  for (const ComplexBody& body : complex.bodies) {
-    for (const BodySide& side : body.sides) {
+  for (const films::ComplexBody& body : complex.bodies) {
+    for (const films::BodySide& side : body.sides) {
       parts += side.surface == 8 ? 1 : 0;
     }
   }
@@ -194,29 +195,29 @@ TEST(PopVertices, SeparatesAPinchedNeck) {
   const auto profile = [](double z) { return 0.005 + z * z; };
   for (const int around : {3, 4, 8}) {
     SCOPED_TRACE(around);
-    FilmComplex complex = shapes::tube(1.0, 2.0, around, 6, profile);
+    films::FilmComplex complex = shapes::tube(1.0, 2.0, around, 6, profile);
     EXPECT_EQ(nonmanifold::components(complex.mesh), 1);
-    EXPECT_GT(collapse_tiny_edges(complex, 0.05), 0);
-    check_complex(complex);
+    EXPECT_GT(groom::collapse_tiny_edges(complex, 0.05), 0);
+    groom::check_complex(complex);
     EXPECT_EQ(nonmanifold::components(complex.mesh), 1);
-    const PopReport report = pop_vertices(complex);
+    const groom::PopReport report = groom::pop_vertices(complex);
     EXPECT_EQ(report.popped, 1);
     ASSERT_EQ(report.places.size(), 1U);
     EXPECT_LT(report.places[0].norm(), 0.05);
-    check_complex(complex);
+    groom::check_complex(complex);
     EXPECT_EQ(nonmanifold::components(complex.mesh), 2);
     EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);  // two disks
-    EXPECT_EQ(pop_vertices(complex).popped, 0);
+    EXPECT_EQ(groom::pop_vertices(complex).popped, 0);
   }
 }
 
 // Films from every edge of the cube to its centre.
-FilmComplex cube_cone() {
+films::FilmComplex cube_cone() {
   test_films::ComplexBuilder builder;
   std::array<int, 8> corner{};
   for (int i = 0; i < 8; ++i) {
-    corner[i] =
-        builder.vertex(Vec3(i & 1, i >> 1 & 1, i >> 2), VertexKind::Fixed);
+    corner[i] = builder.vertex(Vec3(i & 1, i >> 1 & 1, i >> 2),
+                               films::VertexKind::Fixed);
   }
   const int centre = builder.vertex(Vec3(0.5, 0.5, 0.5));
   for (int i = 0; i < 8; ++i) {
@@ -235,35 +236,35 @@ FilmComplex cube_cone() {
 TEST(PopVertices, PopsTheConeOverACubeToASquareFilm) {
   for (int level = 0; level < 3; ++level) {
     SCOPED_TRACE(level);
-    FilmComplex complex = cube_cone();
+    films::FilmComplex complex = cube_cone();
     for (int i = 0; i < level; ++i) {
-      complex = refine(complex).complex;
+      complex = groom::refine(complex).complex;
     }
     const auto before = triple_lines(complex.mesh);
     EXPECT_EQ(before.junctions, 1);
-    EXPECT_EQ(pop_edges(complex).popped, 0);
-    const PopReport report = pop_vertices(complex);
+    EXPECT_EQ(groom::pop_edges(complex).popped, 0);
+    const groom::PopReport report = groom::pop_vertices(complex);
     EXPECT_EQ(report.popped, 1);
-    check_complex(complex);
+    groom::check_complex(complex);
     const auto after = triple_lines(complex.mesh);
     // Eight lines to the corners and the square's four sides.
     EXPECT_EQ(after.junctions, 4);
     EXPECT_EQ(after.of_films.size(), 12U);
     EXPECT_EQ(complex.surfaces.size(), 13U);
-    EXPECT_EQ(pop_vertices(complex).popped, 0);
+    EXPECT_EQ(groom::pop_vertices(complex).popped, 0);
     // The lines are still there when the films are remeshed.
-    remesh_films(complex, {.edge = 0.1});
+    groom::remesh_films(complex, {.edge = 0.1});
     EXPECT_EQ(triple_lines(complex.mesh).of_films, after.of_films);
   }
 }
 
 TEST(PopVertices, KeepsMinimalCones) {
-  for (const FilmComplex& start :
+  for (const films::FilmComplex& start :
        {test_films::tetrahedral_frame_start(), test_films::cube_frame_start(),
         test_films::double_bubble_start(), test_films::triple_disk_start()}) {
-    FilmComplex complex = start;
-    EXPECT_EQ(pop_edges(complex).popped, 0);
-    EXPECT_EQ(pop_vertices(complex).popped, 0);
+    films::FilmComplex complex = start;
+    EXPECT_EQ(groom::pop_edges(complex).popped, 0);
+    EXPECT_EQ(groom::pop_vertices(complex).popped, 0);
     EXPECT_TRUE(systems::identical(complex, start));
   }
 }
@@ -273,8 +274,8 @@ TEST(PopVertices, PopsAConeOverAnOctahedronAfterItsEdges) {
   test_films::ComplexBuilder builder;
   std::vector<int> tip;
   for (int k = 0; k < 3; ++k) {
-    tip.push_back(builder.vertex(Vec3::Unit(k), VertexKind::Fixed));
-    tip.push_back(builder.vertex(-Vec3::Unit(k), VertexKind::Fixed));
+    tip.push_back(builder.vertex(Vec3::Unit(k), films::VertexKind::Fixed));
+    tip.push_back(builder.vertex(-Vec3::Unit(k), films::VertexKind::Fixed));
   }
   const int centre = builder.vertex(Vec3::Zero());
   for (int i = 0; i < 6; ++i) {
@@ -286,29 +287,29 @@ TEST(PopVertices, PopsAConeOverAnOctahedronAfterItsEdges) {
       }
     }
   }
-  FilmComplex complex = refine(builder.complex()).complex;
+  films::FilmComplex complex = groom::refine(builder.complex()).complex;
   EXPECT_EQ(most_films(complex.mesh), 4);
-  EXPECT_EQ(pop_edges(complex).popped, 6);
+  EXPECT_EQ(groom::pop_edges(complex).popped, 6);
   EXPECT_EQ(most_films(complex.mesh), 3);
-  EXPECT_EQ(pop_vertices(complex).popped, 1);
-  check_complex(complex);
+  EXPECT_EQ(groom::pop_vertices(complex).popped, 1);
+  groom::check_complex(complex);
   EXPECT_EQ(most_films(complex.mesh), 3);
-  EXPECT_EQ(pop_vertices(complex).popped, 0);
+  EXPECT_EQ(groom::pop_vertices(complex).popped, 0);
 }
 
 TEST(CollapseTiny, TakesShortEdgesOnly) {
-  FilmComplex complex = test_films::cube_start(3);
-  EXPECT_EQ(collapse_tiny_edges(complex, 0.1), 0);
+  films::FilmComplex complex = test_films::cube_start(3);
+  EXPECT_EQ(groom::collapse_tiny_edges(complex, 0.1), 0);
   complex.mesh.points.back() +=
       0.99 * (complex.mesh.points[complex.mesh.facets.back()[0]] -
               complex.mesh.points.back());
-  EXPECT_EQ(collapse_tiny_edges(complex, 0.1), 1);
-  check_complex(complex);
+  EXPECT_EQ(groom::collapse_tiny_edges(complex, 0.1), 1);
+  groom::check_complex(complex);
   EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);
-  EXPECT_THROW(collapse_tiny_edges(complex, std::nan("")), InvalidInput);
-  FilmComplex frame = test_films::cube_frame_start();
-  collapse_tiny_edges(frame, 100.0);
-  check_complex(frame);
+  EXPECT_THROW(groom::collapse_tiny_edges(complex, std::nan("")), InvalidInput);
+  films::FilmComplex frame = test_films::cube_frame_start();
+  groom::collapse_tiny_edges(frame, 100.0);
+  groom::check_complex(frame);
   EXPECT_EQ(frame.edges.size(), 12U);
 }
 

@@ -13,12 +13,12 @@ namespace meniscus::refine_test {
 namespace {
 
 TEST(Refine, KeepsOldVerticesAndPutsNewOnesInTheMiddle) {
-  for (const FilmSystem& system :
+  for (const films::FilmSystem& system :
        {systems::bulkhead(), systems::strut(), systems::catenoid()}) {
-    FilmComplex coarse = build_start(system, 0.4);
-    remesh_films(coarse, {.edge = 0.4});
-    const Refinement fine = refine(coarse);
-    check_complex(fine.complex);
+    films::FilmComplex coarse = start::build_start(system, 0.4);
+    groom::remesh_films(coarse, {.edge = 0.4});
+    const groom::Refinement fine = groom::refine(coarse);
+    groom::check_complex(fine.complex);
     const std::size_t old = coarse.mesh.points.size();
     ASSERT_EQ(fine.complex.mesh.points.size(), old + fine.parents.size());
     EXPECT_EQ(fine.complex.mesh.facets.size(), 4 * coarse.mesh.facets.size());
@@ -31,9 +31,9 @@ TEST(Refine, KeepsOldVerticesAndPutsNewOnesInTheMiddle) {
     for (std::size_t e = 0; e < fine.parents.size(); ++e) {
       const auto [a, b] = fine.parents[e];
       const Vec3 middle = 0.5 * (coarse.mesh.points[a] + coarse.mesh.points[b]);
-      const ComplexVertex& made = fine.complex.vertices[old + e];
+      const films::ComplexVertex& made = fine.complex.vertices[old + e];
       const Vec3& p = fine.complex.mesh.points[old + e];
-      if (made.kind == VertexKind::OnCurve) {
+      if (made.kind == films::VertexKind::OnCurve) {
         // The middle of an arc, near the chord's.
         const double chord =
             (coarse.mesh.points[a] - coarse.mesh.points[b]).norm();
@@ -48,13 +48,14 @@ TEST(Refine, KeepsOldVerticesAndPutsNewOnesInTheMiddle) {
 }
 
 TEST(Refine, DoublesEveryRim) {
-  const FilmComplex coarse = build_start(systems::bracket(), 8.0);
-  const FilmComplex fine = refine(coarse).complex;
-  const auto on_curve = [](const FilmComplex& c, int curve) {
-    return std::count_if(
-        c.vertices.begin(), c.vertices.end(), [&](const ComplexVertex& v) {
-          return v.kind == VertexKind::OnCurve && v.curve == curve;
-        });
+  const films::FilmComplex coarse = start::build_start(systems::bracket(), 8.0);
+  const films::FilmComplex fine = groom::refine(coarse).complex;
+  const auto on_curve = [](const films::FilmComplex& c, int curve) {
+    return std::count_if(c.vertices.begin(), c.vertices.end(),
+                         [&](const films::ComplexVertex& v) {
+                           return v.kind == films::VertexKind::OnCurve &&
+                                  v.curve == curve;
+                         });
   };
   for (int curve = 0; curve < 3; ++curve) {
     EXPECT_EQ(on_curve(fine, curve), 2 * on_curve(coarse, curve));
@@ -62,7 +63,7 @@ TEST(Refine, DoublesEveryRim) {
 }
 
 TEST(Refine, ApproachesTheCircleAtSecondOrder) {
-  FilmComplex complex = build_start(systems::cylinder(2.0), 0.4);
+  films::FilmComplex complex = start::build_start(systems::cylinder(2.0), 0.4);
   double last = 0.0;
   for (int level = 0; level < 3; ++level) {
     const int top = complex.mesh.label_of("top");
@@ -72,38 +73,39 @@ TEST(Refine, ApproachesTheCircleAtSecondOrder) {
       EXPECT_NEAR(last / error, 4.0, 0.1);
     }
     last = error;
-    complex = refine(complex).complex;
+    complex = groom::refine(complex).complex;
   }
 }
 
 TEST(CheckComplex, NamesWhatIsBroken) {
-  const FilmComplex sound = build_start(systems::cylinder(2.0), 0.4);
-  check_complex(sound);
-  FilmComplex broken = sound;
+  const films::FilmComplex sound =
+      start::build_start(systems::cylinder(2.0), 0.4);
+  groom::check_complex(sound);
+  films::FilmComplex broken = sound;
   broken.vertices.pop_back();
-  EXPECT_THROW(check_complex(broken), MeshError);
+  EXPECT_THROW(groom::check_complex(broken), MeshError);
   broken = sound;
   broken.mesh.points[0] += Vec3(0.1, 0, 0);
-  EXPECT_THROW(check_complex(broken), MeshError);
+  EXPECT_THROW(groom::check_complex(broken), MeshError);
   broken = sound;
   broken.mesh.facets.pop_back();
   broken.mesh.facet_label.pop_back();
-  EXPECT_THROW(check_complex(broken), MeshError);
+  EXPECT_THROW(groom::check_complex(broken), MeshError);
   broken = sound;
   std::swap(broken.mesh.facets[5][0], broken.mesh.facets[5][1]);
-  EXPECT_THROW(check_complex(broken), MeshError);
+  EXPECT_THROW(groom::check_complex(broken), MeshError);
   broken = sound;
   broken.bodies[0].sides[0].sign = -1;
-  EXPECT_THROW(check_complex(broken), MeshError);
+  EXPECT_THROW(groom::check_complex(broken), MeshError);
   broken = sound;
   broken.surfaces[1].name = "else";
-  EXPECT_THROW(check_complex(broken), MeshError);
+  EXPECT_THROW(groom::check_complex(broken), MeshError);
   broken = sound;
   broken.mesh.facets[0][0] = 100000;
-  EXPECT_THROW(check_complex(broken), MeshError);
+  EXPECT_THROW(groom::check_complex(broken), MeshError);
   broken = sound;
-  broken.vertices.back().kind = VertexKind::Free;
-  EXPECT_THROW(check_complex(broken), MeshError);
+  broken.vertices.back().kind = films::VertexKind::Free;
+  EXPECT_THROW(groom::check_complex(broken), MeshError);
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "evolve/groom/check_complex.h"
 #include "evolve/groom/flip_average.h"
 #include "evolve/groom/refine.h"
@@ -24,7 +24,7 @@ constexpr double kLineRounding = 1e-12;
 
 struct Case {
   const char* name;
-  FilmComplex start;
+  films::FilmComplex start;
   int levels;  // refined before
   double edge;
 };
@@ -37,9 +37,9 @@ std::vector<Case> cases() {
           {"sessile", test_films::sessile_cap_start(1.0), 2, 0.12}};
 }
 
-FilmComplex refined(FilmComplex complex, int levels) {
+films::FilmComplex refined(films::FilmComplex complex, int levels) {
   for (int i = 0; i < levels; ++i) {
-    complex = refine(complex).complex;
+    complex = groom::refine(complex).complex;
   }
   return complex;
 }
@@ -64,9 +64,9 @@ std::vector<std::array<double, 3>> junctions(const SurfaceMesh& mesh) {
   return places;
 }
 
-void expect_marks_on_edges(const FilmComplex& complex) {
+void expect_marks_on_edges(const films::FilmComplex& complex) {
   const auto uses = nonmanifold::edge_facets(complex.mesh);
-  for (const ComplexEdge& mark : complex.edges) {
+  for (const films::ComplexEdge& mark : complex.edges) {
     EXPECT_EQ(uses.count(edge_key(mark.a, mark.b)), 1U);
   }
 }
@@ -74,7 +74,7 @@ void expect_marks_on_edges(const FilmComplex& complex) {
 TEST(RemeshLines, KeepTheirFilmsAndJunctionsAtSeveralSizes) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    FilmComplex complex = refined(c.start, c.levels);
+    films::FilmComplex complex = refined(c.start, c.levels);
     nonmanifold::shake(complex, 0.15 * c.edge, 3);
     const auto lines = triple_lines(complex.mesh);
     const auto places = junctions(complex.mesh);
@@ -82,14 +82,14 @@ TEST(RemeshLines, KeepTheirFilmsAndJunctionsAtSeveralSizes) {
     const double area = surface_area(complex.mesh);
     for (const double factor : {1.0, 0.6, 1.6}) {
       SCOPED_TRACE(factor);
-      remesh_films(complex, {.edge = factor * c.edge});
+      groom::remesh_films(complex, {.edge = factor * c.edge});
       const auto now = triple_lines(complex.mesh);
       EXPECT_EQ(now.of_films, lines.of_films);
       EXPECT_EQ(now.junctions, lines.junctions);
       EXPECT_EQ(junctions(complex.mesh), places);
       EXPECT_EQ(systems::euler_characteristic(complex.mesh), euler);
       EXPECT_NEAR(surface_area(complex.mesh) / area, 1.0, kAreaChange);
-      check_complex(complex);
+      groom::check_complex(complex);
       expect_marks_on_edges(complex);
       const auto q = systems::quality(complex, Part::Films);
       EXPECT_GT(q.smallest_angle, kLeastAngle);
@@ -99,22 +99,22 @@ TEST(RemeshLines, KeepTheirFilmsAndJunctionsAtSeveralSizes) {
 }
 
 TEST(RemeshLines, FollowTheTargetLength) {
-  FilmComplex complex = refined(test_films::triple_disk_start(), 2);
+  films::FilmComplex complex = refined(test_films::triple_disk_start(), 2);
   const int before = nonmanifold::count_edges(complex.mesh, 3);
   EXPECT_EQ(before, 48);
-  remesh_films(complex, {.edge = 0.06});
+  groom::remesh_films(complex, {.edge = 0.06});
   // The circle of radius 0.8 in pieces of 0.06 .. 4/3 of it.
   EXPECT_GT(nonmanifold::count_edges(complex.mesh, 3), 60);
-  remesh_films(complex, {.edge = 0.3});
+  groom::remesh_films(complex, {.edge = 0.3});
   EXPECT_LT(nonmanifold::count_edges(complex.mesh, 3), 26);
   EXPECT_GT(nonmanifold::count_edges(complex.mesh, 3), 12);
 }
 
 TEST(RemeshLines, StayOnTheirWallWithTheirIntegrals) {
-  FilmComplex complex = refined(test_films::sessile_cap_start(1.0), 2);
+  films::FilmComplex complex = refined(test_films::sessile_cap_start(1.0), 2);
   const auto wetted = [&] {
     double sum = 0.0;
-    for (const ComplexEdge& e : complex.edges) {
+    for (const films::ComplexEdge& e : complex.edges) {
       const Vec3& a = complex.mesh.points[e.a];
       const Vec3& b = complex.mesh.points[e.b];
       sum += 0.5 * (a.x() * b.y() - a.y() * b.x());
@@ -125,7 +125,7 @@ TEST(RemeshLines, StayOnTheirWallWithTheirIntegrals) {
   };
   const double before = wetted();
   for (const double edge : {0.06, 0.2}) {
-    remesh_films(complex, {.edge = edge});
+    groom::remesh_films(complex, {.edge = edge});
     EXPECT_EQ(complex.edges.size(),
               static_cast<std::size_t>(systems::open_edges(complex.mesh)));
     EXPECT_NEAR(wetted() / before, 1.0, 0.1);
@@ -138,36 +138,42 @@ TEST(RemeshLines, StayOnTheirWallWithTheirIntegrals) {
 }
 
 TEST(CheckComplex, NamesWhatIsBrokenAtMarksAndWalls) {
-  const FilmComplex sound = refined(test_films::sessile_cap_start(1.0), 1);
-  check_complex(sound);
-  check_complex(test_films::double_bubble_start());
+  const films::FilmComplex sound =
+      refined(test_films::sessile_cap_start(1.0), 1);
+  groom::check_complex(sound);
+  groom::check_complex(test_films::double_bubble_start());
   const auto refuses = [&](const auto& breaks) {
-    FilmComplex broken = sound;
+    films::FilmComplex broken = sound;
     breaks(broken);
-    EXPECT_THROW(check_complex(broken), MeshError);
+    EXPECT_THROW(groom::check_complex(broken), MeshError);
   };
-  refuses([](FilmComplex& c) { c.edges.pop_back(); });
-  refuses([](FilmComplex& c) { c.edges.push_back(c.edges.front()); });
-  refuses([](FilmComplex& c) { c.edges[0].a = 1000000; });
-  refuses([](FilmComplex& c) { c.edges[0].a = c.edges[0].b; });
-  refuses([](FilmComplex& c) { c.edges[0].constraints = 1; });
-  refuses([](FilmComplex& c) { c.edges[0].integrals = 7; });
-  refuses([](FilmComplex& c) { c.constraint_sets[0][0] = 3; });
-  refuses([](FilmComplex& c) { c.integral_sets[0][0] = -1; });
-  refuses([](FilmComplex& c) { c.edges[0].kind = VertexKind::Slides; });
-  refuses([](FilmComplex& c) { c.vertices[c.edges[0].a].constraints = 4; });
-  refuses([](FilmComplex& c) { c.mesh.points[c.edges[0].a].z() += 1e-3; });
-  refuses([](FilmComplex& c) {
+  refuses([](films::FilmComplex& c) { c.edges.pop_back(); });
+  refuses([](films::FilmComplex& c) { c.edges.push_back(c.edges.front()); });
+  refuses([](films::FilmComplex& c) { c.edges[0].a = 1000000; });
+  refuses([](films::FilmComplex& c) { c.edges[0].a = c.edges[0].b; });
+  refuses([](films::FilmComplex& c) { c.edges[0].constraints = 1; });
+  refuses([](films::FilmComplex& c) { c.edges[0].integrals = 7; });
+  refuses([](films::FilmComplex& c) { c.constraint_sets[0][0] = 3; });
+  refuses([](films::FilmComplex& c) { c.integral_sets[0][0] = -1; });
+  refuses([](films::FilmComplex& c) {
+    c.edges[0].kind = films::VertexKind::Slides;
+  });
+  refuses(
+      [](films::FilmComplex& c) { c.vertices[c.edges[0].a].constraints = 4; });
+  refuses(
+      [](films::FilmComplex& c) { c.mesh.points[c.edges[0].a].z() += 1e-3; });
+  refuses([](films::FilmComplex& c) {
     c.mesh.facets.push_back(c.mesh.facets[0]);
     c.mesh.facet_label.push_back(c.mesh.facet_label[0]);
   });
-  refuses([](FilmComplex& c) { c.quantities.push_back({.surfaces = {9}}); });
+  refuses(
+      [](films::FilmComplex& c) { c.quantities.push_back({.surfaces = {9}}); });
 }
 
 TEST(RemeshLines, SlideAlongTheirCurve) {
   // A disk whose rim slides on its circle, as marked edges say.
-  FilmComplex complex;
-  complex.curves = {{"rim", Circle{}}};
+  films::FilmComplex complex;
+  complex.curves = {{"rim", curves::Circle{}}};
   complex.surfaces = {{.name = "film", .tension = 1.0}};
   complex.mesh.labels = {"film"};
   constexpr int kAround = 24;
@@ -175,26 +181,26 @@ TEST(RemeshLines, SlideAlongTheirCurve) {
   complex.vertices.resize(1);
   for (int i = 0; i < kAround; ++i) {
     const double t = std::pow(i / double{kAround}, 1.5);
-    complex.mesh.points.push_back(point_at(complex.curves[0].shape, t));
+    complex.mesh.points.push_back(curves::point_at(complex.curves[0].shape, t));
     complex.vertices.push_back(
-        {.kind = VertexKind::Slides, .curve = 0, .t = t});
+        {.kind = films::VertexKind::Slides, .curve = 0, .t = t});
     const int a = i + 1;
     const int b = i + 1 == kAround ? 1 : i + 2;
     complex.mesh.facets.push_back({0, a, b});
     complex.mesh.facet_label.push_back(0);
     complex.edges.push_back(
-        {.a = a, .b = b, .kind = VertexKind::Slides, .curve = 0});
+        {.a = a, .b = b, .kind = films::VertexKind::Slides, .curve = 0});
   }
   for (const double edge : {0.1, 0.3}) {
-    remesh_films(complex, {.edge = edge});
+    groom::remesh_films(complex, {.edge = edge});
     EXPECT_EQ(systems::euler_characteristic(complex.mesh), 1);
     EXPECT_NEAR(complex.edges.size() * edge, 2.0 * std::numbers::pi,
                 0.2 * 2.0 * std::numbers::pi);
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-      const ComplexVertex& vertex = complex.vertices[v];
-      if (vertex.kind == VertexKind::Slides) {
+      const films::ComplexVertex& vertex = complex.vertices[v];
+      if (vertex.kind == films::VertexKind::Slides) {
         EXPECT_EQ(complex.mesh.points[v],
-                  point_at(complex.curves[0].shape, vertex.t));
+                  curves::point_at(complex.curves[0].shape, vertex.t));
       }
     }
     EXPECT_GT(systems::quality(complex, Part::Films).smallest_angle, 25.0);
@@ -202,43 +208,43 @@ TEST(RemeshLines, SlideAlongTheirCurve) {
 }
 
 TEST(RemeshLines, AreTheSameInEveryBit) {
-  FilmComplex once = refined(test_films::cube_frame_start(), 2);
+  films::FilmComplex once = refined(test_films::cube_frame_start(), 2);
   nonmanifold::shake(once, 0.02, 5);
-  FilmComplex twice = once;
-  remesh_films(once, {.edge = 0.08});
-  remesh_films(twice, {.edge = 0.08});
+  films::FilmComplex twice = once;
+  groom::remesh_films(once, {.edge = 0.08});
+  groom::remesh_films(twice, {.edge = 0.08});
   EXPECT_TRUE(systems::identical(once, twice));
 }
 
 TEST(RemeshLines, SurviveRandomShapes) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(seed);
-    FilmComplex complex =
+    films::FilmComplex complex =
         refined(seed % 2 == 0 ? test_films::cube_frame_start()
                               : test_films::tetrahedral_frame_start(),
                 2);
     nonmanifold::shake(complex, 0.05 * (1 + seed % 5), seed);
     const auto lines = triple_lines(complex.mesh);
     const int euler = systems::euler_characteristic(complex.mesh);
-    remesh_films(complex, {.edge = 0.03 * (2 + seed), .passes = 3});
+    groom::remesh_films(complex, {.edge = 0.03 * (2 + seed), .passes = 3});
     EXPECT_EQ(triple_lines(complex.mesh).of_films, lines.of_films);
     EXPECT_EQ(systems::euler_characteristic(complex.mesh), euler);
   }
 }
 
 TEST(RemeshGraded, FollowsTheField) {
-  FilmComplex complex = refined(test_films::triple_disk_start(), 2);
+  films::FilmComplex complex = refined(test_films::triple_disk_start(), 2);
   const auto field = [](const Vec3& p) {
     return 0.04 + 0.12 * std::abs(p.x());
   };
-  remesh_films(complex, {.edge_field = field});
+  groom::remesh_films(complex, {.edge_field = field});
   EXPECT_EQ(triple_lines(complex.mesh).of_films.size(), 1U);
   double near = 0.0;
   double off = 0.0;
   std::array<int, 2> counts = {0, 0};
   for (const auto& [edge, facets] : nonmanifold::edge_facets(complex.mesh)) {
-    if (complex.vertices[edge[0]].kind != VertexKind::Free ||
-        complex.vertices[edge[1]].kind != VertexKind::Free) {
+    if (complex.vertices[edge[0]].kind != films::VertexKind::Free ||
+        complex.vertices[edge[1]].kind != films::VertexKind::Free) {
       continue;
     }
     const Vec3& a = complex.mesh.points[edge[0]];
@@ -251,14 +257,15 @@ TEST(RemeshGraded, FollowsTheField) {
   }
   EXPECT_NEAR(near / counts[0], 1.0, 0.15);
   EXPECT_NEAR(off / counts[1], 1.0, 0.15);
-  EXPECT_THROW(remesh_films(complex, {.edge_field =
-                                          [](const Vec3& p) { return p.x(); }}),
-               InvalidInput);
+  EXPECT_THROW(
+      groom::remesh_films(complex,
+                          {.edge_field = [](const Vec3& p) { return p.x(); }}),
+      InvalidInput);
 }
 
 TEST(AverageLines, MovesVerticesAlongAStraightLineOnly) {
   // Three fins about the z axis, the line's points unevenly placed.
-  FilmComplex complex;
+  films::FilmComplex complex;
   constexpr int kLine = 9;
   for (int i = 0; i < kLine; ++i) {
     complex.mesh.points.emplace_back(0, 0, 0.5 * i + (i % 2 == 1 ? 0.2 : 0.0));
@@ -280,7 +287,7 @@ TEST(AverageLines, MovesVerticesAlongAStraightLineOnly) {
   complex.vertices.resize(complex.mesh.points.size());
   const double area = surface_area(complex.mesh);
   for (int step = 0; step < 50; ++step) {
-    average_vertices(complex);
+    groom::average_vertices(complex);
   }
   for (int i = 0; i < kLine; ++i) {
     EXPECT_NEAR((complex.mesh.points[i] - Vec3(0, 0, 0.5 * i)).norm(), 0.0,
@@ -288,7 +295,7 @@ TEST(AverageLines, MovesVerticesAlongAStraightLineOnly) {
     EXPECT_EQ(complex.mesh.points[i].head<2>(), Eigen::Vector2d::Zero());
   }
   EXPECT_NEAR(surface_area(complex.mesh), area, kLineRounding * area);
-  const int flips = equiangulate(complex);
+  const int flips = groom::equiangulate(complex);
   EXPECT_GE(flips, 0);
   EXPECT_EQ(nonmanifold::count_edges(complex.mesh, 3), kLine - 1);
 }

@@ -20,13 +20,13 @@ using systems::Part;
 constexpr double kInnerAngle = 28.0;  // [deg] of facets off the rims
 constexpr double kRimAngle = 25.0;    // [deg] of those that touch a rim
 
-double volume_of(const FilmComplex& complex, std::size_t body = 0) {
-  return enclosed_volume(body_surface(complex, complex.bodies[body]));
+double volume_of(const films::FilmComplex& complex, std::size_t body = 0) {
+  return enclosed_volume(films::body_surface(complex, complex.bodies[body]));
 }
 
 struct Case {
   const char* name;
-  FilmSystem system;
+  films::FilmSystem system;
   double edge;
   double volume_change;  // relative; the coarse ones cut corners off
 };
@@ -41,10 +41,10 @@ std::vector<Case> cases() {
 }
 
 // Points of curves and caps, in order.
-Points held_points(const FilmComplex& complex) {
+Points held_points(const films::FilmComplex& complex) {
   Points points;
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-    if (complex.vertices[v].kind != VertexKind::Free) {
+    if (complex.vertices[v].kind != films::VertexKind::Free) {
       points.push_back(complex.mesh.points[v]);
     }
   }
@@ -54,10 +54,10 @@ Points held_points(const FilmComplex& complex) {
 TEST(Remesh, MakesNeedlesIsotropicAndKeepsTheShape) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(c.name);
-    const FilmComplex raw = build_start(c.system, c.edge);
-    FilmComplex complex = raw;
-    remesh_films(complex, {.edge = c.edge});
-    check_complex(complex);
+    const films::FilmComplex raw = start::build_start(c.system, c.edge);
+    films::FilmComplex complex = raw;
+    groom::remesh_films(complex, {.edge = c.edge});
+    groom::check_complex(complex);
     const auto q = systems::quality(complex, Part::Films);
     EXPECT_GT(q.smallest_angle, kRimAngle);
     EXPECT_GT(q.smallest_inner_angle, kInnerAngle);
@@ -67,7 +67,7 @@ TEST(Remesh, MakesNeedlesIsotropicAndKeepsTheShape) {
     for (std::size_t b = 0; b < complex.bodies.size(); ++b) {
       EXPECT_NEAR(volume_of(complex, b) / volume_of(raw, b), 1.0,
                   c.volume_change);
-      const SurfaceMesh shell = body_surface(complex, complex.bodies[b]);
+      const SurfaceMesh shell = films::body_surface(complex, complex.bodies[b]);
       EXPECT_EQ(systems::euler_characteristic(shell), 2);
       const auto findings = check_surface(shell);
       EXPECT_TRUE(findings.empty()) << summary(findings);
@@ -76,47 +76,47 @@ TEST(Remesh, MakesNeedlesIsotropicAndKeepsTheShape) {
 }
 
 TEST(Remesh, KeepsTheTopologyOfAnOpenFilm) {
-  FilmComplex complex = build_start(systems::catenoid(), 0.1);
-  remesh_films(complex, {.edge = 0.1});
-  check_complex(complex);
+  films::FilmComplex complex = start::build_start(systems::catenoid(), 0.1);
+  groom::remesh_films(complex, {.edge = 0.1});
+  groom::check_complex(complex);
   EXPECT_EQ(systems::euler_characteristic(complex.mesh), 0);
   EXPECT_GT(systems::quality(complex, Part::Films).smallest_angle, kRimAngle);
 }
 
 TEST(Remesh, ChangesResolutionBothWays) {
-  FilmComplex complex = build_start(systems::strut(), 0.2);
+  films::FilmComplex complex = start::build_start(systems::strut(), 0.2);
   for (const double edge : {0.2, 0.1, 0.4, 0.2}) {
-    remesh_films(complex, {.edge = edge});
-    check_complex(complex);
+    groom::remesh_films(complex, {.edge = edge});
+    groom::check_complex(complex);
     EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);
   }
   EXPECT_NEAR(systems::quality(complex, Part::Films).mean, 0.2, 0.03);
 }
 
 TEST(Remesh, IsTheSameInEveryBit) {
-  FilmComplex once = build_start(systems::bracket(), 8.0);
-  FilmComplex twice = once;
-  remesh_films(once, {.edge = 8.0});
-  remesh_films(twice, {.edge = 8.0});
+  films::FilmComplex once = start::build_start(systems::bracket(), 8.0);
+  films::FilmComplex twice = once;
+  groom::remesh_films(once, {.edge = 8.0});
+  groom::remesh_films(twice, {.edge = 8.0});
   EXPECT_TRUE(systems::identical(once, twice));
 }
 
 TEST(Remesh, KeepsASphere) {
-  FilmComplex complex;
+  films::FilmComplex complex;
   complex.mesh = shapes::sphere(1.0, 4);
   complex.vertices.resize(complex.mesh.points.size());
   complex.surfaces = {{"sphere", true, 1.0}};
   complex.bodies = {{"ball", {{0, 1}}, {}, {}}};
   const double before = enclosed_volume(complex.mesh);
-  remesh_films(complex, {.edge = 0.1});
-  check_complex(complex);
+  groom::remesh_films(complex, {.edge = 0.1});
+  groom::check_complex(complex);
   EXPECT_NEAR(enclosed_volume(complex.mesh) / before, 1.0, 0.01);
   EXPECT_GT(systems::quality(complex, Part::Films).smallest_angle, kInnerAngle);
 }
 
 TEST(Remesh, KeepsATripleLineAwayFromCurves) {
   // Three half disks along the z axis, which is no curve: fins of a fan.
-  FilmComplex complex;
+  films::FilmComplex complex;
   constexpr int kLine = 9;
   for (int i = 0; i < kLine; ++i) {
     complex.mesh.points.emplace_back(0, 0, 0.5 * i);
@@ -137,7 +137,7 @@ TEST(Remesh, KeepsATripleLineAwayFromCurves) {
   }
   complex.vertices.resize(complex.mesh.points.size());
   const Points before = complex.mesh.points;
-  remesh_films(complex, {.edge = 0.5});
+  groom::remesh_films(complex, {.edge = 0.5});
   ASSERT_GT(complex.mesh.points.size(), before.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     EXPECT_EQ(complex.mesh.points[i], before[i]);
@@ -157,60 +157,61 @@ TEST(Remesh, KeepsATripleLineAwayFromCurves) {
 
 TEST(Remesh, EndsWhereRimsAreMuchCoarserOrFinerThanTheEdge) {
   for (const double edge : {0.05, 2.0}) {
-    FilmComplex complex = build_start(systems::strut(), 0.4);
-    remesh_films(complex, {.edge = edge});
-    check_complex(complex);
+    films::FilmComplex complex = start::build_start(systems::strut(), 0.4);
+    groom::remesh_films(complex, {.edge = edge});
+    groom::check_complex(complex);
     EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);
   }
 }
 
 TEST(Equiangulate, RaisesTheSmallestAngleAndEnds) {
-  FilmComplex complex = build_start(systems::cylinder(1.0), 0.3);
-  remesh_films(complex, {.edge = 0.3, .passes = 1});
-  EXPECT_EQ(equiangulate(complex), 0);
+  films::FilmComplex complex = start::build_start(systems::cylinder(1.0), 0.3);
+  groom::remesh_films(complex, {.edge = 0.3, .passes = 1});
+  EXPECT_EQ(groom::equiangulate(complex), 0);
   const double before = systems::quality(complex, Part::Films).smallest_angle;
-  average_vertices(complex);
-  equiangulate(complex);
-  check_complex(complex);
+  groom::average_vertices(complex);
+  groom::equiangulate(complex);
+  groom::check_complex(complex);
   EXPECT_GE(systems::quality(complex, Part::Films).smallest_angle,
             0.9 * before);
 }
 
 TEST(Average, LeavesAFlatDiskFlatAndItsAreaTheSame) {
-  FilmSystem system;
-  system.curves = {{"rim", Circle{Vec3(1, 2, 3), Vec3(1, 1, 1), 2.0}}};
-  system.films = {{"disk", FilmKind::Disk, {"rim"}, 1.0}};
-  FilmComplex complex = build_start(system, 0.3);
+  films::FilmSystem system;
+  system.curves = {{"rim", curves::Circle{Vec3(1, 2, 3), Vec3(1, 1, 1), 2.0}}};
+  system.films = {{"disk", films::FilmKind::Disk, {"rim"}, 1.0}};
+  films::FilmComplex complex = start::build_start(system, 0.3);
   const double area = surface_area(complex.mesh);
   for (int i = 0; i < 5; ++i) {
-    average_vertices(complex);
-    check_complex(complex);
+    groom::average_vertices(complex);
+    groom::check_complex(complex);
   }
   EXPECT_NEAR(surface_area(complex.mesh), area, 1e-12 * area);
 }
 
 TEST(Remesh, RefusesAnEdgeThatIsNone) {
-  FilmComplex complex = build_start(systems::catenoid(), 0.5);
-  EXPECT_THROW(remesh_films(complex, {.edge = 0.0}), InvalidInput);
-  EXPECT_THROW(remesh_films(complex, {.edge = std::nan("")}), InvalidInput);
+  films::FilmComplex complex = start::build_start(systems::catenoid(), 0.5);
+  EXPECT_THROW(groom::remesh_films(complex, {.edge = 0.0}), InvalidInput);
+  EXPECT_THROW(groom::remesh_films(complex, {.edge = std::nan("")}),
+               InvalidInput);
 }
 
 TEST(Remesh, IsFastEnough) {
-  FilmComplex complex;
+  films::FilmComplex complex;
   complex.mesh = shapes::sphere(1.0, 5);  // 20,480 facets
   complex.vertices.resize(complex.mesh.points.size());
   complex.surfaces = {{"sphere", true, 1.0}};
   const Timer timer;
-  remesh_films(complex, {.edge = 0.04});
+  groom::remesh_films(complex, {.edge = 0.04});
   RecordProperty("seconds", std::to_string(timer.seconds()));
   constexpr double kLimit = 3.0;  // [s] several times the aim: shared machines
   EXPECT_LT(timer.seconds(), kLimit);
 }
 
 TEST(Remesh, CutsTheNeedlesOfAFineHullFastEnough) {
-  FilmComplex complex = build_start(systems::bracket(), 2.0);
+  films::FilmComplex complex = start::build_start(systems::bracket(), 2.0);
   const Timer timer;
-  remesh_films(complex, {.edge = 2.0});
+  groom::remesh_films(complex, {.edge = 2.0});
   RecordProperty("seconds", std::to_string(timer.seconds()));
   EXPECT_GT(complex.mesh.facets.size(), 50000U);
   constexpr double kLimit = 5.0;  // [s] several times the aim: shared machines

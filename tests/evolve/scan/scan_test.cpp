@@ -48,13 +48,13 @@ TEST(FacetTree, FindsTheNearestPointOfAll) {
 }
 
 TEST(Scan, HasSignedDistancesAndTheirDirections) {
-  const Scan scan(shapes::box({2, 2, 2}, 3));
-  const ScanPlace above = scan.nearest({0.9, 0.7, 2.5});
+  const scan::Scan scan(shapes::box({2, 2, 2}, 3));
+  const scan::ScanPlace above = scan.nearest({0.9, 0.7, 2.5});
   EXPECT_NEAR(above.distance, 0.5, 1e-15);
   EXPECT_NEAR((above.direction - Vec3::UnitZ()).norm(), 0.0, 1e-15);
   EXPECT_NEAR(scan.nearest({0.9, 0.7, 1.9}).distance, -0.1, 1e-15);
   // Beyond a corner: along the way from it.
-  const ScanPlace beyond = scan.nearest({3, 3, 3});
+  const scan::ScanPlace beyond = scan.nearest({3, 3, 3});
   EXPECT_NEAR(beyond.distance, std::sqrt(3.0), 1e-15);
   EXPECT_NEAR((beyond.direction - Vec3::Ones().normalized()).norm(), 0.0,
               1e-15);
@@ -64,28 +64,30 @@ TEST(Scan, HasSignedDistancesAndTheirDirections) {
 }
 
 TEST(Scan, IsRefusedWithoutFacetsOrWithBadOnes) {
-  EXPECT_THROW(Scan(SurfaceMesh{}), MeshError);
+  EXPECT_THROW(scan::Scan(SurfaceMesh{}), MeshError);
   SurfaceMesh bad = shapes::box({1, 1, 1}, 1);
   bad.points[3].x() = std::nan("");
-  EXPECT_THROW(Scan{bad}, MeshError);
+  EXPECT_THROW(scan::Scan{bad}, MeshError);
 }
 
 // A sphere of radius 1.1 against one of radius 1: every distance is 0.1 but
 // for flat facets.
 TEST(Scan, MeasuresAgreeWhereAllDistancesAreAlike) {
-  const Scan scan(shapes::sphere(1.0, 4));
+  const scan::Scan scan(shapes::sphere(1.0, 4));
   const SurfaceMesh film = shapes::sphere(1.1, 3);
-  const ScanDistances distances = distances_to(scan, film, {0});
+  const scan::ScanDistances distances = scan::distances_to(scan, film, {0});
   EXPECT_EQ(distances.vertices.size(), film.points.size());
-  for (const ScanMeasure of : {ScanMeasure::Rms, ScanMeasure::Mean,
-                               ScanMeasure::P95, ScanMeasure::Largest}) {
-    EXPECT_NEAR(measure(distances, of, film.points.size()).value, 0.1, 2e-3);
+  for (const scan::ScanMeasure of :
+       {scan::ScanMeasure::Rms, scan::ScanMeasure::Mean, scan::ScanMeasure::P95,
+        scan::ScanMeasure::Largest}) {
+    EXPECT_NEAR(scan::measure(distances, of, film.points.size()).value, 0.1,
+                2e-3);
   }
-  EXPECT_TRUE(distances_to(scan, film, {}).vertices.empty());
+  EXPECT_TRUE(scan::distances_to(scan, film, {}).vertices.empty());
 }
 
 TEST(Scan, MeasuresAreInOrderAndHaveTheDerivativesOfDifferences) {
-  const Scan scan(shapes::sphere(1.0, 3));
+  const scan::Scan scan(shapes::sphere(1.0, 3));
   SurfaceMesh film = shapes::sphere(1.05, 2);
   // Turned, so that no vertex is as near to several facets.
   const Mat3 turned =
@@ -94,19 +96,21 @@ TEST(Scan, MeasuresAreInOrderAndHaveTheDerivativesOfDifferences) {
     film.points[v] = (1.0 + 0.1 * std::sin(3.0 * static_cast<double>(v))) *
                      (turned * film.points[v]);
   }
-  const auto value = [&](ScanMeasure of, double s) {
+  const auto value = [&](scan::ScanMeasure of, double s) {
     SurfaceMesh moved = film;
     for (std::size_t v = 0; v < film.points.size(); ++v) {
       const auto t = static_cast<double>(v);
       moved.points[v] +=
           s * Vec3(std::sin(1.3 * t), std::cos(0.7 * t), std::sin(2.9 * t));
     }
-    return measure(distances_to(scan, moved, {0}), of, film.points.size());
+    return scan::measure(scan::distances_to(scan, moved, {0}), of,
+                         film.points.size());
   };
   double last = 0.0;
-  for (const ScanMeasure of : {ScanMeasure::Mean, ScanMeasure::Rms,
-                               ScanMeasure::P95, ScanMeasure::Largest}) {
-    const FilmResponse at = value(of, 0.0);
+  for (const scan::ScanMeasure of :
+       {scan::ScanMeasure::Mean, scan::ScanMeasure::Rms, scan::ScanMeasure::P95,
+        scan::ScanMeasure::Largest}) {
+    const frozen::FilmResponse at = value(of, 0.0);
     EXPECT_GT(at.value, last);
     last = at.value;
     double exact = 0.0;
@@ -174,11 +178,11 @@ TEST(ScanRims, OfATubeAreItsTwoEnds) {
   constexpr double kRadius = 20.0;
   constexpr double kLength = 60.0;
   for (const double noise : {0.0, 0.3}) {
-    const ScanRimReport report =
-        find_rims(noisy_tube(kRadius, kLength, 60, noise));
+    const scan::ScanRimReport report =
+        scan::find_rims(noisy_tube(kRadius, kLength, 60, noise));
     ASSERT_EQ(report.rims.size(), 2U) << "noise " << noise;
     EXPECT_EQ(report.parts, 3);
-    for (const ScanRim& rim : report.rims) {
+    for (const scan::ScanRim& rim : report.rims) {
       EXPECT_NEAR(rim.radius, kRadius, 0.02 * kRadius);
       EXPECT_NEAR(std::abs(rim.normal.z()), 1.0, 1e-3);
       EXPECT_NEAR(std::min(rim.center.z(), kLength - rim.center.z()), 0.0,
@@ -190,23 +194,24 @@ TEST(ScanRims, OfATubeAreItsTwoEnds) {
 }
 
 TEST(ScanRims, OfASphereAreNone) {
-  const ScanRimReport report = find_rims(shapes::sphere(10.0, 4));
+  const scan::ScanRimReport report = scan::find_rims(shapes::sphere(10.0, 4));
   EXPECT_TRUE(report.rims.empty());
   EXPECT_EQ(report.parts, 1);
 }
 
 TEST(ScanRims, OfABoxBoundEachFace) {
-  const ScanRimReport report = find_rims(shapes::box({3, 3, 3}, 12));
+  const scan::ScanRimReport report =
+      scan::find_rims(shapes::box({3, 3, 3}, 12));
   EXPECT_EQ(report.parts, 6);
   EXPECT_EQ(report.rims.size(), 6U);
 }
 
 TEST(ScanRims, RefuseOptionsOutOfRange) {
   const SurfaceMesh sphere = shapes::sphere(1.0, 2);
-  EXPECT_THROW(find_rims(sphere, {.angle = 0.0}), InvalidInput);
-  EXPECT_THROW(find_rims(sphere, {.radius = -1.0}), InvalidInput);
-  EXPECT_THROW(find_rims(sphere, {.points = 3}), InvalidInput);
-  EXPECT_THROW(find_rims(SurfaceMesh{}), MeshError);
+  EXPECT_THROW(scan::find_rims(sphere, {.angle = 0.0}), InvalidInput);
+  EXPECT_THROW(scan::find_rims(sphere, {.radius = -1.0}), InvalidInput);
+  EXPECT_THROW(scan::find_rims(sphere, {.points = 3}), InvalidInput);
+  EXPECT_THROW(scan::find_rims(SurfaceMesh{}), MeshError);
 }
 
 TEST(ClosedLine, OfACircleKeepsItWithSixPoints) {
@@ -215,12 +220,12 @@ TEST(ClosedLine, OfACircleKeepsItWithSixPoints) {
     const double a = 2.0 * kPi * i / 200;
     circle.emplace_back(5.0 * std::cos(a), 5.0 * std::sin(a), 1.0);
   }
-  const ClosedLine line(circle);
+  const start::ClosedLine line(circle);
   EXPECT_NEAR(line.length(), 10.0 * kPi, 0.01);
   const Points few = line.smoothed(6);
   EXPECT_EQ(few.size(), 6U);
   EXPECT_LT(line.deviation(few), 0.05);
-  const MeanPlane plane = mean_plane(few);
+  const start::MeanPlane plane = start::mean_plane(few);
   EXPECT_NEAR(plane.normal.z(), 1.0, 1e-12);
   EXPECT_NEAR(plane.off, 0.0, 1e-6);
 }

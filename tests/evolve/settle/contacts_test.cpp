@@ -13,26 +13,26 @@ namespace {
 
 /// A disk film across a ring of radius 1 at z = 0 under which a ball of radius
 /// `ball` comes up to height `top`.
-FilmComplex disk_over_ball(double ball, double top) {
-  FilmComplex complex;
+films::FilmComplex disk_over_ball(double ball, double top) {
+  films::FilmComplex complex;
   complex.mesh.labels = {"film"};
   complex.surfaces = {{"film", true, 1.0}};
   complex.surfaces[0].constraints = 0;
-  complex.curves = {{"ring", Circle{}}};
+  complex.curves = {{"ring", curves::Circle{}}};
   complex.level_sets = {
       {"ball",
        Expression::parse("sqrt(x^2 + y^2 + (z + " + std::to_string(ball - top) +
                              ")^2) - " + std::to_string(ball),
                          {"x", "y", "z"}),
-       LevelSet::Side::AtLeast}};
+       films::LevelSet::Side::AtLeast}};
   complex.constraint_sets = {{0}};
   constexpr int kAround = 12;
   complex.mesh.points.push_back(Vec3::Zero());
-  complex.vertices.push_back({VertexKind::Free, -1, 0.0, 0, false});
+  complex.vertices.push_back({films::VertexKind::Free, -1, 0.0, 0, false});
   for (int i = 0; i < kAround; ++i) {
     const double t = static_cast<double>(i) / kAround;
-    complex.mesh.points.push_back(point_at(complex.curves[0].shape, t));
-    complex.vertices.push_back({VertexKind::OnCurve, 0, t});
+    complex.mesh.points.push_back(curves::point_at(complex.curves[0].shape, t));
+    complex.vertices.push_back({films::VertexKind::OnCurve, 0, t});
     complex.mesh.facets.push_back({0, 1 + i, 1 + (i + 1) % kAround});
     complex.mesh.facet_label.push_back(0);
   }
@@ -40,8 +40,9 @@ FilmComplex disk_over_ball(double ball, double top) {
 }
 
 TEST(Contacts, AFilmFarFromItsWallDoesNotFeelIt) {
-  FilmComplex complex = disk_over_ball(0.5, -0.1);
-  const FilmState state = find_equilibrium(complex, {.refinements = 3});
+  films::FilmComplex complex = disk_over_ball(0.5, -0.1);
+  const settle::FilmState state =
+      settle::find_equilibrium(complex, {.refinements = 3});
   ASSERT_FALSE(state.failure) << state.report.verdict;
   for (const Vec3& p : state.points) {
     EXPECT_NEAR(p.z(), 0.0, 1e-12);
@@ -85,12 +86,14 @@ TEST(Contacts, AFilmOverABallLeavesItTangentially) {
   const double exact = height_of_leaving(0.5, 0.2);
   double error = 0.0;
   for (const int level : {3, 4, 5}) {
-    FilmComplex complex = disk_over_ball(0.5, 0.2);
-    const FilmState state = find_equilibrium(complex, {.refinements = level});
+    films::FilmComplex complex = disk_over_ball(0.5, 0.2);
+    const settle::FilmState state =
+        settle::find_equilibrium(complex, {.refinements = level});
     ASSERT_FALSE(state.failure) << state.report.verdict;
     for (std::size_t v = 0; v < state.points.size(); ++v) {
-      EXPECT_GT(jet_at(complex.level_sets[0].formula, state.points[v]).value,
-                -1e-9);
+      EXPECT_GT(
+          energy::jet_at(complex.level_sets[0].formula, state.points[v]).value,
+          -1e-9);
     }
     const double next = std::abs(state.report.area - exact);
     if (level > 3) {

@@ -18,8 +18,8 @@ constexpr double kEnergy = 1e-10;
 constexpr double kResidual = 1e-6;
 
 /// About 800 facets, not far from rest.
-FilmComplex near_sphere() {
-  FilmComplex complex = refine(test_films::cube_start(3)).complex;
+films::FilmComplex near_sphere() {
+  films::FilmComplex complex = groom::refine(test_films::cube_start(3)).complex;
   for (Vec3& p : complex.mesh.points) {
     const Vec3 out = p - Vec3::Constant(0.5);
     p = Vec3::Constant(0.5) +
@@ -28,26 +28,28 @@ FilmComplex near_sphere() {
   return complex;
 }
 
-FilmComplex near_catenoid() {
-  return refine(refine(test_films::catenoid_start(15, 2)).complex).complex;
+films::FilmComplex near_catenoid() {
+  return groom::refine(groom::refine(test_films::catenoid_start(15, 2)).complex)
+      .complex;
 }
 
-class Descends : public testing::TestWithParam<DescentMethod> {};
+class Descends : public testing::TestWithParam<settle::DescentMethod> {};
 
-void ends_where_newton_ends(const FilmComplex& complex, DescentMethod method) {
-  const FilmEnergy energy(complex);
-  const FilmTargets targets = targets_of(complex);
+void ends_where_newton_ends(const films::FilmComplex& complex,
+                            settle::DescentMethod method) {
+  const energy::FilmEnergy energy(complex);
+  const films::FilmTargets targets = energy::targets_of(complex);
   const Points directions = energy.space().directions(complex.mesh.points);
   Points points = complex.mesh.points;
-  const DescentReport report =
-      descend(energy, targets, directions, points,
-              {.method = method,
-               .max_steps = 5000,
-               .residual_bound = kResidual * energy.mean_edge(points)});
+  const settle::DescentReport report =
+      settle::descend(energy, targets, directions, points,
+                      {.method = method,
+                       .max_steps = 5000,
+                       .residual_bound = kResidual * energy.mean_edge(points)});
   for (std::size_t k = 1; k < report.energies.size(); ++k) {
     EXPECT_LT(report.energies[k], report.energies[k - 1]) << "step " << k;
   }
-  const FilmState newton = settle_along(
+  const settle::FilmState newton = settle::settle_along(
       energy, complex, targets, complex.mesh.points, directions, {}, 0.0, {});
   ASSERT_FALSE(newton.failure) << newton.report.verdict;
   EXPECT_NEAR(report.energies.back(), newton.report.energy,
@@ -65,25 +67,26 @@ TEST_P(Descends, ToNewtonsEnergyOnACatenoid) {
 }
 
 TEST_P(Descends, KeepsVolumeAtEveryStep) {
-  const FilmComplex complex = near_sphere();
-  const FilmEnergy energy(complex);
-  const FilmTargets targets = targets_of(complex);
+  const films::FilmComplex complex = near_sphere();
+  const energy::FilmEnergy energy(complex);
+  const films::FilmTargets targets = energy::targets_of(complex);
   Points points = complex.mesh.points;
-  descend(energy, targets, energy.space().directions(points), points,
-          {.method = GetParam(), .max_steps = 7});
+  settle::descend(energy, targets, energy.space().directions(points), points,
+                  {.method = GetParam(), .max_steps = 7});
   EXPECT_NEAR(energy.volumes(points)[0], 1.0, 1e-10);
 }
 
 // Facets inscribed in a waist miss area to either side: sliding them uses it.
 TEST(SlideVertices, LowersTheEnergyOfASettledFilmAtItsVolume) {
-  for (FilmComplex complex : {near_sphere(), near_catenoid()}) {
-    FilmEnergy energy(complex);
-    const FilmTargets targets = targets_of(complex);
-    const FilmState settled =
-        settle_in_normals(energy, complex, targets, complex.mesh.points, {});
+  for (films::FilmComplex complex : {near_sphere(), near_catenoid()}) {
+    energy::FilmEnergy energy(complex);
+    const films::FilmTargets targets = energy::targets_of(complex);
+    const settle::FilmState settled = settle::settle_in_normals(
+        energy, complex, targets, complex.mesh.points, {});
     ASSERT_FALSE(settled.failure) << settled.report.verdict;
     complex.mesh.points = settled.points;
-    const FilmState slid = slide_vertices(complex, {.steps = 50});
+    const settle::FilmState slid =
+        settle::slide_vertices(complex, {.steps = 50});
     ASSERT_FALSE(slid.failure) << slid.report.verdict;
     EXPECT_LT(slid.report.energy, (1.0 - 1e-6) * settled.report.energy);
     EXPECT_GT(slid.report.energy, (1.0 - 1e-2) * settled.report.energy);
@@ -95,9 +98,10 @@ TEST(SlideVertices, LowersTheEnergyOfASettledFilmAtItsVolume) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ByName, Descends,
-                         testing::Values(DescentMethod::Gradient,
-                                         DescentMethod::ConjugateGradients));
+INSTANTIATE_TEST_SUITE_P(
+    ByName, Descends,
+    testing::Values(settle::DescentMethod::Gradient,
+                    settle::DescentMethod::ConjugateGradients));
 
 }  // namespace
 }  // namespace meniscus::descent_test

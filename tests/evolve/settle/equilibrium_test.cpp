@@ -14,16 +14,16 @@
 namespace meniscus::equilibrium_test {
 namespace {
 
-FilmState settle_normals(const FilmComplex& complex) {
-  const FilmEnergy energy(complex);
-  return settle_in_normals(energy, complex, targets_of(complex),
-                           complex.mesh.points, {});
+settle::FilmState settle_normals(const films::FilmComplex& complex) {
+  const energy::FilmEnergy energy(complex);
+  return settle::settle_in_normals(energy, complex, energy::targets_of(complex),
+                                   complex.mesh.points, {});
 }
 
 double catenoid_error(int n) {
-  const FilmComplex complex =
+  const films::FilmComplex complex =
       shapes::tube(1.0, 1.0, n, n / 4, [](double) { return 1.0; });
-  const FilmState state = settle_normals(complex);
+  const settle::FilmState state = settle_normals(complex);
   EXPECT_FALSE(state.failure) << state.report.verdict;
   EXPECT_LE(state.report.residual, state.report.residual_bound);
   EXPECT_EQ(state.report.index, 0);
@@ -37,18 +37,18 @@ TEST(Equilibrium, CatenoidAtSecondOrder) {
   EXPECT_NEAR(std::log2(std::abs(coarse / fine)), 2.0, 0.2);
 }
 
-FilmState catenoid_from_flow(double spacing) {
-  FilmComplex complex =
+settle::FilmState catenoid_from_flow(double spacing) {
+  films::FilmComplex complex =
       shapes::tube(1.0, spacing, 48, 14, [](double) { return 1.0; });
-  flow_to_rest(complex, {});
+  settle::flow_to_rest(complex, {});
   return settle_normals(complex);
 }
 
 // The limit is 1.32548 (reference.md).
 TEST(Equilibrium, CatenoidExistsUpToItsLimit) {
-  const FilmState inside = catenoid_from_flow(1.31);
+  const settle::FilmState inside = catenoid_from_flow(1.31);
   EXPECT_FALSE(inside.failure) << inside.report.verdict;
-  const FilmState beyond = catenoid_from_flow(1.34);
+  const settle::FilmState beyond = catenoid_from_flow(1.34);
   ASSERT_TRUE(beyond.failure);
   EXPECT_THAT(beyond.report.verdict,
               testing::AnyOf(testing::HasSubstr("no equilibrium"),
@@ -61,7 +61,7 @@ double sphere_error(int levels) {
   for (Vec3& p : mesh.points) {
     p = p.cwiseProduct(Vec3(0.7, 0.6, 0.5));
   }
-  const FilmState state = settle_normals(shapes::drop(mesh, 1.0));
+  const settle::FilmState state = settle_normals(shapes::drop(mesh, 1.0));
   EXPECT_FALSE(state.failure) << state.report.verdict;
   EXPECT_NEAR(state.report.bodies[0].volume, 1.0, 1e-10);
   // Young-Laplace: 2 T / R.
@@ -78,19 +78,20 @@ TEST(Equilibrium, EllipsoidBecomesASphereAtSecondOrder) {
 // From twice the volume and from half of it, edges and corners included.
 TEST(Equilibrium, CubeFlowsToASphere) {
   for (const double volume : {0.5, 1.0, 2.0}) {
-    FilmComplex complex = shapes::drop(shapes::box(Vec3(1, 1, 1), 8), volume);
-    flow_to_rest(complex, {});
-    const FilmState state = settle_normals(complex);
+    films::FilmComplex complex =
+        shapes::drop(shapes::box(Vec3(1, 1, 1), 8), volume);
+    settle::flow_to_rest(complex, {});
+    const settle::FilmState state = settle_normals(complex);
     EXPECT_FALSE(state.failure) << state.report.verdict;
     const double exact = std::cbrt(36.0 * std::numbers::pi * volume * volume);
     EXPECT_NEAR(state.report.area, exact, 0.02 * exact);
   }
 }
 
-FilmState cylinder(double length, bool by_volume) {
+settle::FilmState cylinder(double length, bool by_volume) {
   const int n = 64;  // the inscribed polygon asks for 0.2 % less pressure
   const auto m = static_cast<int>(std::lround(length * n / 6.28));
-  FilmComplex complex =
+  films::FilmComplex complex =
       shapes::tube(1.0, length, n, m, [](double) { return 1.0; });
   shapes::close_tube(complex, n);
   if (by_volume) {
@@ -102,10 +103,10 @@ FilmState cylinder(double length, bool by_volume) {
 }
 
 TEST(Equilibrium, CylinderAtFixedPressureIsStableBelowPi) {
-  const FilmState shorter = cylinder(3.0, false);
+  const settle::FilmState shorter = cylinder(3.0, false);
   EXPECT_FALSE(shorter.failure) << shorter.report.verdict;
   EXPECT_EQ(shorter.report.index, 0);
-  const FilmState longer = cylinder(3.3, false);
+  const settle::FilmState longer = cylinder(3.3, false);
   ASSERT_TRUE(longer.failure);
   EXPECT_EQ(longer.failure->kind, FailureKind::FilmUnstable)
       << longer.report.verdict;
@@ -114,9 +115,9 @@ TEST(Equilibrium, CylinderAtFixedPressureIsStableBelowPi) {
 }
 
 TEST(Equilibrium, CylinderAtFixedVolumeIsStableBelowTwoPi) {
-  const FilmState shorter = cylinder(6.1, true);
+  const settle::FilmState shorter = cylinder(6.1, true);
   EXPECT_FALSE(shorter.failure) << shorter.report.verdict;
-  const FilmState longer = cylinder(6.5, true);
+  const settle::FilmState longer = cylinder(6.5, true);
   ASSERT_TRUE(longer.failure);
   EXPECT_EQ(longer.failure->kind, FailureKind::FilmUnstable)
       << longer.report.verdict;
@@ -126,9 +127,10 @@ TEST(Equilibrium, CylinderAtFixedVolumeIsStableBelowTwoPi) {
 // Gravity on bodies without weight moves nothing: the bubble floats still, and
 // its lowest mode is that of a sphere, 4 T / R^2.
 TEST(Equilibrium, GravityWithoutWeightHoldsNothing) {
-  FilmComplex bubble = test_films::cube_start();
+  films::FilmComplex bubble = test_films::cube_start();
   bubble.gravity = Vec3(0, 0, -9.81);
-  const FilmState state = find_equilibrium(bubble, {.refinements = 1});
+  const settle::FilmState state =
+      settle::find_equilibrium(bubble, {.refinements = 1});
   EXPECT_EQ(state.report.verdict, "stable");
   const double radius = std::cbrt(0.75 / std::numbers::pi);
   EXPECT_NEAR(state.report.min_eigenvalue, 4.0 / (radius * radius), 0.3);

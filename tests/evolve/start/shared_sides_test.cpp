@@ -34,14 +34,14 @@ Points ring(double radius, int n, double x = 0.0) {
 }
 
 double polygon_area(const Points& rim) {
-  return polygon_area_vector(rim).norm();
+  return start::polygon_area_vector(rim).norm();
 }
 
 TEST(FillDisk, LeavesHolesOpen) {
   const Points outer = ring(10.0, 60);
   std::vector<Points> holes = {ring(2.0, 24, -4.0), ring(1.5, 16, 4.0)};
   std::reverse(holes[1].begin(), holes[1].end());  // either direction will do
-  const SurfaceMesh disk = fill_disk(outer, holes, 1.0);
+  const SurfaceMesh disk = start::fill_disk(outer, holes, 1.0);
   EXPECT_NEAR(area_of(disk) / (polygon_area(outer) - polygon_area(holes[0]) -
                                polygon_area(holes[1])),
               1.0, kExact);
@@ -71,30 +71,32 @@ TEST(FillDisk, FillsAroundAnH) {
   const Points h = {{-5, -4, 0}, {-4, -4, 0},  {-4, -0.5, 0}, {4, -0.5, 0},
                     {4, -4, 0},  {5, -4, 0},   {5, 4, 0},     {4, 4, 0},
                     {4, 0.5, 0}, {-4, 0.5, 0}, {-4, 4, 0},    {-5, 4, 0}};
-  const SurfaceMesh disk = fill_disk(plate, {h}, 0.7);
+  const SurfaceMesh disk = start::fill_disk(plate, {h}, 0.7);
   EXPECT_NEAR(area_of(disk), 120.0 - 24.0, 1e-10);
 }
 
 TEST(FillDisk, RefusesAHoleOutside) {
-  EXPECT_THROW(fill_disk(ring(2.0, 24), {ring(1.0, 12, 8.0)}, 0.5), MeshError);
+  EXPECT_THROW(start::fill_disk(ring(2.0, 24), {ring(1.0, 12, 8.0)}, 0.5),
+               MeshError);
 }
 
 /// A block of plane faces; `top`: how far its upper face is moved along x.
-FilmSystem block(double top = 0.0, double height = 3.0) {
+films::FilmSystem block(double top = 0.0, double height = 3.0) {
   const auto at = [&](double z) {
     const double x = z > 0.0 ? top : 0.0;
     return Points{{x, 0, z}, {x + 2, 0, z}, {x + 2, 1, z}, {x, 1, z}};
   };
   const Points low = at(0.0);
   const Points high = at(height);
-  FilmSystem system;
-  system.curves = {{"low", Polygon{low}}, {"high", Polygon{high}}};
-  CapSpec sides{.name = "sides", .curve = "side0"};
+  films::FilmSystem system;
+  system.curves = {{"low", curves::Polygon{low}},
+                   {"high", curves::Polygon{high}}};
+  films::CapSpec sides{.name = "sides", .curve = "side0"};
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t next = (k + 1) % 4;
     system.curves.push_back(
         {"side" + std::to_string(k),
-         Polygon{{low[k], low[next], high[next], high[k]}}});
+         curves::Polygon{{low[k], low[next], high[next], high[k]}}});
     if (k > 0) {
       sides.more.push_back(system.curves.back().name);
     }
@@ -105,14 +107,15 @@ FilmSystem block(double top = 0.0, double height = 3.0) {
 }
 
 TEST(SharedSides, AreFoundOnce) {
-  const std::vector<SharedSide> sides = shared_sides(block().curves);
+  const std::vector<films::SharedSide> sides =
+      films::shared_sides(block().curves);
   EXPECT_EQ(sides.size(), 12U);  // the edges of a block
 }
 
 TEST(SharedSides, FacesOfABlockCloseIt) {
-  const FilmModel model =
-      FilmModel::freeze(block(), {.edge = 0.4, .refinements = 1});
-  const FilmState& state = model.reference();
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(block(), {.edge = 0.4, .refinements = 1});
+  const settle::FilmState& state = model.reference();
   ASSERT_FALSE(state.failure) << state.failure->message;
   EXPECT_NEAR(state.report.bodies[0].volume, 6.0, 6.0 * kExact);
   const SurfaceMesh surface = model.surface(state.points).base;
@@ -124,9 +127,9 @@ TEST(SharedSides, FacesOfABlockCloseIt) {
 }
 
 TEST(SharedSides, FacesFollowTheDesignExactly) {
-  const FilmModel model =
-      FilmModel::freeze(block(), {.edge = 0.4, .refinements = 1});
-  const FilmState moved = model.settle(block(0.7, 3.6));
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(block(), {.edge = 0.4, .refinements = 1});
+  const settle::FilmState moved = model.settle(block(0.7, 3.6));
   ASSERT_FALSE(moved.failure);
   EXPECT_NEAR(moved.report.bodies[0].volume, 7.2, 7.2 * kExact);
   // Each point on a plane of the sheared block: x from 0 to 2 at z = 0.
@@ -140,19 +143,21 @@ TEST(SharedSides, FacesFollowTheDesignExactly) {
 }
 
 TEST(SharedSides, GradientsOfABlockAreExact) {
-  const FilmSystem system = block();
-  const FilmModel model =
-      FilmModel::freeze(system, {.edge = 0.5, .refinements = 0});
-  const FilmState& state = model.reference();
+  const films::FilmSystem system = block();
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(system, {.edge = 0.5, .refinements = 0});
+  const settle::FilmState& state = model.reference();
   // J: sum of z over all vertices; only the upper rim's height moves them.
-  FilmCovector by;
+  frozen::FilmCovector by;
   by.points.assign(state.points.size(), Vec3::UnitZ());
-  const std::vector<FilmGradient> found = model.transpose(state, system, {by});
-  const FilmSystem higher = block(0.0, 4.0);
-  FilmSystem rates = system;  // by the height
+  const std::vector<frozen::FilmGradient> found =
+      model.transpose(state, system, {by});
+  const films::FilmSystem higher = block(0.0, 4.0);
+  films::FilmSystem rates = system;  // by the height
   for (std::size_t c = 0; c < rates.curves.size(); ++c) {
-    auto& points = std::get<Polygon>(rates.curves[c].shape).points;
-    const auto& there = std::get<Polygon>(higher.curves[c].shape).points;
+    auto& points = std::get<curves::Polygon>(rates.curves[c].shape).points;
+    const auto& there =
+        std::get<curves::Polygon>(higher.curves[c].shape).points;
     for (std::size_t k = 0; k < points.size(); ++k) {
       points[k] = there[k] - points[k];
     }
@@ -165,10 +170,10 @@ TEST(SharedSides, GradientsOfABlockAreExact) {
 }
 
 TEST(SharedSides, AFaceThatIsMissingIsTold) {
-  FilmSystem open = block();
+  films::FilmSystem open = block();
   open.caps[2].more.pop_back();
   try {
-    FilmModel::freeze(open, {.edge = 0.5, .refinements = 0});
+    frozen::FilmModel::freeze(open, {.edge = 0.5, .refinements = 0});
     FAIL() << "an open block was taken";
   } catch (const InvalidInput& error) {
     EXPECT_THAT(error.what(), HasSubstr("part"));

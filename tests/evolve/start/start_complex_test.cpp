@@ -24,9 +24,9 @@ using ::testing::HasSubstr;
 constexpr double kHalfCircle = std::numbers::pi;
 constexpr double kCapAngle = 28.0;  // [deg] asked of every cap
 
-std::string refusal(const FilmSystem& system, double edge = 0.4) {
+std::string refusal(const films::FilmSystem& system, double edge = 0.4) {
   try {
-    build_start(system, edge);
+    start::build_start(system, edge);
   } catch (const InvalidInput& error) {
     return error.what();
   }
@@ -34,10 +34,10 @@ std::string refusal(const FilmSystem& system, double edge = 0.4) {
 }
 
 // Euler characteristic 2, outward, no finding but the raw start's needles.
-void expect_sound(const FilmComplex& complex) {
-  check_complex(complex);
-  for (const ComplexBody& body : complex.bodies) {
-    const SurfaceMesh shell = body_surface(complex, body);
+void expect_sound(const films::FilmComplex& complex) {
+  groom::check_complex(complex);
+  for (const films::ComplexBody& body : complex.bodies) {
+    const SurfaceMesh shell = films::body_surface(complex, body);
     EXPECT_EQ(systems::euler_characteristic(shell), 2);
     EXPECT_GT(enclosed_volume(shell), 0.0);
     const auto findings = check_surface(shell);
@@ -48,7 +48,8 @@ void expect_sound(const FilmComplex& complex) {
 TEST(StartComplex, BracketIsTheHullOfItsCircles) {
   double last = 0.0;
   for (const double edge : {30.0, 8.0, 4.0}) {
-    const FilmComplex complex = build_start(systems::bracket(), edge);
+    const films::FilmComplex complex =
+        start::build_start(systems::bracket(), edge);
     expect_sound(complex);
     const auto caps = systems::quality(complex, Part::Caps);
     EXPECT_GT(caps.smallest_angle, kCapAngle);
@@ -56,17 +57,18 @@ TEST(StartComplex, BracketIsTheHullOfItsCircles) {
     EXPECT_NEAR(caps.mean / edge, 1.0, edge > 20.0 ? 0.4 : 0.15);
     // Inscribed polygons grow towards the true hull.
     const double volume =
-        enclosed_volume(body_surface(complex, complex.bodies[0]));
+        enclosed_volume(films::body_surface(complex, complex.bodies[0]));
     EXPECT_GT(volume, last);
     last = volume;
-    for (const BodySide& side : complex.bodies[0].sides) {
+    for (const films::BodySide& side : complex.bodies[0].sides) {
       EXPECT_EQ(side.sign, 1);
     }
   }
 }
 
 TEST(StartComplex, CapsFaceOutward) {
-  const FilmComplex complex = build_start(systems::bracket(), 8.0);
+  const films::FilmComplex complex =
+      start::build_start(systems::bracket(), 8.0);
   const int pad = complex.mesh.label_of("support_pad");
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     if (complex.mesh.facet_label[f] == pad) {
@@ -76,11 +78,12 @@ TEST(StartComplex, CapsFaceOutward) {
 }
 
 TEST(StartComplex, CylinderHasItsVolumeAndArea) {
-  const FilmComplex complex = build_start(systems::cylinder(3.0), 0.1);
+  const films::FilmComplex complex =
+      start::build_start(systems::cylinder(3.0), 0.1);
   expect_sound(complex);
   // Regular n-gons of 62 corners inscribed: 1 - 2 pi^2 / (3 n^2).
   constexpr double kInscribed = 2e-3;
-  EXPECT_NEAR(enclosed_volume(body_surface(complex, complex.bodies[0])) /
+  EXPECT_NEAR(enclosed_volume(films::body_surface(complex, complex.bodies[0])) /
                   (3.0 * kHalfCircle),
               1.0, kInscribed);
   EXPECT_NEAR(surface_area(complex.mesh, 0) / (6.0 * kHalfCircle), 1.0,
@@ -89,11 +92,11 @@ TEST(StartComplex, CylinderHasItsVolumeAndArea) {
 
 TEST(StartComplex, LoftJoinsSquareAndCircleWithLittleTwist) {
   for (const double turn : {0.0, 1.0}) {
-    FilmSystem system = systems::strut();
+    films::FilmSystem system = systems::strut();
     if (turn > 0.0) {  // the other way round
-      std::get<Circle>(system.curves[1].shape).normal = -Vec3::UnitZ();
+      std::get<curves::Circle>(system.curves[1].shape).normal = -Vec3::UnitZ();
     }
-    const FilmComplex complex = build_start(system, 0.3);
+    const films::FilmComplex complex = start::build_start(system, 0.3);
     expect_sound(complex);
     for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
       const auto& mesh = complex.mesh;
@@ -111,12 +114,12 @@ TEST(StartComplex, LoftJoinsSquareAndCircleWithLittleTwist) {
 }
 
 TEST(StartComplex, LoftAroundABendPairsInnerWithInner) {
-  FilmSystem system;
-  system.curves = {{"a", Circle{Vec3::Zero(), Vec3::UnitZ(), 1.0}},
-                   {"b", Circle{Vec3(3, 0, 3), Vec3::UnitX(), 1.0}}};
-  system.films = {{"bend", FilmKind::Loft, {"a", "b"}, 1.0}};
-  const FilmComplex complex = build_start(system, 0.2);
-  check_complex(complex);
+  films::FilmSystem system;
+  system.curves = {{"a", curves::Circle{Vec3::Zero(), Vec3::UnitZ(), 1.0}},
+                   {"b", curves::Circle{Vec3(3, 0, 3), Vec3::UnitX(), 1.0}}};
+  system.films = {{"bend", films::FilmKind::Loft, {"a", "b"}, 1.0}};
+  const films::FilmComplex complex = start::build_start(system, 0.2);
+  groom::check_complex(complex);
   double longest = 0.0;
   for (const Triangle& t : complex.mesh.facets) {
     for (int k = 0; k < 3; ++k) {
@@ -129,18 +132,20 @@ TEST(StartComplex, LoftAroundABendPairsInnerWithInner) {
 }
 
 TEST(StartComplex, OpenFilmNeedsNoBody) {
-  const FilmComplex complex = build_start(systems::catenoid(), 0.2);
-  check_complex(complex);
+  const films::FilmComplex complex =
+      start::build_start(systems::catenoid(), 0.2);
+  groom::check_complex(complex);
   EXPECT_TRUE(complex.bodies.empty());
   EXPECT_EQ(systems::euler_characteristic(complex.mesh), 0);
 }
 
 TEST(StartComplex, BodiesShareABulkheadWithOppositeSigns) {
-  const FilmComplex complex = build_start(systems::bulkhead(), 0.3);
+  const films::FilmComplex complex =
+      start::build_start(systems::bulkhead(), 0.3);
   expect_sound(complex);
   int product = 1;
-  for (const ComplexBody& body : complex.bodies) {
-    for (const BodySide& side : body.sides) {
+  for (const films::ComplexBody& body : complex.bodies) {
+    for (const films::BodySide& side : body.sides) {
       if (complex.surfaces[side.surface].name == "wall") {
         product *= side.sign;
       } else {
@@ -152,30 +157,31 @@ TEST(StartComplex, BodiesShareABulkheadWithOppositeSigns) {
 }
 
 TEST(StartComplex, BranchTakesStraightSidesToo) {
-  FilmSystem system;
-  Rectangle base;
+  films::FilmSystem system;
+  curves::Rectangle base;
   base.width = 4.0;
   base.height = 2.0;
   base.normal = -Vec3::UnitZ();
-  Rectangle top = base;
+  curves::Rectangle top = base;
   top.center = Vec3(0.3, 0.1, 3.0);
   top.normal = Vec3::UnitZ();
   top.width = 1.0;
   system.curves = {{"base", base}, {"top", top}};
-  system.films = {{"skin", FilmKind::Branch, {"base", "top"}, 1.0}};
+  system.films = {{"skin", films::FilmKind::Branch, {"base", "top"}, 1.0}};
   system.caps = {{"floor", "base"}, {"lid", "top"}};
   system.bodies = {{"body", {"skin", "floor", "lid"}, {}, {}}};
-  const FilmComplex complex = build_start(system, 0.3);
+  const films::FilmComplex complex = start::build_start(system, 0.3);
   expect_sound(complex);
-  EXPECT_NEAR(enclosed_volume(body_surface(complex, complex.bodies[0])),
+  EXPECT_NEAR(enclosed_volume(films::body_surface(complex, complex.bodies[0])),
               3.0 / 6.0 * (8.0 + 4.0 * 2.5 * 2.0 + 2.0), 1e-9);
 }
 
 TEST(StartComplex, IsTheSameInEveryBit) {
-  for (const FilmSystem& system : {systems::bracket(), systems::bulkhead()}) {
+  for (const films::FilmSystem& system :
+       {systems::bracket(), systems::bulkhead()}) {
     const double edge = system.curves.size() == 3 ? 8.0 : 0.2;
-    EXPECT_TRUE(systems::identical(build_start(system, edge),
-                                   build_start(system, edge)));
+    EXPECT_TRUE(systems::identical(start::build_start(system, edge),
+                                   start::build_start(system, edge)));
   }
 }
 
@@ -186,23 +192,24 @@ TEST(FillDisk, IsIsotropicForManyCurvesAndSizes) {
       const double a = 2.0 * kHalfCircle * i / n;
       rim.emplace_back(std::cos(a), std::sin(a), 0.0);
     }
-    const SurfaceMesh disk = fill_disk(rim, 2.0 * kHalfCircle / n);
+    const SurfaceMesh disk = start::fill_disk(rim, 2.0 * kHalfCircle / n);
     EXPECT_EQ(systems::euler_characteristic(disk), 1) << n;
     EXPECT_EQ(systems::open_edges(disk), n);
     EXPECT_GT(systems::smallest_angle_deg(disk), kCapAngle) << n;
-    EXPECT_NEAR(surface_area(disk), polygon_area_vector(rim).norm(), 1e-12);
+    EXPECT_NEAR(surface_area(disk), start::polygon_area_vector(rim).norm(),
+                1e-12);
   }
 }
 
 TEST(FillDisk, FillsAConcaveCurve) {
   // An L of unit width.
-  const Polygon shape{
+  const curves::Polygon shape{
       {{0, 0, 1}, {3, 0, 1}, {3, 1, 1}, {1, 1, 1}, {1, 3, 1}, {0, 3, 1}}};
   Points rim;
-  for (const double t : sample_parameters(shape, 0.2)) {
-    rim.push_back(point_at(shape, t));
+  for (const double t : curves::sample_parameters(shape, 0.2)) {
+    rim.push_back(curves::point_at(shape, t));
   }
-  const SurfaceMesh disk = fill_disk(rim, 0.2);
+  const SurfaceMesh disk = start::fill_disk(rim, 0.2);
   EXPECT_NEAR(surface_area(disk), 5.0, 1e-12);
   EXPECT_GT(systems::smallest_angle_deg(disk), kCapAngle);
   for (std::size_t f = 0; f < disk.facets.size(); ++f) {
@@ -212,14 +219,14 @@ TEST(FillDisk, FillsAConcaveCurve) {
 
 TEST(StartComplex, BranchesHaveRimsSideBySideInOnePlane) {
   // Two ends of a hexagonal barrel, and three windows on each of its sides.
-  FilmSystem system;
+  films::FilmSystem system;
   const auto corner = [](int k, double z) {
     return Vec3(10 * std::cos(k * kHalfCircle / 3),
                 10 * std::sin(k * kHalfCircle / 3), z);
   };
-  FilmSpec film{"barrel", FilmKind::Branch, {"low", "high"}};
-  Polygon low;
-  Polygon high;
+  films::FilmSpec film{"barrel", films::FilmKind::Branch, {"low", "high"}};
+  curves::Polygon low;
+  curves::Polygon high;
   for (int k = 0; k < 6; ++k) {
     low.points.push_back(corner(k, 0.0));
     high.points.push_back(corner(k, 30.0));
@@ -232,13 +239,13 @@ TEST(StartComplex, BranchesHaveRimsSideBySideInOnePlane) {
       const std::string name = fmt::format("window_{}_{}", k, z);
       const double radius = 0.12 * z + 1.0;
       system.curves.push_back(
-          {name, Circle{middle + z * Vec3::UnitZ(), middle, radius}});
+          {name, curves::Circle{middle + z * Vec3::UnitZ(), middle, radius}});
       film.curves.push_back(name);
       windows += kHalfCircle * radius * radius;
     }
   }
   system.films = {film};
-  const FilmComplex start = build_start(system, 0.5);
+  const films::FilmComplex start = start::build_start(system, 0.5);
   // Flat sides less their windows, whose arcs are cut by chords.
   const double area = 6 * 10 * 30 - windows;
   EXPECT_NEAR(surface_area(start.mesh), area, 0.02 * windows);
@@ -246,20 +253,21 @@ TEST(StartComplex, BranchesHaveRimsSideBySideInOnePlane) {
 }
 
 TEST(StartComplex, NamesTheCurveThatIsOffTheHull) {
-  FilmSystem system = systems::bracket();
+  films::FilmSystem system = systems::bracket();
   system.curves.push_back(
-      {"inner", Circle{Vec3(0, 0, 40), Vec3::UnitZ(), 5.0}});
+      {"inner", curves::Circle{Vec3(0, 0, 40), Vec3::UnitZ(), 5.0}});
   system.films[0].curves.push_back("inner");
   EXPECT_THAT(refusal(system, 8.0),
               AllOf(HasSubstr("'inner' is off the convex hull"),
                     HasSubstr("another kind")));
   // Half of a circle buried, too.
-  system.curves.back() = {"inner", Circle{Vec3(0, 0, 90), Vec3(1, 0, 1), 60.0}};
+  system.curves.back() = {"inner",
+                          curves::Circle{Vec3(0, 0, 90), Vec3(1, 0, 1), 60.0}};
   EXPECT_NE(refusal(system, 8.0), "");
 }
 
 TEST(StartComplex, RefusesWhatCannotBeBuilt) {
-  FilmSystem system = systems::cylinder(2.0);
+  films::FilmSystem system = systems::cylinder(2.0);
   system.bodies[0].enclosed_by.pop_back();
   EXPECT_THAT(refusal(system), AllOf(HasSubstr("cap 'top' encloses nothing")));
   system.caps.pop_back();
@@ -279,7 +287,7 @@ TEST(StartComplex, RefusesWhatCannotBeBuilt) {
   EXPECT_THAT(refusal(system), HasSubstr("both volume and pressure"));
   system = systems::cylinder(2.0);
   system.curves[0].shape =
-      Polygon{{{1, 0, 0}, {0, 1, 0.5}, {-1, 0, 0}, {0, -1, 0.5}}};
+      curves::Polygon{{{1, 0, 0}, {0, 1, 0.5}, {-1, 0, 0}, {0, -1, 0.5}}};
   EXPECT_THAT(refusal(system), HasSubstr("is not planar"));
   system = systems::cylinder(2.0);
   system.films[0].tension = -1.0;
@@ -290,10 +298,10 @@ TEST(StartComplex, RefusesWhatCannotBeBuilt) {
 }
 
 TEST(StartComplex, RefusesACurveThatCrossesItself) {
-  FilmSystem system;
+  films::FilmSystem system;
   system.curves = {
-      {"bow", Polygon{{{0, 0, 0}, {3, 2, 0}, {3, 0, 0}, {0, 1, 0}}}}};
-  system.films = {{"film", FilmKind::Disk, {"bow"}, 1.0}};
+      {"bow", curves::Polygon{{{0, 0, 0}, {3, 2, 0}, {3, 0, 0}, {0, 1, 0}}}}};
+  system.films = {{"film", films::FilmKind::Disk, {"bow"}, 1.0}};
   EXPECT_THAT(refusal(system),
               AllOf(HasSubstr("bow"), HasSubstr("crosses itself")));
 }

@@ -25,10 +25,10 @@ struct Errors {
 
 template <typename Exact>
 Errors errors(const SurfaceMesh& film, const Exact& exact) {
-  const std::vector<Jet> jets = fit_jets(make_sheet(film));
+  const std::vector<walls::Jet> jets = walls::fit_jets(walls::make_sheet(film));
   Errors worst;
   for (std::size_t v = 0; v < jets.size(); ++v) {
-    const Jet right = exact(film.points[v]);
+    const walls::Jet right = exact(film.points[v]);
     worst.normal =
         std::max(worst.normal, (jets[v].normal - right.normal).norm());
     worst.curvature =
@@ -52,7 +52,7 @@ void expect_order(const Make& make, const Exact& exact, double order) {
 
 TEST(JetFit, Sphere) {
   expect_order([](int i) { return shapes::sphere(2.0, 2 + i); },
-               [](const Vec3& p) -> Jet {
+               [](const Vec3& p) -> walls::Jet {
                  return {p.normalized(), 0.5, 0.5};
                },
                kInnerOrder);
@@ -65,7 +65,7 @@ TEST(JetFit, Cylinder) {
         return shapes::cylinder_sheet(
             1.0, 1.5, {.rows = n / 4, .columns = n, .around = true});
       },
-      [](const Vec3& p) -> Jet {
+      [](const Vec3& p) -> walls::Jet {
         return {Vec3(p.x(), p.y(), 0.0).normalized(), 1.0, 0.0};
       },
       kRimOrder);
@@ -78,7 +78,7 @@ TEST(JetFit, Catenoid) {
         return shapes::catenoid_sheet(
             0.6, {.rows = n / 4, .columns = n, .around = true});
       },
-      [](const Vec3& p) -> Jet {
+      [](const Vec3& p) -> walls::Jet {
         const double c = std::cosh(p.z());
         const Vec3 normal =
             Vec3(p.x() / c, p.y() / c, -std::sinh(p.z())).normalized();
@@ -96,7 +96,7 @@ TEST(JetFit, SaddleIsExactAtItsCentre) {
         return {x, y, 0.5 * (x * x - 2.0 * y * y)};
       },
       {.jitter = 0.0});
-  const Jet jet = fit_jets(make_sheet(film))[40];
+  const walls::Jet jet = walls::fit_jets(walls::make_sheet(film))[40];
   EXPECT_NEAR(jet.normal.z(), 1.0, 1e-12);
   EXPECT_NEAR(jet.k1, 2.0, 1e-12);
   EXPECT_NEAR(jet.k2, -1.0, 1e-12);

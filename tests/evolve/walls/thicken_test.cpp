@@ -25,12 +25,13 @@ constexpr double kRounding = 1e-12;
 // Observed orders of a second-order method on irregular sheets.
 constexpr double kSecondOrder = 1.7;
 
-ThickWall wall_of(const SurfaceMesh& film, double thickness,
-                  WallSide side = WallSide::Both) {
-  return thicken(film, {.thickness = Expression(thickness), .side = side});
+walls::ThickWall wall_of(const SurfaceMesh& film, double thickness,
+                         walls::WallSide side = walls::WallSide::Both) {
+  return walls::thicken(film,
+                        {.thickness = Expression(thickness), .side = side});
 }
 
-void expect_promised(const ThickWall& wall, const std::string& what) {
+void expect_promised(const walls::ThickWall& wall, const std::string& what) {
   SCOPED_TRACE(what);
   EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
   EXPECT_GT(wall.thinnest.value, (1.0 - kPromised) * wall.thinnest.asked);
@@ -68,14 +69,15 @@ SurfaceMesh joined(const SurfaceMesh& a, const SurfaceMesh& b) {
 }
 
 TEST(Thicken, PlaneIsExact) {
-  for (const WallSide side :
-       {WallSide::Both, WallSide::Inside, WallSide::Outside}) {
-    const ThickWall wall = wall_of(plane(), 0.125, side);
+  for (const walls::WallSide side :
+       {walls::WallSide::Both, walls::WallSide::Inside,
+        walls::WallSide::Outside}) {
+    const walls::ThickWall wall = wall_of(plane(), 0.125, side);
     expect_promised(wall, "plane");
     EXPECT_NEAR(wall.volume, 0.125, kRounding);
     EXPECT_NEAR(wall.thinnest.value, 0.125, kRounding);
     EXPECT_NEAR(wall.thickest.value, 0.125, kRounding);
-    EXPECT_EQ(wall.safe.limit, WallLimit::None);
+    EXPECT_EQ(wall.safe.limit, walls::WallLimit::None);
   }
 }
 
@@ -88,7 +90,7 @@ TEST(Thicken, CatenoidKeepsItsThicknessUpToTheCurvature) {
         for (Triangle& f : turned.facets) {
           f = side > 0.0 ? f : Triangle{f[0], f[2], f[1]};
         }
-        const ThickWall wall = wall_of(turned, t);
+        const walls::ThickWall wall = wall_of(turned, t);
         expect_promised(wall, std::to_string(t));
         EXPECT_GT(wall.safe.value, t);
       }
@@ -100,23 +102,27 @@ TEST(Thicken, SafeThicknessIsThatOfTheWaist) {
   // 1.8 / k with k = 1 at the waist, at second order.
   std::array<double, 3> error{};
   for (int i = 0; i < 3; ++i) {
-    const ThickWall wall = wall_of(catenoid(24 << i), 0.1);
-    EXPECT_EQ(wall.safe.limit, WallLimit::Curvature) << wall.safe.message;
+    const walls::ThickWall wall = wall_of(catenoid(24 << i), 0.1);
+    EXPECT_EQ(wall.safe.limit, walls::WallLimit::Curvature)
+        << wall.safe.message;
     EXPECT_LT(std::abs(wall.safe.place.z()), 0.06);
     error[i] = std::abs(wall.safe.value - 1.8);
   }
   EXPECT_GT(std::log2(error[1] / error[2]), kSecondOrder);
   EXPECT_LT(error[2], 0.01);
   // One-sided walls go the whole way towards the centre.
-  const ThickWall inside = wall_of(catenoid(48), 0.1, WallSide::Inside);
+  const walls::ThickWall inside =
+      wall_of(catenoid(48), 0.1, walls::WallSide::Inside);
   EXPECT_NEAR(inside.safe.value, 0.9, 0.02);
-  expect_promised(wall_of(catenoid(48), 0.85, WallSide::Inside), "inside");
-  expect_promised(wall_of(catenoid(48), 0.85, WallSide::Outside), "outside");
+  expect_promised(wall_of(catenoid(48), 0.85, walls::WallSide::Inside),
+                  "inside");
+  expect_promised(wall_of(catenoid(48), 0.85, walls::WallSide::Outside),
+                  "outside");
 }
 
 TEST(Thicken, ClosedSphereBecomesAShellWithAVoid) {
   const SurfaceMesh film = shapes::sphere(1.0, 3);
-  const ThickWall wall = wall_of(film, 0.5);
+  const walls::ThickWall wall = wall_of(film, 0.5);
   expect_promised(wall, "sphere");
   EXPECT_EQ(wall.surface.points.size(), 2 * film.points.size());
   EXPECT_EQ(wall.surface.facets.size(), 2 * film.facets.size());
@@ -126,18 +132,20 @@ TEST(Thicken, ClosedSphereBecomesAShellWithAVoid) {
       hollow.facets.begin() + static_cast<std::ptrdiff_t>(film.facets.size()));
   EXPECT_LT(enclosed_volume(hollow), 0.0);  // its normals point into the void
   // Outside a sphere nothing limits the wall, inside its radius does.
-  EXPECT_EQ(wall_of(film, 3.0, WallSide::Outside).safe.limit, WallLimit::None);
-  EXPECT_NEAR(wall_of(film, 0.5, WallSide::Inside).safe.value, 0.9, 0.03);
-  EXPECT_FALSE(wall_of(film, 1.2, WallSide::Inside).safe.asked <
-               wall_of(film, 1.2, WallSide::Inside).safe.value);
+  EXPECT_EQ(wall_of(film, 3.0, walls::WallSide::Outside).safe.limit,
+            walls::WallLimit::None);
+  EXPECT_NEAR(wall_of(film, 0.5, walls::WallSide::Inside).safe.value, 0.9,
+              0.03);
+  EXPECT_FALSE(wall_of(film, 1.2, walls::WallSide::Inside).safe.asked <
+               wall_of(film, 1.2, walls::WallSide::Inside).safe.value);
 }
 
 // Weyl's tube formula: V = t A + t^3 / 12 x (integral of K), exact for walls
 // whose rims are normal to the film. Without corrections, which set in at
 // another error on each mesh.
 double plain_volume(const SurfaceMesh& film, double thickness) {
-  return thicken(film,
-                 {.thickness = Expression(thickness), .max_corrections = 0})
+  return walls::thicken(
+             film, {.thickness = Expression(thickness), .max_corrections = 0})
       .volume;
 }
 
@@ -169,8 +177,8 @@ TEST(Thicken, VolumeIsThatOfTheTubeFormula) {
 TEST(Thicken, OneSidedWallsKeepTheFilmVertexForVertex) {
   const SurfaceMesh film = catenoid(24);
   const auto n = static_cast<int>(film.points.size());
-  const ThickWall inside = wall_of(film, 0.2, WallSide::Inside);
-  const ThickWall outside = wall_of(film, 0.2, WallSide::Outside);
+  const walls::ThickWall inside = wall_of(film, 0.2, walls::WallSide::Inside);
+  const walls::ThickWall outside = wall_of(film, 0.2, walls::WallSide::Outside);
   for (int v = 0; v < n; ++v) {
     EXPECT_EQ(inside.surface.points[v], film.points[v]);
     EXPECT_EQ(outside.surface.points[n + v], film.points[v]);
@@ -190,9 +198,9 @@ TEST(Thicken, LabelsSidesAndRims) {
   for (std::size_t f = 0; f < film.facets.size(); ++f) {
     film.facet_label[f] = static_cast<int>(f / 2) % 8 < 4 ? 0 : 1;
   }
-  ThickenOptions options{.thickness = Expression(0.25)};
+  walls::ThickenOptions options{.thickness = Expression(0.25)};
   options.rims = {{"base", {0, 1, 2, 3, 4, 5, 6, 7, 8}}};
-  const ThickWall wall = thicken(film, options);
+  const walls::ThickWall wall = walls::thicken(film, options);
   EXPECT_TRUE(wall.findings.empty());
   const std::vector<std::string> expected = {
       "left",          "right",          "left/back",   "right/back",
@@ -212,11 +220,11 @@ TEST(Thicken, LabelsSidesAndRims) {
 
 TEST(Thicken, ThicknessMayVary) {
   const SurfaceMesh film = plane();
-  const ThickWall wall = thicken(
+  const walls::ThickWall wall = walls::thicken(
       film, {.thickness = Expression::parse("0.1 + 0.1 * x", {"x", "y", "z"})});
   expect_promised(wall, "wedge");
   EXPECT_NEAR(wall.volume, 0.15, 1e-3);  // faces tilted by 0.05 each
-  const ThickWall bent = thicken(
+  const walls::ThickWall bent = walls::thicken(
       catenoid(48),
       {.thickness = Expression::parse("0.3 + 0.2 * z", {"x", "y", "z"})});
   expect_promised(bent, "catenoid");
@@ -224,11 +232,11 @@ TEST(Thicken, ThicknessMayVary) {
 
 TEST(Thicken, GapsLimitTheThickness) {
   const SurfaceMesh film = joined(plane(), plane(0.4));
-  const ThickWall wall = wall_of(film, 0.19);
+  const walls::ThickWall wall = wall_of(film, 0.19);
   expect_promised(wall, "two planes");
-  EXPECT_EQ(wall.safe.limit, WallLimit::Gap);
+  EXPECT_EQ(wall.safe.limit, walls::WallLimit::Gap);
   EXPECT_NEAR(wall.safe.value, 0.2, 0.002);
-  const ThickWall closed = wall_of(film, 0.42);
+  const walls::ThickWall closed = wall_of(film, 0.42);
   EXPECT_FALSE(closed.findings.empty());
   EXPECT_LT(closed.safe.value, closed.safe.asked);
   EXPECT_NE(closed.safe.message.find("too near"), std::string::npos);
@@ -244,7 +252,7 @@ TEST(Thicken, CreasesAreMitred) {
   const SurfaceMesh film = shapes::box(Vec3(1, 1, 1), 3);
   EXPECT_NEAR(wall_of(film, 0.1).volume, std::pow(1.1, 3) - std::pow(0.9, 3),
               kRounding);
-  EXPECT_NEAR(wall_of(film, 0.1, WallSide::Outside).volume,
+  EXPECT_NEAR(wall_of(film, 0.1, walls::WallSide::Outside).volume,
               std::pow(1.2, 3) - 1.0, kRounding);
 }
 
@@ -266,8 +274,8 @@ TEST(Thicken, CreasesLimitAsMuchHoweverTheyLie) {
 
 TEST(Thicken, SameBitsAgain) {
   const SurfaceMesh film = catenoid(24);
-  const ThickWall a = wall_of(film, 0.7);
-  const ThickWall b = wall_of(film, 0.7);
+  const walls::ThickWall a = wall_of(film, 0.7);
+  const walls::ThickWall b = wall_of(film, 0.7);
   EXPECT_EQ(a.surface.points, b.surface.points);
   EXPECT_EQ(a.surface.facets, b.surface.facets);
   EXPECT_EQ(a.volume, b.volume);
@@ -280,16 +288,17 @@ TEST(Thicken, UnusedPointsAreDropped) {
   for (Triangle& f : film.facets) {
     f = {f[0] + 1, f[1] + 1, f[2] + 1};
   }
-  const ThickWall wall = wall_of(film, 0.1);
+  const walls::ThickWall wall = wall_of(film, 0.1);
   EXPECT_EQ(wall.trace.front().vertex, 1);
   EXPECT_TRUE(wall.findings.empty());
 }
 
 template <typename Wrong>
-void expect_refused(const SurfaceMesh& film, const ThickenOptions& options,
+void expect_refused(const SurfaceMesh& film,
+                    const walls::ThickenOptions& options,
                     const std::string& words) {
   try {
-    thicken(film, options);
+    walls::thicken(film, options);
     ADD_FAILURE() << "accepted; expected: " << words;
   } catch (const Wrong& error) {
     EXPECT_NE(std::string(error.what()).find(words), std::string::npos)
@@ -316,7 +325,7 @@ TEST(Thicken, RefusesBadThickness) {
 }
 
 TEST(Thicken, RefusesWhatHasNoTwoSides) {
-  const ThickenOptions options{.thickness = Expression(0.1)};
+  const walls::ThickenOptions options{.thickness = Expression(0.1)};
   expect_refused<InvalidInput>({}, options, "no facets");
   SurfaceMesh fan;  // three films on one edge
   fan.labels = {"a", "b", "c"};
@@ -337,7 +346,7 @@ TEST(Thicken, RefusesWhatHasNoTwoSides) {
 }
 
 TEST(Thicken, RefusesBrokenArrays) {
-  const ThickenOptions options{.thickness = Expression(0.1)};
+  const walls::ThickenOptions options{.thickness = Expression(0.1)};
   SurfaceMesh film = plane();
   film.facets[3][1] = 1000;
   expect_refused<InvalidInput>(film, options, "corner 1000");
@@ -356,7 +365,7 @@ TEST(Thicken, RefusesBrokenArrays) {
   film = plane();
   film.labels.emplace_back("web/back");
   expect_refused<InvalidInput>(film, options, "web/back");
-  ThickenOptions wrong{.thickness = Expression(0.1)};
+  walls::ThickenOptions wrong{.thickness = Expression(0.1)};
   wrong.rims = {{"base", {-3}}};
   expect_refused<InvalidInput>(plane(), wrong, "vertex -3");
 }

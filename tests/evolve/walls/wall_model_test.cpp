@@ -10,8 +10,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "evolve/walls/facet_probe.h"
 #include "tests/support/sheet_shapes.h"
 
@@ -99,8 +99,8 @@ SurfaceMesh tetrahedral(int n = 8) {
   return welded(films);
 }
 
-WallFilms films_of(SurfaceMesh mesh, int levels, double thickness) {
-  WallFilms films;
+walls::WallFilms films_of(SurfaceMesh mesh, int levels, double thickness) {
+  walls::WallFilms films;
   films.wall.assign(mesh.labels.size(), 0);
   films.region = {0};
   films.asked = {thickness};
@@ -131,28 +131,28 @@ WallFilms films_of(SurfaceMesh mesh, int levels, double thickness) {
   return films;
 }
 
-WallSpec spec(const SurfaceMesh& mesh, double thickness,
-              std::optional<double> fillet = std::nullopt) {
+walls::WallSpec spec(const SurfaceMesh& mesh, double thickness,
+                     std::optional<double> fillet = std::nullopt) {
   return {.name = "web",
           .films = mesh.labels,
           .thickness = Expression(thickness),
-          .side = WallSide::Both,
+          .side = walls::WallSide::Both,
           .fillet = fillet,
           .number = thickness,
           .region = 0};
 }
 
 struct Made {
-  WallFilms films;
-  std::vector<WallSpec> specs;
-  WallModel model;
+  walls::WallFilms films;
+  std::vector<walls::WallSpec> specs;
+  walls::WallModel model;
 };
 
 Made make(const SurfaceMesh& mesh, double thickness, int levels = 1,
           std::optional<double> fillet = std::nullopt) {
-  WallFilms films = films_of(mesh, levels, thickness);
-  std::vector<WallSpec> specs = {spec(mesh, thickness, fillet)};
-  WallModel model(films, specs);
+  walls::WallFilms films = films_of(mesh, levels, thickness);
+  std::vector<walls::WallSpec> specs = {spec(mesh, thickness, fillet)};
+  walls::WallModel model(films, specs);
   return {std::move(films), std::move(specs), std::move(model)};
 }
 
@@ -170,7 +170,7 @@ double worst_thickness(const SurfaceMesh& wall, const std::string& film,
       back.facets.push_back(wall.facets[f]);
     }
   }
-  const FacetProbe probe(back.points, back.facets);
+  const walls::FacetProbe probe(back.points, back.facets);
   double worst = 0.0;
   for (std::size_t f = 0; f < wall.facets.size(); ++f) {
     const Triangle& t = wall.facets[f];
@@ -209,7 +209,7 @@ TEST_P(WallsAtALine, AreClosedAndAsThickAsAsked) {
   const double t = 0.12;
   const SurfaceMesh mesh = fan(GetParam().angles);
   const Made made = make(mesh, t, GetParam().levels);
-  const ThickWall& wall = made.model.walls().at(0);
+  const walls::ThickWall& wall = made.model.walls().at(0);
   EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
   // Of every film 2 x 1 x t, less what overlaps at the line, plus fillets.
   const auto films = static_cast<double>(mesh.labels.size());
@@ -248,7 +248,7 @@ TEST(WallsAtAPoint, OfFourLinesAreClosed) {
   const SurfaceMesh mesh = tetrahedral();
   for (const int levels : {0, 1}) {
     const Made made = make(mesh, t, levels);
-    const ThickWall& wall = made.model.walls().at(0);
+    const walls::ThickWall& wall = made.model.walls().at(0);
     EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
     EXPECT_NEAR(wall.volume, 6.0 * std::sqrt(2.0) * t, 0.12 * wall.volume);
   }
@@ -260,7 +260,7 @@ TEST(Fillets, AreArcs) {
   const double t = 0.12;
   for (const double r : {0.0, 0.06, 0.15}) {
     const Made made = make(fan({0, 90, 180, 270}, 24), t, 1, r);
-    const ThickWall& wall = made.model.walls().at(0);
+    const walls::ThickWall& wall = made.model.walls().at(0);
     EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
     const double expected = (0.5 * t + r) * std::sqrt(2.0) - r;
     double least = 1.0;
@@ -341,7 +341,7 @@ TEST(WallModel, TransposesItsDerivative) {
   for (std::size_t i = 0; i < s.mid.size(); ++i) {
     by_mid.push_back(std::cos(1.0 * i) * Vec3(3, -1, 2));
   }
-  const WallGradient gradient =
+  const walls::WallGradient gradient =
       made.model.transpose(film, t, by_corners, by_mid);
   const double step = 1e-6;
   Points ahead = film;
@@ -385,9 +385,10 @@ TEST(WallModel, OfACatenoidIsWhatThickenMakes) {
   const SurfaceMesh film =
       shapes::catenoid_sheet(0.6, {.rows = 8, .columns = 32, .around = true});
   for (const double t : {0.1, 0.4}) {
-    const ThickWall plain = thicken(film, {.thickness = Expression(t)});
+    const walls::ThickWall plain =
+        walls::thicken(film, {.thickness = Expression(t)});
     const Made made = make(film, t, 0);
-    const ThickWall& wall = made.model.walls().at(0);
+    const walls::ThickWall& wall = made.model.walls().at(0);
     EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
     EXPECT_EQ(wall.surface.points.size(), plain.surface.points.size());
     EXPECT_LT(farthest(wall.surface.points, plain.surface.points),
@@ -400,9 +401,9 @@ TEST(WallModel, OfACatenoidIsWhatThickenMakes) {
 
 TEST(WallModel, OfOneSideRefusesJunctions) {
   const SurfaceMesh mesh = fan({0, 90, 180});
-  std::vector<WallSpec> specs = {spec(mesh, 0.1)};
-  specs[0].side = WallSide::Inside;
-  EXPECT_THROW(WallModel(films_of(mesh, 0, 0.1), specs), InvalidInput);
+  std::vector<walls::WallSpec> specs = {spec(mesh, 0.1)};
+  specs[0].side = walls::WallSide::Inside;
+  EXPECT_THROW(walls::WallModel(films_of(mesh, 0, 0.1), specs), InvalidInput);
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ constexpr double kSolvers = 1e-8;  // what two solvers may differ by
 // Half, and what PETSc itself takes in every process (40 to 60 MB).
 constexpr double kMemoryShare = 0.75;
 
-ElasticOptions over(int processes) {
-  return {.solver = SolverKind::Distributed, .processes = processes};
+equations::ElasticOptions over(int processes) {
+  return {.solver = equations::SolverKind::Distributed, .processes = processes};
 }
 
 double difference(const VectorX& a, const VectorX& b) {
@@ -43,29 +43,30 @@ bool petsc_is_here() {
         "libpetsc-real-dev and openmpi-bin");                 \
   }
 
-Material spruce() {
-  Material m{"spruce", 0.0, 0.0, 4.5e-10, {}};
-  m.orthotropic = Orthotropic{.youngs_moduli = {11000.0, 400.0, 700.0},
-                              .poisson_ratios = {0.40, 0.35, 0.40},
-                              .shear_moduli = {600.0, 650.0, 40.0},
-                              .axes = {{1.0, 0.2, 0.0}, {0.1, 1.0, 0.3}}};
+element::Material spruce() {
+  element::Material m{"spruce", 0.0, 0.0, 4.5e-10, {}};
+  m.orthotropic =
+      element::Orthotropic{.youngs_moduli = {11000.0, 400.0, 700.0},
+                           .poisson_ratios = {0.40, 0.35, 0.40},
+                           .shear_moduli = {600.0, 650.0, 40.0},
+                           .axes = {{1.0, 0.2, 0.0}, {0.1, 1.0, 0.3}}};
   return m;
 }
 
 struct Model {
   std::string name;
   TetMesh mesh;
-  std::vector<Material> materials;
-  std::vector<LoadCase> load_cases;
+  std::vector<element::Material> materials;
+  std::vector<loads::LoadCase> load_cases;
 };
 
 /// Four nodes, one matrix for two load cases and another for the third, which
 /// stands on springs.
 Model four_nodes() {
-  LoadCase twist = parts::pulled({0.0, 20.0, 5.0});
+  loads::LoadCase twist = parts::pulled({0.0, 20.0, 5.0});
   twist.name = "second";
   twist.pressures = {{"z1", 3.0}};
-  LoadCase bed = twist;
+  loads::LoadCase bed = twist;
   bed.name = "bed";
   bed.supports = {{"x0", true, false, false}};
   bed.springs = {
@@ -82,7 +83,7 @@ Model two_materials() {
   for (int e = 0; e < tube.element_count(); e += 3) {
     tube.element_region[e] = 1;
   }
-  LoadCase heat = parts::tube_pressure(2.0);
+  loads::LoadCase heat = parts::tube_pressure(2.0);
   heat.name = "heat";
   heat.pressures = {{"x1", 1.0}};
   return {"two_materials",
@@ -99,11 +100,11 @@ Model oblique() {
   for (Vec3& x : mesh.nodes) {
     x = turn * x;
   }
-  LoadCase load_case;
+  loads::LoadCase load_case;
   load_case.name = "planes";
   for (const char* surface : {"x0", "y0", "z0"}) {
     load_case.supports.push_back(
-        {.surface = surface, .kind = SupportKind::Normal});
+        {.surface = surface, .kind = loads::SupportKind::Normal});
   }
   load_case.forces = {{"x1", {5.0, 2.0, -3.0}}};
   return {"oblique", std::move(mesh), {parts::steel()}, {load_case}};
@@ -115,9 +116,10 @@ TEST_P(Distributed, DisplacementsAreThoseOfOurSolver) {
   NEED_PETSC();
   for (const Model& part : {four_nodes(), two_materials(), oblique()}) {
     SCOPED_TRACE(part.name);
-    const ElasticModel ours(part.mesh, part.materials, part.load_cases);
-    const ElasticModel petsc(part.mesh, part.materials, part.load_cases,
-                             over(GetParam()));
+    const elastic::ElasticModel ours(part.mesh, part.materials,
+                                     part.load_cases);
+    const elastic::ElasticModel petsc(part.mesh, part.materials,
+                                      part.load_cases, over(GetParam()));
     const TetMesh moved = shapes::sheared(part.mesh, 0.01);
     for (const auto& [a, b] :
          {std::pair(petsc.base_solution(), ours.base_solution()),
@@ -142,11 +144,11 @@ TEST_P(Distributed, DisplacementsAreThoseOfOurSolver) {
 TEST_P(Distributed, ModelsOfOneDesignHaveTheSameBits) {
   NEED_PETSC();
   const Model part = four_nodes();
-  const ElasticModel a(part.mesh, part.materials, part.load_cases,
-                       over(GetParam()));
-  const ElasticModel b(part.mesh, part.materials, part.load_cases,
-                       over(GetParam()));
-  const ElasticSolution again = a.solve(part.mesh);
+  const elastic::ElasticModel a(part.mesh, part.materials, part.load_cases,
+                                over(GetParam()));
+  const elastic::ElasticModel b(part.mesh, part.materials, part.load_cases,
+                                over(GetParam()));
+  const equations::ElasticSolution again = a.solve(part.mesh);
   for (std::size_t c = 0; c < part.load_cases.size(); ++c) {
     EXPECT_EQ(a.base_solution().displacements[c],
               b.base_solution().displacements[c]);
@@ -165,10 +167,10 @@ TEST(DistributedMemory, OfAProcessFallsWithTheirNumber) {
       shapes::straight_quadratic(shapes::brick({2.0, 1.0, 1.0}, 26, 13, 13));
   std::vector<double> largest;
   for (const int processes : {1, 2}) {
-    const ElasticModel model(mesh, {parts::steel()},
-                             {parts::pulled({1.0, 0.0, -10.0})},
-                             over(processes));
-    const ElasticSolution& solution = model.base_solution();
+    const elastic::ElasticModel model(mesh, {parts::steel()},
+                                      {parts::pulled({1.0, 0.0, -10.0})},
+                                      over(processes));
+    const equations::ElasticSolution& solution = model.base_solution();
     ASSERT_FALSE(solution.failure) << solution.failure->message;
     const std::vector<double>& memory = solution.report.process_memory;
     largest.push_back(*std::max_element(memory.begin(), memory.end()));
@@ -180,19 +182,20 @@ TEST(DistributedMemory, OfAProcessFallsWithTheirNumber) {
 
 TEST(DistributedLimits, SmallPartsTakeFewerProcesses) {
   NEED_PETSC();
-  const ElasticModel model(shapes::brick({2.0, 1.0, 1.0}, 4, 2, 2),
-                           {parts::steel()}, {parts::pulled({0.0, 0.0, 1.0})},
-                           over(16));
+  const elastic::ElasticModel model(shapes::brick({2.0, 1.0, 1.0}, 4, 2, 2),
+                                    {parts::steel()},
+                                    {parts::pulled({0.0, 0.0, 1.0})}, over(16));
   ASSERT_FALSE(model.base_solution().failure);
   EXPECT_EQ(model.base_solution().report.process_memory.size(), 1u);
 }
 
 TEST(DistributedLimits, WhatDoesNotConvergeIsAFailure) {
   NEED_PETSC();
-  ElasticOptions options = over(2);
+  equations::ElasticOptions options = over(2);
   options.max_iterations = 2;
   const Model part = oblique();
-  const ElasticModel model(part.mesh, part.materials, part.load_cases, options);
+  const elastic::ElasticModel model(part.mesh, part.materials, part.load_cases,
+                                    options);
   ASSERT_TRUE(model.base_solution().failure);
   EXPECT_THAT(model.base_solution().failure->message,
               testing::HasSubstr("no convergence in 2 iterations"));
@@ -201,14 +204,15 @@ TEST(DistributedLimits, WhatDoesNotConvergeIsAFailure) {
 TEST(DistributedLimits, EigenvaluesAndWrongNumbersAreRefused) {
   NEED_PETSC();
   const Model part = oblique();
-  const ElasticModel model(part.mesh, part.materials, part.load_cases, over(1));
-  EXPECT_THROW(
-      buckling_modes(model, part.mesh, part.load_cases, 0,
-                     model.base_solution().displacements[0], {.count = 1}),
-      InvalidInput);
-  for (const int processes : {0, -1, kMostProcesses + 1}) {
-    EXPECT_THROW(ElasticModel(part.mesh, part.materials, part.load_cases,
-                              over(processes)),
+  const elastic::ElasticModel model(part.mesh, part.materials, part.load_cases,
+                                    over(1));
+  EXPECT_THROW(modes::buckling_modes(model, part.mesh, part.load_cases, 0,
+                                     model.base_solution().displacements[0],
+                                     {.count = 1}),
+               InvalidInput);
+  for (const int processes : {0, -1, equations::kMostProcesses + 1}) {
+    EXPECT_THROW(elastic::ElasticModel(part.mesh, part.materials,
+                                       part.load_cases, over(processes)),
                  InvalidInput);
   }
 }
@@ -217,14 +221,14 @@ TEST(DistributedLimits, SupportsTooWeakAndInvertedElementsAreKnownBefore) {
   NEED_PETSC();
   Model part = oblique();
   part.load_cases[0].supports.pop_back();
-  EXPECT_THROW(
-      ElasticModel(part.mesh, part.materials, part.load_cases, over(2)),
-      SolverError);
+  EXPECT_THROW(elastic::ElasticModel(part.mesh, part.materials, part.load_cases,
+                                     over(2)),
+               SolverError);
   part = four_nodes();
   std::swap(part.mesh.elements[0], part.mesh.elements[1]);
-  EXPECT_THROW(
-      ElasticModel(part.mesh, part.materials, part.load_cases, over(2)),
-      MeshError);
+  EXPECT_THROW(elastic::ElasticModel(part.mesh, part.materials, part.load_cases,
+                                     over(2)),
+               MeshError);
 }
 
 /// What a solve says with `script` in the helper's place.
@@ -243,13 +247,13 @@ class BadHelper : public testing::Test {
     return path;
   }
 
-  static void solve(const ElasticOptions& options) {
+  static void solve(const equations::ElasticOptions& options) {
     const Model part = oblique();
-    ElasticModel(part.mesh, part.materials, part.load_cases, options);
+    elastic::ElasticModel(part.mesh, part.materials, part.load_cases, options);
   }
 
   template <class Wanted>
-  static std::string message(const ElasticOptions& options) {
+  static std::string message(const equations::ElasticOptions& options) {
     try {
       solve(options);
     } catch (const Wanted& error) {
@@ -292,7 +296,7 @@ TEST_F(BadHelper, OneThatDiesIsAnErrorWithWhatItSaid) {
 
 TEST_F(BadHelper, OneThatHangsEndsAtItsLimitOrOnRequest) {
   const EnvironmentVariable variable("MENISCUS_PETSC", write("exec sleep 60"));
-  ElasticOptions options = over(2);
+  equations::ElasticOptions options = over(2);
   options.time_limit = 1.5;
   EXPECT_THAT(message<SolverError>(options), testing::HasSubstr("time limit"));
   class Stopper : public Monitor {

@@ -18,13 +18,14 @@ using testing::HasSubstr;
 
 TetMesh block() { return shapes::brick({2.0, 1.0, 1.0}, 2, 2, 2); }
 
-void build(const TetMesh& mesh, const Material& material,
-           const LoadCase& load_case, const ElasticOptions& options = {}) {
-  const ElasticModel model(mesh, {material}, {load_case}, options);
+void build(const TetMesh& mesh, const element::Material& material,
+           const loads::LoadCase& load_case,
+           const equations::ElasticOptions& options = {}) {
+  const elastic::ElasticModel model(mesh, {material}, {load_case}, options);
 }
 
 template <class E>
-void expect_refused(const LoadCase& load_case, const std::string& part,
+void expect_refused(const loads::LoadCase& load_case, const std::string& part,
                     const std::string& other = "") {
   EXPECT_THAT(
       [&] { build(block(), parts::steel(), load_case); },
@@ -34,19 +35,19 @@ void expect_refused(const LoadCase& load_case, const std::string& part,
 const Vec3 kForce(1.0, 2.0, 3.0);
 
 TEST(WeakSupports, NothingHeldAlongAnAxis) {
-  LoadCase load_case = parts::pulled(kForce);
+  loads::LoadCase load_case = parts::pulled(kForce);
   load_case.supports = {{"x0", true, true, false}};
   expect_refused<SolverError>(load_case, "move along z", "main");
 }
 
 TEST(WeakSupports, OnePlaneOnItsNormal) {
-  LoadCase load_case = parts::pulled(kForce);
+  loads::LoadCase load_case = parts::pulled(kForce);
   load_case.supports = {{"z0", false, false, true}};
   expect_refused<SolverError>(load_case, "rotate about z");
 }
 
 TEST(WeakSupports, HingeAlongALineNamesItsAxisAndPoint) {
-  LoadCase load_case = parts::pulled(kForce);
+  loads::LoadCase load_case = parts::pulled(kForce);
   TetMesh mesh = block();
   // The label "hinge" on faces that are squeezed into the edge y = z = 0.
   mesh.labels.push_back("hinge");
@@ -94,13 +95,13 @@ TEST(WeakSupports, APieceOnOneNodeIsAMechanism) {
 }
 
 TEST(Hostile, NoSupportNoLoadUnknownSurface) {
-  LoadCase none = parts::pulled(kForce);
+  loads::LoadCase none = parts::pulled(kForce);
   none.supports.clear();
   expect_refused<InvalidInput>(none, "main", "no support");
   none.supports = {{"x0", false, false, false}};
   expect_refused<InvalidInput>(none, "no support");
   expect_refused<InvalidInput>(parts::pulled(Vec3::Zero()), "main", "no load");
-  LoadCase lost = parts::pulled(kForce);
+  loads::LoadCase lost = parts::pulled(kForce);
   lost.supports = {parts::hold("bottom")};
   expect_refused<InvalidInput>(lost, "bottom", "x0, x1");
   lost = parts::pulled(kForce);
@@ -109,22 +110,23 @@ TEST(Hostile, NoSupportNoLoadUnknownSurface) {
 }
 
 TEST(Hostile, Materials) {
-  const auto refused = [&](const Material& material, const char* part) {
+  const auto refused = [&](const element::Material& material,
+                           const char* part) {
     EXPECT_THAT([&] { build(block(), material, parts::pulled(kForce)); },
                 testing::ThrowsMessage<InvalidInput>(
                     AllOf(HasSubstr("steel"), HasSubstr(part))));
   };
   for (const double nu : {0.5, 0.7, -1.0, -2.0, double(NAN)}) {
-    Material material = parts::steel();
+    element::Material material = parts::steel();
     material.poisson_ratio = nu;
     refused(material, "Poisson");
   }
   for (const double E : {0.0, -1.0, double(INFINITY), double(NAN)}) {
-    Material material = parts::steel();
+    element::Material material = parts::steel();
     material.youngs_modulus = E;
     refused(material, "Young");
   }
-  Material material = parts::steel();
+  element::Material material = parts::steel();
   material.density = -1.0;
   refused(material, "density");
   TetMesh mesh = block();
@@ -152,18 +154,20 @@ TEST(Hostile, Meshes) {
 TEST(Hostile, NodesInNoElementStayAtRest) {
   TetMesh mesh = block();
   mesh.nodes.emplace_back(7.0, 7.0, 7.0);
-  const ElasticModel model(mesh, {parts::steel()}, {parts::pulled(kForce)});
+  const elastic::ElasticModel model(mesh, {parts::steel()},
+                                    {parts::pulled(kForce)});
   EXPECT_FALSE(model.base_solution().failure);
   EXPECT_EQ(model.base_solution().displacements[0].tail<3>(), Vec3::Zero());
 }
 
 TEST(Hostile, DesignsThatCannotBeSolvedAreFailures) {
   const TetMesh base = shapes::straight_quadratic(block());
-  const ElasticModel model(base, {parts::steel()}, {parts::pulled(kForce)},
-                           {.solver = SolverKind::Multigrid});
+  const elastic::ElasticModel model(
+      base, {parts::steel()}, {parts::pulled(kForce)},
+      {.solver = equations::SolverKind::Multigrid});
   TetMesh mesh = base;
   mesh.nodes[13] += Vec3(5.0, 0.0, 0.0);
-  ElasticSolution solution = model.solve(mesh);
+  equations::ElasticSolution solution = model.solve(mesh);
   ASSERT_TRUE(solution.failure);
   EXPECT_EQ(solution.failure->kind, FailureKind::ElementsInverted);
   mesh = base;
@@ -174,16 +178,16 @@ TEST(Hostile, DesignsThatCannotBeSolvedAreFailures) {
   mesh = base;
   mesh.elements.resize(40);
   EXPECT_THROW(model.solve(mesh), InvalidInput);
-  LoadCase other = parts::pulled(kForce);
+  loads::LoadCase other = parts::pulled(kForce);
   other.supports = {parts::hold("y0")};
   EXPECT_THROW(model.solve(base, {other}), InvalidInput);
 }
 
 TEST(Hostile, TooFewIterationsIsAFailureThatSaysSo) {
   const TetMesh base = shapes::straight_quadratic(block());
-  const ElasticModel model(
+  const elastic::ElasticModel model(
       base, {parts::steel()}, {parts::pulled(kForce)},
-      {.solver = SolverKind::Multigrid, .max_iterations = 2});
+      {.solver = equations::SolverKind::Multigrid, .max_iterations = 2});
   const auto& failure = model.base_solution().failure;
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->kind, FailureKind::SolverFailed);
@@ -203,7 +207,7 @@ TEST(Hostile, AStopIsObeyed) {
 
 // In a child process that may have `more` bytes than it has: exits with 0 when
 // the model is refused for its memory, with `says` in the message.
-void exit_when_refused(double more, const ElasticOptions& options,
+void exit_when_refused(double more, const equations::ElasticOptions& options,
                        const std::string& says) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({2.0, 1.0, 1.0}, 20, 14, 14));
@@ -225,9 +229,10 @@ TEST(Memory, TooLittleIsForeseen) {
   testing::GTEST_FLAG(death_test_style) = "threadsafe";
   EXPECT_EXIT(exit_when_refused(5e7, {}, "longer edges (resolution.fea)"),
               testing::ExitedWithCode(0), "");
-  EXPECT_EXIT(exit_when_refused(4e8, {.solver = SolverKind::Cholesky},
-                                "a sparse factor of"),
-              testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(
+      exit_when_refused(4e8, {.solver = equations::SolverKind::Cholesky},
+                        "a sparse factor of"),
+      testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

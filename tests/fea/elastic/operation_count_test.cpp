@@ -20,12 +20,13 @@ namespace {
 struct Stiffness {
   TetMesh mesh =
       shapes::straight_quadratic(parts::distorted_brick({3, 2, 1}, 2));
-  ElementTable table = parts::table_of(mesh);
-  BlockMatrix<double> matrix;
+  solver::ElementTable table = parts::table_of(mesh);
+  solver::BlockMatrix<double> matrix;
   VectorX x;
 
   Stiffness() {
-    EXPECT_FALSE(assemble(table, mesh.nodes, {lame(parts::steel())}, matrix));
+    EXPECT_FALSE(solver::assemble(table, mesh.nodes,
+                                  {element::lame(parts::steel())}, matrix));
     x = VectorX::LinSpaced(3 * table.pattern.nodes, -1.0, 2.0).array().sin();
   }
   Counted diagonal(int i, int r, int c) const {
@@ -47,7 +48,7 @@ Numbers numbers_of(const VectorX& x) {
 }
 
 Numbers textbook_product(const Stiffness& k, const Numbers& x) {
-  const BlockPattern& p = k.table.pattern;
+  const solver::BlockPattern& p = k.table.pattern;
   Numbers y(x.size());
   for (int i = 0; i < p.nodes; ++i) {
     for (int r = 0; r < 3; ++r) {
@@ -80,7 +81,7 @@ TEST(OperationCount, AProductCountsEachStoredBlockTwice) {
 /// x_i = D_i (r_i - sum L x), its `upper` scattered at once; D: any blocks.
 void textbook_sweep(const Stiffness& k, const Numbers& r, Numbers& x,
                     Numbers& upper) {
-  const BlockPattern& p = k.table.pattern;
+  const solver::BlockPattern& p = k.table.pattern;
   for (int i = 0; i < p.nodes; ++i) {
     for (int row = 0; row < 3; ++row) {
       Counted sum;
@@ -112,9 +113,10 @@ TEST(OperationCount, ASweepGathersAndScatters) {
   const std::vector<float> right(size, 1.0F);
   std::vector<float> x(size, 0.0F);
   std::vector<float> upper(size, 0.0F);
-  const SweepMatrix matrix{&k.table.pattern, lower.data(), inverse.data()};
+  const solver::SweepMatrix matrix{&k.table.pattern, lower.data(),
+                                   inverse.data()};
   const double account = accounted([&] {
-    sweep_forward<3, 1>(matrix, right.data(), x.data(), upper.data());
+    solver::sweep_forward<3, 1>(matrix, right.data(), x.data(), upper.data());
   });
   Numbers r = numbers_of(k.x);
   Numbers found(r.size());
@@ -122,16 +124,16 @@ TEST(OperationCount, ASweepGathersAndScatters) {
   EXPECT_EQ(account, counted([&] { textbook_sweep(k, r, found, above); }));
   // Backward each row takes `upper` off too.
   EXPECT_EQ(accounted([&] {
-              sweep_backward<3, 1>(matrix, right.data(), x.data(),
-                                   upper.data());
+              solver::sweep_backward<3, 1>(matrix, right.data(), x.data(),
+                                           upper.data());
             }),
             account + 3.0 * k.table.pattern.nodes);
 }
 
 /// Outer products and blocks of one isotropic ten-node element.
 void textbook_element(const std::array<Vec3, 10>& x) {
-  TetGradients<10> g;
-  ASSERT_TRUE(tet_gradients<10>(x, g));
+  element::TetGradients<10> g;
+  ASSERT_TRUE(element::tet_gradients<10>(x, g));
   const Counted lambda{2.0};
   const Counted mu{1.0};
   std::vector<Numbers> G(30, Numbers(30));
@@ -169,7 +171,8 @@ void textbook_element(const std::array<Vec3, 10>& x) {
 TEST(OperationCount, AssemblyCountsItsElements) {
   Stiffness k;
   const double account = accounted([&] {
-    assemble(k.table, k.mesh.nodes, {lame(parts::steel())}, k.matrix);
+    solver::assemble(k.table, k.mesh.nodes, {element::lame(parts::steel())},
+                     k.matrix);
   });
   std::array<Vec3, 10> x;
   for (int a = 0; a < 10; ++a) {
@@ -274,7 +277,7 @@ TEST(OperationCount, AFactorCountsTheSquaresOfItsColumns) {
 }
 
 /// No preconditioner at all.
-struct Identity final : Preconditioner {
+struct Identity final : solver::Preconditioner {
   void apply(const std::vector<double>& r, std::vector<double>& z,
              int /*K*/) const override {
     z = r;
@@ -283,18 +286,18 @@ struct Identity final : Preconditioner {
 
 TEST(OperationCount, AStepOfConjugateGradientsIsAProductAndFiveVectors) {
   const Stiffness k;
-  NodeFreedom freedom;
+  solver::NodeFreedom freedom;
   const auto steps = [&](int most) {
     std::vector<VectorX> u = {VectorX::Zero(k.x.size())};
     return accounted([&] {
-      conjugate_gradients({.pattern = k.table.pattern,
-                           .matrix = k.matrix,
-                           .preconditioner = Identity(),
-                           .freedom = freedom,
-                           .tolerance = 1e-300,
-                           .max_iterations = most,
-                           .monitor = silent_monitor()},
-                          {k.x}, u);
+      solver::conjugate_gradients({.pattern = k.table.pattern,
+                                   .matrix = k.matrix,
+                                   .preconditioner = Identity(),
+                                   .freedom = freedom,
+                                   .tolerance = 1e-300,
+                                   .max_iterations = most,
+                                   .monitor = silent_monitor()},
+                                  {k.x}, u);
     });
   };
   const double product =

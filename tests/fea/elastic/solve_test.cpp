@@ -19,8 +19,8 @@ TetMesh bar(int order, int cells) {
   return order == 1 ? mesh : shapes::straight_quadratic(mesh);
 }
 
-std::vector<LoadCase> two_cases() {
-  LoadCase twist = parts::pulled({0.0, 20.0, 5.0});
+std::vector<loads::LoadCase> two_cases() {
+  loads::LoadCase twist = parts::pulled({0.0, 20.0, 5.0});
   twist.name = "second";
   twist.pressures = {{"z1", 3.0}};
   return {parts::pulled({1.0, 0.0, -10.0}), twist};
@@ -37,15 +37,15 @@ TEST_P(Solve, PulledDistortedBlockStretchesLinearly) {
   if (GetParam() == 2) {
     mesh = shapes::straight_quadratic(mesh);
   }
-  LoadCase pull;
+  loads::LoadCase pull;
   pull.name = "pull";
   pull.supports = {{"x0", true, false, false},
                    {"y0", false, true, false},
                    {"z0", false, false, true}};
   pull.forces = {{"x1", {3.0, 0.0, 0.0}}};  // unit stress on 2 x 1.5
-  const ElasticModel model(mesh, {parts::steel()}, {pull},
-                           {.tolerance = 1e-14});
-  const ElasticSolution& solution = model.base_solution();
+  const elastic::ElasticModel model(mesh, {parts::steel()}, {pull},
+                                    {.tolerance = 1e-14});
+  const equations::ElasticSolution& solution = model.base_solution();
   ASSERT_FALSE(solution.failure) << solution.failure->message;
   const double E = parts::steel().youngs_modulus;
   const double nu = parts::steel().poisson_ratio;
@@ -60,16 +60,16 @@ TEST_P(Solve, PulledDistortedBlockStretchesLinearly) {
 
 TEST_P(Solve, ReactionsBalanceAndEnergyIsHalfTheWorkOfTheLoads) {
   const TetMesh mesh = bar(GetParam(), 3);
-  const std::vector<LoadCase> cases = two_cases();
-  const ElasticModel model(mesh, {parts::steel()}, cases);
-  const ElasticSolution& solution = model.base_solution();
+  const std::vector<loads::LoadCase> cases = two_cases();
+  const elastic::ElasticModel model(mesh, {parts::steel()}, cases);
+  const equations::ElasticSolution& solution = model.base_solution();
   ASSERT_FALSE(solution.failure) << solution.failure->message;
   EXPECT_LE(solution.report.reaction_imbalance, kBalance);
   // The solver stops at 1e-10 in the energy norm, which weighs short waves
   // less.
   EXPECT_LE(solution.report.residual, 1e-8);
   for (std::size_t c = 0; c < cases.size(); ++c) {
-    const VectorX f = nodal_forces(mesh, cases[c]);
+    const VectorX f = loads::nodal_forces(mesh, cases[c]);
     Vec3 force = Vec3::Zero();
     Vec3 moment = Vec3::Zero();
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
@@ -82,22 +82,22 @@ TEST_P(Solve, ReactionsBalanceAndEnergyIsHalfTheWorkOfTheLoads) {
     EXPECT_LE(moment.norm(), kBalance * 3.0 * f.norm());
   }
   const double work =
-      0.5 * nodal_forces(mesh, cases[0]).dot(solution.displacements[0]);
+      0.5 * loads::nodal_forces(mesh, cases[0]).dot(solution.displacements[0]);
   EXPECT_NEAR(solution.report.strain_energy, work, 1e-9 * work);
 }
 
 TEST_P(Solve, SameBitsForThereAndBackAndForAnyThreadCount) {
   const TetMesh base = bar(GetParam(), 3);
   const TetMesh moved = shapes::sheared(base, 0.05);
-  const auto kind =
-      GetParam() == 2 ? SolverKind::Multigrid : SolverKind::Automatic;
+  const auto kind = GetParam() == 2 ? equations::SolverKind::Multigrid
+                                    : equations::SolverKind::Automatic;
   const auto run = [&](int threads) {
     omp_set_num_threads(threads);
-    const ElasticModel model(base, {parts::steel()}, two_cases(),
-                             {.solver = kind});
-    ElasticSolution first = model.solve(moved);
-    const ElasticSolution between = model.solve(base);
-    const ElasticSolution again = model.solve(moved);
+    const elastic::ElasticModel model(base, {parts::steel()}, two_cases(),
+                                      {.solver = kind});
+    equations::ElasticSolution first = model.solve(moved);
+    const equations::ElasticSolution between = model.solve(base);
+    const equations::ElasticSolution again = model.solve(moved);
     EXPECT_FALSE(first.failure);
     for (int c = 0; c < 2; ++c) {
       EXPECT_EQ(first.displacements[c], again.displacements[c]);
@@ -108,8 +108,8 @@ TEST_P(Solve, SameBitsForThereAndBackAndForAnyThreadCount) {
     return first;
   };
   const int before = omp_get_max_threads();
-  const ElasticSolution one = run(1);
-  const ElasticSolution two = run(2);
+  const equations::ElasticSolution one = run(1);
+  const equations::ElasticSolution two = run(2);
   omp_set_num_threads(before);
   EXPECT_EQ(one.displacements[0], two.displacements[0]);
   EXPECT_EQ(one.displacements[1], two.displacements[1]);
@@ -123,15 +123,15 @@ TEST_P(Solve, SameBitsWhereThreadsShareTheWork) {
                            ? linear
                            : shapes::straight_quadratic(
                                  shapes::brick({1.5, 1.0, 1.0}, 18, 13, 13));
-  ASSERT_GT(static_cast<int>(base.nodes.size()), kParallelRows);
+  ASSERT_GT(static_cast<int>(base.nodes.size()), solver::kParallelRows);
   const TetMesh moved = shapes::sheared(base, 0.05);
   const auto run = [&](int threads) {
     omp_set_num_threads(threads);
-    const ElasticModel model(base, {parts::steel()}, two_cases());
-    ElasticSolution solution = model.solve(moved);
+    const elastic::ElasticModel model(base, {parts::steel()}, two_cases());
+    equations::ElasticSolution solution = model.solve(moved);
     EXPECT_FALSE(solution.failure);
-    StressField stress =
-        recover_stress(moved, {parts::steel()}, solution.displacements[0]);
+    stress::StressField stress = stress::recover_stress(
+        moved, {parts::steel()}, solution.displacements[0]);
     return std::pair(std::move(solution), std::move(stress));
   };
   const int before = omp_get_max_threads();
@@ -148,11 +148,11 @@ TEST_P(Solve, SameBitsWhereThreadsShareTheWork) {
 TEST_P(Solve, NextDesignEqualsAFreshModelOfIt) {
   const TetMesh base = bar(GetParam(), 3);
   const TetMesh moved = shapes::sheared(base, 0.1);
-  std::vector<LoadCase> cases = two_cases();
-  const ElasticModel model(base, {parts::steel()}, cases);
+  std::vector<loads::LoadCase> cases = two_cases();
+  const elastic::ElasticModel model(base, {parts::steel()}, cases);
   cases[0].forces[0].total *= 2.0;
-  const ElasticSolution next = model.solve(moved, cases);
-  const ElasticModel fresh(moved, {parts::steel()}, cases);
+  const equations::ElasticSolution next = model.solve(moved, cases);
+  const elastic::ElasticModel fresh(moved, {parts::steel()}, cases);
   ASSERT_FALSE(next.failure) << next.failure->message;
   for (int c = 0; c < 2; ++c) {
     EXPECT_LE(difference(next.displacements[c],
@@ -166,19 +166,21 @@ INSTANTIATE_TEST_SUITE_P(Orders, Solve, testing::Values(1, 2));
 TEST(Multigrid, AgreesWithCholeskyOnStraightAndCurvedParts) {
   struct Model {
     TetMesh mesh;
-    LoadCase load_case;
+    loads::LoadCase load_case;
   };
   for (const Model& part :
        {Model{bar(2, 4), two_cases()[1]},
         Model{shapes::sheared(bar(2, 3), 0.5), two_cases()[0]},
         Model{parts::distorted_brick({2.0, 1.0, 1.0}, 7), two_cases()[1]},
         Model{parts::quarter_tube(4, 0.5), parts::tube_pressure(2.0)}}) {
-    const ElasticModel multigrid(part.mesh, {parts::steel()}, {part.load_case},
-                                 {.solver = SolverKind::Multigrid});
-    const ElasticModel cholesky(part.mesh, {parts::steel()}, {part.load_case},
-                                {.solver = SolverKind::Cholesky});
-    const ElasticSolution& a = multigrid.base_solution();
-    const ElasticSolution& b = cholesky.base_solution();
+    const elastic::ElasticModel multigrid(
+        part.mesh, {parts::steel()}, {part.load_case},
+        {.solver = equations::SolverKind::Multigrid});
+    const elastic::ElasticModel cholesky(
+        part.mesh, {parts::steel()}, {part.load_case},
+        {.solver = equations::SolverKind::Cholesky});
+    const equations::ElasticSolution& a = multigrid.base_solution();
+    const equations::ElasticSolution& b = cholesky.base_solution();
     ASSERT_FALSE(a.failure) << a.failure->message;
     ASSERT_FALSE(b.failure) << b.failure->message;
     EXPECT_EQ(a.report.solver,
@@ -197,20 +199,21 @@ TEST(Multigrid, HoldsForThinWallsNearlyIncompressibleAndMixedMaterials) {
   for (int e = 0; e < mixed.element_count(); e += 2) {
     mixed.element_region[e] = 1;
   }
-  Material rubber = parts::steel();
+  element::Material rubber = parts::steel();
   rubber.poisson_ratio = 0.49;
-  Material soft = parts::steel();
+  element::Material soft = parts::steel();
   soft.youngs_modulus /= 100.0;
   struct Model {
     const TetMesh& mesh;
-    std::vector<Material> materials;
+    std::vector<element::Material> materials;
   };
   const TetMesh plain = bar(2, 3);
   for (const Model& part :
        {Model{wall, {parts::steel()}}, Model{plain, {rubber}},
         Model{mixed, {parts::steel(), soft}}}) {
-    const ElasticModel model(part.mesh, part.materials, two_cases(),
-                             {.solver = SolverKind::Multigrid});
+    const elastic::ElasticModel model(
+        part.mesh, part.materials, two_cases(),
+        {.solver = equations::SolverKind::Multigrid});
     ASSERT_FALSE(model.base_solution().failure)
         << model.base_solution().failure->message;
     EXPECT_LE(model.base_solution().report.iterations, 200);
@@ -222,25 +225,26 @@ TEST(Multigrid, OtherMaterialsThanTheBasesAreSolvedByItsPreconditioner) {
   for (int e = 0; e < mesh.element_count(); e += 2) {
     mesh.element_region[e] = 1;
   }
-  Material heavy = parts::steel();
+  element::Material heavy = parts::steel();
   heavy.density *= 2.0;
-  Material soft = parts::steel();
+  element::Material soft = parts::steel();
   soft.youngs_modulus /= 3.0;
-  LoadCase weight = parts::pulled({0.0, 0.0, -1.0});
+  loads::LoadCase weight = parts::pulled({0.0, 0.0, -1.0});
   weight.gravity = {0.0, 1e6, 0.0};
-  const ElasticModel base(mesh, {parts::steel(), parts::steel()}, {weight},
-                          {.solver = SolverKind::Multigrid});
-  const ElasticModel own(mesh, {heavy, soft}, {weight},
-                         {.solver = SolverKind::Multigrid});
-  ElasticState state;
-  const ElasticSolution other =
+  const elastic::ElasticModel base(
+      mesh, {parts::steel(), parts::steel()}, {weight},
+      {.solver = equations::SolverKind::Multigrid});
+  const elastic::ElasticModel own(mesh, {heavy, soft}, {weight},
+                                  {.solver = equations::SolverKind::Multigrid});
+  equations::ElasticState state;
+  const equations::ElasticSolution other =
       base.solve(mesh, {weight}, {heavy, soft}, &state);
   ASSERT_FALSE(other.failure) << other.failure->message;
   const VectorX& u = own.base_solution().displacements[0];
   EXPECT_LE(difference(other.displacements[0], u), kSolvers);
   // The adjoint is of the same stiffness.
-  const AdjointSolution adjoint =
-      base.solve_adjoint(state, 0, {nodal_forces(mesh, weight, {heavy, soft})});
+  const equations::AdjointSolution adjoint = base.solve_adjoint(
+      state, 0, {loads::nodal_forces(mesh, weight, {heavy, soft})});
   ASSERT_FALSE(adjoint.failure) << adjoint.failure->message;
   EXPECT_LE(difference(adjoint.lambda[0], u), kSolvers);
   EXPECT_THROW(base.solve(mesh, {weight}, {soft}, nullptr), InvalidInput);
@@ -253,11 +257,12 @@ TEST(Multigrid, SmallScalesAndLargeOnesGiveTheSameShape) {
     for (Vec3& x : scaled.nodes) {
       x *= length;
     }
-    Material material = parts::steel();
+    element::Material material = parts::steel();
     material.youngs_modulus *= force / (length * length);
-    LoadCase load_case = parts::pulled(force * Vec3(0.0, 0.0, -1.0));
-    const ElasticModel model(scaled, {material}, {load_case},
-                             {.solver = SolverKind::Multigrid});
+    loads::LoadCase load_case = parts::pulled(force * Vec3(0.0, 0.0, -1.0));
+    const elastic::ElasticModel model(
+        scaled, {material}, {load_case},
+        {.solver = equations::SolverKind::Multigrid});
     EXPECT_FALSE(model.base_solution().failure);
     return VectorX(model.base_solution().displacements[0] / length);
   };
@@ -268,9 +273,9 @@ TEST(Multigrid, SmallScalesAndLargeOnesGiveTheSameShape) {
 
 TEST(LoadCases, WithOtherSupportsAndMoreThanFourAreSolvedAsAlone) {
   const TetMesh mesh = bar(2, 2);
-  std::vector<LoadCase> cases;
+  std::vector<loads::LoadCase> cases;
   for (int c = 0; c < 6; ++c) {
-    LoadCase load_case =
+    loads::LoadCase load_case =
         parts::pulled(Vec3(1.0, 0.5 * c, 2.0 - static_cast<double>(c)));
     load_case.name = "case " + std::to_string(c);
     if (c == 3) {
@@ -278,13 +283,14 @@ TEST(LoadCases, WithOtherSupportsAndMoreThanFourAreSolvedAsAlone) {
     }
     cases.push_back(load_case);
   }
-  for (const SolverKind kind : {SolverKind::Cholesky, SolverKind::Multigrid}) {
-    const ElasticModel together(mesh, {parts::steel()}, cases,
-                                {.solver = kind});
+  for (const equations::SolverKind kind :
+       {equations::SolverKind::Cholesky, equations::SolverKind::Multigrid}) {
+    const elastic::ElasticModel together(mesh, {parts::steel()}, cases,
+                                         {.solver = kind});
     ASSERT_FALSE(together.base_solution().failure);
     for (int c = 0; c < 6; ++c) {
-      const ElasticModel alone(mesh, {parts::steel()}, {cases[c]},
-                               {.solver = kind});
+      const elastic::ElasticModel alone(mesh, {parts::steel()}, {cases[c]},
+                                        {.solver = kind});
       EXPECT_LE(difference(together.base_solution().displacements[c],
                            alone.base_solution().displacements[0]),
                 kSolvers);

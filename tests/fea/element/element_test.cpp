@@ -10,9 +10,9 @@ namespace {
 constexpr double kElementRounding =
     1e-12;  // patch and rigid motions: double only
 
-Eigen::MatrixXd dense(const ElementTable& table,
-                      const BlockMatrix<double>& matrix) {
-  const BlockPattern& p = table.pattern;
+Eigen::MatrixXd dense(const solver::ElementTable& table,
+                      const solver::BlockMatrix<double>& matrix) {
+  const solver::BlockPattern& p = table.pattern;
   using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   Eigen::MatrixXd A(3 * p.nodes, 3 * p.nodes);
   A.setZero();
@@ -55,9 +55,10 @@ class Element : public testing::TestWithParam<int> {};
 
 TEST_P(Element, StiffnessIsSymmetricWithSixZeroEigenvalues) {
   const TetMesh mesh = single_element(GetParam());
-  const ElementTable table = parts::table_of(mesh);
-  BlockMatrix<double> matrix;
-  ASSERT_FALSE(assemble(table, mesh.nodes, {lame(parts::steel())}, matrix));
+  const solver::ElementTable table = parts::table_of(mesh);
+  solver::BlockMatrix<double> matrix;
+  ASSERT_FALSE(solver::assemble(table, mesh.nodes,
+                                {element::lame(parts::steel())}, matrix));
   const Eigen::MatrixXd K = dense(table, matrix);
   EXPECT_LE((K - K.transpose()).norm(), kElementRounding * K.norm());
   const VectorX values =
@@ -71,20 +72,20 @@ TEST_P(Element, StiffnessIsSymmetricWithSixZeroEigenvalues) {
 
 TEST_P(Element, RigidMotionGivesNoForce) {
   const TetMesh mesh = single_element(GetParam());
-  const ElementTable table = parts::table_of(mesh);
-  const std::vector<ElasticLaw> laws = {lame(parts::steel())};
+  const solver::ElementTable table = parts::table_of(mesh);
+  const std::vector<element::ElasticLaw> laws = {element::lame(parts::steel())};
   const VectorX u = rigid_motion(mesh, {1.0, -2.0, 0.5}, {0.3, 0.2, -0.7});
-  const VectorX f = internal_forces(table, mesh.nodes, laws, u);
+  const VectorX f = solver::internal_forces(table, mesh.nodes, laws, u);
   EXPECT_LE(f.norm(),
             kElementRounding * parts::steel().youngs_modulus * u.norm());
 }
 
 TEST_P(Element, InternalForcesAreTheStiffnessTimesTheDisplacement) {
   const TetMesh mesh = single_element(GetParam());
-  const ElementTable table = parts::table_of(mesh);
-  const std::vector<ElasticLaw> laws = {lame(parts::steel())};
-  BlockMatrix<double> matrix;
-  ASSERT_FALSE(assemble(table, mesh.nodes, laws, matrix));
+  const solver::ElementTable table = parts::table_of(mesh);
+  const std::vector<element::ElasticLaw> laws = {element::lame(parts::steel())};
+  solver::BlockMatrix<double> matrix;
+  ASSERT_FALSE(solver::assemble(table, mesh.nodes, laws, matrix));
   VectorX u(3 * table.pattern.nodes);
   for (Eigen::Index d = 0; d < u.size(); ++d) {
     u[d] = std::sin(static_cast<double>(d) + 1.0);
@@ -99,7 +100,7 @@ TEST_P(Element, InternalForcesAreTheStiffnessTimesTheDisplacement) {
     x.col(kColumns * n).head<3>() = u.segment<3>(3L * n);
     x.col(kColumns * n + 1).head<3>() = 2.0 * u.segment<3>(3L * n);
   }
-  multiply<3, kColumns>(table.pattern, matrix, x.data(), y.data());
+  solver::multiply<3, kColumns>(table.pattern, matrix, x.data(), y.data());
   VectorX product(u.size());
   for (int n = 0; n < table.pattern.nodes; ++n) {
     product.segment<3>(3L * n) = y.col(kColumns * n).head<3>();
@@ -109,14 +110,15 @@ TEST_P(Element, InternalForcesAreTheStiffnessTimesTheDisplacement) {
               kElementRounding * expected.norm());
   }
   EXPECT_LE((product - expected).norm(), kElementRounding * expected.norm());
-  EXPECT_LE((internal_forces(table, mesh.nodes, laws, u) - expected).norm(),
-            kElementRounding * expected.norm());
+  EXPECT_LE(
+      (solver::internal_forces(table, mesh.nodes, laws, u) - expected).norm(),
+      kElementRounding * expected.norm());
 }
 
 /// Largest internal force at nodes off the boundary, over the largest of all.
 double inner_force(const TetMesh& mesh, const VectorX& u) {
-  const VectorX f = internal_forces(parts::table_of(mesh), mesh.nodes,
-                                    {lame(parts::steel())}, u);
+  const VectorX f = solver::internal_forces(parts::table_of(mesh), mesh.nodes,
+                                            {element::lame(parts::steel())}, u);
   std::vector<char> boundary(mesh.nodes.size(), 0);
   for (const int node : mesh.faces) {
     boundary[node] = 1;
@@ -159,7 +161,8 @@ TEST(BendingPatch, OfQuadraticElementsIsInEquilibriumWithExactStress) {
              k * nu * x.y() * x.z());
   }
   EXPECT_LE(inner_force(mesh, u), kElementRounding);
-  const StressField stress = recover_stress(mesh, {parts::steel()}, u);
+  const stress::StressField stress =
+      stress::recover_stress(mesh, {parts::steel()}, u);
   const double E = parts::steel().youngs_modulus;
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     const double exact = -E * k * mesh.nodes[i].y();

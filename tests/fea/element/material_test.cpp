@@ -13,38 +13,38 @@ constexpr double kMaterialRounding = 1e-12;
 constexpr double kDirectSolver = 1e-10;  // displacements of the direct solver
 
 /// Spruce, MPa, along a direction that is no axis of the mesh.
-Material spruce() {
-  Material m = parts::steel();
+element::Material spruce() {
+  element::Material m = parts::steel();
   m.name = "spruce";
-  m.orthotropic = Orthotropic{{10800.0, 842.0, 464.0},
-                              {0.372, 0.467, 0.435},
-                              {690.0, 670.0, 32.0},
-                              {{1.0, 2.0, -0.5}, {0.3, 1.0, 1.0}}};
+  m.orthotropic = element::Orthotropic{{10800.0, 842.0, 464.0},
+                                       {0.372, 0.467, 0.435},
+                                       {690.0, 670.0, 32.0},
+                                       {{1.0, 2.0, -0.5}, {0.3, 1.0, 1.0}}};
   return m;
 }
 
 /// Steel, written as an orthotropic material.
-Material orthotropic_steel() {
-  Material m = parts::steel();
+element::Material orthotropic_steel() {
+  element::Material m = parts::steel();
   const double E = m.youngs_modulus;
   const double nu = m.poisson_ratio;
-  m.orthotropic = Orthotropic{Vec3::Constant(E),
-                              Vec3::Constant(nu),
-                              Vec3::Constant(0.5 * E / (1.0 + nu)),
-                              {{1.0, -1.0, 3.0}, {0.0, 1.0, 1.0}}};
+  m.orthotropic = element::Orthotropic{Vec3::Constant(E),
+                                       Vec3::Constant(nu),
+                                       Vec3::Constant(0.5 * E / (1.0 + nu)),
+                                       {{1.0, -1.0, 3.0}, {0.0, 1.0, 1.0}}};
   return m;
 }
 
 TEST(OrthotropicLaw, OfEqualConstantsIsTheIsotropicOneInAnyAxes) {
-  const Mat6 D = elastic_law(orthotropic_steel()).stiffness;
-  const Mat6 exact = elastic_law(parts::steel()).stiffness;
+  const element::Mat6 D = element::elastic_law(orthotropic_steel()).stiffness;
+  const element::Mat6 exact = element::elastic_law(parts::steel()).stiffness;
   EXPECT_LE((D - exact).norm(), kMaterialRounding * exact.norm());
 }
 
 TEST(OrthotropicLaw, PullAlongAnAxisContractsByItsRatios) {
-  const Material material = spruce();
-  const Orthotropic& m = *material.orthotropic;
-  const Mat3 R = unit_axes(m.axes);
+  const element::Material material = spruce();
+  const element::Orthotropic& m = *material.orthotropic;
+  const Mat3 R = element::unit_axes(m.axes);
   EXPECT_LE((R.transpose() * R - Mat3::Identity()).norm(), kMaterialRounding);
   EXPECT_GT(R.determinant(), 0.0);
   // Unit stress along axis 1 and along the shear 23, in the mesh's axes.
@@ -55,7 +55,8 @@ TEST(OrthotropicLaw, PullAlongAnAxisContractsByItsRatios) {
   Mat3 own = Mat3::Zero();
   own(0, 0) = 1.0;
   own(1, 2) = own(2, 1) = 1.0;
-  const Mat3 stress = elastic_law(material).stress(R * strain * R.transpose());
+  const Mat3 stress =
+      element::elastic_law(material).stress(R * strain * R.transpose());
   EXPECT_LE((stress - R * own * R.transpose()).norm(), kMaterialRounding * 1e2);
 }
 
@@ -66,11 +67,13 @@ TEST_P(OrthotropicElement, StiffnessOfEqualConstantsIsTheIsotropicOne) {
   if (GetParam() == 2) {
     mesh = shapes::straight_quadratic(mesh);
   }
-  const ElementTable table = parts::table_of(mesh);
-  BlockMatrix<double> general;
-  BlockMatrix<double> isotropic;
-  assemble(table, mesh.nodes, elastic_laws({orthotropic_steel()}), general);
-  assemble(table, mesh.nodes, elastic_laws({parts::steel()}), isotropic);
+  const solver::ElementTable table = parts::table_of(mesh);
+  solver::BlockMatrix<double> general;
+  solver::BlockMatrix<double> isotropic;
+  solver::assemble(table, mesh.nodes,
+                   element::elastic_laws({orthotropic_steel()}), general);
+  solver::assemble(table, mesh.nodes, element::elastic_laws({parts::steel()}),
+                   isotropic);
   const double size = parts::steel().youngs_modulus;
   for (std::size_t k = 0; k < general.lower.size(); ++k) {
     EXPECT_NEAR(general.lower[k], isotropic.lower[k], kMaterialRounding * size);
@@ -86,17 +89,19 @@ TEST_P(OrthotropicElement, InternalForcesAreTheStiffnessTimesDisplacement) {
   if (GetParam() == 2) {
     mesh = shapes::straight_quadratic(mesh);
   }
-  const ElementTable table = parts::table_of(mesh);
-  const std::vector<ElasticLaw> laws = elastic_laws({spruce()});
-  BlockMatrix<double> matrix;
-  ASSERT_FALSE(assemble(table, mesh.nodes, laws, matrix));
+  const solver::ElementTable table = parts::table_of(mesh);
+  const std::vector<element::ElasticLaw> laws =
+      element::elastic_laws({spruce()});
+  solver::BlockMatrix<double> matrix;
+  ASSERT_FALSE(solver::assemble(table, mesh.nodes, laws, matrix));
   VectorX u(3 * table.pattern.nodes);
   for (Eigen::Index d = 0; d < u.size(); ++d) {
     u[d] = std::sin(static_cast<double>(d) + 1.0);
   }
   const VectorX product = parts::product(table, matrix, u);
-  EXPECT_LE((internal_forces(table, mesh.nodes, laws, u) - product).norm(),
-            kMaterialRounding * product.norm());
+  EXPECT_LE(
+      (solver::internal_forces(table, mesh.nodes, laws, u) - product).norm(),
+      kMaterialRounding * product.norm());
 }
 
 TEST_P(OrthotropicElement, PulledBlockTakesTheUniformStrain) {
@@ -105,20 +110,20 @@ TEST_P(OrthotropicElement, PulledBlockTakesTheUniformStrain) {
     mesh = shapes::straight_quadratic(mesh);
   }
   // Axes along the mesh's, turned by one place: x is axis 3, y 1, z 2.
-  Material material = spruce();
+  element::Material material = spruce();
   material.orthotropic->axes.first = Vec3::UnitY();
   material.orthotropic->axes.second = Vec3::UnitZ();
-  LoadCase pull;
+  loads::LoadCase pull;
   pull.name = "pull";
   pull.supports = {{"x0", true, false, false},
                    {"y0", false, true, false},
                    {"z0", false, false, true}};
   pull.forces = {{"x1", {3.0, 0.0, 0.0}}};  // unit stress on 2 x 1.5
-  const ElasticModel model(mesh, {material}, {pull},
-                           {.solver = SolverKind::Cholesky});
-  const ElasticSolution& solution = model.base_solution();
+  const elastic::ElasticModel model(
+      mesh, {material}, {pull}, {.solver = equations::SolverKind::Cholesky});
+  const equations::ElasticSolution& solution = model.base_solution();
   ASSERT_FALSE(solution.failure) << solution.failure->message;
-  const Orthotropic& m = *material.orthotropic;
+  const element::Orthotropic& m = *material.orthotropic;
   const Vec3 strain =
       Vec3(1.0 / m.youngs_moduli[2], -m.poisson_ratios[1] / m.youngs_moduli[0],
            -m.poisson_ratios[2] / m.youngs_moduli[1]);
@@ -129,8 +134,8 @@ TEST_P(OrthotropicElement, PulledBlockTakesTheUniformStrain) {
     error = std::max(error, (u - strain.cwiseProduct(mesh.nodes[i])).norm());
   }
   EXPECT_LE(error, kDirectSolver * strain.norm());
-  const StressField stress =
-      recover_stress(mesh, {material}, solution.displacements[0]);
+  const stress::StressField stress =
+      stress::recover_stress(mesh, {material}, solution.displacements[0]);
   EXPECT_NEAR(stress.max_von_mises, 1.0, 1e-9);
 }
 
@@ -139,11 +144,11 @@ INSTANTIATE_TEST_SUITE_P(Orders, OrthotropicElement, testing::Values(1, 2));
 TEST(OrthotropicSolve, MultigridAgreesWithCholesky) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({3.0, 1.0, 1.0}, 9, 3, 3));
-  const LoadCase load_case = parts::pulled({0.0, 1.0, -2.0});
-  const ElasticModel a(mesh, {spruce()}, {load_case},
-                       {.solver = SolverKind::Multigrid});
-  const ElasticModel b(mesh, {spruce()}, {load_case},
-                       {.solver = SolverKind::Cholesky});
+  const loads::LoadCase load_case = parts::pulled({0.0, 1.0, -2.0});
+  const elastic::ElasticModel a(mesh, {spruce()}, {load_case},
+                                {.solver = equations::SolverKind::Multigrid});
+  const elastic::ElasticModel b(mesh, {spruce()}, {load_case},
+                                {.solver = equations::SolverKind::Cholesky});
   ASSERT_FALSE(a.base_solution().failure) << a.base_solution().failure->message;
   const VectorX& u = b.base_solution().displacements[0];
   EXPECT_LE((a.base_solution().displacements[0] - u).norm(), 1e-8 * u.norm());
@@ -151,21 +156,22 @@ TEST(OrthotropicSolve, MultigridAgreesWithCholesky) {
 
 /// The element kernels see only the law, so its energy must be positive.
 TEST(OrthotropicLaw, StiffnessIsPositiveDefinite) {
-  const Mat6 D = elastic_law(spruce()).stiffness;
+  const element::Mat6 D = element::elastic_law(spruce()).stiffness;
   EXPECT_LE((D - D.transpose()).norm(), kMaterialRounding * D.norm());
-  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Mat6>(D).eigenvalues()[0], 0.0);
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<element::Mat6>(D).eigenvalues()[0],
+            0.0);
 }
 
-void expect_refused(const Material& material, const char* part) {
+void expect_refused(const element::Material& material, const char* part) {
   const TetMesh mesh = shapes::brick({1.0, 1.0, 1.0}, 1, 1, 1);
   EXPECT_THAT(
-      [&] { check_materials(mesh, {material}); },
+      [&] { element::check_materials(mesh, {material}); },
       testing::ThrowsMessage<InvalidInput>(testing::AllOf(
           testing::HasSubstr(material.name), testing::HasSubstr(part))));
 }
 
 TEST(OrthotropicChecks, RefuseWhatMakesNoPositiveStiffness) {
-  Material m = spruce();
+  element::Material m = spruce();
   m.orthotropic->poisson_ratios[0] = 3.7;  // above sqrt(E1 / E2) = 3.58
   expect_refused(m, "positive definite");
   m = orthotropic_steel();
@@ -176,7 +182,7 @@ TEST(OrthotropicChecks, RefuseWhatMakesNoPositiveStiffness) {
 }
 
 TEST(OrthotropicChecks, RefuseModuliAxesAndExpansions) {
-  Material m = spruce();
+  element::Material m = spruce();
   m.orthotropic->shear_moduli[1] = 0.0;
   expect_refused(m, "shear moduli");
   m = spruce();

@@ -24,8 +24,8 @@ constexpr double kTotal = 3e-8;
 
 struct Problem {
   TetMesh mesh;
-  std::vector<Material> materials;
-  std::vector<LoadCase> load_cases;
+  std::vector<element::Material> materials;
+  std::vector<loads::LoadCase> load_cases;
 };
 
 struct Total {
@@ -35,22 +35,22 @@ struct Total {
 
 /// A functional of the solution, and its gradient through the solution.
 template <class OfMesh>
-Total total_gradient(const ElasticModel& model, const Problem& problem,
+Total total_gradient(const elastic::ElasticModel& model, const Problem& problem,
                      int load_case, const OfMesh& functional) {
-  ElasticState state;
-  const ElasticSolution solution =
+  equations::ElasticState state;
+  const equations::ElasticSolution solution =
       model.solve(problem.mesh, problem.load_cases, &state);
   EXPECT_FALSE(solution.failure) << solution.failure->message;
   const VectorX& u = solution.displacements[load_case];
-  const Functional here = functional(problem.mesh, u);
-  const AdjointSolution adjoint =
+  const element::Functional here = functional(problem.mesh, u);
+  const equations::AdjointSolution adjoint =
       model.solve_adjoint(state, load_case, {here.by_displacement});
   EXPECT_FALSE(adjoint.failure) << adjoint.failure->message;
-  Total total{here.value,
-              residual_gradient(problem.mesh, problem.materials,
-                                problem.load_cases[load_case],
-                                {u, solution.reactions[load_case],
-                                 adjoint.lambda[0], adjoint.reactions[0]})};
+  Total total{here.value, elastic::residual_gradient(
+                              problem.mesh, problem.materials,
+                              problem.load_cases[load_case],
+                              {u, solution.reactions[load_case],
+                               adjoint.lambda[0], adjoint.reactions[0]})};
   flat(total.gradient) += flat(here.by_nodes);
   return total;
 }
@@ -58,8 +58,8 @@ Total total_gradient(const ElasticModel& model, const Problem& problem,
 template <class OfMesh>
 void expect_total(const Problem& problem, int load_case, const VectorX& dx,
                   const OfMesh& functional) {
-  const ElasticModel model(problem.mesh, problem.materials, problem.load_cases,
-                           {.tolerance = kSolver});
+  const elastic::ElasticModel model(problem.mesh, problem.materials,
+                                    problem.load_cases, {.tolerance = kSolver});
   const Total here = total_gradient(model, problem, load_case, functional);
   expect_derivative(
       {.exact = flat(here.gradient).dot(dx),
@@ -67,14 +67,16 @@ void expect_total(const Problem& problem, int load_case, const VectorX& dx,
        .tolerance = kTotal},
       [&](double t) {
         const TetMesh mesh = moved(problem.mesh, dx, t);
-        const ElasticSolution solution = model.solve(mesh, problem.load_cases);
+        const equations::ElasticSolution solution =
+            model.solve(mesh, problem.load_cases);
         EXPECT_FALSE(solution.failure);
         return functional(mesh, solution.displacements[load_case]).value;
       });
 }
 
-Functional pad_mean(const TetMesh& mesh, const VectorX& u) {
-  return mean_displacement_functional(mesh, "x1", {0.5, 1.0, -1.0}, u);
+element::Functional pad_mean(const TetMesh& mesh, const VectorX& u) {
+  return functionals::mean_displacement_functional(mesh, "x1", {0.5, 1.0, -1.0},
+                                                   u);
 }
 
 class Adjoint : public testing::TestWithParam<int> {};
@@ -94,16 +96,16 @@ TEST_P(Adjoint, ComplianceIsItsOwnAdjoint) {
   const Problem problem{gradient_parts::block(GetParam()),
                         gradient_parts::materials(),
                         gradient_parts::load_cases()};
-  const ElasticModel model(problem.mesh, problem.materials, problem.load_cases,
-                           {.tolerance = kSolver});
-  ElasticState state;
-  const ElasticSolution solution =
+  const elastic::ElasticModel model(problem.mesh, problem.materials,
+                                    problem.load_cases, {.tolerance = kSolver});
+  equations::ElasticState state;
+  const equations::ElasticSolution solution =
       model.solve(problem.mesh, problem.load_cases, &state);
   const VectorX& u = solution.displacements[0];
-  const AdjointSolution adjoint = model.solve_adjoint(
+  const equations::AdjointSolution adjoint = model.solve_adjoint(
       state, 0,
-      {compliance_functional(problem.mesh, problem.materials,
-                             problem.load_cases[0], u)
+      {functionals::compliance_functional(problem.mesh, problem.materials,
+                                          problem.load_cases[0], u)
            .by_displacement});
   EXPECT_LE((adjoint.lambda[0] - u).norm(), 1e-9 * u.norm());
   EXPECT_LE((adjoint.reactions[0] - solution.reactions[0]).norm(),
@@ -114,15 +116,15 @@ TEST_P(Adjoint, SpringsByAreaAndInTotal) {
   Problem problem{gradient_parts::block(GetParam()),
                   gradient_parts::materials(),
                   {gradient_parts::held("bed")}};
-  LoadCase& load_case = problem.load_cases[0];
+  loads::LoadCase& load_case = problem.load_cases[0];
   load_case.forces = {{"x1", {1.0, 2.0, -3.0}}};
   load_case.springs = {
       {.surface = "z0", .components = {1.0, 2.0, 0.5}, .normal = 4.0},
       {.surface = "y1",
        .components = {0.0, 3.0, 0.0},
        .normal = 2.0,
-       .measure = SpringMeasure::Total,
-       .axes = LocalAxes{{1.0, 0.2, 0.0}, {0.0, 1.0, 0.3}}}};
+       .measure = loads::SpringMeasure::Total,
+       .axes = element::LocalAxes{{1.0, 0.2, 0.0}, {0.0, 1.0, 0.3}}}};
   expect_total(problem, 0, wave(problem.mesh, 0.4), pad_mean);
 }
 
@@ -132,9 +134,9 @@ INSTANTIATE_TEST_SUITE_P(Orders, Adjoint, testing::Values(1, 2));
 /// fix components.
 TEST(Adjoint, SlidingSurfacesTurn) {
   Problem problem{parts::quarter_tube(2, 0.6), {parts::steel()}, {}};
-  LoadCase load_case;
+  loads::LoadCase load_case;
   load_case.name = "slide";
-  load_case.supports = {{.surface = "x0", .kind = SupportKind::Normal},
+  load_case.supports = {{.surface = "x0", .kind = loads::SupportKind::Normal},
                         {"z0", false, false, true}};
   load_case.springs = {
       {.surface = "x0", .components = {10.0, 20.0, 30.0}, .normal = 100.0}};
@@ -142,12 +144,14 @@ TEST(Adjoint, SlidingSurfacesTurn) {
   load_case.tractions = {{"y1", {5.0, -3.0, 1.0}}};
   problem.load_cases = {load_case};
   const auto functional = [](const TetMesh& mesh, const VectorX& u) {
-    return mean_displacement_functional(mesh, "y0", {0.5, 1.0, -1.0}, u);
+    return functionals::mean_displacement_functional(mesh, "y0",
+                                                     {0.5, 1.0, -1.0}, u);
   };
   const VectorX dx = 0.2 * wave(problem.mesh, 0.4);
   expect_total(problem, 0, dx, functional);
   const auto energy = [&](const TetMesh& mesh, const VectorX& u) {
-    return strain_energy_functional(mesh, problem.materials, load_case, u);
+    return functionals::strain_energy_functional(mesh, problem.materials,
+                                                 load_case, u);
   };
   expect_total(problem, 0, dx, energy);
 }
@@ -156,10 +160,11 @@ TEST(Adjoint, SlidingSurfacesTurn) {
 /// angles no longer where they meet.
 TEST(Adjoint, PlanesOfSymmetryTurn) {
   Problem problem{parts::quarter_tube(2, 0.6), {parts::steel()}, {}};
-  LoadCase load_case = parts::tube_pressure(10.0);
-  load_case.supports = {{.surface = "y0", .kind = SupportKind::Symmetry},
-                        {.surface = "y1", .kind = SupportKind::Symmetry},
-                        {.surface = "z0", .kind = SupportKind::Symmetry}};
+  loads::LoadCase load_case = parts::tube_pressure(10.0);
+  load_case.supports = {
+      {.surface = "y0", .kind = loads::SupportKind::Symmetry},
+      {.surface = "y1", .kind = loads::SupportKind::Symmetry},
+      {.surface = "z0", .kind = loads::SupportKind::Symmetry}};
   problem.load_cases = {load_case};
   Mat3 affine;
   affine << 0.1, -0.4, 0.2, 0.3, -0.2, 0.5, -0.3, 0.1, 0.2;
@@ -169,7 +174,8 @@ TEST(Adjoint, PlanesOfSymmetryTurn) {
         affine * problem.mesh.nodes[i];
   }
   expect_total(problem, 0, dx, [](const TetMesh& mesh, const VectorX& u) {
-    return mean_displacement_functional(mesh, "x1", {0.5, 1.0, -1.0}, u);
+    return functionals::mean_displacement_functional(mesh, "x1",
+                                                     {0.5, 1.0, -1.0}, u);
   });
 }
 
@@ -177,20 +183,23 @@ TEST(Adjoint, SeveralRightHandSidesAreThoseSolvedAlone) {
   const Problem problem{gradient_parts::block(2),
                         gradient_parts::materials(),
                         {gradient_parts::load_cases()[0]}};
-  const ElasticModel model(problem.mesh, problem.materials, problem.load_cases);
-  ElasticState state;
+  const elastic::ElasticModel model(problem.mesh, problem.materials,
+                                    problem.load_cases);
+  equations::ElasticState state;
   model.solve(problem.mesh, problem.load_cases, &state);
   std::vector<VectorX> right;
   for (int k = 0; k < 6; ++k) {
     right.push_back(wave(problem.mesh, 0.7 * k));
   }
   right[4].setZero();
-  const AdjointSolution together = model.solve_adjoint(state, 0, right);
+  const equations::AdjointSolution together =
+      model.solve_adjoint(state, 0, right);
   ASSERT_FALSE(together.failure) << together.failure->message;
   ASSERT_EQ(together.lambda.size(), right.size());
   EXPECT_TRUE(together.lambda[4].isZero(0.0));
   for (std::size_t k = 0; k < right.size(); ++k) {
-    const AdjointSolution alone = model.solve_adjoint(state, 0, {right[k]});
+    const equations::AdjointSolution alone =
+        model.solve_adjoint(state, 0, {right[k]});
     EXPECT_LE((together.lambda[k] - alone.lambda[0]).norm(),
               1e-9 * alone.lambda[0].norm());
   }
@@ -205,8 +214,8 @@ TEST(Adjoint, TheSameBitsOnTwoThreads) {
   std::vector<Points> gradients;
   for (const int threads : {1, 2}) {
     omp_set_num_threads(threads);
-    const ElasticModel model(problem.mesh, problem.materials,
-                             problem.load_cases);
+    const elastic::ElasticModel model(problem.mesh, problem.materials,
+                                      problem.load_cases);
     gradients.push_back(total_gradient(model, problem, 0, pad_mean).gradient);
   }
   omp_set_num_threads(omp_get_num_procs());
@@ -217,20 +226,21 @@ TEST(Adjoint, RefusesWhatItCannotDifferentiate) {
   Problem problem{gradient_parts::block(1),
                   gradient_parts::materials(),
                   {gradient_parts::with_fields()}};
-  LoadCase& load_case = problem.load_cases[0];
+  loads::LoadCase& load_case = problem.load_cases[0];
   load_case.pressures[0].slope = {};
   const VectorX v = wave(problem.mesh, 0.1);
   try {
-    force_gradient(problem.mesh, problem.materials, load_case, v);
+    elastic::force_gradient(problem.mesh, problem.materials, load_case, v);
     FAIL();
   } catch (const InvalidInput& error) {
     EXPECT_THAT(error.what(), HasSubstr("load case 'fields': the pressure on "
                                         "surface 'z1' is a field without"));
   }
-  const ElasticModel model(problem.mesh, problem.materials, problem.load_cases);
-  const ElasticState empty;
+  const elastic::ElasticModel model(problem.mesh, problem.materials,
+                                    problem.load_cases);
+  const equations::ElasticState empty;
   EXPECT_THROW(model.solve_adjoint(empty, 0, {v}), InvalidInput);
-  ElasticState state;
+  equations::ElasticState state;
   model.solve(problem.mesh, problem.load_cases, &state);
   EXPECT_FALSE(state.empty());
   EXPECT_THROW(model.solve_adjoint(state, 1, {v}), InvalidInput);

@@ -29,7 +29,7 @@ class StressFunctionals : public testing::TestWithParam<int> {
     }
   }
 
-  StressFunctionalInput input() const {
+  functionals::StressFunctionalInput input() const {
     return {mesh_, materials_, load_case_, u_, excluded_};
   }
 
@@ -37,24 +37,25 @@ class StressFunctionals : public testing::TestWithParam<int> {
   void expect_derivatives(const OfInput& functional) const {
     expect_partials(mesh_, u_,
                     [&](const TetMesh& mesh, const VectorX& u) {
-                      return functional(StressFunctionalInput{
+                      return functional(functionals::StressFunctionalInput{
                           mesh, materials_, load_case_, u, excluded_});
                     },
                     {.step = 2e-4, .tolerance = kKinks});
-    const StressFunctionalInput value{mesh_, materials_, load_case_,
-                                      u_,    excluded_,  Derivatives::None};
+    const functionals::StressFunctionalInput value{
+        mesh_, materials_, load_case_,
+        u_,    excluded_,  element::Derivatives::None};
     EXPECT_EQ(functional(value).value, functional(input()).value);
     EXPECT_TRUE(functional(value).by_nodes.empty());
   }
 
   double peak() const {
-    const PointStress points = point_stress(
-        mesh_, materials_, u_, temperature_change(mesh_, load_case_));
+    const element::PointStress points = element::point_stress(
+        mesh_, materials_, u_, loads::temperature_change(mesh_, load_case_));
     double largest = 0.0;
     for (int e = 0; e < mesh_.element_count(); ++e) {
       for (int q = 0; excluded_[e] == 0 && q < points.points_per_element; ++q) {
-        largest =
-            std::max(largest, von_mises(points.stress[points.index(e, q)]));
+        largest = std::max(
+            largest, element::von_mises(points.stress[points.index(e, q)]));
       }
     }
     return largest;
@@ -62,16 +63,16 @@ class StressFunctionals : public testing::TestWithParam<int> {
 
   TetMesh mesh_ = gradient_parts::block(GetParam());
   VectorX u_ = 0.1 * derivatives::wave(mesh_, 1.0);
-  std::vector<Material> materials_ = gradient_parts::materials();
-  LoadCase load_case_ = gradient_parts::warm();
+  std::vector<element::Material> materials_ = gradient_parts::materials();
+  loads::LoadCase load_case_ = gradient_parts::warm();
   std::vector<char> excluded_;
 };
 
 TEST_P(StressFunctionals, NormOfVonMises) {
   for (const double power : {1.0, 2.0, 12.0}) {
     SCOPED_TRACE(power);
-    expect_derivatives([power](const StressFunctionalInput& in) {
-      return von_mises_norm_functional(in, power);
+    expect_derivatives([power](const functionals::StressFunctionalInput& in) {
+      return functionals::von_mises_norm_functional(in, power);
     });
   }
 }
@@ -81,10 +82,11 @@ TEST_P(StressFunctionals, NormAndSmoothMaximumRiseToThePeak) {
   double norm = 0.0;
   double smooth = 0.0;
   for (const double sharpness : {1.0, 10.0, 100.0, 1000.0}) {
-    const double next = von_mises_norm_functional(input(), sharpness).value;
-    const double ks =
-        von_mises_ks_functional(input(), {.sharpness = sharpness, .scale = top})
-            .value;
+    const double next =
+        functionals::von_mises_norm_functional(input(), sharpness).value;
+    const double ks = functionals::von_mises_ks_functional(
+                          input(), {.sharpness = sharpness, .scale = top})
+                          .value;
     EXPECT_GT(next, norm);
     EXPECT_GT(ks, smooth);
     norm = next;
@@ -98,35 +100,37 @@ TEST_P(StressFunctionals, NormAndSmoothMaximumRiseToThePeak) {
 
 TEST_P(StressFunctionals, SmoothMaximum) {
   const double scale = peak();
-  expect_derivatives([scale](const StressFunctionalInput& in) {
-    return von_mises_ks_functional(in, {.sharpness = 20.0, .scale = scale});
+  expect_derivatives([scale](const functionals::StressFunctionalInput& in) {
+    return functionals::von_mises_ks_functional(
+        in, {.sharpness = 20.0, .scale = scale});
   });
 }
 
 TEST_P(StressFunctionals, VariationIsThatOfUniformity) {
-  const StressUniformity uniformity =
-      stress_uniformity(mesh_, materials_,
-                        point_stress(mesh_, materials_, u_,
-                                     temperature_change(mesh_, load_case_)),
-                        excluded_);
-  EXPECT_NEAR(von_mises_variation_functional(input()).value,
+  const stress::StressUniformity uniformity = stress::stress_uniformity(
+      mesh_, materials_,
+      element::point_stress(mesh_, materials_, u_,
+                            loads::temperature_change(mesh_, load_case_)),
+      excluded_);
+  EXPECT_NEAR(functionals::von_mises_variation_functional(input()).value,
               uniformity.von_mises.coefficient_of_variation,
               kFunctionalRounding);
-  EXPECT_NEAR(energy_density_variation_functional(input()).value,
+  EXPECT_NEAR(functionals::energy_density_variation_functional(input()).value,
               uniformity.energy_density.coefficient_of_variation,
               kFunctionalRounding);
-  expect_derivatives(von_mises_variation_functional);
-  expect_derivatives(energy_density_variation_functional);
+  expect_derivatives(functionals::von_mises_variation_functional);
+  expect_derivatives(functionals::energy_density_variation_functional);
 }
 
 TEST_P(StressFunctionals, NothingStressedHasNoDerivative) {
   u_.setZero();
   load_case_ = gradient_parts::held("cold");
-  for (const Functional& f :
-       {von_mises_norm_functional(input(), 8.0),
-        von_mises_ks_functional(input(), {.sharpness = 5.0, .scale = 1.0}),
-        von_mises_variation_functional(input()),
-        energy_density_variation_functional(input())}) {
+  for (const element::Functional& f :
+       {functionals::von_mises_norm_functional(input(), 8.0),
+        functionals::von_mises_ks_functional(input(),
+                                             {.sharpness = 5.0, .scale = 1.0}),
+        functionals::von_mises_variation_functional(input()),
+        functionals::energy_density_variation_functional(input())}) {
     EXPECT_NEAR(f.value, 0.0, kFunctionalRounding);
     EXPECT_TRUE(flat(f.by_nodes).allFinite());
     EXPECT_TRUE(f.by_displacement.allFinite());
@@ -134,13 +138,17 @@ TEST_P(StressFunctionals, NothingStressedHasNoDerivative) {
 }
 
 TEST_P(StressFunctionals, RefusesNonsense) {
-  EXPECT_THROW(von_mises_norm_functional(input(), 0.5), InvalidInput);
-  EXPECT_THROW(von_mises_ks_functional(input(), {.sharpness = 0.0}),
+  EXPECT_THROW(functionals::von_mises_norm_functional(input(), 0.5),
                InvalidInput);
+  EXPECT_THROW(
+      functionals::von_mises_ks_functional(input(), {.sharpness = 0.0}),
+      InvalidInput);
   std::fill(excluded_.begin(), excluded_.end(), 1);
-  EXPECT_THROW(von_mises_norm_functional(input(), 8.0), InvalidInput);
+  EXPECT_THROW(functionals::von_mises_norm_functional(input(), 8.0),
+               InvalidInput);
   excluded_.pop_back();
-  EXPECT_THROW(von_mises_variation_functional(input()), InvalidInput);
+  EXPECT_THROW(functionals::von_mises_variation_functional(input()),
+               InvalidInput);
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, StressFunctionals, testing::Values(1, 2));

@@ -15,9 +15,10 @@ constexpr double kThicknessRounding = 1e-12;
 
 /// The bounds of a smooth minimum.
 void expect_least(const TetMesh& mesh, double exact, double error) {
-  const ThicknessPairs pairs = thickness_pairs(mesh);
+  const functionals::ThicknessPairs pairs = functionals::thickness_pairs(mesh);
   constexpr double kSharpness = 400.0;
-  const double value = thickness_functional(mesh, pairs, kSharpness).value;
+  const double value =
+      functionals::thickness_functional(mesh, pairs, kSharpness).value;
   EXPECT_LE(value, exact + error);
   EXPECT_GE(value,
             exact - error - std::log(1.0 * pairs.faces.size()) / kSharpness);
@@ -42,11 +43,15 @@ TEST_P(Thickness, ThinnestPlaceOfAWedge) {
     p.z() *= 0.1 + 0.1 * p.x();
   }
   wedge = of_order(wedge);
-  const ThinPlace thin = thinnest_place(wedge, thickness_pairs(wedge), 0.2);
+  const functionals::ThinPlace thin = functionals::thinnest_place(
+      wedge, functionals::thickness_pairs(wedge), 0.2);
   EXPECT_NEAR(thin.value, 0.1, 0.01);
   EXPECT_LT(thin.place.x(), 0.1);
   EXPECT_NEAR(thin.share, 0.5, 0.06);  // x below 1, by facets of 0.1
-  EXPECT_EQ(thinnest_place(wedge, thickness_pairs(wedge), 0.05).share, 0.0);
+  EXPECT_EQ(functionals::thinnest_place(
+                wedge, functionals::thickness_pairs(wedge), 0.05)
+                .share,
+            0.0);
 }
 
 /// A wall of thickness 1 between radii 1 and 2, as thick as its height is.
@@ -59,10 +64,11 @@ TEST_P(Thickness, OfACurvedWallConvergesAtSecondOrder) {
       x = Vec3(r * std::cos(x.y()), r * std::sin(x.y()), x.z());
     }
     mesh = of_order(mesh);
-    const ThicknessPairs pairs = thickness_pairs(mesh);
+    const functionals::ThicknessPairs pairs =
+        functionals::thickness_pairs(mesh);
     // So sharp that the logarithm counts little.
-    const double error =
-        std::abs(thickness_functional(mesh, pairs, 1e5).value - 1.0);
+    const double error = std::abs(
+        functionals::thickness_functional(mesh, pairs, 1e5).value - 1.0);
     EXPECT_LE(error, 0.1 / (n * n));
     if (before > 0.0) {
       EXPECT_GE(before / error, 2.5);
@@ -73,13 +79,14 @@ TEST_P(Thickness, OfACurvedWallConvergesAtSecondOrder) {
 
 TEST_P(Thickness, HasDerivatives) {
   const TetMesh mesh = gradient_parts::block(GetParam());
-  const ThicknessPairs pairs = thickness_pairs(mesh);
+  const functionals::ThicknessPairs pairs = functionals::thickness_pairs(mesh);
   derivatives::expect_partials(
       mesh, VectorX::Zero(static_cast<Eigen::Index>(3 * mesh.nodes.size())),
       [&](const TetMesh& at, const VectorX&) {
-        return thickness_functional(at, pairs, 30.0);
+        return functionals::thickness_functional(at, pairs, 30.0);
       });
-  EXPECT_THROW(thickness_functional(mesh, pairs, -1.0), InvalidInput);
+  EXPECT_THROW(functionals::thickness_functional(mesh, pairs, -1.0),
+               InvalidInput);
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, Thickness, testing::Values(1, 2));

@@ -16,22 +16,22 @@ using testing::HasSubstr;
 constexpr double kRounding = 1e-12;
 constexpr double kSolver = 1e-9;  // of the solver's own tolerance 1e-10
 
-Material warm_steel() {
-  Material m = parts::steel();
+element::Material warm_steel() {
+  element::Material m = parts::steel();
   m.thermal_expansion.setConstant(1.2e-5);
   return m;
 }
 
-LoadCase held(const std::string& surface) {
-  LoadCase load_case;
+loads::LoadCase held(const std::string& surface) {
+  loads::LoadCase load_case;
   load_case.name = "main";
   load_case.supports = {parts::hold(surface)};
   return load_case;
 }
 
 /// Rests against three planes, free to expand.
-LoadCase corner_held() {
-  LoadCase load_case;
+loads::LoadCase corner_held() {
+  loads::LoadCase load_case;
   load_case.name = "warm";
   load_case.supports = {{"x0", true, false, false},
                         {"y0", false, true, false},
@@ -74,21 +74,21 @@ TEST_P(BodyLoads, WeightIsMassTimesGravity) {
   for (int e = 0; e < mesh.element_count(); e += 3) {
     mesh.element_region[e] = 1;
   }
-  Material heavy = parts::steel();
+  element::Material heavy = parts::steel();
   heavy.density *= 3.0;
-  const std::vector<Material> materials = {parts::steel(), heavy};
-  LoadCase load_case = held("z0");
+  const std::vector<element::Material> materials = {parts::steel(), heavy};
+  loads::LoadCase load_case = held("z0");
   load_case.gravity = {100.0, -20.0, -9810.0};
-  const VectorX f = nodal_forces(mesh, load_case, materials);
-  const Vec3 exact = mesh_mass(mesh, materials) * load_case.gravity;
+  const VectorX f = loads::nodal_forces(mesh, load_case, materials);
+  const Vec3 exact = stress::mesh_mass(mesh, materials) * load_case.gravity;
   EXPECT_LE((total(f) - exact).norm(), kRounding * exact.norm());
 }
 
 TEST_P(BodyLoads, SpinPullsAtTheCentreOfMass) {
   const TetMesh mesh = block(3);
-  LoadCase load_case = held("z0");
-  load_case.spin = Spin{{0.5, -3.0, 7.0}, {0.0, 0.0, 2.0}, 40.0};
-  const VectorX f = nodal_forces(mesh, load_case, {parts::steel()});
+  loads::LoadCase load_case = held("z0");
+  load_case.spin = loads::Spin{{0.5, -3.0, 7.0}, {0.0, 0.0, 2.0}, 40.0};
+  const VectorX f = loads::nodal_forces(mesh, load_case, {parts::steel()});
   const Vec3 exact =
       parts::steel().density * 3.0 * 1600.0 * Vec3(0.5 - 0.5, 1.0 + 3.0, 0.0);
   EXPECT_LE((total(f) - exact).norm(), kRounding * exact.norm());
@@ -96,47 +96,47 @@ TEST_P(BodyLoads, SpinPullsAtTheCentreOfMass) {
 
 TEST_P(BodyLoads, UniformHeatingExpandsWithoutStress) {
   const TetMesh mesh = block(3);
-  LoadCase load_case = corner_held();
-  load_case.temperature = Temperature{.value = 120.0, .reference = 20.0};
-  const std::vector<Material> materials = {warm_steel()};
-  const ElasticModel model(mesh, materials, {load_case});
-  const ElasticSolution& solution = model.base_solution();
+  loads::LoadCase load_case = corner_held();
+  load_case.temperature = loads::Temperature{.value = 120.0, .reference = 20.0};
+  const std::vector<element::Material> materials = {warm_steel()};
+  const elastic::ElasticModel model(mesh, materials, {load_case});
+  const equations::ElasticSolution& solution = model.base_solution();
   ASSERT_FALSE(solution.failure) << solution.failure->message;
   const double strain = 1.2e-3;
   EXPECT_LE(error_of(mesh, solution.displacements[0],
                      [&](const Vec3& x) { return Vec3(strain * x); }),
             kSolver);
-  const StressField stress =
-      recover_stress(mesh, materials, solution.displacements[0],
-                     temperature_change(mesh, load_case));
+  const stress::StressField stress =
+      stress::recover_stress(mesh, materials, solution.displacements[0],
+                             loads::temperature_change(mesh, load_case));
   const double held_back = materials[0].youngs_modulus * strain;
   EXPECT_LE(stress.max_von_mises, kSolver * held_back);
   EXPECT_LE(solution.report.strain_energy,
-            kSolver * held_back * strain * mesh_volume(mesh));
+            kSolver * held_back * strain * stress::mesh_volume(mesh));
 }
 
 TEST_P(BodyLoads, HeatingBetweenWallsPresses) {
   const TetMesh mesh = block(3);
-  Material material = warm_steel();
+  element::Material material = warm_steel();
   material.poisson_ratio = 0.0;
-  LoadCase load_case = corner_held();
+  loads::LoadCase load_case = corner_held();
   load_case.supports.push_back({"x1", true, false, false});
-  load_case.temperature = Temperature{.value = -50.0, .reference = 50.0};
-  const ElasticModel model(mesh, {material}, {load_case});
-  const ElasticSolution& solution = model.base_solution();
+  load_case.temperature = loads::Temperature{.value = -50.0, .reference = 50.0};
+  const elastic::ElasticModel model(mesh, {material}, {load_case});
+  const equations::ElasticSolution& solution = model.base_solution();
   ASSERT_FALSE(solution.failure) << solution.failure->message;
-  const StressField stress =
-      recover_stress(mesh, {material}, solution.displacements[0],
-                     temperature_change(mesh, load_case));
+  const stress::StressField stress =
+      stress::recover_stress(mesh, {material}, solution.displacements[0],
+                             loads::temperature_change(mesh, load_case));
   const double exact = material.youngs_modulus * 1.2e-3;  // a pull: it cools
-  for (const Stress& s : stress.nodal) {
+  for (const element::Stress& s : stress.nodal) {
     EXPECT_NEAR(s[0], exact, kSolver * exact);
     EXPECT_NEAR(s[1], 0.0, kSolver * exact);
   }
-  const double energy = 0.5 * exact * 1.2e-3 * mesh_volume(mesh);
+  const double energy = 0.5 * exact * 1.2e-3 * stress::mesh_volume(mesh);
   EXPECT_NEAR(solution.report.strain_energy, energy, kSolver * energy);
   Vec3 wall = Vec3::Zero();
-  for (const int node : surface_weights(mesh, "x1").nodes) {
+  for (const int node : loads::surface_weights(mesh, "x1").nodes) {
     wall += solution.reactions[0].segment<3>(3L * node);
   }
   EXPECT_NEAR(wall.x(), exact * 3.0, kSolver * exact * 3.0);
@@ -144,16 +144,17 @@ TEST_P(BodyLoads, HeatingBetweenWallsPresses) {
 
 TEST_P(BodyLoads, OrthotropicHeatingFollowsTheMaterialAxes) {
   const TetMesh mesh = block(2);
-  Material material = parts::steel();
-  material.orthotropic = Orthotropic{{9000.0, 700.0, 400.0},
-                                     {0.3, 0.4, 0.4},
-                                     {600.0, 500.0, 40.0},
-                                     {Vec3::UnitZ(), Vec3::UnitX()}};
+  element::Material material = parts::steel();
+  material.orthotropic = element::Orthotropic{{9000.0, 700.0, 400.0},
+                                              {0.3, 0.4, 0.4},
+                                              {600.0, 500.0, 40.0},
+                                              {Vec3::UnitZ(), Vec3::UnitX()}};
   material.thermal_expansion = {4e-6, 3e-5, 5e-5};
-  LoadCase load_case = corner_held();
-  load_case.temperature = Temperature{.value = 10.0};
-  const ElasticModel model(mesh, {material}, {load_case},
-                           {.solver = SolverKind::Cholesky});
+  loads::LoadCase load_case = corner_held();
+  load_case.temperature = loads::Temperature{.value = 10.0};
+  const elastic::ElasticModel model(
+      mesh, {material}, {load_case},
+      {.solver = equations::SolverKind::Cholesky});
   ASSERT_FALSE(model.base_solution().failure);
   const Vec3 strain(3e-4, 5e-4, 4e-5);
   EXPECT_LE(
@@ -169,11 +170,11 @@ INSTANTIATE_TEST_SUITE_P(Orders, BodyLoads, testing::Values(1, 2));
 TEST(Weight, ColumnSagsByItsQuadraticExactly) {
   const TetMesh mesh =
       shapes::straight_quadratic(parts::distorted_brick({1.0, 1.0, 4.0}, 3));
-  Material material = parts::steel();
+  element::Material material = parts::steel();
   material.poisson_ratio = 0.0;
-  LoadCase load_case = held("z0");
+  loads::LoadCase load_case = held("z0");
   load_case.gravity = {0.0, 0.0, -9810.0};
-  const ElasticModel model(mesh, {material}, {load_case});
+  const elastic::ElasticModel model(mesh, {material}, {load_case});
   ASSERT_FALSE(model.base_solution().failure);
   const double k = material.density * 9810.0 / material.youngs_modulus;
   EXPECT_LE(error_of(mesh, model.base_solution().displacements[0],
@@ -189,10 +190,10 @@ TEST(Weight, ColumnSagsByItsQuadraticExactly) {
 TEST(Heat, LinearTemperatureBendsWithoutStress) {
   const TetMesh mesh =
       shapes::straight_quadratic(parts::distorted_brick({1.0, 2.0, 1.5}, 3));
-  const std::vector<Material> materials = {warm_steel()};
-  LoadCase load_case = held("x0");
+  const std::vector<element::Material> materials = {warm_steel()};
+  loads::LoadCase load_case = held("x0");
   load_case.temperature =
-      Temperature{.field = [](const Vec3& x) { return 100.0 * x.y(); }};
+      loads::Temperature{.field = [](const Vec3& x) { return 100.0 * x.y(); }};
   const double a = 100.0 * 1.2e-5;
   VectorX u(3 * static_cast<Eigen::Index>(mesh.nodes.size()));
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
@@ -202,47 +203,50 @@ TEST(Heat, LinearTemperatureBendsWithoutStress) {
                  0.5 * (x.y() * x.y() - x.x() * x.x() - x.z() * x.z()),
                  x.y() * x.z());
   }
-  const VectorX change = temperature_change(mesh, load_case);
-  const StressField stress = recover_stress(mesh, materials, u, change);
+  const VectorX change = loads::temperature_change(mesh, load_case);
+  const stress::StressField stress =
+      stress::recover_stress(mesh, materials, u, change);
   EXPECT_LE(stress.max_von_mises, 1e-10 * materials[0].youngs_modulus * a);
-  const VectorX internal = internal_forces(parts::table_of(mesh), mesh.nodes,
-                                           elastic_laws(materials), u);
-  const VectorX f = nodal_forces(mesh, load_case, materials);
+  const VectorX internal = solver::internal_forces(
+      parts::table_of(mesh), mesh.nodes, element::elastic_laws(materials), u);
+  const VectorX f = loads::nodal_forces(mesh, load_case, materials);
   EXPECT_LE((internal - f).norm(), 1e-11 * f.norm());
 }
 
-void expect_refused(const LoadCase& load_case,
-                    const std::vector<Material>& materials, const char* part) {
+void expect_refused(const loads::LoadCase& load_case,
+                    const std::vector<element::Material>& materials,
+                    const char* part) {
   const TetMesh mesh = shapes::brick({1.0, 1.0, 1.0}, 1, 1, 1);
-  EXPECT_THAT([&] { nodal_forces(mesh, load_case, materials); },
+  EXPECT_THAT([&] { loads::nodal_forces(mesh, load_case, materials); },
               testing::ThrowsMessage<InvalidInput>(HasSubstr(part)));
 }
 
 TEST(BodyLoadChecks, GravityNeedsDensityAndMaterial) {
-  LoadCase load_case = held("z0");
+  loads::LoadCase load_case = held("z0");
   load_case.gravity = {0.0, 0.0, -9810.0};
-  Material weightless = parts::steel();
+  element::Material weightless = parts::steel();
   weightless.density = 0.0;
   expect_refused(load_case, {weightless}, "material 'steel' of region 0");
   expect_refused(load_case, {}, "materials are given for 0");
   const TetMesh mesh = shapes::brick({1.0, 1.0, 1.0}, 1, 1, 1);
-  EXPECT_THROW(ElasticModel(mesh, {weightless}, {load_case}), InvalidInput);
-  EXPECT_THROW(ElasticModel(mesh, {}, {load_case}), InvalidInput);
+  EXPECT_THROW(elastic::ElasticModel(mesh, {weightless}, {load_case}),
+               InvalidInput);
+  EXPECT_THROW(elastic::ElasticModel(mesh, {}, {load_case}), InvalidInput);
   load_case.gravity.y() = NAN;
   expect_refused(load_case, {parts::steel()}, "gravity");
 }
 
 TEST(BodyLoadChecks, SpinNeedsAnAxis) {
-  LoadCase load_case = held("z0");
-  load_case.spin = Spin{.axis = Vec3::Zero(), .rate = 3.0};
+  loads::LoadCase load_case = held("z0");
+  load_case.spin = loads::Spin{.axis = Vec3::Zero(), .rate = 3.0};
   expect_refused(load_case, {parts::steel()}, "axis");
-  load_case.spin = Spin{.rate = INFINITY};
+  load_case.spin = loads::Spin{.rate = INFINITY};
   expect_refused(load_case, {parts::steel()}, "rate");
 }
 
 TEST(BodyLoadChecks, TemperatureNeedsExpansionAndNumbers) {
-  LoadCase load_case = held("z0");
-  load_case.temperature = Temperature{.value = 100.0};
+  loads::LoadCase load_case = held("z0");
+  load_case.temperature = loads::Temperature{.value = 100.0};
   expect_refused(load_case, {parts::steel()}, "thermal expansion");
   load_case.temperature->value = NAN;
   expect_refused(load_case, {warm_steel()}, "temperature");

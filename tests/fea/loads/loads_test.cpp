@@ -24,7 +24,7 @@ Vec3 total_force(const VectorX& f) {
 TEST(Loads, WeightsSumToTheAreaAndVanishAtCornersOfFlatQuadraticFaces) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({2.0, 3.0, 4.0}, 2, 3, 2));
-  const SurfaceWeights w = surface_weights(mesh, "x1");
+  const loads::SurfaceWeights w = loads::surface_weights(mesh, "x1");
   EXPECT_NEAR(w.weights.sum(), 12.0, kLoadRounding * 12.0);
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     if (w.nodes[k] < mesh.corner_count) {
@@ -37,23 +37,25 @@ TEST(Loads, ForceIsSpreadToItsTotal) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({2.0, 3.0, 4.0}, 2, 2, 2));
   const Vec3 force(3.0, -5.0, 7.0);
-  const VectorX f = nodal_forces(mesh, parts::pulled(force));
+  const VectorX f = loads::nodal_forces(mesh, parts::pulled(force));
   EXPECT_LE((total_force(f) - force).norm(), kLoadRounding * force.norm());
 }
 
 TEST(Loads, PressurePushesIntoTheSolidAndBalancesAllRound) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({2.0, 3.0, 4.0}, 2, 2, 2));
-  LoadCase one;
+  loads::LoadCase one;
   one.pressures = {{"x1", 2.0}};
   EXPECT_LE(
-      (total_force(nodal_forces(mesh, one)) - Vec3(-24.0, 0.0, 0.0)).norm(),
+      (total_force(loads::nodal_forces(mesh, one)) - Vec3(-24.0, 0.0, 0.0))
+          .norm(),
       kLoadRounding * 24.0);
-  LoadCase all;
+  loads::LoadCase all;
   for (const std::string& name : mesh.labels) {
     all.pressures.push_back({name, 2.0});
   }
-  EXPECT_LE(total_force(nodal_forces(mesh, all)).norm(), kLoadRounding * 24.0);
+  EXPECT_LE(total_force(loads::nodal_forces(mesh, all)).norm(),
+            kLoadRounding * 24.0);
 }
 
 TEST(Loads, CurvedAreaAndVolumeConverge) {
@@ -62,8 +64,8 @@ TEST(Loads, CurvedAreaAndVolumeConverge) {
   for (int k = 0; k < 2; ++k) {
     const TetMesh mesh = parts::quarter_tube(k == 0 ? 2 : 4, 1.0);
     area_error[k] =
-        std::abs(surface_weights(mesh, "x0").weights.sum() - 0.5 * kPi);
-    volume_error[k] = std::abs(mesh_volume(mesh) - 0.75 * kPi);
+        std::abs(loads::surface_weights(mesh, "x0").weights.sum() - 0.5 * kPi);
+    volume_error[k] = std::abs(stress::mesh_volume(mesh) - 0.75 * kPi);
   }
   EXPECT_GT(area_error[0] / area_error[1], 12.0);      // order 4
   EXPECT_GT(volume_error[0] / volume_error[1], 12.0);  // order 4
@@ -79,7 +81,7 @@ TEST(Loads, MeanDisplacementOfALinearFieldIsItsValueAtTheCentre) {
     u.segment<3>(static_cast<Eigen::Index>(3 * i)) =
         Vec3(x.x(), 2.0 * x.y() + x.z(), 0.0);
   }
-  EXPECT_NEAR(mean_displacement(mesh, "x1", {0.0, 7.0, 0.0}, u), 5.0,
+  EXPECT_NEAR(loads::mean_displacement(mesh, "x1", {0.0, 7.0, 0.0}, u), 5.0,
               5.0 * kLoadRounding);
 }
 
@@ -88,11 +90,12 @@ TEST(Loads, MassUsesTheDensityOfEachRegion) {
   for (int e = 0; e < mesh.element_count(); ++e) {
     mesh.element_region[e] = e < mesh.element_count() / 2 ? 0 : 1;
   }
-  Material light = parts::steel();
+  element::Material light = parts::steel();
   light.density = 2.0;
-  Material heavy = light;
+  element::Material heavy = light;
   heavy.density = 3.0;
-  EXPECT_NEAR(mesh_mass(mesh, {light, heavy}), 5.0, kLoadRounding * 5.0);
+  EXPECT_NEAR(stress::mesh_mass(mesh, {light, heavy}), 5.0,
+              kLoadRounding * 5.0);
 }
 
 /// Sum of x times f over the nodes, about `point`.
@@ -108,11 +111,11 @@ Vec3 moment_about(const TetMesh& mesh, const VectorX& f, const Vec3& point) {
 TEST(Loads, TractionFieldHasItsForceAndMoment) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({2.0, 3.0, 4.0}, 2, 2, 2));
-  LoadCase load_case;
+  loads::LoadCase load_case;
   load_case.tractions = {{.surface = "x1", .field = [](const Vec3& x) {
                             return Vec3(x.y(), x.z() * x.z(), x.y() * x.z());
                           }}};
-  const VectorX f = nodal_forces(mesh, load_case);
+  const VectorX f = loads::nodal_forces(mesh, load_case);
   // Over y in [0, 3], z in [0, 4] at x = 2, by hand.
   const Vec3 force(18.0, 64.0, 36.0);
   EXPECT_LE((total_force(f) - force).norm(), kLoadRounding * force.norm());
@@ -124,43 +127,44 @@ TEST(Loads, TractionFieldHasItsForceAndMoment) {
 TEST(Loads, FieldsOfOneValueActAsNumbers) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({2.0, 3.0, 4.0}, 2, 2, 2));
-  LoadCase numbers;
+  loads::LoadCase numbers;
   numbers.pressures = {{"y1", 2.0}};
   numbers.tractions = {{"z1", {1.0, 2.0, 3.0}}};
-  LoadCase fields;
+  loads::LoadCase fields;
   fields.pressures = {{"y1", 0.0, [](const Vec3&) { return 2.0; }}};
   fields.tractions = {
       {"z1", Vec3::Zero(), [](const Vec3&) { return Vec3(1.0, 2.0, 3.0); }}};
-  const VectorX f = nodal_forces(mesh, numbers);
-  EXPECT_LE((nodal_forces(mesh, fields) - f).norm(), kLoadRounding * f.norm());
+  const VectorX f = loads::nodal_forces(mesh, numbers);
+  EXPECT_LE((loads::nodal_forces(mesh, fields) - f).norm(),
+            kLoadRounding * f.norm());
 }
 
 TEST(Loads, LiquidLiftsACurvedPartByTheWeightItDisplaces) {
   const TetMesh mesh = parts::quarter_tube(2, 1.5);
-  LoadCase load_case;
+  loads::LoadCase load_case;
   for (const std::string& name : mesh.labels) {
     load_case.pressures.push_back(
         {name, 0.0, [](const Vec3& x) { return 7.0 - 3.0 * x.z(); }});
   }
-  const Vec3 lift(0.0, 0.0, 3.0 * mesh_volume(mesh));
-  EXPECT_LE((total_force(nodal_forces(mesh, load_case)) - lift).norm(),
+  const Vec3 lift(0.0, 0.0, 3.0 * stress::mesh_volume(mesh));
+  EXPECT_LE((total_force(loads::nodal_forces(mesh, load_case)) - lift).norm(),
             kLoadRounding * 100.0);
 }
 
 TEST(RemoteLoads, HaveTheForceAndTheMomentAndAreARigidPattern) {
   const TetMesh mesh = parts::quarter_tube(2, 1.5);
-  LoadCase load_case;
+  loads::LoadCase load_case;
   const Vec3 point(5.0, -2.0, 3.0);
   const Vec3 force(1.0, 2.0, -3.0);
   const Vec3 moment(4.0, -1.0, 2.0);
   load_case.remote_loads = {{"z1", point, force, moment}};
-  const VectorX f = nodal_forces(mesh, load_case);
+  const VectorX f = loads::nodal_forces(mesh, load_case);
   EXPECT_LE((total_force(f) - force).norm(), kLoadRounding * force.norm());
   EXPECT_LE((moment_about(mesh, f, point) - moment).norm(),
             kLoadRounding * 20.0 * force.norm());
   // Least in the weighted norm: force over weight is a rigid motion, which
   // takes six numbers.
-  const SurfaceWeights w = surface_weights(mesh, "z1");
+  const loads::SurfaceWeights w = loads::surface_weights(mesh, "z1");
   const auto count = static_cast<Eigen::Index>(w.nodes.size());
   Eigen::MatrixXd rows(3 * count, 6);
   VectorX pattern(3 * count);
@@ -182,17 +186,17 @@ TEST(RemoteLoads, HaveTheForceAndTheMomentAndAreARigidPattern) {
 TEST(RemoteLoads, EndMomentBendsABarToACircle) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({10.0, 1.0, 1.0}, 20, 2, 2));
-  LoadCase load_case;
+  loads::LoadCase load_case;
   load_case.name = "bend";
   load_case.supports = {parts::hold("x0")};
   load_case.remote_loads = {
       {"x1", {10.0, 0.5, 0.5}, Vec3::Zero(), {0.0, 700.0, 0.0}}};
-  Material material = parts::steel();
+  element::Material material = parts::steel();
   material.poisson_ratio = 0.0;
-  const ElasticModel model(mesh, {material}, {load_case});
+  const elastic::ElasticModel model(mesh, {material}, {load_case});
   ASSERT_FALSE(model.base_solution().failure);
-  const double tip = mean_displacement(mesh, "x1", -Vec3::UnitZ(),
-                                       model.base_solution().displacements[0]);
+  const double tip = loads::mean_displacement(
+      mesh, "x1", -Vec3::UnitZ(), model.base_solution().displacements[0]);
   const double exact =
       700.0 * 100.0 / (2.0 * material.youngs_modulus * (1.0 / 12.0));
   EXPECT_NEAR(tip, exact, kEndEffect * exact);
@@ -200,11 +204,11 @@ TEST(RemoteLoads, EndMomentBendsABarToACircle) {
 
 TEST(Loads, FieldsWithoutAValueAreRefusedWithTheirPlace) {
   const TetMesh mesh = shapes::brick({1.0, 1.0, 1.0}, 1, 1, 1);
-  LoadCase load_case;
+  loads::LoadCase load_case;
   load_case.name = "main";
   load_case.pressures = {
       {"x1", 0.0, [](const Vec3& x) { return std::sqrt(x.y() - 0.5); }}};
-  EXPECT_THAT([&] { nodal_forces(mesh, load_case); },
+  EXPECT_THAT([&] { loads::nodal_forces(mesh, load_case); },
               testing::ThrowsMessage<InvalidInput>(testing::AllOf(
                   testing::HasSubstr("'main'"), testing::HasSubstr("'x1'"),
                   testing::HasSubstr("at (1, "))));
@@ -214,28 +218,29 @@ TEST(Loads, FieldsWithoutAValueAreRefusedWithTheirPlace) {
                                 std::span<const double>(x.data(), 3));
                           }}};
   EXPECT_THAT(
-      [&] { nodal_forces(mesh, load_case); },
+      [&] { loads::nodal_forces(mesh, load_case); },
       testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("no value")));
   load_case.pressures.clear();
   load_case.tractions = {{"lid", Vec3::UnitX()}};
-  EXPECT_THROW(nodal_forces(mesh, load_case), InvalidInput);
+  EXPECT_THROW(loads::nodal_forces(mesh, load_case), InvalidInput);
   load_case.tractions = {{"x1", {0.0, INFINITY, 0.0}}};
-  EXPECT_THROW(nodal_forces(mesh, load_case), InvalidInput);
+  EXPECT_THROW(loads::nodal_forces(mesh, load_case), InvalidInput);
   load_case.tractions.clear();
   load_case.remote_loads = {{"x1", {0.0, 0.0, NAN}}};
-  EXPECT_THROW(nodal_forces(mesh, load_case), InvalidInput);
+  EXPECT_THROW(loads::nodal_forces(mesh, load_case), InvalidInput);
 }
 
 TEST(Loads, WrongNamesAndNumbersAreRefused) {
   const TetMesh mesh = shapes::brick({1.0, 1.0, 1.0}, 1, 1, 1);
-  EXPECT_THAT([&] { surface_weights(mesh, "lid"); },
+  EXPECT_THAT([&] { loads::surface_weights(mesh, "lid"); },
               testing::ThrowsMessage<InvalidInput>(testing::AllOf(
                   testing::HasSubstr("lid"), testing::HasSubstr("x0, x1"))));
-  LoadCase bad = parts::pulled({NAN, 0.0, 0.0});
-  EXPECT_THROW(nodal_forces(mesh, bad), InvalidInput);
+  loads::LoadCase bad = parts::pulled({NAN, 0.0, 0.0});
+  EXPECT_THROW(loads::nodal_forces(mesh, bad), InvalidInput);
   const VectorX u = VectorX::Zero(24);
-  EXPECT_THROW(mean_displacement(mesh, "x0", Vec3::Zero(), u), InvalidInput);
-  EXPECT_THROW(mean_displacement(mesh, "x0", Vec3::UnitX(), u.head(3)),
+  EXPECT_THROW(loads::mean_displacement(mesh, "x0", Vec3::Zero(), u),
+               InvalidInput);
+  EXPECT_THROW(loads::mean_displacement(mesh, "x0", Vec3::UnitX(), u.head(3)),
                InvalidInput);
 }
 
@@ -244,7 +249,7 @@ TEST(Loads, SurfaceWithoutAreaIsRefusedByName) {
   for (Vec3& x : mesh.nodes) {
     x.y() = 0.0;
   }
-  EXPECT_THAT([&] { surface_weights(mesh, "x1"); },
+  EXPECT_THAT([&] { loads::surface_weights(mesh, "x1"); },
               testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("x1")));
 }
 

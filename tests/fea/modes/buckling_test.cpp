@@ -19,17 +19,18 @@ TetMesh column(int order) {
 
 struct Loaded {
   TetMesh mesh;
-  std::vector<LoadCase> cases;
-  ElasticModel model;
+  std::vector<loads::LoadCase> cases;
+  elastic::ElasticModel model;
 
   Loaded(TetMesh m, const Vec3& force)
       : mesh(std::move(m)),
         cases({parts::pulled(force)}),
         model(mesh, {parts::steel()}, cases) {}
 
-  BucklingModes buckle(const BucklingOptions& options = {}) const {
-    return buckling_modes(model, mesh, cases, 0,
-                          model.base_solution().displacements[0], options);
+  modes::BucklingModes buckle(
+      const modes::BucklingOptions& options = {}) const {
+    return modes::buckling_modes(
+        model, mesh, cases, 0, model.base_solution().displacements[0], options);
   }
 };
 
@@ -37,17 +38,17 @@ class Buckling : public testing::TestWithParam<int> {};
 
 TEST_P(Buckling, SolvesTheEigenproblem) {
   const Loaded part(column(GetParam()), {-1000.0, 0.0, 0.0});
-  const BucklingModes modes = part.buckle({.count = 3});
+  const modes::BucklingModes modes = part.buckle({.count = 3});
   ASSERT_FALSE(modes.failure) << modes.failure->message;
   ASSERT_EQ(modes.factors.size(), 3U);
-  const ElementTable table = parts::table_of(part.mesh);
-  BlockMatrix<double> K;
-  ASSERT_FALSE(
-      assemble(table, part.mesh.nodes, elastic_laws({parts::steel()}), K));
-  const NodalMatrix Kg = geometric_stiffness(
+  const solver::ElementTable table = parts::table_of(part.mesh);
+  solver::BlockMatrix<double> K;
+  ASSERT_FALSE(solver::assemble(table, part.mesh.nodes,
+                                element::elastic_laws({parts::steel()}), K));
+  const solver::NodalMatrix Kg = solver::geometric_stiffness(
       table, part.mesh.nodes, parts::own_elements(part.mesh),
-      point_stress(part.mesh, {parts::steel()},
-                   part.model.base_solution().displacements[0]));
+      element::point_stress(part.mesh, {parts::steel()},
+                            part.model.base_solution().displacements[0]));
   for (std::size_t k = 0; k < 3; ++k) {
     const VectorX& x = modes.shapes[k];
     const VectorX Kx = parts::product(table, K, x);
@@ -79,19 +80,20 @@ TEST_P(Buckling, TwiceTheLoadHalvesTheFactor) {
 TEST_P(Buckling, TensionHasTheFactorOfReversedCompression) {
   const Loaded pushed(column(GetParam()), {-1000.0, 0.0, 0.0});
   const Loaded pulled(column(GetParam()), {1000.0, 0.0, 0.0});
-  EXPECT_NEAR(pulled.buckle({.sense = LoadSense::Reversed}).factors.at(0),
-              pushed.buckle().factors.at(0),
-              1e-8 * pushed.buckle().factors.at(0));
+  EXPECT_NEAR(
+      pulled.buckle({.sense = modes::LoadSense::Reversed}).factors.at(0),
+      pushed.buckle().factors.at(0), 1e-8 * pushed.buckle().factors.at(0));
 }
 
 // No Poisson effect: nothing is compressed anywhere.
 TEST_P(Buckling, PureTensionHasNoFactor) {
   const TetMesh mesh = column(GetParam());
-  Material cork = parts::steel();
+  element::Material cork = parts::steel();
   cork.poisson_ratio = 0.0;
-  const std::vector<LoadCase> cases = {parts::pulled({1000.0, 0.0, 0.0})};
-  const ElasticModel model(mesh, {cork}, cases);
-  const BucklingModes modes = buckling_modes(
+  const std::vector<loads::LoadCase> cases = {
+      parts::pulled({1000.0, 0.0, 0.0})};
+  const elastic::ElasticModel model(mesh, {cork}, cases);
+  const modes::BucklingModes modes = modes::buckling_modes(
       model, mesh, cases, 0, model.base_solution().displacements[0],
       {.tolerance = 1e-2, .largest = 1e3});
   EXPECT_FALSE(modes.failure) << modes.failure->message;
@@ -104,8 +106,8 @@ TEST(BucklingOf, AnUnstressedPartHasNoFactor) {
   const Loaded part(column(1), {-1.0, 0.0, 0.0});
   const VectorX nothing =
       VectorX::Zero(static_cast<Eigen::Index>(3 * part.mesh.nodes.size()));
-  const BucklingModes modes =
-      buckling_modes(part.model, part.mesh, part.cases, 0, nothing);
+  const modes::BucklingModes modes =
+      modes::buckling_modes(part.model, part.mesh, part.cases, 0, nothing);
   EXPECT_FALSE(modes.failure);
   EXPECT_TRUE(modes.factors.empty());
 }
@@ -115,11 +117,12 @@ TEST(BucklingOf, WrongInputIsRefused) {
   const VectorX& u = part.model.base_solution().displacements[0];
   EXPECT_THROW(part.buckle({.count = 0}), InvalidInput);
   EXPECT_THROW(part.buckle({.largest = 0.0}), InvalidInput);
-  EXPECT_THROW(buckling_modes(part.model, part.mesh, part.cases, 0, u.head(7)),
+  EXPECT_THROW(
+      modes::buckling_modes(part.model, part.mesh, part.cases, 0, u.head(7)),
+      InvalidInput);
+  EXPECT_THROW(modes::buckling_modes(part.model, part.mesh, part.cases, 3, u),
                InvalidInput);
-  EXPECT_THROW(buckling_modes(part.model, part.mesh, part.cases, 3, u),
-               InvalidInput);
-  EXPECT_THROW(buckling_modes(part.model, column(2), part.cases, 0, u),
+  EXPECT_THROW(modes::buckling_modes(part.model, column(2), part.cases, 0, u),
                InvalidInput);
 }
 
@@ -127,8 +130,8 @@ TEST(BucklingOf, StressesThatAreNotFiniteAreTold) {
   const Loaded part(column(2), {-1.0, 0.0, 0.0});
   VectorX u = part.model.base_solution().displacements[0];
   u[7] = std::nan("");
-  const BucklingModes modes =
-      buckling_modes(part.model, part.mesh, part.cases, 0, u);
+  const modes::BucklingModes modes =
+      modes::buckling_modes(part.model, part.mesh, part.cases, 0, u);
   ASSERT_TRUE(modes.failure);
   EXPECT_EQ(modes.failure->kind, FailureKind::NotANumber);
   EXPECT_TRUE(modes.factors.empty());
@@ -152,10 +155,10 @@ TEST(BucklingOf, AMovedMeshIsThatOfAModelOfItsOwn) {
   for (Vec3& x : moved.nodes) {
     x.z() *= 1.0 + 0.02 * x.x();
   }
-  const BucklingModes far =
-      buckling_modes(base.model, moved, base.cases, 0,
-                     base.model.solve(moved).displacements[0]);
-  const BucklingModes own = Loaded(moved, {-1000.0, 0.0, 0.0}).buckle();
+  const modes::BucklingModes far =
+      modes::buckling_modes(base.model, moved, base.cases, 0,
+                            base.model.solve(moved).displacements[0]);
+  const modes::BucklingModes own = Loaded(moved, {-1000.0, 0.0, 0.0}).buckle();
   ASSERT_FALSE(far.failure) << far.failure->message;
   EXPECT_NEAR(far.factors.at(0), own.factors.at(0), 1e-8 * own.factors.at(0));
 }
@@ -169,8 +172,8 @@ TEST(BucklingOf, OneAndTwoThreadsGiveTheSameBits) {
         .buckle({.tolerance = 1e-3});
   };
   const int before = omp_get_max_threads();
-  const BucklingModes one = run(1);
-  const BucklingModes two = run(2);
+  const modes::BucklingModes one = run(1);
+  const modes::BucklingModes two = run(2);
   omp_set_num_threads(before);
   ASSERT_FALSE(one.failure) << one.failure->message;
   EXPECT_EQ(one.factors, two.factors);

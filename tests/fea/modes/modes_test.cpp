@@ -17,8 +17,8 @@ namespace {
 
 using std::numbers::pi;
 
-LoadCase held_at_x0() {
-  LoadCase load_case;
+loads::LoadCase held_at_x0() {
+  loads::LoadCase load_case;
   load_case.name = "held";
   load_case.supports = {parts::hold("x0")};
   return load_case;
@@ -33,14 +33,16 @@ struct Matrices {
   Eigen::SparseMatrix<double> K, M;
 };
 
-Matrices matrices_of(const TetMesh& mesh, const Material& material,
+Matrices matrices_of(const TetMesh& mesh, const element::Material& material,
                      const std::vector<char>& held) {
-  const ElementTable table = parts::table_of(mesh);
-  BlockMatrix<double> K;
-  EXPECT_FALSE(assemble(table, mesh.nodes, elastic_laws({material}), K));
+  const solver::ElementTable table = parts::table_of(mesh);
+  solver::BlockMatrix<double> K;
+  EXPECT_FALSE(solver::assemble(table, mesh.nodes,
+                                element::elastic_laws({material}), K));
   return {parts::sparse(table, K, held),
           parts::sparse(
-              table, mass_matrix(table, mesh.nodes, {material.density}), held)};
+              table, solver::mass_matrix(table, mesh.nodes, {material.density}),
+              held)};
 }
 
 class Modes : public testing::TestWithParam<int> {};
@@ -48,9 +50,9 @@ class Modes : public testing::TestWithParam<int> {};
 // The residual of the answer in the mesh's own numbering, and the scales.
 TEST_P(Modes, SolveTheEigenproblemWithUnitMass) {
   const TetMesh mesh = bar(GetParam());
-  const Material steel = parts::steel();
-  const NaturalModes modes =
-      natural_modes(mesh, {steel}, held_at_x0(), {.count = 5});
+  const element::Material steel = parts::steel();
+  const modes::NaturalModes modes =
+      modes::natural_modes(mesh, {steel}, held_at_x0(), {.count = 5});
   ASSERT_FALSE(modes.failure) << modes.failure->message;
   ASSERT_EQ(modes.frequencies.size(), 5U);
   EXPECT_EQ(modes.rigid_motions, 0);
@@ -78,10 +80,10 @@ TEST_P(Modes, SolveTheEigenproblemWithUnitMass) {
 // Spectra's Lanczos on K^-1 M, with its own Cholesky factor.
 TEST_P(Modes, AreThoseOfSpectra) {
   const TetMesh mesh = bar(GetParam());
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   const int count = 6;
-  const NaturalModes modes =
-      natural_modes(mesh, {steel}, held_at_x0(), {.count = count});
+  const modes::NaturalModes modes =
+      modes::natural_modes(mesh, {steel}, held_at_x0(), {.count = count});
   const Matrices m = matrices_of(
       mesh, steel, parts::held_unknowns(mesh, [](const Vec3& x, int) {
         return x.x() < 1e-9;
@@ -104,10 +106,11 @@ TEST_P(Modes, AreThoseOfSpectra) {
 
 TEST_P(Modes, OfAModelAreThoseOfTheMesh) {
   const TetMesh mesh = bar(GetParam());
-  const std::vector<LoadCase> cases = {parts::pulled({1.0, 2.0, 3.0})};
-  const ElasticModel model(mesh, {parts::steel()}, cases);
-  const NaturalModes a = natural_modes(model, mesh, cases, 0);
-  const NaturalModes b = natural_modes(mesh, {parts::steel()}, held_at_x0());
+  const std::vector<loads::LoadCase> cases = {parts::pulled({1.0, 2.0, 3.0})};
+  const elastic::ElasticModel model(mesh, {parts::steel()}, cases);
+  const modes::NaturalModes a = modes::natural_modes(model, mesh, cases, 0);
+  const modes::NaturalModes b =
+      modes::natural_modes(mesh, {parts::steel()}, held_at_x0());
   ASSERT_EQ(a.frequencies.size(), b.frequencies.size());
   for (std::size_t k = 0; k < a.frequencies.size(); ++k) {
     EXPECT_NEAR(a.frequencies[k], b.frequencies[k], 1e-9 * b.frequencies[k]);
@@ -118,8 +121,8 @@ TEST_P(Modes, OfAModelAreThoseOfTheMesh) {
 
 TEST_P(Modes, OfAFreePartLeaveSixRigidMotions) {
   const TetMesh mesh = bar(GetParam());
-  const NaturalModes free =
-      natural_modes(mesh, {parts::steel()}, LoadCase{.name = "free"});
+  const modes::NaturalModes free = modes::natural_modes(
+      mesh, {parts::steel()}, loads::LoadCase{.name = "free"});
   ASSERT_FALSE(free.failure) << free.failure->message;
   EXPECT_EQ(free.rigid_motions, 6);
   ASSERT_EQ(free.frequencies.size(), 6U);
@@ -134,10 +137,10 @@ TEST_P(Modes, OfAFreePartLeaveSixRigidMotions) {
 }
 
 TEST_P(Modes, OfASlidingPartLeaveItsThreeMotions) {
-  LoadCase sliding;
+  loads::LoadCase sliding;
   sliding.supports = {{.surface = "z0", .fix_z = true}};
-  const NaturalModes modes =
-      natural_modes(bar(GetParam()), {parts::steel()}, sliding, {.count = 3});
+  const modes::NaturalModes modes = modes::natural_modes(
+      bar(GetParam()), {parts::steel()}, sliding, {.count = 3});
   EXPECT_EQ(modes.rigid_motions, 3);
   EXPECT_EQ(modes.frequencies.size(), 3U);
 }
@@ -145,15 +148,16 @@ TEST_P(Modes, OfASlidingPartLeaveItsThreeMotions) {
 // A stiff part on springs: omega^2 = k / m.
 TEST_P(Modes, OfAStiffPartOnSpringsAreThoseOfAMassOnSprings) {
   const TetMesh mesh = bar(GetParam());
-  LoadCase sprung;
+  loads::LoadCase sprung;
   sprung.supports = {{.surface = "z0", .fix_y = true},
                      {.surface = "z0", .fix_z = true}};
   sprung.springs = {{.surface = "x0",
                      .components = {50.0, 0.0, 0.0},
-                     .measure = SpringMeasure::Total}};
-  Material stiff = parts::steel();
+                     .measure = loads::SpringMeasure::Total}};
+  element::Material stiff = parts::steel();
   stiff.youngs_modulus = 1e7;
-  const NaturalModes modes = natural_modes(mesh, {stiff}, sprung, {.count = 1});
+  const modes::NaturalModes modes =
+      modes::natural_modes(mesh, {stiff}, sprung, {.count = 1});
   ASSERT_FALSE(modes.failure) << modes.failure->message;
   const double mass = stiff.density * 5.0 * 1.3 * 0.8;
   EXPECT_NEAR(modes.frequencies[0], std::sqrt(50.0 / mass) / (2.0 * pi),
@@ -164,8 +168,8 @@ INSTANTIATE_TEST_SUITE_P(Orders, Modes, testing::Values(1, 2));
 
 TEST(ModesOf, AFewElementsEndWithTheirLastUnknown) {
   const TetMesh mesh = shapes::brick({1.0, 1.0, 1.0}, 1, 1, 1);
-  const NaturalModes modes =
-      natural_modes(mesh, {parts::steel()}, held_at_x0(), {.count = 40});
+  const modes::NaturalModes modes =
+      modes::natural_modes(mesh, {parts::steel()}, held_at_x0(), {.count = 40});
   EXPECT_FALSE(modes.failure);
   EXPECT_EQ(modes.frequencies.size(), 12U);  // four free nodes
 }
@@ -182,8 +186,8 @@ TEST(ModesOf, TwoFreePartsLeaveTwelveMotions) {
   }
   mesh.element_region.resize(2 * other.element_region.size(), 0);
   mesh.corner_count = 2 * nodes;
-  const NaturalModes modes = natural_modes(
-      mesh, {parts::steel()}, LoadCase{.name = "free"}, {.count = 2});
+  const modes::NaturalModes modes = modes::natural_modes(
+      mesh, {parts::steel()}, loads::LoadCase{.name = "free"}, {.count = 2});
   EXPECT_FALSE(modes.failure);
   EXPECT_EQ(modes.rigid_motions, 12);
   ASSERT_EQ(modes.frequencies.size(), 2U);
@@ -193,23 +197,26 @@ TEST(ModesOf, TwoFreePartsLeaveTwelveMotions) {
 
 TEST(ModesOf, WrongInputIsRefused) {
   const TetMesh mesh = bar(1);
-  Material weightless = parts::steel();
+  element::Material weightless = parts::steel();
   weightless.density = 0.0;
-  EXPECT_THROW(natural_modes(mesh, {weightless}, held_at_x0()), InvalidInput);
-  EXPECT_THROW(natural_modes(mesh, {weightless}, LoadCase{}), InvalidInput);
+  EXPECT_THROW(modes::natural_modes(mesh, {weightless}, held_at_x0()),
+               InvalidInput);
+  EXPECT_THROW(modes::natural_modes(mesh, {weightless}, loads::LoadCase{}),
+               InvalidInput);
   EXPECT_THROW(
-      natural_modes(mesh, {parts::steel()}, held_at_x0(), {.count = 0}),
+      modes::natural_modes(mesh, {parts::steel()}, held_at_x0(), {.count = 0}),
       InvalidInput);
-  EXPECT_THROW(
-      natural_modes(mesh, {parts::steel()}, held_at_x0(), {.tolerance = 0.0}),
-      InvalidInput);
-  LoadCase unknown;
+  EXPECT_THROW(modes::natural_modes(mesh, {parts::steel()}, held_at_x0(),
+                                    {.tolerance = 0.0}),
+               InvalidInput);
+  loads::LoadCase unknown;
   unknown.supports = {parts::hold("nowhere")};
-  EXPECT_THROW(natural_modes(mesh, {parts::steel()}, unknown), InvalidInput);
+  EXPECT_THROW(modes::natural_modes(mesh, {parts::steel()}, unknown),
+               InvalidInput);
 }
 
 TEST(ModesOf, TooFewIterationsAreTold) {
-  const NaturalModes modes = natural_modes(
+  const modes::NaturalModes modes = modes::natural_modes(
       shapes::straight_quadratic(shapes::brick({40.0, 1.0, 0.5}, 60, 3, 2)),
       {parts::steel()}, held_at_x0(), {.max_iterations = 2});
   ASSERT_TRUE(modes.failure);
@@ -220,15 +227,15 @@ TEST(ModesOf, TooFewIterationsAreTold) {
 TEST(ModesOf, APartThatIsHardlyHeldAreFound) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({4.0, 2.0, 1.5}, 12, 6, 5));
-  const Material steel = parts::steel();
+  const element::Material steel = parts::steel();
   for (const double softness : {1e-3, 1e-6, 1e-9}) {
     const double k = softness * steel.youngs_modulus;
-    LoadCase sprung;
+    loads::LoadCase sprung;
     sprung.springs = {{.surface = "x0",
                        .components = {k, k, k},
-                       .measure = SpringMeasure::Total}};
-    const NaturalModes modes =
-        natural_modes(mesh, {steel}, sprung, {.count = 6});
+                       .measure = loads::SpringMeasure::Total}};
+    const modes::NaturalModes modes =
+        modes::natural_modes(mesh, {steel}, sprung, {.count = 6});
     ASSERT_FALSE(modes.failure) << modes.failure->message;
     EXPECT_EQ(modes.rigid_motions, 0);
     double nearest = 1.0;  // one goes along x, all others turn too
@@ -244,15 +251,16 @@ TEST(ModesOf, APartThatIsHardlyHeldAreFound) {
 TEST(ModesOf, OneAndTwoThreadsGiveTheSameBits) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({3.0, 2.0, 1.5}, 14, 10, 9));
-  const auto run = [&](int threads, const LoadCase& held) {
+  const auto run = [&](int threads, const loads::LoadCase& held) {
     omp_set_num_threads(threads);
-    return natural_modes(mesh, {parts::steel()}, held,
-                         {.count = 1, .tolerance = 1e-3});
+    return modes::natural_modes(mesh, {parts::steel()}, held,
+                                {.count = 1, .tolerance = 1e-3});
   };
   const int before = omp_get_max_threads();
-  for (const LoadCase& held : {held_at_x0(), LoadCase{.name = "free"}}) {
-    const NaturalModes one = run(1, held);
-    const NaturalModes two = run(2, held);
+  for (const loads::LoadCase& held :
+       {held_at_x0(), loads::LoadCase{.name = "free"}}) {
+    const modes::NaturalModes one = run(1, held);
+    const modes::NaturalModes two = run(2, held);
     EXPECT_FALSE(one.failure);
     EXPECT_EQ(one.frequencies, two.frequencies);
     EXPECT_EQ(one.residuals, two.residuals);

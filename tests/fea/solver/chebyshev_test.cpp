@@ -10,10 +10,10 @@ namespace meniscus::chebyshev_test {
 namespace {
 
 // What the steps leave of an error along the eigenvalue t of M A.
-double left_of(const std::vector<ChebyshevStep>& steps, double t) {
+double left_of(const std::vector<solver::ChebyshevStep>& steps, double t) {
   double error = 1.0;
   double d = 0.0;
-  for (const ChebyshevStep& step : steps) {
+  for (const solver::ChebyshevStep& step : steps) {
     d = step.keep * d + step.take * t * error;
     error -= d;
   }
@@ -23,8 +23,8 @@ double left_of(const std::vector<ChebyshevStep>& steps, double t) {
 TEST(Chebyshev, ReducesEveryErrorOfTheIntervalAsAsked) {
   for (const double lowest : {0.02, 0.1, 0.5}) {
     for (const double reduction : {0.5, 0.1, 1e-3}) {
-      const std::vector<ChebyshevStep> steps =
-          chebyshev_steps(lowest, 1.02, reduction, 1000);
+      const std::vector<solver::ChebyshevStep> steps =
+          solver::chebyshev_steps(lowest, 1.02, reduction, 1000);
       double largest = 0.0;
       for (double t = lowest; t <= 1.02; t += 1e-4) {
         largest = std::max(largest, std::abs(left_of(steps, t)));
@@ -34,7 +34,7 @@ TEST(Chebyshev, ReducesEveryErrorOfTheIntervalAsAsked) {
         continue;
       }
       // One step fewer is too few.
-      const std::vector<ChebyshevStep> fewer = chebyshev_steps(
+      const std::vector<solver::ChebyshevStep> fewer = solver::chebyshev_steps(
           lowest, 1.02, reduction, static_cast<int>(steps.size()) - 1);
       EXPECT_GT(std::abs(left_of(fewer, lowest)), reduction);
     }
@@ -44,7 +44,8 @@ TEST(Chebyshev, ReducesEveryErrorOfTheIntervalAsAsked) {
 // Below the interval errors shrink, too, or the preconditioner would not be
 // positive.
 TEST(Chebyshev, StaysPositiveBelowTheInterval) {
-  const std::vector<ChebyshevStep> steps = chebyshev_steps(0.1, 1.02, 0.2, 9);
+  const std::vector<solver::ChebyshevStep> steps =
+      solver::chebyshev_steps(0.1, 1.02, 0.2, 9);
   for (double t = 1e-6; t < 0.1; t += 1e-3) {
     EXPECT_LT(left_of(steps, t), 1.0);
     EXPECT_GT(left_of(steps, t), 0.0);
@@ -52,7 +53,8 @@ TEST(Chebyshev, StaysPositiveBelowTheInterval) {
 }
 
 TEST(Chebyshev, OneEigenvalueTakesOneStep) {
-  const std::vector<ChebyshevStep> steps = chebyshev_steps(1.0, 1.0, 0.2, 9);
+  const std::vector<solver::ChebyshevStep> steps =
+      solver::chebyshev_steps(1.0, 1.0, 0.2, 9);
   ASSERT_EQ(steps.size(), 1U);
   EXPECT_NEAR(left_of(steps, 1.0), 0.0, 1e-12);
 }
@@ -75,7 +77,7 @@ TEST(Chebyshev, LanczosFindsTheLowestEigenvalue) {
     alpha.push_back(rr / p.dot(q));
     r -= alpha.back() * q;
   }
-  EXPECT_NEAR(lowest_ritz_value(alpha, beta), 0.03, 1e-8);
+  EXPECT_NEAR(solver::lowest_ritz_value(alpha, beta), 0.03, 1e-8);
 }
 
 }  // namespace

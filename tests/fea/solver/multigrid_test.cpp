@@ -18,15 +18,15 @@ using Blocks6 = Eigen::Matrix<double, 3, 6, Eigen::RowMajor>;
 
 /// A mesh in the solver's numbering, with its stiffness.
 struct Ordered {
-  NodeOrder order;
-  ElementTable table;
+  solver::NodeOrder order;
+  solver::ElementTable table;
   Points x;
-  BlockMatrix<double> matrix;
+  solver::BlockMatrix<double> matrix;
 };
 
 Ordered ordered(const TetMesh& mesh) {
   Ordered result;
-  result.order = chunked_order(mesh);
+  result.order = solver::chunked_order(mesh);
   std::vector<int> elements;
   for (const int e : result.order.element) {
     for (const int node : mesh.element(e)) {
@@ -36,11 +36,11 @@ Ordered ordered(const TetMesh& mesh) {
   for (const int node : result.order.to_mesh) {
     result.x.push_back(mesh.nodes[node]);
   }
-  result.table =
-      make_element_table(result.order.chunks, mesh.nodes_per_element(),
-                         elements, std::vector<int>(mesh.element_count(), 0));
-  EXPECT_FALSE(
-      assemble(result.table, result.x, {lame(parts::steel())}, result.matrix));
+  result.table = solver::make_element_table(
+      result.order.chunks, mesh.nodes_per_element(), elements,
+      std::vector<int>(mesh.element_count(), 0));
+  EXPECT_FALSE(solver::assemble(
+      result.table, result.x, {element::lame(parts::steel())}, result.matrix));
   return result;
 }
 
@@ -50,8 +50,8 @@ TetMesh many_chunks() {
 
 TEST(Chunks, NoNodeNeighboursTwoOfOneColour) {
   const TetMesh mesh = many_chunks();
-  const NodeOrder order = chunked_order(mesh);
-  const RowChunks& chunks = order.chunks;
+  const solver::NodeOrder order = solver::chunked_order(mesh);
+  const solver::RowChunks& chunks = order.chunks;
   ASSERT_GT(chunks.count(), 3 * chunks.colours());
   std::vector<int> chunk(mesh.nodes.size());
   std::vector<int> colour(mesh.nodes.size());
@@ -87,7 +87,7 @@ TEST(Chunks, NoNodeNeighboursTwoOfOneColour) {
 /// Padded single-precision vectors of one column.
 struct Sweeps {
   explicit Sweeps(const Ordered& ordered)
-      : part(ordered), smoother(make_smoother_matrix(ordered.matrix)) {
+      : part(ordered), smoother(solver::make_smoother_matrix(ordered.matrix)) {
     for (int i = 0; i < part.table.pattern.nodes; ++i) {
       const Eigen::Matrix3d D =
           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
@@ -101,7 +101,7 @@ struct Sweeps {
       }
     }
   }
-  SweepMatrix matrix() const {
+  solver::SweepMatrix matrix() const {
     return {&part.table.pattern, smoother.lower.data(), inverse.data()};
   }
   std::vector<float> zero() const {
@@ -117,7 +117,7 @@ struct Sweeps {
     return v;
   }
   const Ordered& part;
-  SmootherMatrix smoother;
+  solver::SmootherMatrix smoother;
   std::vector<float> inverse;
 };
 
@@ -139,10 +139,11 @@ TEST(Sweeps, ForwardLeavesTheResidualAndBackwardIsItsAdjoint) {
   // What stands in them is not read.
   std::vector<float> x(a.size(), std::numeric_limits<float>::quiet_NaN());
   std::vector<float> upper = x;
-  sweep_forward<3, 1>(s.matrix(), a.data(), x.data(), upper.data());
+  solver::sweep_forward<3, 1>(s.matrix(), a.data(), x.data(), upper.data());
   std::vector<double> wide(x.begin(), x.end());
   std::vector<double> product(wide.size(), 0.0);
-  multiply<3, 1>(part.table.pattern, part.matrix, wide.data(), product.data());
+  solver::multiply<3, 1>(part.table.pattern, part.matrix, wide.data(),
+                         product.data());
   double error = 0.0;
   for (std::size_t d = 0; d < a.size(); ++d) {
     if (d % 4 < 3) {
@@ -153,12 +154,12 @@ TEST(Sweeps, ForwardLeavesTheResidualAndBackwardIsItsAdjoint) {
   EXPECT_LE(error, kSingle);
   std::vector<float> y = s.zero();
   upper = s.zero();
-  sweep_backward<3, 1>(s.matrix(), b.data(), y.data(), upper.data());
+  solver::sweep_backward<3, 1>(s.matrix(), b.data(), y.data(), upper.data());
   EXPECT_NEAR(dot(b, x), dot(y, a), kSingle * std::sqrt(dot(x, x) * dot(b, b)));
 }
 
-Eigen::MatrixXd dense(const BlockPattern& p, const BlockMatrix<double>& m,
-                      int B) {
+Eigen::MatrixXd dense(const solver::BlockPattern& p,
+                      const solver::BlockMatrix<double>& m, int B) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(B * p.nodes, B * p.nodes);
   using Row =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -190,8 +191,8 @@ TEST(Aggregation, CoarseOperatorIsGalerkinsAndRigidMotionsSurvive) {
         -x.x(), 0;
     Eigen::Map<Blocks6>(motions.data() + 18L * i) = m;
   }
-  const AggregateLevel level =
-      aggregate<3>({&part.table.pattern, &part.matrix, &inverse, &motions});
+  const solver::AggregateLevel level = solver::aggregate<3>(
+      {&part.table.pattern, &part.matrix, &inverse, &motions});
   const int coarse = level.coarse.pattern.nodes;
   EXPECT_LT(coarse, n / 4);
   Eigen::MatrixXd P = Eigen::MatrixXd::Zero(3 * n, 6 * coarse);

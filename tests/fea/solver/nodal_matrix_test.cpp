@@ -32,22 +32,23 @@ TEST_P(NodalMatrices, MassOfARigidTranslationIsThePartsMass) {
   for (int e = 0; e < mesh.element_count() / 3; ++e) {
     mesh.element_region[e] = 1;
   }
-  const Material light{"light", 1.0, 0.0, 2.5, {}};
-  const Material heavy{"heavy", 1.0, 0.0, 7.0, {}};
-  const ElementTable table = parts::table_of(mesh);
-  const NodalMatrix M = mass_matrix(table, mesh.nodes, {2.5, 7.0});
+  const element::Material light{"light", 1.0, 0.0, 2.5, {}};
+  const element::Material heavy{"heavy", 1.0, 0.0, 7.0, {}};
+  const solver::ElementTable table = parts::table_of(mesh);
+  const solver::NodalMatrix M =
+      solver::mass_matrix(table, mesh.nodes, {2.5, 7.0});
   const Vec3 shift(0.3, -2.0, 1.1);
   const VectorX u =
       shift.replicate(static_cast<Eigen::Index>(mesh.nodes.size()), 1);
-  const double mass = mesh_mass(mesh, {light, heavy});
+  const double mass = stress::mesh_mass(mesh, {light, heavy});
   EXPECT_NEAR(u.dot(parts::product(table, M, u)), mass * shift.squaredNorm(),
               kRounding * mass * shift.squaredNorm());
 }
 
 // u = x^2 e_y with ten nodes, u = x e_y with four: int rho u^2.
 TEST_P(NodalMatrices, MassIsExactOnStraightElements) {
-  const ElementTable table = parts::table_of(mesh_);
-  const NodalMatrix M = mass_matrix(table, mesh_.nodes, {3.0});
+  const solver::ElementTable table = parts::table_of(mesh_);
+  const solver::NodalMatrix M = solver::mass_matrix(table, mesh_.nodes, {3.0});
   VectorX u = VectorX::Zero(static_cast<Eigen::Index>(3 * mesh_.nodes.size()));
   const int power = GetParam();
   for (std::size_t i = 0; i < mesh_.nodes.size(); ++i) {
@@ -60,8 +61,8 @@ TEST_P(NodalMatrices, MassIsExactOnStraightElements) {
 }
 
 TEST_P(NodalMatrices, MassIsPositiveDefinite) {
-  const ElementTable table = parts::table_of(mesh_);
-  const NodalMatrix M = mass_matrix(table, mesh_.nodes, {1.0});
+  const solver::ElementTable table = parts::table_of(mesh_);
+  const solver::NodalMatrix M = solver::mass_matrix(table, mesh_.nodes, {1.0});
   for (int seed = 0; seed < 5; ++seed) {
     const VectorX u = parts::irregular(
         static_cast<Eigen::Index>(3 * mesh_.nodes.size()), seed);
@@ -71,7 +72,7 @@ TEST_P(NodalMatrices, MassIsPositiveDefinite) {
 
 /// int S : E(u) dV by the stiffness rule, E Green and Lagrange's strain.
 template <int Nodes>
-double work_of_stress(const TetMesh& mesh, const PointStress& stress,
+double work_of_stress(const TetMesh& mesh, const element::PointStress& stress,
                       const VectorX& u) {
   double work = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -79,17 +80,18 @@ double work_of_stress(const TetMesh& mesh, const PointStress& stress,
     for (int a = 0; a < Nodes; ++a) {
       x[a] = mesh.nodes[mesh.element(e)[a]];
     }
-    TetGradients<Nodes> g;
-    tet_gradients<Nodes>(x, g);
-    for (int q = 0; q < kTetPoints<Nodes>; ++q) {
+    element::TetGradients<Nodes> g;
+    element::tet_gradients<Nodes>(x, g);
+    for (int q = 0; q < element::kTetPoints<Nodes>; ++q) {
       Mat3 H = Mat3::Zero();
       for (int a = 0; a < Nodes; ++a) {
         H += u.segment<3>(3L * mesh.element(e)[a]) *
              g.gradient[q][a].transpose();
       }
       const Mat3 E = 0.5 * (H + H.transpose() + H.transpose() * H);
-      const Stress& s = stress.stress[stress.index(e, q)];
-      const Mat3 S = stress_tensor(Eigen::Map<const Vec6>(s.data()));
+      const element::Stress& s = stress.stress[stress.index(e, q)];
+      const Mat3 S =
+          element::stress_tensor(Eigen::Map<const element::Vec6>(s.data()));
       work += g.volume[q] * S.cwiseProduct(E).sum();
     }
   }
@@ -99,11 +101,11 @@ double work_of_stress(const TetMesh& mesh, const PointStress& stress,
 // d^2/dt^2 int S : E(t x) = int S : (grad x^T grad x); the work is quadratic in
 // t, so that differences of any step are exact.
 TEST_P(NodalMatrices, GeometricStiffnessIsTheCurvatureOfTheStressesWork) {
-  const ElementTable table = parts::table_of(mesh_);
+  const solver::ElementTable table = parts::table_of(mesh_);
   const auto unknowns = static_cast<Eigen::Index>(3 * mesh_.nodes.size());
-  const PointStress stress =
-      point_stress(mesh_, {parts::steel()}, parts::irregular(unknowns, 0.3));
-  const NodalMatrix Kg = geometric_stiffness(
+  const element::PointStress stress = element::point_stress(
+      mesh_, {parts::steel()}, parts::irregular(unknowns, 0.3));
+  const solver::NodalMatrix Kg = solver::geometric_stiffness(
       table, mesh_.nodes, parts::own_elements(mesh_), stress);
   const auto work = [&](const VectorX& u) {
     return GetParam() == 1 ? work_of_stress<4>(mesh_, stress, u)
@@ -117,14 +119,14 @@ TEST_P(NodalMatrices, GeometricStiffnessIsTheCurvatureOfTheStressesWork) {
 
 // A turn W x of the stressed part turns its nodal forces: K_g (W x) = W f.
 TEST_P(NodalMatrices, GeometricStiffnessTurnsTheInternalForces) {
-  const ElementTable table = parts::table_of(mesh_);
+  const solver::ElementTable table = parts::table_of(mesh_);
   const auto unknowns = static_cast<Eigen::Index>(3 * mesh_.nodes.size());
   const VectorX u = parts::irregular(unknowns, 0.9);
-  const NodalMatrix Kg =
-      geometric_stiffness(table, mesh_.nodes, parts::own_elements(mesh_),
-                          point_stress(mesh_, {parts::steel()}, u));
-  const VectorX f =
-      internal_forces(table, mesh_.nodes, elastic_laws({parts::steel()}), u);
+  const solver::NodalMatrix Kg = solver::geometric_stiffness(
+      table, mesh_.nodes, parts::own_elements(mesh_),
+      element::point_stress(mesh_, {parts::steel()}, u));
+  const VectorX f = solver::internal_forces(
+      table, mesh_.nodes, element::elastic_laws({parts::steel()}), u);
   const Vec3 axis(0.4, -1.0, 2.0);
   VectorX turn(unknowns);
   VectorX turned(unknowns);
@@ -138,8 +140,8 @@ TEST_P(NodalMatrices, GeometricStiffnessTurnsTheInternalForces) {
 }
 
 TEST_P(NodalMatrices, SeveralColumnsAreThatOfOne) {
-  const ElementTable table = parts::table_of(mesh_);
-  const NodalMatrix M = mass_matrix(table, mesh_.nodes, {1.0});
+  const solver::ElementTable table = parts::table_of(mesh_);
+  const solver::NodalMatrix M = solver::mass_matrix(table, mesh_.nodes, {1.0});
   const int nodes = table.pattern.nodes;
   std::vector<double> x(static_cast<std::size_t>(nodes) * 16, 0.0);
   std::vector<double> y(x.size());
@@ -152,7 +154,7 @@ TEST_P(NodalMatrices, SeveralColumnsAreThatOfOne) {
       }
     }
   }
-  multiply<4>(table.pattern, M, x.data(), y.data());
+  solver::multiply<4>(table.pattern, M, x.data(), y.data());
   for (int k = 0; k < 4; ++k) {
     const VectorX alone = parts::product(table, M, u[k]);
     for (int i = 0; i < nodes; ++i) {
@@ -168,14 +170,14 @@ INSTANTIATE_TEST_SUITE_P(Orders, NodalMatrices, testing::Values(1, 2));
 // Curved: the determinant is cubic, which both rules integrate exactly.
 TEST(NodalMatrix, MassOfACurvedTubeIsItsVolume) {
   const TetMesh mesh = parts::quarter_tube(3, 0.7);
-  const ElementTable table = parts::table_of(mesh);
-  const NodalMatrix M = mass_matrix(table, mesh.nodes, {1.0});
+  const solver::ElementTable table = parts::table_of(mesh);
+  const solver::NodalMatrix M = solver::mass_matrix(table, mesh.nodes, {1.0});
   VectorX u = VectorX::Zero(static_cast<Eigen::Index>(3 * mesh.nodes.size()));
   for (Eigen::Index k = 0; k < u.size(); k += 3) {
     u[k] = 1.0;
   }
-  EXPECT_NEAR(u.dot(parts::product(table, M, u)), mesh_volume(mesh),
-              kRounding * mesh_volume(mesh));
+  EXPECT_NEAR(u.dot(parts::product(table, M, u)), stress::mesh_volume(mesh),
+              kRounding * stress::mesh_volume(mesh));
 }
 
 }  // namespace

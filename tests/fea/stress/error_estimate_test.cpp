@@ -29,17 +29,18 @@ TetMesh distorted(int order) {
   return order == 2 ? shapes::straight_quadratic(mesh) : mesh;
 }
 
-RecoveredStress recovered(const TetMesh& mesh,
-                          const std::vector<Material>& materials,
-                          const VectorX& u, const VectorX& heat = {}) {
-  return recover_by_patches(mesh, point_stress(mesh, materials, u, heat));
+stress::RecoveredStress recovered(
+    const TetMesh& mesh, const std::vector<element::Material>& materials,
+    const VectorX& u, const VectorX& heat = {}) {
+  return stress::recover_by_patches(
+      mesh, element::point_stress(mesh, materials, u, heat));
 }
 
-EnergyError error_of(const TetMesh& mesh,
-                     const std::vector<Material>& materials, const VectorX& u,
-                     const VectorX& heat = {}) {
-  return estimate_error(mesh, materials,
-                        {u, recovered(mesh, materials, u, heat), heat});
+stress::EnergyError error_of(const TetMesh& mesh,
+                             const std::vector<element::Material>& materials,
+                             const VectorX& u, const VectorX& heat = {}) {
+  return stress::estimate_error(mesh, materials,
+                                {u, recovered(mesh, materials, u, heat), heat});
 }
 
 Vec3 wavy(const Vec3& x) {
@@ -54,7 +55,7 @@ TEST_P(ErrorEstimate, IsNoneForLinearFields) {
   const VectorX u = nodal(mesh, [](const Vec3& x) -> Vec3 {
     return {0.1 * x.x() + 0.3 * x.z(), -0.2 * x.y(), 0.1 * x.x()};
   });
-  const EnergyError error = error_of(mesh, {parts::steel()}, u);
+  const stress::EnergyError error = error_of(mesh, {parts::steel()}, u);
   EXPECT_LE(error.error, kEstimateRounding * error.energy_norm);
   EXPECT_LE(error.relative(), kEstimateRounding);
 }
@@ -67,7 +68,7 @@ TEST(ErrorEstimate, IsNoneForBendingOfTenNodeElements) {
             0.5 * (x.x() * x.x() + nu * (x.y() * x.y() - x.z() * x.z())),
             nu * x.y() * x.z()};
   });
-  const EnergyError error = error_of(mesh, {parts::steel()}, u);
+  const stress::EnergyError error = error_of(mesh, {parts::steel()}, u);
   EXPECT_LE(error.error, kEstimateRounding * error.energy_norm);
   // Twice the energy of bending: E int y^2 dV.
   EXPECT_NEAR(error.energy_norm,
@@ -87,25 +88,25 @@ TEST_P(ErrorEstimate, IsNoneWhereStressesJumpBetweenMaterials) {
     }
     mesh.element_region[e] = x < 1.0 ? 0 : 1;
   }
-  Material soft = parts::steel();
+  element::Material soft = parts::steel();
   soft.youngs_modulus /= 3.0;
   // Stretched along y alike: the stiffer half carries three times the stress.
   const VectorX u = nodal(mesh, [](const Vec3& x) -> Vec3 {
     return {0.0, 0.01 * x.y(), 0.0};
   });
-  const EnergyError error = error_of(mesh, {parts::steel(), soft}, u);
+  const stress::EnergyError error = error_of(mesh, {parts::steel(), soft}, u);
   EXPECT_LE(error.error, kEstimateRounding * error.energy_norm);
 }
 
 TEST_P(ErrorEstimate, TakesFreeExpansionOut) {
   const TetMesh mesh = distorted(GetParam());
-  Material steel = parts::steel();
+  element::Material steel = parts::steel();
   steel.thermal_expansion.setConstant(1e-5);
   const VectorX u = nodal(mesh, [](const Vec3& x) -> Vec3 { return 1e-3 * x; });
   const VectorX heat =
       VectorX::Constant(static_cast<Eigen::Index>(mesh.nodes.size()), 100.0);
-  const EnergyError cold = error_of(mesh, {steel}, u);
-  const EnergyError hot = error_of(mesh, {steel}, u, heat);
+  const stress::EnergyError cold = error_of(mesh, {steel}, u);
+  const stress::EnergyError hot = error_of(mesh, {steel}, u, heat);
   EXPECT_LE(hot.error, kEstimateRounding * cold.energy_norm);
   EXPECT_LE(hot.energy_norm, kEstimateRounding * cold.energy_norm);
 }
@@ -115,9 +116,9 @@ TEST_P(ErrorEstimate, HasTheSameBitsOnOneAndTwoThreads) {
   const VectorX u = nodal(mesh, wavy);
   const int before = omp_get_max_threads();
   omp_set_num_threads(1);
-  const EnergyError one = error_of(mesh, {parts::steel()}, u);
+  const stress::EnergyError one = error_of(mesh, {parts::steel()}, u);
   omp_set_num_threads(2);
-  const EnergyError two = error_of(mesh, {parts::steel()}, u);
+  const stress::EnergyError two = error_of(mesh, {parts::steel()}, u);
   omp_set_num_threads(before);
   EXPECT_EQ(one.element, two.element);
   EXPECT_EQ(one.error, two.error);
@@ -126,23 +127,24 @@ TEST_P(ErrorEstimate, HasTheSameBitsOnOneAndTwoThreads) {
 
 TEST_P(ErrorEstimate, OfAResponseIsSymmetricAndBounded) {
   const TetMesh mesh = distorted(GetParam());
-  const std::vector<Material> steel = {parts::steel()};
+  const std::vector<element::Material> steel = {parts::steel()};
   const VectorX u = nodal(mesh, wavy);
   const VectorX z = nodal(mesh, [](const Vec3& x) -> Vec3 {
     return 1e-3 * Vec3(x.z() * x.z(), std::sin(x.x()), x.x() * x.y());
   });
-  const RecoveredStress su = recovered(mesh, steel, u);
-  const RecoveredStress sz = recovered(mesh, steel, z);
-  const ResponseError there =
-      response_error(mesh, steel, {u, su, {}}, {z, sz, {}});
-  const ResponseError back =
-      response_error(mesh, steel, {z, sz, {}}, {u, su, {}});
+  const stress::RecoveredStress su = recovered(mesh, steel, u);
+  const stress::RecoveredStress sz = recovered(mesh, steel, z);
+  const stress::ResponseError there =
+      stress::response_error(mesh, steel, {u, su, {}}, {z, sz, {}});
+  const stress::ResponseError back =
+      stress::response_error(mesh, steel, {z, sz, {}}, {u, su, {}});
   EXPECT_NEAR(there.value, back.value, kEstimateRounding * there.bound);
   EXPECT_GE(there.bound, std::abs(there.value));
   // With itself: the squared energy error.
-  const ResponseError self =
-      response_error(mesh, steel, {u, su, {}}, {u, su, {}});
-  const EnergyError energy = estimate_error(mesh, steel, {u, su, {}});
+  const stress::ResponseError self =
+      stress::response_error(mesh, steel, {u, su, {}}, {u, su, {}});
+  const stress::EnergyError energy =
+      stress::estimate_error(mesh, steel, {u, su, {}});
   EXPECT_NEAR(self.value, energy.error * energy.error,
               kEstimateRounding * self.value);
   EXPECT_NEAR(self.bound, self.value, kEstimateRounding * self.value);
@@ -150,15 +152,17 @@ TEST_P(ErrorEstimate, OfAResponseIsSymmetricAndBounded) {
 
 TEST_P(ErrorEstimate, RefusesWhatDoesNotFit) {
   const TetMesh mesh = distorted(GetParam());
-  const std::vector<Material> steel = {parts::steel()};
+  const std::vector<element::Material> steel = {parts::steel()};
   const VectorX u = nodal(mesh, wavy);
-  const RecoveredStress stress = recovered(mesh, steel, u);
-  EXPECT_THROW(estimate_error(mesh, steel, {VectorX::Zero(3), stress, {}}),
-               InvalidInput);
-  EXPECT_THROW(estimate_error(mesh, steel, {u, {}, {}}), InvalidInput);
-  EXPECT_THROW(estimate_error(mesh, steel, {u, stress, VectorX::Zero(2)}),
-               InvalidInput);
-  EXPECT_THROW(estimate_error(mesh, {}, {u, stress, {}}), InvalidInput);
+  const stress::RecoveredStress stress = recovered(mesh, steel, u);
+  EXPECT_THROW(
+      stress::estimate_error(mesh, steel, {VectorX::Zero(3), stress, {}}),
+      InvalidInput);
+  EXPECT_THROW(stress::estimate_error(mesh, steel, {u, {}, {}}), InvalidInput);
+  EXPECT_THROW(
+      stress::estimate_error(mesh, steel, {u, stress, VectorX::Zero(2)}),
+      InvalidInput);
+  EXPECT_THROW(stress::estimate_error(mesh, {}, {u, stress, {}}), InvalidInput);
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, ErrorEstimate, testing::Values(1, 2));
@@ -172,9 +176,9 @@ TEST(SafetyFactors, AreEachRegionsOwnAndTellThePlace) {
     }
     mesh.element_region[e] = x < 1.0 ? 0 : 1;
   }
-  Material strong = parts::steel();
+  element::Material strong = parts::steel();
   strong.yield_strength = 400.0;
-  Material weak = strong;
+  element::Material weak = strong;
   weak.yield_strength = 50.0;
   // A uniform pull of 100 along x.
   const double strain = 100.0 / strong.youngs_modulus;
@@ -182,8 +186,8 @@ TEST(SafetyFactors, AreEachRegionsOwnAndTellThePlace) {
   const VectorX u = nodal(mesh, [&](const Vec3& x) -> Vec3 {
     return strain * Vec3(x.x(), -nu * x.y(), -nu * x.z());
   });
-  const SafetyFactors both =
-      safety_factors(mesh, {strong, weak}, recovered(mesh, {strong, weak}, u));
+  const stress::SafetyFactors both = stress::safety_factors(
+      mesh, {strong, weak}, recovered(mesh, {strong, weak}, u));
   EXPECT_NEAR(both.smallest, 0.5, kEstimateRounding);
   EXPECT_EQ(both.region, 1);
   EXPECT_GE(mesh.nodes[both.node].x(), 1.0 - kEstimateRounding);
@@ -192,13 +196,13 @@ TEST(SafetyFactors, AreEachRegionsOwnAndTellThePlace) {
     EXPECT_NEAR(both.nodal[i], mesh.nodes[i].x() < 0.99 ? 4.0 : 0.5, 1e-7);
   }
   weak.yield_strength.reset();
-  const SafetyFactors one =
-      safety_factors(mesh, {strong, weak}, recovered(mesh, {strong, weak}, u));
+  const stress::SafetyFactors one = stress::safety_factors(
+      mesh, {strong, weak}, recovered(mesh, {strong, weak}, u));
   EXPECT_NEAR(one.smallest, 4.0, 1e-7);
   EXPECT_TRUE(std::isinf(one.nodal[4]));  // the far end
-  EXPECT_THROW(
-      safety_factors(mesh, {strong}, recovered(mesh, {strong, weak}, u)),
-      InvalidInput);
+  EXPECT_THROW(stress::safety_factors(mesh, {strong},
+                                      recovered(mesh, {strong, weak}, u)),
+               InvalidInput);
 }
 
 }  // namespace

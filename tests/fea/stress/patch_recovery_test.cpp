@@ -18,8 +18,8 @@ namespace {
 constexpr double kFit = 1e-10;
 
 /// Stresses that are polynomials of degree 1 or 2 of the place.
-Stress polynomial(const Vec3& x, int degree, double scale = 1.0) {
-  Stress s;
+element::Stress polynomial(const Vec3& x, int degree, double scale = 1.0) {
+  element::Stress s;
   for (int k = 0; k < 6; ++k) {
     s[k] = 1.0 + k + 0.5 * x.x() - 0.3 * k * x.y() + 0.7 * x.z();
     if (degree == 2) {
@@ -36,21 +36,22 @@ TetMesh brick_of(int order, const Vec3& size, int nx, int ny, int nz) {
   return order == 2 ? shapes::straight_quadratic(mesh) : mesh;
 }
 
-PointStress zero_stress(const TetMesh& mesh) {
-  return point_stress(
+element::PointStress zero_stress(const TetMesh& mesh) {
+  return element::point_stress(
       mesh, {parts::steel(), parts::steel()},
       VectorX::Zero(3 * static_cast<Eigen::Index>(mesh.nodes.size())));
 }
 
-PointStress sampled(const TetMesh& mesh, int degree) {
-  PointStress points = zero_stress(mesh);
+element::PointStress sampled(const TetMesh& mesh, int degree) {
+  element::PointStress points = zero_stress(mesh);
   for (std::size_t q = 0; q < points.stress.size(); ++q) {
     points.stress[q] = polynomial(points.position[q], degree);
   }
   return points;
 }
 
-void expect_near(const Stress& found, const Stress& exact, const Vec3& x) {
+void expect_near(const element::Stress& found, const element::Stress& exact,
+                 const Vec3& x) {
   for (int k = 0; k < 6; ++k) {
     EXPECT_NEAR(found[k], exact[k], kFit * 10.0) << x.transpose();
   }
@@ -64,7 +65,8 @@ TEST_P(PatchRecovery, BringsBackPolynomialsOfTheElementsOrderEverywhere) {
   if (order == 2) {
     mesh = shapes::straight_quadratic(mesh);
   }
-  const RecoveredStress found = recover_by_patches(mesh, sampled(mesh, order));
+  const stress::RecoveredStress found =
+      stress::recover_by_patches(mesh, sampled(mesh, order));
   ASSERT_EQ(found.value.size(), mesh.nodes.size());
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     expect_near(found.value[i], polynomial(mesh.nodes[i], order),
@@ -82,13 +84,14 @@ TEST_P(PatchRecovery, KeepsTheJumpWhereMaterialsMeet) {
     }
     mesh.element_region[e] = centre.x() < 1.0 ? 0 : 1;
   }
-  PointStress points = sampled(mesh, order);
+  element::PointStress points = sampled(mesh, order);
   for (std::size_t q = 0; q < points.stress.size(); ++q) {
     if (points.position[q].x() > 1.0) {
       points.stress[q] = polynomial(points.position[q], order, -3.0);
     }
   }
-  const RecoveredStress found = recover_by_patches(mesh, points);
+  const stress::RecoveredStress found =
+      stress::recover_by_patches(mesh, points);
   EXPECT_GT(found.value.size(), mesh.nodes.size());
   for (int e = 0; e < mesh.element_count(); ++e) {
     const double scale = mesh.element_region[e] == 0 ? 1.0 : -3.0;
@@ -98,7 +101,7 @@ TEST_P(PatchRecovery, KeepsTheJumpWhereMaterialsMeet) {
     }
   }
   // One value a node: the harder stressed side's.
-  const StressField nodal = nodal_stress(mesh, found);
+  const stress::StressField nodal = stress::nodal_stress(mesh, found);
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     const Vec3& x = mesh.nodes[i];
     expect_near(nodal.nodal[i], polynomial(x, order, x.x() < 0.99 ? 1.0 : -3.0),
@@ -110,7 +113,8 @@ TEST_P(PatchRecovery, ServesWallsOneElementThickAndSingleElements) {
   const int order = GetParam();
   for (const TetMesh& mesh : {brick_of(order, {4.0, 4.0, 0.3}, 4, 4, 1),
                               brick_of(order, {1.0, 1.0, 1.0}, 1, 1, 1)}) {
-    const RecoveredStress found = recover_by_patches(mesh, sampled(mesh, 1));
+    const stress::RecoveredStress found =
+        stress::recover_by_patches(mesh, sampled(mesh, 1));
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
       if (order == 2) {  // linear stress from few elements of four points
         expect_near(found.value[i], polynomial(mesh.nodes[i], 1),
@@ -125,19 +129,20 @@ TEST_P(PatchRecovery, ServesWallsOneElementThickAndSingleElements) {
 
 TEST_P(PatchRecovery, HasTheSameBitsOnOneAndTwoThreads) {
   const TetMesh mesh = brick_of(GetParam(), {1.0, 2.0, 1.5}, 5, 4, 6);
-  const PointStress points = sampled(mesh, 2);
+  const element::PointStress points = sampled(mesh, 2);
   const int before = omp_get_max_threads();
   omp_set_num_threads(1);
-  const RecoveredStress one = recover_by_patches(mesh, points);
+  const stress::RecoveredStress one = stress::recover_by_patches(mesh, points);
   omp_set_num_threads(2);
-  const RecoveredStress two = recover_by_patches(mesh, points);
+  const stress::RecoveredStress two = stress::recover_by_patches(mesh, points);
   omp_set_num_threads(before);
   EXPECT_EQ(one.value, two.value);
 }
 
 TEST_P(PatchRecovery, KnowsTheCornersThatElementsSurround) {
   const TetMesh mesh = brick_of(GetParam(), {1.0, 2.0, 1.5}, 5, 4, 6);
-  const std::vector<char> inner = surrounded_corners(region_nodes(mesh));
+  const std::vector<char> inner =
+      element::surrounded_corners(element::region_nodes(mesh));
   EXPECT_EQ(std::accumulate(inner.begin(), inner.end(), 0), 4 * 3 * 5);
   for (std::size_t i = 0; i < inner.size(); ++i) {
     if (inner[i] != 0) {
@@ -150,20 +155,21 @@ TEST_P(PatchRecovery, KnowsTheCornersThatElementsSurround) {
 
 TEST_P(PatchRecovery, SurvivesElementsWithoutSizeAndStressesThatAreNoNumbers) {
   const TetMesh mesh = brick_of(GetParam(), {1.0, 1.0, 1.0}, 2, 2, 2);
-  PointStress points = sampled(mesh, 1);
+  element::PointStress points = sampled(mesh, 1);
   for (Vec3& x : points.position) {
     x.setConstant(0.5);  // all in one place
   }
-  const RecoveredStress flat = recover_by_patches(mesh, points);
-  for (const Stress& s : flat.value) {
-    EXPECT_TRUE(std::isfinite(von_mises(s)));
+  const stress::RecoveredStress flat = stress::recover_by_patches(mesh, points);
+  for (const element::Stress& s : flat.value) {
+    EXPECT_TRUE(std::isfinite(element::von_mises(s)));
   }
   points = sampled(mesh, 1);
   points.stress[0][0] = std::numeric_limits<double>::quiet_NaN();
-  const RecoveredStress lost = recover_by_patches(mesh, points);
-  EXPECT_TRUE(std::any_of(
-      lost.value.begin(), lost.value.end(),
-      [](const Stress& s) { return std::isnan(s[0]); }));  // not hidden
+  const stress::RecoveredStress lost = stress::recover_by_patches(mesh, points);
+  EXPECT_TRUE(std::any_of(lost.value.begin(), lost.value.end(),
+                          [](const element::Stress& s) {
+                            return std::isnan(s[0]);
+                          }));  // not hidden
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, PatchRecovery, testing::Values(1, 2));

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "tests/support/parts.h"
 #include "fea/element/point_grid.h"
+#include "tests/support/parts.h"
 
 namespace meniscus::size_field_test {
 namespace {
@@ -22,7 +22,7 @@ TEST(PointGrid, AgreesWithLookingAtAll) {
       points.push_back(
           size.cwiseProduct(Vec3(unit(random), unit(random), unit(random))));
     }
-    const PointGrid nearest(points);
+    const element::PointGrid nearest(points);
     for (int k = 0; k < 200; ++k) {
       const Vec3 x =
           3.0 * Vec3(unit(random), unit(random), unit(random)) - Vec3::Ones();
@@ -33,13 +33,14 @@ TEST(PointGrid, AgreesWithLookingAtAll) {
       EXPECT_EQ((points[nearest.of(x)] - x).norm(), least);
     }
   }
-  EXPECT_EQ(PointGrid({Vec3(1, 2, 3), Vec3(1, 2, 3)}).of({9, 9, 9}), 0);
+  EXPECT_EQ(element::PointGrid({Vec3(1, 2, 3), Vec3(1, 2, 3)}).of({9, 9, 9}),
+            0);
 }
 
 /// Errors of a unit cube's elements as `density` (error^2 per volume) has it.
 template <class Density>
-EnergyError errors(const TetMesh& mesh, const Density& density) {
-  EnergyError error;
+stress::EnergyError errors(const TetMesh& mesh, const Density& density) {
+  stress::EnergyError error;
   error.energy_norm = 1.0;
   double squares = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -66,11 +67,12 @@ class Sizes : public testing::TestWithParam<int> {
 TEST_P(Sizes, OfEvenErrorsAreEvenAndReachTheTarget) {
   const int p = GetParam();
   const TetMesh mesh = cube(6);
-  const EnergyError error = errors(mesh, [](const Vec3&) { return 0.01; });
+  const stress::EnergyError error =
+      errors(mesh, [](const Vec3&) { return 0.01; });
   // The order p means: the error over 2^p wants edges halved.
   const double target = error.relative() / std::pow(2.0, p);
-  const SizeField field =
-      size_field(mesh, error, {.relative_error = target, .growth = 1e6});
+  const stress::SizeField field = stress::size_field(
+      mesh, error, {.relative_error = target, .growth = 1e6});
   const double longest =
       *std::max_element(field.length.begin(), field.length.end());
   const double shortest =
@@ -84,12 +86,12 @@ TEST_P(Sizes, OfEvenErrorsAreEvenAndReachTheTarget) {
 
 TEST_P(Sizes, AreFineWhereTheErrorIsAndGrowGently) {
   const TetMesh mesh = cube(8);
-  const EnergyError error = errors(
+  const stress::EnergyError error = errors(
       mesh, [](const Vec3& x) { return std::exp(-40.0 * x.squaredNorm()); });
   constexpr double kGrowth = 0.4;
-  const SizeField field =
-      size_field(mesh, error,
-                 {.relative_error = 0.3 * error.relative(), .growth = kGrowth});
+  const stress::SizeField field = stress::size_field(
+      mesh, error,
+      {.relative_error = 0.3 * error.relative(), .growth = kGrowth});
   const auto h = field.function();
   EXPECT_LT(h({0.0, 0.0, 0.0}), 0.6 * h({1.0, 1.0, 1.0}));
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -107,13 +109,14 @@ TEST_P(Sizes, AreFineWhereTheErrorIsAndGrowGently) {
 
 TEST_P(Sizes, StayWithinTheBoundsAndTellWhatTheyMiss) {
   const TetMesh mesh = cube(4);
-  const EnergyError error = errors(mesh, [](const Vec3&) { return 0.01; });
-  const SizeField fine = size_field(
+  const stress::EnergyError error =
+      errors(mesh, [](const Vec3&) { return 0.01; });
+  const stress::SizeField fine = stress::size_field(
       mesh, error,
       {.relative_error = 1e-9, .most_refinement = 3.0, .growth = 1e6});
   EXPECT_NEAR(fine.elements, 27.0 * mesh.element_count(), 1e-6);
   EXPECT_GT(fine.error, 1e-9);
-  const SizeField coarse = size_field(
+  const stress::SizeField coarse = stress::size_field(
       mesh, error,
       {.relative_error = 0.99, .most_coarsening = 2.0, .growth = 1e6});
   EXPECT_NEAR(coarse.elements, mesh.element_count() / 8.0, 1e-6);
@@ -121,12 +124,17 @@ TEST_P(Sizes, StayWithinTheBoundsAndTellWhatTheyMiss) {
 
 TEST_P(Sizes, RefuseOptionsOutOfRange) {
   const TetMesh mesh = cube(1);
-  const EnergyError error = errors(mesh, [](const Vec3&) { return 0.01; });
-  EXPECT_THROW(size_field(mesh, error, {.relative_error = 0.0}), InvalidInput);
-  EXPECT_THROW(size_field(mesh, error, {.most_refinement = 0.5}), InvalidInput);
-  EXPECT_THROW(size_field(mesh, error, {.most_coarsening = 0.5}), InvalidInput);
-  EXPECT_THROW(size_field(mesh, error, {.growth = 0.0}), InvalidInput);
-  EXPECT_THROW(size_field(mesh, EnergyError{}, {}), InvalidInput);
+  const stress::EnergyError error =
+      errors(mesh, [](const Vec3&) { return 0.01; });
+  EXPECT_THROW(stress::size_field(mesh, error, {.relative_error = 0.0}),
+               InvalidInput);
+  EXPECT_THROW(stress::size_field(mesh, error, {.most_refinement = 0.5}),
+               InvalidInput);
+  EXPECT_THROW(stress::size_field(mesh, error, {.most_coarsening = 0.5}),
+               InvalidInput);
+  EXPECT_THROW(stress::size_field(mesh, error, {.growth = 0.0}), InvalidInput);
+  EXPECT_THROW(stress::size_field(mesh, stress::EnergyError{}, {}),
+               InvalidInput);
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, Sizes, testing::Values(1, 2));

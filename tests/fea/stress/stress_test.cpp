@@ -40,7 +40,7 @@ TEST(FineRule, IsExactToDegreeFive) {
       for (int c = 0; a + b + c <= 5; ++c) {
         const int d = 5 - a - b - c;
         double sum = 0.0;
-        for (const auto& [L, weight] : fine_tet_rule()) {
+        for (const auto& [L, weight] : element::fine_tet_rule()) {
           sum += weight * std::pow(L[0], a) * std::pow(L[1], b) *
                  std::pow(L[2], c) * std::pow(L[3], d);
         }
@@ -52,8 +52,8 @@ TEST(FineRule, IsExactToDegreeFive) {
 }
 
 TEST(Stress, PrincipalStressesAndFrameRebuildTheTensor) {
-  const Stress s = {3.0, -1.0, 2.0, 0.7, -0.4, 1.1};
-  const PrincipalFrame frame = principal_frame(s);
+  const element::Stress s = {3.0, -1.0, 2.0, 0.7, -0.4, 1.1};
+  const element::PrincipalFrame frame = element::principal_frame(s);
   EXPECT_GT(frame.stress[0], frame.stress[1]);
   EXPECT_GT(frame.stress[1], frame.stress[2]);
   EXPECT_NEAR(frame.direction.determinant(), 1.0, kStressRounding);
@@ -64,23 +64,25 @@ TEST(Stress, PrincipalStressesAndFrameRebuildTheTensor) {
   for (int k = 0; k < 6; ++k) {
     EXPECT_NEAR(back[k], s[k], kStressRounding * 3.0);
   }
-  EXPECT_NEAR(principal_stresses({1.0, 2.0, 3.0, 0.0, 0.0, 0.0})[0], 3.0,
-              kStressRounding);
+  EXPECT_NEAR(element::principal_stresses({1.0, 2.0, 3.0, 0.0, 0.0, 0.0})[0],
+              3.0, kStressRounding);
 }
 
 TEST(Stress, StrainAndEnergyInvertTheMaterialLaw) {
-  const Material steel = parts::steel();
-  const Lame m = lame(steel);
+  const element::Material steel = parts::steel();
+  const element::Lame m = element::lame(steel);
   Mat3 H;
   H << 1e-3, 4e-4, -2e-4, 3e-4, -7e-4, 5e-4, 1e-4, 6e-4, 2e-4;
   const Mat3 E = 0.5 * (H + H.transpose());
-  const Strain strain = strain_of(stress_of_gradient(H, m), m);
-  const Strain exact = {E(0, 0), E(1, 1), E(2, 2), E(0, 1), E(1, 2), E(2, 0)};
+  const element::Strain strain =
+      element::strain_of(element::stress_of_gradient(H, m), m);
+  const element::Strain exact = {E(0, 0), E(1, 1), E(2, 2),
+                                 E(0, 1), E(1, 2), E(2, 0)};
   for (int k = 0; k < 6; ++k) {
     EXPECT_NEAR(strain[k], exact[k], kStressRounding * 1e-3);
   }
   // A pulled bar: s^2 / 2 E.
-  EXPECT_NEAR(strain_energy_density({50.0, 0, 0, 0, 0, 0}, m),
+  EXPECT_NEAR(element::strain_energy_density({50.0, 0, 0, 0, 0, 0}, m),
               2500.0 / (2.0 * steel.youngs_modulus), kStressRounding);
 }
 
@@ -93,9 +95,11 @@ TEST_P(PointStresses, AreExactForLinearFieldsAndCoverTheVolume) {
   }
   Mat3 H;
   H << 1e-3, 4e-4, -2e-4, 3e-4, -7e-4, 5e-4, 1e-4, 6e-4, 2e-4;
-  const Material steel = parts::steel();
-  const PointStress points = point_stress(mesh, {steel}, linear_field(mesh, H));
-  const Stress exact = stress_of_gradient(H, lame(steel));
+  const element::Material steel = parts::steel();
+  const element::PointStress points =
+      element::point_stress(mesh, {steel}, linear_field(mesh, H));
+  const element::Stress exact =
+      element::stress_of_gradient(H, element::lame(steel));
   double volume = 0.0;
   Vec3 moment = Vec3::Zero();
   for (std::size_t q = 0; q < points.stress.size(); ++q) {
@@ -112,7 +116,7 @@ TEST_P(PointStresses, AreExactForLinearFieldsAndCoverTheVolume) {
 TEST_P(PointStresses, GradientsElsewhereAreThoseOfTheField) {
   Mat3 H;
   H << 0.1, 0.4, -0.2, 0.3, -0.7, 0.5, 0.1, 0.6, 0.2;
-  const Barycentric L = {0.1, 0.2, 0.3, 0.4};
+  const element::Barycentric L = {0.1, 0.2, 0.3, 0.4};
   std::array<Vec3, 10> x = {Vec3(0, 0, 0), Vec3(1.2, 0.1, 0),
                             Vec3(0.2, 0.9, 0.1), Vec3(0.1, 0.3, 1.1)};
   for (int m = 0; m < 6; ++m) {
@@ -124,11 +128,13 @@ TEST_P(PointStresses, GradientsElsewhereAreThoseOfTheField) {
     u[a] = H * x[a];
   }
   if (GetParam() == 2) {
-    EXPECT_LE((gradient_at<10>(x, u, L).gradient - H).norm(), kStressRounding);
+    EXPECT_LE((element::gradient_at<10>(x, u, L).gradient - H).norm(),
+              kStressRounding);
   } else {
     const std::array<Vec3, 4> x4 = {x[0], x[1], x[2], x[3]};
     const std::array<Vec3, 4> u4 = {u[0], u[1], u[2], u[3]};
-    EXPECT_LE((gradient_at<4>(x4, u4, L).gradient - H).norm(), kStressRounding);
+    EXPECT_LE((element::gradient_at<4>(x4, u4, L).gradient - H).norm(),
+              kStressRounding);
   }
 }
 
@@ -154,24 +160,24 @@ TEST(Stress, HasTheSameBitsOnOneAndTwoThreads) {
     u[k] = std::sin(static_cast<double>(k));
   }
   const auto [one, two] = on_one_and_two_threads(
-      [&] { return recover_stress(mesh, {parts::steel()}, u); });
+      [&] { return stress::recover_stress(mesh, {parts::steel()}, u); });
   EXPECT_EQ(one.nodal, two.nodal);
   EXPECT_EQ(one.von_mises, two.von_mises);
 }
 
 TEST(Stress, VonMisesOfPullAndShear) {
-  EXPECT_DOUBLE_EQ(von_mises({3.0, 0.0, 0.0, 0.0, 0.0, 0.0}), 3.0);
-  EXPECT_DOUBLE_EQ(von_mises({0.0, 0.0, 0.0, 2.0, 0.0, 0.0}),
+  EXPECT_DOUBLE_EQ(element::von_mises({3.0, 0.0, 0.0, 0.0, 0.0, 0.0}), 3.0);
+  EXPECT_DOUBLE_EQ(element::von_mises({0.0, 0.0, 0.0, 2.0, 0.0, 0.0}),
                    2.0 * std::sqrt(3.0));
-  EXPECT_DOUBLE_EQ(von_mises({5.0, 5.0, 5.0, 0.0, 0.0, 0.0}), 0.0);
+  EXPECT_DOUBLE_EQ(element::von_mises({5.0, 5.0, 5.0, 0.0, 0.0, 0.0}), 0.0);
 }
 
 TEST(Stress, PeakIsTheLargestNodalValue) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({3.0, 1.0, 1.0}, 6, 2, 2));
-  const ElasticModel model(mesh, {parts::steel()},
-                           {parts::pulled({0.0, 0.0, -10.0})});
-  const StressField field = recover_stress(
+  const elastic::ElasticModel model(mesh, {parts::steel()},
+                                    {parts::pulled({0.0, 0.0, -10.0})});
+  const stress::StressField field = stress::recover_stress(
       mesh, {parts::steel()}, model.base_solution().displacements[0]);
   double top = 0.0;
   for (const double s : field.von_mises) {
@@ -183,9 +189,10 @@ TEST(Stress, PeakIsTheLargestNodalValue) {
 
 TEST(Stress, WrongSizesAreRefused) {
   const TetMesh mesh = shapes::brick({1.0, 1.0, 1.0}, 1, 1, 1);
-  EXPECT_THROW(recover_stress(mesh, {parts::steel()}, VectorX::Zero(3)),
+  EXPECT_THROW(stress::recover_stress(mesh, {parts::steel()}, VectorX::Zero(3)),
                InvalidInput);
-  EXPECT_THROW(recover_stress(mesh, {}, VectorX::Zero(24)), InvalidInput);
+  EXPECT_THROW(stress::recover_stress(mesh, {}, VectorX::Zero(24)),
+               InvalidInput);
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ namespace {
 constexpr double kRounding = 1e-12;
 
 TEST(Uniformity, OfOneValueIsPerfect) {
-  const Uniformity u = uniformity({3.0, 3.0, 3.0}, {0.1, 2.0, 0.7});
+  const stress::Uniformity u =
+      stress::uniformity({3.0, 3.0, 3.0}, {0.1, 2.0, 0.7});
   EXPECT_DOUBLE_EQ(u.mean, 3.0);
   EXPECT_NEAR(u.coefficient_of_variation, 0.0, kRounding);
   EXPECT_NEAR(u.gini, 0.0, kRounding);
@@ -26,7 +27,8 @@ TEST(Uniformity, OfOneValueIsPerfect) {
 TEST(Uniformity, OfTwoValuesHasClosedForms) {
   // Volume 3 at value 1, volume 1 at value 5: mean 2, deviation sqrt 3, Gini
   // = share of the large in the total minus its share of the volume.
-  const Uniformity u = uniformity({5.0, 1.0, 1.0}, {1.0, 2.0, 1.0});
+  const stress::Uniformity u =
+      stress::uniformity({5.0, 1.0, 1.0}, {1.0, 2.0, 1.0});
   EXPECT_DOUBLE_EQ(u.volume, 4.0);
   EXPECT_DOUBLE_EQ(u.mean, 2.0);
   EXPECT_NEAR(u.coefficient_of_variation, std::sqrt(3.0) / 2.0, kRounding);
@@ -45,8 +47,8 @@ TEST(Uniformity, OfALinearDistributionConverges) {
   for (int i = 0; i < kCount; ++i) {
     values.push_back((i + 0.5) / kCount);
   }
-  const Uniformity u =
-      uniformity(values, std::vector<double>(kCount, 1.0 / kCount));
+  const stress::Uniformity u =
+      stress::uniformity(values, std::vector<double>(kCount, 1.0 / kCount));
   constexpr double kStep = 1.0 / kCount;
   EXPECT_NEAR(u.coefficient_of_variation, 1.0 / std::sqrt(3.0), kStep * kStep);
   EXPECT_NEAR(u.gini, 1.0 / 3.0, kStep * kStep);
@@ -54,14 +56,15 @@ TEST(Uniformity, OfALinearDistributionConverges) {
   EXPECT_NEAR(u.p95_over_p50, 1.9, 5.0 * kStep);
   EXPECT_NEAR(u.peak_over_mean, 2.0, 2.0 * kStep);
   for (const double share : u.histogram) {
-    EXPECT_NEAR(share, 1.0 / kHistogramSteps, 2.0 * kStep);
+    EXPECT_NEAR(share, 1.0 / stress::kHistogramSteps, 2.0 * kStep);
   }
 }
 
 TEST(Uniformity, IsFreeOfScaleAndOfHowVolumesAreCut) {
-  const Uniformity u = uniformity({1.0, 2.0, 7.0}, {1.0, 2.0, 0.5});
-  const Uniformity v =
-      uniformity({70.0, 10.0, 20.0, 20.0}, {0.25, 0.5, 0.4, 0.6});
+  const stress::Uniformity u =
+      stress::uniformity({1.0, 2.0, 7.0}, {1.0, 2.0, 0.5});
+  const stress::Uniformity v =
+      stress::uniformity({70.0, 10.0, 20.0, 20.0}, {0.25, 0.5, 0.4, 0.6});
   EXPECT_NEAR(u.gini, v.gini, kRounding);
   EXPECT_NEAR(u.coefficient_of_variation, v.coefficient_of_variation,
               kRounding);
@@ -69,17 +72,18 @@ TEST(Uniformity, IsFreeOfScaleAndOfHowVolumesAreCut) {
 }
 
 TEST(Uniformity, OfNothingIsRefusedAndOfNoStressIsEven) {
-  EXPECT_THROW(uniformity({}, {}), InvalidInput);
-  EXPECT_THROW(uniformity({1.0}, {0.0}), InvalidInput);
-  EXPECT_THROW(uniformity({-1.0}, {1.0}), InvalidInput);
-  EXPECT_THROW(uniformity({std::numeric_limits<double>::quiet_NaN()}, {1.0}),
-               InvalidInput);
-  EXPECT_EQ(uniformity({0.0, 0.0}, {1.0, 1.0}).gini, 0.0);
+  EXPECT_THROW(stress::uniformity({}, {}), InvalidInput);
+  EXPECT_THROW(stress::uniformity({1.0}, {0.0}), InvalidInput);
+  EXPECT_THROW(stress::uniformity({-1.0}, {1.0}), InvalidInput);
+  EXPECT_THROW(
+      stress::uniformity({std::numeric_limits<double>::quiet_NaN()}, {1.0}),
+      InvalidInput);
+  EXPECT_EQ(stress::uniformity({0.0, 0.0}, {1.0, 1.0}).gini, 0.0);
 }
 
 /// Stress sxx = factor x height above the middle in a beam.
-PointStress bent(const TetMesh& mesh, double middle) {
-  PointStress points = point_stress(
+element::PointStress bent(const TetMesh& mesh, double middle) {
+  element::PointStress points = element::point_stress(
       mesh, {parts::steel()},
       VectorX::Zero(3 * static_cast<Eigen::Index>(mesh.nodes.size())));
   for (std::size_t q = 0; q < points.stress.size(); ++q) {
@@ -92,17 +96,17 @@ PointStress bent(const TetMesh& mesh, double middle) {
 TEST(StressUniformity, OfAUniformBarIsPerfect) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({4.0, 1.0, 1.0}, 4, 2, 2));
-  LoadCase pull;
+  loads::LoadCase pull;
   pull.name = "pull";
   pull.supports = {{"x0", true, false, false},
                    {"y0", false, true, false},
                    {"z0", false, false, true}};
   pull.forces = {{"x1", {5.0, 0.0, 0.0}}};
-  const ElasticModel model(mesh, {parts::steel()}, {pull});
-  const StressUniformity u =
-      stress_uniformity(mesh, {parts::steel()},
-                        point_stress(mesh, {parts::steel()},
-                                     model.base_solution().displacements[0]));
+  const elastic::ElasticModel model(mesh, {parts::steel()}, {pull});
+  const stress::StressUniformity u = stress::stress_uniformity(
+      mesh, {parts::steel()},
+      element::point_stress(mesh, {parts::steel()},
+                            model.base_solution().displacements[0]));
   constexpr double kSolver = 1e-7;
   EXPECT_NEAR(u.von_mises.mean, 5.0, kSolver);
   EXPECT_NEAR(u.von_mises.gini, 0.0, kSolver);
@@ -119,8 +123,8 @@ TEST(StressUniformity, OfABentBeamConvergesToItsClosedForm) {
   for (const int n : {4, 8}) {
     const TetMesh mesh =
         shapes::straight_quadratic(shapes::brick({4.0, 1.0, 2.0}, n, 2, n));
-    const StressUniformity u =
-        stress_uniformity(mesh, {parts::steel()}, bent(mesh, 1.0));
+    const stress::StressUniformity u =
+        stress::stress_uniformity(mesh, {parts::steel()}, bent(mesh, 1.0));
     EXPECT_NEAR(u.von_mises.coefficient_of_variation, 1.0 / std::sqrt(3.0),
                 1e-10);  // four points integrate squares exactly
     const double error = std::abs(u.von_mises.gini - 1.0 / 3.0) +
@@ -138,41 +142,44 @@ TEST(StressUniformity, OfABentBeamConvergesToItsClosedForm) {
 TEST(StressUniformity, LeavesOutExclusionZones) {
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick({4.0, 1.0, 2.0}, 8, 2, 4));
-  PointStress points = bent(mesh, -10.0);
+  element::PointStress points = bent(mesh, -10.0);
   for (std::size_t q = 0; q < points.stress.size(); ++q) {
     points.stress[q][0] = points.position[q].x() < 1.0 ? 500.0 : 10.0;
   }
   const auto by_surface =
-      excluded_elements(mesh, {{.surface = "x0", .distance = 1.2}});
-  ExclusionZone box;
+      stress::excluded_elements(mesh, {{.surface = "x0", .distance = 1.2}});
+  stress::ExclusionZone box;
   box.box = {{-1.0, -1.0, -1.0}, {1.0, 9.0, 9.0}};
-  const auto by_box = excluded_elements(mesh, {box});
+  const auto by_box = stress::excluded_elements(mesh, {box});
   for (const auto& excluded : {by_surface, by_box}) {
-    const StressUniformity u =
-        stress_uniformity(mesh, {parts::steel()}, points, excluded);
+    const stress::StressUniformity u =
+        stress::stress_uniformity(mesh, {parts::steel()}, points, excluded);
     EXPECT_EQ(u.von_mises.peak, 10.0);
   }
-  EXPECT_NEAR(stress_uniformity(mesh, {parts::steel()}, points, by_box)
+  EXPECT_NEAR(stress::stress_uniformity(mesh, {parts::steel()}, points, by_box)
                   .von_mises.volume,
               6.0, 1e-12);
-  EXPECT_GT(stress_uniformity(mesh, {parts::steel()}, points).von_mises.gini,
-            0.5);
+  EXPECT_GT(
+      stress::stress_uniformity(mesh, {parts::steel()}, points).von_mises.gini,
+      0.5);
 }
 
 TEST(StressUniformity, WrongZonesAreRefused) {
   const TetMesh mesh = shapes::brick({1.0, 1.0, 1.0}, 1, 1, 1);
-  ExclusionZone flat;
+  stress::ExclusionZone flat;
   flat.box = {{0.0, 0.0, 0.0}, {1.0, 0.0, 1.0}};
-  for (const ExclusionZone& zone :
-       {ExclusionZone{}, ExclusionZone{.surface = "nose", .distance = 1.0},
-        ExclusionZone{.surface = "x0"}, flat}) {
-    EXPECT_THROW(excluded_elements(mesh, {zone}), InvalidInput);
+  for (const stress::ExclusionZone& zone :
+       {stress::ExclusionZone{},
+        stress::ExclusionZone{.surface = "nose", .distance = 1.0},
+        stress::ExclusionZone{.surface = "x0"}, flat}) {
+    EXPECT_THROW(stress::excluded_elements(mesh, {zone}), InvalidInput);
   }
   const std::vector<char> all(6, 1);
   EXPECT_THROW(
-      stress_uniformity(mesh, {parts::steel()},
-                        point_stress(mesh, {parts::steel()}, VectorX::Zero(24)),
-                        all),
+      stress::stress_uniformity(
+          mesh, {parts::steel()},
+          element::point_stress(mesh, {parts::steel()}, VectorX::Zero(24)),
+          all),
       InvalidInput);
 }
 

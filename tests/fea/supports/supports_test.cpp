@@ -39,16 +39,17 @@ TetMesh bar(int order) {
   return order == 1 ? mesh : shapes::straight_quadratic(mesh);
 }
 
-Support slide(const std::string& surface,
-              SupportKind kind = SupportKind::Normal) {
+loads::Support slide(const std::string& surface,
+                     loads::SupportKind kind = loads::SupportKind::Normal) {
   return {.surface = surface, .kind = kind};
 }
 
-ElasticSolution solve(const TetMesh& mesh, const LoadCase& load_case,
-                      SolverKind kind = SolverKind::Automatic) {
-  const ElasticModel model(mesh, {parts::steel()}, {load_case},
-                           {.solver = kind});
-  const ElasticSolution& solution = model.base_solution();
+equations::ElasticSolution solve(
+    const TetMesh& mesh, const loads::LoadCase& load_case,
+    equations::SolverKind kind = equations::SolverKind::Automatic) {
+  const elastic::ElasticModel model(mesh, {parts::steel()}, {load_case},
+                                    {.solver = kind});
+  const equations::ElasticSolution& solution = model.base_solution();
   EXPECT_FALSE(solution.failure) << solution.failure->message;
   EXPECT_LE(solution.report.reaction_imbalance, kBalance);
   return solution;
@@ -67,8 +68,8 @@ VectorX turned(const VectorX& u) {
 }
 
 /// Three planes held along their normals, a force on the end.
-LoadCase on_planes(bool oblique, SupportKind kind) {
-  LoadCase load_case;
+loads::LoadCase on_planes(bool oblique, loads::SupportKind kind) {
+  loads::LoadCase load_case;
   load_case.name = "planes";
   if (oblique) {
     load_case.supports = {slide("x0", kind), slide("y0", kind),
@@ -83,15 +84,16 @@ LoadCase on_planes(bool oblique, SupportKind kind) {
   return load_case;
 }
 
-class Supports : public testing::TestWithParam<SolverKind> {};
+class Supports : public testing::TestWithParam<equations::SolverKind> {};
 
 // Nodes of edges and of the corner are held along two and three normals.
 TEST_P(Supports, PlanesHoldAlongTheirNormalsInAnyPosition) {
   const TetMesh mesh = bar(2);
-  const ElasticSolution straight =
-      solve(mesh, on_planes(false, SupportKind::Components), GetParam());
-  for (const auto kind : {SupportKind::Normal, SupportKind::Symmetry}) {
-    const ElasticSolution oblique =
+  const equations::ElasticSolution straight =
+      solve(mesh, on_planes(false, loads::SupportKind::Components), GetParam());
+  for (const auto kind :
+       {loads::SupportKind::Normal, loads::SupportKind::Symmetry}) {
+    const equations::ElasticSolution oblique =
         solve(turned(mesh), on_planes(true, kind), GetParam());
     EXPECT_LE(
         difference(oblique.displacements[0], turned(straight.displacements[0])),
@@ -104,33 +106,34 @@ TEST_P(Supports, PlanesHoldAlongTheirNormalsInAnyPosition) {
 }
 
 TEST_P(Supports, LocalAxesTurnWithThePart) {
-  LoadCase straight = parts::pulled({5.0, 2.0, -3.0});
+  loads::LoadCase straight = parts::pulled({5.0, 2.0, -3.0});
   straight.supports = {{"x0", true, false, true}, {"y0", false, true, false}};
-  LoadCase oblique = straight;
-  for (Support& support : oblique.supports) {
-    support.axes = LocalAxes{turn().col(0), turn().col(1) + turn().col(0)};
+  loads::LoadCase oblique = straight;
+  for (loads::Support& support : oblique.supports) {
+    support.axes =
+        element::LocalAxes{turn().col(0), turn().col(1) + turn().col(0)};
   }
   oblique.forces[0].total = turn() * straight.forces[0].total;
   const TetMesh mesh = bar(2);
-  const ElasticSolution a = solve(mesh, straight, GetParam());
-  const ElasticSolution b = solve(turned(mesh), oblique, GetParam());
+  const equations::ElasticSolution a = solve(mesh, straight, GetParam());
+  const equations::ElasticSolution b = solve(turned(mesh), oblique, GetParam());
   EXPECT_LE(difference(b.displacements[0], turned(a.displacements[0])),
             kSolvers);
   EXPECT_LE(b.report.iterations, kAlike * a.report.iterations);
 }
 
 TEST_P(Supports, SpringsTurnWithThePart) {
-  LoadCase straight = parts::pulled({5.0, 2.0, -3.0});
+  loads::LoadCase straight = parts::pulled({5.0, 2.0, -3.0});
   straight.supports.clear();
   straight.springs = {
       {.surface = "x0", .components = {1e4, 3e4, 2e5}},
-      {.surface = "z0", .normal = 5e3, .measure = SpringMeasure::Total}};
-  LoadCase oblique = straight;
-  oblique.springs[0].axes = LocalAxes{turn().col(0), turn().col(1)};
+      {.surface = "z0", .normal = 5e3, .measure = loads::SpringMeasure::Total}};
+  loads::LoadCase oblique = straight;
+  oblique.springs[0].axes = element::LocalAxes{turn().col(0), turn().col(1)};
   oblique.forces[0].total = turn() * straight.forces[0].total;
   const TetMesh mesh = bar(2);
-  const ElasticSolution a = solve(mesh, straight, GetParam());
-  const ElasticSolution b = solve(turned(mesh), oblique, GetParam());
+  const equations::ElasticSolution a = solve(mesh, straight, GetParam());
+  const equations::ElasticSolution b = solve(turned(mesh), oblique, GetParam());
   EXPECT_LE(difference(b.displacements[0], turned(a.displacements[0])),
             kSolvers);
   EXPECT_LE(difference(b.reactions[0], turned(a.reactions[0])),
@@ -139,8 +142,8 @@ TEST_P(Supports, SpringsTurnWithThePart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Supports,
-                         testing::Values(SolverKind::Cholesky,
-                                         SolverKind::Multigrid));
+                         testing::Values(equations::SolverKind::Cholesky,
+                                         equations::SolverKind::Multigrid));
 
 // Without Poisson's effect a block on springs sinks by p / k and shortens by
 // p z / E: linear, so both orders have it exactly.
@@ -150,18 +153,18 @@ TEST(Springs, BlockSinksAndShortens) {
     if (order == 2) {
       mesh = shapes::straight_quadratic(mesh);
     }
-    Material material = parts::steel();
+    element::Material material = parts::steel();
     material.poisson_ratio = 0.0;
-    LoadCase load_case;
+    loads::LoadCase load_case;
     load_case.name = "sink";
     load_case.supports = {slide("x0"), slide("y0")};
     load_case.springs = {{.surface = "z0",
                           .normal = 6.0 * 4e4,
-                          .measure = SpringMeasure::Total}};
+                          .measure = loads::SpringMeasure::Total}};
     load_case.pressures = {{"z1", 7.0}};
-    const ElasticModel model(mesh, {material}, {load_case},
-                             {.tolerance = 1e-13});
-    const ElasticSolution& solution = model.base_solution();
+    const elastic::ElasticModel model(mesh, {material}, {load_case},
+                                      {.tolerance = 1e-13});
+    const equations::ElasticSolution& solution = model.base_solution();
     ASSERT_FALSE(solution.failure) << solution.failure->message;
     EXPECT_LE(solution.report.reaction_imbalance, kBalance);
     double ground = 0.0;
@@ -180,18 +183,20 @@ TEST(Springs, BlockSinksAndShortens) {
 TEST(Springs, OneByOneAreTheirBed) {
   for (const int order : {1, 2}) {
     const TetMesh mesh = turned(bar(order));
-    LoadCase load_case{.name = "beds"};
-    load_case.springs = {{"x0", {2.0, 0.0, 3.0}, 5.0},
-                         {.surface = "y1",
-                          .components = {7.0, 1.0, 0.0},
-                          .measure = SpringMeasure::Total,
-                          .axes = LocalAxes{{1.0, 1.0, 0.0}, Vec3::UnitZ()}}};
-    const std::vector<SpringSet> sets = spring_sets(mesh, load_case);
+    loads::LoadCase load_case{.name = "beds"};
+    load_case.springs = {
+        {"x0", {2.0, 0.0, 3.0}, 5.0},
+        {.surface = "y1",
+         .components = {7.0, 1.0, 0.0},
+         .measure = loads::SpringMeasure::Total,
+         .axes = element::LocalAxes{{1.0, 1.0, 0.0}, Vec3::UnitZ()}}};
+    const std::vector<supports::SpringSet> sets =
+        supports::spring_sets(mesh, load_case);
     EXPECT_EQ(sets.size(), 5U);
     const VectorX u = VectorX::Random(3 * static_cast<int>(mesh.nodes.size()));
     VectorX f = VectorX::Zero(u.size());
-    for (const SpringSet& set : sets) {
-      for (const SpringSet::Spring& spring : set.springs) {
+    for (const supports::SpringSet& set : sets) {
+      for (const supports::SpringSet::Spring& spring : set.springs) {
         double e = 0.0;
         for (std::size_t a = 0; a < spring.nodes.size(); ++a) {
           e += spring.coefficients[a].dot(u.segment<3>(3 * spring.nodes[a]));
@@ -202,17 +207,19 @@ TEST(Springs, OneByOneAreTheirBed) {
         }
       }
     }
-    const VectorX bed = spring_forces(spring_blocks(mesh, load_case, order), u);
+    const VectorX bed = supports::spring_forces(
+        supports::spring_blocks(mesh, load_case, order), u);
     EXPECT_LT((f - bed).norm(), 1e-13 * bed.norm());
   }
 }
 
 TEST(Springs, StiffOnesActAsAFixedSurface) {
   const TetMesh mesh = turned(bar(2));
-  LoadCase fixed = parts::pulled({5.0, 2.0, -3.0});
-  LoadCase sprung = fixed;
+  loads::LoadCase fixed = parts::pulled({5.0, 2.0, -3.0});
+  loads::LoadCase sprung = fixed;
   sprung.supports.clear();
-  for (const auto kind : {SolverKind::Cholesky, SolverKind::Multigrid}) {
+  for (const auto kind :
+       {equations::SolverKind::Cholesky, equations::SolverKind::Multigrid}) {
     const VectorX exact = solve(mesh, fixed, kind).displacements[0];
     for (const double stiffness : {1e9, 1e12}) {
       sprung.springs = {
@@ -226,19 +233,19 @@ TEST(Springs, StiffOnesActAsAFixedSurface) {
 /// Lame: bore held along its normals, pressure p outside, plane strain:
 /// u = A (r - 1 / r) with stress_r(2) = -p.
 double held_bore(double r, double pressure) {
-  const Material m = parts::steel();
-  const Lame l = lame(m);
+  const element::Material m = parts::steel();
+  const element::Lame l = element::lame(m);
   const double slope =
       (l.lambda + 2.0 * l.mu) * (1.0 + 0.25) + l.lambda * (1.0 - 0.25);
   return -pressure / slope * (r - 1.0 / r);
 }
 
-LoadCase squeezed_tube() {
-  LoadCase load_case;
+loads::LoadCase squeezed_tube() {
+  loads::LoadCase load_case;
   load_case.name = "squeeze";
   load_case.supports = {slide("x0"),
-                        slide("y0", SupportKind::Symmetry),
-                        slide("y1", SupportKind::Symmetry),
+                        slide("y0", loads::SupportKind::Symmetry),
+                        slide("y1", loads::SupportKind::Symmetry),
                         {"z0", false, false, true},
                         {"z1", false, false, true}};
   load_case.pressures = {{"x1", 5.0}};
@@ -269,12 +276,12 @@ TEST(CurvedSupports, HoldABoreAlongItsNormalsToSecondOrder) {
 
 TEST(CurvedSupports, MultigridConvergesAsFastAsWithFixedComponents) {
   const TetMesh mesh = parts::quarter_tube(6, 0.5);
-  const ElasticSolution held =
-      solve(mesh, squeezed_tube(), SolverKind::Multigrid);
-  const ElasticSolution direct =
-      solve(mesh, squeezed_tube(), SolverKind::Cholesky);
-  const ElasticSolution fixed =
-      solve(mesh, parts::tube_pressure(5.0), SolverKind::Multigrid);
+  const equations::ElasticSolution held =
+      solve(mesh, squeezed_tube(), equations::SolverKind::Multigrid);
+  const equations::ElasticSolution direct =
+      solve(mesh, squeezed_tube(), equations::SolverKind::Cholesky);
+  const equations::ElasticSolution fixed =
+      solve(mesh, parts::tube_pressure(5.0), equations::SolverKind::Multigrid);
   EXPECT_LE(difference(held.displacements[0], direct.displacements[0]),
             kSolvers);
   EXPECT_LE(held.report.iterations, kAlike * fixed.report.iterations);
@@ -286,21 +293,22 @@ TEST(CurvedSupports, NextDesignTurnsItsNormals) {
   for (Vec3& x : moved.nodes) {
     x.x() *= 1.0 + 0.05 * x.y();
   }
-  LoadCase load_case = squeezed_tube();
+  loads::LoadCase load_case = squeezed_tube();
   load_case.supports.back() = {"x1", true, true, true};
-  load_case.supports[2].kind = SupportKind::Normal;
+  load_case.supports[2].kind = loads::SupportKind::Normal;
   load_case.pressures = {{"z1", 5.0}};
-  for (const auto kind : {SolverKind::Cholesky, SolverKind::Multigrid}) {
-    const ElasticModel model(base, {parts::steel()}, {load_case},
-                             {.solver = kind});
-    const ElasticSolution next = model.solve(moved);
+  for (const auto kind :
+       {equations::SolverKind::Cholesky, equations::SolverKind::Multigrid}) {
+    const elastic::ElasticModel model(base, {parts::steel()}, {load_case},
+                                      {.solver = kind});
+    const equations::ElasticSolution next = model.solve(moved);
     ASSERT_FALSE(next.failure) << next.failure->message;
-    const ElasticModel fresh(moved, {parts::steel()}, {load_case},
-                             {.solver = kind});
+    const elastic::ElasticModel fresh(moved, {parts::steel()}, {load_case},
+                                      {.solver = kind});
     EXPECT_LE(difference(next.displacements[0],
                          fresh.base_solution().displacements[0]),
               kSolvers);
-    const ElasticSolution back = model.solve(base);
+    const equations::ElasticSolution back = model.solve(base);
     EXPECT_LE(difference(back.displacements[0],
                          model.base_solution().displacements[0]),
               kSolvers);
@@ -309,16 +317,18 @@ TEST(CurvedSupports, NextDesignTurnsItsNormals) {
 
 TEST(SupportGroups, CasesHeldDifferentlyAreSolvedAsAlone) {
   const TetMesh mesh = turned(bar(2));
-  LoadCase sprung = parts::pulled({1.0, 0.0, 0.0});
+  loads::LoadCase sprung = parts::pulled({1.0, 0.0, 0.0});
   sprung.name = "sprung";
   sprung.supports = {slide("x0")};
   sprung.springs = {{.surface = "y0", .components = {1e3, 2e3, 5e2}}};
-  const std::vector<LoadCase> cases = {on_planes(true, SupportKind::Normal),
-                                       parts::pulled({0.0, 1.0, 0.0}), sprung,
-                                       on_planes(true, SupportKind::Normal)};
-  for (const auto kind : {SolverKind::Cholesky, SolverKind::Multigrid}) {
-    const ElasticModel together(mesh, {parts::steel()}, cases,
-                                {.solver = kind});
+  const std::vector<loads::LoadCase> cases = {
+      on_planes(true, loads::SupportKind::Normal),
+      parts::pulled({0.0, 1.0, 0.0}), sprung,
+      on_planes(true, loads::SupportKind::Normal)};
+  for (const auto kind :
+       {equations::SolverKind::Cholesky, equations::SolverKind::Multigrid}) {
+    const elastic::ElasticModel together(mesh, {parts::steel()}, cases,
+                                         {.solver = kind});
     ASSERT_FALSE(together.base_solution().failure);
     for (std::size_t c = 0; c < cases.size(); ++c) {
       EXPECT_LE(difference(together.base_solution().displacements[c],
@@ -329,16 +339,17 @@ TEST(SupportGroups, CasesHeldDifferentlyAreSolvedAsAlone) {
 }
 
 template <class Error>
-void expect_refused(const TetMesh& mesh, const LoadCase& load_case,
+void expect_refused(const TetMesh& mesh, const loads::LoadCase& load_case,
                     const char* part) {
-  EXPECT_THAT([&] { ElasticModel(mesh, {parts::steel()}, {load_case}); },
-              testing::ThrowsMessage<Error>(
-                  AllOf(HasSubstr(load_case.name), HasSubstr(part))));
+  EXPECT_THAT(
+      [&] { elastic::ElasticModel(mesh, {parts::steel()}, {load_case}); },
+      testing::ThrowsMessage<Error>(
+          AllOf(HasSubstr(load_case.name), HasSubstr(part))));
 }
 
 TEST(SupportChecks, ABushTurnsInItsBore) {
   const TetMesh mesh = parts::quarter_tube(3, 0.5);
-  LoadCase load_case;
+  loads::LoadCase load_case;
   load_case.name = "bush";
   load_case.supports = {slide("x0"), {"z0", false, false, true}};
   load_case.pressures = {{"x1", 1.0}};
@@ -351,16 +362,17 @@ TEST(SupportChecks, ABushTurnsInItsBore) {
 
 TEST(SupportChecks, SymmetryNeedsAPlane) {
   const TetMesh mesh = parts::quarter_tube(2, 0.5);
-  LoadCase load_case = squeezed_tube();
+  loads::LoadCase load_case = squeezed_tube();
   load_case.name = "surface 'x0'";
-  load_case.supports[0].kind = SupportKind::Symmetry;
+  load_case.supports[0].kind = loads::SupportKind::Symmetry;
   expect_refused<InvalidInput>(mesh, load_case, "is no plane");
 }
 
 TEST(SupportChecks, AxesSpringsAndNames) {
   const TetMesh mesh = bar(1);
-  LoadCase load_case = parts::pulled({1.0, 0.0, 0.0});
-  load_case.supports[0].axes = LocalAxes{Vec3::UnitX(), -2.0 * Vec3::UnitX()};
+  loads::LoadCase load_case = parts::pulled({1.0, 0.0, 0.0});
+  load_case.supports[0].axes =
+      element::LocalAxes{Vec3::UnitX(), -2.0 * Vec3::UnitX()};
   expect_refused<InvalidInput>(mesh, load_case, "parallel");
   load_case = parts::pulled({1.0, 0.0, 0.0});
   load_case.springs = {{.surface = "y0"}};
@@ -370,10 +382,12 @@ TEST(SupportChecks, AxesSpringsAndNames) {
     expect_refused<InvalidInput>(mesh, load_case, "0 or above");
   }
   load_case.springs = {{.surface = "lid", .normal = 1.0}};
-  EXPECT_THROW(ElasticModel(mesh, {parts::steel()}, {load_case}), InvalidInput);
+  EXPECT_THROW(elastic::ElasticModel(mesh, {parts::steel()}, {load_case}),
+               InvalidInput);
   load_case = parts::pulled({1.0, 0.0, 0.0});
   load_case.supports = {slide("lid")};
-  EXPECT_THROW(ElasticModel(mesh, {parts::steel()}, {load_case}), InvalidInput);
+  EXPECT_THROW(elastic::ElasticModel(mesh, {parts::steel()}, {load_case}),
+               InvalidInput);
   load_case.supports = {slide("x0")};
   expect_refused<SolverError>(mesh, load_case, "rotate about x");
   load_case.supports.clear();
@@ -391,10 +405,10 @@ TEST(NodeFreedom, NormalsOfOneSmoothSurfaceUnderTwoNamesCountOnce) {
       mesh.face_label[f] = mesh.label_of("upper");
     }
   }
-  LoadCase load_case;
+  loads::LoadCase load_case;
   load_case.supports = {slide("x0"), slide("upper")};
-  const NodeFreedom freedom =
-      node_freedom(mesh, held_directions(mesh, load_case));
+  const solver::NodeFreedom freedom =
+      supports::node_freedom(mesh, supports::held_directions(mesh, load_case));
   for (const Mat3& P : freedom.projector) {
     EXPECT_NEAR(P.trace(), 2.0, 1e-12);
     EXPECT_LE((P * P - P).norm(), 1e-12);

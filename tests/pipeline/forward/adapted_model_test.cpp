@@ -11,27 +11,28 @@
 namespace meniscus::adapted_model_test {
 namespace {
 
-Case adaptive_strut() {
+case_data::Case adaptive_strut() {
   const std::string text =
       changed(strut(), "fea = 6.0\nfilm = 3.0", "fea = 12.0\nfilm = 6.0") +
       "[analysis]\nadapt = true\n";
-  return *read_case_text(text, "case.toml").input;
+  return *reader::read_case_text(text, "case.toml").input;
 }
 
 VectorX at(double foot) { return VectorX::Constant(1, foot); }
 
 TEST(AdaptedModel, ErrsLessAndStartsWhereItSays) {
-  const Case input = adaptive_strut();
-  const ForwardModel model(input);
+  const case_data::Case input = adaptive_strut();
+  const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
-  const Adaptation& round = *model.adaptation();
+  const forward::Adaptation& round = *model.adaptation();
   EXPECT_GT(round.after.tet.elements, round.before.tet.elements);
   EXPECT_LT(round.after.tet.elements, 8 * round.before.tet.elements);
   EXPECT_LT(round.after.errors.energy, 0.8 * round.before.errors.energy);
   EXPECT_LT(std::abs(round.after.errors.responses[0]),
             std::abs(round.before.errors.responses[0]));
-  EvaluationFields fields;
-  const Evaluation start = model.evaluate(initial_design(input), &fields);
+  forward::EvaluationFields fields;
+  const forward::Evaluation start =
+      model.evaluate(case_data::initial_design(input), &fields);
   ASSERT_FALSE(start.failure);
   EXPECT_EQ(start.tet.elements, round.after.tet.elements);
   constexpr double kSolver = 1e-8;
@@ -41,9 +42,9 @@ TEST(AdaptedModel, ErrsLessAndStartsWhereItSays) {
 }
 
 TEST(AdaptedModel, PutsHalvedFacetsOnTheFilm) {
-  const Case input = adaptive_strut();
-  const ForwardModel model(input);
-  EvaluationFields fields;
+  const case_data::Case input = adaptive_strut();
+  const forward::ForwardModel model(input);
+  forward::EvaluationFields fields;
   model.evaluate(at(27.0), &fields);
   // Corners and mid-sides of the film are vertices of its finest mesh.
   int curved = 0;
@@ -60,14 +61,14 @@ TEST(AdaptedModel, PutsHalvedFacetsOnTheFilm) {
     }
   }
   EXPECT_GT(curved, 100);
-  EXPECT_EQ(tet_quality(fields.mesh).min_dihedral_deg > 5.0, true);
+  EXPECT_EQ(mesh_tet::tet_quality(fields.mesh).min_dihedral_deg > 5.0, true);
 }
 
 TEST(AdaptedModel, IsAPureAndSmoothFunctionOfTheDesign) {
-  const Case input = adaptive_strut();
-  const ForwardModel model(input);
-  const ForwardModel same(input);
-  const auto sway = [](const ForwardModel& of, double foot) {
+  const case_data::Case input = adaptive_strut();
+  const forward::ForwardModel model(input);
+  const forward::ForwardModel same(input);
+  const auto sway = [](const forward::ForwardModel& of, double foot) {
     return of.evaluate(at(foot)).responses[0];
   };
   const double first = sway(model, 26.0);

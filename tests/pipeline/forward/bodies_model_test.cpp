@@ -48,17 +48,18 @@ direction = [0, 0, -1]
 }
 
 struct Cut {
-  Evaluation evaluation;
-  EvaluationFields fields;
+  forward::Evaluation evaluation;
+  forward::EvaluationFields fields;
 };
 
 Cut evaluated(const std::string& text) {
-  const CaseReading reading = read_case_text(text, "case.toml");
+  const reader::CaseReading reading = reader::read_case_text(text, "case.toml");
   EXPECT_TRUE(reading.problems.empty()) << reading.problems.front();
-  const ForwardModel model(*reading.input);
+  const forward::ForwardModel model(*reading.input);
   EXPECT_FALSE(model.failure()) << model.failure()->message;
   Cut cut;
-  cut.evaluation = model.evaluate(initial_design(*reading.input), &cut.fields);
+  cut.evaluation =
+      model.evaluate(case_data::initial_design(*reading.input), &cut.fields);
   EXPECT_FALSE(cut.evaluation.failure);
   return cut;
 }
@@ -93,9 +94,10 @@ TEST(Bodies, ASofterFootSinksMoreAndTheNeckOnItDoesNot) {
 }
 
 TEST(Bodies, FollowTheDesignOnOneMesh) {
-  const CaseReading reading = read_case_text(cut_strut(), "case.toml");
-  const ForwardModel model(*reading.input);
-  const Evaluation moved = model.evaluate(VectorX::Constant(1, 23.0));
+  const reader::CaseReading reading =
+      reader::read_case_text(cut_strut(), "case.toml");
+  const forward::ForwardModel model(*reading.input);
+  const forward::Evaluation moved = model.evaluate(VectorX::Constant(1, 23.0));
   ASSERT_FALSE(moved.failure) << moved.failure->message;
   EXPECT_EQ(moved.tet.elements, model.frozen().tet.elements);
   EXPECT_EQ(model.evaluate(VectorX::Constant(1, 23.0)).responses,
@@ -159,12 +161,12 @@ TEST(Voids, NamedFirstLeaveTheSamePart) {
 }
 
 TEST(Voids, AreLeftOutOfAnAdaptedModelToo) {
-  const CaseReading reading =
-      read_case_text(half_void() + "[analysis]\nadapt = true\n", "case.toml");
+  const reader::CaseReading reading = reader::read_case_text(
+      half_void() + "[analysis]\nadapt = true\n", "case.toml");
   ASSERT_TRUE(reading.input);
-  const ForwardModel model(*reading.input);
+  const forward::ForwardModel model(*reading.input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
-  const Adaptation& round = *model.adaptation();
+  const forward::Adaptation& round = *model.adaptation();
   EXPECT_LT(round.after.errors.energy, round.before.errors.energy);
 }
 

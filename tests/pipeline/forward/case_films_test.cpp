@@ -19,11 +19,12 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-EvaluatedCase numbers_of(const std::string& text) {
-  const CaseReading reading = read_case_text(text, "case.toml");
+case_data::EvaluatedCase numbers_of(const std::string& text) {
+  const reader::CaseReading reading = reader::read_case_text(text, "case.toml");
   EXPECT_THAT(reading.problems, IsEmpty());
   EXPECT_THAT(reading.warnings, IsEmpty());
-  return evaluate(*reading.input, initial_design(*reading.input));
+  return case_data::evaluate(*reading.input,
+                             case_data::initial_design(*reading.input));
 }
 
 std::string with(const std::string& more) {
@@ -41,7 +42,7 @@ TEST(CaseTension, OfPlaceTakesTheCasesNumbers) {
                                   text + "\n"))
         .film_system.films[0];
   };
-  const FilmSpec film = tension(
+  const films::FilmSpec film = tension(
       "\"load/1e3 + 2.5e-1*exp(-z/length) + min(e, 1.e+1)*if(x > 30, 1, 0)\"");
   ASSERT_TRUE(film.tension_field);
   EXPECT_DOUBLE_EQ(at(*film.tension_field, 0, 0, 30),
@@ -53,7 +54,7 @@ TEST(CaseTension, OfPlaceTakesTheCasesNumbers) {
 }
 
 TEST(CaseFields, BecomeSpecs) {
-  const FilmSystem system =
+  const films::FilmSystem system =
       numbers_of(with("[fields.pole]\nkind = \"segment\"\nfrom = [0, 0, 0]\n"
                       "to = [0, 0, \"length\"]\nstrength = -0.5\n"
                       "core = \"1 cm\"\nfilms = [\"skin\"]\n"
@@ -64,24 +65,25 @@ TEST(CaseFields, BecomeSpecs) {
                       "pressure = \"load*1e-6*(length - z)\"\n"))
           .film_system;
   ASSERT_EQ(system.fields.size(), 2U);
-  const FieldSpec& pole = system.fields[0];
-  EXPECT_EQ(std::get<SegmentPole>(pole.shape).to, Vec3(0, 0, 60));
+  const films::FieldSpec& pole = system.fields[0];
+  EXPECT_EQ(std::get<films::SegmentPole>(pole.shape).to, Vec3(0, 0, 60));
   EXPECT_EQ(pole.strength, -0.5);
   EXPECT_EQ(pole.power, 2.0);
   EXPECT_DOUBLE_EQ(pole.core, 10.0);
-  EXPECT_THAT(std::get<PerArea>(pole.per).surfaces, ElementsAre("skin"));
+  EXPECT_THAT(std::get<films::PerArea>(pole.per).surfaces, ElementsAre("skin"));
   EXPECT_EQ(system.fields[1].power, 3.0);
-  EXPECT_EQ(std::get<PerVolume>(system.fields[1].per).body, "part");
+  EXPECT_EQ(std::get<films::PerVolume>(system.fields[1].per).body, "part");
   ASSERT_EQ(system.pressures.size(), 1U);
   EXPECT_DOUBLE_EQ(at(system.pressures[0].pressure, 0, 0, 20), 0.04);
 }
 
 TEST(CaseFields, ActOnTheFilm) {
   const auto model = [](const std::string& text) {
-    return FilmModel::freeze(numbers_of(text).film_system, {.edge = 10.0});
+    return frozen::FilmModel::freeze(numbers_of(text).film_system,
+                                     {.edge = 10.0});
   };
-  const FilmModel plain = model(strut());
-  const FilmModel pushed =
+  const frozen::FilmModel plain = model(strut());
+  const frozen::FilmModel pushed =
       model(with("[fields.push]\nkind = \"plane\"\nat = [0, 0, 30]\n"
                  "normal = [0, 0, 1]\nstrength = -0.3\ncore = 6\n"
                  "films = [\"skin\"]\n"));
@@ -91,17 +93,17 @@ TEST(CaseFields, ActOnTheFilm) {
 }
 
 TEST(CaseWalls, NeedNoBodies) {
-  const EvaluatedCase numbers =
+  const case_data::EvaluatedCase numbers =
       numbers_of(tube("films = [\"skin\"]\n"
                       "thickness = \"1 + length*z/1e3\"\n"));
   ASSERT_EQ(numbers.walls.size(), 1U);
-  EXPECT_EQ(numbers.walls[0].side, WallSide::Both);
+  EXPECT_EQ(numbers.walls[0].side, walls::WallSide::Both);
   EXPECT_DOUBLE_EQ(at(numbers.walls[0].thickness, 0, 0, 4), 1.24);
 }
 
 // Of places it is found once, on the frozen film.
 TEST(CaseWalls, OfPlacesDoNotFollowTheDesign) {
-  const CaseReading reading = read_case_text(
+  const reader::CaseReading reading = reader::read_case_text(
       tube("films = [\"skin\"]\nthickness = \"1 + foot*z/1e3\"\n"),
       "case.toml");
   ASSERT_EQ(reading.problems.size(), 1U);
@@ -116,21 +118,23 @@ class CaseWallsOf : public testing::TestWithParam<const char*> {};
 // Inside is towards the axis however the film starts.
 TEST_P(CaseWallsOf, CloseOnTheSettledFilm) {
   const TempFolder folder;
-  const Case input =
-      *read_case_text(
+  const case_data::Case input =
+      *reader::read_case_text(
            changed(tube("films = [\"skin\"]\nthickness = 2\n"
                         "side = \"inside\"\n"),
                    "kind = \"branch\"\ncurves = [\"base\", \"head\"]",
                    GetParam()),
            "case.toml")
            .input;
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
-  const FilmModel model = FilmModel::freeze(
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
       numbers.film_system, {.edge = numbers.fea_edge, .refinements = 1});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
-  const auto walls = make_walls(numbers, model, model.reference().points);
+  const auto walls =
+      forward::make_walls(numbers, model, model.reference().points);
   ASSERT_EQ(walls.size(), 1U);
-  const ThickWall& wall = walls[0].wall;
+  const walls::ThickWall& wall = walls[0].wall;
   EXPECT_THAT(wall.findings, IsEmpty());
   EXPECT_THAT(wall.surface.labels,
               UnorderedElementsAre("skin", "skin/back", "skin/rim:base",
@@ -152,8 +156,9 @@ TEST_P(CaseWallsOf, CloseOnTheSettledFilm) {
     }
   }
   EXPECT_GT(wall.safe.value, 2.0);
-  EXPECT_THAT(wall_text(input, walls[0]), HasSubstr("largest safe thickness"));
-  write_wall(input, walls[0], folder.path());
+  EXPECT_THAT(forward::wall_text(input, walls[0]),
+              HasSubstr("largest safe thickness"));
+  forward::write_wall(input, walls[0], folder.path());
   EXPECT_GT(std::filesystem::file_size(folder.path() / "wall_web.stl"), 1000U);
   EXPECT_GT(std::filesystem::file_size(folder.path() / "wall_web.vtp"), 1000U);
 }
@@ -170,11 +175,14 @@ TEST(CaseWalls, OfAFlatFilmFollowTheCurve) {
                            "side = \"inside\"\n"),
                       "curves = [\"base\", \"head\"]", "curves = [\"base\"]"),
               "kind = \"branch\"", "kind = \"disk\"");
-  const Case input = *read_case_text(text, "case.toml").input;
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
-  const FilmModel model =
-      FilmModel::freeze(numbers.film_system, {.edge = numbers.fea_edge});
-  const auto walls = make_walls(numbers, model, model.reference().points);
+  const case_data::Case input =
+      *reader::read_case_text(text, "case.toml").input;
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      numbers.film_system, {.edge = numbers.fea_edge});
+  const auto walls =
+      forward::make_walls(numbers, model, model.reference().points);
   double highest = 0.0;  // the base's normal points down
   for (const Vec3& p : walls[0].wall.surface.points) {
     highest = std::max(highest, p.z());
@@ -193,11 +201,12 @@ TEST(CaseWalls, OfThreeFilmsAtALineAreJoined) {
               "[films.floor]\nkind = \"disk\"\ncurves = [\"base\"]\n"
               "[films.cup]\nkind = \"loft\"\ncurves = [\"base\", "
               "\"bottom\"]\n[walls.web]");
-  const EvaluatedCase numbers = numbers_of(text);
-  const FilmModel model =
-      FilmModel::freeze(numbers.film_system, {.edge = numbers.fea_edge});
+  const case_data::EvaluatedCase numbers = numbers_of(text);
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      numbers.film_system, {.edge = numbers.fea_edge});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
-  const auto walls = make_walls(numbers, model, model.reference().points);
+  const auto walls =
+      forward::make_walls(numbers, model, model.reference().points);
   ASSERT_EQ(walls.size(), 1U);
   EXPECT_THAT(walls[0].wall.findings, IsEmpty())
       << summary(walls[0].wall.findings);

@@ -9,8 +9,8 @@
 namespace meniscus::design_gradient_test {
 namespace {
 
-Case read(const std::string& text) {
-  CaseReading reading = read_case_text(text, "case.toml");
+case_data::Case read(const std::string& text) {
+  reader::CaseReading reading = reader::read_case_text(text, "case.toml");
   EXPECT_THAT(reading.problems, testing::IsEmpty());
   return std::move(*reading.input);
 }
@@ -114,10 +114,12 @@ value = "mass * 1e6 + sqrt(norm) * load / (1000 + lean) + area / fill"
 }
 
 void expect_exact(const std::string& text, const VectorX& move) {
-  const Case input = read(text);
-  const VectorX design = initial_design(input) + move;
-  const CaseGradientCheck check = check_case_gradient(input, design);
-  EXPECT_TRUE(check.report.passed) << gradient_check_text(input, check);
+  const case_data::Case input = read(text);
+  const VectorX design = case_data::initial_design(input) + move;
+  const forward::CaseGradientCheck check =
+      forward::check_case_gradient(input, design);
+  EXPECT_TRUE(check.report.passed)
+      << forward::gradient_check_text(input, check);
 }
 
 TEST(DesignGradient, IsExactForEveryResponseAtTheFrozenDesign) {
@@ -164,16 +166,16 @@ TEST(DesignGradient, IsExactWhereWeightsAndRegionsFollowTheDesign) {
 }
 
 TEST(DesignGradient, HasTheSameBitsInAnotherOrderOfDesigns) {
-  const Case input = read(every_response());
-  const ForwardModel model(input);
+  const case_data::Case input = read(every_response());
+  const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
-  const VectorX a = initial_design(input);
+  const VectorX a = case_data::initial_design(input);
   const VectorX b = a + Vec3(1.0, 2.0, 0.05);
   const std::vector<int> wanted = {0, 3, 8};
   const auto gradient_at = [&](const VectorX& design) {
-    EvaluationFields fields;
-    AdjointState adjoint;
-    const Evaluation there = model.evaluate(design, &fields, &adjoint);
+    forward::EvaluationFields fields;
+    forward::AdjointState adjoint;
+    const forward::Evaluation there = model.evaluate(design, &fields, &adjoint);
     EXPECT_FALSE(there.failure);
     return model.gradient(there, fields, adjoint, wanted).jacobian;
   };
@@ -183,11 +185,12 @@ TEST(DesignGradient, HasTheSameBitsInAnotherOrderOfDesigns) {
 }
 
 TEST(DesignGradient, PeaksAreLeftOutByName) {
-  const Case input = read(changed(strut(), "[responses.mass]",
-                                  "[responses.peak]\nkind = "
-                                  "\"max_von_mises\"\n\n[responses.mass]"));
-  const CaseGradientCheck check =
-      check_case_gradient(input, initial_design(input));
+  const case_data::Case input =
+      read(changed(strut(), "[responses.mass]",
+                   "[responses.peak]\nkind = "
+                   "\"max_von_mises\"\n\n[responses.mass]"));
+  const forward::CaseGradientCheck check =
+      forward::check_case_gradient(input, case_data::initial_design(input));
   EXPECT_TRUE(check.report.passed);
   EXPECT_THAT(check.left_out, testing::ElementsAre("peak"));
 }

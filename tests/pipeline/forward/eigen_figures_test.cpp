@@ -20,16 +20,16 @@ using testing::SizeIs;
 
 /// A slender bar under its own solution: pushed, and pulled.
 struct Bar {
-  EvaluationFields fields;
-  std::optional<ElasticModel> model;
+  forward::EvaluationFields fields;
+  std::optional<elastic::ElasticModel> model;
 
   explicit Bar(double push) {
     fields.mesh =
         shapes::straight_quadratic(shapes::brick({10.0, 1.0, 0.8}, 12, 2, 2));
     fields.inputs.materials = {parts::steel()};
-    LoadCase pushed = parts::pulled({-push, 0.0, 0.0});
+    loads::LoadCase pushed = parts::pulled({-push, 0.0, 0.0});
     pushed.name = "push";
-    LoadCase pulled = parts::pulled({push, 0.0, 0.0});
+    loads::LoadCase pulled = parts::pulled({push, 0.0, 0.0});
     pulled.name = "pull";
     fields.inputs.load_cases = {pushed, pulled};
     model.emplace(fields.mesh, fields.inputs.materials,
@@ -37,49 +37,51 @@ struct Bar {
     fields.solution = model->base_solution();
   }
 
-  EigenFigures figures(const AnalysisEntry& analysis) const {
-    Case input;
+  forward::EigenFigures figures(
+      const case_data::AnalysisEntry& analysis) const {
+    case_data::Case input;
     input.analysis = analysis;
-    return eigen_figures(input, fields, *model);
+    return forward::eigen_figures(input, fields, *model);
   }
 };
 
 TEST(EigenFigures, UnaskedAreOneFactorPerLoadCase) {
   const Bar bar(100.0);
-  const EigenFigures rough = bar.figures({});
+  const forward::EigenFigures rough = bar.figures({});
   EXPECT_FALSE(rough.frequencies);
   ASSERT_EQ(rough.buckling.size(), 2U);
   ASSERT_EQ(rough.buckling[0].modes.factors.size(), 1U);
-  const EigenFigures exact = bar.figures({.buckling = 1});
+  const forward::EigenFigures exact = bar.figures({.buckling = 1});
   const double factor = exact.buckling[0].modes.factors.at(0);
   EXPECT_NEAR(rough.buckling[0].modes.factors[0], factor, 1e-3 * factor);
-  EXPECT_THAT(mode_shapes(Case{}, rough), IsEmpty());
-  EXPECT_THAT(buckling_warnings(rough), IsEmpty());
+  EXPECT_THAT(forward::mode_shapes(case_data::Case{}, rough), IsEmpty());
+  EXPECT_THAT(forward::buckling_warnings(rough), IsEmpty());
 }
 
 TEST(EigenFigures, OfNoBucklingAreNone) {
-  const EigenFigures none = Bar(100.0).figures({.buckling = 0});
+  const forward::EigenFigures none = Bar(100.0).figures({.buckling = 0});
   EXPECT_THAT(none.buckling, IsEmpty());
-  EXPECT_EQ(eigen_text(none), "");
+  EXPECT_EQ(forward::eigen_text(none), "");
 }
 
 TEST(EigenFigures, TellFrequenciesFactorsAndTheirModes) {
-  Case input;
+  case_data::Case input;
   input.analysis = {.frequencies = 3, .supports_of = 1, .buckling = 2};
   const Bar bar(100.0);
-  const EigenFigures figures = eigen_figures(input, bar.fields, *bar.model);
+  const forward::EigenFigures figures =
+      forward::eigen_figures(input, bar.fields, *bar.model);
   nlohmann::ordered_json told;
-  add_eigen_json(figures, told);
+  forward::add_eigen_json(figures, told);
   EXPECT_EQ(told["natural_frequencies"]["supports_of"], "pull");
   EXPECT_EQ(told["natural_frequencies"]["values"].size(), 3U);
   EXPECT_EQ(told["buckling"]["push"]["factors"].size(), 2U);
   EXPECT_LE(told["buckling"]["push"]["residuals"][1].get<double>(), 1e-6);
   EXPECT_THAT(
-      eigen_text(figures),
+      forward::eigen_text(figures),
       AllOf(HasSubstr("  buckling of 'push': "), HasSubstr(" x the loads\n"),
             HasSubstr("  natural frequencies, held as in 'pull': ")));
   std::vector<std::string> names;
-  for (const ModeShape& mode : mode_shapes(input, figures)) {
+  for (const forward::ModeShape& mode : forward::mode_shapes(input, figures)) {
     names.push_back(mode.name);
     EXPECT_EQ(mode.shape.size(),
               static_cast<Eigen::Index>(3 * bar.fields.mesh.nodes.size()));
@@ -90,62 +92,69 @@ TEST(EigenFigures, TellFrequenciesFactorsAndTheirModes) {
 }
 
 TEST(EigenFigures, OfAFreePartCountItsRigidMotions) {
-  const EigenFigures figures = Bar(100.0).figures(
-      {.frequencies = 2, .supports_of = AnalysisEntry::kFree, .buckling = 0});
+  const forward::EigenFigures figures =
+      Bar(100.0).figures({.frequencies = 2,
+                          .supports_of = case_data::AnalysisEntry::kFree,
+                          .buckling = 0});
   nlohmann::ordered_json told;
-  add_eigen_json(figures, told);
+  forward::add_eigen_json(figures, told);
   EXPECT_EQ(told["natural_frequencies"]["supports_of"], "free");
   EXPECT_EQ(told["natural_frequencies"]["rigid_motions"], 6);
   EXPECT_EQ(told["natural_frequencies"]["values"].size(), 2U);
-  EXPECT_THAT(eigen_text(figures), HasSubstr("6 rigid motions left out"));
+  EXPECT_THAT(forward::eigen_text(figures),
+              HasSubstr("6 rigid motions left out"));
 }
 
 TEST(EigenFigures, WarnOfAFactorBelowOne) {
   EXPECT_THAT(
-      buckling_warnings(Bar(1e5).figures({})),
+      forward::buckling_warnings(Bar(1e5).figures({})),
       testing::Contains(AllOf(HasSubstr("buckling factor below 1"),
                               HasSubstr("load case 'push' buckles at"))));
 }
 
 TEST(EigenFigures, WithoutAnAnswerSayWhy) {
-  EvaluationFields fields = Bar(100.0).fields;
+  forward::EvaluationFields fields = Bar(100.0).fields;
   fields.inputs.materials[0].density = 0.0;
-  const ElasticModel model(fields.mesh, fields.inputs.materials,
-                           fields.inputs.load_cases);
-  Case input;
+  const elastic::ElasticModel model(fields.mesh, fields.inputs.materials,
+                                    fields.inputs.load_cases);
+  case_data::Case input;
   input.analysis = {.frequencies = 2, .buckling = 0};
-  const EigenFigures figures = eigen_figures(input, fields, model);
-  EXPECT_THAT(buckling_warnings(figures),
+  const forward::EigenFigures figures =
+      forward::eigen_figures(input, fields, model);
+  EXPECT_THAT(forward::buckling_warnings(figures),
               ElementsAre(HasSubstr("'steel' of region 0 has density 0")));
 }
 
 TEST(EigenFigures, AreLeftOutWithARemarkWhereTheMatrixIsSpread) {
   const Bar bar(100.0);
-  Case input;
-  input.analysis.solver = SolverKind::Distributed;
-  const EigenFigures figures = eigen_figures(input, bar.fields, *bar.model);
+  case_data::Case input;
+  input.analysis.solver = equations::SolverKind::Distributed;
+  const forward::EigenFigures figures =
+      forward::eigen_figures(input, bar.fields, *bar.model);
   EXPECT_THAT(figures.buckling, IsEmpty());
-  EXPECT_THAT(buckling_warnings(figures),
+  EXPECT_THAT(forward::buckling_warnings(figures),
               ElementsAre(HasSubstr("no buckling factors: the solver petsc")));
   input.analysis.buckling = 0;
-  EXPECT_THAT(buckling_warnings(eigen_figures(input, bar.fields, *bar.model)),
+  EXPECT_THAT(forward::buckling_warnings(
+                  forward::eigen_figures(input, bar.fields, *bar.model)),
               IsEmpty());
 }
 
-Case strut_with(const std::string& analysis) {
-  const CaseReading reading = read_case_text(strut() + analysis, "case.toml");
+case_data::Case strut_with(const std::string& analysis) {
+  const reader::CaseReading reading =
+      reader::read_case_text(strut() + analysis, "case.toml");
   EXPECT_THAT(reading.problems, IsEmpty());
   return *reading.input;
 }
 
 TEST(AnalysisTable, KnowsTheSolver) {
-  EXPECT_EQ(strut_with("").analysis.solver, SolverKind::Automatic);
+  EXPECT_EQ(strut_with("").analysis.solver, equations::SolverKind::Automatic);
   for (const auto& [name, kind] :
-       {std::pair("auto", SolverKind::Automatic),
-        std::pair("cholmod", SolverKind::Cholesky),
-        std::pair("p-multigrid", SolverKind::Multigrid),
-        std::pair("petsc", SolverKind::Distributed)}) {
-    const Case input =
+       {std::pair("auto", equations::SolverKind::Automatic),
+        std::pair("cholmod", equations::SolverKind::Cholesky),
+        std::pair("p-multigrid", equations::SolverKind::Multigrid),
+        std::pair("petsc", equations::SolverKind::Distributed)}) {
+    const case_data::Case input =
         strut_with(fmt::format("[analysis]\nsolver = \"{}\"\n", name));
     EXPECT_EQ(input.analysis.solver, kind);
     EXPECT_EQ(input.analysis.processes, 2);
@@ -172,17 +181,17 @@ TEST(AnalysisTable, RefusesWhatTheSolverCannotDo) {
 }
 
 TEST(AnalysisTable, IsRead) {
-  const Case plain = strut_with("");
+  const case_data::Case plain = strut_with("");
   EXPECT_EQ(plain.analysis.frequencies, 0);
   EXPECT_FALSE(plain.analysis.buckling);
-  const Case full = strut_with(
+  const case_data::Case full = strut_with(
       "[analysis]\nfrequencies = 6\nsupports_of = \"service\"\nbuckling = 3\n");
   EXPECT_EQ(full.analysis.frequencies, 6);
   EXPECT_EQ(full.analysis.supports_of, 0);
   EXPECT_EQ(full.analysis.buckling, 3);
-  const Case loose =
+  const case_data::Case loose =
       strut_with("[analysis]\nfrequencies = 6\nsupports_of = \"free\"\n");
-  EXPECT_EQ(loose.analysis.supports_of, AnalysisEntry::kFree);
+  EXPECT_EQ(loose.analysis.supports_of, case_data::AnalysisEntry::kFree);
   EXPECT_EQ(full.hash, plain.hash) << "no evaluation depends on it";
 }
 

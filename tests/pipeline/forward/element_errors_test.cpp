@@ -14,13 +14,14 @@ namespace {
 /// A plate with a hole, pulled along x and along y in two load cases; responses
 /// of every kind that elements err in. Smooth: no singular edges.
 struct Part {
-  Case input;
-  EvaluationFields fields;
-  std::optional<ElasticModel> model;
+  case_data::Case input;
+  forward::EvaluationFields fields;
+  std::optional<elastic::ElasticModel> model;
 };
 
-ResponseEntry response(const char* name, ResponseKind kind,
-                       const std::string& surface, int load_case) {
+case_data::ResponseEntry response(const char* name,
+                                  case_data::ResponseKind kind,
+                                  const std::string& surface, int load_case) {
   return {
       .name = name, .kind = kind, .surface = surface, .load_case = load_case};
 }
@@ -31,17 +32,17 @@ Part part(int n) {
   Part p;
   p.fields.mesh = shapes::quarter_ring(1.0, 3.0, 0.5, 2 * n, 2 * n, n);
   p.fields.inputs.materials = {parts::steel()};
-  LoadCase along;
+  loads::LoadCase along;
   along.name = "along";
   along.supports = {{"x0", true, false, false},
                     {"y0", false, true, false},
                     {"z0", false, false, true}};
   along.forces = {{"outer", {100.0, 0.0, 0.0}}};
-  LoadCase across = along;
+  loads::LoadCase across = along;
   across.name = "across";
   across.forces = {{"outer", {0.0, 50.0, 0.0}}};
   p.fields.inputs.load_cases = {along, across};
-  using Kind = ResponseKind;
+  using Kind = case_data::ResponseKind;
   p.input.responses = {response("along", Kind::MeanDisplacement, "outer", 0),
                        response("across", Kind::MeanDisplacement, "outer", 1),
                        response("hole", Kind::MeanDisplacement, "inner", 1),
@@ -57,8 +58,8 @@ Part part(int n) {
                        response("peak", Kind::MaxVonMises, "", 0),
                        response("ks", Kind::VonMisesKs, "", 1)};
   p.input.responses[13].scale = 100.0;
-  p.input.responses[10].value.expression =
-      Expression::parse("norm * along + turn", response_names(p.input));
+  p.input.responses[10].value.expression = Expression::parse(
+      "norm * along + turn", case_data::response_names(p.input));
   p.fields.inputs.responses.resize(p.input.responses.size());
   p.fields.inputs.responses[0].direction = {2.0, 0.0, 0.0};
   p.fields.inputs.responses[1].direction = Vec3::UnitX();
@@ -69,30 +70,31 @@ Part part(int n) {
                   p.fields.inputs.load_cases);
   p.fields.solution = p.model->base_solution();
   p.fields.stresses =
-      part_stresses(p.fields.mesh, p.fields.inputs, p.fields.solution);
+      forward::part_stresses(p.fields.mesh, p.fields.inputs, p.fields.solution);
   return p;
 }
 
 VectorX values(const Part& p) {
-  return respond(p.input, {p.fields.inputs, p.fields.mesh, p.fields.solution,
+  return forward::respond(p.input,
+                          {p.fields.inputs, p.fields.mesh, p.fields.solution,
                            p.fields.exclusion.element});
 }
 
 TEST(ElementErrors, DoNotDependOnTheSizeOfTheLoad) {
   Part p = part(2);
-  const ElementErrors errors =
-      estimate_element_errors(p.input, p.fields, values(p), *p.model);
+  const forward::ElementErrors errors =
+      forward::estimate_element_errors(p.input, p.fields, values(p), *p.model);
   constexpr double kLarge = 1e6;  // far from a dual's unit force
-  for (LoadCase& load_case : p.fields.inputs.load_cases) {
+  for (loads::LoadCase& load_case : p.fields.inputs.load_cases) {
     load_case.forces.front().total *= kLarge;
   }
   p.model.emplace(p.fields.mesh, p.fields.inputs.materials,
                   p.fields.inputs.load_cases);
   p.fields.solution = p.model->base_solution();
   p.fields.stresses =
-      part_stresses(p.fields.mesh, p.fields.inputs, p.fields.solution);
-  const ElementErrors large =
-      estimate_element_errors(p.input, p.fields, values(p), *p.model);
+      forward::part_stresses(p.fields.mesh, p.fields.inputs, p.fields.solution);
+  const forward::ElementErrors large =
+      forward::estimate_element_errors(p.input, p.fields, values(p), *p.model);
   ASSERT_FALSE(large.failure);
   for (Eigen::Index r = 0; r < 3; ++r) {
     EXPECT_NEAR(large.responses[r], kLarge * errors.responses[r],
@@ -107,8 +109,8 @@ constexpr double kLeastOfChange = 0.25;
 TEST(ElementErrors, PredictWhatAFinerMeshGives) {
   const Part coarse = part(3);
   const Part fine = part(7);
-  const auto errors = estimate_element_errors(coarse.input, coarse.fields,
-                                              values(coarse), *coarse.model);
+  const auto errors = forward::estimate_element_errors(
+      coarse.input, coarse.fields, values(coarse), *coarse.model);
   ASSERT_FALSE(errors.failure);
   EXPECT_GT(errors.energy, 0.001);
   EXPECT_LT(errors.energy, 0.2);

@@ -21,7 +21,7 @@ std::string with_zones(const std::string& zones) {
 }
 
 TEST(ExclusionZones, AreReadWithTheirPlace) {
-  const CaseReading reading = read_case_text(
+  const reader::CaseReading reading = reader::read_case_text(
       with_zones("[{ near = \"foot_pad\", distance = \"0.5 cm\" },\n"
                  "  { center = [0, 0, \"length\"], radius = 7 },\n"
                  "  { low = [-1, -2, -3], high = [1, 2, 3] }]"),
@@ -63,30 +63,32 @@ TEST(ExclusionZones, ThatMakeNoSenseAreRefusedByLine) {
 
 TEST(ExclusionZones, BelongToWhatAStudyMustNotMix) {
   const std::string zone = "[{ near = \"foot_pad\", distance = 5 }]";
-  EXPECT_NE(read_case_text(with_zones(zone), "case.toml").input->hash,
-            read_case_text(strut(), "case.toml").input->hash);
+  EXPECT_NE(reader::read_case_text(with_zones(zone), "case.toml").input->hash,
+            reader::read_case_text(strut(), "case.toml").input->hash);
 }
 
 /// A clamped bar pulled along x: its stress concentrates at x = 0.
-EvaluationFields clamped_bar() {
-  EvaluationFields fields;
+forward::EvaluationFields clamped_bar() {
+  forward::EvaluationFields fields;
   fields.mesh =
       shapes::straight_quadratic(shapes::brick({4.0, 1.0, 1.0}, 12, 4, 4));
-  Material steel = parts::steel();
+  element::Material steel = parts::steel();
   steel.yield_strength = 110.0;
   fields.inputs.materials = {steel};
-  LoadCase pull{.name = "pull"};
+  loads::LoadCase pull{.name = "pull"};
   pull.supports = {{"x0", true, true, true}};
   pull.forces = {{"x1", {100.0, 0.0, 0.0}}};
   fields.inputs.load_cases = {pull};
-  fields.solution = ElasticModel(fields.mesh, fields.inputs.materials, {pull})
-                        .base_solution();
-  fields.stresses = part_stresses(fields.mesh, fields.inputs, fields.solution);
+  fields.solution =
+      elastic::ElasticModel(fields.mesh, fields.inputs.materials, {pull})
+          .base_solution();
+  fields.stresses =
+      forward::part_stresses(fields.mesh, fields.inputs, fields.solution);
   return fields;
 }
 
-Case with_zone(const ExclusionZone& zone) {
-  Case input;
+case_data::Case with_zone(const stress::ExclusionZone& zone) {
+  case_data::Case input;
   input.path = "case.toml";
   input.units.length = "mm";
   input.units.pressure = "MPa";
@@ -95,15 +97,16 @@ Case with_zone(const ExclusionZone& zone) {
 }
 
 TEST(ExclusionZones, TakeAClampsPeakOutOfAllFiguresAndTellIt) {
-  EvaluationFields fields = clamped_bar();
-  const StressFigures whole = stress_figures(fields).front();
+  forward::EvaluationFields fields = clamped_bar();
+  const forward::StressFigures whole = forward::stress_figures(fields).front();
   EXPECT_GT(whole.max_von_mises, 115.0);
   EXPECT_LT(whole.position.x(), 0.1);
   EXPECT_FALSE(whole.excluded);
 
-  const Case input = with_zone({.surface = "x0", .distance = 2.0});
-  fields.exclusion = choose_exclusion(input, fields.mesh);
-  const StressFigures counted = stress_figures(fields).front();
+  const case_data::Case input = with_zone({.surface = "x0", .distance = 2.0});
+  fields.exclusion = forward::choose_exclusion(input, fields.mesh);
+  const forward::StressFigures counted =
+      forward::stress_figures(fields).front();
   // Saint-Venant: two widths off the clamp the bar is evenly stressed.
   constexpr double kEven = 0.02;
   EXPECT_NEAR(counted.max_von_mises, 100.0, 100.0 * kEven);
@@ -116,37 +119,37 @@ TEST(ExclusionZones, TakeAClampsPeakOutOfAllFiguresAndTellIt) {
   EXPECT_EQ(counted.excluded->max_von_mises, whole.max_von_mises);
   EXPECT_EQ(counted.excluded->position, whole.position);
   EXPECT_EQ(counted.excluded->safety->factor, whole.safety->factor);
-  EXPECT_THAT(part_warnings(input, fields, {counted}),
+  EXPECT_THAT(forward::part_warnings(input, fields, {counted}),
               ElementsAre(HasSubstr("stress above yield in an exclusion zone: "
                                     "load case 'pull'")));
 
-  const auto told = stress_json({counted})["pull"];
+  const auto told = forward::stress_json({counted})["pull"];
   EXPECT_EQ(told["excluded"]["max_von_mises"], whole.max_von_mises);
   EXPECT_TRUE(told["excluded"].contains("safety_factor"));
 }
 
 TEST(ExclusionZones, AreStatedWithTheirShareOfTheVolume) {
   const TetMesh mesh = shapes::brick({4.0, 1.0, 1.0}, 12, 4, 4);
-  Case input = with_zone({});
+  case_data::Case input = with_zone({});
   input.analysis.exclude[0].zone.box = {{-1.0, -1.0, -1.0}, {1.0, 2.0, 2.0}};
-  const Exclusion chosen = choose_exclusion(input, mesh);
+  const forward::Exclusion chosen = forward::choose_exclusion(input, mesh);
   constexpr double kRounding = 1e-12;
   EXPECT_NEAR(chosen.all.volume_share, 0.25, kRounding);
   EXPECT_EQ(chosen.all.elements, mesh.element_count() / 4);
-  const auto told = exclusion_json(chosen);
+  const auto told = forward::exclusion_json(chosen);
   EXPECT_EQ(told["zones"][0]["where"], "from (-1, -1, -1) to (1, 2, 2)");
   EXPECT_NEAR(told["zones"][0]["volume_share"].get<double>(), 0.25, kRounding);
   input.analysis.exclude[0].zone.box.reset();
   input.analysis.exclude[0].zone.ball = {{0.0, 0.0, 0.0}, 1.0};
-  EXPECT_NEAR(choose_exclusion(input, mesh).all.volume_share,
+  EXPECT_NEAR(forward::choose_exclusion(input, mesh).all.volume_share,
               3.14159 / 6.0 / 4.0, 0.02);  // an eighth of a ball, by elements
 }
 
 TEST(ExclusionZones, OfNoElementOrEveryElementAreRefusedByPlace) {
   const TetMesh mesh = shapes::brick({4.0, 1.0, 1.0}, 4, 1, 1);
-  const auto message = [&](const ExclusionZone& zone) -> std::string {
+  const auto message = [&](const stress::ExclusionZone& zone) -> std::string {
     try {
-      choose_exclusion(with_zone(zone), mesh);
+      forward::choose_exclusion(with_zone(zone), mesh);
     } catch (const InvalidInput& error) {
       return error.what();
     }
@@ -159,10 +162,11 @@ TEST(ExclusionZones, OfNoElementOrEveryElementAreRefusedByPlace) {
   EXPECT_THAT(message({.surface = "x0", .distance = 9.0}),
               AllOf(HasSubstr("case.toml:17: analysis.exclude[0]"),
                     HasSubstr("leave no element to count")));
-  EXPECT_EQ(choose_exclusion(with_zone({.surface = "x0", .distance = 0.01}),
-                             mesh, EmptyZones::Allowed)
-                .all.elements,
-            0);
+  EXPECT_EQ(
+      forward::choose_exclusion(with_zone({.surface = "x0", .distance = 0.01}),
+                                mesh, forward::EmptyZones::Allowed)
+          .all.elements,
+      0);
 }
 
 }  // namespace

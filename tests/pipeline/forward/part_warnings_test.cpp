@@ -15,9 +15,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// A bar of two materials pulled to a stress of 100; region 1 is its far half.
-EvaluationFields pulled_bar(double near_yield, double far_yield,
-                            double modulus) {
-  EvaluationFields fields;
+forward::EvaluationFields pulled_bar(double near_yield, double far_yield,
+                                     double modulus) {
+  forward::EvaluationFields fields;
   fields.mesh =
       shapes::straight_quadratic(shapes::brick({4.0, 1.0, 1.0}, 4, 2, 2));
   for (int e = 0; e < fields.mesh.element_count(); ++e) {
@@ -29,28 +29,31 @@ EvaluationFields pulled_bar(double near_yield, double far_yield,
   }
   fields.inputs.materials = {{"near", modulus, 0.3, 1.0, near_yield},
                              {"far", modulus, 0.3, 1.0, far_yield}};
-  LoadCase pull;
+  loads::LoadCase pull;
   pull.name = "pull";
   pull.supports = {{"x0", true, false, false},
                    {"y0", false, true, false},
                    {"z0", false, false, true}};
   pull.forces = {{"x1", {100.0, 0.0, 0.0}}};
   fields.inputs.load_cases = {pull};
-  fields.solution = ElasticModel(fields.mesh, fields.inputs.materials, {pull})
-                        .base_solution();
-  fields.stresses = part_stresses(fields.mesh, fields.inputs, fields.solution);
+  fields.solution =
+      elastic::ElasticModel(fields.mesh, fields.inputs.materials, {pull})
+          .base_solution();
+  fields.stresses =
+      forward::part_stresses(fields.mesh, fields.inputs, fields.solution);
   return fields;
 }
 
-Case in_newtons() {
-  Case input;
+case_data::Case in_newtons() {
+  case_data::Case input;
   input.units.pressure = "MPa";
   input.units.length = "mm";
   return input;
 }
 
-std::vector<std::string> warnings_of(const EvaluationFields& fields) {
-  return part_warnings(in_newtons(), fields, stress_figures(fields));
+std::vector<std::string> warnings_of(const forward::EvaluationFields& fields) {
+  return forward::part_warnings(in_newtons(), fields,
+                                forward::stress_figures(fields));
 }
 
 TEST(PartWarnings, AreNoneForASoundPart) {
@@ -72,8 +75,9 @@ TEST(PartWarnings, TellOfDeflectionsThatAreNotSmall) {
 }
 
 TEST(StressFigures, TellThePeakItsPlaceAndHowEvenThePartIs) {
-  const EvaluationFields fields = pulled_bar(200.0, 80.0, 2e5);
-  const std::vector<StressFigures> figures = stress_figures(fields);
+  const forward::EvaluationFields fields = pulled_bar(200.0, 80.0, 2e5);
+  const std::vector<forward::StressFigures> figures =
+      forward::stress_figures(fields);
   ASSERT_EQ(figures.size(), 1U);
   constexpr double kSolver = 1e-6;
   EXPECT_EQ(figures[0].load_case, "pull");
@@ -84,20 +88,21 @@ TEST(StressFigures, TellThePeakItsPlaceAndHowEvenThePartIs) {
   EXPECT_GE(figures[0].safety->position.x(), 2.0 - kSolver);
   EXPECT_NEAR(figures[0].uniformity.von_mises.gini, 0.0, kSolver);
   EXPECT_NEAR(figures[0].uniformity.von_mises.volume, 4.0, kSolver);
-  const nlohmann::ordered_json json = stress_json(figures);
+  const nlohmann::ordered_json json = forward::stress_json(figures);
   EXPECT_NEAR(json["pull"]["safety_factor"]["smallest"].get<double>(), 0.8,
               kSolver);
   EXPECT_EQ(json["pull"]["von_mises"]["histogram"].size(), 50U);
 }
 
 TEST(StressFigures, KnowNoSafetyWithoutAYieldStrength) {
-  EvaluationFields fields = pulled_bar(200.0, 80.0, 2e5);
-  for (Material& material : fields.inputs.materials) {
+  forward::EvaluationFields fields = pulled_bar(200.0, 80.0, 2e5);
+  for (element::Material& material : fields.inputs.materials) {
     material.yield_strength.reset();
   }
-  const std::vector<StressFigures> figures = stress_figures(fields);
+  const std::vector<forward::StressFigures> figures =
+      forward::stress_figures(fields);
   EXPECT_FALSE(figures[0].safety);
-  EXPECT_FALSE(stress_json(figures)["pull"].contains("safety_factor"));
+  EXPECT_FALSE(forward::stress_json(figures)["pull"].contains("safety_factor"));
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-Case read(const std::string& text) {
-  CaseReading reading = read_case_text(text, "case.toml");
+case_data::Case read(const std::string& text) {
+  reader::CaseReading reading = reader::read_case_text(text, "case.toml");
   EXPECT_THAT(reading.problems, IsEmpty());
   return std::move(*reading.input);
 }
@@ -119,11 +119,12 @@ std::string fixed_springs(std::string text) {
 // Lame's cylinder in plane strain, of radius 27 to 33.
 TEST(WallRuns, OfAPipeAreLames) {
   constexpr double kMesh = 0.01;  // facets of 9 degrees, one element thick
-  const Case input = read(fixed_springs(cylinder()));
-  const ForwardModel model(input);
+  const case_data::Case input = read(fixed_springs(cylinder()));
+  const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
-  EvaluationFields fields;
-  const Evaluation at = model.evaluate(initial_design(input), &fields);
+  forward::EvaluationFields fields;
+  const forward::Evaluation at =
+      model.evaluate(case_data::initial_design(input), &fields);
   ASSERT_FALSE(at.failure) << at.failure->message;
   const double a = 27.0;
   const double b = 33.0;
@@ -140,27 +141,29 @@ TEST(WallRuns, OfAPipeAreLames) {
   const double largest =
       std::sqrt(0.5 * (std::pow(hoop + 10.0, 2) + std::pow(hoop - along, 2) +
                        std::pow(along + 10.0, 2)));
-  const StressField stress = load_case_stress(fields.mesh, fields.inputs, 0,
-                                              fields.solution.displacements[0]);
+  const stress::StressField stress = forward::load_case_stress(
+      fields.mesh, fields.inputs, 0, fields.solution.displacements[0]);
   EXPECT_NEAR(stress.max_von_mises, largest, 0.05 * largest);
 }
 
 TEST(WallRuns, HaveExactGradients) {
-  const Case input =
+  const case_data::Case input =
       read(fixed_springs(changed(changed(cylinder(), "fea = 5.0", "fea = 9.0"),
                                  "film = 2.5", "film = 4.5")));
-  VectorX design = initial_design(input);
+  VectorX design = case_data::initial_design(input);
   design[0] += 0.4;
   design[1] -= 0.3;
-  const CaseGradientCheck check = check_case_gradient(input, design);
-  EXPECT_TRUE(check.report.passed) << gradient_check_text(input, check);
+  const forward::CaseGradientCheck check =
+      forward::check_case_gradient(input, design);
+  EXPECT_TRUE(check.report.passed)
+      << forward::gradient_check_text(input, check);
   EXPECT_THAT(check.left_out, IsEmpty());
 }
 
 TEST(WallRuns, FollowTheirThickness) {
-  const Case input = read(fixed_springs(cylinder()));
-  const ForwardModel model(input);
-  VectorX design = initial_design(input);
+  const case_data::Case input = read(fixed_springs(cylinder()));
+  const forward::ForwardModel model(input);
+  VectorX design = case_data::initial_design(input);
   const double before = model.evaluate(design).responses[2];
   design[1] = 8.0;
   const double after = model.evaluate(design).responses[2];
@@ -171,8 +174,8 @@ TEST(WallRuns, TellTheLargestSafeThickness) {
   const std::string text =
       changed(changed(cylinder(), "initial = 6.0", "initial = 70.0"),
               "bounds = [5.0, 8.0]", "bounds = [5.0, 80.0]");
-  const Case input = read(fixed_springs(text));
-  const ForwardModel model(input);
+  const case_data::Case input = read(fixed_springs(text));
+  const forward::ForwardModel model(input);
   ASSERT_TRUE(model.failure());
   EXPECT_EQ(model.failure()->kind, FailureKind::SurfaceInvalid);
   EXPECT_THAT(model.failure()->message, HasSubstr("walls.pipe"));
@@ -181,9 +184,9 @@ TEST(WallRuns, TellTheLargestSafeThickness) {
 }
 
 void expect_refused(const std::string& text, const std::string& words) {
-  const Case input = read(text);
+  const case_data::Case input = read(text);
   try {
-    const ForwardModel model(input);
+    const forward::ForwardModel model(input);
     ADD_FAILURE() << "not refused: " << words;
   } catch (const InvalidInput& error) {
     EXPECT_THAT(error.what(), HasSubstr(words));
@@ -201,14 +204,14 @@ TEST(WallRuns, NeedAMaterialAndNoSolidBodies) {
 
 TEST(WallRuns, WarnOfWhatTheirProcessCannotMake) {
   const auto warnings = [](const char* least) {
-    const Case input =
+    const case_data::Case input =
         read(changed(fixed_springs(cylinder()), "[resolution]",
                      "[process]\nname = \"sand casting\"\nsmallest_feature = " +
                          std::string(least) + "\n\n[resolution]"));
-    const ForwardModel model(input);
-    EvaluationFields fields;
-    model.evaluate(initial_design(input), &fields);
-    return process_warnings(input, fields.mesh);
+    const forward::ForwardModel model(input);
+    forward::EvaluationFields fields;
+    model.evaluate(case_data::initial_design(input), &fields);
+    return forward::process_warnings(input, fields.mesh);
   };
   // Of 6 mm; flat facets of 9 degrees between radii 27 and 33.
   EXPECT_THAT(warnings("5.9"), IsEmpty());
@@ -254,18 +257,20 @@ std::string waist() {
 }
 
 TEST(WallRuns, JoinWallsThatMeet) {
-  const Case input = read(waist());
-  EXPECT_EQ(solid_bodies(input).size(), 1U);
-  const ForwardModel model(input);
+  const case_data::Case input = read(waist());
+  EXPECT_EQ(case_data::solid_bodies(input).size(), 1U);
+  const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
-  VectorX design = initial_design(input);
+  VectorX design = case_data::initial_design(input);
   design[0] = 30.5;
-  const CaseGradientCheck check = check_case_gradient(input, design);
-  EXPECT_TRUE(check.report.passed) << gradient_check_text(input, check);
+  const forward::CaseGradientCheck check =
+      forward::check_case_gradient(input, design);
+  EXPECT_TRUE(check.report.passed)
+      << forward::gradient_check_text(input, check);
 }
 
 TEST(WallRuns, OfOneBodyHaveOneMaterial) {
-  const CaseReading reading = read_case_text(
+  const reader::CaseReading reading = reader::read_case_text(
       changed(changed(waist(), "fillet = 2\nmaterial = \"steel\"",
                       "fillet = 2\nmaterial = \"other\""),
               "[materials.steel]",
@@ -278,7 +283,7 @@ TEST(WallRuns, OfOneBodyHaveOneMaterial) {
 }
 
 TEST(WallRuns, NameBacksAndRims) {
-  const CaseReading reading = read_case_text(
+  const reader::CaseReading reading = reader::read_case_text(
       changed(waist(), "on = \"low/rim:base\"", "on = \"low/rim:waist\""),
       "case.toml");
   ASSERT_FALSE(reading.problems.empty());

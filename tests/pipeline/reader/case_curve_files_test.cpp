@@ -102,26 +102,28 @@ class CurvesOfStep : public testing::Test {
   std::string path(const std::string& name) const {
     return (folder_.path() / name).string();
   }
-  CaseReading read(const std::string& text) const {
-    return read_case_text(text, path("case.toml"));
+  reader::CaseReading read(const std::string& text) const {
+    return reader::read_case_text(text, path("case.toml"));
   }
-  Case good(const std::string& text) const {
-    const CaseReading reading = read(text);
+  case_data::Case good(const std::string& text) const {
+    const reader::CaseReading reading = read(text);
     EXPECT_THAT(reading.problems, IsEmpty());
-    return reading.input ? *reading.input : Case{};
+    return reading.input ? *reading.input : case_data::Case{};
   }
   /// The strut between its own curves, written to part.step.
-  Case write_part(const std::string& curves = kRoundedBox) const {
-    const Case own = good(strut(curves, "mm-N-MPa"));
-    export_step(path("part.step"),
-                evaluate(own, initial_design(own)).film_system,
-                {.title = "strut", .unit = "mm", .edge = 4.0});
+  case_data::Case write_part(const std::string& curves = kRoundedBox) const {
+    const case_data::Case own = good(strut(curves, "mm-N-MPa"));
+    results::export_step(
+        path("part.step"),
+        case_data::evaluate(own, case_data::initial_design(own)).film_system,
+        {.title = "strut", .unit = "mm", .edge = 4.0});
     return own;
   }
-  static FilmState film_of(const Case& input) {
-    const EvaluatedCase numbers = evaluate(input, initial_design(input));
-    const FilmModel model =
-        FilmModel::freeze(numbers.film_system, {.edge = numbers.fea_edge});
+  static settle::FilmState film_of(const case_data::Case& input) {
+    const case_data::EvaluatedCase numbers =
+        case_data::evaluate(input, case_data::initial_design(input));
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        numbers.film_system, {.edge = numbers.fea_edge});
     EXPECT_FALSE(model.reference().failure);
     return model.reference();
   }
@@ -130,21 +132,23 @@ class CurvesOfStep : public testing::Test {
 
 TEST_F(CurvesOfStep, GiveTheFilmThatTheFileWasWrittenFrom) {
   constexpr double kSame = 1e-6;
-  const Case own = write_part(kOvals);
-  const Case again = good(strut(kRims, "mm-N-MPa"));
+  const case_data::Case own = write_part(kOvals);
+  const case_data::Case again = good(strut(kRims, "mm-N-MPa"));
   EXPECT_THAT(
       again.remarks,
       ElementsAre(AllOf(HasSubstr("case.toml:7: curves.foot: "),
                         HasSubstr("an ellipse of radii 12 and 10 mm, exact")),
                   HasSubstr("curves.head: a circle of radius 9 mm, exact")));
   // One model, so that rounding in the file cannot choose other triangles.
-  const EvaluatedCase a = evaluate(own, initial_design(own));
-  const EvaluatedCase b = evaluate(again, initial_design(again));
-  const FilmModel model =
-      FilmModel::freeze(a.film_system, {.edge = a.fea_edge});
-  const FilmState& before = model.reference();
+  const case_data::EvaluatedCase a =
+      case_data::evaluate(own, case_data::initial_design(own));
+  const case_data::EvaluatedCase b =
+      case_data::evaluate(again, case_data::initial_design(again));
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(a.film_system, {.edge = a.fea_edge});
+  const settle::FilmState& before = model.reference();
   ASSERT_FALSE(before.failure);
-  const FilmState after = model.settle(b.film_system);
+  const settle::FilmState after = model.settle(b.film_system);
   ASSERT_FALSE(after.failure);
   EXPECT_NEAR(after.report.area / before.report.area, 1.0, kSame);
   EXPECT_NEAR(
@@ -160,19 +164,21 @@ TEST_F(CurvesOfStep, GiveTheFilmThatTheFileWasWrittenFrom) {
 TEST_F(CurvesOfStep, OfLinesAndArcsAreExact) {
   // Corners are counted from another one: another triangulation.
   constexpr double kSameFilm = 1e-4;
-  const Case own = write_part();
-  const Case again = good(strut(kRims, "mm-N-MPa"));
+  const case_data::Case own = write_part();
+  const case_data::Case again = good(strut(kRims, "mm-N-MPa"));
   ASSERT_EQ(again.curves.size(), 2U);
-  EXPECT_EQ(again.curves[0].kind, CurveKind::Polyline);
+  EXPECT_EQ(again.curves[0].kind, case_data::CurveKind::Polyline);
   EXPECT_EQ(again.curves[0].points.size(), 12U);  // cut edges are joined
-  EXPECT_EQ(again.curves[1].kind, CurveKind::Circle);
+  EXPECT_EQ(again.curves[1].kind, case_data::CurveKind::Circle);
   EXPECT_THAT(again.remarks,
               Contains(HasSubstr("4 straight sides and 4 arcs, exact")));
-  const EvaluatedCase a = evaluate(own, initial_design(own));
-  const EvaluatedCase b = evaluate(again, initial_design(again));
+  const case_data::EvaluatedCase a =
+      case_data::evaluate(own, case_data::initial_design(own));
+  const case_data::EvaluatedCase b =
+      case_data::evaluate(again, case_data::initial_design(again));
   for (std::size_t c = 0; c < 2; ++c) {
-    EXPECT_TRUE(lie_on_each_other(a.film_system.curves[c].shape,
-                                  b.film_system.curves[c].shape, 1e-9));
+    EXPECT_TRUE(curves::lie_on_each_other(a.film_system.curves[c].shape,
+                                          b.film_system.curves[c].shape, 1e-9));
   }
   EXPECT_NEAR(film_of(again).report.area / film_of(own).report.area, 1.0,
               kSameFilm);
@@ -181,26 +187,29 @@ TEST_F(CurvesOfStep, OfLinesAndArcsAreExact) {
 TEST_F(CurvesOfStep, AreConvertedToTheUnitsOfTheCase) {
   write_part();
   // The file is in mm whatever the case's units are.
-  const Case metre = good(strut(kRims, "m-N-Pa"));
-  const EvaluatedCase numbers = evaluate(metre, initial_design(metre));
-  EXPECT_NEAR(length_of(numbers.film_system.curves[1].shape), 2.0 * kPi * 9e-3,
-              1e-12);
+  const case_data::Case metre = good(strut(kRims, "m-N-Pa"));
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(metre, case_data::initial_design(metre));
+  EXPECT_NEAR(curves::length_of(numbers.film_system.curves[1].shape),
+              2.0 * kPi * 9e-3, 1e-12);
 }
 
 TEST_F(CurvesOfStep, BelongToTheCase) {
   write_part();
-  const Case first = good(strut(kRims, "mm-N-MPa"));
-  const std::string stored = stored_case(first);
+  const case_data::Case first = good(strut(kRims, "mm-N-MPa"));
+  const std::string stored = store::stored_case(first);
   std::filesystem::remove(path("part.step"));
-  const Case again = restore_case({.case_text = stored});
+  const case_data::Case again = store::restore_case({.case_text = stored});
   EXPECT_EQ(again.hash, first.hash);
   EXPECT_EQ(again.remarks, first.remarks);
-  const EvaluatedCase a = evaluate(first, initial_design(first));
-  const EvaluatedCase b = evaluate(again, initial_design(again));
+  const case_data::EvaluatedCase a =
+      case_data::evaluate(first, case_data::initial_design(first));
+  const case_data::EvaluatedCase b =
+      case_data::evaluate(again, case_data::initial_design(again));
   for (std::size_t c = 0; c < 2; ++c) {
     for (const double t : {0.0, 0.3, 0.9}) {
-      EXPECT_EQ(point_at(a.film_system.curves[c].shape, t),
-                point_at(b.film_system.curves[c].shape, t));
+      EXPECT_EQ(curves::point_at(a.film_system.curves[c].shape, t),
+                curves::point_at(b.film_system.curves[c].shape, t));
     }
   }
   EXPECT_THAT(read(strut(kRims, "mm-N-MPa")).problems,
@@ -236,7 +245,7 @@ TEST_F(CurvesOfStep, ThatAreWrongAreRefusedByLine) {
 
 /// Edges of a box, of which the four about one face close.
 TEST_F(CurvesOfStep, OfSeveralEdgesMustClose) {
-  Brep box;
+  solid::Brep box;
   for (int k = 0; k < 8; ++k) {
     box.vertices.emplace_back((k & 1) * 3.0, (k / 2 % 2) * 2.0, (k / 4) * 1.0);
   }
@@ -247,9 +256,9 @@ TEST_F(CurvesOfStep, OfSeveralEdgesMustClose) {
     const Vec3 a = box.vertices[corners[0]];
     const Vec3 u = box.vertices[corners[1]] - a;
     const Vec3 v = box.vertices[corners[3]] - a;
-    BrepFace face{"side_" + std::to_string(box.faces.size()),
-                  PlaneSurface{a, Vec3(u.cross(v)).normalized()},
-                  {{}}};
+    solid::BrepFace face{"side_" + std::to_string(box.faces.size()),
+                         solid::PlaneSurface{a, Vec3(u.cross(v)).normalized()},
+                         {{}}};
     for (int k = 0; k < 4; ++k) {
       const int from = std::min(corners[k], corners[(k + 1) % 4]);
       const int to = std::max(corners[k], corners[(k + 1) % 4]);
@@ -262,15 +271,16 @@ TEST_F(CurvesOfStep, OfSeveralEdgesMustClose) {
       if (found < 0) {
         const Vec3 way = box.vertices[to] - box.vertices[from];
         found = static_cast<int>(box.edges.size());
-        box.edges.push_back({from, to,
-                             StraightLine{box.vertices[from], way.normalized()},
-                             0.0, way.norm()});
+        box.edges.push_back(
+            {from, to,
+             solid::StraightLine{box.vertices[from], way.normalized()}, 0.0,
+             way.norm()});
       }
       face.loops[0].push_back({found, from == corners[k]});
     }
     box.faces.push_back(face);
   }
-  write_step(path("part.step"), box);
+  step::write_step(path("part.step"), box);
   const auto text = [&](const std::string& edge) {
     return "title = \"t\"\nunits = \"mm-N-MPa\"\n[curves.rim]\nkind = "
            "\"file\"\n"
@@ -279,9 +289,11 @@ TEST_F(CurvesOfStep, OfSeveralEdgesMustClose) {
            "\n[films.skin]\nkind = \"disk\"\ncurves = [\"rim\"]\n[walls.w]\n"
            "films = [\"skin\"]\nthickness = 0.1\n[resolution]\nfea = 0.5\n";
   };
-  const Case four = good(text("[3, 1, 4, 2]"));
-  const EvaluatedCase numbers = evaluate(four, initial_design(four));
-  EXPECT_NEAR(length_of(numbers.film_system.curves[0].shape), 10.0, 1e-12);
+  const case_data::Case four = good(text("[3, 1, 4, 2]"));
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(four, case_data::initial_design(four));
+  EXPECT_NEAR(curves::length_of(numbers.film_system.curves[0].shape), 10.0,
+              1e-12);
   EXPECT_THAT(read(text("[1, 2, 3]")).problems,
               ElementsAre(AllOf(HasSubstr("case.toml:6: curves.rim.edge"),
                                 HasSubstr("the edges do not close"))));

@@ -49,38 +49,40 @@ fea = 1.0
 )";
 }
 
-Case case_of(const std::string& text) {
-  const CaseReading reading = read_case_text(text, "case.toml");
+case_data::Case case_of(const std::string& text) {
+  const reader::CaseReading reading = reader::read_case_text(text, "case.toml");
   EXPECT_THAT(reading.problems, IsEmpty());
-  return reading.input ? *reading.input : Case{};
+  return reading.input ? *reading.input : case_data::Case{};
 }
 
 std::vector<std::string> problems_of(const std::string& text) {
-  return read_case_text(text, "case.toml").problems;
+  return reader::read_case_text(text, "case.toml").problems;
 }
 
 /// Points of every curve, by both design variables, against differences.
-void expect_rates(const Case& input) {
+void expect_rates(const case_data::Case& input) {
   constexpr double kStep = 1e-5;
   constexpr double kDifference = 1e-8;  // of central differences
-  const VectorX design = initial_design(input);
-  const EvaluatedCase here = evaluate(input, design);
+  const VectorX design = case_data::initial_design(input);
+  const case_data::EvaluatedCase here = case_data::evaluate(input, design);
   for (int j = 0; j < design.size(); ++j) {
-    const EvaluatedCase rate = rates(input, design, j);
+    const case_data::EvaluatedCase rate = case_data::rates(input, design, j);
     VectorX less = design;
     VectorX more = design;
     less[j] -= kStep;
     more[j] += kStep;
-    const EvaluatedCase a = evaluate(input, less);
-    const EvaluatedCase b = evaluate(input, more);
+    const case_data::EvaluatedCase a = case_data::evaluate(input, less);
+    const case_data::EvaluatedCase b = case_data::evaluate(input, more);
     for (std::size_t c = 0; c < here.film_system.curves.size(); ++c) {
-      const auto shape = [&](const EvaluatedCase& numbers) {
+      const auto shape = [&](const case_data::EvaluatedCase& numbers) {
         return numbers.film_system.curves[c].shape;
       };
       for (const double t : {0.0, 0.21, 0.5, 0.83}) {
         const Vec3 difference =
-            (point_at(shape(b), t) - point_at(shape(a), t)) / (2.0 * kStep);
-        EXPECT_LT((point_rate(shape(here), shape(rate), t) - difference).norm(),
+            (curves::point_at(shape(b), t) - curves::point_at(shape(a), t)) /
+            (2.0 * kStep);
+        EXPECT_LT((curves::point_rate(shape(here), shape(rate), t) - difference)
+                      .norm(),
                   kDifference * std::max(1.0, difference.norm()))
             << here.film_system.curves[c].name << " at " << t;
       }
@@ -124,18 +126,19 @@ move = [0, 0, "5 * width"]
 
 TEST(CaseCurves, OfEveryKindFollowTheDesignWithExactRates) {
   for (const char* text : {kSpline, kSlot, kCopies}) {
-    const Case input = case_of(disk(text));
+    const case_data::Case input = case_of(disk(text));
     ASSERT_FALSE(input.curves.empty());
     expect_rates(input);
   }
-  const Case slot = case_of(disk(kSlot));
-  const EvaluatedCase numbers = evaluate(slot, initial_design(slot));
-  EXPECT_NEAR(length_of(numbers.film_system.curves[0].shape),
+  const case_data::Case slot = case_of(disk(kSlot));
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(slot, case_data::initial_design(slot));
+  EXPECT_NEAR(curves::length_of(numbers.film_system.curves[0].shape),
               12.0 + 4.0 * kHalfTurn, 1e-12);
 }
 
 TEST(CaseCurves, RepeatCountsInExpressions) {
-  const Case input = case_of(disk(R"([curves.hole]
+  const case_data::Case input = case_of(disk(R"([curves.hole]
 kind = "circle"
 center = ["10 * i", "width * j", 0]
 normal = [0, 0, 1]
@@ -147,13 +150,15 @@ of = "hole_2_3"
 move = [0, 0, 1]
 )"));
   std::vector<std::string> names;
-  for (const CurveEntry& curve : input.curves) {
+  for (const case_data::CurveEntry& curve : input.curves) {
     names.push_back(curve.name);
   }
   EXPECT_THAT(names, ElementsAre("hole_1_1", "hole_1_2", "hole_1_3", "hole_2_1",
                                  "hole_2_2", "hole_2_3", "rim"));
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
-  const Circle& hole = std::get<Circle>(numbers.film_system.curves[5].shape);
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
+  const curves::Circle& hole =
+      std::get<curves::Circle>(numbers.film_system.curves[5].shape);
   EXPECT_EQ(hole.center, Vec3(20, 9, 0));
   EXPECT_EQ(hole.radius, 0.5);
   expect_rates(input);
@@ -166,28 +171,30 @@ TEST(CaseCurves, ComeFromFilesThatBelongToTheCase) {
   write_file(folder / "rim.csv",
              "Y,name,x [cm],z\n0,a,1,0\n10,b,0,0\n0,c,-1,0.5\n-10,d,0,0\n"
              "0,a,1,0\n");
-  const Case first = read_case(path);
-  const EvaluatedCase numbers = evaluate(first, initial_design(first));
-  const Spline& rim = std::get<Spline>(numbers.film_system.curves[0].shape);
+  const case_data::Case first = reader::read_case(path);
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(first, case_data::initial_design(first));
+  const curves::Spline& rim =
+      std::get<curves::Spline>(numbers.film_system.curves[0].shape);
   ASSERT_EQ(rim.points.size(), 4U);  // the last one closes
   EXPECT_EQ(rim.points[2], Vec3(-10, 0, 0.5));
   expect_rates(first);
-  const std::string stored = stored_case(first);
+  const std::string stored = store::stored_case(first);
   write_file(folder / "rim.csv", "x,y,z\n1,0,0\n0,1,0\n-1,0,0\n");
-  EXPECT_NE(read_case(path).hash, first.hash);
+  EXPECT_NE(reader::read_case(path).hash, first.hash);
   std::filesystem::remove(folder / "rim.csv");
-  const Case again = restore_case({.case_text = stored});
+  const case_data::Case again = store::restore_case({.case_text = stored});
   EXPECT_EQ(again.hash, first.hash);
   EXPECT_EQ(again.curves[0].fixed_points, first.curves[0].fixed_points);
   EXPECT_THAT(
-      read_case_file(path).problems,
+      reader::read_case_file(path).problems,
       ElementsAre(AllOf(HasSubstr("case.toml:13: curves.rim.file: "),
                         HasSubstr("there is no file"), HasSubstr("rim.csv"))));
 }
 
 std::string file_problem(const std::string& text) {
-  const CurveFile file =
-      read_curve_text(text, "rim.csv", *unit_system("mm-N-MPa"));
+  const files::CurveFile file =
+      files::read_curve_text(text, "rim.csv", *unit_system("mm-N-MPa"));
   return file.problems.empty() ? "" : file.problems.front();
 }
 
@@ -276,7 +283,7 @@ TEST(CaseCurves, ALoftBetweenACurveAndItsCopyIsACatenoid) {
   constexpr double kExact = 5.99179697580228;
   constexpr double kFacets = 2e-3;  // of flat facets of edge 0.05
   for (const char* normal : {"0, 0, 1", "0, 0, -1"}) {  // either way round
-    const Case input = case_of(std::string(R"(title = "Catenoid"
+    const case_data::Case input = case_of(std::string(R"(title = "Catenoid"
 units = "m-N-Pa"
 [curves.low]
 kind = "circle"
@@ -297,9 +304,10 @@ thickness = 0.01
 [resolution]
 fea = 0.1
 )");
-    const EvaluatedCase numbers = evaluate(input, initial_design(input));
-    const FilmModel model =
-        FilmModel::freeze(numbers.film_system, {.edge = 0.1, .refinements = 1});
+    const case_data::EvaluatedCase numbers =
+        case_data::evaluate(input, case_data::initial_design(input));
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        numbers.film_system, {.edge = 0.1, .refinements = 1});
     ASSERT_FALSE(model.reference().failure);
     EXPECT_NEAR(model.reference().report.area / kExact, 1.0, kFacets);
   }

@@ -61,25 +61,27 @@ material = "steel"
          kEnd;
 }
 
-Case good(const std::string& text, const std::string& path = "case.toml") {
-  const CaseReading reading = read_case_text(text, path);
+case_data::Case good(const std::string& text,
+                     const std::string& path = "case.toml") {
+  const reader::CaseReading reading = reader::read_case_text(text, path);
   EXPECT_THAT(reading.problems, IsEmpty());
-  return reading.input ? *reading.input : Case{};
+  return reading.input ? *reading.input : case_data::Case{};
 }
 
-FilmModel model_of(const Case& input) {
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
-  return FilmModel::freeze(
+frozen::FilmModel model_of(const case_data::Case& input) {
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
+  return frozen::FilmModel::freeze(
       numbers.film_system,
       {.edge = numbers.fea_edge, .refinements = input.resolution.refinements});
 }
 
 TEST(CaseFacets, ACubeBecomesASphere) {
   // The paper's 8 x 8 x 8: facets are kept and halved three times.
-  const Case input =
+  const case_data::Case input =
       good(cube("fea = 0.14\nfilm = 0.14\nkeep_facets = true\n"));
-  const FilmModel model = model_of(input);
-  const FilmState& film = model.reference();
+  const frozen::FilmModel model = model_of(input);
+  const settle::FilmState& film = model.reference();
   ASSERT_FALSE(film.failure) << film.failure->message;
   EXPECT_EQ(film.report.facets, 768);
   constexpr double kCoarse = 0.02;  // of 768 flat facets about a sphere
@@ -92,7 +94,7 @@ TEST(CaseFacets, ACubeBecomesASphere) {
 TEST(CaseFacets, TheErrorFallsFourfoldWithEachRefinement) {
   std::vector<double> errors;
   for (const char* edge : {"0.28", "0.14", "0.07"}) {
-    const FilmModel model =
+    const frozen::FilmModel model =
         model_of(good(cube(std::string("keep_facets = true\nfea = ") + edge +
                            "\nfilm = " + edge + "\n")));
     ASSERT_FALSE(model.reference().failure);
@@ -103,14 +105,15 @@ TEST(CaseFacets, TheErrorFallsFourfoldWithEachRefinement) {
 }
 
 TEST(CaseFacets, AFreeBodyIsRemeshedToItsEdgeAndFollowsItsVolume) {
-  const Case input = good(cube("fea = 0.15\n"));
-  const FilmModel model = model_of(input);
+  const case_data::Case input = good(cube("fea = 0.15\n"));
+  const frozen::FilmModel model = model_of(input);
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   EXPECT_NEAR(model.reference().report.area / kSphere, 1.0, 0.01);
   // Another design of the frozen model: six motions cost nothing.
-  EvaluatedCase more = evaluate(input, initial_design(input));
+  case_data::EvaluatedCase more =
+      case_data::evaluate(input, case_data::initial_design(input));
   more.film_system.bodies[0].volume = 1.3;
-  const FilmState larger = model.settle(more.film_system);
+  const settle::FilmState larger = model.settle(more.film_system);
   ASSERT_FALSE(larger.failure) << larger.failure->message;
   // Vertices move along the start's normals, which are not quite radial.
   constexpr double kNotRadial = 1e-5;
@@ -166,7 +169,7 @@ facets = [
 }
 
 TEST(CaseFacets, RimsAreHeldByTheirCurves) {
-  const FilmModel model = model_of(good(band("")));
+  const frozen::FilmModel model = model_of(good(band("")));
   ASSERT_FALSE(model.reference().failure);
   EXPECT_NEAR(model.reference().report.area / kCatenoid, 1.0, 1e-3);
   EXPECT_GT(model.rim("low").size(), 50U);  // cut to the edge length
@@ -175,7 +178,7 @@ TEST(CaseFacets, RimsAreHeldByTheirCurves) {
 
 TEST(CaseFacets, JoinOtherFilmsOnTheirCurves) {
   // A flat disk across the lower ring: three vertices of its own on it.
-  const Case input = good(band(R"case([films.floor]
+  const case_data::Case input = good(band(R"case([films.floor]
 kind = "facets"
 curves = ["low"]
 vertices = [[1, 0, -0.5], ["cos(2)", "sin(2)", -0.5], ["cos(4)", "sin(4)", -0.5]]
@@ -184,7 +187,7 @@ facets = [[0, 1, 2]]
 kind = "disk"
 curves = ["high"]
 )case"));
-  const FilmModel model = model_of(input);
+  const frozen::FilmModel model = model_of(input);
   ASSERT_FALSE(model.reference().failure);
   EXPECT_NEAR(model.reference().report.area, kCatenoid + 2.0 * std::numbers::pi,
               0.02);
@@ -212,12 +215,12 @@ TEST(CaseFacets, ComeFromFilesThatBelongToTheCase) {
       "[films.skin]\nkind = \"file\"\nfile = \"band.obj\"\nsurface = \"side\"\n"
       "scale = 0.001\ncurves = [\"low\", \"high\"]\n");
   write_file(path, text);
-  const Case input = good(text, path);
+  const case_data::Case input = good(text, path);
   EXPECT_NEAR(model_of(input).reference().report.area / kCatenoid, 1.0, 1e-3);
-  const std::string stored = stored_case(input);
+  const std::string stored = store::stored_case(input);
   std::filesystem::remove(folder / "band.obj");
-  EXPECT_EQ(restore_case({.case_text = stored}).hash, input.hash);
-  EXPECT_THAT(read_case_file(path).problems,
+  EXPECT_EQ(store::restore_case({.case_text = stored}).hash, input.hash);
+  EXPECT_THAT(reader::read_case_file(path).problems,
               Contains(AllOf(HasSubstr("films.skin: there is no file"),
                              HasSubstr("band.obj"))));
 }
@@ -276,11 +279,11 @@ TEST(CaseFacets, StartFromStlAndDatafilesAsFromTheirOwn) {
   write_file(folder / "band.stl", as_stl(twelve_sides()));
   write_file(folder / "band.fe", as_datafile());
   for (const char* file : {"band.stl", "band.fe"}) {
-    const Case input =
+    const case_data::Case input =
         good(rings(std::string("[films.skin]\nkind = \"file\"\nfile = \"") +
                    file + "\"\ncurves = [\"low\", \"high\"]\n"),
              path);
-    const FilmModel model = model_of(input);
+    const frozen::FilmModel model = model_of(input);
     ASSERT_FALSE(model.reference().failure) << file;
     EXPECT_NEAR(model.reference().report.area / kCatenoid, 1.0, 1e-3) << file;
     EXPECT_EQ(model.reference().report.index, 0) << file;
@@ -320,9 +323,9 @@ material = "steel"
 )case");
   text.erase(text.find("[walls.web]"),
              text.find("[resolution]") - text.find("[walls.web]"));
-  const Case input = good(text + kEnd, path);
-  const FilmModel model = model_of(input);
-  const FilmState& film = model.reference();
+  const case_data::Case input = good(text + kEnd, path);
+  const frozen::FilmModel model = model_of(input);
+  const settle::FilmState& film = model.reference();
   ASSERT_FALSE(film.failure) << film.failure->message;
   EXPECT_NEAR(film.report.bodies[0].volume, 3.4, 1e-9);
   // The end's peak is where the file has it, and the rest of it nowhere higher.
@@ -338,7 +341,7 @@ std::vector<std::string> problems_of(std::string text, const std::string& from,
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
-  return read_case_text(text, "case.toml").problems;
+  return reader::read_case_text(text, "case.toml").problems;
 }
 
 TEST(CaseFacets, ThatAreWrongAreRefusedByLine) {

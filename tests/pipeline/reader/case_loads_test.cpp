@@ -26,36 +26,37 @@ std::string with_material(const std::string& lines) {
 }
 
 /// The numbers of a text that must be right, at its initial design.
-EvaluatedCase numbers_of(const std::string& text) {
-  const CaseReading reading = read_case_text(text, "case.toml");
+case_data::EvaluatedCase numbers_of(const std::string& text) {
+  const reader::CaseReading reading = reader::read_case_text(text, "case.toml");
   EXPECT_THAT(reading.problems, IsEmpty());
   return reading.input
-             ? evaluate(*reading.input, initial_design(*reading.input))
-             : EvaluatedCase{};
+             ? case_data::evaluate(*reading.input,
+                                   case_data::initial_design(*reading.input))
+             : case_data::EvaluatedCase{};
 }
 
 TEST(CaseLoads, SupportsSlideTurnAndSpring) {
-  const EvaluatedCase numbers = numbers_of(with_supports(
+  const case_data::EvaluatedCase numbers = numbers_of(with_supports(
       "[{ on = \"foot_pad\", fix = \"symmetry\" },\n"
       "  { on = \"skin\", fix = \"normal\" },\n"
       "  { on = \"head_pad\", fix = \"xz\", axes = [[1, 1, 0], [0, 1, 0]] },\n"
       "  { on = \"foot_pad\", stiffness = [1, \"load / 10\", 3], "
       "normal_stiffness = 5, stiffness_of = \"total\" }]"));
-  const LoadCase& load_case = numbers.load_cases.at(0);
+  const loads::LoadCase& load_case = numbers.load_cases.at(0);
   ASSERT_EQ(load_case.supports.size(), 3U);
-  EXPECT_EQ(load_case.supports[0].kind, SupportKind::Symmetry);
-  EXPECT_EQ(load_case.supports[1].kind, SupportKind::Normal);
-  EXPECT_EQ(load_case.supports[2].kind, SupportKind::Components);
+  EXPECT_EQ(load_case.supports[0].kind, loads::SupportKind::Symmetry);
+  EXPECT_EQ(load_case.supports[1].kind, loads::SupportKind::Normal);
+  EXPECT_EQ(load_case.supports[2].kind, loads::SupportKind::Components);
   EXPECT_FALSE(load_case.supports[2].fix_y);
   EXPECT_EQ(load_case.supports[2].axes->first, Vec3(1, 1, 0));
   ASSERT_EQ(load_case.springs.size(), 1U);
   EXPECT_EQ(load_case.springs[0].components, Vec3(1, 100, 3));
   EXPECT_EQ(load_case.springs[0].normal, 5.0);
-  EXPECT_EQ(load_case.springs[0].measure, SpringMeasure::Total);
+  EXPECT_EQ(load_case.springs[0].measure, loads::SpringMeasure::Total);
 }
 
 TEST(CaseLoads, EveryKindOfLoadIsRead) {
-  const EvaluatedCase numbers = numbers_of(changed(
+  const case_data::EvaluatedCase numbers = numbers_of(changed(
       with_loads(
           "[{ on = \"head_pad\", force = [1, 2, 3], at = [0, 0, 90], "
           "moment = [\"4 N m\", 0, 0] },\n"
@@ -66,7 +67,7 @@ TEST(CaseLoads, EveryKindOfLoadIsRead) {
           "  { spin = 30, axis = [0, 0, 1], at = [5, 0, 0] },\n"
           "  { temperature = \"20 + z\", reference = 20 }]"),
       "density", "thermal_expansion = 2e-5\ndensity"));
-  const LoadCase& load_case = numbers.load_cases.at(0);
+  const loads::LoadCase& load_case = numbers.load_cases.at(0);
   ASSERT_EQ(load_case.remote_loads.size(), 1U);
   EXPECT_EQ(load_case.remote_loads[0].point, Vec3(0, 0, 90));
   EXPECT_EQ(load_case.remote_loads[0].moment, Vec3(4000, 0, 0));
@@ -88,7 +89,7 @@ TEST(CaseLoads, MaterialsAreIsotropicOrOrthotropic) {
                 .materials.at(0)
                 .thermal_expansion,
             Vec3::Constant(2e-5));
-  const Material m =
+  const element::Material m =
       numbers_of(with_material("youngs_moduli = [\"120 GPa\", 9e3, 7e3]\n"
                                "poisson_ratios = [0.3, 0.25, 0.4]\n"
                                "shear_moduli = [4500, 4000, 3000]\n"

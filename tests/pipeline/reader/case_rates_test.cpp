@@ -34,50 +34,59 @@ std::string depending() {
   return changed(text, "density = ", "density = \"1e-9 * sqrt(foot)\" #");
 }
 
-using Number = std::function<double(const EvaluatedCase&)>;
+using Number = std::function<double(const case_data::EvaluatedCase&)>;
 
 std::vector<Number> numbers_to_look_at() {
   const Vec3 place(3.0, -4.0, 11.0);
-  const auto circle = [](const EvaluatedCase& c, int k) {
-    return std::get<Circle>(c.film_system.curves[k].shape);
+  const auto circle = [](const case_data::EvaluatedCase& c, int k) {
+    return std::get<curves::Circle>(c.film_system.curves[k].shape);
   };
   return {
-      [=](const EvaluatedCase& c) { return circle(c, 0).radius; },
-      [=](const EvaluatedCase& c) { return circle(c, 1).center.x(); },
-      [=](const EvaluatedCase& c) { return circle(c, 1).center.y(); },
-      [=](const EvaluatedCase& c) { return circle(c, 1).center.z(); },
-      [](const EvaluatedCase& c) { return *c.film_system.bodies[0].volume; },
-      [](const EvaluatedCase& c) { return c.materials[0].density; },
-      [](const EvaluatedCase& c) {
+      [=](const case_data::EvaluatedCase& c) { return circle(c, 0).radius; },
+      [=](const case_data::EvaluatedCase& c) {
+        return circle(c, 1).center.x();
+      },
+      [=](const case_data::EvaluatedCase& c) {
+        return circle(c, 1).center.y();
+      },
+      [=](const case_data::EvaluatedCase& c) {
+        return circle(c, 1).center.z();
+      },
+      [](const case_data::EvaluatedCase& c) {
+        return *c.film_system.bodies[0].volume;
+      },
+      [](const case_data::EvaluatedCase& c) { return c.materials[0].density; },
+      [](const case_data::EvaluatedCase& c) {
         return c.load_cases[0].forces[0].total.x();
       },
-      [](const EvaluatedCase& c) {
+      [](const case_data::EvaluatedCase& c) {
         return c.load_cases[0].forces[0].total.z();
       },
-      [=](const EvaluatedCase& c) {
+      [=](const case_data::EvaluatedCase& c) {
         return c.load_cases[0].pressures[0].field(place);
       },
-      [=](const EvaluatedCase& c) {
+      [=](const case_data::EvaluatedCase& c) {
         return c.load_cases[0].tractions[0].field(place).x();
       },
-      [=](const EvaluatedCase& c) {
+      [=](const case_data::EvaluatedCase& c) {
         return c.load_cases[0].tractions[0].field(place).z();
       }};
 }
 
 TEST(CaseRates, AreTheDerivativesOfTheNumbers) {
-  const CaseReading reading = read_case_text(depending(), "case.toml");
+  const reader::CaseReading reading =
+      reader::read_case_text(depending(), "case.toml");
   ASSERT_THAT(reading.problems, testing::IsEmpty());
-  const Case& input = *reading.input;
-  const VectorX design = initial_design(input);
+  const case_data::Case& input = *reading.input;
+  const VectorX design = case_data::initial_design(input);
   for (int j = 0; j < 2; ++j) {
-    const EvaluatedCase rate = rates(input, design, j);
+    const case_data::EvaluatedCase rate = case_data::rates(input, design, j);
     VectorX before = design;
     VectorX after = design;
     before[j] -= kStep;
     after[j] += kStep;
-    const EvaluatedCase a = evaluate(input, before);
-    const EvaluatedCase b = evaluate(input, after);
+    const case_data::EvaluatedCase a = case_data::evaluate(input, before);
+    const case_data::EvaluatedCase b = case_data::evaluate(input, after);
     int index = 0;
     for (const Number& number : numbers_to_look_at()) {
       const double expected = (number(b) - number(a)) / (2.0 * kStep);
@@ -90,26 +99,30 @@ TEST(CaseRates, AreTheDerivativesOfTheNumbers) {
 }
 
 TEST(CaseRates, AreZeroForWhatStandsAsNumbers) {
-  const CaseReading reading = read_case_text(strut(), "case.toml");
-  const EvaluatedCase rate =
-      rates(*reading.input, initial_design(*reading.input), 0);
-  EXPECT_EQ(std::get<Circle>(rate.film_system.curves[0].shape).radius, 1.0);
-  EXPECT_EQ(std::get<Circle>(rate.film_system.curves[0].shape).normal,
+  const reader::CaseReading reading =
+      reader::read_case_text(strut(), "case.toml");
+  const case_data::EvaluatedCase rate = case_data::rates(
+      *reading.input, case_data::initial_design(*reading.input), 0);
+  EXPECT_EQ(std::get<curves::Circle>(rate.film_system.curves[0].shape).radius,
+            1.0);
+  EXPECT_EQ(std::get<curves::Circle>(rate.film_system.curves[0].shape).normal,
             Vec3(0, 0, 0));
-  EXPECT_EQ(std::get<Circle>(rate.film_system.curves[1].shape).radius, 0.0);
+  EXPECT_EQ(std::get<curves::Circle>(rate.film_system.curves[1].shape).radius,
+            0.0);
   EXPECT_EQ(*rate.film_system.bodies[0].volume, 0.0);
   EXPECT_EQ(rate.load_cases[0].forces[0].total, Vec3(0, 0, 0));
   EXPECT_EQ(rate.materials[0].youngs_modulus, 0.0);
 }
 
 TEST(CaseRates, ExpressionsWithoutADerivativeAreNamed) {
-  const CaseReading reading =
-      read_case_text(changed(strut(), "volume = 9e4",
-                             "volume = \"9e4 + sqrt((foot - 25) ^ 2)\""),
-                     "case.toml");
+  const reader::CaseReading reading = reader::read_case_text(
+      changed(strut(), "volume = 9e4",
+              "volume = \"9e4 + sqrt((foot - 25) ^ 2)\""),
+      "case.toml");
   ASSERT_THAT(reading.problems, testing::IsEmpty());
   try {
-    rates(*reading.input, initial_design(*reading.input), 0);
+    case_data::rates(*reading.input, case_data::initial_design(*reading.input),
+                     0);
     FAIL() << "a square root of 0 has no derivative";
   } catch (const InvalidInput& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("bodies.part.volume"));

@@ -17,38 +17,40 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 TEST(CaseReader, ReadsTheTwoArmBracket) {
-  const CaseReading reading = read_case_file(two_arm_path());
+  const reader::CaseReading reading = reader::read_case_file(two_arm_path());
   EXPECT_THAT(reading.problems, IsEmpty());
   EXPECT_THAT(reading.warnings, IsEmpty());
   ASSERT_TRUE(reading.input.has_value());
-  const Case& input = *reading.input;
+  const case_data::Case& input = *reading.input;
   EXPECT_EQ(input.name, "two_arm");
   EXPECT_EQ(input.title, "Two-arm bracket");
-  EXPECT_THAT(design_names(input), ElementsAre("support_x"));
-  EXPECT_THAT(response_names(input),
+  EXPECT_THAT(case_data::design_names(input), ElementsAre("support_x"));
+  EXPECT_THAT(case_data::response_names(input),
               ElementsAre("left_deflection", "right_deflection"));
   EXPECT_EQ(input.curves[0].name, "support");
   EXPECT_EQ(input.curves[2].name, "right");
   EXPECT_EQ(input.resolution.fea, 8.0);
   EXPECT_EQ(input.resolution.film, 4.0);
   EXPECT_EQ(input.resolution.refinements, 1);
-  EXPECT_EQ(input.study.kind, StudyKind::Match);
+  EXPECT_EQ(input.study.kind, case_data::StudyKind::Match);
   EXPECT_THAT(input.study.equal,
               ElementsAre("left_deflection", "right_deflection"));
   EXPECT_EQ(input.study.tolerance, 1e-3);
   EXPECT_EQ(input.study.method, "ceres");
-  EXPECT_EQ(response_unit(input, 0), "mm");
+  EXPECT_EQ(case_data::response_unit(input, 0), "mm");
 }
 
 TEST(CaseReader, EvaluatesTheTwoArmBracket) {
-  const Case input = read_case(two_arm_path());
+  const case_data::Case input = reader::read_case(two_arm_path());
   const VectorX moved = VectorX::Constant(1, 12.5);
-  const EvaluatedCase numbers = evaluate(input, moved);
-  const auto& support = std::get<Circle>(numbers.film_system.curves[0].shape);
+  const case_data::EvaluatedCase numbers = case_data::evaluate(input, moved);
+  const auto& support =
+      std::get<curves::Circle>(numbers.film_system.curves[0].shape);
   EXPECT_EQ(support.center, Vec3(12.5, 0, 0));
   EXPECT_EQ(support.normal, Vec3(0, 0, -1));
   EXPECT_EQ(support.radius, 35.0);
-  const auto& left = std::get<Circle>(numbers.film_system.curves[1].shape);
+  const auto& left =
+      std::get<curves::Circle>(numbers.film_system.curves[1].shape);
   const double angle = 60.0 * (3.14159265358979323846 / 180.0);
   EXPECT_EQ(left.normal, Vec3(-std::sin(angle), 0, std::cos(angle)));
   EXPECT_EQ(numbers.film_system.bodies[0].volume, 1.7e6);
@@ -60,13 +62,13 @@ TEST(CaseReader, EvaluatesTheTwoArmBracket) {
   EXPECT_EQ(numbers.load_cases[0].forces[1].total, Vec3(0, 0, -60000));
   EXPECT_TRUE(numbers.load_cases[0].supports[0].fix_y);
   EXPECT_EQ(numbers.responses[1].direction, Vec3(0, 0, -1));
-  EXPECT_THROW(evaluate(input, VectorX()), InvalidInput);
+  EXPECT_THROW(case_data::evaluate(input, VectorX()), InvalidInput);
 }
 
 TEST(CaseReader, ReadsTheTextOfANewCase) {
   for (const std::string name : {"strut", "a \"quoted\" \\ name", ""}) {
-    const CaseReading reading =
-        read_case_text(new_case_text(name), "case.toml");
+    const reader::CaseReading reading =
+        reader::read_case_text(results::new_case_text(name), "case.toml");
     EXPECT_THAT(reading.problems, IsEmpty());
     EXPECT_THAT(reading.warnings, IsEmpty());
     ASSERT_TRUE(reading.input.has_value());
@@ -75,14 +77,14 @@ TEST(CaseReader, ReadsTheTextOfANewCase) {
 }
 
 TEST(CaseReader, TakesParametersFromParametersAndUnits) {
-  const CaseReading good = read_case_text(
+  const reader::CaseReading good = reader::read_case_text(
       changed(strut(), "load = 1000.0",
               "load = \"2 * unit_load + height\"\nunit_load = \"1 kN\"\n"
               "height = \"2 cm\""),
       "case.toml");
   ASSERT_TRUE(good.input.has_value()) << good.problems[0];
-  const auto values =
-      parameter_values(*good.input, initial_design(*good.input));
+  const auto values = case_data::parameter_values(
+      *good.input, case_data::initial_design(*good.input));
   EXPECT_THAT(values, Contains(std::make_pair(std::string("load"), 2020.0)));
 }
 
@@ -105,7 +107,7 @@ TEST(CaseReader, NamesParametersThatDependInACircle) {
 }
 
 TEST(CaseReader, LetsConstantsBeExpressionsOfParameters) {
-  const CaseReading reading = read_case_text(
+  const reader::CaseReading reading = reader::read_case_text(
       changed(changed(strut(), "fea = 6.0", "fea = \"length / 10\""),
               "targets = { sway = 0.01 }", "targets = { sway = \"1 cm\" }"),
       "case.toml");
@@ -129,22 +131,23 @@ TEST(CaseReader, ReadsEveryKindOfCurve) {
       "kind = \"polygon\"\npoints = [[20, 0, 60], [0, \"foot\", 60], "
       "[-20, 0, 60]]\n"};
   for (const std::string& curve : curves) {
-    const CaseReading reading =
-        read_case_text(rest + "[curves.head]\n" + curve, "case.toml");
+    const reader::CaseReading reading =
+        reader::read_case_text(rest + "[curves.head]\n" + curve, "case.toml");
     EXPECT_THAT(reading.problems, IsEmpty()) << curve;
   }
-  const Case input =
-      *read_case_text(rest + "[curves.head]\n" + curves[2], "c").input;
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
+  const case_data::Case input =
+      *reader::read_case_text(rest + "[curves.head]\n" + curves[2], "c").input;
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
   const auto& polygon =
-      std::get<Polygon>(numbers.film_system.curves.back().shape);
+      std::get<curves::Polygon>(numbers.film_system.curves.back().shape);
   ASSERT_EQ(polygon.points.size(), 3U);
   EXPECT_EQ(polygon.points[1], Vec3(0, 25, 60));
 }
 
 TEST(CaseReader, ReadsPressuresAndSeveralLoadCases) {
-  const Case input =
-      *read_case_text(
+  const case_data::Case input =
+      *reader::read_case_text(
            changed(strut(), "[study]",
                    "[load_cases.push]\n"
                    "supports = [{ on = \"foot_pad\", fix = \"z\" }]\n"
@@ -153,17 +156,18 @@ TEST(CaseReader, ReadsPressuresAndSeveralLoadCases) {
                    "load_case = \"push\"\n[study]"),
            "case.toml")
            .input;
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
   EXPECT_EQ(numbers.load_cases[1].pressures[0].pressure, 0.2);
   EXPECT_FALSE(numbers.load_cases[1].supports[0].fix_x);
   EXPECT_TRUE(numbers.load_cases[1].supports[0].fix_z);
   EXPECT_EQ(input.responses.back().load_case, 1);
-  EXPECT_EQ(response_unit(input, 2), "MPa");
+  EXPECT_EQ(case_data::response_unit(input, 2), "MPa");
 }
 
 TEST(CaseReader, TakesTheNearestNestedFilm) {
-  const CaseReading reading =
-      read_case_text(changed(strut(), "film = 3.0", "film = 2.0"), "case.toml");
+  const reader::CaseReading reading = reader::read_case_text(
+      changed(strut(), "film = 3.0", "film = 2.0"), "case.toml");
   ASSERT_TRUE(reading.input.has_value());
   EXPECT_EQ(reading.input->resolution.film, 1.5);
   EXPECT_EQ(reading.input->resolution.refinements, 2);
@@ -171,14 +175,14 @@ TEST(CaseReader, TakesTheNearestNestedFilm) {
               ElementsAre(AllOf(HasSubstr("warning: resolution.film = 2 is not "
                                           "fea / 2^k"),
                                 HasSubstr("1.5 is taken (k = 2)"))));
-  const CaseReading near = read_case_text(
+  const reader::CaseReading near = reader::read_case_text(
       changed(strut(), "film = 3.0", "film = 2.985"), "case.toml");
   EXPECT_EQ(near.input->resolution.film, 3.0);
   EXPECT_THAT(near.warnings, IsEmpty());
 }
 
 TEST(CaseReader, WarnsOfWhatIsNotUsed) {
-  const CaseReading reading = read_case_text(
+  const reader::CaseReading reading = reader::read_case_text(
       changed(changed(strut(), "load = 1000.0", "load = 1000.0\nspare = 1"),
               "density = 2.8e-9", "density = 0") +
           "[curves.ring]\nkind = \"circle\"\ncenter = [0, 0, 0]\n"
@@ -196,7 +200,7 @@ TEST(CaseReader, WarnsOfWhatIsNotUsed) {
 }
 
 TEST(Overrides, ReachParametersDesignAndKeys) {
-  const Case input = read_case(
+  const case_data::Case input = reader::read_case(
       two_arm_path(),
       {"load_left=60000", "load_right = 4e4", "support_x=5",
        "resolution.fea=16", "study.method=bobyqa", "bodies.part.volume=1.6e6",
@@ -209,17 +213,19 @@ TEST(Overrides, ReachParametersDesignAndKeys) {
   EXPECT_EQ(input.study.method, "bobyqa");
   EXPECT_EQ(input.study.max_evaluations, 7);
   EXPECT_EQ(input.title, "Another");
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
   EXPECT_EQ(numbers.load_cases[0].forces[0].total.z(), -50000.0);
   EXPECT_EQ(numbers.load_cases[0].forces[1].total.z(), -40000.0);
   EXPECT_EQ(numbers.film_system.bodies[0].volume, 1.6e6);
   EXPECT_EQ(numbers.materials[0].density, 2.7e-9);
-  const auto& left = std::get<Circle>(numbers.film_system.curves[1].shape);
+  const auto& left =
+      std::get<curves::Circle>(numbers.film_system.curves[1].shape);
   EXPECT_EQ(left.center, Vec3(-110, 0, 70));
 }
 
 std::vector<std::string> override_problems(const std::string& text) {
-  return read_case_file(two_arm_path(), {"load_left=1", text}).problems;
+  return reader::read_case_file(two_arm_path(), {"load_left=1", text}).problems;
 }
 
 TEST(Overrides, AreNamedInMessages) {
@@ -261,7 +267,8 @@ TEST(Overrides, AreNamedInMessages) {
 TEST(CaseHash, CoversWhatEvaluationsDependOn) {
   const auto hash = [](const std::string& text,
                        const std::vector<std::string>& overrides = {}) {
-    const CaseReading reading = read_case_text(text, "case.toml", overrides);
+    const reader::CaseReading reading =
+        reader::read_case_text(text, "case.toml", overrides);
     EXPECT_THAT(reading.problems, IsEmpty());
     return reading.input->hash;
   };

@@ -407,20 +407,20 @@ TEST(CaseTrouble, ASurfaceHasTwoSides) {
 TEST(CaseTrouble, FilesThatAreNone) {
   const TempFolder folder;
   EXPECT_THAT(
-      read_case_file(folder.path().string() + "/no.toml").problems,
+      reader::read_case_file(folder.path().string() + "/no.toml").problems,
       ElementsAre(folder.path().string() + "/no.toml: there is no such file"));
-  EXPECT_THAT(read_case_file(folder.path().string()).problems,
+  EXPECT_THAT(reader::read_case_file(folder.path().string()).problems,
               ElementsAre(HasSubstr("this is a folder; name the case file")));
-  EXPECT_THAT(read_case_file("").problems,
+  EXPECT_THAT(reader::read_case_file("").problems,
               ElementsAre(HasSubstr("there is no such file")));
   EXPECT_THAT(problems_of(""), ElementsAre(HasSubstr("the file is empty")));
   EXPECT_THAT(problems_of(" \r\n\t\n"),
               ElementsAre(HasSubstr("the file is empty")));
   const std::string large = folder.path().string() + "/large.toml";
   std::ofstream(large) << std::string(10U << 20U, 'x');
-  EXPECT_THAT(read_case_file(large).problems,
+  EXPECT_THAT(reader::read_case_file(large).problems,
               ElementsAre(HasSubstr("larger than 4 MB: not a case file")));
-  EXPECT_THROW(read_case(large), InvalidInput);
+  EXPECT_THROW(reader::read_case(large), InvalidInput);
 }
 
 TEST(CaseTrouble, WindowsFilesAreRead) {
@@ -490,7 +490,8 @@ TEST(CaseTrouble, RandomDamageEndsInAMessage) {
           break;
       }
     }
-    const CaseReading reading = read_case_text(text, "case.toml");
+    const reader::CaseReading reading =
+        reader::read_case_text(text, "case.toml");
     EXPECT_NE(reading.input.has_value(), !reading.problems.empty());
   }
 }

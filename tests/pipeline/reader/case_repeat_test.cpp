@@ -61,13 +61,14 @@ std::vector<std::string> problems_of_repeated(std::string text,
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
-  return read_case_text(text, "case.toml").problems;
+  return reader::read_case_text(text, "case.toml").problems;
 }
 
 TEST(CaseRepeat, MakesPatternsOfFilmsAlongALattice) {
-  const CaseReading reading = read_case_text(kRing, "case.toml");
+  const reader::CaseReading reading =
+      reader::read_case_text(kRing, "case.toml");
   ASSERT_THAT(reading.problems, IsEmpty());
-  const Case& input = *reading.input;
+  const case_data::Case& input = *reading.input;
   EXPECT_THAT(input.curves, SizeIs(24));
   ASSERT_THAT(input.films, SizeIs(24));
   EXPECT_EQ(input.films[3].spec.name, "stub_2_2");
@@ -80,12 +81,14 @@ TEST(CaseRepeat, MakesPatternsOfFilmsAlongALattice) {
   EXPECT_THAT(input.walls[5].films, ElementsAre("rib_6_1"));
   EXPECT_THAT(input.walls[6].films, SizeIs(12));
   EXPECT_EQ(input.walls[6].films.back(), "stub_6_2");
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
   EXPECT_DOUBLE_EQ(numbers.film_system.films[11].tension, 1.6);
 }
 
 TEST(CaseRepeat, CountsInSupportsLoadsAndResponses) {
-  const CaseReading reading = read_case_text(R"case(title = "Legs"
+  const reader::CaseReading reading =
+      reader::read_case_text(R"case(title = "Legs"
 units = "mm-N-MPa"
 [curves.leg]
 kind = "circle"
@@ -127,12 +130,13 @@ repeat = 3
 [resolution]
 fea = 6
 )case",
-                                             "case.toml");
+                             "case.toml");
   ASSERT_THAT(reading.problems, IsEmpty());
-  const Case& input = *reading.input;
+  const case_data::Case& input = *reading.input;
   ASSERT_THAT(input.load_cases[0].springs, SizeIs(3));
   EXPECT_EQ(input.load_cases[0].springs[2].surface, "pad_3");
-  EXPECT_THAT(response_names(input), ElementsAre("foot_1", "foot_2", "foot_3"));
+  EXPECT_THAT(case_data::response_names(input),
+              ElementsAre("foot_1", "foot_2", "foot_3"));
   EXPECT_EQ(input.responses[1].surface, "pad_2");
 }
 
@@ -210,18 +214,20 @@ fea = 0.2
 }
 
 TEST(CaseMerge, CurvesThatLieOnEachOtherAreOne) {
-  const CaseReading reading = read_case_text(tubes("wide"), "case.toml");
+  const reader::CaseReading reading =
+      reader::read_case_text(tubes("wide"), "case.toml");
   ASSERT_THAT(reading.problems, IsEmpty());
   EXPECT_THAT(reading.warnings, IsEmpty());
-  const Case& input = *reading.input;
+  const case_data::Case& input = *reading.input;
   EXPECT_THAT(input.remarks,
               ElementsAre(AllOf(HasSubstr("case.toml:16: curve 'same' lies on "
                                           "'middle' within"),
                                 HasSubstr("know as 'middle'"))));
   EXPECT_THAT(input.films[1].spec.curves, ElementsAre("middle", "high"));
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
-  const FilmModel model =
-      FilmModel::freeze(numbers.film_system, {.edge = 0.2, .refinements = 0});
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      numbers.film_system, {.edge = 0.2, .refinements = 0});
   ASSERT_FALSE(model.reference().failure);
   EXPECT_FALSE(model.rim("middle").empty());
   EXPECT_TRUE(model.rim("same").empty());
@@ -229,12 +235,13 @@ TEST(CaseMerge, CurvesThatLieOnEachOtherAreOne) {
 
 TEST(CaseMerge, CurvesThatPartOrOnlyTouchAreRefused) {
   EXPECT_THAT(
-      read_case_text(tubes("wide^2"), "case.toml").problems,
+      reader::read_case_text(tubes("wide^2"), "case.toml").problems,
       Contains(AllOf(HasSubstr("case.toml:16: curves 'middle' and "
                                "'same' lie on each other at the initial"),
                      HasSubstr("part where design variables"))));
-  EXPECT_THAT(read_case_text(tubes("1.001 * wide"), "case.toml").problems,
-              IsEmpty());  // near, and two
+  EXPECT_THAT(
+      reader::read_case_text(tubes("1.001 * wide"), "case.toml").problems,
+      IsEmpty());  // near, and two
   EXPECT_THAT(
       problems_of_repeated(tubes("wide"), "curves = [\"low\", \"middle\"]",
                            "curves = [\"same\", \"middle\"]"),

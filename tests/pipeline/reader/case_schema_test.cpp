@@ -88,7 +88,8 @@ std::vector<std::string> against_schema(const std::string& text) {
   std::ostringstream stream;
   stream << toml::json_formatter(toml::parse(std::string_view(text)));
   std::vector<std::string> problems;
-  validate(json::parse(json_schema()), json::parse(stream.str()), "", problems);
+  validate(json::parse(reader::json_schema()), json::parse(stream.str()), "",
+           problems);
   return problems;
 }
 
@@ -101,7 +102,7 @@ std::string file_text(const std::string& path) {
 
 TEST(JsonSchema, AcceptsTheCasesThatTheReaderAccepts) {
   EXPECT_THAT(against_schema(file_text(two_arm_path())), testing::IsEmpty());
-  EXPECT_THAT(against_schema(new_case_text("x")), testing::IsEmpty());
+  EXPECT_THAT(against_schema(results::new_case_text("x")), testing::IsEmpty());
   EXPECT_THAT(against_schema(strut()), testing::IsEmpty());
   const std::string analysis =
       "[analysis]\nadapt = true\nexclude = [\n"
@@ -135,23 +136,24 @@ TEST(JsonSchema, RefusesWhatTheReaderRefuses) {
 }
 
 TEST(CaseTables, AreFoundByName) {
-  EXPECT_EQ(find_key(case_table("bodies"), "volume")->dimension,
+  EXPECT_EQ(reader::find_key(reader::case_table("bodies"), "volume")->dimension,
             Dimension::Volume);
-  EXPECT_EQ(find_key(case_table("bodies"), "volme"), nullptr);
-  EXPECT_THAT(split_choices("a|bc|d"), testing::ElementsAre("a", "bc", "d"));
-  EXPECT_THAT(split_choices(""), testing::IsEmpty());
-  EXPECT_TRUE(is_later_table("regions"));
-  EXPECT_FALSE(is_later_table("walls"));
+  EXPECT_EQ(reader::find_key(reader::case_table("bodies"), "volme"), nullptr);
+  EXPECT_THAT(reader::split_choices("a|bc|d"),
+              testing::ElementsAre("a", "bc", "d"));
+  EXPECT_THAT(reader::split_choices(""), testing::IsEmpty());
+  EXPECT_TRUE(reader::is_later_table("regions"));
+  EXPECT_FALSE(reader::is_later_table("walls"));
 }
 
 TEST(CaseSchema, TheReferenceIsCurrent) {
   EXPECT_THAT(file_text(MENISCUS_SOURCE_DIR "/docs/case-file.md"),
-              testing::EndsWith(schema_markdown()));
+              testing::EndsWith(reader::schema_markdown()));
 }
 
 TEST(CaseSchema, TheFileForEditorsIsCurrent) {
   EXPECT_EQ(file_text(MENISCUS_SOURCE_DIR "/docs/case.schema.json"),
-            json_schema());
+            reader::json_schema());
 }
 
 /// Each row has its own name, and keys that the table knows.
@@ -161,38 +163,42 @@ void expect_rows_of(const std::string& table, const std::vector<Row>& rows,
   std::set<std::string> names;
   for (const Row& row : rows) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
-    EXPECT_EQ(&row_of(row.kind), &row) << row.name;
+    EXPECT_EQ(&case_data::row_of(row.kind), &row) << row.name;
     for (const std::string& key : keys(row)) {
-      EXPECT_NE(find_key(case_table(table), key), nullptr)
+      EXPECT_NE(reader::find_key(reader::case_table(table), key), nullptr)
           << table << ": " << row.name << " has " << key;
     }
   }
 }
 
 TEST(CaseKinds, HaveKeysThatTheirTableKnows) {
-  expect_rows_of<ResponseRow>(
-      "responses", response_kinds(),
-      [](const ResponseRow& row) -> std::vector<std::string> {
+  expect_rows_of<case_data::ResponseRow>(
+      "responses", case_data::response_kinds(),
+      [](const case_data::ResponseRow& row) -> std::vector<std::string> {
         std::vector<std::string> keys = row.keys.needed;
         keys.insert(keys.end(), row.keys.optional.begin(),
                     row.keys.optional.end());
         return keys;
       });
-  expect_rows_of<StudyRow>(
-      "study", study_kinds(),
-      [](const StudyRow& row) -> std::vector<std::string> { return row.keys; });
+  expect_rows_of<case_data::StudyRow>(
+      "study", case_data::study_kinds(),
+      [](const case_data::StudyRow& row) -> std::vector<std::string> {
+        return row.keys;
+      });
 }
 
 TEST(CaseKinds, NameTheirUsualMethod) {
-  for (const StudyRow& row : study_kinds()) {
+  for (const case_data::StudyRow& row : case_data::study_kinds()) {
     EXPECT_THAT(row.methods, testing::Contains(row.usual_method)) << row.name;
   }
   std::vector<std::string> names;
-  for (const StudyRow& row : study_kinds()) {
+  for (const case_data::StudyRow& row : case_data::study_kinds()) {
     names.emplace_back(row.name);
   }
-  EXPECT_THAT(names, testing::IsSupersetOf(split_choices(
-                         find_key(case_table("study"), "each")->choices)));
+  EXPECT_THAT(
+      names,
+      testing::IsSupersetOf(reader::split_choices(
+          reader::find_key(reader::case_table("study"), "each")->choices)));
 }
 
 TEST(CaseKinds, AreToldAsTheReferenceTellsThem) {
@@ -200,21 +206,22 @@ TEST(CaseKinds, AreToldAsTheReferenceTellsThem) {
     const char* name;
     std::string_view doc;
   };
-  const std::vector<Row> rows = {{"a", kWithNext},
+  const std::vector<Row> rows = {{"a", case_data::kWithNext},
                                  {"b", "both"},
-                                 {"c", kSaidElsewhere},
-                                 {"d", kWithNext},
+                                 {"c", case_data::kSaidElsewhere},
+                                 {"d", case_data::kWithNext},
                                  {"e", ""}};
-  EXPECT_EQ(meanings_of(rows), "a, b: both; d, e");
-  EXPECT_EQ(meanings_of(rows, {" (", ")", ", "}), "a, b (both), d, e");
-  EXPECT_EQ(choices_of(rows), "a|b|c|d|e");
-  EXPECT_STREQ(row_named(rows, "c").name, "c");
-  EXPECT_EQ(either_of({"a", "b", "c"}), "a, b or c");
+  EXPECT_EQ(case_data::meanings_of(rows), "a, b: both; d, e");
+  EXPECT_EQ(case_data::meanings_of(rows, {" (", ")", ", "}),
+            "a, b (both), d, e");
+  EXPECT_EQ(case_data::choices_of(rows), "a|b|c|d|e");
+  EXPECT_STREQ(case_data::row_named(rows, "c").name, "c");
+  EXPECT_EQ(reader::either_of({"a", "b", "c"}), "a, b or c");
 }
 
 TEST(ExportFormats, StandInTheDocs) {
   const std::string text = file_text(MENISCUS_SOURCE_DIR "/docs/files.md");
-  for (const ExportFormat& format : export_formats()) {
+  for (const results::ExportFormat& format : results::export_formats()) {
     EXPECT_TRUE(text.find(std::string("| `") + format.name + "` |") !=
                     std::string::npos ||
                 text.find(std::string("`--format ") + format.name + "`") !=

@@ -10,9 +10,9 @@ namespace {
 using Texts = std::vector<std::string>;
 
 TEST(TextTable, CsvComesBackAsItWas) {
-  const std::vector<TextRow> rows = {
+  const std::vector<files::TextRow> rows = {
       {"name", "what"}, {"a", "x, \"y\"\nz"}, {"", "last"}};
-  const CsvRows found = parse_csv(csv_text(rows));
+  const files::CsvRows found = files::parse_csv(files::csv_text(rows));
   ASSERT_EQ(found.rows.size(), rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     EXPECT_EQ(found.rows[k].cells, rows[k]);
@@ -22,22 +22,23 @@ TEST(TextTable, CsvComesBackAsItWas) {
 }
 
 TEST(TextTable, OddFilesAreRead) {
-  const CsvRows found = parse_csv("\xef\xbb\xbf a , \"b\"\r\n\r\n,\n1,2,");
+  const files::CsvRows found =
+      files::parse_csv("\xef\xbb\xbf a , \"b\"\r\n\r\n,\n1,2,");
   ASSERT_EQ(found.rows.size(), 3U);
   EXPECT_EQ(found.rows[0].cells, Texts({"a", "b"}));
   EXPECT_EQ(found.rows[1].cells, Texts({"", ""}));
   EXPECT_EQ(found.rows[2].cells, Texts({"1", "2", ""}));
-  EXPECT_TRUE(parse_csv("").rows.empty());
-  EXPECT_EQ(parse_csv("a\nb,\"c\n").open_quote, 2);
+  EXPECT_TRUE(files::parse_csv("").rows.empty());
+  EXPECT_EQ(files::parse_csv("a\nb,\"c\n").open_quote, 2);
 }
 
 TEST(TextTable, ColumnsAlignByCharacters) {
-  EXPECT_EQ(aligned_text({{"a", "bc"}, {"\xc3\xa4\xc3\xb6", "1"}}),
+  EXPECT_EQ(files::aligned_text({{"a", "bc"}, {"\xc3\xa4\xc3\xb6", "1"}}),
             " a  bc\n\xc3\xa4\xc3\xb6   1\n");
 }
 
 TEST(MemberFile, RowsBecomeOverrides) {
-  const MemberFile file = read_member_text(
+  const reader::MemberFile file = reader::read_member_text(
       "name,length,design.fill.lower,design.fill.upper,\"loads\"\n"
       "a,60,,,\nb-2,70 mm,0.9,1.4,\"[1, 2]\"\n",
       "m.csv");
@@ -52,19 +53,19 @@ TEST(MemberFile, RowsBecomeOverrides) {
 }
 
 TEST(MemberFile, OneBoundAloneIsToldByLine) {
-  const MemberFile file =
-      read_member_text("name,f.lower,f.upper\na,1,\nb,,2\n", "m.csv");
+  const reader::MemberFile file =
+      reader::read_member_text("name,f.lower,f.upper\na,1,\nb,,2\n", "m.csv");
   ASSERT_EQ(file.problems.size(), 2U);
   EXPECT_EQ(file.problems[0].substr(0, 8), "m.csv:2:");
   EXPECT_EQ(file.problems[1].substr(0, 8), "m.csv:3:");
 }
 
 TEST(MemberFile, NamesMakeFolders) {
-  EXPECT_TRUE(is_member_name("s60_far-2"));
+  EXPECT_TRUE(reader::is_member_name("s60_far-2"));
   for (const char* name : {"", "-a", "a/b", "..", "a b", "\xc3\xa4"}) {
-    EXPECT_FALSE(is_member_name(name)) << name;
+    EXPECT_FALSE(reader::is_member_name(name)) << name;
   }
-  EXPECT_FALSE(is_member_name(std::string(81, 'a')));
+  EXPECT_FALSE(reader::is_member_name(std::string(81, 'a')));
 }
 
 }  // namespace

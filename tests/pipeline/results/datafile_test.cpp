@@ -49,14 +49,15 @@ std::string octahedron() {
   return text;
 }
 
-DatafileResult evolved(const std::string& text,
-                       const DatafileOptions& options) {
+results::DatafileResult evolved(const std::string& text,
+                                const results::DatafileOptions& options) {
   const TempFolder folder;
   std::ofstream(folder / "film.fe") << text;
-  return evolve_datafile(folder / "film.fe", options);
+  return results::evolve_datafile(folder / "film.fe", options);
 }
 
-std::string refusal(const std::string& text, const DatafileOptions& options) {
+std::string refusal(const std::string& text,
+                    const results::DatafileOptions& options) {
   try {
     evolved(text, options);
   } catch (const InvalidInput& error) {
@@ -66,9 +67,9 @@ std::string refusal(const std::string& text, const DatafileOptions& options) {
 }
 
 TEST(Datafile, RunsCommandsThatStandOutsideOfMacros) {
-  const DatafileOptions options{.refinements = 0};
+  const results::DatafileOptions options{.refinements = 0};
   EXPECT_EQ(evolved(kSquare, options).report.facets, 4U);
-  const DatafileResult refined =
+  const results::DatafileResult refined =
       evolved(kSquare + "read\nr 2\nprintf \"%d\\n\", facet_count\n", options);
   EXPECT_EQ(refined.report.facets, 64U);
   EXPECT_EQ(refined.printed, "64\n");
@@ -89,10 +90,10 @@ TEST(Datafile, RefusesCommandsThatItDoesNotKnowByPlace) {
 }
 
 TEST(Datafile, PopsAnOctahedronToItsLowestFilm) {
-  const DatafileResult cone = evolved(octahedron(), {});
+  const results::DatafileResult cone = evolved(octahedron(), {});
   ASSERT_TRUE(cone.failure);
   EXPECT_EQ(cone.failure->kind, FailureKind::FilmUnstable);
-  const DatafileResult popped = evolved(octahedron(), {.pop = true});
+  const results::DatafileResult popped = evolved(octahedron(), {.pop = true});
   EXPECT_FALSE(popped.failure) << popped.report.verdict;
   EXPECT_EQ(popped.report.verdict, "stable");
   EXPECT_GT(popped.popped, 0);
@@ -125,10 +126,10 @@ TEST(Datafile, PopsAPinchedNeckIntoTwoDisks) {
              std::to_string(-(k + 13)) + "\n";
   }
   const std::string file = text + edges + faces;
-  const DatafileResult pinched = evolved(file, {});
+  const results::DatafileResult pinched = evolved(file, {});
   ASSERT_TRUE(pinched.failure);
   EXPECT_EQ(pinched.failure->kind, FailureKind::FilmPinched);
-  const DatafileResult popped = evolved(file, {.pop = true});
+  const results::DatafileResult popped = evolved(file, {.pop = true});
   EXPECT_FALSE(popped.failure) << popped.report.verdict;
   // Vertices have six decimals in the file.
   EXPECT_NEAR(popped.report.energy, 3.0 * std::sqrt(3.0), 1e-5);

@@ -37,7 +37,7 @@ std::string tetrahedron() {
 }
 
 TEST(ReadStl, SolidsAreNamedFaces) {
-  const SurfaceMesh mesh = read_stl_text(tetrahedron(), "t.stl");
+  const SurfaceMesh mesh = io::read_stl_text(tetrahedron(), "t.stl");
   EXPECT_EQ(mesh.points.size(), 4U);
   EXPECT_EQ(mesh.facets.size(), 4U);
   EXPECT_EQ(mesh.labels[2], "face 2");
@@ -48,15 +48,17 @@ TEST(ReadStl, SolidsAreNamedFaces) {
 
 TEST(ReadStl, WrongFilesAreToldByLine) {
   const std::string good = tetrahedron();
-  EXPECT_THROW(read_stl_text("", "t.stl"), InvalidInput);
-  EXPECT_THROW(read_stl_text(std::string("so\0lid", 6), "t.stl"), InvalidInput);
+  EXPECT_THROW(io::read_stl_text("", "t.stl"), InvalidInput);
+  EXPECT_THROW(io::read_stl_text(std::string("so\0lid", 6), "t.stl"),
+               InvalidInput);
   for (std::size_t cut = 1; cut < 90; cut += 7) {
-    EXPECT_THROW(read_stl_text(good.substr(0, good.size() - 16 - cut), "t.stl"),
-                 InvalidInput);
+    EXPECT_THROW(
+        io::read_stl_text(good.substr(0, good.size() - 16 - cut), "t.stl"),
+        InvalidInput);
   }
   try {
-    read_stl_text("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 x 0\n",
-                  "t.stl");
+    io::read_stl_text("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 x 0\n",
+                      "t.stl");
     FAIL();
   } catch (const InvalidInput& error) {
     EXPECT_NE(std::string(error.what()).find("t.stl:4: found 'x'"),
@@ -68,9 +70,9 @@ TEST(ReadStl, WrongFilesAreToldByLine) {
 TEST(ReadStl, BinaryFilesAreOneFace) {
   const SurfaceMesh ball = shapes::sphere(2.0, 2);
   const TempFolder folder;
-  write_stl(folder / "ball.STL", ball, {.name = "solid ball"});
-  ASSERT_TRUE(is_part_file(folder / "ball.STL"));
-  const SurfaceMesh mesh = read_part_file(folder / "ball.STL", {});
+  io::write_stl(folder / "ball.STL", ball, {.name = "solid ball"});
+  ASSERT_TRUE(forward::is_part_file(folder / "ball.STL"));
+  const SurfaceMesh mesh = forward::read_part_file(folder / "ball.STL", {});
   EXPECT_EQ(mesh.facets.size(), ball.facets.size());
   EXPECT_EQ(mesh.points.size(), ball.points.size());
   EXPECT_EQ(mesh.labels.size(), 1U);
@@ -79,18 +81,18 @@ TEST(ReadStl, BinaryFilesAreOneFace) {
   EXPECT_TRUE(check_surface(mesh).empty());
 
   std::string bytes = read_file(folder / "ball.STL");
-  EXPECT_THROW(read_stl_text(bytes.substr(0, bytes.size() - 1), "b.stl"),
+  EXPECT_THROW(io::read_stl_text(bytes.substr(0, bytes.size() - 1), "b.stl"),
                InvalidInput);
   const float broken = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(bytes.data() + 84 + 50 * 7 + 12, &broken, sizeof broken);
-  EXPECT_THROW(read_stl_text(bytes, "b.stl"), InvalidInput);
-  EXPECT_THROW(read_part_file(folder / "ball.igs", {}), InvalidInput);
+  EXPECT_THROW(io::read_stl_text(bytes, "b.stl"), InvalidInput);
+  EXPECT_THROW(forward::read_part_file(folder / "ball.igs", {}), InvalidInput);
 }
 
 TEST(ImportedPart, ShortEdgesKeepTheShape) {
-  const SurfaceMesh coarse = read_stl_text(tetrahedron(), "t.stl");
+  const SurfaceMesh coarse = io::read_stl_text(tetrahedron(), "t.stl");
   for (const double longest : {5.0, 2.5, 1.1, 0.4}) {
-    const SurfaceMesh fine = with_short_edges(coarse, longest);
+    const SurfaceMesh fine = results::with_short_edges(coarse, longest);
     EXPECT_NEAR(enclosed_volume(fine), 1.0, kRounding);
     for (int label = 0; label < 4; ++label) {
       EXPECT_NEAR(surface_area(fine, label), surface_area(coarse, label),

@@ -11,10 +11,11 @@ namespace {
 
 // JSON has no NaN and no infinity; readers stop at them.
 TEST(ResultJson, TellsUnknownNumbersAsNull) {
-  const Case input = *read_case_text(strut(), "case.toml").input;
+  const case_data::Case input =
+      *reader::read_case_text(strut(), "case.toml").input;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double huge = std::numeric_limits<double>::infinity();
-  RunResult result;
+  study::RunResult result;
   result.best.emplace();
   result.best->design = VectorX::Constant(1, 25.0);
   result.best->responses = VectorX::Constant(2, nan);
@@ -27,7 +28,7 @@ TEST(ResultJson, TellsUnknownNumbersAsNull) {
   result.element_errors->energy = nan;
   result.element_errors->responses = VectorX::Constant(2, nan);
   result.stress = {{.load_case = "service", .max_von_mises = nan}};
-  const std::string text = result_json(input, result, "0").dump(2);
+  const std::string text = results::result_json(input, result, "0").dump(2);
   for (const char* bad : {"nan", "NaN", "inf", "Inf"}) {
     EXPECT_EQ(text.find(std::string(" ") + bad), std::string::npos) << text;
   }

@@ -12,8 +12,8 @@ namespace meniscus::unfilled_test {
 
 namespace {
 
-EvaluationFields fields_of(SurfaceMesh surface) {
-  EvaluationFields fields;
+forward::EvaluationFields fields_of(SurfaceMesh surface) {
+  forward::EvaluationFields fields;
   fields.findings = check_surface(surface);
   fields.surface.base = std::move(surface);
   return fields;
@@ -24,7 +24,7 @@ TEST(Unfilled, SurfaceAndFindingsAreWritten) {
   SurfaceMesh open = shapes::box(Vec3::Ones(), 2);
   open.facets.pop_back();
   open.facet_label.pop_back();
-  const auto names = write_unfilled(fields_of(open), folder.path());
+  const auto names = results::write_unfilled(fields_of(open), folder.path());
   ASSERT_EQ(names.size(), 2U);
   for (const std::string& name : names) {
     EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
@@ -36,13 +36,13 @@ TEST(Unfilled, BrokenCornersLeaveTheFindings) {
   SurfaceMesh broken = shapes::box(Vec3::Ones(), 2);
   broken.points[3].x() = std::numeric_limits<double>::quiet_NaN();
   broken.facets[20][1] = -7;
-  const auto names = write_unfilled(fields_of(broken), folder.path());
+  const auto names = results::write_unfilled(fields_of(broken), folder.path());
   EXPECT_EQ(names, std::vector<std::string>{"findings.vtp"});
 }
 
 TEST(Unfilled, NothingWhenTheSurfaceWasFilled) {
   const TempFolder folder;
-  EXPECT_TRUE(write_unfilled({}, folder.path()).empty());
+  EXPECT_TRUE(results::write_unfilled({}, folder.path()).empty());
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

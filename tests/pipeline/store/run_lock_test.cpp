@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 std::string refusal(const std::string& folder) {
   try {
-    const RunLock lock(folder);
+    const store::RunLock lock(folder);
   } catch (const InvalidInput& error) {
     return error.what();
   }
@@ -32,7 +32,7 @@ pid_t locked_by_child(const std::string& folder) {
   EXPECT_EQ(pipe(ready), 0);
   const pid_t child = fork();
   if (child == 0) {
-    const RunLock lock(folder);
+    const store::RunLock lock(folder);
     [[maybe_unused]] const ssize_t written = write(ready[1], "!", 1);
     pause();
     _exit(0);
@@ -47,9 +47,9 @@ pid_t locked_by_child(const std::string& folder) {
 TEST(RunLock, RefusesASecondInTheSameProcess) {
   const TempFolder folder;
   {
-    RunLock lock(folder.path().string());
+    store::RunLock lock(folder.path().string());
     EXPECT_THAT(refusal(folder.path().string()), HasSubstr("this process"));
-    const RunLock moved(std::move(lock));
+    const store::RunLock moved(std::move(lock));
     EXPECT_NE(refusal(folder.path().string()), "");
   }
   EXPECT_EQ(refusal(folder.path().string()), "");
@@ -71,7 +71,7 @@ TEST(RunLock, AForkedChildDoesNotKeepIt) {
   const TempFolder folder;
   pid_t child = 0;
   {
-    const RunLock lock(folder.path().string());
+    const store::RunLock lock(folder.path().string());
     child = fork();
     if (child == 0) {
       pause();
@@ -89,11 +89,11 @@ TEST(RunLock, AForkedChildDoesNotKeepIt) {
 TEST(RunLock, MakesTheFolderAndRefusesAFile) {
   const TempFolder folder;
   const std::string inner = folder.path().string() + "/Träger 1/run";
-  { const RunLock lock(inner); }
+  { const store::RunLock lock(inner); }
   EXPECT_TRUE(std::filesystem::exists(inner + "/.lock"));
   std::ofstream(folder.path().string() + "/file") << "x";
-  EXPECT_THROW(RunLock(folder.path().string() + "/file"), IoError);
-  EXPECT_THROW(RunLock(folder.path().string() + "/file/below"), IoError);
+  EXPECT_THROW(store::RunLock(folder.path().string() + "/file"), IoError);
+  EXPECT_THROW(store::RunLock(folder.path().string() + "/file/below"), IoError);
 }
 
 }  // namespace

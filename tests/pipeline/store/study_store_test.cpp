@@ -27,10 +27,10 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-const StudyMeta kMeta = {.program_version = "0.1.0",
-                         .case_hash = "abc",
-                         .case_text = "title = \"Träger\"\n",
-                         .created = ""};
+const store::StudyMeta kMeta = {.program_version = "0.1.0",
+                                .case_hash = "abc",
+                                .case_text = "title = \"Träger\"\n",
+                                .created = ""};
 
 VectorX pair(double a, double b) {
   VectorX values(2);
@@ -38,8 +38,8 @@ VectorX pair(double a, double b) {
   return values;
 }
 
-EvaluationRecord record_of(int i) {
-  EvaluationRecord record;
+store::EvaluationRecord record_of(int i) {
+  store::EvaluationRecord record;
   record.phase = "step";
   record.input_names = {"support_x", "height"};
   record.inputs = pair(0.1 * i, 1.0 / (i + 3.0));
@@ -80,24 +80,26 @@ void run_sql(const std::string& path, const char* sql) {
 
 TEST(StudyStore, BringsBackTheSameBits) {
   const TempFolder folder;
-  EvaluationRecord record = record_of(1);
+  store::EvaluationRecord record = record_of(1);
   record.inputs = pair(5e-324, -1.0 / 3.0);
   record.responses[0] = std::numeric_limits<double>::max();
   record.gradient = pair(0.1, std::nextafter(0.2, 1.0)).transpose();
-  EvaluationRecord failed = record_of(2);
+  store::EvaluationRecord failed = record_of(2);
   failed.responses.resize(0);
   failed.mismatch.reset();
   failed.failure = Failure{FailureKind::FilmPinched, "neck at (1, 2, 3)"};
   {
-    StudyStore store = StudyStore::start(folder.path().string(), kMeta);
+    store::StudyStore store =
+        store::StudyStore::start(folder.path().string(), kMeta);
     EXPECT_EQ(store.append(record), 1);
     EXPECT_EQ(store.append(failed), 2);
   }
-  const StudyStore store = StudyStore::read(folder.path().string());
+  const store::StudyStore store =
+      store::StudyStore::read(folder.path().string());
   EXPECT_EQ(store.meta().case_text, kMeta.case_text);
   EXPECT_EQ(store.meta().schema_version, 2);
   EXPECT_EQ(store.meta().created.size(), 20U) << store.meta().created;
-  const std::vector<EvaluationRecord> all = store.all();
+  const std::vector<store::EvaluationRecord> all = store.all();
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].number, 1);
   EXPECT_EQ(all[0].input_names, record.input_names);
@@ -118,8 +120,9 @@ TEST(StudyStore, BringsBackTheSameBits) {
 
 TEST(StudyStore, FindsByExactBitsOnly) {
   const TempFolder folder;
-  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
-  EvaluationRecord record = record_of(1);
+  store::StudyStore store =
+      store::StudyStore::start(folder.path().string(), kMeta);
+  store::EvaluationRecord record = record_of(1);
   record.inputs = pair(0.0, 0.3);
   store.append(record);
   EXPECT_TRUE(store.find("base", record.inputs));
@@ -131,11 +134,12 @@ TEST(StudyStore, FindsByExactBitsOnly) {
 
 TEST(StudyStore, GivesRecordsByNumberInTheOrderAskedFor) {
   const TempFolder folder;
-  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
+  store::StudyStore store =
+      store::StudyStore::start(folder.path().string(), kMeta);
   for (int i = 1; i <= 3; ++i) {
     store.append(record_of(i));
   }
-  const std::vector<EvaluationRecord> some = store.some({3, 1});
+  const std::vector<store::EvaluationRecord> some = store.some({3, 1});
   ASSERT_EQ(some.size(), 2);
   EXPECT_EQ(some[0].number, 3);
   EXPECT_EQ(some[0].responses, record_of(3).responses);
@@ -148,69 +152,82 @@ TEST(StudyStore, GivesRecordsByNumberInTheOrderAskedFor) {
 
 TEST(StudyStore, ResumesWhatIsThereOrStarts) {
   const TempFolder folder;
-  { StudyStore::resume(folder.path().string(), kMeta).append(record_of(1)); }
-  StudyStore store = StudyStore::resume(folder.path().string(), kMeta);
+  {
+    store::StudyStore::resume(folder.path().string(), kMeta)
+        .append(record_of(1));
+  }
+  store::StudyStore store =
+      store::StudyStore::resume(folder.path().string(), kMeta);
   EXPECT_EQ(store.size(), 1);
   EXPECT_EQ(store.append(record_of(2)), 2);
 }
 
 TEST(StudyStore, RefusesToResumeAnotherCase) {
   const TempFolder folder;
-  { StudyStore::start(folder.path().string(), kMeta).append(record_of(1)); }
-  StudyMeta other = kMeta;
+  {
+    store::StudyStore::start(folder.path().string(), kMeta)
+        .append(record_of(1));
+  }
+  store::StudyMeta other = kMeta;
   other.case_hash = "xyz";
   EXPECT_THAT(
       message_of<InvalidInput>(
-          [&] { StudyStore::resume(folder.path().string(), other); }),
+          [&] { store::StudyStore::resume(folder.path().string(), other); }),
       AllOf(HasSubstr("another case"), HasSubstr("abc"), HasSubstr("xyz")));
-  EXPECT_EQ(StudyStore::read(folder.path().string()).size(), 1);
+  EXPECT_EQ(store::StudyStore::read(folder.path().string()).size(), 1);
 }
 
 TEST(StudyStore, StartKeepsOlderStudies) {
   const TempFolder folder;
   for (int i = 1; i <= 3; ++i) {
-    StudyStore store = StudyStore::start(folder.path().string(), kMeta);
+    store::StudyStore store =
+        store::StudyStore::start(folder.path().string(), kMeta);
     EXPECT_EQ(store.size(), 0);
     for (int k = 0; k < i; ++k) {
       store.append(record_of(k + 1));
     }
   }
-  EXPECT_EQ(StudyStore::read(folder.path().string()).size(), 3);
+  EXPECT_EQ(store::StudyStore::read(folder.path().string()).size(), 3);
   for (int i = 1; i <= 2; ++i) {
     const TempFolder copy;
     fs::copy(fmt::format("{}/study-{}.sqlite", folder.path().string(), i),
              file_of(copy));
-    EXPECT_EQ(StudyStore::read(copy.path().string()).size(), i);
+    EXPECT_EQ(store::StudyStore::read(copy.path().string()).size(), i);
   }
 }
 
 TEST(StudyStore, TwoRunsInOneFolderAreRefused) {
   const TempFolder folder;
-  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
-  EXPECT_THAT(message_of<InvalidInput>(
-                  [&] { StudyStore::start(folder.path().string(), kMeta); }),
+  store::StudyStore store =
+      store::StudyStore::start(folder.path().string(), kMeta);
+  EXPECT_THAT(message_of<InvalidInput>([&] {
+                store::StudyStore::start(folder.path().string(), kMeta);
+              }),
               HasSubstr("another run"));
-  EXPECT_THROW(StudyStore::resume(folder.path().string(), kMeta), InvalidInput);
+  EXPECT_THROW(store::StudyStore::resume(folder.path().string(), kMeta),
+               InvalidInput);
   EXPECT_EQ(store.append(record_of(1)), 1);
 }
 
 TEST(StudyStore, CanBeReadWhileARunWrites) {
   const TempFolder folder;
-  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
+  store::StudyStore store =
+      store::StudyStore::start(folder.path().string(), kMeta);
   store.append(record_of(1));
-  StudyStore reader = StudyStore::read(folder.path().string());
+  store::StudyStore reader = store::StudyStore::read(folder.path().string());
   EXPECT_EQ(reader.size(), 1);
   store.append(record_of(2));
   EXPECT_EQ(reader.size(), 2);
   EXPECT_THROW(reader.append(record_of(3)), InvalidInput);
-  EXPECT_THAT(message_of<IoError>(
-                  [&] { StudyStore::read(folder.path().string() + "/none"); }),
+  EXPECT_THAT(message_of<IoError>([&] {
+                store::StudyStore::read(folder.path().string() + "/none");
+              }),
               HasSubstr("no study"));
 }
 
 // Writes records until it is killed, telling each number once it is stored.
 [[noreturn]] void write_forever(const std::string& folder, int pipe_end) {
-  StudyStore store = StudyStore::resume(folder, kMeta);
+  store::StudyStore store = store::StudyStore::resume(folder, kMeta);
   for (int i = store.size() + 1;; ++i) {
     const int number = store.append(record_of(i));
     if (write(pipe_end, &number, sizeof number) != sizeof number) {
@@ -240,13 +257,15 @@ TEST(StudyStore, KillLosesNothingFinished) {
       told = number;
     }
     close(ends[0]);
-    const StudyStore store = StudyStore::resume(folder.path().string(), kMeta);
-    const std::vector<EvaluationRecord> all = store.all();
+    const store::StudyStore store =
+        store::StudyStore::resume(folder.path().string(), kMeta);
+    const std::vector<store::EvaluationRecord> all = store.all();
     // The one under way when the kill came may be there or not.
     EXPECT_GE(static_cast<int>(all.size()), told);
     EXPECT_LE(static_cast<int>(all.size()), told + 1);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const EvaluationRecord expected = record_of(static_cast<int>(i) + 1);
+      const store::EvaluationRecord expected =
+          record_of(static_cast<int>(i) + 1);
       EXPECT_EQ(all[i].inputs, expected.inputs);
       EXPECT_EQ(all[i].responses, expected.responses);
     }
@@ -259,28 +278,32 @@ TEST(StudyStore, ADamagedFileIsNamedAndLeftAlone) {
   const TempFolder folder;
   const std::string garbage(5000, '\x5a');
   std::ofstream(file_of(folder), std::ios::binary) << garbage;
-  EXPECT_THAT(message_of<IoError>(
-                  [&] { StudyStore::resume(folder.path().string(), kMeta); }),
+  EXPECT_THAT(message_of<IoError>([&] {
+                store::StudyStore::resume(folder.path().string(), kMeta);
+              }),
               AllOf(HasSubstr("study.sqlite is damaged"), HasSubstr("left")));
-  EXPECT_THROW(StudyStore::read(folder.path().string()), IoError);
+  EXPECT_THROW(store::StudyStore::read(folder.path().string()), IoError);
   EXPECT_EQ(contents(file_of(folder)), garbage);
-  EXPECT_EQ(
-      StudyStore::start(folder.path().string(), kMeta).append(record_of(1)), 1);
+  EXPECT_EQ(store::StudyStore::start(folder.path().string(), kMeta)
+                .append(record_of(1)),
+            1);
   EXPECT_EQ(contents(folder.path().string() + "/study-1.sqlite"), garbage);
 }
 
 TEST(StudyStore, ATruncatedFileIsNamedAndLeftAlone) {
   const TempFolder folder;
   {
-    StudyStore store = StudyStore::start(folder.path().string(), kMeta);
+    store::StudyStore store =
+        store::StudyStore::start(folder.path().string(), kMeta);
     for (int i = 1; i <= 100; ++i) {
       store.append(record_of(i));
     }
   }
   fs::resize_file(file_of(folder), fs::file_size(file_of(folder)) / 2);
   const std::string half = contents(file_of(folder));
-  EXPECT_THAT(message_of<IoError>(
-                  [&] { StudyStore::resume(folder.path().string(), kMeta); }),
+  EXPECT_THAT(message_of<IoError>([&] {
+                store::StudyStore::resume(folder.path().string(), kMeta);
+              }),
               HasSubstr("damaged"));
   EXPECT_EQ(contents(file_of(folder)), half);
 }
@@ -288,35 +311,38 @@ TEST(StudyStore, ATruncatedFileIsNamedAndLeftAlone) {
 TEST(StudyStore, AnEmptyFileIsAsGoodAsNone) {
   const TempFolder folder;
   std::ofstream(file_of(folder), std::ios::binary) << "";
-  EXPECT_THAT(
-      message_of<IoError>([&] { StudyStore::read(folder.path().string()); }),
-      HasSubstr("no study yet"));
-  EXPECT_EQ(
-      StudyStore::resume(folder.path().string(), kMeta).append(record_of(1)),
-      1);
+  EXPECT_THAT(message_of<IoError>(
+                  [&] { store::StudyStore::read(folder.path().string()); }),
+              HasSubstr("no study yet"));
+  EXPECT_EQ(store::StudyStore::resume(folder.path().string(), kMeta)
+                .append(record_of(1)),
+            1);
 }
 
 TEST(StudyStore, AnotherVersionOrProgramIsRefusedByName) {
   const TempFolder folder;
-  EXPECT_EQ(
-      StudyStore::start(folder.path().string(), kMeta).append(record_of(1)), 1);
+  EXPECT_EQ(store::StudyStore::start(folder.path().string(), kMeta)
+                .append(record_of(1)),
+            1);
   run_sql(file_of(folder), "PRAGMA user_version = 7");
-  EXPECT_THAT(message_of<InvalidInput>(
-                  [&] { StudyStore::resume(folder.path().string(), kMeta); }),
+  EXPECT_THAT(message_of<InvalidInput>([&] {
+                store::StudyStore::resume(folder.path().string(), kMeta);
+              }),
               AllOf(HasSubstr("schema version 7"), HasSubstr("version 2")));
-  EXPECT_THROW(StudyStore::read(folder.path().string()), InvalidInput);
+  EXPECT_THROW(store::StudyStore::read(folder.path().string()), InvalidInput);
 
   const TempFolder foreign;
   run_sql(file_of(foreign), "CREATE TABLE birds (name TEXT)");
-  EXPECT_THAT(message_of<InvalidInput>(
-                  [&] { StudyStore::resume(foreign.path().string(), kMeta); }),
+  EXPECT_THAT(message_of<InvalidInput>([&] {
+                store::StudyStore::resume(foreign.path().string(), kMeta);
+              }),
               HasSubstr("another program"));
 }
 
 TEST(StudyStore, ALockedDatabaseIsWaitedForAndThenNamed) {
   const TempFolder folder;
-  StudyStore store =
-      StudyStore::start(folder.path().string(), kMeta, {.busy_timeout = 0.05});
+  store::StudyStore store = store::StudyStore::start(
+      folder.path().string(), kMeta, {.busy_timeout = 0.05});
   sqlite3* other = nullptr;
   ASSERT_EQ(sqlite3_open(file_of(folder).c_str(), &other), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr),
@@ -337,8 +363,9 @@ TEST(StudyStore, AFullDiskIsNamedAndKeepsWhatIsFinished) {
     signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{200000, 200000};
     setrlimit(RLIMIT_FSIZE, &limit);
-    StudyStore store = StudyStore::start(folder.path().string(), kMeta);
-    EvaluationRecord record = record_of(1);
+    store::StudyStore store =
+        store::StudyStore::start(folder.path().string(), kMeta);
+    store::EvaluationRecord record = record_of(1);
     const std::string message = message_of<IoError>([&] {
       for (int i = 1; i < 10000; ++i) {
         record.phase = std::to_string(i);
@@ -353,14 +380,16 @@ TEST(StudyStore, AFullDiskIsNamedAndKeepsWhatIsFinished) {
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  const StudyStore store = StudyStore::resume(folder.path().string(), kMeta);
+  const store::StudyStore store =
+      store::StudyStore::resume(folder.path().string(), kMeta);
   EXPECT_GT(store.size(), 20);
 }
 
 TEST(StudyStore, RefusesARecordThatDoesNotFit) {
   const TempFolder folder;
-  StudyStore store = StudyStore::start(folder.path().string(), kMeta);
-  EvaluationRecord record = record_of(1);
+  store::StudyStore store =
+      store::StudyStore::start(folder.path().string(), kMeta);
+  store::EvaluationRecord record = record_of(1);
   record.inputs.conservativeResize(1);
   EXPECT_THROW(store.append(record), InvalidInput);
   record = record_of(1);
@@ -372,9 +401,9 @@ TEST(StudyStore, RefusesARecordThatDoesNotFit) {
 TEST(StudyStore, FailureKindsHaveNamesBothWays) {
   for (int i = 0; i <= static_cast<int>(FailureKind::NotANumber); ++i) {
     const auto kind = static_cast<FailureKind>(i);
-    EXPECT_EQ(failure_kind_of(name_of(kind)), kind);
+    EXPECT_EQ(store::failure_kind_of(name_of(kind)), kind);
   }
-  EXPECT_THROW(failure_kind_of("gone"), IoError);
+  EXPECT_THROW(store::failure_kind_of("gone"), IoError);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 namespace meniscus::study_table_test {
 namespace {
 
-std::vector<EvaluationRecord> two_records() {
-  EvaluationRecord first;
+std::vector<store::EvaluationRecord> two_records() {
+  store::EvaluationRecord first;
   first.number = 1;
   first.phase = "start";
   first.input_names = {"support_x"};
@@ -16,7 +16,7 @@ std::vector<EvaluationRecord> two_records() {
   first.responses << 1.0 / 3.0, 2.5;
   first.mismatch = 0.25;
   first.seconds = {{"film", 0.5}, {"fea", 1.0}};
-  EvaluationRecord second;
+  store::EvaluationRecord second;
   second.number = 2;
   second.phase = "step";
   second.input_names = {"support_x"};
@@ -27,7 +27,7 @@ std::vector<EvaluationRecord> two_records() {
 }
 
 TEST(StudyTable, CsvQuotesAndKeepsEveryDigit) {
-  EXPECT_EQ(history_csv(two_records()),
+  EXPECT_EQ(store::history_csv(two_records()),
             "evaluation,support_x,\"left, \"\"mean\"\"\",right,mismatch,status,"
             "seconds,phase,message\n"
             "1,0.1,0.3333333333333333,2.5,0.25,ok,1.5,start,\n"
@@ -35,12 +35,12 @@ TEST(StudyTable, CsvQuotesAndKeepsEveryDigit) {
 }
 
 TEST(StudyTable, CsvOfNothingHasItsHead) {
-  EXPECT_EQ(history_csv({}),
+  EXPECT_EQ(store::history_csv({}),
             "evaluation,mismatch,status,seconds,phase,message\n");
 }
 
 TEST(StudyTable, TextIsAligned) {
-  const std::string text = study_table_text(two_records());
+  const std::string text = store::study_table_text(two_records());
   std::vector<std::string> lines;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = text.find('\n', at);

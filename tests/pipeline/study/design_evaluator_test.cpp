@@ -33,23 +33,24 @@ class StoppingMonitor : public Monitor {
 
 class DesignEvaluatorTest : public testing::Test {
  protected:
-  StudyStore start(const std::string& name) const {
+  store::StudyStore start(const std::string& name) const {
     const auto folder = folder_.path() / name;
     std::filesystem::create_directory(folder);
-    return StudyStore::start(folder.string(), {.case_hash = input_.hash});
+    return store::StudyStore::start(folder.string(),
+                                    {.case_hash = input_.hash});
   }
 
-  Case input_ = *read_case_text(strut(), "case.toml").input;
+  case_data::Case input_ = *reader::read_case_text(strut(), "case.toml").input;
   TempFolder folder_;
 };
 
 TEST_F(DesignEvaluatorTest, WritesInOrderEachDesignOnce) {
   const std::vector<VectorX> designs = {foot(30), foot(22), foot(30), foot(24),
                                         foot(26)};
-  std::vector<std::vector<EvaluationRecord>> found;
+  std::vector<std::vector<store::EvaluationRecord>> found;
   for (const int jobs : {1, 3}) {
-    StudyStore store = start(std::to_string(jobs));
-    DesignEvaluator evaluator(input_, store, {.jobs = jobs});
+    store::StudyStore store = start(std::to_string(jobs));
+    study::DesignEvaluator evaluator(input_, store, {.jobs = jobs});
     ASSERT_FALSE(evaluator.model().failure());
     evaluator.evaluate(foot(24), "start");
     const auto records = evaluator.evaluate_all(designs, "sweep");
@@ -69,8 +70,8 @@ TEST_F(DesignEvaluatorTest, WritesInOrderEachDesignOnce) {
 }
 
 TEST_F(DesignEvaluatorTest, FetchedAheadIsNotCountedAndNotComputedAgain) {
-  StudyStore store = start("ahead");
-  DesignEvaluator evaluator(input_, store, {.jobs = 2});
+  store::StudyStore store = start("ahead");
+  study::DesignEvaluator evaluator(input_, store, {.jobs = 2});
   evaluator.prefetch({foot(22), foot(30)}, "difference");
   EXPECT_EQ(store.size(), 2);
   EXPECT_EQ(evaluator.counts().evaluations, 0);
@@ -84,11 +85,12 @@ TEST_F(DesignEvaluatorTest, FetchedAheadIsNotCountedAndNotComputedAgain) {
 TEST_F(DesignEvaluatorTest, AGradientIsOfItsOwnDesign) {
   std::vector<Eigen::RowVectorXd> gradients;
   for (const bool kept : {true, false}) {
-    StudyStore store = start(kept ? "kept" : "again");
-    DesignEvaluator evaluator(input_, store, {.with_gradients = kept});
+    store::StudyStore store = start(kept ? "kept" : "again");
+    study::DesignEvaluator evaluator(input_, store, {.with_gradients = kept});
     for (const double radius : {22.0, 30.0}) {
       evaluator.evaluate(foot(radius), "step");
-      const JacobianAnswer answer = evaluator.gradient(foot(radius), {0});
+      const optimize::JacobianAnswer answer =
+          evaluator.gradient(foot(radius), {0});
       ASSERT_FALSE(answer.failure);
       gradients.emplace_back(answer.jacobian.row(0));
     }
@@ -99,8 +101,8 @@ TEST_F(DesignEvaluatorTest, AGradientIsOfItsOwnDesign) {
 }
 
 TEST_F(DesignEvaluatorTest, ATimeLimitKeepsTheBeginning) {
-  StudyStore store = start("hurried");
-  DesignEvaluator evaluator(input_, store, {.jobs = 2});
+  store::StudyStore store = start("hurried");
+  study::DesignEvaluator evaluator(input_, store, {.jobs = 2});
   evaluator.limit_time(1e-6);
   EXPECT_THAT(evaluator.evaluate_all({foot(22), foot(30)}, "sweep"), SizeIs(0));
   evaluator.limit_time(0.0);
@@ -109,8 +111,9 @@ TEST_F(DesignEvaluatorTest, ATimeLimitKeepsTheBeginning) {
 
 TEST_F(DesignEvaluatorTest, AStopReachesTheCallerFromEveryJob) {
   StoppingMonitor monitor;
-  StudyStore store = start("stopped");
-  DesignEvaluator evaluator(input_, store, {.jobs = 2, .monitor = &monitor});
+  store::StudyStore store = start("stopped");
+  study::DesignEvaluator evaluator(input_, store,
+                                   {.jobs = 2, .monitor = &monitor});
   monitor.stop_after_records(1);
   EXPECT_THROW(
       evaluator.evaluate_all({foot(21), foot(22), foot(23), foot(24), foot(26),

@@ -18,9 +18,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// The strut's responses: sway, mass.
-EvaluationRecord record(int number, double sway, double mass,
-                        const char* phase = "step") {
-  EvaluationRecord record;
+store::EvaluationRecord record(int number, double sway, double mass,
+                               const char* phase = "step") {
+  store::EvaluationRecord record;
   record.number = number;
   record.phase = phase;
   record.input_names = {"foot"};
@@ -30,91 +30,96 @@ EvaluationRecord record(int number, double sway, double mass,
   return record;
 }
 
-Case minimized() {
-  Case input = *read_case_text(strut(), "case.toml").input;
-  input.study.kind = StudyKind::Minimize;
+case_data::Case minimized() {
+  case_data::Case input = *reader::read_case_text(strut(), "case.toml").input;
+  input.study.kind = case_data::StudyKind::Minimize;
   input.study.objective = 1;
   input.study.constraints = {{.response = 0, .upper = 1.0}};
   input.study.max_evaluations = 10;
   return input;
 }
 
-std::vector<int> numbers_of(const std::vector<KeptDesign>& kept) {
+std::vector<int> numbers_of(const std::vector<study::KeptDesign>& kept) {
   std::vector<int> numbers;
-  for (const KeptDesign& design : kept) {
+  for (const study::KeptDesign& design : kept) {
     numbers.push_back(design.record->number);
   }
   return numbers;
 }
 
 TEST(KeptDesigns, AreTheStartWhatIsBetterAndTheBest) {
-  const Case input = minimized();
-  std::vector<EvaluationRecord> records = {
+  const case_data::Case input = minimized();
+  std::vector<store::EvaluationRecord> records = {
       record(1, 2.0, 5.0, "start"), record(2, 1.9, 5.0, "difference"),
       record(3, 1.5, 6.0),          record(4, 1.7, 4.0),
       record(5, 0.9, 7.0),          record(6, 0.8, 6.5),
       record(7, 0.7, 9.0),          record(8, 0.9, 6.0)};
   records[5].failure = Failure{FailureKind::FilmNotFound, "none"};
-  EvaluationRecord other = record(9, 0.1, 0.1);
+  store::EvaluationRecord other = record(9, 0.1, 0.1);
   other.model = "coarse x2";
   records.push_back(other);
-  const auto kept = kept_designs(input, records, records[7].inputs);
+  const auto kept = study::kept_designs(input, records, records[7].inputs);
   EXPECT_THAT(numbers_of(kept), ElementsAre(1, 3, 5, 8));
   EXPECT_STREQ(kept.front().why, "start");
   EXPECT_STREQ(kept[1].why, "better");
   EXPECT_STREQ(kept.back().why, "best");
-  EXPECT_THAT(numbers_of(kept_designs(input, records, records[4].inputs, 2)),
-              ElementsAre(1, 5));
+  EXPECT_THAT(
+      numbers_of(study::kept_designs(input, records, records[4].inputs, 2)),
+      ElementsAre(1, 5));
 }
 
 TEST(KeptDesigns, OfASweepAreAllOrSomeEvenlyChosen) {
-  Case input = minimized();
-  input.study.kind = StudyKind::Sweep;
+  case_data::Case input = minimized();
+  input.study.kind = case_data::StudyKind::Sweep;
   input.study.objective.reset();
-  std::vector<EvaluationRecord> records;
+  std::vector<store::EvaluationRecord> records;
   for (int k = 1; k <= 41; ++k) {
     records.push_back(record(k, 1.0, 1.0, "sweep"));
   }
-  EXPECT_EQ(kept_designs(input, records, records[0].inputs, 50).size(), 41);
-  EXPECT_THAT(numbers_of(kept_designs(input, records, records[0].inputs, 5)),
-              ElementsAre(1, 11, 21, 31, 41));
+  EXPECT_EQ(study::kept_designs(input, records, records[0].inputs, 50).size(),
+            41);
+  EXPECT_THAT(
+      numbers_of(study::kept_designs(input, records, records[0].inputs, 5)),
+      ElementsAre(1, 11, 21, 31, 41));
   // The best takes the place of a neighbour.
-  EXPECT_THAT(numbers_of(kept_designs(input, records, records[12].inputs, 5)),
-              ElementsAre(1, 11, 13, 31, 41));
+  EXPECT_THAT(
+      numbers_of(study::kept_designs(input, records, records[12].inputs, 5)),
+      ElementsAre(1, 11, 13, 31, 41));
 }
 
 TEST(FilmFrames, HaveTheEvaluationsOwnBits) {
   const TempFolder folder;
-  const Case input = *read_case_text(strut(), "case.toml").input;
-  StudyStore store =
-      StudyStore::start(folder.path().string(), {.case_hash = input.hash});
-  EvaluationFields fields;
-  const RunResult result = run_study(
+  const case_data::Case input =
+      *reader::read_case_text(strut(), "case.toml").input;
+  store::StudyStore store = store::StudyStore::start(folder.path().string(),
+                                                     {.case_hash = input.hash});
+  forward::EvaluationFields fields;
+  const study::RunResult result = study::run_study(
       input, store, {.estimate_errors = false, .frames = 24}, &fields);
   ASSERT_FALSE(fields.history.empty());
-  const FilmFrame& last = fields.history.back();
+  const forward::FilmFrame& last = fields.history.back();
   EXPECT_EQ(last.design, result.best->design);
   ASSERT_EQ(last.surface.points.size(), fields.surface.base.points.size());
   for (std::size_t i = 0; i < last.surface.points.size(); ++i) {
     EXPECT_EQ(last.surface.points[i], fields.surface.base.points[i]);
   }
-  write_frames(input, fields.history, folder.path());
+  study::write_frames(input, fields.history, folder.path());
   EXPECT_THAT(read_file(folder.path() / "frames.pvd"),
-              HasSubstr("frames/" + frame_name(last.evaluation)));
-  remove_frames(folder.path());
+              HasSubstr("frames/" + study::frame_name(last.evaluation)));
+  study::remove_frames(folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "frames"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "frames.pvd"));
 }
 
 TEST(StudyTeller, KnowsTheBestSoFarAndWhatIsLeft) {
-  const Case input = minimized();
-  StudyTeller teller(input, kStudyModel);
+  const case_data::Case input = minimized();
+  study::StudyTeller teller(input, store::kStudyModel);
   teller.remember(record(1, 2.0, 5.0));  // found in the database
-  EvaluationRecord failed = record(2, 0.0, 0.0);
+  store::EvaluationRecord failed = record(2, 0.0, 0.0);
   failed.failure = Failure{FailureKind::FilmNotFound, "none"};
   EXPECT_EQ(teller.tell(failed).best->evaluation, 1);
-  const EvaluationRecord good = record(3, 0.5, 6.0);
-  const StudyNews news = teller.tell(good);
+  const store::EvaluationRecord good = record(3, 0.5, 6.0);
+  const study::StudyNews news = teller.tell(good);
   EXPECT_EQ(news.best->evaluation, 3);
   EXPECT_EQ(news.standing.objective, 6.0);
   EXPECT_EQ(news.standing.violation, 0.0);
@@ -122,13 +127,13 @@ TEST(StudyTeller, KnowsTheBestSoFarAndWhatIsLeft) {
   EXPECT_EQ(news.failed, 1);
   EXPECT_EQ(news.planned, 10);
   EXPECT_TRUE(news.left);
-  EXPECT_THAT(standing_text(news), HasSubstr("the best so far"));
-  const EvaluationRecord worse = record(4, 1.5, 3.0);
-  const std::string text = standing_text(teller.tell(worse));
+  EXPECT_THAT(study::standing_text(news), HasSubstr("the best so far"));
+  const store::EvaluationRecord worse = record(4, 1.5, 3.0);
+  const std::string text = study::standing_text(teller.tell(worse));
   EXPECT_THAT(text, HasSubstr("violation 0.5"));
   EXPECT_THAT(text, HasSubstr("best so far mass = 6 t (evaluation 3)"));
-  EXPECT_THAT(duration_text(61.0), Not(HasSubstr("min")));
-  EXPECT_EQ(duration_text(119.5), "2 min");
+  EXPECT_THAT(study::duration_text(61.0), Not(HasSubstr("min")));
+  EXPECT_EQ(study::duration_text(119.5), "2 min");
 }
 
 }  // namespace

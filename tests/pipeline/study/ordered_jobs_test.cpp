@@ -25,32 +25,32 @@ std::vector<int> first(int count) {
 }
 
 TEST(OrderedJobs, TakesInOrderWhateverEndsFirst) {
-  for (const int jobs : {1, 2, 5, kMostJobs}) {
+  for (const int jobs : {1, 2, 5, study::kMostJobs}) {
     const std::thread::id caller = std::this_thread::get_id();
     std::vector<int> squares(23, -1);
     std::vector<int> taken;
-    run_in_order({.count = 23,
-                  .jobs = jobs,
-                  .work =
-                      [&](int k) {
-                        std::this_thread::sleep_for(milliseconds(k % 3));
-                        squares[k] = k * k;
-                      },
-                  .take =
-                      [&](int k) {
-                        EXPECT_EQ(std::this_thread::get_id(), caller);
-                        EXPECT_EQ(squares[k], k * k);
-                        taken.push_back(k);
-                      }});
+    study::run_in_order({.count = 23,
+                         .jobs = jobs,
+                         .work =
+                             [&](int k) {
+                               std::this_thread::sleep_for(milliseconds(k % 3));
+                               squares[k] = k * k;
+                             },
+                         .take =
+                             [&](int k) {
+                               EXPECT_EQ(std::this_thread::get_id(), caller);
+                               EXPECT_EQ(squares[k], k * k);
+                               taken.push_back(k);
+                             }});
     EXPECT_EQ(taken, first(23)) << jobs;
   }
 }
 
 TEST(OrderedJobs, NothingToDoIsDone) {
-  run_in_order({.count = 0,
-                .jobs = 4,
-                .work = [](int) { FAIL(); },
-                .take = [](int) { FAIL(); }});
+  study::run_in_order({.count = 0,
+                       .jobs = 4,
+                       .work = [](int) { FAIL(); },
+                       .take = [](int) { FAIL(); }});
 }
 
 TEST(OrderedJobs, EachGetsItsShareOfTheThreads) {
@@ -59,17 +59,17 @@ TEST(OrderedJobs, EachGetsItsShareOfTheThreads) {
   std::vector<int> threads(2);
   // Both wait until the other runs too.
   std::atomic<int> running = 0;
-  run_in_order({.count = 2,
-                .jobs = 2,
-                .work =
-                    [&](int k) {
-                      ++running;
-                      while (running < 2) {
-                        std::this_thread::yield();
-                      }
-                      threads[k] = omp_get_max_threads();
-                    },
-                .take = [](int) {}});
+  study::run_in_order({.count = 2,
+                       .jobs = 2,
+                       .work =
+                           [&](int k) {
+                             ++running;
+                             while (running < 2) {
+                               std::this_thread::yield();
+                             }
+                             threads[k] = omp_get_max_threads();
+                           },
+                       .take = [](int) {}});
   EXPECT_THAT(threads, testing::Each(3));
   EXPECT_EQ(omp_get_max_threads(), 7);
   omp_set_num_threads(before);
@@ -92,11 +92,11 @@ TEST(OrderedJobs, WhatIsBeforeAThrowIsTakenAndTheRestToldToEnd) {
       std::this_thread::sleep_for(milliseconds(5 - k));
     };
     try {
-      run_in_order({.count = 9,
-                    .jobs = jobs,
-                    .work = work,
-                    .take = [&](int k) { taken.push_back(k); },
-                    .cancel = [&] { cancelled = true; }});
+      study::run_in_order({.count = 9,
+                           .jobs = jobs,
+                           .work = work,
+                           .take = [&](int k) { taken.push_back(k); },
+                           .cancel = [&] { cancelled = true; }});
       FAIL() << "nothing was thrown";
     } catch (const std::runtime_error& error) {
       EXPECT_STREQ(error.what(), "five");
@@ -108,28 +108,29 @@ TEST(OrderedJobs, WhatIsBeforeAThrowIsTakenAndTheRestToldToEnd) {
 TEST(OrderedJobs, WhatTakingThrowsEndsAll) {
   std::atomic<int> begun = 0;
   std::vector<int> taken;
-  EXPECT_THROW(run_in_order({.count = 1000,
-                             .jobs = 2,
-                             .work =
-                                 [&](int) {
-                                   ++begun;
-                                   std::this_thread::sleep_for(milliseconds(1));
-                                 },
-                             .take =
-                                 [&](int k) {
-                                   if (k == 3) {
-                                     throw IoError("disk full");
-                                   }
-                                   taken.push_back(k);
-                                 }}),
-               IoError);
+  EXPECT_THROW(
+      study::run_in_order({.count = 1000,
+                           .jobs = 2,
+                           .work =
+                               [&](int) {
+                                 ++begun;
+                                 std::this_thread::sleep_for(milliseconds(1));
+                               },
+                           .take =
+                               [&](int k) {
+                                 if (k == 3) {
+                                   throw IoError("disk full");
+                                 }
+                                 taken.push_back(k);
+                               }}),
+      IoError);
   EXPECT_EQ(taken, first(3));
   EXPECT_LT(begun, 1000);
 }
 
 TEST(OrderedJobs, RefusesANumberOfThreadsThatCannotBe) {
-  for (const int jobs : {-1, 0, kMostJobs + 1}) {
-    EXPECT_THROW(run_in_order({.count = 1, .jobs = jobs}), InvalidInput);
+  for (const int jobs : {-1, 0, study::kMostJobs + 1}) {
+    EXPECT_THROW(study::run_in_order({.count = 1, .jobs = jobs}), InvalidInput);
   }
 }
 

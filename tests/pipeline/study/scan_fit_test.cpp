@@ -69,13 +69,14 @@ films = ["skin", "lining"]
 }
 
 TEST(RingCase, IsATubeWithAGapWhoseGradientIsExact) {
-  const CaseReading reading = read_case_text(hollow_strut(), "case.toml");
+  const reader::CaseReading reading =
+      reader::read_case_text(hollow_strut(), "case.toml");
   ASSERT_THAT(reading.problems, IsEmpty());
-  const ForwardModel model(*reading.input);
+  const forward::ForwardModel model(*reading.input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
-  EvaluationFields fields;
-  const Evaluation found =
-      model.evaluate(initial_design(*reading.input), &fields);
+  forward::EvaluationFields fields;
+  const forward::Evaluation found =
+      model.evaluate(case_data::initial_design(*reading.input), &fields);
   ASSERT_FALSE(found.failure) << found.failure->message;
   double volume = 0.0;
   for (int e = 0; e < fields.mesh.element_count(); ++e) {
@@ -86,9 +87,9 @@ TEST(RingCase, IsATubeWithAGapWhoseGradientIsExact) {
   // At the rims the wall is 8 and 10 mm, between them a little more or less.
   EXPECT_GT(found.responses[1], 4.0);
   EXPECT_LT(found.responses[1], 8.0);
-  EXPECT_TRUE(
-      check_case_gradient(*reading.input, initial_design(*reading.input))
-          .report.passed);
+  EXPECT_TRUE(forward::check_case_gradient(
+                  *reading.input, case_data::initial_design(*reading.input))
+                  .report.passed);
 }
 
 TEST(RingCase, TellsWhatIsWrong) {
@@ -111,12 +112,12 @@ TEST(RingCase, TellsWhatIsWrong) {
 
 TEST(GapCase, OfFilmsThatCrossIsAFailureThatTellsThePlace) {
   // A skin of given pressure, and a hollow too large for it bulges through it.
-  const CaseReading reading = read_case_text(
+  const reader::CaseReading reading = reader::read_case_text(
       changed(changed(hollow_strut(), "volume = 3e4", "volume = 1.2e5"),
               "volume = 6e4", "pressure = 0.045"),
       "case.toml");
   ASSERT_THAT(reading.problems, IsEmpty());
-  const ForwardModel model(*reading.input);
+  const forward::ForwardModel model(*reading.input);
   ASSERT_TRUE(model.failure());
   EXPECT_THAT(model.failure()->message, HasSubstr("cross"));
   EXPECT_THAT(model.failure()->message, HasSubstr("lining"));
@@ -153,33 +154,37 @@ void write_scan(const std::filesystem::path& file, double foot, double top,
   text =
       changed(text, "radius = 20\n", "radius = " + std::to_string(top) + "\n");
   text = changed(text, "volume = 9e4", "volume = " + std::to_string(fill));
-  const Case input = *read_case_text(text, "case.toml").input;
-  const EvaluatedCase numbers = evaluate(input, initial_design(input));
-  const FilmModel film = FilmModel::freeze(numbers.film_system, {.edge = 4.0});
+  const case_data::Case input =
+      *reader::read_case_text(text, "case.toml").input;
+  const case_data::EvaluatedCase numbers =
+      case_data::evaluate(input, case_data::initial_design(input));
+  const frozen::FilmModel film =
+      frozen::FilmModel::freeze(numbers.film_system, {.edge = 4.0});
   SurfaceMesh surface = film.boundary(film.reference().points);
   std::mt19937 random(3);
   std::normal_distribution<double> spread(0.0, noise);
   for (Vec3& point : surface.points) {
     point += Vec3(spread(random), spread(random), spread(random));
   }
-  write_stl(file, surface);
+  io::write_stl(file, surface);
 }
 
-CaseReading read_scanned(const TempFolder& folder) {
-  return read_case_text(scanned("scan.stl"), (folder / "case.toml").string());
+reader::CaseReading read_scanned(const TempFolder& folder) {
+  return reader::read_case_text(scanned("scan.stl"),
+                                (folder / "case.toml").string());
 }
 
 TEST(ScanFit, RecoversTheNumbersOfANoisyScanWithinOnePercent) {
   const TempFolder folder;
   write_scan(folder / "scan.stl", 28.0, 18.0, 9.6e4, kNoise);
-  const CaseReading reading = read_scanned(folder);
+  const reader::CaseReading reading = read_scanned(folder);
   ASSERT_THAT(reading.problems, IsEmpty());
-  const Case& input = *reading.input;
-  StudyStore store =
-      StudyStore::start(folder.path().string(), {.case_hash = input.hash});
-  const RunResult result =
-      run_study(input, store, {.estimate_errors = false, .frames = 0});
-  EXPECT_EQ(result.status, RunStatus::Converged) << result.message;
+  const case_data::Case& input = *reading.input;
+  store::StudyStore store = store::StudyStore::start(folder.path().string(),
+                                                     {.case_hash = input.hash});
+  const study::RunResult result =
+      study::run_study(input, store, {.estimate_errors = false, .frames = 0});
+  EXPECT_EQ(result.status, study::RunStatus::Converged) << result.message;
   ASSERT_TRUE(result.best);
   EXPECT_NEAR(result.best->design[0], 28.0, 0.28);
   EXPECT_NEAR(result.best->design[1], 18.0, 0.18);
@@ -197,13 +202,13 @@ TEST(ScanFit, RecoversTheNumbersOfANoisyScanWithinOnePercent) {
 TEST(ScanFit, HasAnExactGradientAndJacobian) {
   const TempFolder folder;
   write_scan(folder / "scan.stl", 28.0, 18.0, 9.6e4, 0.0);
-  const CaseReading reading = read_scanned(folder);
+  const reader::CaseReading reading = read_scanned(folder);
   ASSERT_THAT(reading.problems, IsEmpty());
-  const Case& input = *reading.input;
-  const ForwardModel model(input);
-  const VectorX at = initial_design(input);
-  EXPECT_TRUE(check_case_gradient(input, at).report.passed);
-  ScanMatch match(input, model, 2);
+  const case_data::Case& input = *reading.input;
+  const forward::ForwardModel model(input);
+  const VectorX at = case_data::initial_design(input);
+  EXPECT_TRUE(forward::check_case_gradient(input, at).report.passed);
+  study::ScanMatch match(input, model, 2);
   const Eigen::MatrixXd jacobian = match.jacobian(at).jacobian;
   for (Eigen::Index j = 0; j < at.size(); ++j) {
     const double step = 1e-4 * at[j];
@@ -222,7 +227,7 @@ TEST(ScanFit, TellsWhatIsWrong) {
   const TempFolder folder;
   const std::string path = (folder / "case.toml").string();
   const auto problems = [&](const std::string& text) {
-    return read_case_text(text, path).problems;
+    return reader::read_case_text(text, path).problems;
   };
   EXPECT_THAT(problems(scanned("nowhere.stl")),
               Contains(HasSubstr("there is no file")));
@@ -248,28 +253,29 @@ TEST(ScanFit, TellsWhatIsWrong) {
 TEST(ScanFit, ChangesTheCasesHashWithTheScan) {
   const TempFolder folder;
   write_scan(folder / "scan.stl", 28.0, 18.0, 9.6e4, 0.0);
-  const Case first = *read_scanned(folder).input;
+  const case_data::Case first = *read_scanned(folder).input;
   write_scan(folder / "scan.stl", 28.0, 18.0, 9.6e4, 0.1);
-  const Case second = *read_scanned(folder).input;
+  const case_data::Case second = *read_scanned(folder).input;
   EXPECT_NE(first.hash, second.hash);
   ASSERT_EQ(first.files.size(), 1U);
   EXPECT_LT(first.files[0].text.size(), 100U);
-  EXPECT_THROW(read_scans(first), InvalidInput);
+  EXPECT_THROW(forward::read_scans(first), InvalidInput);
 }
 
 TEST(ScanCurves, AreTheRimsThatTheFilmHangsOnAndMakeACase) {
   const TempFolder folder;
   write_scan(folder / "scan.stl", 28.0, 18.0, 9.6e4, 0.2);
-  const ScanRimReport report = rims_of_scan(folder / "scan.stl", {});
+  const scan::ScanRimReport report =
+      results::rims_of_scan(folder / "scan.stl", {});
   ASSERT_EQ(report.rims.size(), 2U);
   EXPECT_NEAR(report.rims[0].radius, 28.0, 0.6);
   EXPECT_NEAR(report.rims[1].radius, 18.0, 0.6);
-  const std::string curves = curves_text(report, "scan.stl");
+  const std::string curves = results::curves_text(report, "scan.stl");
   EXPECT_THAT(problems_of(changed(
                   changed(strut(), "[curves.base]", curves + "[curves.base]"),
                   "[\"base\", \"head\"]", "[\"base\", \"head\"]")),
               IsEmpty());
-  EXPECT_THROW(rims_of_scan(folder / "scan.step", {}), InvalidInput);
+  EXPECT_THROW(results::rims_of_scan(folder / "scan.step", {}), InvalidInput);
 }
 
 }  // namespace

@@ -47,11 +47,11 @@ int level_at(const std::string& base64_text, std::size_t item) {
 }
 
 TEST(PackedArray, Base64IsThatOfTheStandard) {  // RFC 4648, section 10
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foo"), "Zm9v");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(page::base64(""), "");
+  EXPECT_EQ(page::base64("f"), "Zg==");
+  EXPECT_EQ(page::base64("fo"), "Zm8=");
+  EXPECT_EQ(page::base64("foo"), "Zm9v");
+  EXPECT_EQ(page::base64("foobar"), "Zm9vYmFy");
 }
 
 TEST(PackedArray, NumbersComeBackToHalfAStep) {
@@ -61,7 +61,7 @@ TEST(PackedArray, NumbersComeBackToHalfAStep) {
     values.push_back(1e6 + i);
   }
   values[7] = NAN;
-  const auto packed = pack_reals(values, 2);
+  const auto packed = page::pack_reals(values, 2);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const int level = level_at(packed["data"], i);
     if (i == 7) {
@@ -72,19 +72,19 @@ TEST(PackedArray, NumbersComeBackToHalfAStep) {
     const double offset = packed["offset"][i % 2];
     EXPECT_NEAR(offset + level * step, values[i], kHalfStep * 65534.0 * step);
   }
-  EXPECT_THROW(pack_reals({1.0, 2.0, 3.0}, 2), InvalidInput);
+  EXPECT_THROW(page::pack_reals({1.0, 2.0, 3.0}, 2), InvalidInput);
 }
 
 TEST(PackedArray, IdsTakeAsFewBytesAsTheyCan) {
-  EXPECT_EQ(pack_ids({0, 255})["type"], "u8");
-  EXPECT_EQ(pack_ids({0, 256})["type"], "u16");
-  EXPECT_EQ(pack_ids({0, 65536})["type"], "u32");
-  EXPECT_EQ(pack_ids({})["data"], "");
+  EXPECT_EQ(page::pack_ids({0, 255})["type"], "u8");
+  EXPECT_EQ(page::pack_ids({0, 256})["type"], "u16");
+  EXPECT_EQ(page::pack_ids({0, 65536})["type"], "u32");
+  EXPECT_EQ(page::pack_ids({})["data"], "");
 }
 
 TEST(PageFilm, ASphereIsCurvedByOneOverItsRadius) {
   const SurfaceMesh ball = shapes::sphere(2.5, 4);
-  for (const double h : mean_curvature(ball.points, ball.facets)) {
+  for (const double h : page::mean_curvature(ball.points, ball.facets)) {
     EXPECT_NEAR(h, 0.4, 0.4 * kCurvatureError);
   }
 }
@@ -93,7 +93,7 @@ TEST(PageFilm, RimsHaveNoCurvature) {
   SurfaceMesh ball = shapes::sphere(1.0, 2);
   const Triangle gone = ball.facets.back();
   ball.facets.pop_back();
-  const auto curvature = mean_curvature(ball.points, ball.facets);
+  const auto curvature = page::mean_curvature(ball.points, ball.facets);
   for (std::size_t i = 0; i < curvature.size(); ++i) {
     const bool rim =
         std::find(gone.begin(), gone.end(), static_cast<int>(i)) != gone.end();
@@ -104,7 +104,7 @@ TEST(PageFilm, RimsHaveNoCurvature) {
 /// A brick under uniform tension of 3 along x, in a folder.
 struct StoredBrick {
   StoredBrick() {
-    MeshFields fields;
+    io::MeshFields fields;
     fields.points = {{"displacement", "mm", 3, {}},
                      {"stress", "MPa", 6, {}},
                      {"von_mises", "MPa", 1, {}}};
@@ -117,25 +117,25 @@ struct StoredBrick {
     }
     const auto count = static_cast<std::size_t>(mesh.element_count());
     fields.cells = {{"energy_error", "", 1, std::vector<double>(count, 0.1)}};
-    write_vtu(folder / "part.vtu", mesh, fields);
-    MeshFields on_surface = fields;
+    io::write_vtu(folder / "part.vtu", mesh, fields);
+    io::MeshFields on_surface = fields;
     on_surface.cells.clear();
-    write_boundary_vtp(folder / "part_surface.vtp", mesh, on_surface);
+    io::write_boundary_vtp(folder / "part_surface.vtp", mesh, on_surface);
   }
-  PageMesh load(const std::vector<Material>& materials) const {
-    return load_page_part(folder / "part_surface.vtp", folder / "part.vtu",
-                          materials);
+  page::PageMesh load(const std::vector<element::Material>& materials) const {
+    return page::load_page_part(folder / "part_surface.vtp",
+                                folder / "part.vtu", materials);
   }
   TempFolder folder;
   TetMesh mesh =
       shapes::straight_quadratic(shapes::brick(Vec3(2, 4, 1), 2, 4, 2));
-  Material steel{
+  element::Material steel{
       .name = "steel", .youngs_modulus = 200.0, .poisson_ratio = 0.3};
 };
 
 TEST(PageMesh, HoldsSurfaceElementsAndFields) {
   const StoredBrick brick;
-  const PageMesh part = brick.load({brick.steel});
+  const page::PageMesh part = brick.load({brick.steel});
   EXPECT_EQ(static_cast<int>(part.tets.size()), brick.mesh.element_count());
   EXPECT_EQ(static_cast<int>(part.triangles.size()),
             4 * brick.mesh.face_count());
@@ -150,26 +150,26 @@ TEST(PageMesh, HoldsSurfaceElementsAndFields) {
 
 TEST(PageMesh, EachReductionIsSmallerAndKeepsTheBox) {
   const StoredBrick brick;
-  const PageMesh whole = brick.load({brick.steel});
-  const PageMesh flat_faces = without_midsides(whole);
-  const PageMesh hollow = without_inside(flat_faces);
-  const PageMesh coarse = clustered(hollow, 1.1);
+  const page::PageMesh whole = brick.load({brick.steel});
+  const page::PageMesh flat_faces = page::without_midsides(whole);
+  const page::PageMesh hollow = page::without_inside(flat_faces);
+  const page::PageMesh coarse = page::clustered(hollow, 1.1);
   EXPECT_EQ(4 * flat_faces.triangles.size(), whole.triangles.size());
-  EXPECT_LT(page_bytes(flat_faces), page_bytes(whole));
-  EXPECT_LT(page_bytes(hollow), page_bytes(flat_faces));
-  EXPECT_LT(page_bytes(coarse), page_bytes(hollow));
+  EXPECT_LT(page::page_bytes(flat_faces), page::page_bytes(whole));
+  EXPECT_LT(page::page_bytes(hollow), page::page_bytes(flat_faces));
+  EXPECT_LT(page::page_bytes(coarse), page::page_bytes(hollow));
   EXPECT_TRUE(hollow.tets.empty());
   EXPECT_GT(coarse.triangles.size(), 10u);
   EXPECT_EQ(coarse.displacement.size(), 3 * coarse.nodes.size());
   // The estimate is of the text's size, but for the ranges.
-  EXPECT_NEAR(page_bytes(whole),
-              static_cast<double>(to_json(whole).dump().size()), 2000.0);
+  EXPECT_NEAR(page::page_bytes(whole),
+              static_cast<double>(page::to_json(whole).dump().size()), 2000.0);
 }
 
 TEST(PageMesh, WithoutThePartTheSurfaceStands) {
   const StoredBrick brick;
-  const PageMesh part =
-      load_page_part(brick.folder / "part_surface.vtp", {}, {brick.steel});
+  const page::PageMesh part = page::load_page_part(
+      brick.folder / "part_surface.vtp", {}, {brick.steel});
   EXPECT_TRUE(part.tets.empty());
   EXPECT_FALSE(part.von_mises.empty());
   EXPECT_TRUE(part.energy_density.empty());
@@ -177,24 +177,25 @@ TEST(PageMesh, WithoutThePartTheSurfaceStands) {
 
 TEST(PageMesh, RefusesWhatIsOfAnotherPart) {
   const StoredBrick brick;
-  write_vtu(brick.folder / "part.vtu", shapes::brick(Vec3(1, 1, 1), 1, 1, 1));
+  io::write_vtu(brick.folder / "part.vtu",
+                shapes::brick(Vec3(1, 1, 1), 1, 1, 1));
   EXPECT_THAT([&] { brick.load({}); },
               ThrowsMessage<InvalidInput>(HasSubstr("another part")));
 }
 
 TEST(PageFrames, StayInTheirFolder) {
   const TempFolder folder;
-  EXPECT_TRUE(page_frames(folder.path()).empty());
+  EXPECT_TRUE(page::page_frames(folder.path()).empty());
   write_file(folder / "frames.pvd",
              "<VTKFile><Collection>\n<DataSet timestep=\"3\" part=\"0\" "
              "file=\"frames/film_0003.vtp\"/></Collection></VTKFile>\n");
-  const auto frames = page_frames(folder.path());
+  const auto frames = page::page_frames(folder.path());
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_EQ(frames[0].evaluation, 3);
   EXPECT_EQ(frames[0].file, "frames/film_0003.vtp");
   write_file(folder / "frames.pvd",
              "<DataSet timestep=\"3\" file=\"../../secret.vtp\"/>");
-  EXPECT_THAT([&] { page_frames(folder.path()); },
+  EXPECT_THAT([&] { page::page_frames(folder.path()); },
               ThrowsMessage<InvalidInput>(HasSubstr("secret")));
 }
 

@@ -36,24 +36,25 @@ class PictureTest : public ::testing::Test {
   void SetUp() override {
     const TetMesh mesh =
         shapes::straight_quadratic(shapes::brick(Vec3(20, 10, 60), 2, 1, 6));
-    MeshFields fields;
+    io::MeshFields fields;
     fields.points = {{"displacement", "mm", 3, {}},
                      {"von_mises", "MPa", 1, {}}};
-    Field& u = fields.points[0];
-    Field& s = fields.points[1];
+    io::Field& u = fields.points[0];
+    io::Field& s = fields.points[1];
     for (const Vec3& p : mesh.nodes) {
       u.values.insert(u.values.end(), {1e-4 * p.z() * p.z(), 0.0, 0.0});
       s.values.push_back(200.0 * (1.0 - p.z() / 60.0));
     }
-    write_vtu(folder_ / "part.vtu", mesh, fields);
-    write_boundary_vtp(folder_ / "part_surface.vtp", mesh, fields);
-    write_vtp(folder_ / "film.vtp", boundary_surface(mesh).mesh);
+    io::write_vtu(folder_ / "part.vtu", mesh, fields);
+    io::write_boundary_vtp(folder_ / "part_surface.vtp", mesh, fields);
+    io::write_vtp(folder_ / "film.vtp", io::boundary_surface(mesh).mesh);
   }
 
   void TearDown() override { ::unsetenv("MENISCUS_RENDER"); }
 
-  PictureJob job(PictureKind kind, const std::string& name) const {
-    PictureJob job;
+  picture::PictureJob job(picture::PictureKind kind,
+                          const std::string& name) const {
+    picture::PictureJob job;
     job.kind = kind;
     job.output = (folder_ / name).string();
     job.part.file = (folder_ / "part.vtu").string();
@@ -108,12 +109,13 @@ TEST_F(PictureTest, DrawsAllKinds) {
   // Neither a display nor a home folder is needed.
   const EnvironmentVariable display("DISPLAY", std::nullopt);
   const EnvironmentVariable home("HOME", std::nullopt);
-  std::vector<PictureJob> jobs = {job(PictureKind::Part, "part größe.png"),
-                                  job(PictureKind::Film, "film.png"),
-                                  job(PictureKind::Overview, "overview.png")};
+  std::vector<picture::PictureJob> jobs = {
+      job(picture::PictureKind::Part, "part größe.png"),
+      job(picture::PictureKind::Film, "film.png"),
+      job(picture::PictureKind::Overview, "overview.png")};
   jobs[1].facet_edges = true;
   jobs[2].width = 900;
-  EXPECT_THAT(render_pictures(jobs), IsEmpty());
+  EXPECT_THAT(picture::render_pictures(jobs), IsEmpty());
   expect_picture(jobs[0].output, 400, 300);
   expect_picture(jobs[1].output, 400, 300);
   // The bar is 60 high and 20 wide: as tall as an overview gets.
@@ -122,10 +124,10 @@ TEST_F(PictureTest, DrawsAllKinds) {
 
 TEST(EyeView, SeesHowTallThingsAre) {
   const Points box = shapes::box(Vec3(2, 1, 6), 1).points;
-  EXPECT_NEAR(seen_aspect(box, Vec3(0, -1, 0)), 3.0, 1e-12);
-  EXPECT_NEAR(seen_aspect(box, Vec3(1, 0, 0)), 6.0, 1e-12);
-  EXPECT_NEAR(seen_aspect(box, Vec3(0, 0, 1)), 0.5, 1e-12);
-  EXPECT_EQ(seen_aspect({}, Vec3(0, 0, 1)), 1.0);
+  EXPECT_NEAR(render::seen_aspect(box, Vec3(0, -1, 0)), 3.0, 1e-12);
+  EXPECT_NEAR(render::seen_aspect(box, Vec3(1, 0, 0)), 6.0, 1e-12);
+  EXPECT_NEAR(render::seen_aspect(box, Vec3(0, 0, 1)), 0.5, 1e-12);
+  EXPECT_EQ(render::seen_aspect({}, Vec3(0, 0, 1)), 1.0);
 }
 
 // The legend's field in the colour of films, unshaded.
@@ -133,13 +135,14 @@ TEST_F(PictureTest, APartOfPlaneFacesShowsNoFilm) {
   if (!find_program("Xvfb")) {
     MENISCUS_NOT_HERE("Xvfb is not installed");
   }
-  std::vector<PictureJob> jobs = {job(PictureKind::Overview, "film.png"),
-                                  job(PictureKind::Overview, "faces.png")};
+  std::vector<picture::PictureJob> jobs = {
+      job(picture::PictureKind::Overview, "film.png"),
+      job(picture::PictureKind::Overview, "faces.png")};
   jobs[1].solids = {"x0", "x1", "y0", "y1", "z0", "z1"};
-  for (PictureJob& job : jobs) {
+  for (picture::PictureJob& job : jobs) {
     job.width = 900;
   }
-  EXPECT_THAT(render_pictures(jobs), IsEmpty());
+  EXPECT_THAT(picture::render_pictures(jobs), IsEmpty());
   constexpr std::array<int, 3> kFilm = {92, 179, 237};
   EXPECT_EQ(colours_of(jobs[0].output, 900, 0).count(kFilm), 1u);
   expect_picture(jobs[1].output, 900, 0);
@@ -150,11 +153,12 @@ TEST_F(PictureTest, OneBadJobDoesNotStopTheNext) {
   if (!find_program("Xvfb")) {
     MENISCUS_NOT_HERE("Xvfb is not installed");
   }
-  std::vector<PictureJob> jobs = {job(PictureKind::Part, "a.png"),
-                                  job(PictureKind::Film, "b.png")};
+  std::vector<picture::PictureJob> jobs = {
+      job(picture::PictureKind::Part, "a.png"),
+      job(picture::PictureKind::Film, "b.png")};
   jobs[0].part_surface.file = (folder_ / "absent.vtp").string();
   EXPECT_THAT(
-      render_pictures(jobs),
+      picture::render_pictures(jobs),
       ElementsAre(testing::AllOf(HasSubstr("a.png"), HasSubstr("absent.vtp"))));
   EXPECT_FALSE(fs::exists(jobs[0].output));
   EXPECT_TRUE(fs::exists(jobs[1].output));
@@ -163,8 +167,9 @@ TEST_F(PictureTest, OneBadJobDoesNotStopTheNext) {
 TEST_F(PictureTest, WarnsWithoutAnyDisplay) {
   const EnvironmentVariable display("DISPLAY", std::nullopt);
   const EnvironmentVariable path("PATH", "/nonexistent");
-  EXPECT_THAT(render_pictures({job(PictureKind::Part, "a.png")}),
-              ElementsAre(HasSubstr("xvfb")));
+  EXPECT_THAT(
+      picture::render_pictures({job(picture::PictureKind::Part, "a.png")}),
+      ElementsAre(HasSubstr("xvfb")));
   EXPECT_FALSE(fs::exists(folder_ / "a.png"));
 }
 
@@ -172,22 +177,25 @@ TEST_F(PictureTest, WarnsWithoutAnyDisplay) {
 TEST_F(PictureTest, WarnsWhenTheDisplayIsUnusable) {
   const EnvironmentVariable display("DISPLAY", ":47111");
   const EnvironmentVariable path("PATH", "/nonexistent");
-  EXPECT_THAT(render_pictures({job(PictureKind::Part, "a.png")}),
-              ElementsAre(HasSubstr("pictures are missing")));
+  EXPECT_THAT(
+      picture::render_pictures({job(picture::PictureKind::Part, "a.png")}),
+      ElementsAre(HasSubstr("pictures are missing")));
   EXPECT_FALSE(fs::exists(folder_ / "a.png"));
 }
 
 TEST_F(PictureTest, WarnsWhenTheHelperIsMissingOrFailsOrHangs) {
-  const std::vector<PictureJob> jobs = {job(PictureKind::Part, "a.png")};
+  const std::vector<picture::PictureJob> jobs = {
+      job(picture::PictureKind::Part, "a.png")};
   ::setenv("MENISCUS_RENDER", "/nonexistent/render", 1);
-  EXPECT_THAT(render_pictures(jobs), ElementsAre(HasSubstr("MENISCUS_RENDER")));
+  EXPECT_THAT(picture::render_pictures(jobs),
+              ElementsAre(HasSubstr("MENISCUS_RENDER")));
   ::setenv("MENISCUS_RENDER", "/bin/false", 1);
-  EXPECT_EQ(render_pictures(jobs).size(), 1u);
+  EXPECT_EQ(picture::render_pictures(jobs).size(), 1u);
   const fs::path hanging = folder_ / "hanging";
   write_file(hanging, "#!/bin/sh\nsleep 60\n");
   fs::permissions(hanging, fs::perms::owner_all);
   ::setenv("MENISCUS_RENDER", hanging.c_str(), 1);
-  EXPECT_THAT(render_pictures(jobs, {.time_limit = 0.3}),
+  EXPECT_THAT(picture::render_pictures(jobs, {.time_limit = 0.3}),
               ElementsAre(HasSubstr("time limit")));
 }
 
@@ -200,9 +208,10 @@ TEST_F(PictureTest, StopsOnRequest) {
   fs::permissions(hanging, fs::perms::owner_all);
   ::setenv("MENISCUS_RENDER", hanging.c_str(), 1);
   if (find_program("Xvfb")) {
-    EXPECT_THROW(render_pictures({job(PictureKind::Part, "a.png")},
+    EXPECT_THROW(
+        picture::render_pictures({job(picture::PictureKind::Part, "a.png")},
                                  {.monitor = &stopper}),
-                 Interrupted);
+        Interrupted);
   }
 }
 
@@ -210,14 +219,17 @@ TEST_F(PictureTest, ShapesInMemoryLookLikeThoseInFiles) {
   if (!find_program("Xvfb")) {
     MENISCUS_NOT_HERE("Xvfb is not installed");
   }
-  const PictureJob from_file = job(PictureKind::Film, "file.png");
-  PictureJob from_memory = job(PictureKind::Film, "memory.png");
-  PictureSurface surface;
-  surface.mesh = boundary_surface(shapes::straight_quadratic(
-                                      shapes::brick(Vec3(20, 10, 60), 2, 1, 6)))
+  const picture::PictureJob from_file =
+      job(picture::PictureKind::Film, "file.png");
+  picture::PictureJob from_memory =
+      job(picture::PictureKind::Film, "memory.png");
+  picture::PictureSurface surface;
+  surface.mesh = io::boundary_surface(shapes::straight_quadratic(shapes::brick(
+                                          Vec3(20, 10, 60), 2, 1, 6)))
                      .mesh;
-  from_memory.film = {std::make_shared<const PictureSurface>(surface), ""};
-  EXPECT_THAT(render_pictures({from_file, from_memory}), IsEmpty());
+  from_memory.film = {std::make_shared<const picture::PictureSurface>(surface),
+                      ""};
+  EXPECT_THAT(picture::render_pictures({from_file, from_memory}), IsEmpty());
   EXPECT_EQ(read_file(from_file.output), read_file(from_memory.output));
 }
 
@@ -225,7 +237,8 @@ TEST_F(PictureTest, BesideTheCallersWork) {
   if (!find_program("Xvfb")) {
     MENISCUS_NOT_HERE("Xvfb is not installed");
   }
-  PicturesBeside pictures({job(PictureKind::Part, "a.png")}, {});
+  picture::PicturesBeside pictures({job(picture::PictureKind::Part, "a.png")},
+                                   {});
   EXPECT_THAT(pictures.wait(), IsEmpty());
   expect_picture((folder_ / "a.png").string(), 400, 300);
 }
@@ -236,25 +249,29 @@ TEST_F(PictureTest, GivenUpWithTheCallersWork) {
   fs::permissions(hanging, fs::perms::owner_all);
   ::setenv("MENISCUS_RENDER", hanging.c_str(), 1);
   const Timer timer;
-  { const PicturesBeside given_up({job(PictureKind::Part, "a.png")}, {}); }
+  {
+    const picture::PicturesBeside given_up(
+        {job(picture::PictureKind::Part, "a.png")}, {});
+  }
   EXPECT_LT(timer.seconds(), 30.0);  // of the 60 that it would take
   EXPECT_FALSE(fs::exists(folder_ / "a.png"));
 }
 
 TEST(PictureJobs, SurviveTheirBytes) {
-  PictureJob job;
-  job.kind = PictureKind::Film;
+  picture::PictureJob job;
+  job.kind = picture::PictureKind::Film;
   job.output = "größe \"x\" \xff.png";  // a path need not be UTF-8
   job.loads = {{"pad", Vec3(0.1, -2, 3), "5 N"}};
   job.view = Vec3(1, 2, 3);
   job.facet_edges = true;
   job.hidden = {"lid_*"};
   job.part_surface.file = "part.vtp";
-  PictureSurface surface;
+  picture::PictureSurface surface;
   surface.mesh = shapes::box(Vec3(1, 2, 3), 2);
   surface.von_mises.assign(surface.mesh.points.size(), 0.1);
-  job.film.data = std::make_shared<const PictureSurface>(surface);
-  const auto jobs = picture_jobs_from_bytes(to_bytes({job, job}));
+  job.film.data = std::make_shared<const picture::PictureSurface>(surface);
+  const auto jobs =
+      picture::picture_jobs_from_bytes(picture::to_bytes({job, job}));
   ASSERT_EQ(jobs.size(), 2u);
   EXPECT_EQ(jobs[0].kind, job.kind);
   EXPECT_EQ(jobs[0].output, job.output);
@@ -270,19 +287,22 @@ TEST(PictureJobs, SurviveTheirBytes) {
 }
 
 TEST(PictureJobs, RefuseWhatDoesNotFit) {
-  EXPECT_THROW(picture_jobs_from_bytes("{"), InvalidInput);
-  PictureJob job;
+  EXPECT_THROW(picture::picture_jobs_from_bytes("{"), InvalidInput);
+  picture::PictureJob job;
   job.width = 100;
-  EXPECT_THROW(picture_jobs_from_bytes(to_bytes({job})), InvalidInput);
+  EXPECT_THROW(picture::picture_jobs_from_bytes(picture::to_bytes({job})),
+               InvalidInput);
   job.width = 400;
-  PictureSurface surface;
+  picture::PictureSurface surface;
   surface.mesh = shapes::box(Vec3(1, 2, 3), 2);
   surface.mesh.facets[0][1] = 10000;
-  job.film.data = std::make_shared<const PictureSurface>(surface);
-  EXPECT_THROW(picture_jobs_from_bytes(to_bytes({job})), InvalidInput);
-  const std::string bytes = to_bytes({job});
-  EXPECT_THROW(picture_jobs_from_bytes(bytes.substr(0, bytes.size() / 2)),
+  job.film.data = std::make_shared<const picture::PictureSurface>(surface);
+  EXPECT_THROW(picture::picture_jobs_from_bytes(picture::to_bytes({job})),
                InvalidInput);
+  const std::string bytes = picture::to_bytes({job});
+  EXPECT_THROW(
+      picture::picture_jobs_from_bytes(bytes.substr(0, bytes.size() / 2)),
+      InvalidInput);
 }
 
 }  // namespace

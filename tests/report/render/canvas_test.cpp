@@ -15,8 +15,9 @@ TEST(EyeView, AllThatIsShownFillsTheBox) {
     const double t = 0.001 * i;
     points.emplace_back(100 * std::cos(7 * t), 30 * std::sin(11 * t), 40 * t);
   }
-  const Box box = {0.1, 0.2, 0.8, 0.9};
-  const EyeView view = fit_view(points, Vec3(0.3, -1, 0.6), box, 2000, 1000);
+  const render::Box box = {0.1, 0.2, 0.8, 0.9};
+  const render::EyeView view =
+      render::fit_view(points, Vec3(0.3, -1, 0.6), box, 2000, 1000);
   Eigen::Array2d low(1e300, 1e300), high(-1e300, -1e300);
   for (const Vec3& p : points) {
     const Eigen::Array2d at = view.project(p).array();
@@ -33,8 +34,8 @@ TEST(EyeView, AllThatIsShownFillsTheBox) {
 }
 
 TEST(EyeView, APixelIsWhatTwoPixelsAreApart) {
-  const EyeView view = fit_view({Vec3(-1, 0, -1), Vec3(1, 0, 1)},
-                                Vec3(0, -1, 0), {0, 0, 1, 1}, 500, 500);
+  const render::EyeView view = render::fit_view(
+      {Vec3(-1, 0, -1), Vec3(1, 0, 1)}, Vec3(0, -1, 0), {0, 0, 1, 1}, 500, 500);
   const Vec3 at(0.1, 0, 0.2);
   const double pixel = view.pixel_at(at);
   const Eigen::Vector2d step =
@@ -44,7 +45,7 @@ TEST(EyeView, APixelIsWhatTwoPixelsAreApart) {
 }
 
 TEST(Canvas, BoxesCoverWhatTheyCover) {
-  Canvas canvas(10, 6);
+  render::Canvas canvas(10, 6);
   EXPECT_EQ(canvas.taken({0, 0, 10, 6}), 0);
   canvas.fill(2.0, 1.0, 4.5, 3.0, {0.0, 0.0, 0.0});
   EXPECT_EQ(canvas.taken({0, 0, 10, 6}), 6);
@@ -56,20 +57,21 @@ TEST(Canvas, BoxesCoverWhatTheyCover) {
 }
 
 TEST(Canvas, LettersStandAtTheirPlace) {
-  const TextImage centred = text_image(
-      "40 kN",
-      {.size = 20, .justify = Justify::Centre, .stand = Stand::Centred});
+  const render::TextImage centred =
+      render::text_image("40 kN", {.size = 20,
+                                   .justify = render::Justify::Centre,
+                                   .stand = render::Stand::Centred});
   ASSERT_FALSE(centred.cover.empty());
   EXPECT_NEAR(centred.box.left + centred.box.right, 0, 3);
   EXPECT_NEAR(centred.box.bottom + centred.box.top, 0, 3);
-  const TextImage left = text_image("40 kN", {.size = 20});
+  const render::TextImage left = render::text_image("40 kN", {.size = 20});
   EXPECT_GE(left.box.left, -1);
   EXPECT_GE(left.box.bottom, -6);
-  Canvas canvas(100, 40);
+  render::Canvas canvas(100, 40);
   canvas.write(centred, 50, 20, {0.8, 0.1, 0.1});
   EXPECT_GT(canvas.taken({20, 5, 80, 35}), 100);
   EXPECT_EQ(canvas.taken({0, 0, 10, 40}), 0);
-  EXPECT_TRUE(text_image("", {}).cover.empty());
+  EXPECT_TRUE(render::text_image("", {}).cover.empty());
 }
 
 }  // namespace

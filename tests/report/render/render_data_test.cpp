@@ -16,35 +16,36 @@ constexpr double kDataRounding = 1e-12;
 
 TEST(RenderData, RimsAreTheEdgesBetweenSurfaces) {
   const SurfaceMesh box = shapes::box(Vec3(1, 2, 3), 4);
-  EXPECT_EQ(rim_edges(box).size(), 12u * 4u);
-  EXPECT_TRUE(rim_edges(shapes::sphere(1.0, 1)).empty());
+  EXPECT_EQ(render::rim_edges(box).size(), 12u * 4u);
+  EXPECT_TRUE(render::rim_edges(shapes::sphere(1.0, 1)).empty());
   SurfaceMesh open = shapes::sphere(1.0, 1);
   open.facets.pop_back();
   open.facet_label.pop_back();
-  EXPECT_EQ(rim_edges(open).size(), 3u);
+  EXPECT_EQ(render::rim_edges(open).size(), 3u);
 }
 
 TEST(RenderData, HiddenSurfacesAreGoneWithTheirPoints) {
   const SurfaceMesh box = shapes::box(Vec3(1, 2, 3), 2);
-  EXPECT_EQ(without(box, {}).points, box.points);
-  const SurfaceMesh open = without(box, {"z1"});
+  EXPECT_EQ(render::without(box, {}).points, box.points);
+  const SurfaceMesh open = render::without(box, {"z1"});
   EXPECT_EQ(open.facets.size(), box.facets.size() * 5 / 6);
   EXPECT_EQ(open.points.size(), box.points.size() - 1);  // the lid's middle
   EXPECT_NEAR(surface_area(open), surface_area(box) - 2.0, kDataRounding);
-  const SurfaceMesh tube = without(box, {"z*"});
+  const SurfaceMesh tube = render::without(box, {"z*"});
   EXPECT_NEAR(surface_area(tube), surface_area(box) - 4.0, kDataRounding);
-  EXPECT_EQ(rim_edges(tube).size(), 12u * 2u);
-  EXPECT_TRUE(without(box, {"*"}).points.empty());
+  EXPECT_EQ(render::rim_edges(tube).size(), 12u * 2u);
+  EXPECT_TRUE(render::without(box, {"*"}).points.empty());
 }
 
 TEST(RenderData, CuttingOpenLeavesAClosedHalf) {
   const TempFolder folder;
   const TetMesh mesh =
       shapes::straight_quadratic(shapes::brick(Vec3(2, 4, 1), 2, 4, 2));
-  write_vtu(folder / "part.vtu", mesh);
-  const PictureTets tets = load_tets((folder / "part.vtu").string());
+  io::write_vtu(folder / "part.vtu", mesh);
+  const picture::PictureTets tets =
+      render::load_tets((folder / "part.vtu").string());
   EXPECT_EQ(static_cast<int>(tets.corners.size()), mesh.element_count());
-  const SurfaceMesh half = cut_open(tets, Vec3(0, -1, 0));
+  const SurfaceMesh half = render::cut_open(tets, Vec3(0, -1, 0));
   EXPECT_NEAR(enclosed_volume(half), 4.0, kDataRounding);
   EXPECT_NEAR(surface_area(half, 1), 2.0, kDataRounding);
 }
@@ -52,16 +53,17 @@ TEST(RenderData, CuttingOpenLeavesAClosedHalf) {
 TEST(RenderData, ReadsWhatWasWritten) {
   const TempFolder folder;
   const SurfaceMesh box = shapes::box(Vec3(1, 2, 3), 2);
-  MeshFields fields;
+  io::MeshFields fields;
   fields.points = {{"displacement", "mm", 3, {}}, {"von_mises", "MPa", 1, {}}};
-  Field& u = fields.points[0];
-  Field& s = fields.points[1];
+  io::Field& u = fields.points[0];
+  io::Field& s = fields.points[1];
   for (const Vec3& p : box.points) {
     u.values.insert(u.values.end(), {p.x(), 0.0, -1.0});
     s.values.push_back(p.z());
   }
-  write_vtp(folder / "s.vtp", box, fields);
-  const PictureSurface surface = load_surface((folder / "s.vtp").string());
+  io::write_vtp(folder / "s.vtp", box, fields);
+  const picture::PictureSurface surface =
+      render::load_surface((folder / "s.vtp").string());
   EXPECT_EQ(surface.mesh.facets, box.facets);
   EXPECT_EQ(surface.mesh.labels, box.labels);
   EXPECT_EQ(surface.length_unit, "mm");
@@ -72,11 +74,13 @@ TEST(RenderData, ReadsWhatWasWritten) {
 
 TEST(RenderData, RefusesForeignFiles) {
   const TempFolder folder;
-  EXPECT_THROW(load_surface((folder / "none.vtp").string()), InvalidInput);
+  EXPECT_THROW(render::load_surface((folder / "none.vtp").string()),
+               InvalidInput);
   write_file(folder / "text.vtp", "no xml at all");
-  EXPECT_THROW(load_surface((folder / "text.vtp").string()), InvalidInput);
+  EXPECT_THROW(render::load_surface((folder / "text.vtp").string()),
+               InvalidInput);
   write_file(folder / "text.vtu", "");
-  EXPECT_THROW(load_tets((folder / "text.vtu").string()), InvalidInput);
+  EXPECT_THROW(render::load_tets((folder / "text.vtu").string()), InvalidInput);
 }
 
 }  // namespace
