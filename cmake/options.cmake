@@ -60,26 +60,32 @@ function(meniscus_add_column name)
   set_property(GLOBAL APPEND PROPERTY MENISCUS_LIBRARIES meniscus_${name})
 endfunction()
 
-# meniscus_link_whole(TARGET): a test's program or library. Tests link one shared
+# meniscus_link_whole(TARGET [LEVEL]): a test's program or library; LEVEL of
+# optimisation is O0 or O2. Tests link one shared
 # library of all rooms and are compiled for a quick build, not for quick tests:
 # what they measure is in the library. It binds its own symbols, so no inline
 # function of a test stands in for one of ours (decision 0017).
 function(meniscus_link_whole target)
+  set(level ${ARGN})
+  if(NOT level)
+    set(level O0)
+  endif()
   target_link_libraries(${target} PUBLIC meniscus_whole)
-  target_compile_options(${target} PRIVATE ${MENISCUS_TEST_OPTIONS})
+  target_compile_options(${target} PRIVATE -${level})
   target_compile_definitions(${target}
     PRIVATE MENISCUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_precompile_headers(${target} REUSE_FROM meniscus_test_headers)
+  target_precompile_headers(${target} REUSE_FROM meniscus_test_headers_${level})
 endfunction()
 
 # meniscus_add_test(NAME SOURCES ... [LINK targets ...] [LABELS ...] [TIMEOUT s]
-#                   [ALONE])
+#                   [LEVEL O2] [ALONE])
 # One GoogleTest program, each of its cases a CTest test; ALONE: with no other
 # test beside it, for tests of speed.
 function(meniscus_add_test name)
-  cmake_parse_arguments(ARG "ALONE" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE" "TIMEOUT;LEVEL" "SOURCES;LINK;LABELS"
+    ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  meniscus_link_whole(${name})
+  meniscus_link_whole(${name} ${ARG_LEVEL})
   target_link_libraries(${name}
     PRIVATE meniscus_test_support ${ARG_LINK} GTest::gmock GTest::gtest_main)
   if(NOT ARG_TIMEOUT)
