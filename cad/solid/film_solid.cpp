@@ -182,6 +182,7 @@ bool SolidBuilder::add_simple(const std::string& name,
   report_.simple.push_back({name, name_of(*shape), shape->off});
   if (const auto* plane = std::get_if<PlaneSurface>(&shape->surface)) {
     std::vector<Triangle> corners;
+    corners.reserve(facets.size());
     for (const int f : facets) {
       corners.push_back(mesh_.facets[f]);
     }

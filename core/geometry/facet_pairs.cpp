@@ -269,12 +269,11 @@ PairVerdict judge_pair(const SurfaceMesh& mesh, int f, int g,
   return crossing_if(gap2 <= rounding * rounding);
 }
 
-bool for_each_near_pair(const SurfaceMesh& mesh, std::vector<int> facets,
+bool for_each_near_pair(const SurfaceMesh& mesh, const std::vector<int>& facets,
                         double tolerance,
                         const std::function<bool(int, int)>& visit,
                         std::int64_t most_steps) {
-  return FacetTree(mesh, facets, tolerance)
-      .visit_pairs(visit, most_steps);
+  return FacetTree(mesh, facets, tolerance).visit_pairs(visit, most_steps);
 }
 
 }  // namespace meniscus

@@ -30,7 +30,7 @@ PairVerdict judge_pair(const SurfaceMesh& mesh, int f, int g, double tolerance);
 /// A bounding-box tree: O(n log n + pairs). Gives up, with false, after
 /// comparing `most_steps` pairs of boxes.
 bool for_each_near_pair(
-    const SurfaceMesh& mesh, std::vector<int> facets, double tolerance,
+    const SurfaceMesh& mesh, const std::vector<int>& facets, double tolerance,
     const std::function<bool(int, int)>& visit,
     std::int64_t most_steps = std::numeric_limits<std::int64_t>::max());
 

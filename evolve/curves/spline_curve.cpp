@@ -16,7 +16,7 @@ std::vector<Vector<Scalar>> solve_circle(std::vector<Scalar> diagonal,
                                          const std::vector<Scalar>& below,
                                          std::vector<Vector<Scalar>> right) {
   const std::size_t n = diagonal.size();
-  const Scalar corner = below[0];
+  const Scalar& corner = below[0];
   const Scalar gamma = -diagonal[0];
   diagonal[0] = diagonal[0] - gamma;
   diagonal[n - 1] = diagonal[n - 1] - corner * corner / gamma;

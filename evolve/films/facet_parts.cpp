@@ -24,7 +24,7 @@ class Welder {
 
   int id_of(const Vec3& p) {
     for (int k = 0; k < 8; ++k) {
-      const Vec3 off((k & 1) - 0.5, (k / 2 % 2) - 0.5, (k / 4) - 0.5);
+      const Vec3 off((k & 1) - 0.5, ((k >> 1) & 1) - 0.5, ((k >> 2) & 1) - 0.5);
       const auto found = cells_.find(cell_of(p + 2.0 * near_ * off));
       if (found != cells_.end() &&
           (points_[found->second] - p).norm() <= near_) {

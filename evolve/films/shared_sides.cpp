@@ -92,6 +92,7 @@ std::vector<int> SharedRims::rim(int curve, const std::vector<double>& t,
   const curves::CurveShape shape = complex.curves[curve].shape;
   const auto n = static_cast<int>(corners_of(complex.curves[curve]).size());
   std::vector<int> corners;
+  corners.reserve(n);
   for (int k = 0; k < n; ++k) {
     corners.push_back(corner(curve, k, complex));
   }

@@ -26,7 +26,7 @@ WallModel WallModel::freeze(const frozen::FilmModel& film,
   return {wall_films(film, system, points, walls), walls, places};
 }
 
-WallModel::WallModel(WallFilms films, std::vector<WallSpec> walls,
+WallModel::WallModel(const WallFilms& films, std::vector<WallSpec> walls,
                      SafePlaces places)
     : specs_(std::move(walls)),
       reference_film_(films.mesh.points),

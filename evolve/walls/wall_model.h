@@ -42,7 +42,7 @@ class WallModel {
                           const std::vector<WallSpec>& walls,
                           SafePlaces places = SafePlaces::Worst);
 
-  WallModel(WallFilms films, std::vector<WallSpec> walls,
+  WallModel(const WallFilms& films, std::vector<WallSpec> walls,
             SafePlaces places = SafePlaces::Worst);
 
   /// The walls at the reference film, one per region: the closed surface at the

@@ -93,6 +93,7 @@ class Finder {
         sorted.begin(), sorted.end(),
         [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<Incidence> result;
+    result.reserve(sorted.size());
     for (const auto& [angle, at] : sorted) {
       result.push_back(at);
     }

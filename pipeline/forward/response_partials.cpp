@@ -273,7 +273,6 @@ ResponsePartials compute_partials(const ResponseTask& task) {
     case Kind::Rotation:
       return rotation(task);
     case Kind::Compliance:
-      return energy(task);
     case Kind::StrainEnergy:
       return energy(task);
     case Kind::Mass:
