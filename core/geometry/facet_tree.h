@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/surface_mesh.h"
 #include "core/geometry/box_tree.h"
+#include "core/geometry/surface_mesh.h"
 
 namespace meniscus {
 

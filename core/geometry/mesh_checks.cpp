@@ -211,7 +211,7 @@ class Checker {
     }
     int last = -1;
     const bool finished = for_each_near_pair(
-        mesh_, std::move(facets), tolerance_,
+        mesh_, facets, tolerance_,
         [&](int f, int g) {
           last = f;
           const PairVerdict verdict = judge_pair(mesh_, f, g, tolerance_);

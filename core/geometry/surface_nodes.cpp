@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/edge_key.h"
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 
 namespace meniscus {
 

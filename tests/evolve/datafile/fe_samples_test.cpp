@@ -56,8 +56,8 @@ TEST_P(FeSamples, LoadWithEvolversCountsAreaAndEnergy) {
   const Points& points = complex.mesh.points;
   EXPECT_NEAR(sums::area(complex), expected.area,
               kTwelveDigits * expected.area);
-  EXPECT_NEAR(energy.value(points, energy::targets_of(complex)), expected.energy,
-              kTwelveDigits * expected.energy);
+  EXPECT_NEAR(energy.value(points, energy::targets_of(complex)),
+              expected.energy, kTwelveDigits * expected.energy);
 }
 
 INSTANTIATE_TEST_SUITE_P(
