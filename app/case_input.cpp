@@ -11,8 +11,8 @@
 
 namespace meniscus::app {
 
-reader::CaseReading read_case_aloud(const std::string& path,
-                                    const CommonArguments& common) {
+reader::CaseReading read_and_report_case(const std::string& path,
+                                         const CommonArguments& common) {
   reader::CaseReading reading = reader::read_case_file(path, common.overrides);
   for (const std::string& problem : reading.problems) {
     std::fprintf(stderr, "%s\n", problem.c_str());

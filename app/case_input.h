@@ -12,8 +12,8 @@
 namespace meniscus::app {
 
 /// Reads a case and prints its problems and warnings on stderr.
-reader::CaseReading read_case_aloud(const std::string& path,
-                                    const CommonArguments& common);
+reader::CaseReading read_and_report_case(const std::string& path,
+                                         const CommonArguments& common);
 
 /// `out`, or results/<case name> below the working folder.
 std::filesystem::path results_folder(const case_data::Case& input,

@@ -44,7 +44,7 @@ VectorX design_at(const case_data::Case& input,
 
 int check_gradient_command(const CheckGradientArguments& arguments) {
   const reader::CaseReading reading =
-      read_case_aloud(arguments.case_path, arguments.common);
+      read_and_report_case(arguments.case_path, arguments.common);
   if (!reading.input) {
     return kExitWrongInput;
   }

@@ -11,7 +11,7 @@
 #include "app/versions.h"
 #include "core/error.h"
 #include "pipeline/results/export_part.h"
-#include "pipeline/store/runs_in.h"
+#include "pipeline/store/find_runs.h"
 
 namespace meniscus::app {
 

@@ -48,7 +48,7 @@ int new_command(const std::string& name) {
 }
 
 int check_command(const std::string& case_path, const CommonArguments& common) {
-  const reader::CaseReading reading = read_case_aloud(case_path, common);
+  const reader::CaseReading reading = read_and_report_case(case_path, common);
   if (!reading.input) {
     return kExitWrongInput;
   }
@@ -159,8 +159,8 @@ int write_walls(const case_data::Case& input,
 }
 
 /// What --hide names that is neither film nor solid of the case; or nothing.
-std::string not_there(const films::FilmSystem& system,
-                      const std::vector<std::string>& hidden) {
+std::string find_unknown(const films::FilmSystem& system,
+                         const std::vector<std::string>& hidden) {
   for (const std::string& name : hidden) {
     const auto named = [&](const auto& surface) {
       return picture::is_hidden(surface.name, {name});
@@ -176,18 +176,18 @@ std::string not_there(const films::FilmSystem& system,
 /// film.vtp, film.json and, where they are wanted, the film's way to rest and
 /// pictures.
 void write_evolved(const case_data::Case& input,
-                   const case_data::EvaluatedCase& numbers,
+                   const case_data::EvaluatedCase& inputs,
                    const frozen::FilmModel& model, const fs::path& folder,
                    const EvolveArguments& arguments, Monitor& monitor) {
   const settle::FilmState& film = model.reference();
   std::vector<std::string> solids;
-  for (const films::CapSpec& cap : numbers.film_system.caps) {
+  for (const films::CapSpec& cap : inputs.film_system.caps) {
     solids.push_back(cap.name);
   }
   results::write_film(input, model.fine_mesh(film.points), folder);
   std::vector<forward::FilmFrame> frames;
   if (arguments.frames) {
-    frames = study::settling_frames(numbers, model, monitor);
+    frames = study::settling_frames(inputs, model, monitor);
     study::write_frames(input, frames, folder);
   }
   results::write_evolved_film(
@@ -197,7 +197,7 @@ void write_evolved(const case_data::Case& input,
        .failure = film.failure,
        .solids = solids,
        .areas = results::areas_of_films(input, model),
-       .curves = results::pieces_of_curves(numbers.film_system.curves)},
+       .curves = results::pieces_of_curves(inputs.film_system.curves)},
       frames, folder);
   if (!arguments.pictures) {
     return;
@@ -220,7 +220,8 @@ int evolve_command(const EvolveArguments& arguments) {
     return evolve_datafile_command(arguments);
   }
   const CommonArguments& common = arguments.common;
-  const reader::CaseReading reading = read_case_aloud(arguments.path, common);
+  const reader::CaseReading reading =
+      read_and_report_case(arguments.path, common);
   if (!reading.input) {
     return kExitWrongInput;
   }
@@ -235,9 +236,10 @@ int evolve_command(const EvolveArguments& arguments) {
   }
   catch_stop_signals();
   TerminalMonitor monitor(monitor_options(common));
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
-  if (const std::string name = not_there(numbers.film_system, arguments.hidden);
+  if (const std::string name =
+          find_unknown(inputs.film_system, arguments.hidden);
       !name.empty()) {
     std::fprintf(stderr,
                  "--hide %s: the case has no film and no solid of "
@@ -246,12 +248,12 @@ int evolve_command(const EvolveArguments& arguments) {
     return kExitWrongInput;
   }
   const frozen::FilmModel model =
-      case_data::freeze_films(input, numbers,
-                              {.edge = numbers.fea_edge,
+      case_data::freeze_films(input, inputs,
+                              {.edge = inputs.fea_edge,
                                .refinements = input.resolution.refinements,
                                .monitor = &monitor});
   const settle::FilmState& film = model.reference();
-  write_evolved(input, numbers, model, folder, arguments, monitor);
+  write_evolved(input, inputs, model, folder, arguments, monitor);
   if (!common.quiet) {
     std::fputs(results::film_text(input, film.report).c_str(), stdout);
   }
@@ -259,7 +261,7 @@ int evolve_command(const EvolveArguments& arguments) {
     std::fprintf(stderr, "failed: %s\n", film.failure->message.c_str());
     return kExitNoSolution;
   }
-  return write_walls(input, forward::make_walls(numbers, model, film.points),
+  return write_walls(input, forward::make_walls(inputs, model, film.points),
                      folder, common);
 }
 

@@ -21,17 +21,17 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The pictures again, of the answer whose meshes stand in the folder.
-void draw_again(const fs::path& folder, Monitor& monitor) {
+void redraw_pictures(const fs::path& folder, Monitor& monitor) {
   if (!fs::exists(folder / "part_surface.vtp") ||
       !fs::exists(folder / "study.sqlite")) {
     return;
   }
   const store::StudyStore store = store::StudyStore::read(folder.string());
   const case_data::Case input = store::restore_case(store.meta());
-  const case_data::EvaluatedCase numbers = case_data::evaluate(
+  const case_data::EvaluatedCase inputs = case_data::evaluate(
       input, store::answer_of_run(input, store.all(), folder));
   warn(picture::render_pictures(
-      output::stored_run_pictures(input, numbers, folder),
+      output::stored_run_pictures(input, inputs, folder),
       {.monitor = &monitor}));
 }
 
@@ -44,7 +44,7 @@ int report_command(const ReportArguments& arguments) {
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     warn(page::write_report(folder, {.versions = version_text()}));
     if (arguments.pictures) {
-      draw_again(folder, monitor);
+      redraw_pictures(folder, monitor);
     }
     return kExitDone;
   });

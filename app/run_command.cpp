@@ -44,18 +44,18 @@ output::FolderRunListener run_listener(const case_data::Case& input,
                                        TerminalMonitor& monitor) {
   return {.monitor = &monitor,
           .evaluated =
-              [&](const study::StudyNews& news) {
-                monitor.tell(evaluation_event(input, news));
+              [&](const study::EvaluationEvent& event) {
+                monitor.write(evaluation_event(input, event));
               },
           .finished =
               [&](const study::RunResult& result) {
-                monitor.tell(end_event(result.status, result.message,
-                                       result.total_seconds));
+                monitor.write(end_event(result.status, result.message,
+                                        result.total_seconds));
               },
           .ended_early =
               [&](const study::RunResult& result) {
-                monitor.tell(end_event(result.status, result.message,
-                                       result.total_seconds));
+                monitor.write(end_event(result.status, result.message,
+                                        result.total_seconds));
                 std::fprintf(stderr, "%s: %s\n", study::name_of(result.status),
                              result.message.c_str());
               },
@@ -77,8 +77,8 @@ void explain_end(study::RunStatus status, const std::string& message,
   }
 }
 
-void explain(const case_data::Case& input, const study::RunResult& result,
-             const fs::path& folder, bool quiet) {
+void print_result(const case_data::Case& input, const study::RunResult& result,
+                  const fs::path& folder, bool quiet) {
   explain_end(result.status, result.message, quiet);
   if (quiet) {
     return;
@@ -93,8 +93,8 @@ void explain(const case_data::Case& input, const study::RunResult& result,
   }
 }
 
-void explain(const results::FamilyResult& result,
-             const output::FolderRunOptions& options, bool quiet) {
+void print_result(const results::FamilyResult& result,
+                  const output::FolderRunOptions& options, bool quiet) {
   explain_end(result.status, result.message, quiet);
   if (quiet) {
     return;
@@ -125,7 +125,7 @@ int run_one(const case_data::Case& input,
   TerminalMonitor monitor(std::move(monitor_options));
   const output::FolderRunResult end = run->run(run_listener(input, monitor));
   if (!end.error) {
-    explain(input, end.result, options.folder, quiet);
+    print_result(input, end.result, options.folder, quiet);
   }
   return exit_code_of(end.result.status);
 }
@@ -147,8 +147,8 @@ int run_members(const case_data::Case& input,
   const results::FamilyResult result =
       output::run_family_into_folder(input, options, listener);
   output::write_family_pages(result, options, listener);
-  monitor.tell(end_event(result.status, result.message, result.total_seconds));
-  explain(result, options, quiet);
+  monitor.write(end_event(result.status, result.message, result.total_seconds));
+  print_result(result, options, quiet);
   return exit_code_of(result.status);
 }
 
@@ -160,7 +160,7 @@ int run_command(const RunArguments& arguments) {
   }
   const CommonArguments& common = arguments.common;
   const reader::CaseReading reading =
-      read_case_aloud(arguments.case_path, common);
+      read_and_report_case(arguments.case_path, common);
   if (!reading.input) {
     return kExitWrongInput;
   }

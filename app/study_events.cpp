@@ -30,39 +30,39 @@ const char* stage_name(const case_data::Case& input) {
   return case_data::row_of(input.study.kind).name;
 }
 
-Json best_json(const study::StudyNews& news) {
-  if (!news.best) {
+Json best_json(const study::EvaluationEvent& event) {
+  if (!event.best) {
     return {};
   }
-  return {{"evaluation", news.best->evaluation},
-          {"objective", or_null(news.best->objective)},
-          {"violation", or_null(news.best->violation)}};
+  return {{"evaluation", event.best->evaluation},
+          {"objective", or_null(event.best->objective)},
+          {"violation", or_null(event.best->violation)}};
 }
 
 Json evaluation_json(const case_data::Case& input,
-                     const study::StudyNews& news) {
-  const store::EvaluationRecord& record = *news.record;
+                     const study::EvaluationEvent& event) {
+  const store::EvaluationRecord& record = *event.record;
   double seconds = 0.0;
   for (const auto& [stage, value] : record.seconds) {
     seconds += value;
   }
   Json json = {{"event", "evaluation"}, {"stage", stage_name(input)}};
-  if (!news.member.empty()) {
-    json["member"] = news.member;
+  if (!event.member.empty()) {
+    json["member"] = event.member;
   }
   json["model"] = record.model;
   json["phase"] = record.phase;
   json["evaluation"] = record.number;
   json["design"] = value_map(record.input_names, record.inputs);
   json["responses"] = value_map(record.response_names, record.responses);
-  json["objective"] = or_null(news.standing.objective);
-  json["violation"] = or_null(news.standing.violation);
-  json["best"] = best_json(news);
+  json["objective"] = or_null(event.status.objective);
+  json["violation"] = or_null(event.status.violation);
+  json["best"] = best_json(event);
   json["evaluation_seconds"] = seconds;
-  json["evaluations"] = news.evaluations;
-  json["failed"] = news.failed;
-  json["planned"] = or_null(news.planned);
-  json["left"] = or_null(news.left);
+  json["evaluations"] = event.evaluations;
+  json["failed"] = event.failed;
+  json["planned"] = or_null(event.planned);
+  json["left"] = or_null(event.left);
   json["failure"] = Json();
   if (record.failure) {
     json["failure"] = {{"kind", name_of(record.failure->kind)},
@@ -74,33 +74,33 @@ Json evaluation_json(const case_data::Case& input,
 /// "minimize: evaluation 12 of at most 300, mass = 0.0123 t, violation 0.02,
 /// best so far mass = 0.012 t (evaluation 9), at most 3 min left".
 std::string status_text(const case_data::Case& input,
-                        const study::StudyNews& news) {
+                        const study::EvaluationEvent& event) {
   std::string text =
-      fmt::format("{}: evaluation {}", stage_name(input), news.evaluations);
-  if (news.planned && *news.planned > 1) {
-    text += fmt::format(" of at most {}", *news.planned);
+      fmt::format("{}: evaluation {}", stage_name(input), event.evaluations);
+  if (event.planned && *event.planned > 1) {
+    text += fmt::format(" of at most {}", *event.planned);
   }
-  if (news.standing.objective) {
+  if (event.status.objective) {
     text += fmt::format(
-        ", {} = {:.6g}{}{}", news.objective_name, *news.standing.objective,
-        news.objective_unit.empty() ? "" : " ", news.objective_unit);
+        ", {} = {:.6g}{}{}", event.objective_name, *event.status.objective,
+        event.objective_unit.empty() ? "" : " ", event.objective_unit);
   }
-  const std::string standing = study::standing_text(news);
-  return standing.empty() ? text : text + ", " + standing;
+  const std::string progress = study::progress_text(event);
+  return progress.empty() ? text : text + ", " + progress;
 }
 
 }  // namespace
 
 MonitorEvent evaluation_event(const case_data::Case& input,
-                              const study::StudyNews& news) {
+                              const study::EvaluationEvent& event) {
   const std::string member =
-      news.member.empty() ? std::string() : news.member + ": ";
-  const std::string standing = study::standing_text(news);
-  return {.line = member + study::describe(input, *news.record) +
-                  (standing.empty() ? "" : "; " + standing),
+      event.member.empty() ? std::string() : event.member + ": ";
+  const std::string progress = study::progress_text(event);
+  return {.line = member + study::describe(input, *event.record) +
+                  (progress.empty() ? "" : "; " + progress),
           // Members side by side have one line of status: the family's.
-          .status = member.empty() ? status_text(input, news) : std::string(),
-          .fields = evaluation_json(input, news)};
+          .status = member.empty() ? status_text(input, event) : std::string(),
+          .fields = evaluation_json(input, event)};
 }
 
 MonitorEvent end_event(study::RunStatus status, const std::string& message,

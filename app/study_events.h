@@ -10,7 +10,7 @@ namespace meniscus::app {
 
 /// Of an evaluation that has ended.
 MonitorEvent evaluation_event(const case_data::Case& input,
-                              const study::StudyNews& news);
+                              const study::EvaluationEvent& event);
 
 /// Of a run, for the log only. `seconds`: it took.
 MonitorEvent end_event(study::RunStatus status, const std::string& message,

@@ -27,7 +27,7 @@ int columns_of(std::FILE* stream) {
   return told ? size.ws_col : kColumns;
 }
 
-std::string fitted(const std::string& text, int columns) {
+std::string truncate_to(const std::string& text, int columns) {
   std::string line;
   int used = 0;
   for (const char c : text) {

@@ -14,7 +14,7 @@ bool is_terminal(std::FILE* stream);
 int columns_of(std::FILE* stream);
 
 /// At most `columns` characters of UTF-8 text, on one line.
-std::string fitted(const std::string& text, int columns);
+std::string truncate_to(const std::string& text, int columns);
 
 /// A line each, to stderr.
 void warn(const std::vector<std::string>& warnings);

@@ -109,7 +109,7 @@ void TerminalMonitor::log(Severity severity, const std::string& message) {
   }
 }
 
-void TerminalMonitor::tell(const MonitorEvent& event) {
+void TerminalMonitor::write(const MonitorEvent& event) {
   const std::lock_guard<std::mutex> guard(mutex_);
   write_log("info", now(), event.fields);
   if (!event.status.empty()) {
@@ -179,7 +179,7 @@ void TerminalMonitor::show_status() {
   // The last column stays free: some terminals wrap when it is written.
   const int columns =
       options_.columns > 0 ? options_.columns : columns_of(options_.stream);
-  std::fputs(fitted(status_, columns - 1).c_str(), options_.stream);
+  std::fputs(truncate_to(status_, columns - 1).c_str(), options_.stream);
   std::fflush(options_.stream);
 }
 

@@ -59,7 +59,7 @@ class TerminalMonitor : public Monitor {
 
   void log(Severity severity, const std::string& message) override;
   void progress(const Progress& progress) override;
-  void tell(const MonitorEvent& event);
+  void write(const MonitorEvent& event);
   bool stop_requested() const override;
 
  private:

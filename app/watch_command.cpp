@@ -18,10 +18,10 @@ namespace {
 
 constexpr auto kRefresh = std::chrono::seconds(1);
 
-std::string head_of(const results::StudyGlance& glance) {
+std::string header_text(const results::StudyStatus& status) {
   return fmt::format(
-      "{}{}\n", glance.title.empty() ? "" : glance.title + ": ",
-      glance.at_work ? "running (" + glance.holder + ")" : "no run is at work");
+      "{}{}\n", status.title.empty() ? "" : status.title + ": ",
+      status.at_work ? "running (" + status.holder + ")" : "no run is at work");
 }
 
 /// Draws over what it drew before.
@@ -34,7 +34,7 @@ class Screen {
     lines_ = 0;
     std::istringstream rest(text);
     for (std::string line; std::getline(rest, line); ++lines_) {
-      std::puts(fitted(line, columns_of(stdout) - 1).c_str());
+      std::puts(truncate_to(line, columns_of(stdout) - 1).c_str());
     }
     std::fflush(stdout);
   }
@@ -55,16 +55,16 @@ int exit_code_of_status(const std::string& status) {
   return kExitError;
 }
 
-int tell_end(const results::StudyGlance& glance) {
-  if (glance.status.empty()) {
+int print_end(const results::StudyStatus& status) {
+  if (status.status.empty()) {
     std::printf(
         "the run has ended without a result: it was killed or never began to "
         "write one; go on with 'meniscus run CASE --resume'\n");
   } else {
-    std::printf("%s: %s\n", glance.status.c_str(), glance.message.c_str());
+    std::printf("%s: %s\n", status.status.c_str(), status.message.c_str());
   }
   std::fflush(stdout);
-  return exit_code_of_status(glance.status);
+  return exit_code_of_status(status.status);
 }
 
 int watch(const WatchArguments& arguments) {
@@ -73,23 +73,23 @@ int watch(const WatchArguments& arguments) {
   Screen screen;
   bool first = true;
   while (true) {
-    const results::StudyGlance glance = study.look();
+    const results::StudyStatus status = study.poll();
     if (redraws) {
-      screen.show(head_of(glance) + glance.text);
+      screen.show(header_text(status) + status.text);
     } else if (arguments.once) {
-      std::fputs((head_of(glance) + glance.text).c_str(), stdout);
+      std::fputs((header_text(status) + status.text).c_str(), stdout);
     } else {
       if (first) {
-        std::fputs(head_of(glance).c_str(), stdout);
+        std::fputs(header_text(status).c_str(), stdout);
       }
-      for (const std::string& line : glance.news) {
+      for (const std::string& line : status.new_lines) {
         std::puts(line.c_str());
       }
     }
     std::fflush(stdout);
     first = false;
-    if (!glance.at_work) {
-      return tell_end(glance);
+    if (!status.at_work) {
+      return print_end(status);
     }
     if (arguments.once) {
       return kExitDone;

@@ -15,7 +15,7 @@ namespace {
 
 using Table = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // one row per node
 
-/// Displacements of `points` from `from`, one row each.
+/// One row each.
 Table rows_of(const Points& points) {
   Table rows(points.size(), 3);
   for (std::size_t n = 0; n < points.size(); ++n) {
@@ -35,6 +35,7 @@ Stiffness assemble(const TetMesh& mesh, int surface_points) {
   std::vector<Eigen::Triplet<double>> lower;
   std::vector<Eigen::Triplet<double>> across;
   lower.reserve(10 * static_cast<std::size_t>(mesh.element_count()));
+  // Conductivity c_e = mean volume / V_e: small elements move as if stiff.
   double mean_volume = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
     mean_volume += corner_volume(mesh, e) / mesh.element_count();
@@ -48,12 +49,15 @@ Stiffness assemble(const TetMesh& mesh, int surface_points) {
       throw MeshError(fmt::format(
           "mesh motion: reference element {} has volume {:.6g}", e, volume));
     }
+    // Constant gradients of linear shape functions, by the opposite faces.
     std::array<Vec3, 4> area;  // gradient of shape function i: -area_i / 3 V
     for (int i = 0; i < 4; ++i) {
       const auto& c = kTetFaces[i];
       area[i] = 0.5 * (x[c[1]] - x[c[0]]).cross(x[c[2]] - x[c[0]]);
     }
+    // K_ij = c_e V grad N_i . grad N_j.
     const double weight = mean_volume / (9.0 * volume * volume);
+    // Rows of inner nodes only: shifts d solve K_ii d_i = -K_is d_s.
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < 4; ++j) {
         const int row = ids[i] - surface_points;

@@ -59,6 +59,7 @@ TetMesh quadratic_topology(const TetMesh& linear,
   mesh.face_element = linear.face_element;
   mesh.face_front = linear.face_front;
   mesh.labels = linear.labels;
+  // Surface edges come first: their mid-sides have the surface's numbers.
   EdgeNumbers numbers(linear.elements.size());
   for (const Edge& e : surface.edges) {
     numbers.add(e[0], e[1]);
@@ -66,6 +67,7 @@ TetMesh quadratic_topology(const TetMesh& linear,
   if (numbers.size() != surface.edges.size()) {
     throw MeshError("quadratic surface: an edge is listed twice");
   }
+  // Every edge of a face must be one of them, else the surface is another.
   const int corners = linear.corner_count;
   mesh.faces.reserve(2 * linear.faces.size());
   for (int f = 0; f < linear.face_count(); ++f) {
@@ -82,6 +84,8 @@ TetMesh quadratic_topology(const TetMesh& linear,
       mesh.faces.push_back(corners + edge);
     }
   }
+  // One mid-side node per edge, shared by all elements about it: the ten-node
+  // mesh conforms.
   mesh.elements.reserve(linear.elements.size() / 4 * 10);
   for (int e = 0; e < linear.element_count(); ++e) {
     const auto ids = linear.element(e);

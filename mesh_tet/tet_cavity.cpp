@@ -68,6 +68,8 @@ std::optional<Cavity> grow_cavity(const TetEditor& tets,
                                   double floor, std::size_t most) {
   Cavity cavity;
   cavity.elements.assign(seeds.begin(), seeds.end());
+  // A node at `place` is joined to all faces of the cavity [klingner2007]: the
+  // cavity must be star-shaped about it, with elements better than `floor`.
   bool grown = true;
   while (grown) {
     grown = false;
@@ -83,6 +85,8 @@ std::optional<Cavity> grow_cavity(const TetEditor& tets,
         }
         const auto& f = kTetFaces[corner];
         const std::array<int, 3> face = {ids[f[0]], ids[f[1]], ids[f[2]]};
+        // A face too poor to be joined gives way: the element behind it is
+        // taken in. On the surface, or at `most` elements, there is none.
         const double merit =
             tet_merit({tets.point(face[0]), tets.point(face[2]),
                        tets.point(face[1]), place});
@@ -98,6 +102,7 @@ std::optional<Cavity> grow_cavity(const TetEditor& tets,
       }
     }
   }
+  // A node inside would be left without elements.
   if (!keeps_nodes(tets, cavity)) {
     return std::nullopt;
   }

@@ -126,6 +126,8 @@ TetQuality tet_quality(const TetMesh& mesh) {
   if (mesh.element_count() == 0) {
     return quality;
   }
+  // Extremes of c |c| for cosines c, which fall as the angles rise: roots and
+  // arc cosines are taken of the last two only.
   double largest = -1.0;  // of signed squared cosines
   double smallest = 1.0;
   quality.min_volume = std::numeric_limits<double>::infinity();
@@ -139,6 +141,7 @@ TetQuality tet_quality(const TetMesh& mesh) {
     const auto ids = mesh.element(e);
     const TetCorners x = {mesh.nodes[ids[0]], mesh.nodes[ids[1]],
                           mesh.nodes[ids[2]], mesh.nodes[ids[3]]};
+    // Dihedral angles from the normals of the two faces at each edge.
     const auto normals = face_normals2(x);
     for (const double c : squares_between(normals)) {
       ++quality.dihedral_histogram[bin_of(c)];
@@ -148,6 +151,7 @@ TetQuality tet_quality(const TetMesh& mesh) {
         quality.largest_dihedral_element = e;
       }
     }
+    // Longest edge over least height, circumradius over shortest edge, squared.
     const double volume = tet_volume(x);
     const Shape shape = shape_of(x, normals, volume);
     raise(quality.max_aspect, quality.aspect_element, shape.aspect2, e);

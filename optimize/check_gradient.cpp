@@ -123,8 +123,8 @@ void choose_step(double value, double range,
   }
 }
 
-void judge(double value, double range, double tolerance,
-           GradientCheckRow& row) {
+void set_error(double value, double range, double tolerance,
+               GradientCheckRow& row) {
   row.error = std::abs(row.given - row.difference);
   row.allowed = tolerance * size_of(row.given, value, range);
   row.passed = row.error <= row.allowed;  // false for NaN
@@ -165,6 +165,7 @@ GradientCheckReport check_gradient(const std::vector<Variable>& variables,
   check_input(variables, responses, given, options);
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
+  // The centre is evaluated once; one-sided differences use it.
   Sweep sweep(variables, function, monitor);
   if (sweep.centre().size() != given.rows()) {
     throw InvalidInput(fmt::format(
@@ -177,6 +178,8 @@ GradientCheckReport check_gradient(const std::vector<Variable>& variables,
   for (std::size_t j = 0; j < variables.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
     const double range = variables[j].upper - variables[j].lower;
+    // Second-order differences over several steps: truncation falls with h^2,
+    // rounding grows with 1 / h.
     std::vector<VectorX> sweep_values;
     for (const double h : options.steps) {
       sweep_values.push_back(sweep.difference(column, h * range));
@@ -190,8 +193,9 @@ GradientCheckReport check_gradient(const std::vector<Variable>& variables,
       for (const VectorX& values : sweep_values) {
         row.differences.push_back(values[line]);
       }
+      // Compared at the plateau between truncation and rounding.
       choose_step(sweep.centre()[line], range, options, row);
-      judge(sweep.centre()[line], range, options.tolerance, row);
+      set_error(sweep.centre()[line], range, options.tolerance, row);
     }
   }
   report.evaluations = sweep.evaluations();

@@ -162,6 +162,8 @@ VectorX nonnegative_least_squares(const Eigen::MatrixXd& A, const VectorX& b) {
 
 FirstOrderReport first_order(const FirstOrderInput& input) {
   check_sizes(input);
+  // With the ranges as units, and f over its scale, the residual is a pure
+  // number.
   const VectorX ranges = input.upper - input.lower;
   const Eigen::Index n = ranges.size();
   const VectorX gradient =
@@ -170,6 +172,8 @@ FirstOrderReport first_order(const FirstOrderInput& input) {
   double unit = input.objective_scale > 0.0 ? input.objective_scale : steepest;
   unit = unit > 0.0 ? unit : 1.0;
 
+  // Karush-Kuhn-Tucker: min over m >= 0 of |grad f + sum m_k grad g_k|^2 +
+  // sum (m_k g_k)^2, one column per constraint or bound.
   const std::vector<Side> sides = sides_of(input, ranges);
   const auto count = static_cast<Eigen::Index>(sides.size());
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n + count, count);
@@ -180,15 +184,18 @@ FirstOrderReport first_order(const FirstOrderInput& input) {
   }
   VectorX b = VectorX::Zero(n + count);
   b.head(n) = -gradient / unit;
+  // Nonnegative least squares [lawson1974].
   const VectorX multipliers = nonnegative_least_squares(A, b);
   const VectorX rest = A * multipliers - b;
 
   FirstOrderReport report;
+  // Largest entries of both sums: stationarity and complementarity.
   report.stationarity = n == 0 ? 0.0 : rest.head(n).cwiseAbs().maxCoeff();
   report.complementarity =
       count == 0 ? 0.0 : rest.tail(count).cwiseAbs().maxCoeff();
   report.residual = std::max(report.stationarity, report.complementarity);
   report.violation = violation_of(input);
+  // Back to the given units; a lower side counts with the other sign.
   report.multipliers = VectorX::Zero(input.constraint_scale.size());
   report.bound_multipliers = VectorX::Zero(n);
   for (Eigen::Index k = 0; k < count; ++k) {

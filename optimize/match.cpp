@@ -56,9 +56,8 @@ std::string match_advice(const MatchEvaluator& evaluator, const VectorX& best) {
              : "Add a design variable, start elsewhere, or ";
 }
 
-void conclude_stalled(const MatchEvaluator& evaluator,
-                      const std::string& figures, const BackendResult& backend,
-                      MatchReport& report) {
+void set_stalled(const MatchEvaluator& evaluator, const std::string& figures,
+                 const BackendResult& backend, MatchReport& report) {
   report.termination = Termination::Stalled;
   const std::string bounds = evaluator.bounds_reached(report.best);
   if (is_flat(evaluator, backend)) {
@@ -81,8 +80,8 @@ void conclude_stalled(const MatchEvaluator& evaluator,
   }
 }
 
-void conclude(const MatchEvaluator& evaluator, const BackendResult& backend,
-              MatchReport& report) {
+void finish_report(const MatchEvaluator& evaluator,
+                   const BackendResult& backend, MatchReport& report) {
   if (!evaluator.has_best()) {
     report.termination = Termination::NoFeasible;
     report.message = no_start_message(evaluator);
@@ -104,7 +103,7 @@ void conclude(const MatchEvaluator& evaluator, const BackendResult& backend,
       break;
     case MatchEvaluator::Halt::Evaluations:
       if (is_flat(evaluator, backend)) {
-        conclude_stalled(evaluator, figures, backend, report);
+        set_stalled(evaluator, figures, backend, report);
         break;
       }
       report.termination = Termination::LimitReached;
@@ -122,7 +121,7 @@ void conclude(const MatchEvaluator& evaluator, const BackendResult& backend,
           match_advice(evaluator, report.best));
       break;
     default:
-      conclude_stalled(evaluator, figures, backend, report);
+      set_stalled(evaluator, figures, backend, report);
   }
 }
 
@@ -133,7 +132,7 @@ void finish(const MatchEvaluator& evaluator, const BackendResult& backend,
   report.gradient_evaluations = evaluator.gradient_evaluations();
   report.iterations = backend.iterations;
   report.jacobian = backend.jacobian;
-  conclude(evaluator, backend, report);
+  finish_report(evaluator, backend, report);
   const VectorX& error = evaluator.options().mismatch_error;
   if (error.size() > 0 && error.maxCoeff() > evaluator.options().tolerance) {
     report.message += fmt::format(

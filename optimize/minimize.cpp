@@ -7,7 +7,7 @@
 
 #include "optimize/first_start.h"
 #include "optimize/free_variables.h"
-#include "optimize/minimize_conclude.h"
+#include "optimize/minimize_report.h"
 #include "optimize/minimize_search.h"
 #include "optimize/nlopt_minimize.h"
 
@@ -91,7 +91,7 @@ MinimizeReport minimize_all(const MinimizeProblem& problem,
     }
   }
   evaluator.rethrow();
-  return conclude(evaluator, found, constant);
+  return finish_report(evaluator, found, constant);
 }
 
 // No variable moves: one evaluation says what there is.
@@ -101,7 +101,7 @@ MinimizeReport minimize_held(const MinimizeProblem& problem,
   MinimizeEvaluator evaluator(problem, options);
   evaluator.evaluate(evaluator.start(), EvaluationPhase::Start);
   evaluator.rethrow();
-  MinimizeReport report = conclude(evaluator, {}, false);
+  MinimizeReport report = finish_report(evaluator, {}, false);
   if (report.termination != Termination::NoFeasible) {
     report.termination = Termination::NoFreedom;
     report.message = free.held_message();

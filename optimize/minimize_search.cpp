@@ -221,19 +221,19 @@ NloptTask first_task(const MinimizeEvaluator& evaluator, const VectorX& start) {
               static_cast<Eigen::Index>(evaluator.sides().size()))};
 }
 
-struct Standing {
+struct Merit {
   bool feasible = false;
   double violation = 0.0;
   double objective = 0.0;
   int failed = 0;
 };
 
-Standing standing_of(const MinimizeEvaluator& evaluator) {
+Merit merit_of(const MinimizeEvaluator& evaluator) {
   return {evaluator.best_is_feasible(), evaluator.best_violation(),
           evaluator.best_objective(), evaluator.failed_evaluations()};
 }
 
-bool gained(const Standing& before, const Standing& after, double least) {
+bool gained(const Merit& before, const Merit& after, double least) {
   if (after.feasible != before.feasible) {
     return true;
   }
@@ -290,7 +290,7 @@ SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
   BoxEnd box;
   int idle = 0;
   for (int round = 0; round < kMostRuns; ++round) {
-    const Standing before = standing_of(evaluator);
+    const Merit before = merit_of(evaluator);
     const NloptResult last = run(evaluator, traits, task, tightening);
     result.iterations += last.iterations;
     result.finished = last.finished;
@@ -298,7 +298,7 @@ SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
     if (evaluator.halted()) {
       break;
     }
-    const Standing after = standing_of(evaluator);
+    const Merit after = merit_of(evaluator);
     const double scale =
         std::max(evaluator.objective_scale(), evaluator.objective_unit());
     result.walled = after.failed > before.failed;

@@ -165,6 +165,8 @@ double normal_quantile(double p) {
     throw InvalidInput(
         fmt::format("normal quantile of {}; expected between 0 and 1", p));
   }
+  // Wichura's AS 241 (PPND16): minimax rational functions on three ranges.
+  // The middle, odd in q = p - 1/2.
   const double q = p - 0.5;
   if (std::abs(q) <= 0.425) {
     const std::array<double, 8> a = {
@@ -182,6 +184,8 @@ double normal_quantile(double p) {
                                      5.2264952788528545610e+3};
     return q * ratio(a, b, 0.180625 - q * q);
   }
+  // Tails in r = sqrt(-ln min(p, 1 - p)), in which the quantile is nearly
+  // linear.
   const double r = std::sqrt(-std::log(q < 0.0 ? p : 1.0 - p));
   double tail = 0.0;
   if (r <= 5.0) {

@@ -84,6 +84,7 @@ SampledSpread sampled_spread(const std::vector<VectorX>& values) {
     spread.least = spread.least.cwiseMin(value);
     spread.largest = spread.largest.cwiseMax(value);
   }
+  // Central moments in a second pass, which cancels nothing.
   VectorX second = VectorX::Zero(spread.mean.size());
   VectorX fourth = second;
   for (const VectorX& value : values) {
@@ -91,6 +92,7 @@ SampledSpread sampled_spread(const std::vector<VectorX>& values) {
     second += square / n;
     fourth += square.cwiseAbs2() / n;
   }
+  // Unbiased variance (n - 1), and the standard error of the mean.
   spread.deviation = (second * (n / (n - 1.0))).cwiseSqrt();
   spread.mean_error = spread.deviation / std::sqrt(n);
   // Var(s^2) is about (m4 - m2^2) / n, and ds = d(s^2) / (2 s).

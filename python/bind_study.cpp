@@ -161,7 +161,7 @@ void run_study_in(const ReadCase& input, output::FolderRunOptions options,
   options.page_versions = "meniscus " MENISCUS_VERSION ", from Python";
   options.threads = thread_count();
   options.warnings = input.warnings;
-  options.resume_word = "resume";
+  options.resume_hint = "resume";
   options.pictures_when_late = true;
   Call call(progress);
   call.run([&] { run_into_folder(*input.input, options, call); });

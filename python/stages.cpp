@@ -64,42 +64,27 @@ DesignWork::DesignWork(std::shared_ptr<const FrozenModel> model, VectorX design,
   staged_.evaluation.failure = model_->failure();
 }
 
-void DesignWork::settle_alone() {
-  forward::Evaluation& result = staged_.evaluation;
-  try {
-    staged_.fields.inputs = case_data::evaluate(input(), design_);
-  } catch (const InvalidInput& error) {
-    result.failure = Failure{FailureKind::NotANumber, error.what()};
-    return;
-  }
-  settle::FilmState& film = staged_.adjoint.film;
-  film = model_->film().settle(staged_.fields.inputs.film_system,
-                               {.monitor = &Call::of_this_thread()});
-  result.film = film.report;
-  result.failure = film.failure;
-}
-
 bool DesignWork::run(Stage stage) {
   if (!model_->whole) {
     if (stage != Stage::Film) {
       throw InvalidInput(
           "this film was settled without elements; use meniscus.Model");
     }
-    settle_alone();
-    return !staged_.evaluation.failure;
+    return forward::settle_film(input(), model_->film(), design_,
+                                &Call::of_this_thread(), staged_);
   }
-  const forward::DesignStages stages(*model_->whole);
+  const forward::FrozenPart& part = model_->whole->part();
   switch (stage) {
     case Stage::Film:
-      return stages.settle(design_, staged_);
+      return forward::settle_film(part, design_, staged_);
     case Stage::Mesh:
-      return stages.place_mesh(staged_);
+      return forward::move_mesh(part, staged_);
     case Stage::Solution:
-      return stages.solve(staged_, keep_);
+      return forward::solve_elasticity(part, keep_, staged_);
     default:
       break;
   }
-  if (!stages.respond(staged_)) {
+  if (!forward::compute_responses(part, staged_)) {
     return false;
   }
   responses_ = staged_.evaluation.responses;

@@ -73,7 +73,6 @@ class DesignWork {
 
  private:
   bool run(Stage stage);
-  void settle_alone();
 
   std::shared_ptr<const FrozenModel> model_;
   VectorX design_;

@@ -165,6 +165,7 @@ bool alike(const Side& a, const Side& b) {
 std::vector<Side> sides_of(const SplitFilm& split, int cell,
                            const std::vector<int>& facets) {
   const bool tubes = split.rims->size() > 1;
+  // A directed edge belongs to one facet; its reverse is the facet across.
   std::map<Edge, int> owner;
   for (std::size_t f = 0; f < split.film.mesh.facets.size(); ++f) {
     const Triangle& t = split.film.mesh.facets[f];
@@ -172,12 +173,14 @@ std::vector<Side> sides_of(const SplitFilm& split, int cell,
       owner[{t[k], t[(k + 1) % 3]}] = static_cast<int>(f);
     }
   }
+  // The outline of a disk is one closed loop.
   const std::vector<std::vector<int>> loops =
       boundary_loops(corners_of(split.film.mesh, facets));
   if (loops.size() != 1) {
     throw MeshError("a film's patch is not simply connected");
   }
   const std::vector<int>& loop = loops[0];
+  // The facet across tells a rim, a seam of this tube or a line to another.
   const auto kind_of = [&](std::size_t k) {
     const int a = loop[k];
     const int b = loop[(k + 1) % loop.size()];
@@ -191,6 +194,7 @@ std::vector<Side> sides_of(const SplitFilm& split, int cell,
     }
     return side;
   };
+  // Runs of alike edges are the sides; the loop may begin within one.
   std::vector<Side> sides;
   for (std::size_t k = 0; k < loop.size(); ++k) {
     Side side = kind_of(k);
@@ -207,6 +211,7 @@ std::vector<Side> sides_of(const SplitFilm& split, int cell,
     sides.front().chain = std::move(tail);
     sides.pop_back();
   }
+  // Order as the patch has it: the side on the own rim is its bottom.
   const auto bottom =
       std::find_if(sides.begin(), sides.end(), [&](const Side& side) {
         return side.kind == SideKind::Rim && (!tubes || side.rim == cell);

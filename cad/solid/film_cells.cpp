@@ -94,6 +94,7 @@ std::vector<double> seam_shares(const SplitFilm& split,
                                 const std::vector<int>& loop,
                                 const std::vector<double>& shares) {
   const RimCurve& curve = *(*split.rims)[0].curve;
+  // A place on the curve is moved to the nearest vertex of the loop.
   const auto share_of = [&](double place) {
     std::size_t nearest = 0;
     double least = curve.length();
@@ -108,6 +109,7 @@ std::vector<double> seam_shares(const SplitFilm& split,
     }
     return shares[nearest];
   };
+  // Seams end where the rim itself bends most, if anywhere.
   std::vector<double> seams;
   for (const double place : corner_places(curve)) {
     seams.push_back(share_of(place));
@@ -115,6 +117,7 @@ std::vector<double> seam_shares(const SplitFilm& split,
   if (seams.empty()) {
     seams.push_back(share_of(0.0));
   }
+  // Of more than four corners those count that divide the rim most evenly.
   std::sort(seams.begin(), seams.end());
   seams.erase(std::unique(seams.begin(), seams.end()), seams.end());
   if (seams.size() > kSeams) {
@@ -174,6 +177,7 @@ Eigen::MatrixXd disk_measures(const SplitFilm& split) {
 
 /// Columns: along the film's three long ways from its middle and against them.
 Eigen::MatrixXd cube_measures(const FilmMesh& mesh) {
+  // Centroid of the film, by area (twice it: only ratios count).
   Vec3 middle = Vec3::Zero();
   double area = 0.0;
   const auto area_of = [&](const Triangle& t) {
@@ -188,6 +192,8 @@ Eigen::MatrixXd cube_measures(const FilmMesh& mesh) {
     area += area_of(t);
   }
   middle /= area;
+  // Second moments of area about it, and the sign of the solid angle under
+  // which it sees each facet: one sign means a star-shaped film.
   Mat3 spread = Mat3::Zero();
   int positive = 0;
   for (const Triangle& t : mesh.facets) {
@@ -202,6 +208,8 @@ Eigen::MatrixXd cube_measures(const FilmMesh& mesh) {
     throw MeshError(
         "a closed film is cut only where its middle sees all of it");
   }
+  // Along the principal axes, each over its spread: the greatest of the six
+  // signed places says to which side of the cube a point belongs.
   const auto axes = symmetric_eigen(spread);
   Eigen::MatrixXd measures(static_cast<Eigen::Index>(mesh.points.size()),
                            kClosedCells);

@@ -92,6 +92,8 @@ RimSide FaceBuilder::rim_side(const FilmPatch& patch, int side) const {
 /// sides of a line: a class of directions runs through the film.
 void FaceBuilder::set_knots() {
   const CutFilm& cut = film_.cut;
+  // Two sides on one line have one knot vector, mirrored if they run against
+  // each other: union of the parameter directions of all patches.
   DirectionClasses classes(static_cast<int>(cut.patches.size()));
   std::vector<std::array<int, 2>> user(cut.lines.size(), {-1, -1});
   for (std::size_t p = 0; p < cut.patches.size(); ++p) {
@@ -107,6 +109,7 @@ void FaceBuilder::set_knots() {
       }
     }
   }
+  // What each side of a class asks for: spans by length, breaks of rims.
   std::map<int, std::vector<SideDemand>> demands;
   for (std::size_t p = 0; p < cut.patches.size(); ++p) {
     const FilmPatch& patch = cut.patches[p];
@@ -118,10 +121,12 @@ void FaceBuilder::set_knots() {
               : SideDemand{.length = length_of(patch.chains[side])});
     }
   }
+  // Knots that meet all demands of a class serve all its sides.
   std::map<int, std::vector<double>> knots;
   for (const auto& [root, sides] : demands) {
     knots[root] = common_knots(sides, span_);
   }
+  // Turned back to the direction of each patch and of each line.
   line_knots_.resize(cut.lines.size());
   patch_knots_.resize(cut.patches.size());
   for (std::size_t p = 0; p < cut.patches.size(); ++p) {
@@ -212,6 +217,7 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
   PatchSides sides;
   for (int side = 0; side < 4; ++side) {
     const int line = patch.lines[side];
+    // On a rim: the exact curve as a spline, vertices at shares of arclength.
     if (line < 0) {
       const RimSide rim = rim_side(patch, side);
       sides.curves[side] = fit_rim(rim, patch_knots_[p][side % 2], brep_);
@@ -233,6 +239,8 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
       }
       continue;
     }
+    // On a line: the curve fitted once for both patches, and the normals that
+    // both are to have there (G1 continuity).
     const auto& edge = brep_.edges[line_edges_[line]];
     const auto& curve = std::get<SplineCurve>(edge.curve);
     const bool back = patch.reversed[side];

@@ -122,6 +122,7 @@ int SolidBuilder::rim_of(const std::vector<int>& loop) {
 
 void SolidBuilder::add_film(const std::string& name,
                             const std::vector<int>& facets) {
+  // The film as a mesh of its own, with normals of least-squares quadrics.
   FilmMesh mesh;
   std::map<int, int> local;
   std::vector<int> global;
@@ -142,6 +143,7 @@ void SolidBuilder::add_film(const std::string& name,
   FilmPiece film;
   film.name = name;
   film.facets = facets;
+  // Its boundary loops lie on rims: vertices are projected onto the curves.
   std::vector<FilmRim> rims;
   for (std::vector<int>& loop : boundary_loops(mesh.facets)) {
     std::vector<int> whole;
@@ -156,6 +158,7 @@ void SolidBuilder::add_film(const std::string& name,
     }
     rims.push_back(std::move(rim));
   }
+  // A plane, cylinder or sphere is exact as one face; else four-sided patches.
   if (add_simple(name, facets, mesh, rims, film.rims)) {
     return;
   }

@@ -163,10 +163,13 @@ struct GreatestCutter {
 void GreatestCutter::cut(int f) {
   const Triangle t = split.film.mesh.facets[f];
   std::array<int, 3> l{label[t[0]], label[t[1]], label[t[2]]};
+  // One measure is greatest at all corners: linear, hence within the facet.
   if (l[0] == l[1] && l[1] == l[2]) {
     put(t, l[0]);
     return;
   }
+  // Three cells meet: the node is where the three linear measures are equal;
+  // with the crossings on the sides it makes two facets per corner.
   if (l[0] != l[1] && l[1] != l[2] && l[2] != l[0]) {
     Mat3 values;
     for (int k = 0; k < 3; ++k) {
@@ -195,6 +198,7 @@ void GreatestCutter::cut(int f) {
     }
     return;
   }
+  // Two cells: the line of equal measures cuts off the lone corner.
   int lone = 0;
   while (l[(lone + 1) % 3] != l[(lone + 2) % 3]) {
     ++lone;
@@ -300,15 +304,20 @@ void LevelCutter::cut(int f) {
     double difference;
   };
   const Triangle t = split.film.mesh.facets[f];
+  // Values are linear on the facet: signs at the corners tell where the
+  // level line enters and leaves.
   const std::array<double, 3> d = differences(f);
   std::array<std::vector<Corner>, 2> sides;  // below, above
   bool crossed = false;
+  // Corners on the line get its exact value, so that neighbours agree.
   for (int k = 0; k < 3; ++k) {
     if (d[k] == 0.0) {
       double& value = split.value[f][k];
       value = level + std::round(value - level);
     }
   }
+  // Clip the facet at the line into a polygon below and one above; they share
+  // the crossings, found once per edge.
   for (int k = 0; k < 3; ++k) {
     const int n = (k + 1) % 3;
     const Corner here{t[k], split.value[f][k], d[k]};
@@ -332,6 +341,7 @@ void LevelCutter::cut(int f) {
   if (!crossed) {
     return;
   }
+  // Both polygons are convex, so that fans triangulate them.
   bool first = true;
   for (const std::vector<Corner>& side : sides) {
     fan(side, [&](const Corner& a, const Corner& b, const Corner& c) {

@@ -130,16 +130,20 @@ ShortLine shortest_line(const Tubes& tubes) {
 /// do not meet, has its measure made less until they do; two that hardly meet
 /// have theirs made greater.
 Tubes cut_into_tubes(const SplitFilm& whole) {
+  // Harmonic measure w_k: 1 on rim k, 0 on the others.
   const Eigen::MatrixXd measures = harmonic_measures(whole);
   const int count = static_cast<int>(measures.cols());
   VectorX factors = VectorX::Ones(count);
   std::optional<Tubes> best;
   double best_share = 0.0;
   for (int round = 0; round < kMostTries; ++round) {
+    // Each point belongs to the rim whose f_k w_k is greatest.
     Tubes result{whole, {}, {}};
     result.nodes =
         split_by_greatest(result.split, measures * factors.asDiagonal());
     result.split.sector.assign(result.split.cell.size(), 0);
+    // Each cell must be an annulus with two nodes or more at its top; one with
+    // more loops keeps others apart and is given a lesser factor.
     bool done = true;
     for (int k = 0; k < count; ++k) {
       std::size_t loops = 0;
@@ -156,6 +160,7 @@ Tubes cut_into_tubes(const SplitFilm& whole) {
     if (!done) {
       continue;
     }
+    // Lengthen the shortest line between two tubes; the best cut is kept.
     const ShortLine line = shortest_line(result);
     for (const int tube : line.tubes) {
       factors[tube] *= kGrow;

@@ -71,6 +71,8 @@ std::vector<FilmSample> sample_film(const FilmMesh& mesh,
         std::lower_bound(grid.begin(), grid.end(), low) - grid.begin(),
         std::upper_bound(grid.begin(), grid.end(), high) - grid.begin()};
   };
+  // The map is one to one (Tutte 1963), so each place of the grid lies in one
+  // facet of the parameter domain; a flat one covers none.
   for (const int f : patch.facets) {
     const Triangle& t = mesh.facets[f];
     const Vec2 p = at.row(t[0]);
@@ -88,6 +90,8 @@ std::vector<FilmSample> sample_film(const FilmMesh& mesh,
     const auto columns = range(grid_b, low[1], high[1]);
     for (auto i = rows.first; i < rows.second; ++i) {
       for (auto j = columns.first; j < columns.second; ++j) {
+        // Barycentric coordinates by Cramer's rule; places on shared sides
+        // count once, hence the margin and the marks.
         const Vec2 d = Vec2(grid_a[i], grid_b[j]) - p;
         const double beta = (d[0] * v[1] - d[1] * v[0]) / area;
         const double gamma = (u[0] * d[1] - u[1] * d[0]) / area;
@@ -250,6 +254,7 @@ FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
                       const PatchSides& sides) {
   FittedPatch fitted;
   SplineSurface& surface = fitted.surface;
+  // The outer poles are those of the four sides: the boundary is exact.
   surface.knots_a = sides.curves[0].knots;
   surface.knots_b = sides.curves[1].knots;
   const int rows = static_cast<int>(sides.curves[0].poles.size());
@@ -263,7 +268,9 @@ FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
     surface.poles[j] = sides.curves[3].poles[j];
     surface.poles[(rows - 1) * columns + j] = sides.curves[1].poles[j];
   }
+  // Places (a, b) of vertices: harmonic, with those of the sides given.
   const Eigen::MatrixXd at = parameters(mesh, patch, sides);
+  // Distance to points of the film: rows of tensor product basis values.
   PoleSystem system(surface, rows, columns);
   for (const FilmSample& sample : sample_film(
            mesh, patch, at, samples_of(surface.knots_a, kSamplesPerSpan),
@@ -279,12 +286,15 @@ FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
     }
     system.add_point(terms, sample.point, 1.0);
   }
+  // A little smoothing where points are few, and the common normals of
+  // neighbours along the sides (n . (P_1 - P_0) = 0, weighed by K).
   add_third_differences(system, rows, columns);
   for (int side = 0; side < 4; ++side) {
     if (!sides.normals[side].poles.empty()) {
       add_normals(system, sides, side, rows, columns);
     }
   }
+  // Normal equations for the inner poles.
   system.solve();
   std::vector<char> seen(mesh.points.size(), 0);
   for (const int f : patch.facets) {

@@ -55,6 +55,7 @@ Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
   const Eigen::Index columns = problem.values.cols();
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, columns);
   std::vector<Eigen::Triplet<double>> entries;
+  // Row v of the weighted graph Laplacian; what is held goes to the right.
   const auto half = [&](int v, int w, double weight, double jump) {
     // weight (x_v + o_v - x_w - o_w) by x_v, jump = o_v - o_w
     const int row = unknown[v];
@@ -69,6 +70,9 @@ Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
       entries.emplace_back(row, unknown[w], -weight);
     }
   };
+  // Cotangent weights (Pinkall, Polthier 1993), held above 0 so that a map
+  // onto a convex outline is one to one (Tutte 1963). Offsets make a function
+  // that jumps across a cut.
   for (std::size_t i = 0; i < problem.facets.size(); ++i) {
     const Triangle& t = mesh.facets[problem.facets[i]];
     for (int k = 0; k < 3; ++k) {
@@ -86,6 +90,7 @@ Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
   if (count == 0) {
     return result;
   }
+  // Positive definite if each component has a vertex that is held.
   SparseMatrix matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());
   SymmetricFactor factor(matrix, FactorKind::Cholesky);

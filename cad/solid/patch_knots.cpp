@@ -54,6 +54,8 @@ double turn_between(const SideDemand& side, double first, double last) {
 
 std::vector<double> common_knots(const std::vector<SideDemand>& sides,
                                  double span) {
+  // Where rims change their curve the spline may lose smoothness: multiple
+  // knots there; places closer than rounding are one.
   std::vector<SplineBreak> breaks;
   for (const SideDemand& side : sides) {
     if (side.rim != nullptr) {
@@ -65,11 +67,18 @@ std::vector<double> common_knots(const std::vector<SideDemand>& sides,
               return a.at != b.at ? a.at < b.at
                                   : a.multiplicity > b.multiplicity;
             });
-  breaks.erase(std::unique(breaks.begin(), breaks.end(),
-                           [](const SplineBreak& a, const SplineBreak& b) {
-                             return b.at - a.at < kSameKnot;
-                           }),
-               breaks.end());
+  std::vector<SplineBreak> merged;
+  for (const SplineBreak& next : breaks) {
+    if (merged.empty() || next.at - merged.back().at >= kSameKnot) {
+      merged.push_back(next);
+    } else {
+      merged.back().multiplicity =
+          std::max(merged.back().multiplicity, next.multiplicity);
+    }
+  }
+  breaks = std::move(merged);
+  // Between breaks, even spans: as many as the side that asks for most, by
+  // length and by how far its rim turns.
   std::vector<SplineBreak> inner;
   double start = 0.0;
   for (std::size_t k = 0; k <= breaks.size(); ++k) {

@@ -168,6 +168,7 @@ RimCurve rim_through(const Points& points, double sharp) {
   if (n < 3) {
     throw MeshError("a rim has fewer than three points");
   }
+  // Corners of the polygon: where it turns by more than `sharp`.
   std::vector<int> corners;
   for (int i = 0; i < n; ++i) {
     const Vec3 in = points[i] - points[(i + n - 1) % n];
@@ -180,6 +181,7 @@ RimCurve rim_through(const Points& points, double sharp) {
   if (smooth) {
     corners.push_back(0);
   }
+  // One cubic spline from corner to corner.
   std::vector<RimPiece> pieces;
   for (std::size_t c = 0; c < corners.size(); ++c) {
     const int first = corners[c];
@@ -196,6 +198,8 @@ RimCurve rim_through(const Points& points, double sharp) {
                         (fit.points.back() - fit.points.end()[-2]).norm());
       }
     }
+    // Parameters by chord length (Piegl, Tiller, The NURBS Book, 9.2.1), and a
+    // knot at each inner point.
     std::vector<SplineBreak> inner;
     for (std::size_t i = 0; i < chord.size(); ++i) {
       fit.at.push_back(chord[i] / chord.back());
@@ -206,6 +210,7 @@ RimCurve rim_through(const Points& points, double sharp) {
     fit.knots = clamped_knots(inner);
     fit.start = fit.points.front();
     fit.end = fit.points.back();
+    // Of a smooth curve only one turn of what was fitted is used.
     pieces.push_back(
         {fit_curve(fit), fit.at[beyond], fit.at[fit.at.size() - 1 - beyond]});
   }

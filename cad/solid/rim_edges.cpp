@@ -17,6 +17,7 @@ double apart(double s, double t, double length) {
 }  // namespace
 
 void RimEdges::build(double tolerance, Brep& brep) {
+  // Vertices stand where pieces of the curve meet; a whole circle has none.
   const double length = curve_->length();
   const bool one_arc =
       curve_->piece_count() == 1 &&
@@ -24,6 +25,8 @@ void RimEdges::build(double tolerance, Brep& brep) {
   for (int k = 0; k < curve_->piece_count() && !one_arc; ++k) {
     places_.push_back(curve_->start_of(k));
   }
+  // Wishes near a vertex that is there are served by it (places are periodic);
+  // exact ones come first, so that others move to them.
   const auto put = [&](std::vector<double>& wishes, double near) {
     std::sort(wishes.begin(), wishes.end());
     for (const double s : wishes) {
@@ -40,6 +43,8 @@ void RimEdges::build(double tolerance, Brep& brep) {
   if (places_.empty()) {
     places_.push_back(0.0);
   }
+  // Each interval of the sorted places is an edge within one piece, the last
+  // one across the beginning.
   std::sort(places_.begin(), places_.end());
   for (const double s : places_) {
     vertices_.push_back(static_cast<int>(brep.vertices.size()));

@@ -57,7 +57,7 @@ double sagitta(double edge, double radius) {
   return edge * edge / (8.0 * radius);
 }
 
-/// True where facets look away from `center` or the axis through it.
+/// True where facets look towards `center` or the axis through it.
 bool looks_inward(const FilmMesh& mesh, const Vec3& center, const Vec3& axis) {
   double outward = 0.0;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
@@ -70,6 +70,7 @@ bool looks_inward(const FilmMesh& mesh, const Vec3& center, const Vec3& axis) {
 std::optional<SimpleFilm> plane_of(const FilmMesh& mesh,
                                    const std::vector<FilmRim>& rims,
                                    double limit) {
+  // The sum of area vectors gives the side that the film looks to.
   Vec3 normal = Vec3::Zero();
   for (const Triangle& t : mesh.facets) {
     const Vec3 u = mesh.points[t[1]] - mesh.points[t[0]];
@@ -86,6 +87,7 @@ std::optional<SimpleFilm> plane_of(const FilmMesh& mesh,
     points.push_back(outline.point(outline.length() * k / kRimSamples));
     middle += points.back() / kRimSamples;
   }
+  // Newell's normal of the first rim, a closed polygon of samples.
   Vec3 area = Vec3::Zero();
   for (int k = 0; k < kRimSamples; ++k) {
     area += (points[k] - middle).cross(points[(k + 1) % kRimSamples] - middle);
@@ -95,6 +97,7 @@ std::optional<SimpleFilm> plane_of(const FilmMesh& mesh,
   }
   area.normalize();
   area = area.dot(normal) < 0.0 ? Vec3(-area) : area;
+  // All rims must lie in that plane, and the film as near as it can tell.
   for (const FilmRim& rim : rims) {
     for (int k = 0; k < 4 * kRimSamples; ++k) {
       const Vec3 p =
@@ -228,12 +231,15 @@ std::optional<SimpleFilm> sphere_of(const FilmMesh& mesh,
   SimpleFilm film;
   film.low = -0.5 * kHalfTurn;
   film.high = 0.5 * kHalfTurn;
+  // A bubble: the least-squares sphere, its radius made even by area.
   if (rims.empty()) {
     if (!fit_ball(mesh, surface.center, surface.radius)) {
       return {};
     }
     surface.radius = mean_distance(mesh, surface.center);
   } else {
+    // On a circle of radius a the centre is on its axis at height t and the
+    // radius sqrt(a^2 + t^2): one unknown.
     const RimCircle& low = rims[0];
     Vec3 mean = Vec3::Zero();
     for (const Vec3& p : mesh.points) {
@@ -243,6 +249,7 @@ std::optional<SimpleFilm> sphere_of(const FilmMesh& mesh,
     surface.axis = low.normal.dot(up) < 0.0 ? Vec3(-low.normal) : low.normal;
     surface.zero = low.zero;
     double t = even_height(mesh, low, surface.axis);
+    // A second circle, radius b at height h: a^2 + t^2 = b^2 + (h - t)^2.
     if (rims.size() == 2) {
       const double h = up.norm();  // both circles lie on it
       t = (h * h + std::pow(rims[1].radius, 2) - std::pow(low.radius, 2)) /
@@ -255,6 +262,7 @@ std::optional<SimpleFilm> sphere_of(const FilmMesh& mesh,
     film.low = std::atan2(-t, low.radius);
     film.low_rim = 0;
   }
+  // Accepted within the limit, or as far off as a chord leaves the sphere.
   for (const Vec3& p : mesh.points) {
     film.off = std::max(film.off,
                         std::abs((p - surface.center).norm() - surface.radius));

@@ -64,9 +64,9 @@ class PartPoints {
   std::vector<int> owner_;  // per point: its part, -2: several
 };
 
-Surrounding look(const SurfaceMesh& mesh, const Chambers& chambers,
-                 const FacetTree& tree, int from, const Vec3& direction,
-                 int part) {
+Surrounding surrounding_along(const SurfaceMesh& mesh, const Chambers& chambers,
+                              const FacetTree& tree, int from,
+                              const Vec3& direction, int part) {
   Surrounding seen;
   const auto hit =
       tree.first_hit(mesh.points[from], direction, chambers.part_of, part);
@@ -127,7 +127,8 @@ std::vector<std::optional<Surrounding>> find_surroundings(
     for (const Vec3& direction : kDirections) {
       const int from = votes < 3 ? points.outermost(part, direction) : -1;
       if (from >= 0) {
-        seen[votes++] = look(mesh, chambers, tree, from, direction, part);
+        seen[votes++] =
+            surrounding_along(mesh, chambers, tree, from, direction, part);
       }
     }
     if (votes > 0) {

@@ -228,8 +228,8 @@ bool overlap_at_corner(const Corners& s, const Corners& t, const Shared& shared,
 
 }  // namespace
 
-PairVerdict judge_pair(const SurfaceMesh& mesh, int f, int g,
-                       double tolerance) {
+PairVerdict classify_pair(const SurfaceMesh& mesh, int f, int g,
+                          double tolerance) {
   const Corners s = corners_of(mesh, f);
   const Corners t = corners_of(mesh, g);
   const Shared shared = shared_corners(mesh.facets[f], mesh.facets[g]);

@@ -23,7 +23,8 @@ struct PairVerdict {
 /// distance below `tolerance` [length].
 /// Separating planes first (Gottschalk 1996), then orientation signs in
 /// extended precision, then the distance of corners and edges (Ericson 2005).
-PairVerdict judge_pair(const SurfaceMesh& mesh, int f, int g, double tolerance);
+PairVerdict classify_pair(const SurfaceMesh& mesh, int f, int g,
+                          double tolerance);
 
 /// Calls visit(f, g), f < g, once for every pair of `facets` whose bounding
 /// boxes are within `tolerance`, in a fixed order, until visit returns false.

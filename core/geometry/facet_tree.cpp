@@ -119,6 +119,7 @@ std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
   if (!nodes.empty()) {
     stack.push_back(0);
   }
+  // Depth first through the boxes, those beyond the best hit left out.
   while (!stack.empty()) {
     const int id = stack.back();
     stack.pop_back();
@@ -128,6 +129,7 @@ std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
       continue;
     }
     if (!node.is_leaf()) {
+      // The nearer child goes on top: its hits prune the other one.
       const double near = reach(nodes[id + 1].bounds, origin, inverse);
       const double far =
           reach(nodes[node.second_child].bounds, origin, inverse);
@@ -140,6 +142,7 @@ std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
       if (part_of[f] == part) {
         continue;
       }
+      // Equal distances go to the lower facet, whatever the order of the tree.
       const double at = meet(mesh_, f, origin, direction);
       if (at < best.distance ||
           (at == best.distance && at < kNever && f < best.facet)) {

@@ -214,7 +214,7 @@ class Checker {
         mesh_, facets, tolerance_,
         [&](int f, int g) {
           last = f;
-          const PairVerdict verdict = judge_pair(mesh_, f, g, tolerance_);
+          const PairVerdict verdict = classify_pair(mesh_, f, g, tolerance_);
           return verdict.state == PairState::Apart ||
                  add(verdict.state == PairState::Crossing
                          ? FindingKind::Crossing

@@ -77,6 +77,7 @@ std::vector<int> first_half_edges(const std::vector<Triangle>& facets) {
     int other;
     int half;
   };
+  // Counting sort: sizes of the buckets, their starts, then the half edges.
   std::vector<int> start(points + 1, 0);
   const auto each = [&](const auto& visit) {
     for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -95,6 +96,8 @@ std::vector<int> first_half_edges(const std::vector<Triangle>& facets) {
   std::vector<Half> halves(3 * facets.size());
   std::vector<int> fill(start.begin(), start.end() - 1);
   each([&](int point, const Half& half) { halves[fill[point]++] = half; });
+  // Within a bucket equal larger points are one edge; filled in rising order,
+  // the first of them is the lowest half edge.
   std::vector<int> first(3 * facets.size());
   for (int p = 0; p < points; ++p) {
     Half* begin = halves.data() + start[p];

@@ -107,6 +107,8 @@ std::optional<Vec3> meeting_place(const CurveShape& a, const Chords& first,
       (second.low.array() > first.high.array() + reach).any()) {
     return std::nullopt;
   }
+  // The nearest pair of chords, by the distance of two segments; boxes widened
+  // by the reach leave out what cannot meet.
   Nearest best;
   std::size_t best_i = 0;
   std::size_t best_j = 0;
@@ -129,6 +131,8 @@ std::optional<Vec3> meeting_place(const CurveShape& a, const Chords& first,
   if (!(best.distance <= reach)) {
     return std::nullopt;
   }
+  // Places on chords become parameters of the curves, and a pattern search
+  // slides both points together on the exact curves.
   const auto parameter = [](const Chords& chords, std::size_t k, double share) {
     const double next = k + 1 < chords.t.size() ? chords.t[k + 1] : 1.0;
     return chords.t[k] + share * (next - chords.t[k]);

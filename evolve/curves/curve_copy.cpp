@@ -88,6 +88,8 @@ Drift offset_sides(const Polyline& line, const Dual1& distance,
       around.push_back(*via[k]);
     }
   }
+  // Outward directions in the mean plane at both ends of each side: of a
+  // straight side one, of an arc across its tangents there.
   const Vector1 normal = plane_normal(around);
   std::vector<Vector1> out_at_start(n);
   std::vector<Vector1> out_at_end(n);
@@ -104,11 +106,14 @@ Drift offset_sides(const Polyline& line, const Dual1& distance,
     const Vector1 turn = arc.u.cross(arc.v);
     out_at_start[k] = outward(arc.v, normal);
     out_at_end[k] = outward(turn.cross(next - arc.center), normal);
+    // The arc's own point moves by the distance across its tangent.
     const Vector1 out = outward(turn.cross(*via[k] - arc.center), normal);
     const Vector1 moved = *via[k] + distance * out;
     via_points[k] = value_of(moved);
     via_rates[k] = rate_of(moved);
   }
+  // Corners move by d (n1 + n2) / (1 + n1 . n2), where the offset sides meet.
+  // All of it runs over duals, so rates come along.
   MovedPoints result;
   for (std::size_t k = 0; k < n; ++k) {
     const Vector1 way = mitre(out_at_end[(k + n - 1) % n], out_at_start[k]);

@@ -66,7 +66,7 @@ class CommandParser {
            (depth_ == 0 && token.first_on_line);
   }
 
-  bool taken(std::string_view symbol) {
+  bool skip_if(std::string_view symbol) {
     if (!lexer_.peek().is(symbol)) {
       return false;
     }
@@ -75,7 +75,7 @@ class CommandParser {
   }
 
   void expect(std::string_view symbol) {
-    if (!taken(symbol)) {
+    if (!skip_if(symbol)) {
       lexer_.fail_here(fmt::format("'{}' is expected", symbol));
     }
   }
@@ -115,7 +115,7 @@ class CommandParser {
     FeStatement result = made(FeStatement::Kind::Block, lexer_.take());
     ++depth_;
     while (!taken_brace()) {
-      if (taken(";")) {
+      if (skip_if(";")) {
         continue;
       }
       if (lexer_.peek().kind == FeToken::Kind::End) {
@@ -244,7 +244,7 @@ class CommandParser {
   FeStatement do_loop() {
     FeStatement result = made(FeStatement::Kind::DoWhile, lexer_.take());
     result.body.push_back(statement());
-    taken(";");
+    skip_if(";");
     expect_word("while");
     behind_block_ = false;
     result.values.push_back(expression());
@@ -305,7 +305,7 @@ class CommandParser {
     }
     do {
       result.values.push_back(expression());
-    } while (taken(","));
+    } while (skip_if(","));
     return result;
   }
 
@@ -369,7 +369,7 @@ class CommandParser {
           fmt::format("a command or ':=' is expected, found '{}'", sign.text));
     }
     result.name = sign.text + "=";
-    if ((sign.is("+") || sign.is("-")) && taken(sign.text)) {
+    if ((sign.is("+") || sign.is("-")) && skip_if(sign.text)) {
       FeExpression one;
       one.number = 1.0;
       result.values.push_back(std::move(one));

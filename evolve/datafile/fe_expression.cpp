@@ -76,7 +76,7 @@ class Parser {
            !token.before_space;
   }
 
-  bool taken(std::string_view symbol) {
+  bool skip_if(std::string_view symbol) {
     if (!lexer_.peek().is(symbol)) {
       return false;
     }
@@ -102,7 +102,7 @@ class Parser {
     }
     const FePlace place = lexer_.take().place;
     const int yes = choice();
-    if (!taken(":")) {
+    if (!skip_if(":")) {
       lexer_.fail_here("'?' needs its ':'");
     }
     return node(FeOperator::Choose, place, condition, yes, choice());
@@ -206,7 +206,7 @@ class Parser {
       const FePlace place = lexer_.take().place;
       return node(FeOperator::Negate, place, sign());
     }
-    if (taken("+")) {
+    if (skip_if("+")) {
       const Level level(*this);
       return sign();
     }
@@ -302,9 +302,9 @@ class Parser {
       FeToken name = lexer_.take();
       std::array<int, 2> index{-1, -1};
       for (int& k : index) {
-        if (taken("[")) {
+        if (skip_if("[")) {
           k = difference();
-          if (!taken("]")) {
+          if (!skip_if("]")) {
             lexer_.fail_here("']' is expected");
           }
         }
@@ -314,7 +314,7 @@ class Parser {
                             name.place, owner, index[0], index[1]);
       expression_.nodes[made].name = std::move(name.text);
       owner = made;
-    } while (taken("."));
+    } while (skip_if("."));
     return owner;
   }
 
@@ -322,7 +322,7 @@ class Parser {
   int aggregate() {
     const Level level(*this);
     FeToken name = lexer_.take();
-    if (!taken("(")) {
+    if (!skip_if("(")) {
       lexer_.fail_here(fmt::format("'(' is expected behind {}", name.text));
     }
     const int elements = path();
@@ -336,8 +336,8 @@ class Parser {
       lexer_.take();
       condition = difference();
     }
-    const int value = taken(",") ? difference() : -1;
-    if (!taken(")")) {
+    const int value = skip_if(",") ? difference() : -1;
+    if (!skip_if(")")) {
       lexer_.fail_here("')' is expected");
     }
     const int made =
@@ -353,7 +353,7 @@ class Parser {
     ++brackets_;
     std::array<int, 3> arguments{-1, -1, -1};
     for (int k = 0; k < wanted; ++k) {
-      if (k > 0 && !taken(",")) {
+      if (k > 0 && !skip_if(",")) {
         lexer_.fail_here(fmt::format("{}() has {} arguments; a ',' is expected",
                                      name.text, wanted));
       }

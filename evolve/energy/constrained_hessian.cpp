@@ -105,10 +105,13 @@ bool ConstrainedHessian::factorize(const SparseMatrix& hessian,
   if (!std::isfinite(matrix.coeffs().sum())) {
     return false;
   }
+  // A + shift M, M the metric: lifts the spectrum where a minimum is sought.
   if (shift > 0.0) {
     add(shift * metric);
   }
   const auto n = static_cast<double>(std::max<Eigen::Index>(1, matrix.cols()));
+  // L D L' without pivoting; a zero pivot is cured by a small multiple of the
+  // mean diagonal.
   for (int attempt = 0; !factor_.factorize(matrix); ++attempt) {
     if (attempt == 3) {
       return false;
@@ -117,10 +120,12 @@ bool ConstrainedHessian::factorize(const SparseMatrix& hessian,
   }
   constraints_ = constraints;
   const auto m = static_cast<int>(constraints.cols());
+  // Sylvester: the negative pivots in D are the negative eigenvalues of A.
   index_ = factor_.negative_pivots();
   if (m == 0) {
     return true;
   }
+  // B' A^-1 B, the Schur complement of the saddle system up to its sign.
   inverse_constraints_ = factor_.solve(constraints_);
   Eigen::MatrixXd schur = constraints_.transpose() * inverse_constraints_;
   schur = 0.5 * (schur + schur.transpose()).eval();
@@ -131,6 +136,9 @@ bool ConstrainedHessian::factorize(const SparseMatrix& hessian,
   if (!scaled.allFinite()) {
     return false;
   }
+  // Pseudo-inverse by its eigenvalues. Positive ones are the negative ones of
+  // S = -B' A^-1 B, hence index = neg(A) + neg(S) - m (Nocedal, Wright 2006,
+  // theorem 16.3).
   const auto eigen = symmetric_eigen(scaled);
   VectorX inverse = eigen.values;
   const double largest = inverse.cwiseAbs().maxCoeff();

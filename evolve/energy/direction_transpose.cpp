@@ -58,6 +58,7 @@ void FilmSpace::transpose_directions(const Points& points,
                                      const Points& by_directions,
                                      Points& sum) const {
   refuse_walls(*this);
+  // Area-weighted normals at the vertices, before they are made unit length.
   Points normal2(points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (film_[f] != 0) {
@@ -68,6 +69,8 @@ void FilmSpace::transpose_directions(const Points& points,
       }
     }
   }
+  // Backwards through the unit normals of films and the pairs of normals of
+  // lines; the latter depend on the ends of the line alone.
   Points by_normal2(points.size(), Vec3::Zero());
   for (int v = 0; v < vertex_count(); ++v) {
     const int at = first_[v];
@@ -82,6 +85,8 @@ void FilmSpace::transpose_directions(const Points& points,
       sum[ends[0]] -= by_way;
     }
   }
+  // Backwards through the facets' area vectors N, which add to the normals of
+  // all three corners.
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (film_[f] == 0) {
       continue;
@@ -100,6 +105,7 @@ void FilmSpace::transpose_directions(const Points& points,
 Points FilmSpace::direction_rates(const Points& points,
                                   const Points& motion) const {
   refuse_walls(*this);
+  // Area-weighted normals and their rates: N = b x c, dN = db x c + b x dc.
   Points normal2(points.size(), Vec3::Zero());
   Points rate2(points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
@@ -118,6 +124,7 @@ Points FilmSpace::direction_rates(const Points& points,
       rate2[v] += rate;
     }
   }
+  // Through the unit length, dn = (I - n n') dN / |N|.
   Points result(vertex_.size(), Vec3::Zero());
   for (int v = 0; v < vertex_count(); ++v) {
     const int at = first_[v];
@@ -127,6 +134,8 @@ Points FilmSpace::direction_rates(const Points& points,
       const Edge& ends = line_ends(v);
       const Vec3 way = points[ends[1]] - points[ends[0]];
       if (!way.isZero(0.0)) {
+        // A line has n0 = unit(t x e) and n1 = t x n0, e a fixed axis, so that
+        // dn1 = dt x n0 + t x dn0.
         const Vec3 t = way.normalized();
         const Vec3 turned = unit_rate(way, motion[ends[1]] - motion[ends[0]]);
         const Vec3 axis = line_axis(t);

@@ -50,6 +50,8 @@ void FilmEnergy::build_pattern() {
       }
     }
   };
+  // The first pass counts entries per column and where the element matrix of
+  // each facet, a packed lower triangle, starts.
   element_start_.reserve(facets_.size() + 1);
   element_start_.push_back(0);
   for (std::size_t f = 0; f < facets_.size(); ++f) {
@@ -58,6 +60,7 @@ void FilmEnergy::build_pattern() {
     element_start_.push_back(element_start_.back() + c * (c + 1) / 2);
   }
   std::partial_sum(count.begin(), count.end(), count.begin());
+  // The second pass puts the rows in their columns: a counting sort.
   std::vector<int> rows(count.back());
   {
     std::vector<int> at(count.begin(), count.end() - 1);
@@ -65,6 +68,8 @@ void FilmEnergy::build_pattern() {
       for_pairs(f, [&](int a, int b) { rows[at[b]++] = a; });
     }
   }
+  // Pairs that several facets share become one entry of the lower triangle in
+  // compressed columns.
   std::vector<int> outer(n + 1, 0);
   int kept = 0;
   for (int b = 0; b < n; ++b) {
@@ -83,6 +88,7 @@ void FilmEnergy::build_pattern() {
   std::copy(outer.begin(), outer.end(), pattern_.outerIndexPtr());
   std::copy(rows.begin(), rows.end(), pattern_.innerIndexPtr());
   std::fill(pattern_.valuePtr(), pattern_.valuePtr() + kept, 0.0);
+  // Where every element entry goes, so that assembly is a plain sum.
   slots_.reserve(element_start_.back());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     for_pairs(f, [&](int a, int b) {
@@ -125,6 +131,8 @@ void FilmEnergy::elements(const Points& points, const Points& directions,
     if (t == 0.0 && p == 0.0) {
       continue;
     }
+    // Second derivatives along the corners' directions of T A - p V, with the
+    // facet's area A and the volume V of its cone to the origin.
     const FacetFrame frame = frame_of(points, facets_[f], origin);
     const double area_factor = frame.area2 > 0.0 ? 0.5 * t / frame.area2 : 0.0;
     int slot = element_start_[f];
@@ -138,6 +146,8 @@ void FilmEnergy::elements(const Points& points, const Points& directions,
       for (int j = corner_start_[f]; j <= i; ++j) {
         const int b = corners_[j].corner;
         const Vec3& w = directions[corners_[j].unknown];
+        // The turn of the normal costs u_i . u_j / 4A times T; N itself is
+        // bilinear in two different corners, and so is the cone's volume.
         double sum = area_factor * u_i.dot(u[j - corner_start_[f]]);
         if (a != b) {
           const Vec3 twist = w.cross(v);
@@ -149,6 +159,8 @@ void FilmEnergy::elements(const Points& points, const Points& directions,
       }
     }
   }
+  // Fields bring their own second derivatives; walls bring the curvature of the
+  // surface that vertices slide on, (grad L . n) II.
   add_terms(points, pressure, directions, out);
   if (space_.has_walls()) {
     add_wall_curvature(points, directions, gradient, out);

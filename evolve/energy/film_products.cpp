@@ -184,6 +184,7 @@ Points FilmProducts::third_times(const Points& points,
     const Vec3& n = frame.normal;
     Vec3 by_first = Vec3::Zero();
     Vec3 by_normal = Vec3::Zero();
+    // Derivatives of T a'' by N1 and N; `bend` is N2, the bilinear part.
     if (t != 0.0) {
       const Vec3 bend = (d[1] - d[0]).cross(d[2] - d[0]);
       const Vec3 m = moved.normal;  // over |N| already
@@ -192,12 +193,16 @@ Points FilmProducts::third_times(const Points& points,
                        n.dot(moved.normal2) / frame.area2 * m -
                        0.5 * m.squaredNorm() * n);
     }
+    // Chain rule to the corners: N changes by e_i x dx_i, N1 by the motion's
+    // own e_i x dx_i; the cone's part is explicit.
     for (int i = 0; i < 3; ++i) {
       const Vec3 of_cone = d[(i + 1) % 3].cross(d[(i + 2) % 3]);
       sum[at[i]] += by_normal.cross(frame.opposite[i]) +
                     by_first.cross(moved.opposite[i]) - p / 3.0 * of_cone;
     }
   }
+  // Third derivatives of fields: a difference of their exact second ones along
+  // the motion, of fourth order in a small step.
   if (has_terms()) {
     double most = 0.0;
     for (const Vec3& d : motion) {

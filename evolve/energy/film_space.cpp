@@ -140,6 +140,8 @@ void FilmSpace::orient(const std::vector<Triangle>& facet_edges,
                        const std::vector<Triangle>& facets,
                        const std::vector<char>& film, int edge_count) {
   const auto count = static_cast<int>(facets.size());
+  // Which film facets meet at an edge; where more than two do, a line of the
+  // film, orientation does not pass.
   std::vector<Edge> pair(edge_count, Edge{-1, -1});
   std::vector<char> many(edge_count, 0);
   for (int f = 0; f < count; ++f) {
@@ -164,6 +166,8 @@ void FilmSpace::orient(const std::vector<Triangle>& facet_edges,
     }
     return -1;
   };
+  // Neighbours agree when they run opposite ways along their edge. If all do,
+  // the facets' own order serves.
   bool agree = true;
   for (int e = 0; e < edge_count && agree; ++e) {
     agree = many[e] != 0 || pair[e][1] < 0 ||
@@ -172,6 +176,8 @@ void FilmSpace::orient(const std::vector<Triangle>& facet_edges,
   if (agree) {
     return;
   }
+  // Otherwise breadth first from a seed per connected part: a neighbour is
+  // turned where it runs the same way. A one-sided part keeps a seam.
   turn_.assign(count, 0);
   std::vector<int> queue;
   for (int seed = 0; seed < count; ++seed) {
@@ -203,6 +209,8 @@ const Edge& FilmSpace::line_ends(int vertex) const {
 }
 
 Points FilmSpace::directions(const Points& points) const {
+  // Twice the area vectors about each vertex: their sum points along the
+  // area-weighted normal.
   Points sum(points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (film_[f] == 0) {
@@ -225,6 +233,9 @@ Points FilmSpace::directions(const Points& points) const {
       continue;
     }
     const int at = first_[v];
+    // The directions span the normal space of the film: the normal on a film,
+    // two across the line on a line, all three at a junction; walls take away
+    // what leaves them.
     if (!wall_of_.empty() && wall_of_[v] >= 0) {
       wall_directions(wall_of_[v], points, sum[v], result);
     } else if (r == 1) {

@@ -26,6 +26,8 @@ LaplaceSystem cotan_laplacian(const SurfaceMesh& mesh,
   std::vector<Edge> edges;
   std::vector<Triangle> facet_edges;
   list_edges(mesh.facets, edges, facet_edges);
+  // Edge weights (cot alpha + cot beta) / 2 of the opposite angles: the
+  // Dirichlet energy of linear functions (Pinkall, Polthier 1993).
   std::vector<double> weight(edges.size(), 0.0);
   std::vector<char> used(edges.size(), 0);
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
@@ -42,6 +44,8 @@ LaplaceSystem cotan_laplacian(const SurfaceMesh& mesh,
       used[edge] = 1;
     }
   }
+  // Obtuse facets give weights below 0. Held above a small share of the mean,
+  // the extension keeps to the maximum principle.
   if (weights == CotanWeights::Clamped) {
     double sum = 0.0;
     double count = 0.0;
@@ -54,6 +58,9 @@ LaplaceSystem cotan_laplacian(const SurfaceMesh& mesh,
       w = std::max(w, least);
     }
   }
+  // The rows of the unknowns: diagonal and couplings among them in `inner`
+  // (lower triangle), couplings to given vertices in `outer`, on the right
+  // side.
   std::vector<Eigen::Triplet<double>> inner;
   std::vector<Eigen::Triplet<double>> outer;
   inner.reserve(static_cast<std::size_t>(unknowns) + 3 * edges.size());

@@ -56,6 +56,9 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
   const Eigen::Index n = metric.size();
   const Eigen::Index room = std::max<Eigen::Index>(0, n - constraints_.cols());
   const auto wanted = std::min<Eigen::Index>(count, room);
+  // The inverse on the constraint space in the metric's coordinates, M^1/2
+  // (A^-1 - A^-1 B S^-1 B' A^-1) M^1/2 with S = B' A^-1 B here: symmetric, and
+  // its largest eigenvalues are the inverses of the lowest.
   const VectorX root = metric.cwiseMax(1e-300).cwiseSqrt();
   const auto apply = [&](const Eigen::MatrixXd& v) -> Eigen::MatrixXd {
     Eigen::MatrixXd result = factor_.solve(root.asDiagonal() * v);
@@ -72,6 +75,8 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
   if (wanted == 0) {
     return result;
   }
+  // Block Lanczos with full orthogonalisation: the Krylov space of a fixed
+  // start block, one block wider at a time.
   Eigen::MatrixXd basis(n, most);
   Eigen::MatrixXd image(n, most);
   Eigen::MatrixXd small(most, most);  // upper triangle
@@ -85,6 +90,7 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
     block = image.middleCols(before, added);
     small.topRows(built).middleCols(before, added) =
         basis.leftCols(built).transpose() * block;
+    // Rayleigh-Ritz on the space so far, and the residual of each pair.
     const Eigen::MatrixXd upper = small.topLeftCorner(built, built);
     const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
     const auto ritz = symmetric_eigen(full);
@@ -104,6 +110,7 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
             "the {} lowest eigenvalues of a film were not found in {} steps",
             wanted, built));
       }
+      // Back from the inverse and from the metric's coordinates.
       result.eigenvalues = theta.cwiseInverse();
       result.modes = root.cwiseInverse().asDiagonal() * modes;
       return result;

@@ -83,6 +83,8 @@ Sides agree(const FilmComplex& complex, const ComplexBody& body,
     int to;
     int factor;
   };
+  // Surfaces as a graph with an edge of sign +1 or -1: facets that run opposite
+  // ways along a common edge are on the same side.
   std::vector<std::vector<Link>> links(complex.surfaces.size());
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (uses[e].empty()) {
@@ -97,6 +99,8 @@ Sides agree(const FilmComplex& complex, const ComplexBody& body,
     links[a.surface].push_back({b.surface, factor});
     links[b.surface].push_back({a.surface, factor});
   }
+  // Signs spread depth first over each connected part. A loop of links whose
+  // signs multiply to -1 has one side only and encloses nothing.
   Sides sides;
   sides.sign.assign(complex.surfaces.size(), 0);
   sides.part.assign(complex.surfaces.size(), -1);

@@ -160,6 +160,8 @@ FacetParts facet_parts(const FilmSystem& system) {
       all.insert(all.end(), cap.start->points.begin(), cap.start->points.end());
     }
   }
+  // Points nearer than a share of the system's size become one, so that parts
+  // join where they touch.
   FacetParts result;
   Welder welder(result.points, kWeld * bounding_diagonal(all));
   for (const FilmSpec& film : system.films) {
@@ -168,6 +170,8 @@ FacetParts facet_parts(const FilmSystem& system) {
   for (const CapSpec& cap : system.caps) {
     add_part(system, cap, "solid", cap.rims, welder, result);
   }
+  // All parts as one set of facets, each with its owner, to list what uses each
+  // edge.
   std::vector<Triangle> facets;
   std::vector<PartUse> owner;
   for (std::size_t p = 0; p < result.parts.size(); ++p) {
@@ -185,6 +189,8 @@ FacetParts facet_parts(const FilmSystem& system) {
       uses[facet_edges[f][k]].push_back({owner[f].part, owner[f].facet, k});
     }
   }
+  // An edge that a part uses once is its rim, shared where other parts have it
+  // too.
   for (const std::vector<PartUse>& at : uses) {
     add_rims(at, result);
   }

@@ -182,7 +182,7 @@ class Nesting {
 
   void find_crossings() {
     for_each_near_pair(mesh_, all_, 0.0, [&](int f, int g) {
-      const PairVerdict verdict = judge_pair(mesh_, f, g, 0.0);
+      const PairVerdict verdict = classify_pair(mesh_, f, g, 0.0);
       if (verdict.state == PairState::Crossing) {
         crossed_[std::minmax(mesh_.facet_label[f], mesh_.facet_label[g])] =
             verdict.position;

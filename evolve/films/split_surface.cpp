@@ -125,6 +125,8 @@ int split_surface(FilmComplex& complex, const std::string& surface,
                   const Expression& where, const Region& region) {
   const int old_label = checked_surface(complex, surface, region);
   const auto label = static_cast<int>(complex.surfaces.size());
+  // The region is the facets where the expression is above 0. It must leave
+  // some of both, or there is no border.
   std::vector<int> chosen;
   int others = 0;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
@@ -147,6 +149,8 @@ int split_surface(FilmComplex& complex, const std::string& surface,
     complex.mesh.facet_label[f] = label;
   }
   complex.mesh.labels.push_back(region.name);
+  // The new surface inherits the rest, its tension apart: bodies see it on the
+  // same side, quantities count it too.
   ComplexSurface made = complex.surfaces[old_label];
   made.name = region.name;
   made.liquid = region.liquid;
@@ -167,6 +171,7 @@ int split_surface(FilmComplex& complex, const std::string& surface,
       on.push_back(label);
     }
   }
+  // A solid region does not move, and the border becomes a line of its own.
   if (!region.liquid) {
     fix_vertices(complex, label);
   }

@@ -58,7 +58,11 @@ Points FilmAdjoint::direct(const FilmCovector& response) const {
 
 FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
   Result result;
+  // g: what the response knows by the vertices; areas, volumes and the energy
+  // folded in.
   result.base = direct(response);
+  // The saddle system [A -B; B' 0] [mu; -nu] = [-n . g; j], that of Newton's
+  // steps, solved with the factor at the film.
   const std::vector<int>& held = saddle_.held();
   VectorX by_pressure = VectorX::Zero(saddle_.constraints().cols());
   for (std::size_t k = 0; k < held.size(); ++k) {
@@ -68,6 +72,8 @@ FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
   const energy::ConstrainedHessian::Step step =
       saddle_.solve(energy_.along(result.base, directions_), by_pressure);
   const VectorX& mu = step.dh;
+  // G = g + (E_xx - sum p V_xx) d + sum nu V_x with d = sum mu n: the
+  // derivative by the film's base at fixed directions.
   Points motion(points_.size(), Vec3::Zero());  // sum mu n
   for (int i = 0; i < energy_.unknowns(); ++i) {
     motion[energy_.vertices()[i]] += mu[i] * directions_[i];
@@ -80,6 +86,8 @@ FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
     result.volumes[held[k]] = -nu;
     add(nu, saddle_.functional_slopes()[held[k]], result.base);
   }
+  // dJ/dp = j - d . V_x where a pressure is given, and dJ/dT_s = d . dA_s/dx +
+  // dJ/dE A_s.
   for (int b = 0; b < energy_.functionals(); ++b) {
     if (!targets_.bodies[b].volume) {
       result.pressures[b] =
@@ -94,6 +102,8 @@ FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
                              ? result.tensions[s] + entry(response.tensions, s)
                              : 0.0;
   }
+  // N_i = h_i G_i + mu_i (E_x - sum p V_x)_i by the directions, carried on to
+  // the base points that make them.
   Points by_directions = response.directions;
   by_directions.resize(directions_.size(), Vec3::Zero());
   for (int i = 0; i < energy_.unknowns(); ++i) {

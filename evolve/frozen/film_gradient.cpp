@@ -157,6 +157,7 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
           VectorX::Zero(static_cast<Eigen::Index>(complex.surfaces.size())),
       .volumes = VectorX::Zero(energy->functionals()),
       .pressures = VectorX::Zero(energy->functionals())};
+  // Rim points move at fixed parameters of their curves.
   const Points still(complex.vertices.size(), Vec3::Zero());
   for (const RimGradient& rim : rim_gradients(still)) {
     const curves::Curve* curve = find_named(system.curves, rim.curve);
@@ -175,7 +176,10 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
       }
     }
   }
+  // The rest of the base follows by the constant weights of the discrete
+  // harmonic extension, dX = C dr.
   result.base = carry->rates(result.base);
+  // Tensions, volumes and pressures are direct numbers of the system.
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
     const films::FilmSpec* film =
         find_named(rates.films, complex.surfaces[s].name);

@@ -309,6 +309,7 @@ FilmModel FilmModel::freeze(const films::FilmSystem& initial,
                     options.refinements));
   }
   check_numbers(initial);
+  // The reference film: its topology and mesh are kept for all designs.
   const Timer timer;
   auto impl = std::make_unique<Impl>();
   settle::SettleOptions settle{.monitor = options.monitor};
@@ -317,6 +318,8 @@ FilmModel FilmModel::freeze(const films::FilmSystem& initial,
   } catch (const ExpressionError& error) {
     throw InvalidInput(no_value(error));
   }
+  // The solid's surface as constant weights of film vertices: corners at
+  // vertices of one level, mid-sides on the next finer one.
   std::vector<int> corner(impl->meshed.points.size());
   std::iota(corner.begin(), corner.end(), 0);
   SurfaceMesh topology = impl->meshed;
@@ -332,6 +335,8 @@ FilmModel FilmModel::freeze(const films::FilmSystem& initial,
   }
   impl->targets = energy::targets_of(impl->complex);
   FilmModel model(std::move(impl));
+  // Settled once more along carried directions, so that the reference is what
+  // the frozen model gives at the initial design.
   if (!model.impl_->reference.failure) {
     model.impl_->carry.emplace(model.impl_->complex,
                                model.impl_->energy->order());

@@ -62,7 +62,7 @@ void refuse_crossing(const SurfaceMesh& mesh, const std::vector<int>& film,
   std::sort(facets.begin(), facets.end());
   for_each_near_pair(mesh, facets, 0.0, [&](int f, int g) {
     if (mesh.facet_label[f] != mesh.facet_label[g]) {
-      const PairVerdict verdict = judge_pair(mesh, f, g, 0.0);
+      const PairVerdict verdict = classify_pair(mesh, f, g, 0.0);
       if (verdict.state == PairState::Crossing) {
         const Vec3& at = verdict.position;
         throw InvalidInput(fmt::format(

@@ -21,6 +21,8 @@ Vec3 tangent(const energy::FilmSpace& space, const Points& points, int a,
 
 void bend_midpoints(const energy::FilmSpace& coarse,
                     const Points& coarse_points, Refinement& refinement) {
+  // `rise` is the part of an edge along a vertex normal: the edge without it is
+  // the tangent that the film has there.
   const Points directions = coarse.directions(coarse_points);
   std::vector<char> walled(coarse.vertex_count(), 0);
   for (const int v : coarse.walled()) {
@@ -43,6 +45,9 @@ void bend_midpoints(const energy::FilmSpace& coarse,
     Vec3 move = Vec3::Zero();
     const bool line_a = runs_to(coarse, a, b);
     const bool line_b = runs_to(coarse, b, a);
+    // On a line: the middle of the cubic Hermite arc with the line's tangents
+    // at both ends, or of the parabola with one; only across the edge, so that
+    // spacing stays.
     if (line_a || line_b) {
       const double length = way.norm();
       const double share = line_a && line_b ? 0.125 : 0.25;
@@ -54,12 +59,15 @@ void bend_midpoints(const energy::FilmSpace& coarse,
       }
       move -= move.dot(way) / way.squaredNorm() * way;
     } else if (smooth(a) && smooth(b)) {
+      // The same for a smooth film, tangents across the normals: the middle of
+      // a PN triangle's edge (Vlachos et al. 2001).
       move = -0.125 * (rise(a, way) - rise(b, way));
     } else if (smooth(a)) {
       move = -0.25 * rise(a, way);
     } else if (smooth(b)) {
       move = 0.25 * rise(b, way);
     }
+    // A bend of more than a quarter of the edge is no smooth film's.
     if (move.allFinite() && move.norm() < 0.25 * way.norm()) {
       fine.mesh.points[made] += move;
     }

@@ -253,6 +253,8 @@ void check_edges(const films::FilmComplex& complex) {
     int label = -1;
     bool mixed = false;
   };
+  // Per edge the number of facets, the balance of their senses (0: one each
+  // way), and whether several surfaces meet.
   const films::EdgeMarks marks(complex);
   std::vector<Count> counts(edges.size());
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
@@ -270,6 +272,8 @@ void check_edges(const films::FilmComplex& complex) {
     const auto [a, b] = edges[e];
     const Count& count = counts[e];
     const Vec3 p = 0.5 * (mesh.points[a] + mesh.points[b]);
+    // One facet: a free end, allowed on curves and marks only. Two of one
+    // surface: neighbours of a consistent orientation.
     const bool on_curve =
         complex.vertices[a].kind == films::VertexKind::OnCurve &&
         complex.vertices[b].kind == films::VertexKind::OnCurve;
@@ -297,6 +301,7 @@ void check_closed(const films::FilmComplex& complex,
   for (const films::BodySide& side : body.sides) {
     signs[side.surface] += side.sign;
   }
+  // The body's boundary as one set of facets that all run outward.
   SurfaceMesh shell;
   shell.points = complex.mesh.points;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
@@ -312,6 +317,8 @@ void check_closed(const films::FilmComplex& complex,
   std::vector<Edge> edges;
   std::vector<Triangle> facet_edges;
   list_edges(shell.facets, edges, facet_edges);
+  // Its boundary chain is zero where every edge is used as often each way.
+  // Other edges must end where walls or columns make up for the open part.
   std::vector<std::array<int, 2>> runs(edges.size(), {0, 0});
   for (std::size_t f = 0; f < shell.facets.size(); ++f) {
     for (int k = 0; k < 3; ++k) {
@@ -337,6 +344,7 @@ void check_closed(const films::FilmComplex& complex,
           body.name, edges[e][0], edges[e][1], runs[e][0], runs[e][1]));
     }
   }
+  // Closed and outward means a volume above 0.
   const double volume = enclosed_volume(shell);
   if (closed && !(volume > 0.0)) {
     throw MeshError(fmt::format("body '{}' is inside out: its volume is {}",

@@ -129,12 +129,15 @@ int FilmCutter::add_surface(int like, int ahead, int behind) {
 
 void FilmCutter::tidy() {
   SurfaceMesh& mesh = complex_.mesh;
+  // Marks of collapsed edges, whose ends became one, go.
   auto& edges = complex_.edges;
   edges.erase(std::remove_if(edges.begin(), edges.end(),
                              [](const films::ComplexEdge& edge) {
                                return edge.a == edge.b;
                              }),
               edges.end());
+  // A vertex stays while a live facet or a mark names it; the rest are numbered
+  // anew in their old order.
   std::vector<int> number(mesh.points.size(), -1);
   for (const Triangle& t : mesh.facets) {
     for (const int v : t) {
@@ -157,6 +160,7 @@ void FilmCutter::tidy() {
   }
   mesh.points.resize(points);
   complex_.vertices.resize(points);
+  // Marks and live facets by the new numbers, facets packed in place.
   for (films::ComplexEdge& edge : edges) {
     edge.a = number[edge.a];
     edge.b = number[edge.b];

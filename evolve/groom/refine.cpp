@@ -27,6 +27,8 @@ EdgePlan plan_edges(const films::FilmComplex& complex,
   list_edges(complex.mesh.facets, plan.edges, plan.facet_edges);
   plan.in_film.assign(plan.edges.size(), 0);
   plan.obstacle.assign(plan.edges.size(), -1);
+  // An edge is a film's, stays whole or meets an obstacle if any of its facets
+  // says so.
   std::vector<char> whole(plan.edges.size(), 0);
   for (std::size_t f = 0; f < plan.facet_edges.size(); ++f) {
     const films::ComplexSurface& surface =
@@ -56,6 +58,8 @@ EdgePlan plan_edges(const films::FilmComplex& complex,
       whole.push_back(0);
     }
   }
+  // Every edge that may be halved gets its midpoint's number after the old
+  // vertices: both facets of an edge then share it.
   plan.middle.assign(plan.edges.size(), -1);
   int next = static_cast<int>(complex.mesh.points.size());
   for (std::size_t e = 0; e < plan.edges.size(); ++e) {
@@ -170,6 +174,7 @@ Refinement refine(const films::FilmComplex& complex) {
   fine.mesh.points.reserve(points + plan.edges.size());
   fine.vertices.reserve(points + plan.edges.size());
   result.parents.reserve(plan.edges.size());
+  // Midpoints of edges, on the curve or wall that holds their edge.
   for (std::size_t e = 0; e < plan.edges.size(); ++e) {
     if (plan.middle[e] >= 0) {
       const films::PlacedVertex made = middle_of(complex, marks, plan, e);
@@ -178,6 +183,9 @@ Refinement refine(const films::FilmComplex& complex) {
       result.parents.push_back(plan.edges[e]);
     }
   }
+  // Red refinement: four similar children a facet, corner k in child k and the
+  // middle one last, the order that multigrid relies on. Facets with whole
+  // edges are cut as they need to be to stay conforming.
   std::vector<Triangle>& children = fine.mesh.facets;
   children.clear();
   children.reserve(4 * plan.facet_edges.size());
@@ -198,6 +206,7 @@ Refinement refine(const films::FilmComplex& complex) {
     }
     fine.mesh.facet_label.resize(children.size(), complex.mesh.facet_label[f]);
   }
+  // Marked edges halve with the facets beside them.
   refine_marks(complex, plan, fine);
   return result;
 }

@@ -49,6 +49,8 @@ void SurfaceEditor::find_lines() {
   std::vector<Edge> edges;
   std::vector<Triangle> facet_edges;
   list_edges(mesh_.facets, edges, facet_edges);
+  // Per edge: its facets, the balance of their senses, how many are frozen, and
+  // whether surfaces differ.
   struct Use {
     int facets = 0;
     int balance = 0;
@@ -73,10 +75,14 @@ void SurfaceEditor::find_lines() {
     const auto [a, b] = edges[e];
     const Use& use = uses[e];
     const int mark = marks.find(a, b);
+    // An edge inside a film has two facets of one surface, one each way. What
+    // is neither that nor wholly frozen is a line, which editing keeps.
     const bool inside = use.facets == 2 && !use.mixed && use.balance == 0;
     if (use.frozen == use.facets || (inside && mark < 0 && use.frozen == 0)) {
       continue;
     }
+    // Lines move where films meet or a mark lets them, and nothing beside them
+    // is frozen.
     const bool liquid =
         mark < 0 ? use.facets > 2 || use.mixed
                  : marks_[mark].refine &&
@@ -291,6 +297,8 @@ double SurfaceEditor::ratio(int a, int b, const EdgeTarget& target) const {
 }
 
 films::FilmComplex SurfaceEditor::finish() && {
+  // Vertices live while they have facets or marks; marks that only described
+  // the old rim are not given back.
   std::vector<int> number(mesh_.points.size(), -1);
   for (std::size_t v = 0; v < number.size(); ++v) {
     number[v] = star_[v].empty() ? -1 : 0;
@@ -304,6 +312,7 @@ films::FilmComplex SurfaceEditor::finish() && {
       number[marks_[m].b] = 0;
     }
   }
+  // Survivors keep their order, so a numbering of old points stays monotone.
   int count = 0;
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] == 0) {
@@ -319,6 +328,7 @@ films::FilmComplex SurfaceEditor::finish() && {
     edge.b = number[edge.b];
   }
   complex_.edges = std::move(edges);
+  // Collapsed facets drop out.
   std::size_t kept = 0;
   for (std::size_t f = 0; f < mesh_.facets.size(); ++f) {
     const Triangle& t = mesh_.facets[f];

@@ -177,7 +177,7 @@ std::vector<PartBorder> ScanParts::borders(const std::vector<int>& part) const {
       while (std::any_of(out.begin(), out.end(),
                          [](const Step& s) { return !s.used; })) {
         std::vector<int> along;
-        PartBorder border = walk(of_part, start, along);
+        PartBorder border = trace_border(of_part, start, along);
         std::sort(along.begin(), along.end());
         if (border.points.size() > 2 &&
             std::find(known.begin(), known.end(), along) == known.end()) {
@@ -192,8 +192,8 @@ std::vector<PartBorder> ScanParts::borders(const std::vector<int>& part) const {
 
 /// From `start` along unused steps until it is reached again; no points where
 /// it is not.
-PartBorder ScanParts::walk(Steps& steps, int start,
-                           std::vector<int>& along) const {
+PartBorder ScanParts::trace_border(Steps& steps, int start,
+                                   std::vector<int>& along) const {
   PartBorder border;
   double length = 0.0;
   int at = start;

@@ -40,7 +40,8 @@ class ScanParts {
 
   /// `seen`: per facet, the last edge that asked for it.
   double turn_at(int edge, std::vector<int>& seen) const;
-  PartBorder walk(Steps& steps, int start, std::vector<int>& along) const;
+  PartBorder trace_border(Steps& steps, int start,
+                          std::vector<int>& along) const;
 
   const SurfaceMesh& scan_;
   double radius_;

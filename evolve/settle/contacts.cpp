@@ -27,6 +27,8 @@ bool has_contacts(const films::FilmComplex& complex) {
 
 int update_contacts(films::FilmComplex& complex,
                     const energy::FilmEnergy& energy, const VectorX& pressure) {
+  // Slope of the Lagrangian, E_x - sum p V_x: the force that walls have to
+  // bear.
   Points slope =
       energy.gradient(complex.mesh.points, energy::targets_of(complex));
   for (int b = 0; b < energy.functionals(); ++b) {
@@ -43,6 +45,8 @@ int update_contacts(films::FilmComplex& complex,
       continue;
     }
     const auto& set = complex.constraint_sets[vertex.constraints];
+    // Wall gradients at the vertex, and the distances to the walls to first
+    // order, phi / |grad phi|.
     Eigen::MatrixX3d rows(static_cast<Eigen::Index>(set.size()), 3);
     std::vector<double> value;
     for (std::size_t i = 0; i < set.size(); ++i) {
@@ -51,6 +55,9 @@ int update_contacts(films::FilmComplex& complex,
       rows.row(static_cast<Eigen::Index>(i)) = jet.gradient;
       value.push_back(jet.value / std::max(1e-300, jet.gradient.norm()));
     }
+    // Multipliers of the walls as least-norm forces that balance the slope.
+    // Complementarity: a held vertex must be pushed against its wall, a free
+    // one must not be through it.
     const VectorX push = least_norm_forces(rows, slope[v]);
     bool through = false;
     bool pulled = false;
@@ -63,6 +70,8 @@ int update_contacts(films::FilmComplex& complex,
       through = through || sign * value[i] < -kThrough * size;
       pulled = pulled || sign * push[static_cast<Eigen::Index>(i)] < 0.0;
     }
+    // One step of an active set: hold what went through, let go what the film
+    // pulls off.
     if (!vertex.held && through) {
       vertex.held = true;
       ++changed;

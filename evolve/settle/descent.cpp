@@ -282,6 +282,8 @@ DescentReport descend(const energy::FilmEnergy& energy,
     if (options.monitor != nullptr) {
       throw_if_stopped(*options.monitor, "film");
     }
+    // Force -M^-1 r, r = E_h - sum p V_h with the pressures that keep the
+    // volumes to first order; the max norm of r is the residual.
     descent.find_force();
     if (descent.residual() <= options.residual_bound) {
       report.converged = true;
@@ -291,6 +293,8 @@ DescentReport descend(const energy::FilmEnergy& energy,
     if (report.steps >= options.max_steps) {
       break;
     }
+    // A line search along the (conjugate) direction. Where it fails, once more
+    // from the plain force, as rounding may have spoilt conjugacy.
     if (!descent.step()) {
       if (restarted) {
         report.message = "no step lowers the energy beyond rounding";

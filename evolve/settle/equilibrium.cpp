@@ -51,6 +51,8 @@ FilmState settle(const energy::FilmEnergy& energy,
   const Timer timer;
   const double tension =
       *std::max_element(targets.tension.begin(), targets.tension.end());
+  // The bound on the residual is a share of tension x edge, the natural force
+  // on a vertex.
   NewtonOptions newton{.rule = rule,
                        .aim = NewtonAim::Minimum,
                        .residual_bound = options.residual_factor * tension *
@@ -60,10 +62,14 @@ FilmState settle(const energy::FilmEnergy& energy,
                        .monitor = options.monitor};
   NewtonResult found =
       FilmNewton(energy, targets, newton).run(base, directions, start);
+  // Normals that turn with the film give linear convergence only: near rest
+  // they are fixed.
   if (!found.converged && rule == DirectionRule::CurrentNormals &&
       found.residual <= kNearRest * tension * energy.mean_edge(base)) {
     found = along_its_normals(energy, targets, newton, std::move(found));
   }
+  // No minimum: Newton without shifts may still find a saddle, which tells an
+  // unstable film from one that does not exist.
   if (!found.converged) {
     newton.aim = NewtonAim::Equilibrium;
     newton.max_iterations = std::min(20, options.max_iterations);
@@ -74,6 +80,7 @@ FilmState settle(const energy::FilmEnergy& energy,
       found = std::move(saddle);
     }
   }
+  // The verdict comes last, from the residual, the index and the neck.
   FilmState state;
   state.report = figures_of(energy, targets, found.points, found.pressure);
   state.report.residual = found.residual;
@@ -83,12 +90,12 @@ FilmState settle(const energy::FilmEnergy& energy,
   state.report.iterations = found.iterations;
   state.points = std::move(found.points);
   state.heights = std::move(found.heights);
-  judge(energy, complex,
-        {found.converged ? "" : found.reason,
-         found.mode_position,
-         usual_neck,
-         {}},
-        state);
+  set_verdict(energy, complex,
+              {found.converged ? "" : found.reason,
+               found.mode_position,
+               usual_neck,
+               {}},
+              state);
   state.report.seconds = timer.seconds();
   return state;
 }
@@ -112,22 +119,25 @@ FilmReport figures_of(const energy::FilmEnergy& energy,
   return report;
 }
 
-void judge(const energy::FilmEnergy& energy, const films::FilmComplex& complex,
-           const Judgement& judgement, FilmState& state) {
-  const std::string& reason = judgement.reason;
+void set_verdict(const energy::FilmEnergy& energy,
+                 const films::FilmComplex& complex, const VerdictInput& input,
+                 FilmState& state) {
+  const std::string& reason = input.reason;
   FilmReport& report = state.report;
   const bool finite = std::all_of(state.points.begin(), state.points.end(),
                                   [](const Vec3& p) { return p.allFinite(); });
   const Neck neck =
-      judgement.neck ? *judgement.neck
+      input.neck ? *input.neck
       : finite ? narrowest_neck(energy, state.points, complex.mesh.facet_label)
                : Neck{};
   report.smallest_neck = neck.width;
   report.neck_position = neck.position;
   const double edge = finite ? energy.mean_edge(state.points) : 0.0;
+  // A neck is thin by the edges, which no longer resolve it, or by its usual
+  // width at the start.
   const double least =
       std::max(kUnresolved * edge,
-               judgement.usual_neck * (reason.empty() ? kThinned : kThinning));
+               input.usual_neck * (reason.empty() ? kThinned : kThinning));
   const bool thin = neck.surface >= 0 && neck.width < least;
   const auto name = [&](int s) { return complex.surfaces[s].name; };
   const std::string where =
@@ -141,6 +151,8 @@ void judge(const energy::FilmEnergy& energy, const films::FilmComplex& complex,
     state.failure = Failure{kind, verdict};
   };
   state.failure.reset();
+  // A thin neck explains why nothing was found; of a settled film the index
+  // counts first.
   if (!reason.empty() && thin) {
     fail(FailureKind::FilmPinched,
          fmt::format("pinching: {}; {} (after {} steps, {})", where, kAdvice,
@@ -156,7 +168,7 @@ void judge(const energy::FilmEnergy& energy, const films::FilmComplex& complex,
          fmt::format("unstable: index {}, lowest eigenvalue {:.4g}, its mode "
                      "is largest at {}; {}; {}",
                      report.index, report.min_eigenvalue,
-                     place(judgement.mode_position), where, kAdvice));
+                     place(input.mode_position), where, kAdvice));
   } else if (thin) {
     fail(FailureKind::FilmPinched,
          fmt::format("pinching: {}, below the {:.4g} that this film needs (two "

@@ -45,7 +45,7 @@ FilmReport figures_of(const energy::FilmEnergy& energy,
                       const films::FilmTargets& targets, const Points& points,
                       const VectorX& pressure);
 
-struct Judgement {
+struct VerdictInput {
   std::string reason;  // why no equilibrium was reached; empty: it was
   Vec3 mode_position = Vec3::Zero();  // where the lowest mode is largest
   double usual_neck = 0.0;            // [length]; 0: not known
@@ -58,7 +58,8 @@ struct Judgement {
 /// called pinching when its neck is under two edges, or under a fifth of the
 /// usual one: such a film can end at a perfect residual and a positive
 /// definite Hessian.
-void judge(const energy::FilmEnergy& energy, const films::FilmComplex& complex,
-           const Judgement& judgement, FilmState& state);
+void set_verdict(const energy::FilmEnergy& energy,
+                 const films::FilmComplex& complex, const VerdictInput& input,
+                 FilmState& state);
 
 }  // namespace meniscus::settle

@@ -55,11 +55,11 @@ FilmState given_up(const films::FilmComplex& complex, const std::string& reason,
   }
   state.report = figures_of(energy, targets, state.points, pressure);
   state.report.iterations = steps;
-  Judgement judgement{.reason = reason};
+  VerdictInput input{.reason = reason};
   if (reason == kFilmGrows) {
-    judgement.neck = Neck{};  // whatever comes near is no neck
+    input.neck = Neck{};  // whatever comes near is no neck
   }
-  judge(energy, complex, judgement, state);
+  set_verdict(energy, complex, input, state);
   return state;
 }
 
@@ -250,10 +250,10 @@ FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
   state.report.index = modes.eigenvalues[0] < 0.0 ? 1 : 0;
   state.points = found.points;
   state.heights = VectorX::Zero(energy.unknowns());
-  Judgement judgement;
-  judgement.mode_position = modes.position;
-  judgement.neck = chain.neck;
-  judge(energy, complex, judgement, state);
+  VerdictInput input;
+  input.mode_position = modes.position;
+  input.neck = chain.neck;
+  set_verdict(energy, complex, input, state);
   return state;
 }
 
@@ -283,7 +283,7 @@ std::string bring_near_nested(films::FilmComplex& complex,
 
 /// A film with a junction that no film keeps is no minimum, however well it
 /// settled.
-void judge_junctions(const std::optional<groom::UnstableJunction>& junction,
+void check_junctions(const std::optional<groom::UnstableJunction>& junction,
                      FilmState& state) {
   if (!junction || state.failure) {
     return;
@@ -304,6 +304,8 @@ FilmState find_nested(films::FilmComplex& complex, const FindOptions& options,
   const films::FilmComplex raw = complex;
   FilmState state;
   int left = 0;
+  // Coarse facets may tear a film that exists: retry with the first flow one
+  // refinement later each time, while that is affordable.
   for (const int blind : {0, 1, 2, 3}) {
     if (blind > options.refinements ||
         (blind > 1 && raw.mesh.facets.size() << (2 * blind) > kGroomed)) {
@@ -327,6 +329,8 @@ FilmState find_nested(films::FilmComplex& complex, const FindOptions& options,
   }
   // Refinement keeps junctions: looked for while they are few.
   const auto junction = groom::unstable_junction(complex);
+  // Nested iteration: each finer level starts from the settled one, with the
+  // chain as its multigrid.
   Chain chain;
   chain.add(complex, {});
   if (left > 0) {
@@ -336,7 +340,7 @@ FilmState find_nested(films::FilmComplex& complex, const FindOptions& options,
     state = settle_finer(chain, complex, std::move(state), options, left == 1,
                          steps);
   }
-  judge_junctions(junction, state);
+  check_junctions(junction, state);
   return state;
 }
 
@@ -365,7 +369,7 @@ FilmState find_equilibrium(films::FilmComplex& complex,
   }
   FilmState state = reason.empty() ? settle_and_polish(complex, options, steps)
                                    : given_up(complex, reason, steps);
-  judge_junctions(groom::unstable_junction(complex), state);
+  check_junctions(groom::unstable_junction(complex), state);
   state.report.iterations = steps;
   state.report.seconds = timer.seconds();
   return state;

@@ -209,6 +209,8 @@ void FilmMultigrid::transfer_weights(std::size_t fine) {
   const energy::FilmSpace& space = chain_[fine].energy->space();
   const energy::FilmSpace& coarse = chain_[fine - 1].energy->space();
   const int old = coarse.vertex_count();
+  // Old vertices keep their directions (injection), so that coarse heights are
+  // fine ones there.
   below.directions.resize(coarse.unknowns());
   for (int v = 0; v < old; ++v) {
     for (int r = 0; r < coarse.rank(v); ++r) {
@@ -216,6 +218,8 @@ void FilmMultigrid::transfer_weights(std::size_t fine) {
           level.directions[space.first(v) + r];
     }
   }
+  // Rows of P: 1 at an old vertex; at a midpoint half of n_fine . n_coarse for
+  // each direction of both ends.
   level.p_start.assign(1, 0);
   level.p_start.reserve(space.unknowns() + 1);
   level.p_column.clear();
@@ -237,9 +241,11 @@ void FilmMultigrid::transfer_weights(std::size_t fine) {
     }
     level.p_start.push_back(static_cast<int>(level.p_column.size()));
   }
-  // A mean takes two dot products with what stands before them.
-  count_operations(6.0 * static_cast<double>(level.p_value.size() - old) +
-                   2.0 * static_cast<double>(level.p_value.size()));
+  // A mean takes two dot products with what stands before them; a vertex of the
+  // coarse level stays as it is.
+  const auto entries = static_cast<double>(level.p_value.size());
+  count_operations(6.0 * (entries - coarse.unknowns()) + 2.0 * entries);
+  // The coarse metric, lumped: |P|' times the fine one.
   below.metric = VectorX::Zero(coarse.unknowns());
   for (int i = 0; i < space.unknowns(); ++i) {
     for (int k = level.p_start[i]; k < level.p_start[i + 1]; ++k) {
@@ -260,6 +266,8 @@ void FilmMultigrid::gather(std::size_t fine,
   std::array<std::array<double, 9>, 9> p{};
   std::array<std::array<double, 9>, 9> kp{};
   count_operations(gather_work(coarse.corner_start(), above.corner_start()));
+  // The Galerkin matrix P' K P, facet by facet: a coarse facet's element is the
+  // sum over its four children of p' k p.
   for (std::size_t f = 0; f < coarse.facets().size(); ++f) {
     const int c0 = coarse.corner_start()[f];
     const int nc = coarse.corner_start()[f + 1] - c0;
@@ -272,6 +280,8 @@ void FilmMultigrid::gather(std::size_t fine,
       const int f0 = above.corner_start()[g];
       const int nf = above.corner_start()[g + 1] - f0;
       for (int j = 0; j < nf; ++j) {
+        // p: a child's corner is a corner (weights 1/2 + 1/2) or the middle of
+        // an edge of its parent, projected on the directions.
         const energy::FilmEnergy::Corner& at = above.corners()[f0 + j];
         const auto [a, b] = kChildren[child][at.corner];
         for (int i = 0; i < nc; ++i) {
@@ -282,6 +292,7 @@ void FilmMultigrid::gather(std::size_t fine,
                         : w * d_fine[at.unknown].dot(d_coarse[from.unknown]);
         }
       }
+      // k p from the packed lower triangle of the symmetric k.
       const double* k = &fine_elements[above.element_start()[g]];
       for (int j = 0; j < nf; ++j) {
         for (int i = 0; i < nc; ++i) {
@@ -300,6 +311,7 @@ void FilmMultigrid::gather(std::size_t fine,
           }
         }
       }
+      // The lower triangle of p' (k p) is added to the coarse element.
       int slot = 0;
       for (int i = 0; i < nc; ++i) {
         for (int l = 0; l <= i; ++l, ++slot) {

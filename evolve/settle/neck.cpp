@@ -276,6 +276,8 @@ Neck narrowest_neck(const energy::FilmEnergy& energy, const Points& points,
   Corners corners(facets, points.size());
   Neck neck;
   double least = std::numeric_limits<double>::infinity();
+  // A ray from every smooth film vertex along the inward normal, or both ways
+  // where the film encloses nothing.
   for (int i = 0; i < energy.unknowns(); ++i) {
     const int v = energy.vertices()[i];
     for (const int bit : {1, 2}) {
@@ -284,7 +286,10 @@ Neck narrowest_neck(const energy::FilmEnergy& energy, const Points& points,
         continue;
       }
       const Vec3 direction = bit == 1 ? Vec3(-normals[i]) : normals[i];
+      // Only hits nearer than the least so far matter, which bounds the search.
       double length = least;
+      // What counts: facets of the same body, not about the vertex itself, and
+      // no corner of the film at a rim or line.
       const auto accept = [&](int f) {
         const Triangle& t = facets[f];
         const bool corner = near[v] != 0 &&
@@ -298,6 +303,7 @@ Neck narrowest_neck(const energy::FilmEnergy& energy, const Points& points,
         continue;
       }
       const Triangle& t = facets[f];
+      // A neck lies between sides that face each other; grazing hits are none.
       const Vec3 normal = (points[t[1]] - points[t[0]])
                               .cross(points[t[2]] - points[t[0]])
                               .normalized();

@@ -266,6 +266,9 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
   if (k == 0 || n == 0 || !refresh()) {
     return result;
   }
+  // LOBPCG (Knyazev 2001) for A v = l M v on the kernel of B', preconditioned
+  // by one projected multigrid cycle. Start: the coarse modes prolonged, minus
+  // their part across the constraints.
   const auto keep = [&](VectorX v) {
     if (constraints_.cols() > 0) {
       const VectorX lack = constraints_.transpose() * v;
@@ -285,6 +288,8 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
   Eigen::MatrixXd kp(n, 0);
   VectorX values = VectorX::Constant(k, 1e300);
   for (int step = 0; step < kModeSteps; ++step) {
+    // Projected preconditioned residuals W; with X and the last steps P they
+    // span the trial space.
     Eigen::MatrixXd w(n, step == 0 ? 0 : k);
     Eigen::MatrixXd kw(n, w.cols());
     for (Eigen::Index j = 0; j < w.cols(); ++j) {
@@ -297,6 +302,8 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
     Eigen::MatrixXd ks(n, s.cols());
     s << x, w, p;
     ks << kx, kw, kp;
+    // An M-orthonormal basis of it from the eigenvectors of the scaled Gram
+    // matrix, nearly dependent ones dropped (compare Hetmaniuk, Lehoucq 2006).
     const Eigen::MatrixXd mass = s.transpose() * metric_.asDiagonal() * s;
     const VectorX scale =
         mass.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -310,11 +317,14 @@ NestedModes NestedNewton::lowest_modes(const Eigen::MatrixXd& coarse_guesses) {
     const Eigen::MatrixXd basis =
         scale.asDiagonal() * gram.vectors.rightCols(m) *
         gram.values.tail(m).cwiseSqrt().cwiseInverse().asDiagonal();
+    // Rayleigh-Ritz: the k lowest pairs in the trial space.
     const Eigen::MatrixXd stiff = s.transpose() * ks;
     const Eigen::MatrixXd small =
         basis.transpose() * (0.5 * (stiff + stiff.transpose())) * basis;
     const auto ritz = symmetric_eigen(small);
     const Eigen::MatrixXd y = basis * ritz.vectors.leftCols(k);
+    // The next P is the new X without what comes from the old X. A X and A P
+    // follow by the same combinations, without products.
     Eigen::MatrixXd y_rest = y;
     y_rest.topRows(k).setZero();
     const Eigen::MatrixXd x_next = s * y;

@@ -274,11 +274,14 @@ NewtonResult FilmNewton::run(const Points& base, const Points& directions,
                              const VectorX& start) {
   base_ = base;
   directions_ = directions;
+  // The first shift is tension / size^2, the scale of the Hessian's eigenvalues
+  // in the metric of lumped area.
   const double diagonal = std::max(1e-300, bounding_diagonal(base));
   const double most_tension =
       *std::max_element(targets_.tension.begin(), targets_.tension.end());
   base_shift_ = most_tension / (diagonal * diagonal);
   shift_ = 0.0;
+  // Start heights, and pressures that fit the slopes best in the metric.
   accept(
       trial_at(start.size() > 0 ? start : VectorX::Zero(energy_.unknowns())));
   pressure_ =
@@ -289,6 +292,8 @@ NewtonResult FilmNewton::run(const Points& base, const Points& directions,
     if (options_.monitor != nullptr) {
       throw_if_stopped(*options_.monitor, "film");
     }
+    // Rest: residual and volumes within bounds. One more full step, and the
+    // index and lowest eigenvalue at the film.
     if (residual_norm() <= options_.residual_bound && volumes_hold()) {
       result.converged = true;
       polish(result);
@@ -298,10 +303,13 @@ NewtonResult FilmNewton::run(const Points& base, const Points& directions,
       result.reason = "the steps allowed are used up";
       break;
     }
+    // A damped Newton step: a shifted Hessian and a search on the augmented
+    // Lagrangian for a minimum, on the residual for a saddle.
     if (!advance()) {
       result.reason = "no step lowers the energy without folding the film";
       break;
     }
+    // Steps that stay short are a film on its way to tear.
     short_steps = last_step_ < 0.1 ? short_steps + 1 : 0;
     if (short_steps >= kMostShortSteps) {
       result.reason = "the steps became too short";

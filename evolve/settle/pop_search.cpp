@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/error.h"
@@ -103,6 +104,7 @@ std::size_t width_of(const std::vector<Candidate>& films,
 std::vector<PoppedFilm> search_pops(
     const std::vector<films::FilmComplex>& starts,
     const PopSearchOptions& options) {
+  // Every start popped and relaxed once.
   std::vector<Candidate> films;
   for (const films::FilmComplex& start : starts) {
     Candidate candidate{.film = {.complex = start},
@@ -115,6 +117,8 @@ std::vector<PoppedFilm> search_pops(
   for (int round = 0;
        round < options.most_rounds && !films.empty() && idle < options.patience;
        ++round) {
+    // A beam search: all children of the films kept, of which the lowest in
+    // energy go on.
     const std::size_t width = width_of(films, options);
     std::vector<Candidate> next;
     for (const Candidate& film : films) {
@@ -124,7 +128,10 @@ std::vector<PoppedFilm> search_pops(
     }
     keep_lowest(next, width);
     films = std::move(next);
-    const double before = found.empty() ? INFINITY : found[0].film.energy;
+    // Films with nothing left to pop are results; the rounds end when none
+    // lower comes for a while.
+    const bool first = found.empty();
+    const double before = first ? 0.0 : found[0].film.energy;
     for (const Candidate& film : films) {
       films::FilmComplex copy = film.film.complex;
       if (pop_all(copy) == 0) {
@@ -134,7 +141,7 @@ std::vector<PoppedFilm> search_pops(
     keep_lowest(found, static_cast<std::size_t>(options.most_found));
     const bool lower =
         !found.empty() &&
-        found[0].film.energy < before - kSameFilm * std::abs(before);
+        (first || found[0].film.energy < before - kSameFilm * std::abs(before));
     idle = lower || found.empty() ? 0 : idle + 1;
   }
   std::vector<PoppedFilm> result;

@@ -133,6 +133,8 @@ void Builder::put_on_curves() {
     const films::FacetPart& part = all_.parts[rim.part];
     Held& a = held_[rim.a];
     Held& b = held_[rim.b];
+    // A rim lies on a curve when both ends are near the same one. An edge that
+    // other films share may also cut across it: then its middle is far off.
     const bool near = a.curve >= 0 && a.curve == b.curve &&
                       a.distance <= part.within && b.distance <= part.within &&
                       std::find(part.curves.begin(), part.curves.end(),
@@ -147,6 +149,8 @@ void Builder::put_on_curves() {
       }
       continue;
     }
+    // The share of the curve that each part covers, by parameter: above 1 it
+    // runs back over itself.
     rim.curve = a.curve;
     const double gap = std::abs(way(a.t, b.t));
     for (Held* end : {&a, &b}) {
@@ -163,6 +167,7 @@ void Builder::put_on_curves() {
                       films::text_of_place(all_.middle(rim))));
     }
   }
+  // Every curve that a part names must have been met.
   for (std::size_t p = 0; p < all_.parts.size(); ++p) {
     for (const int curve : all_.parts[p].curves) {
       if (!covered.contains({static_cast<int>(p), curve})) {
@@ -222,6 +227,8 @@ void Builder::cut_curves() {
       continue;
     }
     const curves::CurveShape& shape = system_.curves[c].shape;
+    // Corners of the curve take the vertex nearest to them, so that a rim turns
+    // exactly there.
     for (const double corner : curves::corner_parameters(shape)) {
       const int near =
           *std::min_element(on.begin(), on.end(), [&](int a, int b) {
@@ -233,6 +240,8 @@ void Builder::cut_curves() {
         held_[near].t = corner;
       }
     }
+    // Around the curve, vertices of several films that nearly coincide share
+    // one parameter: their films then meet in one cut.
     std::stable_sort(on.begin(), on.end(),
                      [&](int a, int b) { return held_[a].t < held_[b].t; });
     std::vector<double> cuts;
@@ -247,6 +256,8 @@ void Builder::cut_curves() {
       }
       cuts.push_back(held_[v].t);
     }
+    // Distinct cuts in order, with those that corners and long pieces add; each
+    // vertex then finds its own by its parameter.
     std::sort(cuts.begin(), cuts.end());
     cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
     add_cuts(static_cast<int>(c), cuts);
@@ -293,6 +304,7 @@ class Cutter {
 };
 
 void Builder::add_sheet(int part) {
+  // One numbering for free points and the cuts of all curves.
   std::map<int, int> first;  // of a curve's cuts
   std::vector<FacetCorner> corner(result_.points.size());
   for (std::size_t v = 0; v < corner.size(); ++v) {
@@ -304,6 +316,7 @@ void Builder::add_sheet(int part) {
       corner.push_back({-1, curve, static_cast<int>(k)});
     }
   }
+  // Facets by these numbers; two corners at one cut leave no facet.
   const auto id_of = [&](int v) {
     return held_[v].used ? first.at(held_[v].curve) + held_[v].cut : v;
   };
@@ -328,6 +341,8 @@ void Builder::add_sheet(int part) {
     if (rim.part != part || rim.curve < 0) {
       continue;
     }
+    // Cuts between a rim edge's ends, the short way around the curve, fan the
+    // facet beside it.
     const int n = static_cast<int>(result_.cuts.at(rim.curve).size());
     const int step = way(held_[rim.a].t, held_[rim.b].t) > 0.0 ? 1 : -1;
     std::vector<int> between;

@@ -86,6 +86,7 @@ void orient_outward(const Points& points, std::vector<Triangle>& facets) {
   std::vector<Edge> edges;
   std::vector<Triangle> facet_edges;
   list_edges(facets, edges, facet_edges);
+  // The two facets at each edge, and the largest facet as the seed.
   std::vector<std::array<int, 2>> sides(edges.size(), {-1, -1});
   const auto normal = [&](const Triangle& t) {
     return Vec3(
@@ -100,6 +101,8 @@ void orient_outward(const Points& points, std::vector<Triangle>& facets) {
       largest = f;
     }
   }
+  // The points' mean is inside a convex hull: the seed's normal has to point
+  // away from it.
   Vec3 inside = Vec3::Zero();
   for (const Vec3& p : points) {
     inside += p / static_cast<double>(points.size());
@@ -108,6 +111,8 @@ void orient_outward(const Points& points, std::vector<Triangle>& facets) {
   if (normal(first).dot(points[first[0]] - inside) < 0.0) {
     std::swap(first[1], first[2]);
   }
+  // Depth first over the edges: a neighbour is turned that runs the same way
+  // along the common edge.
   const auto runs = [](const Triangle& t, const Edge& e) {
     return (t[0] == e[0] && t[1] == e[1]) || (t[1] == e[0] && t[2] == e[1]) ||
            (t[2] == e[0] && t[0] == e[1]);

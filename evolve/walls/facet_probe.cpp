@@ -74,6 +74,7 @@ FacetProbe::Hit FacetProbe::nearest(const Vec3& p, double bound) const {
   int top = 0;
   stack[top++] = {0, 0.0};
   while (top > 0) {
+    // Branch and bound: a box farther off than the best so far is skipped.
     const auto [id, least] = stack[--top];
     if (least >= hit.distance) {
       continue;
@@ -95,6 +96,8 @@ FacetProbe::Hit FacetProbe::nearest(const Vec3& p, double bound) const {
       }
       continue;
     }
+    // The nearer child is pushed last and so searched first, which tightens the
+    // bound early.
     const int second = node.second_child;
     const double left = nodes[id + 1].bounds.to(p);
     const double right = nodes[second].bounds.to(p);
@@ -154,11 +157,15 @@ FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
   std::array<int, 64> stack;
   int top = 0;
   stack[top++] = 0;
+  // The shrinking ball (Ma, Bae, Choi 2012): start at the limit and shrink the
+  // ball about the tangent point until nothing lies inside.
   ball.radius = limit / (1.0 - kSlack);
   while (top > 0) {
     const int at = stack[--top];
     const BoxTree::Node& node = nodes[at];
     const Vec3 center = p + ball.radius * normal;
+    // A box that the ball does not reach cannot shrink it. The ball only
+    // shrinks, so what was skipped stays outside.
     if (node.bounds.to(center) >= ball.radius * (1.0 - kSlack)) {
       continue;
     }
@@ -166,6 +173,7 @@ FacetProbe::Ball FacetProbe::tangent_ball(const Vec3& p, const Vec3& normal,
       for (int k = node.first; k < node.last; ++k) {
         const int f = tree_.items()[k].id;
         const Triangle& t = facets_[f];
+        // Facets at the tangent point itself always touch the ball.
         const bool at_home =
             f == home.facet ||
             std::find(t.begin(), t.end(), home.vertex) != t.end();

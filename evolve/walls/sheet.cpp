@@ -105,6 +105,7 @@ void join_edges(Sheet& sheet) {
     int facet;
     bool forward;
   };
+  // Half edges, sorted by their edge: uses of one edge come together.
   std::vector<Use> uses;
   const auto count = static_cast<int>(sheet.film.facets.size());
   for (int f = 0; f < count; ++f) {
@@ -124,6 +125,8 @@ void join_edges(Sheet& sheet) {
     for (; j < uses.size() && uses[j].edge == uses[i].edge; ++j) {
       facets.push_back(uses[j].facet);
     }
+    // Two sides everywhere: at most two facets an edge, and these must run
+    // opposite ways.
     if (facets.size() > 2) {
       refuse_edge(sheet, uses[i].edge, facets,
                   "films meet in a junction, which has no two sides; thicken "

@@ -172,6 +172,8 @@ SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
       at = std::min(at, room.value);
     }
   };
+  // What counts is the least ratio of room to the thickness asked for: it names
+  // the place where the wall fails first.
   SafeThickness safe;
   double least = kUnlimited;
   int where = 0;
@@ -185,11 +187,15 @@ SafeThickness safe_thickness(const Sheet& sheet, const std::vector<Jet>& jets,
   };
   const auto count = static_cast<int>(jets.size());
   const Points& x = sheet.film.points;
+  // Bends: a side turns inside out at the centres of curvature, |s k| = 1.
+  // These are cheap, and bound the search for gaps.
   for (int v = 0; v < count; ++v) {
     const Room room = limits.bend(jets[v]);
     note(v, room);
     consider(room, x[v], asked[v], v, sheet.facet_list[sheet.facet_start[v]]);
   }
+  // Gaps: the largest ball that touches the film at the vertex, for vertices
+  // with a normal.
   for (int v = 0; v < count; ++v) {
     if (sheet.on_crease[v] == 0) {
       const Room room = limits.gap(x[v], jets[v], {.vertex = v},

@@ -215,11 +215,15 @@ WallGradient WallModel::transpose(const Points& film, const VectorX& thickness,
                                   const Points& by_mid_sides) const {
   Points by =
       nodes_.transpose(by_corners, by_mid_sides, topology_.points.size());
+  // Points that follow others pass their part on by the same weights.
   for (std::size_t p = 0; p < by.size(); ++p) {
     for (const auto& [q, weight] : topology_.points[p].of) {
       by[q] += weight * by[p];
     }
   }
+  // Backwards through x + d with d = sum c_f n_f + sum b_j (x_j - x) + e, each
+  // part times its wall's t / t0: to the normals, the film's points and the
+  // ratios.
   const VectorX ratio = ratios(thickness);
   const Points normals = unit_normals(film);
   Points by_normals(normals.size(), Vec3::Zero());
@@ -247,10 +251,12 @@ WallGradient WallModel::transpose(const Points& film, const VectorX& thickness,
       result.thickness[rest.wall] += rest.by.dot(by[p]);
     }
   }
+  // The ratio is t / t0, hence dJ/dt = dJ/dratio / t0.
   for (std::size_t w = 0; w < specs_.size(); ++w) {
     double& rate = result.thickness[static_cast<Eigen::Index>(w)];
     rate = specs_[w].number ? rate / *specs_[w].number : 0.0;
   }
+  // Unit normals depend on the film's points: dJ/da = (I - n n') dJ/dn / |a|.
   through_normals(film, normals, by_normals, result.film);
   return result;
 }

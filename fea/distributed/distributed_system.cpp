@@ -69,13 +69,13 @@ int DistributedSystem::processes() const {
 
 std::optional<Failure> DistributedSystem::hold(
     const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
-    bool is_base, std::vector<supports::Holding>& holdings) const {
+    bool is_base, std::vector<supports::Restraints>& restraints) const {
   for (const equations::HeldCases& group : groups_) {
     const loads::LoadCase& first = load_cases[group.cases.front()];
-    holdings.push_back(is_base
-                           ? group.holding
-                           : supports::make_holding(mesh, first, base_.order));
-    if (!supports::alike(holdings.back(), group.holding)) {
+    restraints.push_back(
+        is_base ? group.restraints
+                : supports::make_restraints(mesh, first, base_.order));
+    if (!supports::alike(restraints.back(), group.restraints)) {
       return equations::ElasticBase::turned(first);
     }
   }
@@ -83,11 +83,11 @@ std::optional<Failure> DistributedSystem::hold(
 }
 
 std::vector<PetscGroup> DistributedSystem::grouped(
-    const std::vector<supports::Holding>& holdings,
+    const std::vector<supports::Restraints>& restraints,
     const std::vector<VectorX>& f, const std::vector<VectorX>& start) const {
   std::vector<PetscGroup> groups;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    PetscGroup group{.holding = &holdings[g], .f = {}, .start = {}};
+    PetscGroup group{.restraints = &restraints[g], .f = {}, .start = {}};
     for (const int c : groups_[g].cases) {
       group.f.push_back(&f[c]);
       if (!start.empty()) {
@@ -108,11 +108,13 @@ equations::ElasticSolution DistributedSystem::solve(
   result.displacements.resize(load_cases.size());
   result.reactions.resize(load_cases.size());
   result.report.solver = "petsc";
-  result.report.dofs = supports::free_unknowns(groups_.front().holding);
+  result.report.dofs = supports::free_unknowns(groups_.front().restraints);
   const Points x = base_.solver_points(mesh);
   if ((result.failure = bad_design(mesh, x))) {
     return result;
   }
+  // Right sides, and the base solution as start: no evaluation depends on
+  // another one.
   const std::vector<VectorX> f =
       base_.solver_forces(mesh, load_cases, regions.materials);
   std::vector<VectorX> begin;
@@ -120,38 +122,43 @@ equations::ElasticSolution DistributedSystem::solve(
        ++c) {
     begin.push_back(equations::to_solver(base_.order, start->displacements[c]));
   }
-  std::vector<supports::Holding> holdings;
-  if ((result.failure = hold(mesh, load_cases, start == nullptr, holdings))) {
+  // Projectors P on what the supports leave free, at this design.
+  std::vector<supports::Restraints> restraints;
+  if ((result.failure = hold(mesh, load_cases, start == nullptr, restraints))) {
     return result;
   }
+  // Conjugate gradients on P (K + S) P + s (I - P) in other processes, to a
+  // stricter tolerance so that reactions balance the loads.
   const PetscSolution solved = run_petsc(
       {.table = table_,
        .x = x,
        .laws = regions.laws,
-       .groups = grouped(holdings, f, begin),
+       .groups = grouped(restraints, f, begin),
        .tolerance = kStricter * base_.options.tolerance,
        .max_iterations = base_.options.max_iterations},
       {.processes = processes(),
        .time_limit = time_limit(base_.options, 3 * x.size(), f.size()),
        .monitor = base_.options.monitor});
   result.report.process_memory = solved.process_memory;
+  // Reactions, balance and true residual are found here, from the elements.
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const PetscGroupSolution& group = solved.groups[g];
     for (std::size_t k = 0; k < group.u.size(); ++k) {
       const int c = groups_[g].cases[k];
-      equations::conclude(base_, table_,
-                          {.load_case = c,
-                           .name = load_cases[c].name,
-                           .x = x,
-                           .f = f[c],
-                           .u = group.u[k],
-                           .diagonal = group.diagonal,
-                           .laws = regions.laws,
-                           .holding = holdings[g],
-                           .column = group.columns[k]},
-                          result);
+      equations::finish_solution(base_, table_,
+                                 {.load_case = c,
+                                  .name = load_cases[c].name,
+                                  .x = x,
+                                  .f = f[c],
+                                  .u = group.u[k],
+                                  .diagonal = group.diagonal,
+                                  .laws = regions.laws,
+                                  .restraints = restraints[g],
+                                  .column = group.columns[k]},
+                                 result);
     }
   }
+  // Free expansion stores none: the energy is that of stresses, not f . u / 2.
   if (!result.failure && load_cases[0].temperature) {
     result.report.strain_energy =
         loads::strain_energy(mesh, regions.materials, result.displacements[0],

@@ -33,13 +33,12 @@ class DistributedSystem {
   std::optional<Failure> bad_design(const TetMesh& mesh, const Points& x) const;
   int processes() const;
   /// What holds each group; the base's own where `mesh` is the base.
-  std::optional<Failure> hold(const TetMesh& mesh,
-                              const std::vector<loads::LoadCase>& load_cases,
-                              bool is_base,
-                              std::vector<supports::Holding>& holdings) const;
+  std::optional<Failure> hold(
+      const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
+      bool is_base, std::vector<supports::Restraints>& restraints) const;
   /// Points into its arguments.
   std::vector<PetscGroup> grouped(
-      const std::vector<supports::Holding>& holdings,
+      const std::vector<supports::Restraints>& restraints,
       const std::vector<VectorX>& f, const std::vector<VectorX>& start) const;
 
   equations::ElasticBase base_;

@@ -162,8 +162,8 @@ class Cut {
   }
 
   void write_group(const PetscGroup& group, Writer& out) const {
-    const solver::NodeFreedom& freedom = group.holding->freedom;
-    const supports::SpringBlocks& springs = group.holding->springs;
+    const solver::NodeFreedom& freedom = group.restraints->freedom;
+    const supports::SpringBlocks& springs = group.restraints->springs;
     std::vector<int> held;
     std::vector<double> projectors;
     for (std::size_t h = 0; h < freedom.held.size(); ++h) {

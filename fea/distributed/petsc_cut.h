@@ -13,7 +13,7 @@ namespace meniscus::distributed {
 
 /// Load cases that are held alike, in the solver's numbering.
 struct PetscGroup {
-  const supports::Holding* holding = nullptr;
+  const supports::Restraints* restraints = nullptr;
   std::vector<const VectorX*> f;      // per load case [force]
   std::vector<const VectorX*> start;  // the same, or none [length]
 };

@@ -117,17 +117,22 @@ void StiffnessMatrix::add_elements() {
   std::array<PetscInt, Nodes> column;
   for (std::size_t e = 0; e < piece_.region.size(); ++e) {
     const int* ids = piece_.elements.data() + e * Nodes;
+    // Only rows of own nodes are added: every element that touches them is
+    // here, so that no process sends entries to another.
     for (int a = 0; a < Nodes; ++a) {
       x[a] = Eigen::Map<const Vec3>(piece_.x.data() + 3L * ids[a]);
       column[a] = id_[ids[a]];
       row[a] = ids[a] < piece_.header.own ? column[a] : -1;
     }
+    // Element stiffness int B^T C B dV, blocks on and below the diagonal.
     lower.fill(0.0);
     const auto place = [&](int a, int b) {
       return lower.data() + 9L * (a * (a + 1) / 2 + b);
     };
     element::add_element_stiffness<Nodes>(x, slot.data(),
                                           piece_.law[piece_.region[e]], place);
+    // Blocks of held nodes become P_a K_ab P_b; the mean of their diagonal is
+    // kept for the directions that are taken out.
     for (int a = 0; a < Nodes; ++a) {
       const int p = held_[ids[a]];
       for (int b = 0; b <= a; ++b) {

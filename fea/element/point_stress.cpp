@@ -36,9 +36,11 @@ void element_points(const TetMesh& mesh, int e, const ElasticLaw& law,
     x[a] = mesh.nodes[ids[a]];
     du[a] = u.segment<3>(3L * ids[a]) - u.segment<3>(3L * ids[0]);
   }
+  // Physical gradients of the shape functions and weights |det J| w.
   TetGradients<Nodes> g;
   tet_gradients<Nodes>(x, g);
   for (int q = 0; q < kTetPoints<Nodes>; ++q) {
+    // Displacement gradient H = sum u_a grad N_a^T at the point.
     Mat3 H = Mat3::Zero();
     for (int a = 1; a < Nodes; ++a) {
       H.noalias() += du[a] * g.gradient[q][a].transpose();
@@ -47,6 +49,7 @@ void element_points(const TetMesh& mesh, int e, const ElasticLaw& law,
     for (int a = 0; a < Nodes; ++a) {
       position += kShapes[q][a] * x[a];
     }
+    // sigma = C (eps - alpha dT), dT by the same shape functions.
     const std::size_t at = out.index(e, q);
     out.stress[at] = stress_of_gradient(H, law);
     if (temperature_change.size() != 0) {

@@ -50,7 +50,7 @@ std::vector<solver::CgColumn> solve_columns(
     return solver::conjugate_gradients({.pattern = state.table->pattern,
                                         .matrix = matrix,
                                         .preconditioner = preconditioner,
-                                        .freedom = group.holding.freedom,
+                                        .freedom = group.restraints.freedom,
                                         .tolerance = state.tolerance,
                                         .max_iterations = state.max_iterations,
                                         .monitor = *state.monitor},
@@ -61,22 +61,23 @@ std::vector<solver::CgColumn> solve_columns(
       columns.begin(), columns.end(), [](const solver::CgColumn& column) {
         return column.end == solver::CgEnd::NotPositive;
       });
-  if (lost && supports::free_unknowns(group.holding) <= solver::kSecondChance) {
+  if (lost &&
+      supports::free_unknowns(group.restraints) <= solver::kSecondChance) {
     columns = solve_with(*solver::make_direct(state.table->pattern, matrix,
-                                              group.holding.freedom));
+                                              group.restraints.freedom));
   }
   return columns;
 }
 
-void conclude(const KeptState& state, const KeptState::Group& group,
-              const std::string& name, const VectorX& diagonal,
-              const VectorX& g, const VectorX& lambda,
-              const solver::CgColumn& column, AdjointSolution& result) {
+void finish_solution(const KeptState& state, const KeptState::Group& group,
+                     const std::string& name, const VectorX& diagonal,
+                     const VectorX& g, const VectorX& lambda,
+                     const solver::CgColumn& column, AdjointSolution& result) {
   const Equilibrium equilibrium = check_equilibrium(
       {state.x, g,
        solver::internal_forces(*state.table, state.x, state.laws, lambda),
-       supports::spring_forces(group.holding.springs, lambda), lambda,
-       group.holding.freedom, diagonal});
+       supports::spring_forces(group.restraints.springs, lambda), lambda,
+       group.restraints.freedom, diagonal});
   result.lambda.push_back(to_mesh(*state.order, lambda));
   result.reactions.push_back(to_mesh(*state.order, equilibrium.reactions));
   result.iterations = std::max(result.iterations, column.iterations);
@@ -92,7 +93,8 @@ void conclude(const KeptState& state, const KeptState::Group& group,
                     name, column.iterations, column.error)};
     return;
   }
-  result.failure = judge(equilibrium, state.tolerance, name + " (adjoint)");
+  result.failure =
+      check_residual(equilibrium, state.tolerance, name + " (adjoint)");
 }
 
 }  // namespace
@@ -122,7 +124,7 @@ KeptState ElasticSystem::keep(const TetMesh& mesh,
   for (const Group& group : groups_) {
     state.groups.push_back(
         {.cases = group.cases,
-         .holding = supports::make_holding(
+         .restraints = supports::make_restraints(
              mesh, load_cases[group.cases.front()], base_.order),
          .preconditioner = group.preconditioner.get()});
   }
@@ -139,7 +141,7 @@ AdjointSolution solve_adjoint(const KeptState& state, int load_case,
   const KeptState::Group& group = group_of(state, load_case);
   const std::string& name = state.names[static_cast<std::size_t>(load_case)];
   check_right_hand_sides(state, name, right_hand_sides);
-  const supports::SpringBlocks& springs = group.holding.springs;
+  const supports::SpringBlocks& springs = group.restraints.springs;
   const bool plain = springs.at.empty();
   const solver::BlockMatrix<double> sprung =
       plain ? solver::BlockMatrix<double>{}
@@ -160,8 +162,8 @@ AdjointSolution solve_adjoint(const KeptState& state, int load_case,
     const std::vector<solver::CgColumn> columns =
         solve_columns(state, group, matrix, right, lambda);
     for (std::size_t k = 0; k < right.size(); ++k) {
-      conclude(state, group, name, diagonal, right[k], lambda[k], columns[k],
-               result);
+      finish_solution(state, group, name, diagonal, right[k], lambda[k],
+                      columns[k], result);
     }
   }
   result.seconds = timer.seconds();

@@ -16,7 +16,7 @@ namespace meniscus::equations {
 
 struct KeptState;
 
-/// The assembled stiffness and the holdings of one design, handed out by
+/// The assembled stiffness and the restraints of one design, handed out by
 /// ElasticModel::solve() when asked. Only for the model it comes from; about
 /// as large as the stiffness matrix.
 class ElasticState {

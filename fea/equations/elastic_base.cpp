@@ -171,31 +171,31 @@ std::vector<HeldCases> group_alike(
     const solver::NodeOrder& order) {
   std::vector<HeldCases> groups;
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
-    supports::check_holding(mesh, load_cases[c]);
-    supports::Holding holding =
-        supports::make_holding(mesh, load_cases[c], order);
-    const auto found =
-        std::find_if(groups.begin(), groups.end(),
-                     [&](const HeldCases& g) { return g.holding == holding; });
+    supports::check_restraints(mesh, load_cases[c]);
+    supports::Restraints restraints =
+        supports::make_restraints(mesh, load_cases[c], order);
+    const auto found = std::find_if(
+        groups.begin(), groups.end(),
+        [&](const HeldCases& g) { return g.restraints == restraints; });
     if (found != groups.end()) {
       found->cases.push_back(static_cast<int>(c));
     } else {
-      groups.push_back({{static_cast<int>(c)}, std::move(holding)});
+      groups.push_back({{static_cast<int>(c)}, std::move(restraints)});
     }
   }
   return groups;
 }
 
-void conclude(const ElasticBase& base, const solver::ElementTable& table,
-              const SolvedCase& solved, ElasticSolution& result) {
+void finish_solution(const ElasticBase& base, const solver::ElementTable& table,
+                     const SolvedCase& solved, ElasticSolution& result) {
   const int c = solved.load_case;
   const ElasticOptions& options = base.options;
   const VectorX internal =
       solver::internal_forces(table, solved.x, solved.laws, solved.u);
   const Equilibrium equilibrium = check_equilibrium(
       {solved.x, solved.f, internal,
-       supports::spring_forces(solved.holding.springs, solved.u), solved.u,
-       solved.holding.freedom, solved.diagonal});
+       supports::spring_forces(solved.restraints.springs, solved.u), solved.u,
+       solved.restraints.freedom, solved.diagonal});
   result.displacements[c] = to_mesh(base.order, solved.u);
   result.reactions[c] = to_mesh(base.order, equilibrium.reactions);
   ElasticReport& report = result.report;
@@ -215,7 +215,8 @@ void conclude(const ElasticBase& base, const solver::ElementTable& table,
                                          cause(solved.column.end, solved.column,
                                                options.max_iterations))};
   } else {
-    result.failure = judge(equilibrium, options.tolerance, solved.name);
+    result.failure =
+        check_residual(equilibrium, options.tolerance, solved.name);
   }
 }
 

@@ -9,7 +9,7 @@
 #include "fea/solver/assembly.h"
 #include "fea/solver/conjugate_gradients.h"
 #include "fea/solver/node_order.h"
-#include "fea/supports/holding.h"
+#include "fea/supports/restraints.h"
 
 namespace meniscus::equations {
 
@@ -50,7 +50,7 @@ struct ElasticBase {
   std::optional<Failure> bad_node(const TetMesh& mesh) const;
   /// Of an element (solver's) with a Jacobian that is not positive.
   Failure inverted(const TetMesh& mesh, int element) const;
-  /// The holding of `load_case` turned against the base's.
+  /// The restraints of `load_case` turned against the base's.
   static Failure turned(const loads::LoadCase& load_case);
 
   ElasticOptions options;
@@ -65,10 +65,10 @@ struct ElasticBase {
 /// Load cases that are held alike, by index.
 struct HeldCases {
   std::vector<int> cases;
-  supports::Holding holding;
+  supports::Restraints restraints;
 };
 
-/// Throws what check_holding throws.
+/// Throws what check_restraints throws.
 std::vector<HeldCases> group_alike(
     const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
     const solver::NodeOrder& order);
@@ -82,13 +82,13 @@ struct SolvedCase {
   const VectorX& u;         // [length]
   const VectorX& diagonal;  // of the stiffness [force/length]
   const std::vector<element::ElasticLaw>& laws;
-  const supports::Holding& holding;
+  const supports::Restraints& restraints;
   const solver::CgColumn& column;
 };
 
 /// Puts displacement, reactions and figures into `result`; where the solver
 /// did not converge, or loads are not carried, a failure if it has none yet.
-void conclude(const ElasticBase& base, const solver::ElementTable& table,
-              const SolvedCase& solved, ElasticSolution& result);
+void finish_solution(const ElasticBase& base, const solver::ElementTable& table,
+                     const SolvedCase& solved, ElasticSolution& result);
 
 }  // namespace meniscus::equations

@@ -40,8 +40,9 @@ ElasticOperator ElasticSystem::operator_at(
                                    load_cases.size()));
   }
   const loads::LoadCase& loads = load_cases[load_case];
-  supports::Holding holding = supports::make_holding(mesh, loads, base_.order);
-  if (!supports::alike(holding, group->holding)) {
+  supports::Restraints restraints =
+      supports::make_restraints(mesh, loads, base_.order);
+  if (!supports::alike(restraints, group->restraints)) {
     throw SolverError(fmt::format(
         "load case '{}': the directions in which its supports hold the nodes "
         "are no longer the base design's",
@@ -54,12 +55,12 @@ ElasticOperator ElasticSystem::operator_at(
                          .preconditioner = group->preconditioner.get(),
                          .materials = regions.materials,
                          .K = {},
-                         .freedom = std::move(holding.freedom),
+                         .freedom = std::move(restraints.freedom),
                          .x = base_.solver_points(mesh)};
   if (const auto failure = assemble(mesh, regions.laws, result.K)) {
     throw MeshError(failure->message);
   }
-  supports::add_springs(shared_->table.pattern, holding.springs, result.K);
+  supports::add_springs(shared_->table.pattern, restraints.springs, result.K);
   return result;
 }
 

@@ -37,8 +37,8 @@ void ElasticSystem::order_mesh(const TetMesh& base) {
 void ElasticSystem::group_supports(
     const TetMesh& base, const std::vector<loads::LoadCase>& load_cases) {
   for (HeldCases& held : group_alike(base, load_cases, base_.order)) {
-    groups_.push_back(
-        {.cases = std::move(held.cases), .holding = std::move(held.holding)});
+    groups_.push_back({.cases = std::move(held.cases),
+                       .restraints = std::move(held.restraints)});
   }
 }
 
@@ -47,21 +47,21 @@ void ElasticSystem::build_preconditioners(
     const solver::BlockMatrix<double>& matrix) {
   multigrid_ = base_.options.solver == SolverKind::Multigrid ||
                (base_.options.solver == SolverKind::Automatic &&
-                supports::free_unknowns(groups_.front().holding) >
+                supports::free_unknowns(groups_.front().restraints) >
                     solver::kFactorUnknowns);
   if (multigrid_) {
     return build_multigrid(base, load_cases, matrix);
   }
   const solver::BlockPattern& pattern = shared_->table.pattern;
   for (Group& group : groups_) {
-    const supports::Holding& holding = group.holding;
+    const supports::Restraints& restraints = group.restraints;
     group.preconditioner =
-        holding.springs.at.empty()
-            ? solver::make_direct(pattern, matrix, holding.freedom)
+        restraints.springs.at.empty()
+            ? solver::make_direct(pattern, matrix, restraints.freedom)
             : solver::make_direct(
                   pattern,
-                  supports::sprung_matrix(pattern, matrix, holding.springs),
-                  holding.freedom);
+                  supports::sprung_matrix(pattern, matrix, restraints.springs),
+                  restraints.freedom);
   }
 }
 
@@ -84,14 +84,17 @@ solver::CornerMesh ElasticSystem::build_corners(
 void ElasticSystem::build_multigrid(
     const TetMesh& base, const std::vector<loads::LoadCase>& load_cases,
     const solver::BlockMatrix<double>& matrix) {
+  // p-multigrid: below the ten-node matrix is the four-node one of the same
+  // corners, below that smoothed aggregation (Vanek et al. 1996).
   const bool ten_nodes = base.order == 2;
   shared_->smoother = solver::make_smoother_matrix(matrix);
   solver::BlockMatrix<double> coarse;
   const Points x =
       ten_nodes ? build_corners(base, coarse).x : base_.solver_points(base);
   const solver::BlockPattern& pattern = shared_->table.pattern;
+  // Springs stiffen both levels, so that the cycle knows K + S.
   for (Group& group : groups_) {
-    const supports::SpringBlocks& springs = group.holding.springs;
+    const supports::SpringBlocks& springs = group.restraints.springs;
     const solver::BlockMatrix<double>* fine = &matrix;
     const solver::BlockMatrix<double>* corner = &coarse;
     solver::BlockMatrix<double> sprung;
@@ -111,13 +114,15 @@ void ElasticSystem::build_multigrid(
       group.corner_smoother = std::make_unique<solver::SmootherMatrix>(
           solver::make_smoother_matrix(sprung_corner));
     }
+    // Smoothers in single precision, shared where a group has no springs.
     const solver::SmootherMatrix* smoother =
         group.smoother ? group.smoother.get() : &shared_->smoother;
     const solver::SmootherMatrix* corner_smoother =
         group.corner_smoother ? group.corner_smoother.get()
                               : &shared_->corner_smoother;
+    // One cycle per group of load cases that are held alike.
     solver::MultigridInput input{.nodal = {&pattern, fine, smoother, &x},
-                                 .freedom = &group.holding.freedom};
+                                 .freedom = &group.restraints.freedom};
     if (ten_nodes) {
       input.nodal = {&shared_->corner_pattern, corner, corner_smoother, &x};
       input.fine_pattern = &pattern;
@@ -152,36 +157,41 @@ ElasticSolution ElasticSystem::solve(
   result.report.solver = !multigrid_       ? "cholmod"
                          : mesh.order == 1 ? "multigrid"
                                            : "p-multigrid";
-  result.report.dofs = supports::free_unknowns(groups_.front().holding);
+  result.report.dofs = supports::free_unknowns(groups_.front().restraints);
+  // Loads of all cases on the nodes of this mesh.
   const std::vector<VectorX> f =
       base_.solver_forces(mesh, load_cases, regions.materials);
   const Points x = base_.solver_points(mesh);
   for (const Group& group : groups_) {
-    const supports::Holding holding =
+    // The projector P turns with the design, but must hold what the base held:
+    // the preconditioner is that of the base.
+    const supports::Restraints restraints =
         start == nullptr
-            ? group.holding
-            : supports::make_holding(mesh, load_cases[group.cases.front()],
-                                     base_.order);
-    if (!supports::alike(holding, group.holding)) {
+            ? group.restraints
+            : supports::make_restraints(mesh, load_cases[group.cases.front()],
+                                        base_.order);
+    if (!supports::alike(restraints, group.restraints)) {
       result.failure = ElasticBase::turned(load_cases[group.cases.front()]);
       return result;
     }
-    const bool plain = holding.springs.at.empty();
+    // (K + S) u = f in the range of P, several right sides at once.
+    const bool plain = restraints.springs.at.empty();
     const solver::BlockMatrix<double> sprung =
         plain ? solver::BlockMatrix<double>{}
               : supports::sprung_matrix(shared_->table.pattern, matrix,
-                                        holding.springs);
+                                        restraints.springs);
     for (std::size_t first = 0; first < group.cases.size();
          first += solver::kMostColumns) {
       const std::size_t last =
           std::min(first + solver::kMostColumns, group.cases.size());
-      solve_columns(group, holding,
+      solve_columns(group, restraints,
                     {group.cases.begin() + static_cast<std::ptrdiff_t>(first),
                      group.cases.begin() + static_cast<std::ptrdiff_t>(last)},
                     x, f, load_cases, regions.laws, plain ? matrix : sprung,
                     start, result);
     }
   }
+  // With temperatures the energy is int s : C^-1 : s / 2, not f . u / 2.
   if (!result.failure && load_cases[0].temperature) {
     result.report.strain_energy =
         loads::strain_energy(mesh, regions.materials, result.displacements[0],
@@ -192,7 +202,7 @@ ElasticSolution ElasticSystem::solve(
 }
 
 void ElasticSystem::solve_columns(
-    const Group& group, const supports::Holding& holding,
+    const Group& group, const supports::Restraints& restraints,
     const std::vector<int>& cases, const Points& x,
     const std::vector<VectorX>& f,
     const std::vector<loads::LoadCase>& load_cases,
@@ -201,6 +211,8 @@ void ElasticSystem::solve_columns(
     ElasticSolution& result) const {
   Monitor& monitor = base_.options.monitor != nullptr ? *base_.options.monitor
                                                       : silent_monitor();
+  // From the base solution or from 0, never from the call before: an
+  // evaluation is a pure function of the design.
   std::vector<VectorX> right;
   std::vector<VectorX> u;
   for (const int c : cases) {
@@ -209,46 +221,50 @@ void ElasticSystem::solve_columns(
                     ? to_solver(base_.order, start->displacements[c])
                     : VectorX(VectorX::Zero(f[c].size())));
   }
+  // Preconditioned conjugate gradients (Hestenes, Stiefel 1952).
   const auto solve_with = [&](const solver::Preconditioner& preconditioner) {
     return solver::conjugate_gradients(
         {.pattern = shared_->table.pattern,
          .matrix = matrix,
          .preconditioner = preconditioner,
-         .freedom = holding.freedom,
+         .freedom = restraints.freedom,
          .tolerance = base_.options.tolerance,
          .max_iterations = base_.options.max_iterations,
          .monitor = monitor},
         right, u);
   };
   std::vector<solver::CgColumn> columns = solve_with(*group.preconditioner);
+  // A direction of negative curvature means a cycle that is not positive: a
+  // factor in double precision takes over.
   const bool lost = std::any_of(
       columns.begin(), columns.end(), [](const solver::CgColumn& column) {
         return column.end == solver::CgEnd::NotPositive;
       });
   if (lost && multigrid_ &&
-      supports::free_unknowns(holding) <= solver::kSecondChance) {
+      supports::free_unknowns(restraints) <= solver::kSecondChance) {
     // Single precision is lost on supports that hardly hold.
     for (VectorX& v : u) {
       v.setZero();
     }
-    columns = solve_with(
-        *solver::make_direct(shared_->table.pattern, matrix, holding.freedom));
+    columns = solve_with(*solver::make_direct(shared_->table.pattern, matrix,
+                                              restraints.freedom));
     result.report.solver = "cholmod after multigrid";
   }
+  // Reactions, balance and residual by elements; the diagonal bounds rounding.
   const VectorX diagonal = solver::diagonal_of(matrix);
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const int c = cases[k];
-    conclude(base_, shared_->table,
-             {.load_case = c,
-              .name = load_cases[c].name,
-              .x = x,
-              .f = f[c],
-              .u = u[k],
-              .diagonal = diagonal,
-              .laws = laws,
-              .holding = holding,
-              .column = columns[k]},
-             result);
+    finish_solution(base_, shared_->table,
+                    {.load_case = c,
+                     .name = load_cases[c].name,
+                     .x = x,
+                     .f = f[c],
+                     .u = u[k],
+                     .diagonal = diagonal,
+                     .laws = laws,
+                     .restraints = restraints,
+                     .column = columns[k]},
+                    result);
   }
 }
 

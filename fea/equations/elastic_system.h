@@ -54,7 +54,7 @@ class ElasticSystem {
   /// Load cases that are held alike share a preconditioner.
   struct Group {
     std::vector<int> cases;
-    supports::Holding holding;  // at the base
+    supports::Restraints restraints;  // at the base
     // With springs; else the shared ones serve.
     std::unique_ptr<solver::SmootherMatrix> smoother;
     std::unique_ptr<solver::SmootherMatrix> corner_smoother;
@@ -82,7 +82,7 @@ class ElasticSystem {
   void build_preconditioners(const TetMesh& base,
                              const std::vector<loads::LoadCase>& load_cases,
                              const solver::BlockMatrix<double>& matrix);
-  void solve_columns(const Group& group, const supports::Holding& holding,
+  void solve_columns(const Group& group, const supports::Restraints& restraints,
                      const std::vector<int>& cases, const Points& x,
                      const std::vector<VectorX>& f,
                      const std::vector<loads::LoadCase>& load_cases,

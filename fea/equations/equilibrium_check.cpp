@@ -28,6 +28,8 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
   double error = 0.0;
   double rounding = 0.0;
   std::size_t h = 0;
+  // Node by node, P the projector on what is free: reactions
+  // (I - P)(K u - f) - P S u and the residual P (f - K u - S u).
   for (Eigen::Index i = 0; i < input.f.size() / 3; ++i) {
     Mat3 P = Mat3::Identity();
     if (h < input.freedom.held.size() && input.freedom.held[h] == i) {
@@ -44,10 +46,13 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
                     .cwiseProduct(P * input.u.segment<3>(3 * i))
                     .squaredNorm();
   }
+  // Relative to the free load; rounding as the diagonal lets u carry it.
   if (load > 0.0) {
     result.residual = std::sqrt(error / load);
     result.rounding = kRounding * std::sqrt(rounding / load);
   }
+  // Moments about the middle, over the part's size: forces and moments then
+  // have one unit and add up.
   Vec3 centre = Vec3::Zero();
   for (const Vec3& x : input.x) {
     centre += x / static_cast<double>(input.x.size());
@@ -56,6 +61,7 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
   for (const Vec3& x : input.x) {
     size = std::max(size, (x - centre).norm());
   }
+  // Loads and reactions of a body at rest sum to zero.
   Vec3 force = Vec3::Zero();
   Vec3 moment = Vec3::Zero();
   double total = 0.0;
@@ -71,8 +77,9 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
   return result;
 }
 
-std::optional<Failure> judge(const Equilibrium& equilibrium, double tolerance,
-                             const std::string& load_case) {
+std::optional<Failure> check_residual(const Equilibrium& equilibrium,
+                                      double tolerance,
+                                      const std::string& load_case) {
   const double residual_bound =
       std::max(kShortWaves * tolerance, equilibrium.rounding);
   if (!(equilibrium.residual <= residual_bound)) {

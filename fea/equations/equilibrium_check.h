@@ -35,7 +35,8 @@ Equilibrium check_equilibrium(const EquilibriumInput& input);
 
 /// Nothing when residual and imbalance are within their bounds. `tolerance`: of
 /// the solution in the energy norm.
-std::optional<Failure> judge(const Equilibrium& equilibrium, double tolerance,
-                             const std::string& load_case);
+std::optional<Failure> check_residual(const Equilibrium& equilibrium,
+                                      double tolerance,
+                                      const std::string& load_case);
 
 }  // namespace meniscus::equations

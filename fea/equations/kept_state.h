@@ -9,7 +9,7 @@
 #include "fea/solver/assembly.h"
 #include "fea/solver/node_order.h"
 #include "fea/solver/preconditioner.h"
-#include "fea/supports/holding.h"
+#include "fea/supports/restraints.h"
 
 namespace meniscus::equations {
 
@@ -18,7 +18,7 @@ struct KeptState {
   /// Load cases that are held alike.
   struct Group {
     std::vector<int> cases;
-    supports::Holding holding;
+    supports::Restraints restraints;
     const solver::Preconditioner* preconditioner = nullptr;  // of the model
   };
 

@@ -64,6 +64,7 @@ element::DirectedFunctional surface_mean(const SurfaceMean& in,
     return element::value_at(in.mesh, f, point, in.displacement)
         .dot(in.direction);
   };
+  // J = int rho(x, u . d) dA / A by the face rule.
   element::over_face_points(
       in.mesh, label, in.rule, [&](int f, const element::FacePoint& point) {
         const double share = point.normal.norm();
@@ -79,6 +80,8 @@ element::DirectedFunctional surface_mean(const SurfaceMean& in,
   if (derivatives == element::Derivatives::None) {
     return result;
   }
+  // Pulled back: dJ/du_a = int N_a rho_s d dA / A, and by d the mean of
+  // rho_s u.
   result.by_nodes.assign(in.mesh.nodes.size(), Vec3::Zero());
   result.by_displacement = element::nodal_zeros(in.mesh);
   element::pull_back_faces(
@@ -94,6 +97,8 @@ element::DirectedFunctional surface_mean(const SurfaceMean& in,
               point.shape[a] * share * at.by_s * in.direction;
         }
         result.by_direction += share * at.by_s * u;
+        // By place the slope of rho; by the area vector (rho - J) n / A,
+        // because A changes as well.
         return {share * at.by_position,
                 (at.value - result.value) / area * point.normal.normalized()};
       },

@@ -29,6 +29,7 @@ struct Sample {
 
 Sample sample(const StressFunctionalInput& in, Measure measure) {
   Sample s;
+  // Stresses at the points of the stiffness rule, expansion taken out.
   s.points =
       element::point_stress(in.mesh, in.materials, in.displacement,
                             loads::temperature_change(in.mesh, in.load_case));
@@ -41,6 +42,7 @@ Sample sample(const StressFunctionalInput& in, Measure measure) {
   }
   const std::vector<element::ElasticLaw> laws =
       element::elastic_laws(in.materials);
+  // Von Mises stress, or energy density s : C^-1 : s / 2.
   s.value.assign(s.points.stress.size(), 0.0);
   s.counts.assign(static_cast<std::size_t>(elements), 1);
 #pragma omp parallel for schedule(static)
@@ -59,6 +61,7 @@ Sample sample(const StressFunctionalInput& in, Measure measure) {
                           stress, stress, laws[in.mesh.element_region[e]]);
     }
   }
+  // Volume and peak in one order, whatever the threads.
   for (int e = 0; e < elements; ++e) {
     for (int q = 0; s.counts[e] != 0 && q < s.points.points_per_element; ++q) {
       const std::size_t at = s.points.index(e, q);
@@ -139,6 +142,7 @@ void differentiate(const StressFunctionalInput& in, Measure measure,
   loads::require_temperature_slope(in.load_case);
   const std::vector<element::ElasticLaw> laws =
       element::elastic_laws(in.materials);
+  // One sweep gives nodes, displacements and temperatures their parts.
   VectorX by_x = element::nodal_zeros(in.mesh);
   result.by_displacement = element::nodal_zeros(in.mesh);
   const bool warm = in.load_case.temperature.has_value();
@@ -159,17 +163,22 @@ void differentiate(const StressFunctionalInput& in, Measure measure,
         const std::size_t at = s.points.index(point.element, point.point);
         const element::ElasticLaw& law =
             laws[in.mesh.element_region[point.element]];
+        // A = dJ/dsigma per volume, B = V C A: a change of the displacement
+        // gradient H gives dJ = B : dH.
         const Weight w = weight(s.value[at]);
         const Mat3 A = w.by_value * by_stress(measure, s.points.stress[at],
                                               s.value[at], law);
         const Mat3 B = point.volume * law.stress(A);
+        // A move of the nodes with gradient D has dH = -H D and dV = V tr D.
         flux.by_gradient[0].noalias() = -point.gradient[0].transpose() * B;
         flux.by_gradient[0].diagonal().array() += point.volume * w.by_volume;
         flux.by_gradient[1] = B;
+        // Temperature takes C alpha dT out of the stress.
         flux.by_scalar =
             -point.volume *
             element::stress_tensor(law.heat_stress).cwiseProduct(A).sum();
       });
+  // A temperature field moves with the nodes; the modulus scales all values.
   result.by_nodes = element::as_points(by_x);
   loads::add_temperature_slope(in.mesh, in.load_case, result.by_temperature,
                                result.by_nodes);

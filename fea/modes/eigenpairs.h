@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/monitor.h"
-#include "fea/solver/columns.h"
+#include "fea/solver/multi_vector.h"
 
 namespace meniscus::modes {
 

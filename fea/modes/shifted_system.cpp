@@ -59,7 +59,7 @@ ShiftedSystem::ShiftedSystem(const TetMesh& mesh,
   }
   table_ = solver::make_element_table(order_.chunks, mesh.nodes_per_element(),
                                       elements, std::move(region));
-  holding_ = supports::make_holding(mesh, held, order_);
+  restraints_ = supports::make_restraints(mesh, held, order_);
   std::vector<supports::HeldDirection> directions =
       supports::held_directions(mesh, held);
   motions_ = meniscus::supports::free_motions(mesh, directions);
@@ -82,7 +82,7 @@ void ShiftedSystem::assemble_shifted(const TetMesh& mesh,
                .preconditioner = nullptr,
                .materials = materials_,
                .K = {},
-               .freedom = holding_.freedom,
+               .freedom = restraints_.freedom,
                .x = {}};
   for (const int node : order_.to_mesh) {
     operator_.x.push_back(mesh.nodes[node]);
@@ -108,21 +108,21 @@ void ShiftedSystem::assemble_shifted(const TetMesh& mesh,
                        solver::mass_matrix(table_, operator_.x, density_),
                        operator_.K);
   }
-  supports::add_springs(table_.pattern, holding_.springs, operator_.K);
+  supports::add_springs(table_.pattern, restraints_.springs, operator_.K);
 }
 
 void ShiftedSystem::build_preconditioner(const TetMesh& mesh,
                                          const loads::LoadCase& held) {
-  if (supports::free_unknowns(holding_) <= solver::kFactorUnknowns) {
+  if (supports::free_unknowns(restraints_) <= solver::kFactorUnknowns) {
     preconditioner_ =
-        solver::make_direct(table_.pattern, operator_.K, holding_.freedom);
+        solver::make_direct(table_.pattern, operator_.K, restraints_.freedom);
     operator_.preconditioner = preconditioner_.get();
     return;
   }
   smoother_ = solver::make_smoother_matrix(operator_.K);
   solver::MultigridInput input{
       .nodal = {&table_.pattern, &operator_.K, &smoother_, &operator_.x},
-      .freedom = &holding_.freedom};
+      .freedom = &restraints_.freedom};
   solver::BlockMatrix<double> coarse;
   if (mesh.order == 2) {
     corners_ = solver::make_corner_mesh(mesh, order_);

@@ -9,7 +9,7 @@
 #include "fea/equations/elastic_operator.h"
 #include "fea/solver/corner_mesh.h"
 #include "fea/solver/multigrid.h"
-#include "fea/supports/holding.h"
+#include "fea/supports/restraints.h"
 
 namespace meniscus::modes {
 
@@ -42,7 +42,7 @@ class ShiftedSystem {
   std::vector<double> density_;
   solver::NodeOrder order_;
   solver::ElementTable table_;
-  supports::Holding holding_;
+  supports::Restraints restraints_;
   Eigen::MatrixXd motions_;
   int unsprung_ = 0;
   double shift_ = 0.0;

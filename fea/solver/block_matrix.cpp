@@ -45,12 +45,15 @@ BlockPattern make_pattern(RowChunks chunks, int nodes_per_element,
   pattern.nodes = nodes;
   pattern.chunks = std::move(chunks);
   pattern.nodes_per_element = nodes_per_element;
+  // Symbolic assembly, row by row: the columns of row i are the lower nodes of
+  // the elements around it.
   const NodeElements around = elements_of_nodes(nodes, element_nodes);
   const int pairs = pattern.pairs_per_element();
   pattern.pair_block.resize(element_nodes.size() / nodes_per_element * pairs);
   pattern.start.assign(1, 0);
   pattern.start.reserve(nodes + 1);
   std::vector<int> position(nodes, -1);
+  // A position below `first` is of an earlier row: marks need no clearing.
   for (int i = 0; i < nodes; ++i) {
     const auto first = static_cast<std::ptrdiff_t>(pattern.column.size());
     for (int k = around.start[i]; k < around.start[i + 1]; ++k) {
@@ -63,6 +66,8 @@ BlockPattern make_pattern(RowChunks chunks, int nodes_per_element,
         }
       }
     }
+    // Rising columns; then each pair of an element gets its block for good, so
+    // that numeric assembly searches nothing.
     std::sort(pattern.column.begin() + first, pattern.column.end());
     for (auto k = first; k < std::ssize(pattern.column); ++k) {
       position[pattern.column[k]] = static_cast<int>(k);

@@ -148,7 +148,7 @@ class Solver {
     problem_.preconditioner.apply(r_, z_, K);
     project(z_);  // it knows the base design's held directions
     const Sums<K> rz = dot(r_, z_);
-    judge(step, rz);
+    check_residual(step, rz);
     if (open_ == 0) {
       return;
     }
@@ -191,7 +191,7 @@ class Solver {
   }
 
   /// Ends columns that have arrived or cannot go on.
-  void judge(int step, const Sums<K>& rz) {
+  void check_residual(int step, const Sums<K>& rz) {
     for (int k = 0; k < K; ++k) {
       if (!live_[k]) {
         continue;

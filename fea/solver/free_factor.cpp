@@ -140,6 +140,7 @@ FreeFactor::FreeFactor(const BlockPattern& pattern,
                        const BlockMatrix<double>& matrix,
                        const NodeFreedom& freedom)
     : held_(freedom.held), factor_([&] {
+        // An orthonormal basis Q_i of what is free at each node.
         std::vector<FreeBasis> bases(pattern.nodes);
         for (std::size_t h = 0; h < held_.size(); ++h) {
           bases[held_[h]] = free_basis(freedom.projector[h]);
@@ -149,6 +150,8 @@ FreeFactor::FreeFactor(const BlockPattern& pattern,
         for (const FreeBasis& basis : bases) {
           start_.push_back(start_.back() + basis.rank);
         }
+        // A = Q^T K Q has no held unknowns left; Cholesky in the order of
+        // nested dissection of the nodes (George 1973).
         const SparseMatrix A =
             FreeMatrix(pattern, matrix, start_, bases).build();
         SymmetricFactor factor(A, FactorKind::Cholesky,
@@ -177,6 +180,7 @@ void FreeFactor::solve(const double* r, double* z, int K) const {
       }
     }
   };
+  // z = Q A^-1 Q^T r: held directions drop out and come back as 0.
   Eigen::MatrixXd right(start_.back(), K);
   visit([&](int i, int k, const auto& axes) {
     right.col(k).segment(start_[i], axes.cols()) =

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "fea/solver/block_kernels.h"
-#include "fea/solver/clusters.h"
+#include "fea/solver/node_clusters.h"
 
 namespace meniscus::solver {
 

@@ -124,6 +124,7 @@ StressPatch fit_patch(const element::PointStress& points,
   StressPatch patch;
   patch.coefficient.setZero();
   patch.centre = centre;
+  // Coordinates over the patch's own size keep the terms of one magnitude.
   double reach = 0.0;
   for (const int e : elements) {
     for (int q = 0; q < points.points_per_element; ++q) {
@@ -132,6 +133,8 @@ StressPatch fit_patch(const element::PointStress& points,
     }
   }
   patch.size = reach > 0.0 ? std::sqrt(reach) : 1.0;
+  // Normal equations P^T W P a = P^T W s over the integration points, as in
+  // patch recovery (Zienkiewicz, Zhu 1992); sqrt(W) scales the rows.
   Normal normal;
   const double scale = 1.0 / patch.size;
   for (const int e : elements) {
@@ -154,6 +157,8 @@ StressPatch fit_patch(const element::PointStress& points,
     }
   }
   normal.finish();
+  // The highest degree that the points determine well: quadratic, linear, then
+  // the mean. The leading block of the sums is the system of a lower degree.
   constexpr int kLinear = 4;
   const bool alone = elements.size() == 1 && normal.samples() == kLinear;
   if (options.degree == 2 && normal.samples() >= 2 * kTerms &&

@@ -24,13 +24,12 @@ Case::Case(Case&& other) noexcept = default;
 Case& Case::operator=(const Case& other) = default;
 Case& Case::operator=(Case&& other) noexcept = default;
 
-EvaluatedCase::EvaluatedCase() = default;
-EvaluatedCase::~EvaluatedCase() = default;
-EvaluatedCase::EvaluatedCase(const EvaluatedCase& other) = default;
-EvaluatedCase::EvaluatedCase(EvaluatedCase&& other) noexcept = default;
-EvaluatedCase& EvaluatedCase::operator=(const EvaluatedCase& other) = default;
-EvaluatedCase& EvaluatedCase::operator=(EvaluatedCase&& other) noexcept =
-    default;
+StageInputs::StageInputs() = default;
+StageInputs::~StageInputs() = default;
+StageInputs::StageInputs(const StageInputs& other) = default;
+StageInputs::StageInputs(StageInputs&& other) noexcept = default;
+StageInputs& StageInputs::operator=(const StageInputs& other) = default;
+StageInputs& StageInputs::operator=(StageInputs&& other) noexcept = default;
 
 namespace {
 
@@ -42,8 +41,8 @@ void check_on_curves(const Case& input, const films::FilmSystem& system,
                      const std::vector<std::string>& curves,
                      const PlaceQuantity& from, const Expression& expression,
                      const CaseValues& values) {
-  const auto tell = [&](const std::string& found, const Vec3& at,
-                        const std::string& curve) {
+  const auto add_problem = [&](const std::string& found, const Vec3& at,
+                               const std::string& curve) {
     values.problems().push_back(fmt::format(
         "{}: {} {} at ({:.4g}, {:.4g}, {:.4g}) on curve '{}'{}; it must be "
         "above 0 on the whole film",
@@ -61,11 +60,11 @@ void check_on_curves(const Case& input, const films::FilmSystem& system,
         const double value =
             expression.evaluate(std::span<const double>(at.data(), 3));
         if (!(value > 0.0)) {
-          return tell(fmt::format("is {:.4g}", value), at, curve.name);
+          return add_problem(fmt::format("is {:.4g}", value), at, curve.name);
         }
       } catch (const ExpressionError& error) {
-        return tell(fmt::format("has no value ({})", error.what()), at,
-                    curve.name);
+        return add_problem(fmt::format("has no value ({})", error.what()), at,
+                           curve.name);
       }
     }
   }
@@ -192,25 +191,26 @@ std::vector<std::string> curves_under(const Case& input,
 }
 
 /// Tells of expressions of place that cannot hold on their films.
-void check_places(const Case& input, const EvaluatedCase& numbers,
+void check_places(const Case& input, const EvaluatedCase& inputs,
                   const CaseValues& values) {
   for (std::size_t k = 0; k < input.films.size(); ++k) {
-    const films::FilmSpec& film = numbers.film_system.films[k];
+    const films::FilmSpec& film = inputs.film_system.films[k];
     if (film.tension_field) {
-      check_on_curves(input, numbers.film_system, film.curves,
+      check_on_curves(input, inputs.film_system, film.curves,
                       input.films[k].tension, *film.tension_field, values);
     }
   }
   for (std::size_t k = 0; k < input.walls.size(); ++k) {
-    const walls::WallSpec& wall = numbers.walls[k];
-    check_on_curves(input, numbers.film_system, curves_under(input, wall.films),
+    const walls::WallSpec& wall = inputs.walls[k];
+    check_on_curves(input, inputs.film_system, curves_under(input, wall.films),
                     input.walls[k].thickness, wall.thickness, values);
   }
 }
 
-/// Values, or rates.
-EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
-  EvaluatedCase result;
+/// Values, or rates, as `values` gives them.
+template <class Inputs>
+Inputs inputs_of(const Case& input, const CaseValues& values) {
+  Inputs result;
   result.film_system = films_of(input, values);
   for (const WallEntry& wall : input.walls) {
     walls::WallSpec spec{.name = wall.name,
@@ -236,7 +236,6 @@ EvaluatedCase numbers_of(const Case& input, const CaseValues& values) {
   for (const ResponseEntry& response : input.responses) {
     result.responses.push_back(response_of(input, response, values));
   }
-  result.fea_edge = input.resolution.fea;
   return result;
 }
 
@@ -278,8 +277,9 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
   if (problems.size() > before) {
     return {};  // what follows from a bad parameter is no news
   }
-  EvaluatedCase result = numbers_of(input, values);
+  auto result = inputs_of<EvaluatedCase>(input, values);
   result.design = design;
+  result.fea_edge = input.resolution.fea;
   if (problems.size() == before) {
     check_meetings(input, result.film_system, values);
     check_sides(input, result.film_system, values);
@@ -295,10 +295,10 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design) {
   return result;
 }
 
-EvaluatedCase rates(const Case& input, const VectorX& design, int variable) {
+CaseRates rates(const Case& input, const VectorX& design, int variable) {
   std::vector<std::string> problems;
   const CaseValues values(input, design, problems, variable);
-  EvaluatedCase result = numbers_of(input, values);
+  auto result = inputs_of<CaseRates>(input, values);
   throw_first(problems);
   return result;
 }

@@ -62,7 +62,7 @@ struct Case {
 std::vector<BodyEntry> solid_bodies(const Case& input);
 
 /// What a response depends on beside fields.
-struct ResponseNumbers {
+struct ResponseInputs {
   Vec3 direction = Vec3::Zero();
   loads::NumberOfPlace weight;  // empty: 1
   loads::VectorOfPlace weight_slope;
@@ -70,25 +70,36 @@ struct ResponseNumbers {
   loads::VectorOfPlace level_slope;
 };
 
-/// The numbers of one design.
-struct EvaluatedCase {
+/// What a case hands to the stages: values, or their rates.
+struct StageInputs {
   // Compiled once, in case.cpp: else in every source that holds one.
-  EvaluatedCase();
-  ~EvaluatedCase();
-  EvaluatedCase(const EvaluatedCase& other);
-  EvaluatedCase(EvaluatedCase&& other) noexcept;
-  EvaluatedCase& operator=(const EvaluatedCase& other);
-  EvaluatedCase& operator=(EvaluatedCase&& other) noexcept;
+  StageInputs();
+  ~StageInputs();
+  StageInputs(const StageInputs& other);
+  StageInputs(StageInputs&& other) noexcept;
+  StageInputs& operator=(const StageInputs& other);
+  StageInputs& operator=(StageInputs&& other) noexcept;
 
-  VectorX design;  // where
   films::FilmSystem film_system;
   std::vector<walls::WallSpec> walls;
   std::vector<element::Material>
       materials;  // one per body that is solid, in order
   std::vector<loads::LoadCase> load_cases;
-  std::vector<ResponseNumbers> responses;
+  std::vector<ResponseInputs> responses;
+};
+
+/// The values at one design.
+struct EvaluatedCase : StageInputs {
+  VectorX design;  // where
   double fea_edge = 0.0;
 };
+
+/// The derivatives of these values by one design variable: every number that
+/// has one holds it, what depends on places gives it there; orthotropic
+/// constants, supports and springs, which never depend on the design, are
+/// copies, as are the expressions that films are frozen with; weights and
+/// regions of responses that do not move are empty.
+struct CaseRates : StageInputs {};
 
 /// `design`: one value per design variable. Throws InvalidInput, naming file,
 /// line, key and values, where an expression has no finite value or one that
@@ -100,13 +111,9 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design);
 EvaluatedCase evaluate(const Case& input, const VectorX& design,
                        std::vector<std::string>& problems);
 
-/// The derivatives of these numbers by one design variable: every number that
-/// has one holds it, what depends on places gives it there; orthotropic
-/// constants, supports and springs, which never depend on the design, are
-/// copies, as are the expressions that films are frozen with; weights and
-/// regions of responses that do not move are empty. Throws InvalidInput where
-/// an expression has no finite derivative.
-EvaluatedCase rates(const Case& input, const VectorX& design, int variable);
+/// By the design variable of that index. Throws InvalidInput where an
+/// expression has no finite derivative.
+CaseRates rates(const Case& input, const VectorX& design, int variable);
 
 /// "path:12", or "path: --set load_left=x" for what an override put there.
 std::string place(const Case& input, SourceLine line);

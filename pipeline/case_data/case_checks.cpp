@@ -75,10 +75,10 @@ void check_use(const Case& input, CaseProblems& problems) {
   }
 }
 
-void check_loads(const Case& input, const EvaluatedCase& numbers,
+void check_loads(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems) {
-  for (std::size_t k = 0; k < numbers.load_cases.size(); ++k) {
-    const loads::LoadCase& load_case = numbers.load_cases[k];
+  for (std::size_t k = 0; k < inputs.load_cases.size(); ++k) {
+    const loads::LoadCase& load_case = inputs.load_cases[k];
     if (!is_loaded(load_case)) {
       problems.add(input.load_cases[k].line,
                    fmt::format("load case '{}' has no load that is not 0; a "
@@ -87,29 +87,29 @@ void check_loads(const Case& input, const EvaluatedCase& numbers,
     }
   }
   const bool expands =
-      std::any_of(numbers.materials.begin(), numbers.materials.end(),
+      std::any_of(inputs.materials.begin(), inputs.materials.end(),
                   [](const element::Material& m) {
                     return !m.thermal_expansion.isZero(0.0);
                   });
-  for (std::size_t k = 0; k < numbers.load_cases.size() && !expands; ++k) {
-    if (numbers.load_cases[k].temperature) {
+  for (std::size_t k = 0; k < inputs.load_cases.size() && !expands; ++k) {
+    if (inputs.load_cases[k].temperature) {
       problems.add(input.load_cases[k].line,
                    fmt::format("load case '{}' has a temperature, but no "
                                "material has a thermal expansion; give one",
-                               numbers.load_cases[k].name));
+                               inputs.load_cases[k].name));
     }
   }
   const std::vector<BodyEntry> solid = solid_bodies(input);
-  for (std::size_t k = 0; k < numbers.materials.size(); ++k) {
+  for (std::size_t k = 0; k < inputs.materials.size(); ++k) {
     const MaterialEntry& entry =
         input.materials[static_cast<std::size_t>(solid[k].material)];
-    if (numbers.materials[k].density != 0.0) {
+    if (inputs.materials[k].density != 0.0) {
       continue;
     }
     const auto weighs =
-        std::find_if(numbers.load_cases.begin(), numbers.load_cases.end(),
+        std::find_if(inputs.load_cases.begin(), inputs.load_cases.end(),
                      [](const loads::LoadCase& c) { return has_weight(c); });
-    if (weighs != numbers.load_cases.end()) {
+    if (weighs != inputs.load_cases.end()) {
       problems.add(entry.density.line,
                    fmt::format("materials.{}.density is 0, but load case '{}' "
                                "has gravity or spin; give its mass per volume",
@@ -166,27 +166,27 @@ void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
 void check_numbers(const Case& input, CaseProblems& problems) {
   const auto at = [&](const VectorX& design) {
     std::vector<std::string> found;
-    EvaluatedCase numbers = evaluate(input, design, found);
+    EvaluatedCase inputs = evaluate(input, design, found);
     for (const std::string& problem : found) {
       problems.add_text(problem);
     }
-    return numbers;
+    return inputs;
   };
   const VectorX initial = initial_design(input);
-  const EvaluatedCase numbers = at(initial);
+  const EvaluatedCase inputs = at(initial);
   if (!problems.empty()) {
     return;
   }
-  check_start(input, numbers, problems);
-  check_loads(input, numbers, problems);
+  check_start(input, inputs, problems);
+  check_loads(input, inputs, problems);
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     for (const double end : {input.design[k].lower, input.design[k].upper}) {
       VectorX design = initial;
       design[static_cast<Eigen::Index>(k)] = end;
       const EvaluatedCase there = at(design);
       if (problems.empty()) {
-        check_merged(input, numbers, there, problems);
-        check_fixed_materials(input, numbers, there, problems);
+        check_merged(input, inputs, there, problems);
+        check_fixed_materials(input, inputs, there, problems);
       }
     }
   }

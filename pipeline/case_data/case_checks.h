@@ -26,7 +26,7 @@ void check_case(const Case& input, CaseProblems& problems);
 
 /// Films and solids that start from facets put onto their curves, at the
 /// initial design: rims that find no curve, bodies that stay open.
-void check_start(const Case& input, const EvaluatedCase& numbers,
+void check_start(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems);
 
 /// Some film or solid, or one of those that enclose a body, is of facets.

@@ -34,15 +34,14 @@ bool has_facets(const Case& input, const BodyEntry& body) {
                      });
 }
 
-void check_start(const Case& input, const EvaluatedCase& numbers,
+void check_start(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems) {
   if (!has_facets(input)) {
     return;
   }
   try {
-    start::build_start(
-        numbers.film_system,
-        start::start_edge(numbers.film_system, numbers.fea_edge));
+    start::build_start(inputs.film_system,
+                       start::start_edge(inputs.film_system, inputs.fea_edge));
   } catch (const Error& error) {
     const std::string message = error.what();
     problems.add(line_of_start(input, message), message);

@@ -175,9 +175,9 @@ void merge_curves(Case& input, CaseProblems& problems) {
 void check_merged(const Case& input, const EvaluatedCase& initial,
                   const EvaluatedCase& other, CaseProblems& problems) {
   const auto moved = [&](int curve) {
-    const auto at = [&](const EvaluatedCase& numbers, double t) {
+    const auto at = [&](const EvaluatedCase& inputs, double t) {
       return curves::point_at(
-          numbers.film_system.curves[static_cast<std::size_t>(curve)].shape, t);
+          inputs.film_system.curves[static_cast<std::size_t>(curve)].shape, t);
     };
     return at(initial, 0.0) != at(other, 0.0) ||
            at(initial, 0.3) != at(other, 0.3) ||

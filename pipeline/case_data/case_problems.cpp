@@ -33,8 +33,8 @@ std::string advice(const std::string& name,
                            : "");
 }
 
-std::string CaseProblems::placed(SourceLine line,
-                                 const std::string& message) const {
+std::string CaseProblems::with_location(SourceLine line,
+                                        const std::string& message) const {
   if (line > 0) {
     return fmt::format("{}:{}: {}", path_, line, message);
   }
@@ -46,7 +46,7 @@ std::string CaseProblems::placed(SourceLine line,
 }
 
 void CaseProblems::add(SourceLine line, const std::string& message) {
-  problems_.push_back({line, placed(line, message)});
+  problems_.push_back({line, with_location(line, message)});
 }
 
 void CaseProblems::add_text(const std::string& message) {
@@ -57,7 +57,7 @@ void CaseProblems::add_text(const std::string& message) {
 }
 
 void CaseProblems::warn(SourceLine line, const std::string& message) {
-  warnings_.push_back({line, placed(line, "warning: " + message)});
+  warnings_.push_back({line, with_location(line, "warning: " + message)});
 }
 
 void CaseProblems::unknown(SourceLine line, const char* what,

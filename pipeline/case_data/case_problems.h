@@ -34,7 +34,7 @@ class CaseProblems {
     SourceLine line;
     std::string text;
   };
-  std::string placed(SourceLine line, const std::string& message) const;
+  std::string with_location(SourceLine line, const std::string& message) const;
 
   std::string path_;
   std::vector<std::string> overrides_;

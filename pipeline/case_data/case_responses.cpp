@@ -32,10 +32,10 @@ Field told(const Field& field, double sign, const std::string& what) {
 
 }  // namespace
 
-ResponseNumbers response_of(const Case& input, const ResponseEntry& response,
-                            const CaseValues& values) {
+ResponseInputs response_of(const Case& input, const ResponseEntry& response,
+                           const CaseValues& values) {
   const std::size_t before = values.problems().size();
-  ResponseNumbers result{.direction = values.at(response.direction)};
+  ResponseInputs result{.direction = values.at(response.direction)};
   if (!values.are_rates() && has_direction(response.kind) &&
       values.problems().size() == before && !(result.direction.norm() > 0.0)) {
     const Quantity& first = response.direction[0];

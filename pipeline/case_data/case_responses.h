@@ -9,7 +9,7 @@ namespace meniscus::case_data {
 /// Values, or rates. Its fields throw InvalidInput, naming file, line and key,
 /// at a place where they have no value. What is wrong elsewhere is told in the
 /// problems of `values`.
-ResponseNumbers response_of(const Case& input, const ResponseEntry& response,
-                            const CaseValues& values);
+ResponseInputs response_of(const Case& input, const ResponseEntry& response,
+                           const CaseValues& values);
 
 }  // namespace meniscus::case_data

@@ -153,8 +153,8 @@ double CaseValues::rate(const Quantity& quantity, std::span<const double> more,
   }
 }
 
-void CaseValues::tell_bad(const Quantity& quantity, double value,
-                          const char* must_be) const {
+void CaseValues::add_problem(const Quantity& quantity, double value,
+                             const char* must_be) const {
   problems_.push_back(fmt::format("{}: {} is {:g}{}; it must be {}",
                                   place(input_, quantity.line), quantity.key,
                                   value, where(quantity), must_be));

@@ -41,7 +41,7 @@ class CaseValues {
     const std::size_t before = problems_.size();
     const double value = at(quantity);
     if (!are_rates() && problems_.size() == before && !good(value)) {
-      tell_bad(quantity, value, must_be);
+      add_problem(quantity, value, must_be);
     }
     return value;
   }
@@ -80,8 +80,8 @@ class CaseValues {
  private:
   double evaluate(const Quantity& quantity) const;
   double nothing(const Quantity& quantity, const ExpressionError& error) const;
-  void tell_bad(const Quantity& quantity, double value,
-                const char* must_be) const;
+  void add_problem(const Quantity& quantity, double value,
+                   const char* must_be) const;
   std::string where_text(const std::vector<char>& used) const;
   static void mark(const Quantity& quantity, std::vector<char>& used);
   template <class Items>

@@ -26,10 +26,10 @@ SourceLine line_of_start(const Case& input, const std::string& message) {
   return line;
 }
 
-frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& numbers,
+frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
                                const frozen::FilmModelOptions& options) {
   try {
-    return frozen::FilmModel::freeze(numbers.film_system, options);
+    return frozen::FilmModel::freeze(inputs.film_system, options);
   } catch (const InvalidInput& error) {
     const std::string message = error.what();
     throw InvalidInput(fmt::format(

@@ -14,7 +14,7 @@ SourceLine line_of_start(const Case& input, const std::string& message);
 
 /// FilmModel::freeze() of the case's films; what it refuses is told with the
 /// line of the case. Throws InvalidInput.
-frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& numbers,
+frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
                                const frozen::FilmModelOptions& options);
 
 }  // namespace meniscus::case_data

@@ -5,9 +5,10 @@
 
 #include "core/timer.h"
 #include "fea/elastic/elastic_gradient.h"
+#include "fea/loads/load_rates.h"
 #include "fea/loads/material_rates.h"
-#include "fea/loads/rates.h"
 #include "pipeline/case_data/case_values.h"
+#include "pipeline/forward/frozen_part.h"
 
 namespace meniscus::forward {
 
@@ -41,11 +42,11 @@ class Adjoint {
   void through_mesh(Backward& backward) const;
   void through_film();
   double rate(const Backward& backward,
-              const case_data::EvaluatedCase& rates) const;
+              const case_data::CaseRates& rates) const;
   void add_expressions(const std::vector<char>& needed, int variable,
                        VectorX& rates) const;
   const case_data::ResponseEntry& entry(const Backward& backward) const {
-    return in_.input.responses[backward.response];
+    return in_.part.input.responses[backward.response];
   }
 
   const GradientInput& in_;
@@ -54,7 +55,7 @@ class Adjoint {
 
 /// The responses wanted, and those that they are made of.
 std::vector<char> Adjoint::needed(const std::vector<int>& wanted) const {
-  const case_data::Case& input = in_.input;
+  const case_data::Case& input = in_.part.input;
   const auto names =
       static_cast<int>(input.design.size() + input.parameters.size());
   std::vector<char> result(input.responses.size(), 0);
@@ -77,7 +78,7 @@ std::vector<char> Adjoint::needed(const std::vector<int>& wanted) const {
 }
 
 bool Adjoint::solve_adjoints(std::size_t load_case, DesignGradient& result) {
-  const equations::ElasticSolution& solution = in_.fields.solution;
+  const equations::ElasticSolution& solution = in_.context.solution;
   std::vector<Backward*> open;
   std::vector<VectorX> right;
   for (Backward& backward : backwards_) {
@@ -97,7 +98,7 @@ bool Adjoint::solve_adjoints(std::size_t load_case, DesignGradient& result) {
   if (open.empty()) {
     return true;
   }
-  equations::AdjointSolution adjoint = in_.elasticity.solve_adjoint(
+  equations::AdjointSolution adjoint = in_.part.elasticity->solve_adjoint(
       in_.elastic_state, static_cast<int>(load_case), right);
   result.solves += static_cast<int>(open.size());
   result.failure = adjoint.failure;
@@ -109,7 +110,7 @@ bool Adjoint::solve_adjoints(std::size_t load_case, DesignGradient& result) {
 }
 
 bool Adjoint::solve_adjoints(DesignGradient& result) {
-  for (std::size_t c = 0; c < in_.fields.numbers.load_cases.size(); ++c) {
+  for (std::size_t c = 0; c < in_.context.inputs.load_cases.size(); ++c) {
     if (!solve_adjoints(c, result)) {
       return false;
     }
@@ -119,10 +120,10 @@ bool Adjoint::solve_adjoints(DesignGradient& result) {
 
 /// Some material depends on some design variable.
 bool Adjoint::materials_move() const {
-  const case_data::Case& input = in_.input;
+  const case_data::Case& input = in_.part.input;
   std::vector<std::string> problems;
   for (std::size_t j = 0; j < input.design.size(); ++j) {
-    const case_data::CaseValues rates(input, in_.fields.numbers.design,
+    const case_data::CaseValues rates(input, in_.context.inputs.design,
                                       problems, static_cast<int>(j));
     for (const case_data::BodyEntry& body : case_data::solid_bodies(input)) {
       const case_data::MaterialEntry& entry = input.materials[body.material];
@@ -144,7 +145,7 @@ void add(const std::vector<double>& more, std::vector<double>& sum) {
 /// lambda . (f - K u) by the materials, and the loads' part of the response
 /// itself.
 void Adjoint::through_materials(Backward& backward) const {
-  const ResponseInput& fields = in_.fields;
+  const ResponseContext& fields = in_.context;
   const ResponsePartials& partials = backward.partials;
   add(partials.by_density, backward.by_density);
   add(partials.by_modulus, backward.by_modulus);
@@ -155,8 +156,8 @@ void Adjoint::through_materials(Backward& backward) const {
   const VectorX& u = fields.solution.displacements[load_case];
   const auto add_work = [&](const VectorX& moved, const VectorX& lambda) {
     const loads::MaterialGradient by = loads::material_gradient(
-        fields.mesh, fields.numbers.materials,
-        fields.numbers.load_cases[load_case], moved, lambda);
+        fields.mesh, fields.inputs.materials,
+        fields.inputs.load_cases[load_case], moved, lambda);
     add(by.density, backward.by_density);
     add(by.youngs_modulus, backward.by_modulus);
   };
@@ -167,13 +168,13 @@ void Adjoint::through_materials(Backward& backward) const {
 }
 
 void Adjoint::through_mesh(Backward& backward) const {
-  const ResponseInput& fields = in_.fields;
+  const ResponseContext& fields = in_.context;
   ResponsePartials& partials = backward.partials;
   const auto load_case = static_cast<std::size_t>(entry(backward).load_case);
   if (backward.lambda.size() > 0) {
     const Points state = elastic::residual_gradient(
-        fields.mesh, fields.numbers.materials,
-        fields.numbers.load_cases[load_case],
+        fields.mesh, fields.inputs.materials,
+        fields.inputs.load_cases[load_case],
         {fields.solution.displacements[load_case],
          fields.solution.reactions[load_case], backward.lambda,
          backward.adjoint_reactions});
@@ -185,14 +186,16 @@ void Adjoint::through_mesh(Backward& backward) const {
       by_forces += partials.by_forces;
     }
     backward.loads =
-        loads::load_gradient(fields.mesh, fields.numbers.materials,
-                             fields.numbers.load_cases[load_case], by_forces);
+        loads::load_gradient(fields.mesh, fields.inputs.materials,
+                             fields.inputs.load_cases[load_case], by_forces);
     loads::add_temperature_gradient(fields.mesh,
-                                    fields.numbers.load_cases[load_case],
+                                    fields.inputs.load_cases[load_case],
                                     partials.by_temperature, *backward.loads);
   }
   if (!partials.by_nodes.empty()) {
-    SurfaceGradient by = in_.to_film(partials.by_nodes);
+    SurfaceGradient by =
+        in_.part.to_surface(fields.inputs, fields.film_state->points,
+                            fields.mesh, partials.by_nodes);
     partials.film.points = std::move(by.film);
     backward.by_thickness = std::move(by.thickness);
   }
@@ -204,8 +207,8 @@ void Adjoint::through_film() {
   for (const Backward& backward : backwards_) {
     covectors.push_back(backward.partials.film);
   }
-  std::vector<frozen::FilmGradient> gradients = in_.fields.film->transpose(
-      *in_.fields.film_state, in_.fields.numbers.film_system, covectors);
+  std::vector<frozen::FilmGradient> gradients = in_.context.film->transpose(
+      *in_.context.film_state, in_.context.inputs.film_system, covectors);
   for (std::size_t k = 0; k < gradients.size(); ++k) {
     backwards_[k].film = std::move(gradients[k]);
   }
@@ -213,10 +216,10 @@ void Adjoint::through_film() {
 
 /// The response's derivative by the variable that `rates` belong to.
 double Adjoint::rate(const Backward& backward,
-                     const case_data::EvaluatedCase& rates) const {
+                     const case_data::CaseRates& rates) const {
   const ResponsePartials& partials = backward.partials;
-  double sum = in_.fields.film->rate(
-      backward.film, in_.fields.numbers.film_system, rates.film_system);
+  double sum = in_.context.film->rate(
+      backward.film, in_.context.inputs.film_system, rates.film_system);
   sum +=
       partials.by_direction.dot(rates.responses[backward.response].direction);
   if (backward.loads) {
@@ -234,18 +237,18 @@ double Adjoint::rate(const Backward& backward,
     sum += backward.by_thickness[w] * wall.number.value_or(0.0);
   }
   return sum + place_rate(entry(backward),
-                          in_.fields.numbers.responses[backward.response],
-                          rates.responses[backward.response], in_.fields);
+                          in_.context.inputs.responses[backward.response],
+                          rates.responses[backward.response], in_.context);
 }
 
 /// `rates`: of the responses that are no expressions; receives the others.
 void Adjoint::add_expressions(const std::vector<char>& needed, int variable,
                               VectorX& rates) const {
-  const case_data::Case& input = in_.input;
-  const VectorX& design = in_.fields.numbers.design;
+  const case_data::Case& input = in_.part.input;
+  const VectorX& design = in_.context.inputs.design;
   std::vector<std::string> problems;
   const case_data::CaseValues values(input, design, problems, variable);
-  const VectorX responses = respond(input, in_.fields);
+  const VectorX responses = respond(input, in_.context);
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
     if (needed[k] != 0 &&
@@ -261,9 +264,10 @@ void Adjoint::add_expressions(const std::vector<char>& needed, int variable,
 
 DesignGradient Adjoint::run(const std::vector<int>& wanted) {
   const Timer timer;
-  const case_data::Case& input = in_.input;
+  const case_data::Case& input = in_.part.input;
   const std::vector<char> needed = this->needed(wanted);
   DesignGradient result;
+  // Partial derivatives of each response by what it sees directly.
   bool expressions = false;
   for (std::size_t k = 0; k < needed.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
@@ -272,14 +276,17 @@ DesignGradient Adjoint::run(const std::vector<int>& wanted) {
     if (needed[k] != 0 && !composed) {
       backwards_.push_back(
           {.response = k,
-           .partials = partials_of(response, in_.fields.numbers.responses[k],
-                                   in_.fields, element::Derivatives::All)});
+           .partials = partials_of(response, in_.context.inputs.responses[k],
+                                   in_.context, element::Derivatives::All)});
     }
   }
+  // K lambda = dJ/du, one solve per response that depends on u.
   if (!solve_adjoints(result)) {
     result.seconds = timer.seconds();
     return result;
   }
+  // Backwards through tetrahedra, surface and walls to the film; the film's
+  // adjoint takes all responses at once.
   const bool materials = materials_move();
   for (Backward& backward : backwards_) {
     through_mesh(backward);
@@ -288,18 +295,21 @@ DesignGradient Adjoint::run(const std::vector<int>& wanted) {
     }
   }
   through_film();
+  // Forwards over the case's numbers: a column is dot products of what came
+  // back with their rates along one design variable.
   const auto variables = static_cast<Eigen::Index>(input.design.size());
   result.jacobian.resize(static_cast<Eigen::Index>(wanted.size()), variables);
   for (Eigen::Index j = 0; j < variables; ++j) {
     const auto variable = static_cast<int>(j);
-    const case_data::EvaluatedCase rates =
-        meniscus::case_data::rates(input, in_.fields.numbers.design, variable);
+    const case_data::CaseRates rates =
+        meniscus::case_data::rates(input, in_.context.inputs.design, variable);
     VectorX column =
         VectorX::Zero(static_cast<Eigen::Index>(input.responses.size()));
     for (const Backward& backward : backwards_) {
       column[static_cast<Eigen::Index>(backward.response)] =
           rate(backward, rates);
     }
+    // Expressions of responses by the chain rule, in the order of the case.
     if (expressions) {
       add_expressions(needed, variable, column);
     }

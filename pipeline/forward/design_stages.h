@@ -17,32 +17,27 @@ struct StagedDesign {
 /// The solve leaves the stiffness behind, for gradients, or it does not.
 enum class KeepStiffness { No, Yes };
 
-class DesignStages {
- public:
-  /// `model` must not have failed and must outlive this.
-  explicit DesignStages(const ForwardModel& model);
+/// The four stages, to be called in this order, once each, with
+/// ForwardModel::part() of a model that has not failed. False when the design
+/// has failed; evaluation.failure then says why, and those that follow must not
+/// be called. Pure but for `staged`; may run in several threads.
+bool settle_film(const FrozenPart& part, const VectorX& design,
+                 StagedDesign& staged);
+bool move_mesh(const FrozenPart& part, StagedDesign& staged);
+bool solve_elasticity(const FrozenPart& part, KeepStiffness keep,
+                      StagedDesign& staged);
+bool compute_responses(const FrozenPart& part, StagedDesign& staged);
 
-  /// The four stages, to be called in this order, once each. False when the
-  /// design has failed; evaluation.failure then says why, and those that follow
-  /// must not be called. Pure but for `staged`; may run in several threads.
-  bool settle(const VectorX& design, StagedDesign& staged) const;
-  bool place_mesh(StagedDesign& staged) const;  // surface and elements
-  bool solve(StagedDesign& staged, KeepStiffness keep) const;
-  bool respond(StagedDesign& staged) const;
+/// The first stage with a film that was frozen without elements; `monitor` may
+/// be null.
+bool settle_film(const case_data::Case& input, const frozen::FilmModel& film,
+                 const VectorX& design, Monitor* monitor, StagedDesign& staged);
 
-  /// The first two of them for those who want the mesh alone, the same bits as
-  /// with a model: nothing is solved, but with analysis.adapt, where errors
-  /// choose the mesh. What failed is in `staged.evaluation`. Throws what
-  /// ForwardModel throws.
-  static bool mesh_of(const case_data::Case& input, const VectorX& design,
-                      Monitor* monitor, StagedDesign& staged);
-
- private:
-  static bool settle_on(const ForwardModel::Impl& model, const VectorX& design,
-                        StagedDesign& staged);
-  static bool place_on(const ForwardModel::Impl& model, StagedDesign& staged);
-
-  const ForwardModel& model_;
-};
+/// The first two of them for those who want the mesh alone, the same bits as
+/// with a model: nothing is solved, but with analysis.adapt, where errors
+/// choose the mesh. False, and evaluation.failure why, when there is none.
+/// Throws what ForwardModel throws.
+bool mesh_design(const case_data::Case& input, const VectorX& design,
+                 Monitor* monitor, StagedDesign& staged);
 
 }  // namespace meniscus::forward

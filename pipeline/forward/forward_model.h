@@ -80,6 +80,7 @@ struct AdjointState {
 };
 
 struct Adaptation;  // pipeline/forward/adaptation.h
+struct FrozenPart;  // pipeline/forward/frozen_part.h
 
 struct ForwardModelOptions {
   double edge_factor = 1.0;    // x all edge lengths of the case's resolution;
@@ -135,6 +136,9 @@ class ForwardModel {
   /// The elasticity that evaluate() solves with.
   const elastic::ElasticModel& elasticity() const;
 
+  /// What was frozen, for the stages of a design (design_stages.h).
+  const FrozenPart& part() const { return *part_; }
+
   /// What a case with analysis.adapt was adapted from and to; else null.
   const Adaptation* adaptation() const;
 
@@ -144,18 +148,16 @@ class ForwardModel {
   Evaluation evaluate(const VectorX& design, EvaluationFields* fields = nullptr,
                       AdjointState* adjoint = nullptr) const;
 
-  /// The exact derivatives of the `wanted` responses (indices, a row each) at
-  /// an evaluated design. A pure function; see design_gradient(), of which what
-  /// has no derivative there is a failure here.
+  /// The exact derivatives of `responses` (indices, a row each) at an evaluated
+  /// design. A pure function; see design_gradient(), of which what has no
+  /// derivative there is a failure here.
   DesignGradient gradient(const Evaluation& evaluation,
                           const EvaluationFields& fields,
                           const AdjointState& adjoint,
-                          const std::vector<int>& wanted) const;
+                          const std::vector<int>& responses) const;
 
  private:
-  friend class DesignStages;  // evaluate(), stage by stage
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<FrozenPart> part_;
 };
 
 }  // namespace meniscus::forward

@@ -71,6 +71,7 @@ CaseGradientCheck check_case_gradient(
         "derivatives (docs/case-file.md)",
         input.path));
   }
+  // The model is frozen at the case's own initial design, not at `design`.
   const ForwardModel model(input, {.monitor = options.monitor});
   if (model.failure()) {
     throw SolverError("the initial design cannot be evaluated: " +
@@ -85,11 +86,14 @@ CaseGradientCheck check_case_gradient(
     throw SolverError("the design cannot be evaluated: " +
                       here.failure->message);
   }
+  // The adjoint's Jacobian, all responses at one evaluated design.
   const DesignGradient gradient = model.gradient(here, fields, adjoint, wanted);
   check.gradient_seconds = gradient.seconds;
   if (gradient.failure) {
     throw SolverError("the adjoint: " + gradient.failure->message);
   }
+  // Differences see the same frozen model, so that both are derivatives of
+  // one smooth function.
   const optimize::VectorFunction function = [&](const VectorX& x) {
     const Evaluation there = model.evaluate(x);
     optimize::VectorAnswer answer{.values = {}, .failure = there.failure};

@@ -20,7 +20,7 @@ struct PartStress {
 
 /// Of every load case, in their order.
 std::vector<PartStress> part_stresses(
-    const TetMesh& mesh, const case_data::EvaluatedCase& numbers,
+    const TetMesh& mesh, const case_data::EvaluatedCase& inputs,
     const equations::ElasticSolution& solution);
 
 }  // namespace meniscus::forward

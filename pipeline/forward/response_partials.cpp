@@ -15,7 +15,7 @@ namespace meniscus::forward {
 
 namespace {
 
-ResponsePartials taken(element::Functional functional) {
+ResponsePartials to_partials(element::Functional functional) {
   ResponsePartials result;
   result.value = functional.value;
   result.by_nodes = std::move(functional.by_nodes);
@@ -25,23 +25,23 @@ ResponsePartials taken(element::Functional functional) {
   return result;
 }
 
-ResponsePartials taken(element::DirectedFunctional functional) {
+ResponsePartials to_partials(element::DirectedFunctional functional) {
   const Vec3 by_direction = functional.by_direction;
   ResponsePartials result =
-      taken(static_cast<element::Functional&&>(functional));
+      to_partials(static_cast<element::Functional&&>(functional));
   result.by_direction = by_direction;
   return result;
 }
 
-ResponsePartials taken(functionals::MassFunctional functional) {
+ResponsePartials to_partials(functionals::MassFunctional functional) {
   std::vector<double> by_density = std::move(functional.by_density);
   ResponsePartials result =
-      taken(static_cast<element::Functional&&>(functional));
+      to_partials(static_cast<element::Functional&&>(functional));
   result.by_density = std::move(by_density);
   return result;
 }
 
-ResponsePartials taken(frozen::FilmResponse film) {
+ResponsePartials to_partials(frozen::FilmResponse film) {
   ResponsePartials result;
   result.value = film.value;
   result.film = std::move(film.by);
@@ -54,30 +54,30 @@ const VectorX& displacement(const ResponseTask& task) {
 }
 
 const std::vector<element::Material>& materials(const ResponseTask& task) {
-  return task.fields.numbers.materials;
+  return task.fields.inputs.materials;
 }
 
 ResponsePartials mean_displacement(const ResponseTask& task) {
   if (!task.response.weight) {
-    return taken(functionals::mean_displacement_functional(
-        task.fields.mesh, task.response.surface, task.numbers.direction,
+    return to_partials(functionals::mean_displacement_functional(
+        task.fields.mesh, task.response.surface, task.inputs.direction,
         displacement(task), task.derivatives));
   }
-  return taken(functionals::weighted_displacement_functional(
-      task.fields.mesh, task.response.surface, task.numbers.direction,
-      {task.numbers.weight, task.numbers.weight_slope}, displacement(task),
+  return to_partials(functionals::weighted_displacement_functional(
+      task.fields.mesh, task.response.surface, task.inputs.direction,
+      {task.inputs.weight, task.inputs.weight_slope}, displacement(task),
       task.derivatives));
 }
 
 ResponsePartials displacement_norm(const ResponseTask& task) {
-  return taken(functionals::displacement_norm_functional(
-      task.fields.mesh, task.response.surface, task.numbers.direction,
+  return to_partials(functionals::displacement_norm_functional(
+      task.fields.mesh, task.response.surface, task.inputs.direction,
       task.response.power, displacement(task), task.derivatives));
 }
 
 ResponsePartials rotation(const ResponseTask& task) {
-  return taken(functionals::rotation_functional(
-      task.fields.mesh, task.response.surface, task.numbers.direction,
+  return to_partials(functionals::rotation_functional(
+      task.fields.mesh, task.response.surface, task.inputs.direction,
       displacement(task), task.derivatives));
 }
 
@@ -85,16 +85,16 @@ ResponsePartials rotation(const ResponseTask& task) {
 /// solid.
 ResponsePartials energy(const ResponseTask& task) {
   const loads::LoadCase& load_case =
-      task.fields.numbers.load_cases[task.response.load_case];
+      task.fields.inputs.load_cases[task.response.load_case];
   const VectorX& u = displacement(task);
   const bool strain =
       task.response.kind == case_data::ResponseKind::StrainEnergy;
   if (strain && (!load_case.springs.empty() || load_case.temperature)) {
-    return taken(functionals::strain_energy_functional(
+    return to_partials(functionals::strain_energy_functional(
         task.fields.mesh, materials(task), load_case, u, task.derivatives));
   }
   const double share = strain ? 0.5 : 1.0;
-  ResponsePartials result = taken(functionals::compliance_functional(
+  ResponsePartials result = to_partials(functionals::compliance_functional(
       task.fields.mesh, materials(task), load_case, u, task.derivatives));
   result.value *= share;
   for (Vec3& by_node : result.by_nodes) {
@@ -108,20 +108,20 @@ ResponsePartials energy(const ResponseTask& task) {
 }
 
 ResponsePartials mass(const ResponseTask& task) {
-  return taken(functionals::mass_functional(task.fields.mesh, materials(task),
-                                            task.derivatives));
+  return to_partials(functionals::mass_functional(
+      task.fields.mesh, materials(task), task.derivatives));
 }
 
 ResponsePartials volume(const ResponseTask& task) {
-  return taken(
+  return to_partials(
       functionals::volume_functional(task.fields.mesh, task.derivatives));
 }
 
 /// Along a direction the centre of mass is a coordinate: of a unit vector.
 ResponsePartials centre_of_mass(const ResponseTask& task) {
-  const double length = task.numbers.direction.norm();
-  const Vec3 unit = task.numbers.direction / length;
-  ResponsePartials result = taken(functionals::centre_of_mass_functional(
+  const double length = task.inputs.direction.norm();
+  const Vec3 unit = task.inputs.direction / length;
+  ResponsePartials result = to_partials(functionals::centre_of_mass_functional(
       task.fields.mesh, materials(task), unit, task.derivatives));
   if (task.derivatives == element::Derivatives::All) {
     for (int k = 0; k < 3; ++k) {
@@ -145,7 +145,7 @@ ResponsePartials peak(const ResponseTask& task) {
         task.response.name));
   }
   ResponsePartials result;
-  result.value = load_case_stress(task.fields.mesh, task.fields.numbers,
+  result.value = load_case_stress(task.fields.mesh, task.fields.inputs,
                                   task.response.load_case, displacement(task),
                                   task.fields.excluded)
                      .max_von_mises;
@@ -155,15 +155,15 @@ ResponsePartials peak(const ResponseTask& task) {
 functionals::StressFunctionalInput stress_input(const ResponseTask& task) {
   return {task.fields.mesh,
           materials(task),
-          task.fields.numbers.load_cases[task.response.load_case],
+          task.fields.inputs.load_cases[task.response.load_case],
           displacement(task),
           task.fields.excluded,
           task.derivatives};
 }
 
 ResponsePartials von_mises_norm(const ResponseTask& task) {
-  return taken(functionals::von_mises_norm_functional(stress_input(task),
-                                                      task.response.power));
+  return to_partials(functionals::von_mises_norm_functional(
+      stress_input(task), task.response.power));
 }
 
 double least_yield(const std::vector<element::Material>& materials) {
@@ -176,17 +176,18 @@ double least_yield(const std::vector<element::Material>& materials) {
 
 ResponsePartials von_mises_ks(const ResponseTask& task) {
   const double yield = least_yield(materials(task));
-  return taken(functionals::von_mises_ks_functional(
+  return to_partials(functionals::von_mises_ks_functional(
       stress_input(task), {.sharpness = task.response.sharpness,
                            .scale = task.response.scale.value_or(yield)}));
 }
 
 ResponsePartials uniformity(const ResponseTask& task) {
-  return taken(functionals::von_mises_variation_functional(stress_input(task)));
+  return to_partials(
+      functionals::von_mises_variation_functional(stress_input(task)));
 }
 
 ResponsePartials energy_uniformity(const ResponseTask& task) {
-  return taken(
+  return to_partials(
       functionals::energy_density_variation_functional(stress_input(task)));
 }
 
@@ -224,41 +225,42 @@ ResponsePartials body_pressure(const ResponseTask& task) {
 }
 
 ResponsePartials collapse_margin(const ResponseTask& task) {
-  return taken(task.fields.film->margin(*task.fields.film_state,
-                                        task.fields.numbers.film_system));
+  return to_partials(task.fields.film->margin(*task.fields.film_state,
+                                              task.fields.inputs.film_system));
 }
 
 ResponsePartials radius(const ResponseTask& task) {
-  return taken(task.fields.film->smallest_radius(
+  return to_partials(task.fields.film->smallest_radius(
       task.fields.film_state->points, static_cast<int>(task.response.power)));
 }
 
 ResponsePartials thickness(const ResponseTask& task) {
-  return taken(functionals::thickness_functional(
+  return to_partials(functionals::thickness_functional(
       task.fields.mesh, *task.fields.pairs,
       sharpness_of(task.response, task.fields), task.derivatives));
 }
 
 ResponsePartials distance(const ResponseTask& task) {
-  return taken(functionals::intrusion_functional(
-      task.fields.mesh, {task.numbers.level, task.numbers.level_slope},
+  return to_partials(functionals::intrusion_functional(
+      task.fields.mesh, {task.inputs.level, task.inputs.level_slope},
       sharpness_of(task.response, task.fields), task.derivatives));
 }
 
 ResponsePartials gap(const ResponseTask& task) {
   // Films run beside each other over wide areas, and many vertices count.
   constexpr double kGapPartOfEdge = 0.02;
-  const double usual = kGapPartOfEdge * task.fields.numbers.fea_edge;
-  return taken(task.fields.film->gap(
+  const double usual = kGapPartOfEdge * task.fields.inputs.fea_edge;
+  return to_partials(task.fields.film->gap(
       task.fields.film_state->points, task.response.films[0],
       task.response.films[1], task.response.smoothing.value_or(usual)));
 }
 
 ResponsePartials scan_distance(const ResponseTask& task) {
   const Points& points = task.fields.film_state->points;
-  return taken(scan::measure(scan_distances(task.response, *task.fields.scans,
-                                            *task.fields.film, points),
-                             task.response.measure, points.size()));
+  return to_partials(
+      scan::measure(scan_distances(task.response, *task.fields.scans,
+                                   *task.fields.film, points),
+                    task.response.measure, points.size()));
 }
 
 }  // namespace
@@ -316,10 +318,10 @@ ResponsePartials compute_partials(const ResponseTask& task) {
 }
 
 double sharpness_of(const case_data::ResponseEntry& response,
-                    const ResponseInput& fields) {
+                    const ResponseContext& fields) {
   constexpr double kPartOfEdge = 0.1;
   return 1.0 /
-         response.smoothing.value_or(kPartOfEdge * fields.numbers.fea_edge);
+         response.smoothing.value_or(kPartOfEdge * fields.inputs.fea_edge);
 }
 
 }  // namespace meniscus::forward

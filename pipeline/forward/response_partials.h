@@ -9,8 +9,8 @@ namespace meniscus::forward {
 /// One response of one design, on loan.
 struct ResponseTask {
   const case_data::ResponseEntry& response;
-  const case_data::ResponseNumbers& numbers;
-  const ResponseInput& fields;
+  const case_data::ResponseInputs& inputs;
+  const ResponseContext& fields;
   element::Derivatives derivatives;
 };
 
@@ -20,6 +20,6 @@ ResponsePartials compute_partials(const ResponseTask& task);
 /// Of extremes over the part's surface, where the case says nothing else: to a
 /// tenth of an edge [1/length].
 double sharpness_of(const case_data::ResponseEntry& response,
-                    const ResponseInput& fields);
+                    const ResponseContext& fields);
 
 }  // namespace meniscus::forward

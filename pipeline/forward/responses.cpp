@@ -32,12 +32,12 @@ double expression_value(const case_data::Case& input,
 }  // namespace
 
 stress::StressField load_case_stress(const TetMesh& mesh,
-                                     const case_data::EvaluatedCase& numbers,
+                                     const case_data::EvaluatedCase& inputs,
                                      std::size_t load_case, const VectorX& u,
                                      const std::vector<char>& excluded) {
   stress::StressField field = stress::recover_stress(
-      mesh, numbers.materials, u,
-      loads::temperature_change(mesh, numbers.load_cases[load_case]));
+      mesh, inputs.materials, u,
+      loads::temperature_change(mesh, inputs.load_cases[load_case]));
   if (!excluded.empty()) {
     stress::find_peak(mesh, excluded, field);
   }
@@ -56,43 +56,43 @@ functionals::ThicknessPairs thickness_pairs_of(const case_data::Case& input,
 }
 
 ResponsePartials partials_of(const case_data::ResponseEntry& response,
-                             const case_data::ResponseNumbers& numbers,
-                             const ResponseInput& fields,
+                             const case_data::ResponseInputs& inputs,
+                             const ResponseContext& fields,
                              element::Derivatives derivatives) {
   if (response.kind == case_data::ResponseKind::Expression) {
     throw InvalidInput(
         fmt::format("response '{}' has no partial derivatives", response.name));
   }
-  return compute_partials({response, numbers, fields, derivatives});
+  return compute_partials({response, inputs, fields, derivatives});
 }
 
 double place_rate(const case_data::ResponseEntry& response,
-                  const case_data::ResponseNumbers& numbers,
-                  const case_data::ResponseNumbers& rates,
-                  const ResponseInput& fields) {
+                  const case_data::ResponseInputs& inputs,
+                  const case_data::ResponseInputs& rates,
+                  const ResponseContext& fields) {
   if (rates.weight) {
     return functionals::weighted_displacement_functional(
-               fields.mesh, response.surface, numbers.direction,
+               fields.mesh, response.surface, inputs.direction,
                {rates.weight, {}},
                fields.solution.displacements[response.load_case],
                element::Derivatives::None)
         .value;
   }
   return rates.level ? functionals::intrusion_rate(
-                           fields.mesh, numbers.level, rates.level,
+                           fields.mesh, inputs.level, rates.level,
                            sharpness_of(response, fields))
                      : 0.0;
 }
 
-VectorX respond(const case_data::Case& input, const ResponseInput& fields) {
+VectorX respond(const case_data::Case& input, const ResponseContext& fields) {
   VectorX values(static_cast<Eigen::Index>(input.responses.size()));
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
     values[static_cast<Eigen::Index>(k)] =
         response.kind == case_data::ResponseKind::Expression
-            ? expression_value(input, response, fields.numbers.design,
+            ? expression_value(input, response, fields.inputs.design,
                                {values.data(), k})
-            : partials_of(response, fields.numbers.responses[k], fields,
+            : partials_of(response, fields.inputs.responses[k], fields,
                           element::Derivatives::None)
                   .value;
   }

@@ -13,8 +13,8 @@
 namespace meniscus::forward {
 
 /// What a design came to, on loan to the responses.
-struct ResponseInput {
-  const case_data::EvaluatedCase& numbers;
+struct ResponseContext {
+  const case_data::EvaluatedCase& inputs;
   const TetMesh& mesh;
   const equations::ElasticSolution& solution;
   const std::vector<char>& excluded;  // that peaks leave out; may be empty
@@ -52,27 +52,27 @@ functionals::ThicknessPairs thickness_pairs_of(const case_data::Case& input,
 /// One value per response of the case, in its order and units. Not finite
 /// where the fields are not. Throws InvalidInput, naming file, line and key,
 /// where an expression, a weight or a region has no value.
-VectorX respond(const case_data::Case& input, const ResponseInput& fields);
+VectorX respond(const case_data::Case& input, const ResponseContext& fields);
 
 /// Of a response that is no expression of others. Throws InvalidInput for one
 /// without derivatives (has_derivatives()) when they are asked for.
 ResponsePartials partials_of(const case_data::ResponseEntry& response,
-                             const case_data::ResponseNumbers& numbers,
-                             const ResponseInput& fields,
+                             const case_data::ResponseInputs& inputs,
+                             const ResponseContext& fields,
                              element::Derivatives derivatives);
 
 /// What a weight or a region that moves with the design changes the response
 /// by, all else held; `rates`: of `numbers`, by one design variable. Throws as
 /// respond().
 double place_rate(const case_data::ResponseEntry& response,
-                  const case_data::ResponseNumbers& numbers,
-                  const case_data::ResponseNumbers& rates,
-                  const ResponseInput& fields);
+                  const case_data::ResponseInputs& inputs,
+                  const case_data::ResponseInputs& rates,
+                  const ResponseContext& fields);
 
 /// Nodal stresses of one load case, its expansion taken out. `u`: 3 per node;
 /// `excluded`: one char per element that the peak leaves out, or empty.
 stress::StressField load_case_stress(const TetMesh& mesh,
-                                     const case_data::EvaluatedCase& numbers,
+                                     const case_data::EvaluatedCase& inputs,
                                      std::size_t load_case, const VectorX& u,
                                      const std::vector<char>& excluded = {});
 

@@ -15,17 +15,17 @@
 
 namespace meniscus::forward {
 
-walls::WallModel wall_model(const case_data::EvaluatedCase& numbers,
+walls::WallModel wall_model(const case_data::EvaluatedCase& inputs,
                             const frozen::FilmModel& model,
                             const Points& points) {
-  return walls::WallModel::freeze(model, numbers.film_system, points,
-                                  numbers.walls);
+  return walls::WallModel::freeze(model, inputs.film_system, points,
+                                  inputs.walls);
 }
 
-std::vector<CaseWall> named_walls(const case_data::EvaluatedCase& numbers,
+std::vector<CaseWall> named_walls(const case_data::EvaluatedCase& inputs,
                                   const walls::WallModel& model) {
   std::vector<CaseWall> walls;
-  for (const walls::WallSpec& spec : numbers.walls) {
+  for (const walls::WallSpec& spec : inputs.walls) {
     if (spec.region == static_cast<int>(walls.size())) {
       walls.push_back({spec.name, model.walls()[walls.size()], {}});
     }
@@ -33,16 +33,16 @@ std::vector<CaseWall> named_walls(const case_data::EvaluatedCase& numbers,
   return walls;
 }
 
-std::vector<CaseWall> make_walls(const case_data::EvaluatedCase& numbers,
+std::vector<CaseWall> make_walls(const case_data::EvaluatedCase& inputs,
                                  const frozen::FilmModel& model,
                                  const Points& points) {
-  if (numbers.walls.empty()) {
+  if (inputs.walls.empty()) {
     return {};
   }
   const walls::WallModel made =
-      walls::WallModel::freeze(model, numbers.film_system, points,
-                               numbers.walls, walls::SafePlaces::Everywhere);
-  std::vector<CaseWall> walls = named_walls(numbers, made);
+      walls::WallModel::freeze(model, inputs.film_system, points, inputs.walls,
+                               walls::SafePlaces::Everywhere);
+  std::vector<CaseWall> walls = named_walls(inputs, made);
   for (CaseWall& wall : walls) {
     for (const walls::WallTrace& trace : wall.wall.trace) {
       wall.safe.push_back(trace.vertex < 0
@@ -162,18 +162,18 @@ void refuse_walls(const case_data::Case& input) {
   }
 }
 
-SurfaceMesh boundary_of(const case_data::EvaluatedCase& numbers,
+SurfaceMesh boundary_of(const case_data::EvaluatedCase& inputs,
                         const frozen::FilmModel& model, const Points& points) {
-  if (numbers.walls.empty()) {
+  if (inputs.walls.empty()) {
     return model.boundary(points);
   }
-  const walls::WallModel walls = wall_model(numbers, model, points);
-  return walls.fine(points, walls.thickness(numbers.walls));
+  const walls::WallModel walls = wall_model(inputs, model, points);
+  return walls.fine(points, walls.thickness(inputs.walls));
 }
 
-std::optional<Failure> wall_failure(const case_data::EvaluatedCase& numbers,
+std::optional<Failure> wall_failure(const case_data::EvaluatedCase& inputs,
                                     const walls::WallModel& model) {
-  for (const CaseWall& made : named_walls(numbers, model)) {
+  for (const CaseWall& made : named_walls(inputs, model)) {
     const walls::ThickWall& wall = made.wall;
     if (wall.findings.empty()) {
       continue;

@@ -22,27 +22,27 @@ struct CaseWall {
 
 /// The walls of a case that has some, on the film `points` of a state of
 /// `model`. Throws InvalidInput and MeshError as WallModel.
-walls::WallModel wall_model(const case_data::EvaluatedCase& numbers,
+walls::WallModel wall_model(const case_data::EvaluatedCase& inputs,
                             const frozen::FilmModel& model,
                             const Points& points);
 
 /// Those of a model, one for each set of walls that meet, named after its
 /// first.
-std::vector<CaseWall> named_walls(const case_data::EvaluatedCase& numbers,
+std::vector<CaseWall> named_walls(const case_data::EvaluatedCase& inputs,
                                   const walls::WallModel& model);
 
 /// Both in one; none for a case without walls.
-std::vector<CaseWall> make_walls(const case_data::EvaluatedCase& numbers,
+std::vector<CaseWall> make_walls(const case_data::EvaluatedCase& inputs,
                                  const frozen::FilmModel& model,
                                  const Points& points);
 
 /// The closed surface of the part on the film `points` of a state of `model`:
 /// walls made anew there, or what bounds its bodies.
-SurfaceMesh boundary_of(const case_data::EvaluatedCase& numbers,
+SurfaceMesh boundary_of(const case_data::EvaluatedCase& inputs,
                         const frozen::FilmModel& model, const Points& points);
 
 /// Why the walls cannot be meshed, with place and largest safe thickness.
-std::optional<Failure> wall_failure(const case_data::EvaluatedCase& numbers,
+std::optional<Failure> wall_failure(const case_data::EvaluatedCase& inputs,
                                     const walls::WallModel& model);
 
 /// The wall for people: thickness, volume, the largest safe thickness.

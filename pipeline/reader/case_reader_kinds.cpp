@@ -99,7 +99,7 @@ std::map<std::string, std::vector<std::string>> owners_of_keys() {
 
 /// What the file says of its own kind of study counts for nothing while --set
 /// asks for another; an override's line is below 0.
-bool waits(const CaseTable& table, const char* key) {
+bool is_deferred(const CaseTable& table, const char* key) {
   return table.line("kind") < 0 && table.line(key) > 0;
 }
 
@@ -182,7 +182,8 @@ void read_method(CaseContext& context, const CaseTable& table,
   const case_data::StudyRow& row = case_data::row_of(study.kind);
   const std::vector<std::string>& own = row.methods;
   study.method = table.text("method").value_or(row.usual_method);
-  if (waits(table, "method") && study.kind != case_data::StudyKind::Analyse &&
+  if (is_deferred(table, "method") &&
+      study.kind != case_data::StudyKind::Analyse &&
       std::find(own.begin(), own.end(), study.method) == own.end()) {
     study.method = row.usual_method;
   }
@@ -193,14 +194,14 @@ void check_keys(CaseContext& context, const CaseTable& table,
                 const std::string& kind) {
   static const std::map<std::string, std::vector<std::string>> owners =
       owners_of_keys();
-  std::vector<std::string> waiting;
+  std::vector<std::string> deferred;
   for (const auto& [key, owning] : owners) {
     if (!table.has(key.c_str()) || kind == "analyse" ||
         std::find(owning.begin(), owning.end(), kind) != owning.end()) {
       continue;
     }
-    if (waits(table, key.c_str())) {
-      waiting.push_back(key);
+    if (is_deferred(table, key.c_str())) {
+      deferred.push_back(key);
       continue;
     }
     context.problems.add(
@@ -209,13 +210,13 @@ void check_keys(CaseContext& context, const CaseTable& table,
                     "kind is \"{}\"; take it out or change the kind",
                     key, fmt::join(owning, "\" or \""), kind));
   }
-  if (!waiting.empty()) {
+  if (!deferred.empty()) {
     context.problems.warn(
         table.line("kind"),
         fmt::format("the file's study.{} belong{} to another kind and wait{}",
-                    fmt::join(waiting, ", study."),
-                    waiting.size() == 1 ? "s" : "",
-                    waiting.size() == 1 ? "s" : ""));
+                    fmt::join(deferred, ", study."),
+                    deferred.size() == 1 ? "s" : "",
+                    deferred.size() == 1 ? "s" : ""));
   }
   const bool of_values = table.has("equal") || table.has("targets");
   if (kind == "match" && of_values == table.has("fit")) {

@@ -11,9 +11,9 @@ namespace meniscus::reader {
 namespace {
 
 /// A member's problem at the member's own place.
-std::string placed(const case_data::Case& family,
-                   const case_data::MemberEntry& member,
-                   const std::string& problem) {
+std::string with_location(const case_data::Case& family,
+                          const case_data::MemberEntry& member,
+                          const std::string& problem) {
   std::string what = problem;
   for (const std::string& override : member.overrides) {
     const std::string before =
@@ -38,7 +38,7 @@ CaseReading read_family_member(const case_data::Case& family,
   CaseReading reading =
       read_case_text(family.text, family.path, overrides, family.files);
   for (std::string& problem : reading.problems) {
-    problem = placed(family, member, problem);
+    problem = with_location(family, member, problem);
   }
   if (reading.input) {
     reading.input->title += ": " + member.name;

@@ -207,10 +207,10 @@ io::CalculixDeck calculix_deck_of(
 }
 
 io::CalculixDeck calculix_deck_of(const case_data::Case& input,
-                                  const case_data::EvaluatedCase& numbers,
+                                  const case_data::EvaluatedCase& inputs,
                                   const TetMesh& mesh) {
   io::CalculixDeck deck =
-      calculix_deck_of(numbers.materials, numbers.load_cases, mesh);
+      calculix_deck_of(inputs.materials, inputs.load_cases, mesh);
   deck.comments = {"case: " + input.title, "units: " + input.units.name};
   return deck;
 }

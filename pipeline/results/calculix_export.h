@@ -20,7 +20,7 @@ io::CalculixDeck calculix_deck_of(
 
 /// The same for a case, with its title and units.
 io::CalculixDeck calculix_deck_of(const case_data::Case& input,
-                                  const case_data::EvaluatedCase& numbers,
+                                  const case_data::EvaluatedCase& inputs,
                                   const TetMesh& mesh);
 
 }  // namespace meniscus::results

@@ -73,8 +73,8 @@ settle::FilmState state_after(const films::FilmComplex& complex,
   figures.min_eigenvalue = mode.eigenvalue;
   figures.index = mode.eigenvalue < 0.0 ? 1 : 0;
   const bool at_rest = figures.residual <= figures.residual_bound;
-  settle::judge(energy, complex, {.reason = at_rest ? "" : descent.message},
-                state);
+  settle::set_verdict(energy, complex,
+                      {.reason = at_rest ? "" : descent.message}, state);
   return state;
 }
 

@@ -36,7 +36,7 @@ ExportJob::ExportJob(const std::filesystem::path& folder, Options options)
       store::frozen_as_answered(store::restore_case(store.meta()), records),
       options_.edge);
   design_ = store::answer_of_run(input_, records, folder);
-  numbers_ = case_data::evaluate(input_, design_);
+  inputs_ = case_data::evaluate(input_, design_);
 }
 
 const SettledFilm& ExportJob::film() {
@@ -45,7 +45,7 @@ const SettledFilm& ExportJob::film() {
   }
   const case_data::EvaluatedCase frozen =
       options_.edge
-          ? numbers_
+          ? inputs_
           : case_data::evaluate(input_, case_data::initial_design(input_));
   frozen::FilmModel model = frozen::FilmModel::freeze(
       frozen.film_system,
@@ -54,7 +54,7 @@ const SettledFilm& ExportJob::film() {
        .monitor = options_.monitor});
   settle::FilmState state = model.reference();
   if (!options_.edge && !state.failure) {
-    state = model.settle(numbers_.film_system, {.monitor = options_.monitor});
+    state = model.settle(inputs_.film_system, {.monitor = options_.monitor});
   }
   if (state.failure) {
     throw MeshError(fmt::format("no film at edge {:g}: {}",
@@ -67,9 +67,9 @@ const SettledFilm& ExportJob::film() {
 
 SurfaceMesh ExportJob::bodies_surface() {
   const SettledFilm& settled = film();
-  return numbers_.walls.empty() ? settled.model.solids(settled.state.points)
-                                : forward::boundary_of(numbers_, settled.model,
-                                                       settled.state.points);
+  return inputs_.walls.empty() ? settled.model.solids(settled.state.points)
+                               : forward::boundary_of(inputs_, settled.model,
+                                                      settled.state.points);
 }
 
 namespace {
@@ -87,8 +87,7 @@ const forward::EvaluationFields& ExportJob::meshed() {
     return fields_ ? *fields_ : *meshed_;
   }
   forward::StagedDesign staged;
-  if (!forward::DesignStages::mesh_of(input_, design_, options_.monitor,
-                                      staged)) {
+  if (!forward::mesh_design(input_, design_, options_.monitor, staged)) {
     throw no_part(input_, staged.evaluation.failure);
   }
   meshed_ = std::move(staged.fields);

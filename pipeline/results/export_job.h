@@ -33,7 +33,7 @@ class ExportJob {
 
   const case_data::Case& input() const { return input_; }
   const VectorX& design() const { return design_; }
-  const case_data::EvaluatedCase& numbers() const { return numbers_; }
+  const case_data::EvaluatedCase& inputs() const { return inputs_; }
   std::optional<double> edge() const { return options_.edge; }
   Monitor* monitor() const { return options_.monitor; }
 
@@ -65,7 +65,7 @@ class ExportJob {
   Options options_;
   case_data::Case input_;
   VectorX design_;
-  case_data::EvaluatedCase numbers_;
+  case_data::EvaluatedCase inputs_;
   std::optional<SettledFilm> film_;
   std::optional<forward::EvaluationFields> meshed_;
   std::optional<forward::EvaluationFields> fields_;

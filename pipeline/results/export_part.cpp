@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 void stl(ExportJob& job, const fs::path& file) {
   const SettledFilm& film = job.film();
   io::write_stl(
-      file, forward::boundary_of(job.numbers(), film.model, film.state.points),
+      file, forward::boundary_of(job.inputs(), film.model, film.state.points),
       {.name = job.input().title,
        .unit = job.input().units.length,
        .program = job.notes().program});
@@ -56,7 +56,7 @@ void fe(ExportJob& job, const fs::path& file) {
   comments.emplace_back(
       "'m 0; g' sets the pressures that 'hessian' asks for, and moves nothing");
   write_file(file, datafile::fe_text(film.model.complex_at(
-                                         film.state, job.numbers().film_system),
+                                         film.state, job.inputs().film_system),
                                      comments));
 }
 
@@ -70,16 +70,16 @@ void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
   step::write_step(
       file,
       solid::faceted_solid(
-          forward::boundary_of(job.numbers(), film.model, film.state.points)),
+          forward::boundary_of(job.inputs(), film.model, film.state.points)),
       {.name = job.input().title, .unit = job.input().units.length});
 }
 
 void step(ExportJob& job, const fs::path& file, bool faceted) {
-  if (!job.numbers().walls.empty()) {
+  if (!job.inputs().walls.empty()) {
     wall_step(job, file, faceted);
     return;
   }
-  export_step(file, job.numbers().film_system,
+  export_step(file, job.inputs().film_system,
               {.title = job.input().title,
                .unit = job.input().units.length,
                .edge = job.edge().value_or(job.input().resolution.film),

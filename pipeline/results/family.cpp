@@ -22,7 +22,7 @@
 #include "pipeline/store/run_lock.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
-#include "pipeline/study/result_so_far.h"
+#include "pipeline/study/partial_result.h"
 #include "pipeline/study/study_records.h"
 #include "pipeline/study/time_limit.h"
 
@@ -105,7 +105,7 @@ class FamilyRun {
                store::StudyStore& store, const study::StudyOptions& options);
   study::StudyListener listener_of(std::size_t k) const;
   std::optional<VectorX> start_of(std::size_t k) const;
-  Json passport(std::size_t k, const std::optional<VectorX>& start) const;
+  Json fingerprint(std::size_t k, const std::optional<VectorX>& start) const;
   void finish(std::size_t k, const Json& result);
   void write_table();
   void tell();
@@ -152,7 +152,7 @@ std::optional<VectorX> FamilyRun::start_of(std::size_t k) const {
   }
   const FamilyRow& parent = result_.rows[static_cast<std::size_t>(parents_[k])];
   const std::vector<case_data::DesignVariable>& design = members_[k].design;
-  if (!parent.sized() || parent.design.size() != design.size()) {
+  if (!parent.is_converged() || parent.design.size() != design.size()) {
     return std::nullopt;
   }
   VectorX start(std::ssize(design));
@@ -165,8 +165,8 @@ std::optional<VectorX> FamilyRun::start_of(std::size_t k) const {
 
 /// What this member's answer comes from: a finished one of the same is read
 /// and not computed again.
-Json FamilyRun::passport(std::size_t k,
-                         const std::optional<VectorX>& start) const {
+Json FamilyRun::fingerprint(std::size_t k,
+                            const std::optional<VectorX>& start) const {
   const std::string& name = family_.study.members[k].name;
   Json json = {
       {"name", name},
@@ -211,23 +211,24 @@ Json FamilyRun::compute(const case_data::Case& member, const fs::path& folder,
   return result_json(member, result, options_.program_version);
 }
 
-/// The family's, told whose news it is.
+/// The family's, told whose event it is.
 study::StudyListener FamilyRun::listener_of(std::size_t k) const {
   if (!options_.listener) {
     return {};
   }
-  return [this, name = result_.rows[k].name](const study::StudyNews& news) {
-    study::StudyNews named = news;
-    named.member = name;
-    options_.listener(named);
-  };
+  return
+      [this, name = result_.rows[k].name](const study::EvaluationEvent& event) {
+        study::EvaluationEvent named = event;
+        named.member = name;
+        options_.listener(named);
+      };
 }
 
 /// The member's result, read or computed and written.
 Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
   const case_data::Case& member = members_[k];
   const fs::path folder = options_.folder / result_.rows[k].folder;
-  const Json own = passport(k, start);
+  const Json own = fingerprint(k, start);
   make_folder(folder);
   if (options_.resume) {
     const std::optional<Json> known = stored_result(folder);
@@ -352,7 +353,7 @@ FamilyResult FamilyRun::run() {
       run_wave(wave);
     }
   }
-  conclude(result_);
+  set_status(result_);
   if (stopping_) {
     result_.status = study::RunStatus::Interrupted;
   }

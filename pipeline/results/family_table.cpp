@@ -195,10 +195,10 @@ Json family_json(const case_data::Case& family, const FamilyResult& result,
   return json;
 }
 
-void conclude(FamilyResult& result) {
+void set_status(FamilyResult& result) {
   const auto sized =
       std::count_if(result.rows.begin(), result.rows.end(),
-                    [](const FamilyRow& r) { return r.sized(); });
+                    [](const FamilyRow& r) { return r.is_converged(); });
   const auto has = [&](const char* status) {
     return std::any_of(result.rows.begin(), result.rows.end(),
                        [&](const FamilyRow& r) { return r.status == status; });
@@ -213,7 +213,7 @@ void conclude(FamilyResult& result) {
       fmt::format("{} of {} members are sized", sized, result.rows.size());
   std::vector<std::string> others;
   for (const FamilyRow& row : result.rows) {
-    if (!row.sized()) {
+    if (!row.is_converged()) {
       others.push_back(fmt::format("{} ({})", row.name, row.status));
     }
   }

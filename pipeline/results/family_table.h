@@ -29,7 +29,7 @@ struct FamilyRow {
   int evaluations = 0;
   double seconds = 0.0;
 
-  bool sized() const { return status == "converged"; }
+  bool is_converged() const { return status == "converged"; }
 };
 
 struct FamilyResult {
@@ -62,6 +62,6 @@ nlohmann::ordered_json family_json(const case_data::Case& family,
                                    const std::string& program_version);
 
 /// How many are sized, and which are not and why, in words; the status.
-void conclude(FamilyResult& result);
+void set_status(FamilyResult& result);
 
 }  // namespace meniscus::results

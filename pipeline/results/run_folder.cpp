@@ -7,7 +7,7 @@
 #include "pipeline/results/results.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/film_frames.h"
-#include "pipeline/study/result_so_far.h"
+#include "pipeline/study/partial_result.h"
 #include "pipeline/study/study_records.h"
 
 namespace meniscus::results {
@@ -36,10 +36,11 @@ store::StudyStore open_run(const case_data::Case& input, const fs::path& folder,
   return store;
 }
 
-study::RunResult kept_result(const case_data::Case& input,
-                             const store::StudyStore& store,
-                             study::RunStatus status, const std::string& reason,
-                             const std::string& go_on) {
+study::RunResult partial_result(const case_data::Case& input,
+                                const store::StudyStore& store,
+                                study::RunStatus status,
+                                const std::string& reason,
+                                const std::string& go_on) {
   study::RunResult result = study::result_so_far(input, store.all());
   result.status = status;
   result.message =

@@ -23,9 +23,10 @@ store::StudyStore open_run(const case_data::Case& input,
 
 /// The state of a run that ended early for `reason`, for readers; `go_on`: how
 /// it goes on, "--resume".
-study::RunResult kept_result(const case_data::Case& input,
-                             const store::StudyStore& store,
-                             study::RunStatus status, const std::string& reason,
-                             const std::string& go_on);
+study::RunResult partial_result(const case_data::Case& input,
+                                const store::StudyStore& store,
+                                study::RunStatus status,
+                                const std::string& reason,
+                                const std::string& go_on);
 
 }  // namespace meniscus::results

@@ -30,8 +30,8 @@ double seconds_of(const store::EvaluationRecord& record) {
 /// From the seconds that evaluations took: who watches has no clock of the run.
 std::optional<double> time_left(
     const std::vector<store::EvaluationRecord>& records,
-    const study::StudyNews& news) {
-  if (!news.planned || records.empty()) {
+    const study::EvaluationEvent& event) {
+  if (!event.planned || records.empty()) {
     return std::nullopt;
   }
   double sum = 0.0;
@@ -39,14 +39,14 @@ std::optional<double> time_left(
     sum += seconds_of(record);
   }
   return sum / static_cast<double>(records.size()) *
-         std::max(*news.planned - news.evaluations, 0);
+         std::max(*event.planned - event.evaluations, 0);
 }
 
 std::string line_of(const case_data::Case& input,
-                    const study::StudyNews& news) {
-  const std::string standing = study::standing_text(news);
-  return study::describe(input, *news.record) +
-         (standing.empty() ? "" : "; " + standing);
+                    const study::EvaluationEvent& event) {
+  const std::string progress = study::progress_text(event);
+  return study::describe(input, *event.record) +
+         (progress.empty() ? "" : "; " + progress);
 }
 
 }  // namespace
@@ -65,44 +65,44 @@ StudyWatch::StudyWatch(fs::path folder) : folder_(std::move(folder)) {
   }
 }
 
-void StudyWatch::look_at_study(StudyGlance& glance) {
+void StudyWatch::poll_study(StudyStatus& status) {
   const store::StudyStore store = store::StudyStore::read(folder_.string());
   const case_data::Case input = store::restore_case(store.meta());
   const std::vector<store::EvaluationRecord> records = store.all();
-  glance.title = input.title;
-  glance.evaluations = static_cast<int>(records.size());
+  status.title = input.title;
+  status.evaluations = static_cast<int>(records.size());
   if (records.empty()) {
-    glance.text = "  no evaluation has ended yet\n";
+    status.text = "  no evaluation has ended yet\n";
     return;
   }
-  study::StudyTeller teller(input, records.back().model);
-  study::StudyNews news;
+  study::ProgressTracker tracker(input, records.back().model);
+  study::EvaluationEvent event;
   for (const store::EvaluationRecord& record : records) {
-    teller.remember(record);
-    if (record.number > told_ && record.model == records.back().model) {
-      glance.news.push_back(line_of(input, teller.news(record)));
+    tracker.add(record);
+    if (record.number > last_seen_ && record.model == records.back().model) {
+      status.new_lines.push_back(line_of(input, tracker.event(record)));
     }
   }
-  told_ = records.back().number;
-  news = teller.news(records.back());
-  news.left = glance.at_work ? time_left(records, news) : std::nullopt;
-  glance.text = fmt::format(
-      "  {} evaluations{}{}\n  {}\n", news.evaluations,
-      news.planned && *news.planned > 1
-          ? fmt::format(" of at most {}", *news.planned)
+  last_seen_ = records.back().number;
+  event = tracker.event(records.back());
+  event.left = status.at_work ? time_left(records, event) : std::nullopt;
+  status.text = fmt::format(
+      "  {} evaluations{}{}\n  {}\n", event.evaluations,
+      event.planned && *event.planned > 1
+          ? fmt::format(" of at most {}", *event.planned)
           : "",
-      news.failed > 0 ? fmt::format(", {} failed", news.failed) : "",
+      event.failed > 0 ? fmt::format(", {} failed", event.failed) : "",
       study::describe(input, records.back()));
-  const std::string standing = study::standing_text(news);
-  if (!standing.empty()) {
-    glance.text += "  " + standing + "\n";
+  const std::string progress = study::progress_text(event);
+  if (!progress.empty()) {
+    status.text += "  " + progress + "\n";
   }
 }
 
-void StudyWatch::look_at_family(StudyGlance& glance) {
+void StudyWatch::poll_family(StudyStatus& status) {
   const std::string csv = read_file(folder_ / "family.csv");
-  glance.family = true;
-  glance.text = family_table_text(csv, store::stored_units(folder_));
+  status.family = true;
+  status.text = family_table_text(csv, store::stored_units(folder_));
   std::vector<std::string> rows;
   std::vector<std::string> names;
   for (const files::CsvRow& row : files::parse_csv(csv).rows) {
@@ -114,7 +114,7 @@ void StudyWatch::look_at_family(StudyGlance& glance) {
     const std::size_t k = rows.size() - 1;
     if (k >= rows_.size() || rows_[k] != rows[k]) {
       if (row.cells[1] != "waiting") {
-        glance.news.push_back(fmt::format(
+        status.new_lines.push_back(fmt::format(
             "{}: {}{}", row.cells.front(), row.cells[1],
             row.cells.back().empty() ? "" : ": " + row.cells.back()));
       }
@@ -122,57 +122,57 @@ void StudyWatch::look_at_family(StudyGlance& glance) {
   }
   for (std::size_t k = 1; k < names.size(); ++k) {
     const fs::path member = folder_ / "members" / names[k];
-    if (glance.at_work && store::holder_of_run(member.string())) {
-      StudyGlance inner;
+    if (status.at_work && store::holder_of_run(member.string())) {
+      StudyStatus inner;
       inner.at_work = true;
       try {
-        StudyWatch(member).look_at_study(inner);
+        StudyWatch(member).poll_study(inner);
       } catch (const IoError&) {
         inner.text = "  begins\n";
       }
-      glance.text += names[k] + "\n" + inner.text;
+      status.text += names[k] + "\n" + inner.text;
     }
   }
   rows_ = std::move(rows);
 }
 
-void StudyWatch::look_at_result(StudyGlance& glance) const {
+void StudyWatch::poll_result(StudyStatus& status) const {
   std::error_code code;
   if (!fs::exists(folder_ / "result.json", code)) {
     return;
   }
   const auto json = parse_json(read_file(folder_ / "result.json"));
   if (json.is_object()) {
-    glance.status = json.value("status", "");
-    glance.message = json.value("message", "");
-    glance.title = json.value("case", "");
+    status.status = json.value("status", "");
+    status.message = json.value("message", "");
+    status.title = json.value("case", "");
   }
 }
 
-StudyGlance StudyWatch::look() {
-  StudyGlance glance;
+StudyStatus StudyWatch::poll() {
+  StudyStatus status;
   // The lock first: a run that ends meanwhile is looked at once more.
   if (const std::optional<std::string> holder =
           store::holder_of_run(folder_.string())) {
-    glance.at_work = true;
-    glance.holder = *holder;
+    status.at_work = true;
+    status.holder = *holder;
   }
   try {
     std::error_code code;
     if (fs::exists(folder_ / "family.csv", code)) {
-      look_at_family(glance);
+      poll_family(status);
     } else {
-      look_at_study(glance);
+      poll_study(status);
     }
   } catch (const IoError&) {
-    if (!glance.at_work) {
+    if (!status.at_work) {
       throw;
     }
   }
-  if (!glance.at_work) {
-    look_at_result(glance);
+  if (!status.at_work) {
+    poll_result(status);
   }
-  return glance;
+  return status;
 }
 
 }  // namespace meniscus::results

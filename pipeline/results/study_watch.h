@@ -5,22 +5,23 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/study/study_news.h"
+#include "pipeline/study/progress_tracker.h"
 
 namespace meniscus::results {
 
 /// What a folder shows at one moment.
-struct StudyGlance {
-  bool at_work = false;           // a run holds the folder
-  std::string holder;             // then who: "process 12 on host"
-  bool family = false;            // a family's table
-  std::string status;             // of result.json; empty: there is none
-  std::string message;            // likewise
-  std::string title;              // of the case; empty: not known yet
-  int evaluations = 0;            // in the database
-  std::vector<std::string> news;  // a line for each that is beyond `known`, or
-                                  // for each member whose row has changed
-  std::string text;               // all of it, some lines, for a terminal
+struct StudyStatus {
+  bool at_work = false;  // a run holds the folder
+  std::string holder;    // then who: "process 12 on host"
+  bool family = false;   // a family's table
+  std::string status;    // of result.json; empty: there is none
+  std::string message;   // likewise
+  std::string title;     // of the case; empty: not known yet
+  int evaluations = 0;   // in the database
+  std::vector<std::string>
+      new_lines;     // a line for each that is beyond `known`, or
+                     // for each member whose row has changed
+  std::string text;  // all of it, some lines, for a terminal
 };
 
 /// Looks at one folder again and again.
@@ -30,19 +31,19 @@ class StudyWatch {
   /// a study nor a family and where no run is at work.
   explicit StudyWatch(std::filesystem::path folder);
 
-  /// What has come since the last look is in `news`. A database that cannot be
-  /// read just now shows as nothing new while a run is at work; else throws
-  /// what StudyStore::read does.
-  StudyGlance look();
+  /// What has come since the last call is in `new_lines`. A database that
+  /// cannot be read just now shows as nothing new while a run is at work; else
+  /// throws what StudyStore::read does.
+  StudyStatus poll();
 
  private:
-  void look_at_study(StudyGlance& glance);
-  void look_at_family(StudyGlance& glance);
-  void look_at_result(StudyGlance& glance) const;
+  void poll_study(StudyStatus& status);
+  void poll_family(StudyStatus& status);
+  void poll_result(StudyStatus& status) const;
 
   std::filesystem::path folder_;
-  int told_ = 0;                   // evaluations
-  std::vector<std::string> rows_;  // of the family, as told
+  int last_seen_ = 0;              // evaluations
+  std::vector<std::string> rows_;  // of the family, as last seen
 };
 
 }  // namespace meniscus::results

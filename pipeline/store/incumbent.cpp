@@ -20,9 +20,8 @@ double violation_of(const case_data::ConstraintEntry& constraint,
   return off / (scale > 0.0 ? scale : 1.0);
 }
 
-Standing standing_of(const case_data::StudyEntry& study,
-                     const VectorX& responses) {
-  Standing standing{.objective = responses[*study.objective]};
+Merit merit_of(const case_data::StudyEntry& study, const VectorX& responses) {
+  Merit standing{.objective = responses[*study.objective]};
   for (const case_data::ConstraintEntry& constraint : study.constraints) {
     standing.violation =
         std::max(standing.violation,
@@ -31,7 +30,7 @@ Standing standing_of(const case_data::StudyEntry& study,
   return standing;
 }
 
-bool is_better(const Standing& a, const Standing& b) {
+bool is_better(const Merit& a, const Merit& b) {
   if (a.feasible() != b.feasible()) {
     return a.feasible();
   }
@@ -42,13 +41,13 @@ const EvaluationRecord* best_by_objective(
     const case_data::StudyEntry& study,
     const std::vector<EvaluationRecord>& records) {
   const EvaluationRecord* best = nullptr;
-  Standing standing;
+  Merit standing;
   const std::string model = answering_model(records);
   for (const EvaluationRecord& record : records) {
     if (record.failure || record.model != model) {
       continue;
     }
-    const Standing other = standing_of(study, record.responses);
+    const Merit other = merit_of(study, record.responses);
     if (best == nullptr || is_better(other, standing)) {
       best = &record;
       standing = other;

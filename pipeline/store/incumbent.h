@@ -16,7 +16,7 @@ inline constexpr double kFeasible = 1e-6;
 /// What a response is off its bounds, in scales; 0 when within.
 double violation_of(const case_data::ConstraintEntry& constraint, double value);
 
-struct Standing {
+struct Merit {
   double violation = 0.0;  // the largest of all constraints
   double objective = 0.0;
 
@@ -24,12 +24,11 @@ struct Standing {
 };
 
 /// Of a study with an objective; `responses` of all, in the case's order.
-Standing standing_of(const case_data::StudyEntry& study,
-                     const VectorX& responses);
+Merit merit_of(const case_data::StudyEntry& study, const VectorX& responses);
 
 /// Among designs that keep every constraint the lower objective, else the
 /// smaller violation; a design that keeps all goes before one that does not.
-bool is_better(const Standing& a, const Standing& b);
+bool is_better(const Merit& a, const Merit& b);
 
 /// The first of the best records of the answering model by objective and
 /// constraints, or null when all failed. `records` must be of a study with an

@@ -104,7 +104,7 @@ case_data::Case frozen_as_answered(
   return at == records.end() ? input : frozen_at(std::move(input), at->inputs);
 }
 
-std::optional<Refreeze> wanted_refreeze(const FrozenStage& stage) {
+std::optional<Refreeze> find_refreeze(const FrozenStage& stage) {
   const auto best = std::find_if(stage.records.begin(), stage.records.end(),
                                  [&](const EvaluationRecord& record) {
                                    return record.model == stage.model &&

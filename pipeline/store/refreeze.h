@@ -57,6 +57,6 @@ struct FrozenStage {
 /// best design when the elements there have become flat, or when the search
 /// ended among designs that invert elements. Nothing where the model is frozen
 /// at that very design.
-std::optional<Refreeze> wanted_refreeze(const FrozenStage& stage);
+std::optional<Refreeze> find_refreeze(const FrozenStage& stage);
 
 }  // namespace meniscus::store

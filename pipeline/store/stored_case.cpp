@@ -7,9 +7,9 @@
 #include "core/atomic_file.h"
 #include "core/json.h"
 #include "pipeline/reader/case_reader.h"
+#include "pipeline/store/find_runs.h"
 #include "pipeline/store/incumbent.h"
 #include "pipeline/store/refreeze.h"
-#include "pipeline/store/runs_in.h"
 
 namespace meniscus::store {
 

@@ -61,10 +61,10 @@ VectorX to_vector(const std::string& bytes) {
 
 std::string to_text(const Json& value) { return json_line(value); }
 
-std::string seal_of(const Row& row) {
+std::string checksum_of(const Row& row) {
   const std::string mismatch =
       row.mismatch ? to_bytes(&*row.mismatch, 1) : std::string();
-  return meniscus::store::seal_of(
+  return meniscus::store::checksum_of(
       {row.key, row.model, row.phase, row.input_names, row.inputs,
        row.response_names, row.responses, row.gradient, mismatch,
        row.failure.value_or("-"), row.failure_message.value_or("-"),
@@ -116,7 +116,7 @@ Row read_row(const SqliteDatabase& database, SqliteStatement& from) {
   }
   row.figures = from.bytes(12);
   row.seconds = from.bytes(13);
-  if (from.bytes(14) != seal_of(row)) {
+  if (from.bytes(14) != checksum_of(row)) {
     database.fail_damaged(fmt::format(
         "what evaluation {} says is not what was written", from.integer(0)));
   }
@@ -181,7 +181,7 @@ void bind_or_null(SqliteStatement& statement,
 
 }  // namespace
 
-std::string seal_of(std::initializer_list<std::string_view> parts) {
+std::string checksum_of(std::initializer_list<std::string_view> parts) {
   std::string all;
   for (const std::string_view part : parts) {
     all += fmt::format("{}:", part.size());
@@ -217,7 +217,7 @@ int insert_row(const SqliteDatabase& database, const std::string& case_hash,
   bind_or_null(into, row.failure_message);
   into.bind(row.figures);
   into.bind(row.seconds);
-  into.bind(seal_of(row));
+  into.bind(checksum_of(row));
   into.step();
   return database.last_row();
 }
@@ -243,7 +243,7 @@ void replace_gradient(const SqliteDatabase& database, int number,
       database,
       "UPDATE evaluation SET gradient = ?, seal = ? WHERE number = ?");
   into.bind_bytes(row.gradient);
-  into.bind(seal_of(row));
+  into.bind(checksum_of(row));
   into.bind(number);
   into.step();
 }

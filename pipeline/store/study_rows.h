@@ -17,7 +17,7 @@ extern const char* const kEvaluationTable;
 
 /// What tells whether bytes changed since they were written: SQLite checks its
 /// own pages' structure, not what stands in them.
-std::string seal_of(std::initializer_list<std::string_view> parts);
+std::string checksum_of(std::initializer_list<std::string_view> parts);
 
 /// Inserts the record and returns its number. Throws InvalidInput for one whose
 /// parts do not fit together.

@@ -89,8 +89,8 @@ void create_schema(const SqliteDatabase& database, const StudyMeta& meta) {
   row.bind(meta.case_hash);
   row.bind(meta.case_text);
   row.bind(created);
-  row.bind(
-      seal_of({meta.program_version, meta.case_hash, meta.case_text, created}));
+  row.bind(checksum_of(
+      {meta.program_version, meta.case_hash, meta.case_text, created}));
   row.step();
   database.execute("COMMIT");
 }
@@ -107,8 +107,8 @@ StudyMeta read_meta(const SqliteDatabase& database) {
                  .case_hash = row.bytes(1),
                  .case_text = row.bytes(2),
                  .created = row.bytes(3)};
-  if (row.bytes(4) != seal_of({meta.program_version, meta.case_hash,
-                               meta.case_text, meta.created})) {
+  if (row.bytes(4) != checksum_of({meta.program_version, meta.case_hash,
+                                   meta.case_text, meta.created})) {
     database.fail_damaged("what it says of its case is not what was written");
   }
   return meta;
@@ -116,7 +116,8 @@ StudyMeta read_meta(const SqliteDatabase& database) {
 
 // Renames a study that is there to the first free study-<n>.sqlite. Its log
 // is folded in first; one that cannot be (damaged) goes along.
-void set_aside(const fs::path& folder, const StudyStoreOptions& options) {
+void archive_existing(const fs::path& folder,
+                      const StudyStoreOptions& options) {
   const fs::path current = folder / kFile;
   if (!fs::exists(current)) {
     return;
@@ -157,13 +158,13 @@ struct StudyStore::Impl {
         database((fs::path(folder) / kFile).string(), access,
                  options.busy_timeout) {}
   ~Impl() {
-    if (sound) {  // back to one plain file; in vain while somebody reads
+    if (valid) {  // back to one plain file; in vain while somebody reads
       database.try_execute(kOnePlainFile);
     }
   }
   /// From now on the file may change, beyond what was found in it.
   void accept() {
-    sound = true;
+    valid = true;
     database.fold_log_on_close();
   }
   Impl(const Impl&) = delete;
@@ -171,7 +172,7 @@ struct StudyStore::Impl {
 
   std::optional<RunLock> lock;  // released after the database is closed
   SqliteDatabase database;
-  bool sound = false;  // checked and ours
+  bool valid = false;  // checked and ours
   StudyMeta meta;
 };
 
@@ -183,7 +184,7 @@ StudyStore& StudyStore::operator=(StudyStore&&) noexcept = default;
 StudyStore StudyStore::start(const std::string& folder, const StudyMeta& meta,
                              const StudyStoreOptions& options) {
   RunLock lock(folder);
-  set_aside(folder, options);
+  archive_existing(folder, options);
   auto impl = std::make_unique<Impl>(std::move(lock), folder,
                                      SqliteDatabase::Access::Write, options);
   create_schema(impl->database, meta);

@@ -33,10 +33,10 @@ DesignEvaluator::DesignEvaluator(const case_data::Case& input,
       model_(input,
              {.edge_factor = options_.edge_factor, .monitor = &monitor_}),
       seconds_(model_.frozen().seconds),
-      teller_(input, options_.model, options_.time_limit) {
+      tracker_(input, options_.model, options_.time_limit) {
   if (options_.listener) {
     for (const store::EvaluationRecord& record : store_.all()) {
-      teller_.remember(record);
+      tracker_.add(record);
     }
   }
 }
@@ -52,7 +52,7 @@ store::EvaluationRecord DesignEvaluator::keep(
   }
   record.number = store_.append(record);
   if (options_.listener) {
-    options_.listener(teller_.tell(record));
+    options_.listener(tracker_.add_new(record));
   } else {
     monitor_.log(Severity::Info, describe(input_, record));
   }

@@ -12,8 +12,8 @@
 #include "pipeline/forward/design_stages.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/store/study_store.h"
+#include "pipeline/study/progress_tracker.h"
 #include "pipeline/study/study_monitor.h"
-#include "pipeline/study/study_news.h"
 
 namespace meniscus::study {
 
@@ -57,13 +57,13 @@ class DesignEvaluator {
   const forward::ForwardModel& model() const { return model_; }
 
   /// Larger is worse, of the responses; new records then hold it as `mismatch`.
-  void judge_by(std::function<double(const VectorX& responses)> mismatch) {
+  void set_mismatch(std::function<double(const VectorX& responses)> mismatch) {
     mismatch_ = std::move(mismatch);
   }
 
   /// Told of each design that evaluate() has found, stored or not; what it
   /// throws passes through.
-  void watch_by(std::function<void(const store::EvaluationRecord&)> watch) {
+  void set_observer(std::function<void(const store::EvaluationRecord&)> watch) {
     watch_ = std::move(watch);
   }
 
@@ -122,7 +122,7 @@ class DesignEvaluator {
   std::function<void(const store::EvaluationRecord&)> watch_;
   EvaluationCounts counts_;
   forward::StageSeconds seconds_;
-  StudyTeller teller_;
+  ProgressTracker tracker_;
   // The design computed last, side by side ones aside, so that its gradient or
   // its meshes need no second evaluation; no stiffness unless it was kept.
   forward::StagedDesign last_;

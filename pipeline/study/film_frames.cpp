@@ -32,8 +32,8 @@ class Preference {
     if (study_.kind == case_data::StudyKind::Match) {
       return a.mismatch && (!b.mismatch || *a.mismatch < *b.mismatch);
     }
-    return store::is_better(store::standing_of(study_, a.responses),
-                            store::standing_of(study_, b.responses));
+    return store::is_better(store::merit_of(study_, a.responses),
+                            store::merit_of(study_, b.responses));
   }
 
  private:
@@ -54,7 +54,7 @@ bool beaten(const case_data::StudyEntry& study,
       records.begin(), records.end(),
       [&](const store::EvaluationRecord& other) {
         return !other.failure && other.model == store::kStudyModel &&
-               store::standing_of(study, other.responses).feasible() &&
+               store::merit_of(study, other.responses).feasible() &&
                value(other, first) <= value(record, first) &&
                value(other, second) <= value(record, second) &&
                (value(other, first) < value(record, first) ||
@@ -86,7 +86,7 @@ std::vector<KeptDesign> candidates(
       if (preference.searches()) {
         wanted = preference.better(record, *incumbent);
       } else if (front) {
-        wanted = store::standing_of(input.study, record.responses).feasible() &&
+        wanted = store::merit_of(input.study, record.responses).feasible() &&
                  !beaten(input.study, record, records);
       } else {
         wanted = true;

@@ -55,7 +55,7 @@ std::string frame_caption(const case_data::Case& input,
 /// meshed anew: `evaluation` is the step. `model`: settled there. At most
 /// `most` (>= 2), the raw start and the settled film among them.
 std::vector<forward::FilmFrame> settling_frames(
-    const case_data::EvaluatedCase& numbers, const frozen::FilmModel& model,
+    const case_data::EvaluatedCase& inputs, const frozen::FilmModel& model,
     Monitor& monitor, int most = kMostFrames);
 
 /// Removes what write_frames() wrote, also where it was killed, and pictures of

@@ -85,6 +85,12 @@ StudyOutcome match(const StudyTask& task) {
 
 }  // namespace
 
+double nearer_bound(double lower, double upper, double value) {
+  const bool above = value > 0.5 * (lower + upper);
+  return !std::isfinite(lower) || (std::isfinite(upper) && above) ? upper
+                                                                  : lower;
+}
+
 RunStatus status_of(optimize::Termination termination) {
   switch (termination) {
     case optimize::Termination::Converged:

@@ -55,14 +55,17 @@ StudyOutcome pareto(const StudyTask& task);
 optimize::MinimizeProblem minimize_problem(const StudyTask& task,
                                            const std::string& phase);
 
-/// The case's; `phase` is told what is asked for next.
+/// The case's; `phase` receives what is asked for next.
 optimize::MinimizeOptions minimize_options(const StudyTask& task,
                                            std::string& phase);
 
 RunStatus status_of(optimize::Termination termination);
 
-/// As result.json tells it, with the bound that the value is nearest to.
-Constraint told(const optimize::ConstraintState& state);
+/// Of two bounds, either of which may be infinite.
+double nearer_bound(double lower, double upper, double value);
+
+/// As result.json has it, with the nearer bound.
+Constraint to_constraint(const optimize::ConstraintState& state);
 
 /// Computes the neighbours of a difference side by side.
 std::function<void(const std::vector<VectorX>&)> prefetch_of(

@@ -12,8 +12,8 @@ ScanMatch::ScanMatch(const case_data::Case& input,
 
 const ScanMatch::Settled& ScanMatch::settled(const VectorX& design) {
   if (last_.design.size() != design.size() || last_.design != design) {
-    last_.numbers = meniscus::case_data::evaluate(input_, design);
-    last_.film = model_.film().settle(last_.numbers.film_system);
+    last_.inputs = meniscus::case_data::evaluate(input_, design);
+    last_.film = model_.film().settle(last_.inputs.film_system);
     last_.distances = forward::scan_distances(response_, model_.scans(),
                                               model_.film(), last_.film.points);
     last_.design = design;
@@ -41,7 +41,7 @@ optimize::JacobianAnswer ScanMatch::jacobian(const VectorX& design) {
   answer.jacobian.resize(count, design.size());
   try {
     const std::vector<Points> moves =
-        model_.film().tangents(at.film, at.numbers.film_system, rates);
+        model_.film().tangents(at.film, at.inputs.film_system, rates);
     for (Eigen::Index j = 0; j < design.size(); ++j) {
       const Points& move = moves[static_cast<std::size_t>(j)];
       for (Eigen::Index k = 0; k < count; ++k) {

@@ -24,7 +24,7 @@ class ScanMatch {
  private:
   struct Settled {
     VectorX design;
-    case_data::EvaluatedCase numbers;
+    case_data::EvaluatedCase inputs;
     settle::FilmState film;
     scan::ScanDistances distances;
   };

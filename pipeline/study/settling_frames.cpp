@@ -17,10 +17,10 @@ constexpr double kSmoothing = 0.5;  // edges in the first step
 }  // namespace
 
 std::vector<forward::FilmFrame> settling_frames(
-    const case_data::EvaluatedCase& numbers, const frozen::FilmModel& model,
+    const case_data::EvaluatedCase& inputs, const frozen::FilmModel& model,
     Monitor& monitor, int most) {
   films::FilmComplex complex =
-      start::build_start(numbers.film_system, model.start_edge());
+      start::build_start(inputs.film_system, model.start_edge());
   std::vector<forward::FilmFrame> all;
   const auto keep = [&](const char* kept, SurfaceMesh surface) {
     all.push_back({.evaluation = static_cast<int>(all.size()),
@@ -39,10 +39,10 @@ std::vector<forward::FilmFrame> settling_frames(
   // Long facets between the curves have nothing to flow with.
   groom::remesh_films(complex, {.edge = model.start_edge()});
   settle::flow_to_rest(complex, flow);
-  if (model.start_edge() > numbers.fea_edge) {
+  if (model.start_edge() > inputs.fea_edge) {
     complex = groom::refine(complex).complex;
   }
-  groom::remesh_films(complex, {.edge = numbers.fea_edge});
+  groom::remesh_films(complex, {.edge = inputs.fea_edge});
   settle::flow_to_rest(complex, flow);
   if (!model.reference().failure) {
     keep("settled", model.fine_mesh(model.reference().points));

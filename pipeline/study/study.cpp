@@ -11,8 +11,8 @@
 #include "core/math/dense.h"
 #include "core/timer.h"
 #include "pipeline/forward/part_warnings.h"
+#include "pipeline/study/accuracy_note.h"
 #include "pipeline/study/film_frames.h"
-#include "pipeline/study/precision.h"
 #include "pipeline/study/study_monitor.h"
 #include "pipeline/study/study_records.h"
 #include "pipeline/study/study_stage.h"
@@ -45,7 +45,7 @@ class StudyRun {
 
   RunResult run();
   /// Of the best design; or what there is of a surface that was not filled.
-  forward::EvaluationFields take_fields() { return std::move(fields_); }
+  forward::EvaluationFields release_fields() { return std::move(fields_); }
 
  private:
   void start_coarse();
@@ -54,12 +54,12 @@ class StudyRun {
   bool refreeze();
   std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
                                        const case_data::Case& input);
-  void pass_time();
-  void leave_stage();
+  void update_time_limit();
+  void add_stage_totals();
   void conduct_study();
   bool finish_best();
   template <class Work>
-  void in_time_left(const char* what, const Work& work);
+  void run_if_time_left(const char* what, const Work& work);
   void keep_history();
   void solve_eigenproblems();
   void estimate_element_errors_of_best();
@@ -72,8 +72,8 @@ class StudyRun {
   store::StudyStore& store_;
   StudyOptions options_;  // its start and time as stages leave them
   Monitor& monitor_;
-  double limit_;            // [s], 0: none
-  LimitedMonitor limited_;  // of what may be left out at the end
+  double limit_;             // [s], 0: none
+  DeadlineMonitor limited_;  // of what may be left out at the end
   std::vector<std::string> left_out_;
   Timer timer_;
   std::unique_ptr<case_data::Case>
@@ -102,11 +102,11 @@ void StudyRun::start_coarse() {
                                coarse.figures.message);
   }
   result_.coarse = std::move(coarse.figures);
-  pass_time();
+  update_time_limit();
 }
 
 /// What a stage took is gone for the next.
-void StudyRun::pass_time() {
+void StudyRun::update_time_limit() {
   constexpr double kLeast = 1e-3;
   if (limit_ > 0.0) {
     options_.time_limit = std::max(limit_ - timer_.seconds(), kLeast);
@@ -135,7 +135,7 @@ bool StudyRun::begin() {
   return true;
 }
 
-void StudyRun::leave_stage() {
+void StudyRun::add_stage_totals() {
   own_seconds_ += stage_->evaluator().seconds();
   earlier_gradients_ += stage_->evaluator().counts().gradients;
   earlier_evaluations_ += stage_->evaluations();
@@ -183,14 +183,14 @@ bool StudyRun::refreeze() {
   auto input = std::make_unique<case_data::Case>(
       store::frozen_at(input_, wanted->design));
   input->study.max_evaluations -= evaluations;
-  pass_time();
+  update_time_limit();
   std::unique_ptr<StudyStage> stage = stage_at(*wanted, *input);
   if (stage == nullptr) {
     return false;
   }
   wanted->shift = stage->start().responses -
                   store_.find(stage_->model_name(), wanted->design)->responses;
-  leave_stage();
+  add_stage_totals();
   options_.start.reset();
   stage_ = std::move(stage);
   frozen_ = std::move(input);
@@ -211,7 +211,7 @@ void StudyRun::conduct_study() {
   do {
     stage_->conduct(may_refreeze() ? Leave::Early : Leave::Late);
   } while (refreeze());
-  if (stage_->left_early()) {
+  if (stage_->stopped_early()) {
     stage_->conduct();
   }
   if (const forward::Adaptation* adaptation =
@@ -258,9 +258,9 @@ bool StudyRun::finish_best() {
 
 /// What an answer can do without; told in the warnings where it is missing.
 template <class Work>
-void StudyRun::in_time_left(const char* what, const Work& work) {
+void StudyRun::run_if_time_left(const char* what, const Work& work) {
   bool done = false;
-  if (!limited_.late()) {
+  if (!limited_.expired()) {
     try {
       work();
       done = true;
@@ -362,8 +362,8 @@ void StudyRun::warn() {
                     limited_.limit(), fmt::join(left_out_, ", ")));
   }
   const std::string note =
-      precision_statement(input_, stage_->targets(), result_.best->responses,
-                          result_.response_errors);
+      accuracy_note(input_, stage_->targets(), result_.best->responses,
+                    result_.response_errors);
   if (!note.empty()) {
     result_.message += ". " + note;
     result_.warnings.push_back(note);
@@ -371,7 +371,7 @@ void StudyRun::warn() {
 }
 
 void StudyRun::count() {
-  leave_stage();
+  add_stage_totals();
   for (const store::EvaluationRecord& record : store_.all()) {
     if (store::is_study_model(record.model)) {
       ++result_.evaluations;
@@ -390,12 +390,13 @@ RunResult StudyRun::run() {
       if (options_.answered) {
         options_.answered(fields_);
       }
-      in_time_left("buckling and frequencies", [&] { solve_eigenproblems(); });
+      run_if_time_left("buckling and frequencies",
+                       [&] { solve_eigenproblems(); });
       if (options_.estimate_errors) {
-        in_time_left("estimates of the errors", [&] { estimate_errors(); });
+        run_if_time_left("estimates of the errors", [&] { estimate_errors(); });
       }
       if (options_.frames > 0) {
-        in_time_left("films of the history", [&] { keep_history(); });
+        run_if_time_left("films of the history", [&] { keep_history(); });
       }
     }
     warn();
@@ -431,7 +432,7 @@ RunResult run_study(const case_data::Case& input, store::StudyStore& store,
   StudyRun run(input, store, options);
   RunResult result = run.run();
   if (fields != nullptr) {
-    *fields = run.take_fields();
+    *fields = run.release_fields();
   }
   return result;
 }

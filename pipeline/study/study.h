@@ -17,7 +17,7 @@
 #include "pipeline/store/study_store.h"
 #include "pipeline/study/front_figures.h"
 #include "pipeline/study/ledger.h"
-#include "pipeline/study/study_news.h"
+#include "pipeline/study/progress_tracker.h"
 #include "pipeline/study/sweep_figures.h"
 #include "pipeline/study/tolerance_figures.h"
 

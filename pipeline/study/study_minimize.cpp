@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/study/run_kind.h"
 
@@ -8,7 +6,7 @@ namespace meniscus::study {
 namespace {
 
 /// Rows or entries of `all` at `indices`.
-VectorX picked(const VectorX& all, const std::vector<int>& indices) {
+VectorX select(const VectorX& all, const std::vector<int>& indices) {
   VectorX result(static_cast<Eigen::Index>(indices.size()));
   for (std::size_t k = 0; k < indices.size(); ++k) {
     result[static_cast<Eigen::Index>(k)] = all[indices[k]];
@@ -39,7 +37,7 @@ optimize::MinimizeProblem minimize_problem(const StudyTask& task,
     const store::EvaluationRecord record = task.evaluator.evaluate(x, phase);
     optimize::VectorAnswer answer{.values = {}, .failure = record.failure};
     if (!record.failure) {
-      answer.values = picked(record.responses, responses);
+      answer.values = select(record.responses, responses);
     }
     return answer;
   };
@@ -56,13 +54,10 @@ optimize::MinimizeProblem minimize_problem(const StudyTask& task,
   return problem;
 }
 
-Constraint told(const optimize::ConstraintState& state) {
-  const bool above = state.value > 0.5 * (state.lower + state.upper);
-  const bool upper =
-      !std::isfinite(state.lower) || (std::isfinite(state.upper) && above);
+Constraint to_constraint(const optimize::ConstraintState& state) {
   return {.name = state.name,
           .value = state.value,
-          .bound = upper ? state.upper : state.lower,
+          .bound = nearer_bound(state.lower, state.upper, state.value),
           .satisfied = state.satisfied};
 }
 
@@ -90,7 +85,7 @@ StudyOutcome minimize(const StudyTask& task) {
                        .best = report.best,
                        .objective = report.objective};
   for (const optimize::ConstraintState& state : report.constraints) {
-    outcome.constraints.push_back(told(state));
+    outcome.constraints.push_back(to_constraint(state));
   }
   return outcome;
 }

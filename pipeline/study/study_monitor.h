@@ -73,20 +73,20 @@ class StudyMonitor : public Monitor {
 
 /// Asks to stop when the time is up too: for work that can be left out. May be
 /// called from several threads if `user` may.
-class LimitedMonitor : public Monitor {
+class DeadlineMonitor : public Monitor {
  public:
   /// `user` must outlive this; `limit` counts from now [s], 0: none.
-  LimitedMonitor(Monitor& user, double limit) : user_(user), limit_(limit) {}
+  DeadlineMonitor(Monitor& user, double limit) : user_(user), limit_(limit) {}
 
   void log(Severity severity, const std::string& message) override {
     user_.log(severity, message);
   }
   void progress(const Progress& progress) override { user_.progress(progress); }
   bool stop_requested() const override {
-    return user_.stop_requested() || late();
+    return user_.stop_requested() || expired();
   }
 
-  bool late() const { return limit_ > 0.0 && timer_.seconds() >= limit_; }
+  bool expired() const { return limit_ > 0.0 && timer_.seconds() >= limit_; }
   double limit() const { return limit_; }
 
  private:

@@ -30,7 +30,7 @@ class FrontSearch {
   void keep(const optimize::MinimizeReport& report, bool swapped);
   void walk(const optimize::MinimizeReport& first,
             const optimize::MinimizeReport& last);
-  void conclude(StudyOutcome& outcome);
+  void finish_outcome(StudyOutcome& outcome);
 
   const StudyTask& task_;
   std::string phase_ = "start";
@@ -68,7 +68,7 @@ void FrontSearch::keep(const optimize::MinimizeReport& report, bool swapped) {
   constraints.reserve(static_cast<std::size_t>(second_));
   for (int k = 0; k < second_; ++k) {  // the user's own
     constraints.push_back(
-        told(report.constraints[static_cast<std::size_t>(k)]));
+        to_constraint(report.constraints[static_cast<std::size_t>(k)]));
   }
   found_.push_back(std::move(point));
   constraints_.push_back(std::move(constraints));
@@ -98,7 +98,7 @@ void FrontSearch::walk(const optimize::MinimizeReport& first,
   }
 }
 
-void FrontSearch::conclude(StudyOutcome& outcome) {
+void FrontSearch::finish_outcome(StudyOutcome& outcome) {
   std::vector<VectorX> values;
   values.reserve(found_.size());
   for (const FrontPoint& point : found_) {
@@ -164,7 +164,7 @@ StudyOutcome FrontSearch::run() {
     }
   }
   out_of_time_ = out_of_time_ || !time_left();
-  conclude(outcome);
+  finish_outcome(outcome);
   return outcome;
 }
 

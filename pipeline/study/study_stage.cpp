@@ -13,7 +13,7 @@ namespace meniscus::study {
 namespace {
 
 /// The study goes on with another model, from there.
-struct OutOfReach {
+struct EarlyStop {
   VectorX best;
 };
 
@@ -44,12 +44,13 @@ StudyStage::StudyStage(const case_data::Case& input, store::StudyStore& store,
   start_ = to_evaluation(record);
   count(record);
   if (!failure_ && input_.study.fit) {
-    evaluator_.judge_by([fit = *input_.study.fit](const VectorX& responses) {
-      return responses[fit];
-    });
+    evaluator_.set_mismatch(
+        [fit = *input_.study.fit](const VectorX& responses) {
+          return responses[fit];
+        });
   } else if (!failure_ && input_.study.kind == case_data::StudyKind::Match) {
     targets_.emplace(input_, model_.reference.value_or(record.responses));
-    evaluator_.judge_by([this](const VectorX& responses) {
+    evaluator_.set_mismatch([this](const VectorX& responses) {
       return targets_->mismatch(responses).maxCoeff();
     });
   }
@@ -73,7 +74,7 @@ VectorX StudyStage::begin() {
 
 std::optional<store::Refreeze> StudyStage::wanted(const VectorX& best,
                                                   bool converged) const {
-  return store::wanted_refreeze(
+  return store::find_refreeze(
       {.input = input_,
        .records = records(),
        .model = model_.name,
@@ -90,16 +91,16 @@ void StudyStage::count(const store::EvaluationRecord& record) {
 
 /// Ends the study after so many designs that invert elements, when the mesh is
 /// what holds it up.
-void StudyStage::leave_at_walls(const store::EvaluationRecord& record) {
-  constexpr int kPatience = 6;
+void StudyStage::stop_if_inverted(const store::EvaluationRecord& record) {
+  constexpr int kMaxInverted = 6;
   if (!record.failure ||
       record.failure->kind != FailureKind::ElementsInverted ||
-      ++inverted_ < kPatience) {
+      ++inverted_ < kMaxInverted) {
     return;
   }
   const VectorX best = store::best_record(input_, records()).inputs;
   if (wanted(best, false)) {
-    throw OutOfReach{best};
+    throw EarlyStop{best};
   }
 }
 
@@ -108,10 +109,10 @@ void StudyStage::conduct(Leave leave) {
   evaluator_.reset_counts();  // the kinds of study ask for the start again
   left_early_ = false;
   inverted_ = 0;
-  evaluator_.watch_by([this, leave](const store::EvaluationRecord& record) {
+  evaluator_.set_observer([this, leave](const store::EvaluationRecord& record) {
     count(record);
     if (leave == Leave::Early) {
-      leave_at_walls(record);
+      stop_if_inverted(record);
     }
   });
   try {
@@ -120,13 +121,13 @@ void StudyStage::conduct(Leave leave) {
                                          .options = options_,
                                          .targets = targets(),
                                          .start = start});
-  } catch (const OutOfReach& left) {
+  } catch (const EarlyStop& left) {
     left_early_ = true;
     outcome_ = {.status = RunStatus::Infeasible,
                 .message = "the study left the reach of its frozen mesh",
                 .best = left.best};
   }
-  evaluator_.watch_by({});
+  evaluator_.set_observer({});
 }
 
 CoarseStage run_coarse_stage(const case_data::Case& input,

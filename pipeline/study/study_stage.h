@@ -36,7 +36,7 @@ class StudyStage {
 
   /// Does what the case's study asks, from options.start where that can be
   /// evaluated, else from the initial design. `Leave::Early`: ends it, without
-  /// convergence, once it is clear that wanted_refreeze() will want a new
+  /// convergence, once it is clear that find_refreeze() will want a new
   /// model; a second call then does the rest.
   enum class Leave { Late, Early };
   void conduct(Leave leave = Leave::Late);
@@ -46,7 +46,7 @@ class StudyStage {
   const StudyOutcome& outcome() const { return outcome_; }
   /// Designs that the stage has asked for.
   int evaluations() const { return static_cast<int>(asked_.size()); }
-  bool left_early() const { return left_early_; }
+  bool stopped_early() const { return left_early_; }
 
   const std::string& model_name() const { return model_.name; }
   DesignEvaluator& evaluator() { return evaluator_; }
@@ -63,7 +63,7 @@ class StudyStage {
   std::vector<store::EvaluationRecord> records() const {
     return store_.some(asked_);
   }
-  void leave_at_walls(const store::EvaluationRecord& record);
+  void stop_if_inverted(const store::EvaluationRecord& record);
 
   const case_data::Case& input_;
   const store::StudyStore& store_;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -45,12 +44,9 @@ std::vector<VectorX> designs_of_sweep(const StudyTask& task) {
 Constraint constraint_of(const case_data::Case& input,
                          const case_data::ConstraintEntry& entry,
                          double value) {
-  const bool upper =
-      !std::isfinite(entry.lower) ||
-      (std::isfinite(entry.upper) && value > 0.5 * (entry.lower + entry.upper));
   return {.name = input.responses[entry.response].name,
           .value = value,
-          .bound = upper ? entry.upper : entry.lower,
+          .bound = nearer_bound(entry.lower, entry.upper, value),
           .satisfied = store::violation_of(entry, value) <= store::kFeasible};
 }
 
@@ -64,7 +60,7 @@ void choose_best(const StudyTask& task,
   if (best == nullptr) {
     return;
   }
-  const store::Standing standing = store::standing_of(study, best->responses);
+  const store::Merit standing = store::merit_of(study, best->responses);
   outcome.best = best->inputs;
   outcome.objective = standing.objective;
   outcome.constraints.reserve(study.constraints.size());

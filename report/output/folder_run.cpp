@@ -96,8 +96,8 @@ study::RunResult FolderRun::study(const FolderRunListener& listener,
 study::RunResult FolderRun::keep(const FolderRunListener& listener,
                                  study::RunStatus status,
                                  const std::string& reason) {
-  study::RunResult result = results::kept_result(input_, store_, status, reason,
-                                                 options_.resume_word);
+  study::RunResult result = results::partial_result(
+      input_, store_, status, reason, options_.resume_hint);
   if (listener.ended_early) {
     listener.ended_early(result);
   }

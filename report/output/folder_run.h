@@ -34,7 +34,7 @@ struct FolderRunOptions {
   std::vector<std::string> exports = {};   // formats to write the part in
   std::vector<std::string> warnings = {};  // of the case, for result.json
   /// What a run that ended early is to be gone on with, for its message.
-  std::string resume_word = "--resume";
+  std::string resume_hint = "--resume";
   /// Members of a family get pictures also when its time is up.
   bool pictures_when_late = false;
 };

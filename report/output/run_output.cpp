@@ -39,7 +39,7 @@ void RunOutput::finish(const forward::EvaluationFields& fields,
     study::write_frames(input_, fields.history, folder_);
     exported = export_all(result);
     if (options_.pictures) {
-      draw_rest(fields, result);
+      finish_pictures(fields, result);
     }
   }
   if (result.best && !fields.mesh.nodes.empty()) {
@@ -75,8 +75,8 @@ std::vector<fs::path> RunOutput::export_all(study::RunResult& result) {
 }
 
 /// What was begun, and what needs the frames.
-void RunOutput::draw_rest(const forward::EvaluationFields& fields,
-                          study::RunResult& result) {
+void RunOutput::finish_pictures(const forward::EvaluationFields& fields,
+                                study::RunResult& result) {
   const bool late =
       options_.time_limit > 0.0 && result.total_seconds >= options_.time_limit;
   if (late) {

@@ -42,8 +42,8 @@ class RunOutput {
 
  private:
   std::vector<std::filesystem::path> export_all(study::RunResult& result);
-  void draw_rest(const forward::EvaluationFields& fields,
-                 study::RunResult& result);
+  void finish_pictures(const forward::EvaluationFields& fields,
+                       study::RunResult& result);
 
   const case_data::Case& input_;
   std::filesystem::path folder_;

@@ -20,7 +20,7 @@ std::vector<picture::PictureJob> run_pictures(
 /// The same of what stands in `folder`: film.vtp, part.vtu, part_surface.vtp;
 /// `numbers`: of the run's answer.
 std::vector<picture::PictureJob> stored_run_pictures(
-    const case_data::Case& input, const case_data::EvaluatedCase& numbers,
+    const case_data::Case& input, const case_data::EvaluatedCase& inputs,
     const std::filesystem::path& folder);
 
 /// film.png from the film.vtp in `folder`; `solids`: its surfaces that are no

@@ -79,14 +79,13 @@ Json pack_points(const Points& points) {
 
 /// Adds each curve's motion by one design variable.
 void add_motion(const case_data::Case& input, const VectorX& design,
-                int variable, const case_data::EvaluatedCase& numbers,
+                int variable, const case_data::EvaluatedCase& inputs,
                 Json& curves) {
-  const case_data::EvaluatedCase rate =
-      case_data::rates(input, design, variable);
+  const case_data::CaseRates rate = case_data::rates(input, design, variable);
   const std::vector<double> t = even_parameters();
   std::size_t k = 0;
-  for (std::size_t c = 0; c < numbers.film_system.curves.size(); ++c) {
-    const curves::Curve& curve = numbers.film_system.curves[c];
+  for (std::size_t c = 0; c < inputs.film_system.curves.size(); ++c) {
+    const curves::Curve& curve = inputs.film_system.curves[c];
     if (!has_range(curve)) {
       continue;
     }
@@ -128,8 +127,8 @@ Json page_case(const case_data::Case& input) {
 Json page_curves(const case_data::Case& input, const VectorX& design) {
   Json curves = Json::array();
   try {
-    const case_data::EvaluatedCase numbers = case_data::evaluate(input, design);
-    for (const curves::Curve& curve : numbers.film_system.curves) {
+    const case_data::EvaluatedCase inputs = case_data::evaluate(input, design);
+    for (const curves::Curve& curve : inputs.film_system.curves) {
       if (!has_range(curve)) {
         continue;
       }
@@ -143,7 +142,7 @@ Json page_curves(const case_data::Case& input, const VectorX& design) {
                         {"motion", Json::object()}});
     }
     for (int k = 0; k < static_cast<int>(input.design.size()); ++k) {
-      add_motion(input, design, k, numbers, curves);
+      add_motion(input, design, k, inputs, curves);
     }
   } catch (const InvalidInput&) {
     return curves;  // no derivative there: curves without their motion
@@ -152,9 +151,9 @@ Json page_curves(const case_data::Case& input, const VectorX& design) {
 }
 
 Json page_loads(const case_data::Case& input,
-                const case_data::EvaluatedCase& numbers) {
+                const case_data::EvaluatedCase& inputs) {
   Json cases = Json::array();
-  for (const loads::LoadCase& load_case : numbers.load_cases) {
+  for (const loads::LoadCase& load_case : inputs.load_cases) {
     Json items = Json::array();
     const auto add = [&](const std::string& on, const char* kind, Json vector) {
       items.push_back(

@@ -24,7 +24,7 @@ nlohmann::ordered_json page_curves(const case_data::Case& input,
 /// "force", "moment", "pressure", "traction", "support", "spring", and its
 /// `vector` [force] where it has one.
 nlohmann::ordered_json page_loads(const case_data::Case& input,
-                                  const case_data::EvaluatedCase& numbers);
+                                  const case_data::EvaluatedCase& inputs);
 
 /// The derivatives of the responses at the evaluation with exact gradients
 /// that is nearest to the design, in parts of the variables' ranges; null when

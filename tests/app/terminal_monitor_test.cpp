@@ -57,9 +57,9 @@ TEST_F(TerminalMonitorTest, PipesGetTheFirstLineOfAStageAndSignsOfLife) {
 TEST_F(TerminalMonitorTest, EventsTellMoreThanTheOuterStage) {
   app::TerminalMonitor monitor(options(app::MonitorStyle::Terminal));
   monitor.progress({"match", "before", -1.0});
-  monitor.tell({.line = "evaluation 1: good",
-                .status = "match: evaluation 1",
-                .fields = {}});
+  monitor.write({.line = "evaluation 1: good",
+                 .status = "match: evaluation 1",
+                 .fields = {}});
   monitor.progress({"match", "the same in fewer words", -1.0});
   monitor.progress({"fea", "step 3", -1.0});
   EXPECT_THAT(shown(), HasSubstr("\r\x1b[Kevaluation 1: good\n"));
@@ -136,9 +136,9 @@ TEST_F(TerminalMonitorTest, LogsJsonLines) {
     monitor.log(Severity::Debug, "a \"quoted\" detail");
     monitor.progress({"fea", "iteration 1", 0.5});
     monitor.progress({"fea", "iteration 2", 0.6});
-    monitor.tell({.line = {},
-                  .status = {},
-                  .fields = {{"event", "end"}, {"stage", "run"}}});
+    monitor.write({.line = {},
+                   .status = {},
+                   .fields = {{"event", "end"}, {"stage", "run"}}});
   }
   EXPECT_THAT(shown(), Not(HasSubstr("quoted")));
   std::ifstream file(path);

@@ -129,7 +129,7 @@ class Ugly {
     mesh.points[below(mesh.points.size())][below(3)] = bad.at(below(4));
     return mesh;
   }
-  SurfaceMesh sized() {
+  SurfaceMesh is_converged() {
     SurfaceMesh mesh = body();
     const double size = below(2) == 0 ? 1e-9 : 1e9;
     for (Vec3& p : mesh.points) {
@@ -244,7 +244,7 @@ constexpr std::array<Kind, 16> kKinds = {{
     {"touching", &Ugly::touching, 16, Outcome::Either},
     {"flat", &Ugly::flat, 16, Outcome::Either},
     {"not numbers", &Ugly::not_numbers, 8, Outcome::Failure},
-    {"sized", &Ugly::sized, 12, Outcome::Mesh},
+    {"sized", &Ugly::is_converged, 12, Outcome::Mesh},
     {"nested", &Ugly::nested, 12, Outcome::Failure},
     {"noisy", &Ugly::noisy, 20, Outcome::Either},
     {"turned", &Ugly::turned, 8, Outcome::Either},

@@ -119,11 +119,11 @@ TEST(ConstantMeanCurvature, EachFilmIsItsClosedForm) {
   const std::vector<Exact> exact = exact_films();
   std::vector<Errors> errors(exact.size());
   const case_data::Case input = reader::read_case(kCase);
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
   for (int level = 0; level < kLevels; ++level) {
     const frozen::FilmModel model = frozen::FilmModel::freeze(
-        numbers.film_system, {.edge = kEdge, .refinements = level});
+        inputs.film_system, {.edge = kEdge, .refinements = level});
     const settle::FilmState& film = model.reference();
     ASSERT_FALSE(film.failure) << film.report.verdict;
     EXPECT_EQ(film.report.index, 0);

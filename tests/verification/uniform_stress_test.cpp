@@ -43,10 +43,10 @@ struct Films {
 
 Films films_at(double edge) {
   const case_data::Case input = reader::read_case(kCase);
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
   const frozen::FilmModel model = frozen::FilmModel::freeze(
-      numbers.film_system, {.edge = edge, .refinements = 1});
+      inputs.film_system, {.edge = edge, .refinements = 1});
   EXPECT_FALSE(model.reference().failure) << model.reference().report.verdict;
   return {model.surface(model.reference().points), model.reference().report};
 }

@@ -1,5 +1,3 @@
-#include "fea/loads/rates.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -9,6 +7,7 @@
 #include "fea/functionals/energy_functionals.h"
 #include "fea/functionals/place_functionals.h"
 #include "fea/functionals/stress_functionals.h"
+#include "fea/loads/load_rates.h"
 #include "fea/loads/loads.h"
 #include "fea/loads/material_rates.h"
 #include "tests/support/derivatives.h"

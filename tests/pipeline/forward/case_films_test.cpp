@@ -93,12 +93,12 @@ TEST(CaseFields, ActOnTheFilm) {
 }
 
 TEST(CaseWalls, NeedNoBodies) {
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       numbers_of(tube("films = [\"skin\"]\n"
                       "thickness = \"1 + length*z/1e3\"\n"));
-  ASSERT_EQ(numbers.walls.size(), 1U);
-  EXPECT_EQ(numbers.walls[0].side, walls::WallSide::Both);
-  EXPECT_DOUBLE_EQ(at(numbers.walls[0].thickness, 0, 0, 4), 1.24);
+  ASSERT_EQ(inputs.walls.size(), 1U);
+  EXPECT_EQ(inputs.walls[0].side, walls::WallSide::Both);
+  EXPECT_DOUBLE_EQ(at(inputs.walls[0].thickness, 0, 0, 4), 1.24);
 }
 
 // Of places it is found once, on the frozen film.
@@ -126,13 +126,13 @@ TEST_P(CaseWallsOf, CloseOnTheSettledFilm) {
                    GetParam()),
            "case.toml")
            .input;
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
   const frozen::FilmModel model = frozen::FilmModel::freeze(
-      numbers.film_system, {.edge = numbers.fea_edge, .refinements = 1});
+      inputs.film_system, {.edge = inputs.fea_edge, .refinements = 1});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   const auto walls =
-      forward::make_walls(numbers, model, model.reference().points);
+      forward::make_walls(inputs, model, model.reference().points);
   ASSERT_EQ(walls.size(), 1U);
   const walls::ThickWall& wall = walls[0].wall;
   EXPECT_THAT(wall.findings, IsEmpty());
@@ -177,12 +177,12 @@ TEST(CaseWalls, OfAFlatFilmFollowTheCurve) {
               "kind = \"branch\"", "kind = \"disk\"");
   const case_data::Case input =
       *reader::read_case_text(text, "case.toml").input;
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
-  const frozen::FilmModel model = frozen::FilmModel::freeze(
-      numbers.film_system, {.edge = numbers.fea_edge});
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(inputs.film_system, {.edge = inputs.fea_edge});
   const auto walls =
-      forward::make_walls(numbers, model, model.reference().points);
+      forward::make_walls(inputs, model, model.reference().points);
   double highest = 0.0;  // the base's normal points down
   for (const Vec3& p : walls[0].wall.surface.points) {
     highest = std::max(highest, p.z());
@@ -201,12 +201,12 @@ TEST(CaseWalls, OfThreeFilmsAtALineAreJoined) {
               "[films.floor]\nkind = \"disk\"\ncurves = [\"base\"]\n"
               "[films.cup]\nkind = \"loft\"\ncurves = [\"base\", "
               "\"bottom\"]\n[walls.web]");
-  const case_data::EvaluatedCase numbers = numbers_of(text);
-  const frozen::FilmModel model = frozen::FilmModel::freeze(
-      numbers.film_system, {.edge = numbers.fea_edge});
+  const case_data::EvaluatedCase inputs = numbers_of(text);
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(inputs.film_system, {.edge = inputs.fea_edge});
   ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
   const auto walls =
-      forward::make_walls(numbers, model, model.reference().points);
+      forward::make_walls(inputs, model, model.reference().points);
   ASSERT_EQ(walls.size(), 1U);
   EXPECT_THAT(walls[0].wall.findings, IsEmpty())
       << summary(walls[0].wall.findings);

@@ -120,10 +120,10 @@ class CurvesOfStep : public testing::Test {
     return own;
   }
   static settle::FilmState film_of(const case_data::Case& input) {
-    const case_data::EvaluatedCase numbers =
+    const case_data::EvaluatedCase inputs =
         case_data::evaluate(input, case_data::initial_design(input));
     const frozen::FilmModel model = frozen::FilmModel::freeze(
-        numbers.film_system, {.edge = numbers.fea_edge});
+        inputs.film_system, {.edge = inputs.fea_edge});
     EXPECT_FALSE(model.reference().failure);
     return model.reference();
   }
@@ -188,9 +188,9 @@ TEST_F(CurvesOfStep, AreConvertedToTheUnitsOfTheCase) {
   write_part();
   // The file is in mm whatever the case's units are.
   const case_data::Case metre = good(strut(kRims, "m-N-Pa"));
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(metre, case_data::initial_design(metre));
-  EXPECT_NEAR(curves::length_of(numbers.film_system.curves[1].shape),
+  EXPECT_NEAR(curves::length_of(inputs.film_system.curves[1].shape),
               2.0 * kPi * 9e-3, 1e-12);
 }
 
@@ -290,9 +290,9 @@ TEST_F(CurvesOfStep, OfSeveralEdgesMustClose) {
            "films = [\"skin\"]\nthickness = 0.1\n[resolution]\nfea = 0.5\n";
   };
   const case_data::Case four = good(text("[3, 1, 4, 2]"));
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(four, case_data::initial_design(four));
-  EXPECT_NEAR(curves::length_of(numbers.film_system.curves[0].shape), 10.0,
+  EXPECT_NEAR(curves::length_of(inputs.film_system.curves[0].shape), 10.0,
               1e-12);
   EXPECT_THAT(read(text("[1, 2, 3]")).problems,
               ElementsAre(AllOf(HasSubstr("case.toml:6: curves.rim.edge"),

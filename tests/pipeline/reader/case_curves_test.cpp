@@ -66,7 +66,7 @@ void expect_rates(const case_data::Case& input) {
   const VectorX design = case_data::initial_design(input);
   const case_data::EvaluatedCase here = case_data::evaluate(input, design);
   for (int j = 0; j < design.size(); ++j) {
-    const case_data::EvaluatedCase rate = case_data::rates(input, design, j);
+    const case_data::CaseRates rate = case_data::rates(input, design, j);
     VectorX less = design;
     VectorX more = design;
     less[j] -= kStep;
@@ -74,8 +74,8 @@ void expect_rates(const case_data::Case& input) {
     const case_data::EvaluatedCase a = case_data::evaluate(input, less);
     const case_data::EvaluatedCase b = case_data::evaluate(input, more);
     for (std::size_t c = 0; c < here.film_system.curves.size(); ++c) {
-      const auto shape = [&](const case_data::EvaluatedCase& numbers) {
-        return numbers.film_system.curves[c].shape;
+      const auto shape = [&](const case_data::StageInputs& inputs) {
+        return inputs.film_system.curves[c].shape;
       };
       for (const double t : {0.0, 0.21, 0.5, 0.83}) {
         const Vec3 difference =
@@ -131,9 +131,9 @@ TEST(CaseCurves, OfEveryKindFollowTheDesignWithExactRates) {
     expect_rates(input);
   }
   const case_data::Case slot = case_of(disk(kSlot));
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(slot, case_data::initial_design(slot));
-  EXPECT_NEAR(curves::length_of(numbers.film_system.curves[0].shape),
+  EXPECT_NEAR(curves::length_of(inputs.film_system.curves[0].shape),
               12.0 + 4.0 * kHalfTurn, 1e-12);
 }
 
@@ -155,10 +155,10 @@ move = [0, 0, 1]
   }
   EXPECT_THAT(names, ElementsAre("hole_1_1", "hole_1_2", "hole_1_3", "hole_2_1",
                                  "hole_2_2", "hole_2_3", "rim"));
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
   const curves::Circle& hole =
-      std::get<curves::Circle>(numbers.film_system.curves[5].shape);
+      std::get<curves::Circle>(inputs.film_system.curves[5].shape);
   EXPECT_EQ(hole.center, Vec3(20, 9, 0));
   EXPECT_EQ(hole.radius, 0.5);
   expect_rates(input);
@@ -172,10 +172,10 @@ TEST(CaseCurves, ComeFromFilesThatBelongToTheCase) {
              "Y,name,x [cm],z\n0,a,1,0\n10,b,0,0\n0,c,-1,0.5\n-10,d,0,0\n"
              "0,a,1,0\n");
   const case_data::Case first = reader::read_case(path);
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(first, case_data::initial_design(first));
   const curves::Spline& rim =
-      std::get<curves::Spline>(numbers.film_system.curves[0].shape);
+      std::get<curves::Spline>(inputs.film_system.curves[0].shape);
   ASSERT_EQ(rim.points.size(), 4U);  // the last one closes
   EXPECT_EQ(rim.points[2], Vec3(-10, 0, 0.5));
   expect_rates(first);
@@ -304,10 +304,10 @@ thickness = 0.01
 [resolution]
 fea = 0.1
 )");
-    const case_data::EvaluatedCase numbers =
+    const case_data::EvaluatedCase inputs =
         case_data::evaluate(input, case_data::initial_design(input));
     const frozen::FilmModel model = frozen::FilmModel::freeze(
-        numbers.film_system, {.edge = 0.1, .refinements = 1});
+        inputs.film_system, {.edge = 0.1, .refinements = 1});
     ASSERT_FALSE(model.reference().failure);
     EXPECT_NEAR(model.reference().report.area / kExact, 1.0, kFacets);
   }

@@ -69,11 +69,11 @@ case_data::Case good(const std::string& text,
 }
 
 frozen::FilmModel model_of(const case_data::Case& input) {
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
   return frozen::FilmModel::freeze(
-      numbers.film_system,
-      {.edge = numbers.fea_edge, .refinements = input.resolution.refinements});
+      inputs.film_system,
+      {.edge = inputs.fea_edge, .refinements = input.resolution.refinements});
 }
 
 TEST(CaseFacets, ACubeBecomesASphere) {

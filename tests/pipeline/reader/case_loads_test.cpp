@@ -36,13 +36,13 @@ case_data::EvaluatedCase numbers_of(const std::string& text) {
 }
 
 TEST(CaseLoads, SupportsSlideTurnAndSpring) {
-  const case_data::EvaluatedCase numbers = numbers_of(with_supports(
+  const case_data::EvaluatedCase inputs = numbers_of(with_supports(
       "[{ on = \"foot_pad\", fix = \"symmetry\" },\n"
       "  { on = \"skin\", fix = \"normal\" },\n"
       "  { on = \"head_pad\", fix = \"xz\", axes = [[1, 1, 0], [0, 1, 0]] },\n"
       "  { on = \"foot_pad\", stiffness = [1, \"load / 10\", 3], "
       "normal_stiffness = 5, stiffness_of = \"total\" }]"));
-  const loads::LoadCase& load_case = numbers.load_cases.at(0);
+  const loads::LoadCase& load_case = inputs.load_cases.at(0);
   ASSERT_EQ(load_case.supports.size(), 3U);
   EXPECT_EQ(load_case.supports[0].kind, loads::SupportKind::Symmetry);
   EXPECT_EQ(load_case.supports[1].kind, loads::SupportKind::Normal);
@@ -56,7 +56,7 @@ TEST(CaseLoads, SupportsSlideTurnAndSpring) {
 }
 
 TEST(CaseLoads, EveryKindOfLoadIsRead) {
-  const case_data::EvaluatedCase numbers = numbers_of(changed(
+  const case_data::EvaluatedCase inputs = numbers_of(changed(
       with_loads(
           "[{ on = \"head_pad\", force = [1, 2, 3], at = [0, 0, 90], "
           "moment = [\"4 N m\", 0, 0] },\n"
@@ -67,7 +67,7 @@ TEST(CaseLoads, EveryKindOfLoadIsRead) {
           "  { spin = 30, axis = [0, 0, 1], at = [5, 0, 0] },\n"
           "  { temperature = \"20 + z\", reference = 20 }]"),
       "density", "thermal_expansion = 2e-5\ndensity"));
-  const loads::LoadCase& load_case = numbers.load_cases.at(0);
+  const loads::LoadCase& load_case = inputs.load_cases.at(0);
   ASSERT_EQ(load_case.remote_loads.size(), 1U);
   EXPECT_EQ(load_case.remote_loads[0].point, Vec3(0, 0, 90));
   EXPECT_EQ(load_case.remote_loads[0].moment, Vec3(4000, 0, 0));

@@ -34,41 +34,35 @@ std::string depending() {
   return changed(text, "density = ", "density = \"1e-9 * sqrt(foot)\" #");
 }
 
-using Number = std::function<double(const case_data::EvaluatedCase&)>;
+using Number = std::function<double(const case_data::StageInputs&)>;
 
 std::vector<Number> numbers_to_look_at() {
   const Vec3 place(3.0, -4.0, 11.0);
-  const auto circle = [](const case_data::EvaluatedCase& c, int k) {
+  const auto circle = [](const case_data::StageInputs& c, int k) {
     return std::get<curves::Circle>(c.film_system.curves[k].shape);
   };
   return {
-      [=](const case_data::EvaluatedCase& c) { return circle(c, 0).radius; },
-      [=](const case_data::EvaluatedCase& c) {
-        return circle(c, 1).center.x();
-      },
-      [=](const case_data::EvaluatedCase& c) {
-        return circle(c, 1).center.y();
-      },
-      [=](const case_data::EvaluatedCase& c) {
-        return circle(c, 1).center.z();
-      },
-      [](const case_data::EvaluatedCase& c) {
+      [=](const case_data::StageInputs& c) { return circle(c, 0).radius; },
+      [=](const case_data::StageInputs& c) { return circle(c, 1).center.x(); },
+      [=](const case_data::StageInputs& c) { return circle(c, 1).center.y(); },
+      [=](const case_data::StageInputs& c) { return circle(c, 1).center.z(); },
+      [](const case_data::StageInputs& c) {
         return *c.film_system.bodies[0].volume;
       },
-      [](const case_data::EvaluatedCase& c) { return c.materials[0].density; },
-      [](const case_data::EvaluatedCase& c) {
+      [](const case_data::StageInputs& c) { return c.materials[0].density; },
+      [](const case_data::StageInputs& c) {
         return c.load_cases[0].forces[0].total.x();
       },
-      [](const case_data::EvaluatedCase& c) {
+      [](const case_data::StageInputs& c) {
         return c.load_cases[0].forces[0].total.z();
       },
-      [=](const case_data::EvaluatedCase& c) {
+      [=](const case_data::StageInputs& c) {
         return c.load_cases[0].pressures[0].field(place);
       },
-      [=](const case_data::EvaluatedCase& c) {
+      [=](const case_data::StageInputs& c) {
         return c.load_cases[0].tractions[0].field(place).x();
       },
-      [=](const case_data::EvaluatedCase& c) {
+      [=](const case_data::StageInputs& c) {
         return c.load_cases[0].tractions[0].field(place).z();
       }};
 }
@@ -80,7 +74,7 @@ TEST(CaseRates, AreTheDerivativesOfTheNumbers) {
   const case_data::Case& input = *reading.input;
   const VectorX design = case_data::initial_design(input);
   for (int j = 0; j < 2; ++j) {
-    const case_data::EvaluatedCase rate = case_data::rates(input, design, j);
+    const case_data::CaseRates rate = case_data::rates(input, design, j);
     VectorX before = design;
     VectorX after = design;
     before[j] -= kStep;
@@ -101,7 +95,7 @@ TEST(CaseRates, AreTheDerivativesOfTheNumbers) {
 TEST(CaseRates, AreZeroForWhatStandsAsNumbers) {
   const reader::CaseReading reading =
       reader::read_case_text(strut(), "case.toml");
-  const case_data::EvaluatedCase rate = case_data::rates(
+  const case_data::CaseRates rate = case_data::rates(
       *reading.input, case_data::initial_design(*reading.input), 0);
   EXPECT_EQ(std::get<curves::Circle>(rate.film_system.curves[0].shape).radius,
             1.0);

@@ -43,25 +43,25 @@ TEST(CaseReader, ReadsTheTwoArmBracket) {
 TEST(CaseReader, EvaluatesTheTwoArmBracket) {
   const case_data::Case input = reader::read_case(two_arm_path());
   const VectorX moved = VectorX::Constant(1, 12.5);
-  const case_data::EvaluatedCase numbers = case_data::evaluate(input, moved);
+  const case_data::EvaluatedCase inputs = case_data::evaluate(input, moved);
   const auto& support =
-      std::get<curves::Circle>(numbers.film_system.curves[0].shape);
+      std::get<curves::Circle>(inputs.film_system.curves[0].shape);
   EXPECT_EQ(support.center, Vec3(12.5, 0, 0));
   EXPECT_EQ(support.normal, Vec3(0, 0, -1));
   EXPECT_EQ(support.radius, 35.0);
   const auto& left =
-      std::get<curves::Circle>(numbers.film_system.curves[1].shape);
+      std::get<curves::Circle>(inputs.film_system.curves[1].shape);
   const double angle = 60.0 * (3.14159265358979323846 / 180.0);
   EXPECT_EQ(left.normal, Vec3(-std::sin(angle), 0, std::cos(angle)));
-  EXPECT_EQ(numbers.film_system.bodies[0].volume, 1.7e6);
-  EXPECT_EQ(numbers.materials[0].youngs_modulus, 71700.0);
-  EXPECT_EQ(numbers.materials[0].density, 2.8e-9);
-  EXPECT_EQ(numbers.materials[0].yield_strength, 400.0);
-  ASSERT_EQ(numbers.load_cases[0].forces.size(), 2U);
-  EXPECT_EQ(numbers.load_cases[0].forces[0].total, Vec3(0, 0, -40000));
-  EXPECT_EQ(numbers.load_cases[0].forces[1].total, Vec3(0, 0, -60000));
-  EXPECT_TRUE(numbers.load_cases[0].supports[0].fix_y);
-  EXPECT_EQ(numbers.responses[1].direction, Vec3(0, 0, -1));
+  EXPECT_EQ(inputs.film_system.bodies[0].volume, 1.7e6);
+  EXPECT_EQ(inputs.materials[0].youngs_modulus, 71700.0);
+  EXPECT_EQ(inputs.materials[0].density, 2.8e-9);
+  EXPECT_EQ(inputs.materials[0].yield_strength, 400.0);
+  ASSERT_EQ(inputs.load_cases[0].forces.size(), 2U);
+  EXPECT_EQ(inputs.load_cases[0].forces[0].total, Vec3(0, 0, -40000));
+  EXPECT_EQ(inputs.load_cases[0].forces[1].total, Vec3(0, 0, -60000));
+  EXPECT_TRUE(inputs.load_cases[0].supports[0].fix_y);
+  EXPECT_EQ(inputs.responses[1].direction, Vec3(0, 0, -1));
   EXPECT_THROW(case_data::evaluate(input, VectorX()), InvalidInput);
 }
 
@@ -137,10 +137,10 @@ TEST(CaseReader, ReadsEveryKindOfCurve) {
   }
   const case_data::Case input =
       *reader::read_case_text(rest + "[curves.head]\n" + curves[2], "c").input;
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
   const auto& polygon =
-      std::get<curves::Polygon>(numbers.film_system.curves.back().shape);
+      std::get<curves::Polygon>(inputs.film_system.curves.back().shape);
   ASSERT_EQ(polygon.points.size(), 3U);
   EXPECT_EQ(polygon.points[1], Vec3(0, 25, 60));
 }
@@ -156,11 +156,11 @@ TEST(CaseReader, ReadsPressuresAndSeveralLoadCases) {
                    "load_case = \"push\"\n[study]"),
            "case.toml")
            .input;
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
-  EXPECT_EQ(numbers.load_cases[1].pressures[0].pressure, 0.2);
-  EXPECT_FALSE(numbers.load_cases[1].supports[0].fix_x);
-  EXPECT_TRUE(numbers.load_cases[1].supports[0].fix_z);
+  EXPECT_EQ(inputs.load_cases[1].pressures[0].pressure, 0.2);
+  EXPECT_FALSE(inputs.load_cases[1].supports[0].fix_x);
+  EXPECT_TRUE(inputs.load_cases[1].supports[0].fix_z);
   EXPECT_EQ(input.responses.back().load_case, 1);
   EXPECT_EQ(case_data::response_unit(input, 2), "MPa");
 }
@@ -213,14 +213,14 @@ TEST(Overrides, ReachParametersDesignAndKeys) {
   EXPECT_EQ(input.study.method, "bobyqa");
   EXPECT_EQ(input.study.max_evaluations, 7);
   EXPECT_EQ(input.title, "Another");
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
-  EXPECT_EQ(numbers.load_cases[0].forces[0].total.z(), -50000.0);
-  EXPECT_EQ(numbers.load_cases[0].forces[1].total.z(), -40000.0);
-  EXPECT_EQ(numbers.film_system.bodies[0].volume, 1.6e6);
-  EXPECT_EQ(numbers.materials[0].density, 2.7e-9);
+  EXPECT_EQ(inputs.load_cases[0].forces[0].total.z(), -50000.0);
+  EXPECT_EQ(inputs.load_cases[0].forces[1].total.z(), -40000.0);
+  EXPECT_EQ(inputs.film_system.bodies[0].volume, 1.6e6);
+  EXPECT_EQ(inputs.materials[0].density, 2.7e-9);
   const auto& left =
-      std::get<curves::Circle>(numbers.film_system.curves[1].shape);
+      std::get<curves::Circle>(inputs.film_system.curves[1].shape);
   EXPECT_EQ(left.center, Vec3(-110, 0, 70));
 }
 

@@ -81,9 +81,9 @@ TEST(CaseRepeat, MakesPatternsOfFilmsAlongALattice) {
   EXPECT_THAT(input.walls[5].films, ElementsAre("rib_6_1"));
   EXPECT_THAT(input.walls[6].films, SizeIs(12));
   EXPECT_EQ(input.walls[6].films.back(), "stub_6_2");
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
-  EXPECT_DOUBLE_EQ(numbers.film_system.films[11].tension, 1.6);
+  EXPECT_DOUBLE_EQ(inputs.film_system.films[11].tension, 1.6);
 }
 
 TEST(CaseRepeat, CountsInSupportsLoadsAndResponses) {
@@ -224,10 +224,10 @@ TEST(CaseMerge, CurvesThatLieOnEachOtherAreOne) {
                                           "'middle' within"),
                                 HasSubstr("know as 'middle'"))));
   EXPECT_THAT(input.films[1].spec.curves, ElementsAre("middle", "high"));
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
   const frozen::FilmModel model = frozen::FilmModel::freeze(
-      numbers.film_system, {.edge = 0.2, .refinements = 0});
+      inputs.film_system, {.edge = 0.2, .refinements = 0});
   ASSERT_FALSE(model.reference().failure);
   EXPECT_FALSE(model.rim("middle").empty());
   EXPECT_TRUE(model.rim("same").empty());

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/atomic_file.h"
+#include "pipeline/study/progress_tracker.h"
 #include "pipeline/study/study.h"
-#include "pipeline/study/study_news.h"
 #include "tests/support/case_text.h"
 #include "tests/support/temp_folder.h"
 
@@ -111,25 +111,25 @@ TEST(FilmFrames, HaveTheEvaluationsOwnBits) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "frames.pvd"));
 }
 
-TEST(StudyTeller, KnowsTheBestSoFarAndWhatIsLeft) {
+TEST(ProgressTracker, KnowsTheBestSoFarAndWhatIsLeft) {
   const case_data::Case input = minimized();
-  study::StudyTeller teller(input, store::kStudyModel);
-  teller.remember(record(1, 2.0, 5.0));  // found in the database
+  study::ProgressTracker tracker(input, store::kStudyModel);
+  tracker.add(record(1, 2.0, 5.0));  // found in the database
   store::EvaluationRecord failed = record(2, 0.0, 0.0);
   failed.failure = Failure{FailureKind::FilmNotFound, "none"};
-  EXPECT_EQ(teller.tell(failed).best->evaluation, 1);
+  EXPECT_EQ(tracker.add_new(failed).best->evaluation, 1);
   const store::EvaluationRecord good = record(3, 0.5, 6.0);
-  const study::StudyNews news = teller.tell(good);
-  EXPECT_EQ(news.best->evaluation, 3);
-  EXPECT_EQ(news.standing.objective, 6.0);
-  EXPECT_EQ(news.standing.violation, 0.0);
-  EXPECT_EQ(news.evaluations, 3);
-  EXPECT_EQ(news.failed, 1);
-  EXPECT_EQ(news.planned, 10);
-  EXPECT_TRUE(news.left);
-  EXPECT_THAT(study::standing_text(news), HasSubstr("the best so far"));
+  const study::EvaluationEvent event = tracker.add_new(good);
+  EXPECT_EQ(event.best->evaluation, 3);
+  EXPECT_EQ(event.status.objective, 6.0);
+  EXPECT_EQ(event.status.violation, 0.0);
+  EXPECT_EQ(event.evaluations, 3);
+  EXPECT_EQ(event.failed, 1);
+  EXPECT_EQ(event.planned, 10);
+  EXPECT_TRUE(event.left);
+  EXPECT_THAT(study::progress_text(event), HasSubstr("the best so far"));
   const store::EvaluationRecord worse = record(4, 1.5, 3.0);
-  const std::string text = study::standing_text(teller.tell(worse));
+  const std::string text = study::progress_text(tracker.add_new(worse));
   EXPECT_THAT(text, HasSubstr("violation 0.5"));
   EXPECT_THAT(text, HasSubstr("best so far mass = 6 t (evaluation 3)"));
   EXPECT_THAT(study::duration_text(61.0), Not(HasSubstr("min")));

@@ -156,10 +156,10 @@ void write_scan(const std::filesystem::path& file, double foot, double top,
   text = changed(text, "volume = 9e4", "volume = " + std::to_string(fill));
   const case_data::Case input =
       *reader::read_case_text(text, "case.toml").input;
-  const case_data::EvaluatedCase numbers =
+  const case_data::EvaluatedCase inputs =
       case_data::evaluate(input, case_data::initial_design(input));
   const frozen::FilmModel film =
-      frozen::FilmModel::freeze(numbers.film_system, {.edge = 4.0});
+      frozen::FilmModel::freeze(inputs.film_system, {.edge = 4.0});
   SurfaceMesh surface = film.boundary(film.reference().points);
   std::mt19937 random(3);
   std::normal_distribution<double> spread(0.0, noise);

@@ -12,7 +12,7 @@
 #include "pipeline/results/results.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/match_targets.h"
-#include "pipeline/study/result_so_far.h"
+#include "pipeline/study/partial_result.h"
 #include "tests/support/temp_folder.h"
 
 namespace meniscus::start_case_test {

@@ -1,4 +1,4 @@
-#include "pipeline/study/study_news.h"
+#include "pipeline/study/progress_tracker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,16 +31,16 @@ std::string duration_text(double seconds) {
                       : fmt::format("{} h", (whole + 3599) / 3600);
 }
 
-StudyTeller::StudyTeller(const case_data::Case& input, std::string model,
-                         double time_limit)
+ProgressTracker::ProgressTracker(const case_data::Case& input,
+                                 std::string model, double time_limit)
     : input_(input),
       model_(std::move(model)),
       time_limit_(time_limit),
       planned_(planned_of(input)) {}
 
-DesignStanding StudyTeller::standing_of(
+DesignStatus ProgressTracker::merit_of(
     const store::EvaluationRecord& record) const {
-  DesignStanding standing{.evaluation = record.number};
+  DesignStatus standing{.evaluation = record.number};
   if (record.failure) {
     return standing;
   }
@@ -48,8 +48,8 @@ DesignStanding StudyTeller::standing_of(
   if (study.kind == case_data::StudyKind::Match) {
     standing.objective = record.mismatch;
   } else if (study.objective) {
-    const store::Standing found =
-        meniscus::store::standing_of(study, record.responses);
+    const store::Merit found =
+        meniscus::store::merit_of(study, record.responses);
     standing.objective = found.objective;
     if (!study.constraints.empty()) {
       standing.violation = found.violation;
@@ -58,58 +58,61 @@ DesignStanding StudyTeller::standing_of(
   return standing;
 }
 
-bool StudyTeller::better(const DesignStanding& a,
-                         const DesignStanding& b) const {
+bool ProgressTracker::better(const DesignStatus& a,
+                             const DesignStatus& b) const {
   return store::is_better(
       {.violation = a.violation.value_or(0.0), .objective = *a.objective},
       {.violation = b.violation.value_or(0.0), .objective = *b.objective});
 }
 
-void StudyTeller::remember(const store::EvaluationRecord& record) {
+void ProgressTracker::add(const store::EvaluationRecord& record) {
   if (record.model != model_) {
     return;
   }
   ++evaluations_;
   failed_ += record.failure ? 1 : 0;
-  const DesignStanding standing = standing_of(record);
+  const DesignStatus standing = merit_of(record);
   if (standing.objective && (!best_ || better(standing, *best_))) {
     best_ = standing;
   }
 }
 
-StudyNews StudyTeller::tell(const store::EvaluationRecord& record) {
-  remember(record);
+EvaluationEvent ProgressTracker::add_new(
+    const store::EvaluationRecord& record) {
+  add(record);
   if (++timed_ == 1) {
     first_ = timer_.seconds();
   }
-  return news(record);
+  return event(record);
 }
 
-StudyNews StudyTeller::news(const store::EvaluationRecord& record) const {
-  StudyNews news;
-  news.record = &record;
-  news.standing = standing_of(record);
-  news.best = best_;
+EvaluationEvent ProgressTracker::event(
+    const store::EvaluationRecord& record) const {
+  EvaluationEvent event;
+  event.record = &record;
+  event.status = merit_of(record);
+  event.best = best_;
   if (const std::optional<int>& fit = input_.study.fit) {
-    news.objective_name = input_.responses[static_cast<std::size_t>(*fit)].name;
-    news.objective_unit = case_data::response_unit(input_, *fit);
+    event.objective_name =
+        input_.responses[static_cast<std::size_t>(*fit)].name;
+    event.objective_unit = case_data::response_unit(input_, *fit);
   } else if (input_.study.kind == case_data::StudyKind::Match) {
-    news.objective_name = "mismatch";
+    event.objective_name = "mismatch";
   } else if (input_.study.objective) {
     const int response = *input_.study.objective;
-    news.objective_name =
+    event.objective_name =
         input_.responses[static_cast<std::size_t>(response)].name;
-    news.objective_unit = case_data::response_unit(input_, response);
+    event.objective_unit = case_data::response_unit(input_, response);
   }
-  news.evaluations = evaluations_;
-  news.failed = failed_;
-  news.planned = planned_;
-  news.elapsed = timer_.seconds();
-  news.left = time_left();
-  return news;
+  event.evaluations = evaluations_;
+  event.failed = failed_;
+  event.planned = planned_;
+  event.elapsed = timer_.seconds();
+  event.left = time_left();
+  return event;
 }
 
-std::optional<double> StudyTeller::time_left() const {
+std::optional<double> ProgressTracker::time_left() const {
   const double now = timer_.seconds();
   std::optional<double> left;
   if (planned_ && timed_ > 0) {
@@ -123,29 +126,29 @@ std::optional<double> StudyTeller::time_left() const {
   return left;
 }
 
-std::string standing_text(const StudyNews& news) {
+std::string progress_text(const EvaluationEvent& event) {
   std::string text;
   const auto add = [&](const std::string& part) {
     text += (text.empty() ? "" : ", ") + part;
   };
-  if (news.standing.violation) {
-    add(*news.standing.violation <= store::kFeasible
+  if (event.status.violation) {
+    add(*event.status.violation <= store::kFeasible
             ? "keeps all constraints"
-            : fmt::format("violation {:.2g}", *news.standing.violation));
+            : fmt::format("violation {:.2g}", *event.status.violation));
   }
-  if (news.best && news.best->evaluation != news.standing.evaluation) {
-    const bool kept = news.best->violation.value_or(0.0) <= store::kFeasible;
+  if (event.best && event.best->evaluation != event.status.evaluation) {
+    const bool kept = event.best->violation.value_or(0.0) <= store::kFeasible;
     add(fmt::format(
-        "best so far {} = {}{} (evaluation {})", news.objective_name,
-        quantity_text(*news.best->objective, news.objective_unit),
+        "best so far {} = {}{} (evaluation {})", event.objective_name,
+        quantity_text(*event.best->objective, event.objective_unit),
         kept ? ""
-             : fmt::format(" with violation {:.2g}", *news.best->violation),
-        news.best->evaluation));
-  } else if (news.best) {
+             : fmt::format(" with violation {:.2g}", *event.best->violation),
+        event.best->evaluation));
+  } else if (event.best) {
     add("the best so far");
   }
-  if (news.left && *news.left > 0.0) {
-    add(fmt::format("at most {} left", duration_text(*news.left)));
+  if (event.left && *event.left > 0.0) {
+    add(fmt::format("at most {} left", duration_text(*event.left)));
   }
   return text;
 }

@@ -1,4 +1,4 @@
-#include "fea/solver/clusters.h"
+#include "fea/solver/node_clusters.h"
 
 #include <numeric>
 
@@ -50,12 +50,16 @@ Clusters cluster(const FullRows& rows, const std::vector<char>& active) {
     }
     ++c.count;
   };
+  // Greedy aggregation in three passes (Vanek, Mandel, Brezina 1996). First
+  // whole neighbourhoods that touch no cluster.
   for (int i = 0; i < n; ++i) {
     if (active[i] != 0 && c.of[i] < 0 &&
         !any(i, [&](int j) { return c.of[j] >= 0; })) {
       take_around(i);
     }
   }
+  // What is left over joins a cluster of the first pass next to it: by a copy,
+  // so that clusters do not grow in chains.
   const std::vector<int> roots = c.of;
   for (int i = 0; i < n; ++i) {
     if (active[i] != 0 && c.of[i] < 0) {
@@ -65,6 +69,7 @@ Clusters cluster(const FullRows& rows, const std::vector<char>& active) {
       });
     }
   }
+  // The rest, far from all of those, forms clusters of its own.
   for (int i = 0; i < n; ++i) {
     if (active[i] != 0 && c.of[i] < 0) {
       take_around(i);

@@ -7,7 +7,7 @@ namespace meniscus::optimize {
 
 /// Fills everything of the report; `constant`: probes found the objective to
 /// be the same everywhere.
-MinimizeReport conclude(MinimizeEvaluator& evaluator,
-                        const SearchResult& search, bool constant);
+MinimizeReport finish_report(MinimizeEvaluator& evaluator,
+                             const SearchResult& search, bool constant);
 
 }  // namespace meniscus::optimize

@@ -1,4 +1,4 @@
-#include "fea/solver/columns.h"
+#include "fea/solver/multi_vector.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "pipeline/study/result_so_far.h"
+#include "pipeline/study/partial_result.h"
 
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"

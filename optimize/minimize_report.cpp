@@ -1,4 +1,4 @@
-#include "optimize/minimize_conclude.h"
+#include "optimize/minimize_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,8 +115,8 @@ std::string figures(const MinimizeEvaluator& evaluator,
   return text;
 }
 
-void conclude_infeasible(const MinimizeEvaluator& evaluator,
-                         const SearchResult& search, MinimizeReport& report) {
+void set_infeasible(const MinimizeEvaluator& evaluator,
+                    const SearchResult& search, MinimizeReport& report) {
   const std::string bounds = evaluator.bounds_reached(report.best);
   std::string stands = in_the_way(evaluator, report);
   stands += (stands.empty() || bounds.empty() ? "" : ", ") + bounds;
@@ -131,8 +131,7 @@ void conclude_infeasible(const MinimizeEvaluator& evaluator,
   report.message += search.walled ? std::string(". ") + kWalled : "";
 }
 
-void conclude_constant(const MinimizeEvaluator& evaluator,
-                       MinimizeReport& report) {
+void set_constant(const MinimizeEvaluator& evaluator, MinimizeReport& report) {
   report.termination = Termination::Constant;
   report.message = fmt::format(
       "'{}' is {:.6g} wherever it was evaluated: no design variable changes "
@@ -142,8 +141,8 @@ void conclude_constant(const MinimizeEvaluator& evaluator,
       evaluator.failures());
 }
 
-void conclude_ended(const MinimizeEvaluator& evaluator,
-                    const SearchResult& search, MinimizeReport& report) {
+void set_ended(const MinimizeEvaluator& evaluator, const SearchResult& search,
+               MinimizeReport& report) {
   const bool stationary =
       report.first_order &&
       report.first_order->residual <= evaluator.options().optimality_tolerance;
@@ -178,8 +177,7 @@ std::string minimum_advice(const MinimizeEvaluator& evaluator,
              : "Start elsewhere, or ";
 }
 
-void conclude_limit(const MinimizeEvaluator& evaluator,
-                    MinimizeReport& report) {
+void set_limit(const MinimizeEvaluator& evaluator, MinimizeReport& report) {
   const bool time = evaluator.halt() == EvaluatorCore::Halt::Time;
   report.termination = Termination::LimitReached;
   report.message = fmt::format(
@@ -192,8 +190,8 @@ void conclude_limit(const MinimizeEvaluator& evaluator,
 }
 
 // Slopes from differences that all failed are 0 and prove nothing.
-void conclude_alone(const MinimizeEvaluator& evaluator,
-                    MinimizeReport& report) {
+void set_without_constraints(const MinimizeEvaluator& evaluator,
+                             MinimizeReport& report) {
   report.termination = Termination::Stalled;
   report.message = fmt::format(
       "of all designs that were tried within the bounds only one can be "
@@ -207,26 +205,26 @@ void decide(const MinimizeEvaluator& evaluator, const SearchResult& search,
   using Halt = EvaluatorCore::Halt;
   if (report.failed_evaluations > 0 &&
       report.evaluations - report.failed_evaluations == 1) {
-    conclude_alone(evaluator, report);
+    set_without_constraints(evaluator, report);
   } else if (constant || evaluator.halt() == Halt::Constant) {
-    conclude_constant(evaluator, report);
+    set_constant(evaluator, report);
   } else if (evaluator.halt() == Halt::Converged) {
     report.termination = Termination::Converged;
     report.message = "minimum found: " + figures(evaluator, report);
   } else if (evaluator.halt() == Halt::Evaluations ||
              evaluator.halt() == Halt::Time) {
-    conclude_limit(evaluator, report);
+    set_limit(evaluator, report);
   } else if (!report.feasible) {
-    conclude_infeasible(evaluator, search, report);
+    set_infeasible(evaluator, search, report);
   } else {
-    conclude_ended(evaluator, search, report);
+    set_ended(evaluator, search, report);
   }
 }
 
 }  // namespace
 
-MinimizeReport conclude(MinimizeEvaluator& evaluator,
-                        const SearchResult& search, bool constant) {
+MinimizeReport finish_report(MinimizeEvaluator& evaluator,
+                             const SearchResult& search, bool constant) {
   MinimizeReport report;
   report.evaluations = evaluator.evaluations();
   report.failed_evaluations = evaluator.failed_evaluations();

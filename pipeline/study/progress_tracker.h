@@ -1,4 +1,4 @@
-/// What a running study tells of itself after every evaluation, to terminals,
+/// Progress of a running study: an event after every evaluation, to terminals,
 /// logs and those who watch its database.
 #pragma once
 
@@ -16,17 +16,17 @@ namespace meniscus::study {
 /// study that looks for nothing has none. `violation`: the largest of the
 /// constraints, in bounds (pipeline/store/incumbent.h); none without
 /// constraints.
-struct DesignStanding {
+struct DesignStatus {
   int evaluation = 0;
   std::optional<double> objective;
   std::optional<double> violation;
 };
 
-struct StudyNews {
+struct EvaluationEvent {
   const store::EvaluationRecord* record = nullptr;  // the evaluation; on loan
-  DesignStanding standing;             // of it; empty where the design failed
-  std::optional<DesignStanding> best;  // of this model, so far
-  std::string objective_name;          // "mismatch", or a response
+  DesignStatus status;               // of it; empty where the design failed
+  std::optional<DesignStatus> best;  // of this model, so far
+  std::string objective_name;        // "mismatch", or a response
   std::string objective_unit;
   int evaluations = 0;         // of this model, in the database
   int failed = 0;              // of these
@@ -36,34 +36,34 @@ struct StudyNews {
   std::string member;          // of a family
 };
 
-using StudyListener = std::function<void(const StudyNews&)>;
+using StudyListener = std::function<void(const EvaluationEvent&)>;
 
 /// Keeps what is known of the evaluations of one model, in their order.
-class StudyTeller {
+class ProgressTracker {
  public:
   /// `model`: the one whose records count. `time_limit`: of the study from now
   /// [s], 0: none. `input` must outlive this.
-  StudyTeller(const case_data::Case& input, std::string model,
-              double time_limit = 0.0);
+  ProgressTracker(const case_data::Case& input, std::string model,
+                  double time_limit = 0.0);
 
   /// Accounts for a record that was found in the database; of another model:
   /// nothing happens.
-  void remember(const store::EvaluationRecord& record);
+  void add(const store::EvaluationRecord& record);
   /// The same of one that was computed now. It must outlive the answer.
-  StudyNews tell(const store::EvaluationRecord& record);
+  EvaluationEvent add_new(const store::EvaluationRecord& record);
   /// How things stand, `record` being the last that was accounted for.
-  StudyNews news(const store::EvaluationRecord& record) const;
+  EvaluationEvent event(const store::EvaluationRecord& record) const;
 
  private:
-  DesignStanding standing_of(const store::EvaluationRecord& record) const;
-  bool better(const DesignStanding& a, const DesignStanding& b) const;
+  DesignStatus merit_of(const store::EvaluationRecord& record) const;
+  bool better(const DesignStatus& a, const DesignStatus& b) const;
   std::optional<double> time_left() const;
 
   const case_data::Case& input_;
   std::string model_;
   double time_limit_;
   std::optional<int> planned_;
-  std::optional<DesignStanding> best_;
+  std::optional<DesignStatus> best_;
   int evaluations_ = 0;
   int failed_ = 0;
   int timed_ = 0;       // of them computed now
@@ -76,6 +76,6 @@ std::string duration_text(double seconds);
 
 /// "best so far 0.0119 t (evaluation 9), at most 2 min left": what follows an
 /// evaluation's own line; may be empty.
-std::string standing_text(const StudyNews& news);
+std::string progress_text(const EvaluationEvent& event);
 
 }  // namespace meniscus::study

@@ -1,4 +1,4 @@
-#include "pipeline/store/runs_in.h"
+#include "pipeline/store/find_runs.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "fea/loads/rates.h"
+#include "fea/loads/load_rates.h"
 
 #include <fmt/format.h>
 
@@ -28,10 +28,14 @@ Vec3 mean_over(const TetMesh& mesh, const std::string& surface,
 
 void add_surface_loads(const TetMesh& mesh, const LoadCase& load_case,
                        const VectorX& v, LoadGradient& out) {
+  // Derivatives of v . f by the numbers of each load, at fixed v and mesh.
+  // A total force F: f . v = F . (mean of v over the surface).
   for (const SurfaceForce& load : load_case.forces) {
     out.by_number.forces.push_back(
         {load.surface, mean_over(mesh, load.surface, v)});
   }
+  // A pressure: -int N . v by its value; a field keeps weights and places of
+  // the points, so that any rate of it is a sum.
   for (const SurfacePressure& load : load_case.pressures) {
     SurfacePressure by{.surface = load.surface};
     LoadGradient::NumberField field;
@@ -50,6 +54,7 @@ void add_surface_loads(const TetMesh& mesh, const LoadCase& load_case,
     out.by_number.pressures.push_back(by);
     out.pressures.push_back(std::move(field));
   }
+  // A force per area: int v dA by its components.
   for (const SurfaceTraction& load : load_case.tractions) {
     SurfaceTraction by{.surface = load.surface};
     LoadGradient::VectorField field;
@@ -68,6 +73,7 @@ void add_surface_loads(const TetMesh& mesh, const LoadCase& load_case,
     out.by_number.tractions.push_back(by);
     out.tractions.push_back(std::move(field));
   }
+  // A remote load: its place counts too, through the moment arm.
   for (const RemoteLoad& load : load_case.remote_loads) {
     const RemoteGradient by = remote_gradient(mesh, load, v, nullptr);
     out.by_number.remote_loads.push_back(

@@ -1,4 +1,4 @@
-#include "pipeline/study/precision.h"
+#include "pipeline/study/accuracy_note.h"
 
 #include <fmt/format.h>
 
@@ -51,10 +51,9 @@ std::string of_minimum(const case_data::Case& input, const VectorX& responses,
 
 }  // namespace
 
-std::string precision_statement(const case_data::Case& input,
-                                const MatchTargets* targets,
-                                const VectorX& responses,
-                                const VectorX& errors) {
+std::string accuracy_note(const case_data::Case& input,
+                          const MatchTargets* targets, const VectorX& responses,
+                          const VectorX& errors) {
   if (errors.size() == 0) {
     return "";
   }

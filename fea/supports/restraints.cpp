@@ -1,4 +1,4 @@
-#include "fea/supports/holding.h"
+#include "fea/supports/restraints.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,13 @@
 
 namespace meniscus::supports {
 
-bool Holding::operator==(const Holding& other) const {
+bool Restraints::operator==(const Restraints& other) const {
   return freedom.held == other.freedom.held &&
          freedom.projector == other.freedom.projector &&
          springs == other.springs;
 }
 
-void check_holding(const TetMesh& mesh, const loads::LoadCase& load_case) {
+void check_restraints(const TetMesh& mesh, const loads::LoadCase& load_case) {
   std::vector<HeldDirection> held = held_directions(mesh, load_case);
   const std::vector<HeldDirection> sprung = sprung_directions(mesh, load_case);
   held.insert(held.end(), sprung.begin(), sprung.end());
@@ -30,8 +30,9 @@ void check_holding(const TetMesh& mesh, const loads::LoadCase& load_case) {
   check_held(mesh, held, load_case.name);
 }
 
-Holding make_holding(const TetMesh& mesh, const loads::LoadCase& load_case,
-                     const solver::NodeOrder& order) {
+Restraints make_restraints(const TetMesh& mesh,
+                           const loads::LoadCase& load_case,
+                           const solver::NodeOrder& order) {
   const solver::NodeFreedom given =
       node_freedom(mesh, held_directions(mesh, load_case));
   std::vector<char> loose(mesh.nodes.size(), 1);
@@ -51,18 +52,18 @@ Holding make_holding(const TetMesh& mesh, const loads::LoadCase& load_case,
   }
   std::sort(held.begin(), held.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
-  Holding holding;
-  holding.freedom.nodes = given.nodes;
+  Restraints restraints;
+  restraints.freedom.nodes = given.nodes;
   for (const auto& [node, P] : held) {
-    holding.freedom.held.push_back(node);
-    holding.freedom.projector.push_back(P);
+    restraints.freedom.held.push_back(node);
+    restraints.freedom.projector.push_back(P);
   }
-  holding.springs =
+  restraints.springs =
       renumbered(spring_blocks(mesh, load_case, mesh.order), order.to_solver);
-  return holding;
+  return restraints;
 }
 
-bool alike(const Holding& a, const Holding& b) {
+bool alike(const Restraints& a, const Restraints& b) {
   const auto same_rank = [](const Mat3& P, const Mat3& Q) {
     return std::lround(P.trace()) == std::lround(Q.trace());
   };
@@ -71,9 +72,9 @@ bool alike(const Holding& a, const Holding& b) {
                     b.freedom.projector.begin(), same_rank);
 }
 
-int free_unknowns(const Holding& holding) {
-  double free = 3.0 * holding.freedom.nodes;
-  for (const Mat3& P : holding.freedom.projector) {
+int free_unknowns(const Restraints& restraints) {
+  double free = 3.0 * restraints.freedom.nodes;
+  for (const Mat3& P : restraints.freedom.projector) {
     free -= 3.0 - P.trace();
   }
   return static_cast<int>(std::lround(free));

@@ -13,9 +13,8 @@ namespace meniscus::study {
 /// error; "" where nothing is, and for studies without a tolerance. `targets`:
 /// of a match, else null. `responses` of the best design, with their errors
 /// (one each, in their units; empty: not known).
-std::string precision_statement(const case_data::Case& input,
-                                const MatchTargets* targets,
-                                const VectorX& responses,
-                                const VectorX& errors);
+std::string accuracy_note(const case_data::Case& input,
+                          const MatchTargets* targets, const VectorX& responses,
+                          const VectorX& errors);
 
 }  // namespace meniscus::study

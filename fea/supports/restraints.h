@@ -14,25 +14,26 @@
 namespace meniscus::supports {
 
 /// In the solver's numbering.
-struct Holding {
+struct Restraints {
   solver::NodeFreedom freedom;  // nodes in no element are held too
   SpringBlocks springs;
 
-  bool operator==(const Holding& other) const;
+  bool operator==(const Restraints& other) const;
 };
 
 /// Throws InvalidInput (see supports.h, springs.h; nothing held) and
 /// SolverError when the body can move.
-void check_holding(const TetMesh& mesh, const loads::LoadCase& load_case);
+void check_restraints(const TetMesh& mesh, const loads::LoadCase& load_case);
 
-/// Throws InvalidInput as check_holding does.
-Holding make_holding(const TetMesh& mesh, const loads::LoadCase& load_case,
-                     const solver::NodeOrder& order);
+/// Throws InvalidInput as check_restraints does.
+Restraints make_restraints(const TetMesh& mesh,
+                           const loads::LoadCase& load_case,
+                           const solver::NodeOrder& order);
 
 /// The same nodes are held along as many directions, though these may turn.
-bool alike(const Holding& a, const Holding& b);
+bool alike(const Restraints& a, const Restraints& b);
 
-int free_unknowns(const Holding& holding);
+int free_unknowns(const Restraints& restraints);
 
 /// The springs of `load_case` on the corner mesh of `map`.
 SpringBlocks corner_springs(const TetMesh& mesh,

@@ -1,0 +1,254 @@
+#include "pipeline/forward/frozen_part.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "core/timer.h"
+#include "mesh_tet/quadratic.h"
+#include "pipeline/case_data/film_options.h"
+#include "pipeline/case_data/film_start.h"
+#include "pipeline/forward/walls.h"
+
+namespace meniscus::forward {
+
+namespace {
+
+// TetGen now and then leaves a flat element; another edge, and it does not.
+constexpr std::array<double, 3> kEdgeFactors = {1.0, 1.1, 0.9};
+
+const walls::ThickWall& first_with_findings(const walls::WallModel& walls) {
+  return *std::find_if(
+      walls.walls().begin(), walls.walls().end(),
+      [](const walls::ThickWall& wall) { return !wall.findings.empty(); });
+}
+
+bool freeze_film(const case_data::EvaluatedCase& inputs,
+                 const ForwardModelOptions& options, Monitor& monitor,
+                 FrozenPart& part) {
+  const StageMeter meter;
+  Evaluation& start = part.start;
+  monitor.progress({.stage = "film", .detail = "settling the start"});
+  part.film.emplace(case_data::freeze_films(
+      part.input, inputs,
+      {.edge = inputs.fea_edge * options.edge_factor,
+       .refinements = case_data::film_refinements(part.input),
+       .monitor = &monitor}));
+  const settle::FilmState& film = part.film->reference();
+  start.film = film.report;
+  start.failure = film.failure;
+  if (!start.failure && !inputs.walls.empty()) {
+    monitor.progress({.stage = "film", .detail = "thickening the films"});
+    part.walls.emplace(wall_model(inputs, *part.film, film.points));
+    start.failure = wall_failure(inputs, *part.walls);
+    if (start.failure) {
+      const walls::ThickWall& wall = first_with_findings(*part.walls);
+      part.unfilled = wall.surface;
+      part.findings = wall.findings;
+    }
+  }
+  meter.add_to(start.seconds.film, start.operations.film);
+  return !start.failure;
+}
+
+bool fill_surface(const case_data::EvaluatedCase& inputs,
+                  const mesh_tet::TetrahedralizeOptions& options,
+                  Monitor& monitor, FrozenPart& part) {
+  const StageMeter meter;
+  Evaluation& start = part.start;
+  monitor.progress({.stage = "mesh", .detail = "filling the surface"});
+  const QuadraticSurface surface =
+      part.surface(inputs, part.film->reference().points);
+  mesh_tet::Tetrahedralization filled =
+      mesh_tet::tetrahedralize(surface.base, options);
+  if (filled.failure) {
+    start.failure = filled.failure;
+    part.unfilled = surface.base;
+    part.findings = std::move(filled.findings);
+  } else {
+    part.motion.emplace(filled.mesh,
+                        static_cast<int>(surface.base.points.size()));
+    part.curve_edge.clear();
+    part.base_mesh =
+        mesh_tet::make_quadratic(filled.mesh, surface, &part.curve_edge);
+    start.tet = figures_of(part.base_mesh, filled.quality);
+  }
+  meter.add_to(start.seconds.mesh, start.operations.mesh);
+  return !start.failure;
+}
+
+bool freeze_elasticity(const case_data::EvaluatedCase& inputs, Monitor& monitor,
+                       FrozenPart& part) {
+  const StageMeter meter;
+  Evaluation& start = part.start;
+  monitor.progress({.stage = "fea",
+                    .detail = fmt::format("{} ten-node tetrahedra",
+                                          part.base_mesh.element_count())});
+  try {
+    part.elasticity.emplace(
+        part.base_mesh, inputs.materials, inputs.load_cases,
+        equations::ElasticOptions{.solver = part.input.analysis.solver,
+                                  .processes = part.input.analysis.processes,
+                                  .monitor = &monitor});
+    start.fea = part.elasticity->base_solution().report;
+    start.failure = part.elasticity->base_solution().failure;
+  } catch (const SolverError& error) {
+    start.failure = Failure{FailureKind::SolverFailed, error.what()};
+  } catch (const MeshError& error) {
+    start.failure = Failure{FailureKind::ElementsInverted, error.what()};
+  }
+  meter.add_to(start.seconds.fea, start.operations.fea);
+  return !start.failure;
+}
+
+bool freeze_pairs(FrozenPart& part) {
+  try {
+    part.pairs = thickness_pairs_of(part.input, part.base_mesh);
+  } catch (const InvalidInput& error) {  // a solid that is thin nowhere
+    part.start.failure = Failure{FailureKind::NotANumber, error.what()};
+  }
+  return !part.start.failure;
+}
+
+AdaptedState adapted_state(const case_data::EvaluatedCase& inputs,
+                           const FrozenPart& part) {
+  EvaluationFields fields;
+  fields.mesh = part.base_mesh;
+  fields.inputs = inputs;
+  fields.solution = part.elasticity->base_solution();
+  fields.stresses = part_stresses(fields.mesh, inputs, fields.solution);
+  fields.exclusion = part.exclusion;
+  const VectorX values =
+      respond(part.input, part.context(inputs, part.film->reference(),
+                                       fields.mesh, fields.solution));
+  return {.tet = part.start.tet,
+          .dofs = part.start.fea.dofs,
+          .responses = values,
+          .errors = estimate_element_errors(part.input, fields, values,
+                                            *part.elasticity)};
+}
+
+/// Facets and elements anew as `plan` says.
+bool refine_mesh(const case_data::EvaluatedCase& inputs,
+                 const RefinementPlan& plan, Monitor& monitor,
+                 FrozenPart& part) {
+  const double edge = mean_edge_length(
+      part.surface(inputs, part.film->reference().points).base);
+  if (part.walls) {
+    part.walls->split_facets(plan.split);
+  } else {
+    part.film->split_facets(plan.split);
+  }
+  std::optional<Failure>& failure = part.start.failure;
+  for (const double factor : kEdgeFactors) {
+    failure.reset();
+    if (fill_surface(inputs,
+                     {.edge = factor * edge,
+                      .size = plan.size,
+                      .radius_edge_ratio = kGradedRadiusEdge,
+                      .min_dihedral_deg = kGradedDihedral,
+                      .monitor = &monitor},
+                     monitor, part)) {
+      return true;
+    }
+  }
+  failure->message = "the adapted mesh (analysis.adapt): " + failure->message;
+  return false;
+}
+
+/// A finer mesh where the first one errs, and the elasticity on it.
+void adapt(const case_data::EvaluatedCase& inputs, Monitor& monitor,
+           FrozenPart& part) {
+  const Timer timer;
+  Evaluation& start = part.start;
+  monitor.progress({.stage = "adapt", .detail = "errors of the first mesh"});
+  Adaptation round{.before = adapted_state(inputs, part), .after = {}};
+  start.seconds.fea += timer.seconds();
+  start.failure = round.before.errors.failure;
+  if (start.failure ||
+      !refine_mesh(inputs,
+                   plan_refinement(part.base_mesh, round.before.errors.share),
+                   monitor, part)) {
+    return;
+  }
+  part.exclusion =
+      choose_exclusion(part.input, part.base_mesh, EmptyZones::Allowed);
+  if (!freeze_pairs(part) || !freeze_elasticity(inputs, monitor, part)) {
+    return;
+  }
+  const Timer after_timer;
+  round.after = adapted_state(inputs, part);
+  start.seconds.fea += after_timer.seconds();
+  start.failure = round.after.errors.failure;
+  part.adaptation = std::move(round);
+}
+
+Monitor& monitor_of(const ForwardModelOptions& options) {
+  return options.monitor != nullptr ? *options.monitor : silent_monitor();
+}
+
+}  // namespace
+
+TetFigures figures_of(const TetMesh& mesh,
+                      const mesh_tet::TetQuality& quality) {
+  return {.nodes = static_cast<int>(mesh.nodes.size()),
+          .elements = mesh.element_count(),
+          .min_dihedral_deg = quality.min_dihedral_deg,
+          .max_dihedral_deg = quality.max_dihedral_deg};
+}
+
+QuadraticSurface FrozenPart::surface(const case_data::EvaluatedCase& inputs,
+                                     const Points& points) const {
+  return walls ? walls->surface(points, walls->thickness(inputs.walls))
+               : film->surface(points);
+}
+
+SurfaceGradient FrozenPart::to_surface(const case_data::EvaluatedCase& inputs,
+                                       const Points& points,
+                                       const TetMesh& mesh,
+                                       const Points& by_nodes) const {
+  const mesh_tet::QuadraticGradient by =
+      mesh_tet::transpose_quadratic(mesh, by_nodes, curve_edge);
+  const Points by_corners = motion->transpose(by.corners);
+  if (!walls) {
+    return {film->transpose_surface(by_corners, by.mid), VectorX()};
+  }
+  walls::WallGradient gradient = walls->transpose(
+      points, walls->thickness(inputs.walls), by_corners, by.mid);
+  return {std::move(gradient.film), std::move(gradient.thickness)};
+}
+
+ResponseContext FrozenPart::context(
+    const case_data::EvaluatedCase& inputs, const settle::FilmState& film_state,
+    const TetMesh& mesh, const equations::ElasticSolution& solution) const {
+  return {inputs, mesh,        solution, exclusion.element,
+          &*film, &film_state, &pairs,   &scans};
+}
+
+bool freeze_mesh(const ForwardModelOptions& options, FrozenPart& part) {
+  Monitor& monitor = monitor_of(options);
+  part.start.design = case_data::initial_design(part.input);
+  const case_data::EvaluatedCase inputs =
+      case_data::evaluate(part.input, part.start.design);
+  return freeze_film(inputs, options, monitor, part) &&
+         fill_surface(inputs, {.monitor = &monitor}, monitor, part);
+}
+
+void freeze_part(const ForwardModelOptions& options, FrozenPart& part) {
+  if (!freeze_mesh(options, part)) {
+    return;
+  }
+  Monitor& monitor = monitor_of(options);
+  const case_data::EvaluatedCase inputs =
+      case_data::evaluate(part.input, part.start.design);
+  part.exclusion = choose_exclusion(
+      part.input, part.base_mesh,
+      options.edge_factor > 1.0 ? EmptyZones::Allowed : EmptyZones::Refused);
+  if (freeze_pairs(part) && freeze_elasticity(inputs, monitor, part) &&
+      part.input.analysis.adapt) {
+    adapt(inputs, monitor, part);
+  }
+}
+
+}  // namespace meniscus::forward

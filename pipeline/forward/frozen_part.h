@@ -1,0 +1,66 @@
+/// What a ForwardModel freezes at its case's initial design; for the sources of
+/// the chain (forward_model.cpp, design_stages.cpp, design_gradient.cpp).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "evolve/walls/wall_model.h"
+#include "mesh_tet/mesh_motion.h"
+#include "mesh_tet/tet_quality.h"
+#include "mesh_tet/tetrahedralize.h"
+#include "pipeline/forward/adaptation.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/forward/responses.h"
+
+namespace meniscus::forward {
+
+TetFigures figures_of(const TetMesh& mesh, const mesh_tet::TetQuality& quality);
+
+/// Derivatives of a number by what makes the part's surface.
+struct SurfaceGradient {
+  Points film;        // by the film's vertices
+  VectorX thickness;  // by the walls' thickness; empty without walls
+};
+
+struct FrozenPart {
+  case_data::Case input;
+  Monitor* monitor = nullptr;  // of evaluations; not owned, may be null
+  Evaluation start;            // of the freeze: figures, and why it failed
+  SurfaceMesh unfilled;        // that no elements fit in, and why
+  std::vector<Finding> findings;
+  std::optional<frozen::FilmModel> film;
+  std::optional<walls::WallModel> walls;  // of a case that has some
+  TetMesh base_mesh;                      // ten-node, at the initial design
+  std::vector<char> curve_edge;
+  std::optional<mesh_tet::MeshMotion> motion;
+  std::optional<elastic::ElasticModel> elasticity;
+  Exclusion exclusion;
+  functionals::ThicknessPairs pairs;
+  Scans scans;
+  std::optional<Adaptation> adaptation;
+
+  /// The surface as meshed, on the film `points` of the design of `inputs`.
+  QuadraticSurface surface(const case_data::EvaluatedCase& inputs,
+                           const Points& points) const;
+  /// Its transpose: from a gradient by all nodes of the mesh.
+  SurfaceGradient to_surface(const case_data::EvaluatedCase& inputs,
+                             const Points& points, const TetMesh& mesh,
+                             const Points& by_nodes) const;
+  /// What the responses of a design look at, on loan.
+  ResponseContext context(const case_data::EvaluatedCase& inputs,
+                          const settle::FilmState& film_state,
+                          const TetMesh& mesh,
+                          const equations::ElasticSolution& solution) const;
+};
+
+/// The chain of stages at the initial design of `part.input`, each kept for
+/// every design after: film, walls, elements, elasticity, and with
+/// analysis.adapt a second, finer mesh. What fails stands in part.start.failure
+/// and ends the chain. Throws as ForwardModel does.
+void freeze_part(const ForwardModelOptions& options, FrozenPart& part);
+
+/// The same as far as the elements. False when that failed.
+bool freeze_mesh(const ForwardModelOptions& options, FrozenPart& part);
+
+}  // namespace meniscus::forward
