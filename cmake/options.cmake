@@ -17,6 +17,11 @@ if(CMAKE_UNITY_BUILD)
   target_compile_options(meniscus_options INTERFACE
     $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>>)
 endif()
+# g++ collects garbage each time its heap has grown by a third, and marks the
+# precompiled header's heap anew: a fifth of a compilation. 1 GB first.
+target_compile_options(meniscus_options INTERFACE
+  $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:
+  --param=ggc-min-heapsize=1000000 --param=ggc-min-expand=200>>)
 # -fPIC everywhere: one precompiled header serves libraries and programs.
 target_compile_options(meniscus_options INTERFACE
   -march=${MENISCUS_MARCH} -fPIC)

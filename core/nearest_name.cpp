@@ -7,7 +7,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr std::size_t kLongest = 100;  // longer ones are no slips of a finger
+constexpr std::size_t kLongestName = 100;  // longer ones are no slips of a finger
 
 // Levenshtein's distance, one row at a time.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -32,7 +32,7 @@ std::string nearest_name(std::string_view name,
   std::string best;
   std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
   for (const std::string& candidate : known) {
-    if (name.size() > kLongest || candidate.size() > kLongest) {
+    if (name.size() > kLongestName || candidate.size() > kLongestName) {
       continue;
     }
     const std::size_t distance = edit_distance(name, candidate);

@@ -81,5 +81,6 @@ build() {
     exit 1
   }
   rm -f build-configure.log
-  cmake --build --preset release -- --quiet
+  # More at once than cores only makes them wait for memory.
+  cmake --build --preset release --parallel "$(nproc)" -- --quiet
 }

@@ -52,11 +52,9 @@ LeastSquares least_squares(const Eigen::MatrixXd& A, const VectorX& b);
 /// The shortest x of those that minimise |A x - b|, by a complete orthogonal
 /// decomposition. That of a wall's normals, n x 3, is a move in space.
 VectorX least_norm(const Eigen::MatrixXd& A, const VectorX& b);
-Vec3 least_norm_move(const Eigen::MatrixX3d& A, const VectorX& b);
-/// The same for an A of three columns that stands in a matrix of any size.
 Vec3 least_norm_move(const Eigen::MatrixXd& A, const VectorX& b);
 /// The same for A = rows^T: the forces along n normals that make up b.
-VectorX least_norm_forces(const Eigen::MatrixX3d& rows, const Vec3& b);
+VectorX least_norm_forces(const Eigen::MatrixXd& rows, const Vec3& b);
 
 /// Moore and Penrose's, by a complete orthogonal decomposition.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);

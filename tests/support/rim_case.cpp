@@ -9,7 +9,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr double kRadius = 80.0;
+constexpr double kBallRadius = 80.0;
 
 struct Rim {
   const char* name;
@@ -37,7 +37,7 @@ std::string rim_case(int points, int variables, double length) {
   std::string text = "title = \"A rim of many points\"\nunits = \"mm-N-MPa\"\n";
   for (int j = 0; j < variables; ++j) {
     text += fmt::format("[design.r{}]\ninitial = {}\nbounds = [70, 90]\n", j,
-                        kRadius);
+                        kBallRadius);
   }
   text += curve_text({"base", 0, -1, 0.0}, points, variables);
   text += curve_text({"head", points / 2, 1, length}, points, variables);

@@ -1,7 +1,9 @@
 #include "tests/support/systems.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <numbers>
 #include <set>
 
@@ -151,11 +153,16 @@ double smallest_angle_deg(const SurfaceMesh& mesh) {
 bool identical(const films::FilmComplex& a, const films::FilmComplex& b) {
   const auto same_points = [](const Points& p, const Points& q) {
     return p.size() == q.size() &&
-           std::equal(
-               p.begin(), p.end(), q.begin(), [](const Vec3& u, const Vec3& v) {
-                 return std::memcmp(u.data(), v.data(), 3 * sizeof(double)) ==
-                        0;
-               });
+           std::equal(p.begin(), p.end(), q.begin(),
+                      [](const Vec3& u, const Vec3& v) {
+                        // Not ==, for which 0 is -0 and NaN is not NaN.
+                        const auto bits = [](const Vec3& w) {
+                          return std::array{std::bit_cast<std::uint64_t>(w[0]),
+                                            std::bit_cast<std::uint64_t>(w[1]),
+                                            std::bit_cast<std::uint64_t>(w[2])};
+                        };
+                        return bits(u) == bits(v);
+                      });
   };
   const bool same_vertices =
       a.vertices.size() == b.vertices.size() &&

@@ -29,8 +29,9 @@ double error_of(const solid::Brep& brep) {
   for (const solid::BrepFace& face : brep.faces) {
     const auto* surface = std::get_if<solid::SplineSurface>(&face.surface);
     for (int k = 0; k < 400 && surface != nullptr; ++k) {
+      const int row = k / 20;
       const Vec3 p =
-          solid::jet_of(*surface, {(k / 20) / 19.0, (k % 20) / 19.0}).point;
+          solid::jet_of(*surface, {row / 19.0, (k % 20) / 19.0}).point;
       error =
           std::max(error, std::abs(std::hypot(p[0], p[1]) - radius_at(p[2])));
     }
@@ -96,8 +97,9 @@ double farthest(const solid::Brep& brep,
   for (const solid::BrepFace& face : brep.faces) {
     const auto* surface = std::get_if<solid::SplineSurface>(&face.surface);
     for (int k = 0; k < 400 && surface != nullptr; ++k) {
+      const int row = k / 20;
       const Vec3 p =
-          solid::jet_of(*surface, {(k / 20) / 19.0, (k % 20) / 19.0}).point;
+          solid::jet_of(*surface, {row / 19.0, (k % 20) / 19.0}).point;
       most = std::max(most, std::abs(off(p)));
     }
   }

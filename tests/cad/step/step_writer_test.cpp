@@ -17,8 +17,8 @@ namespace {
 solid::Brep box(const Vec3& size) {
   solid::Brep brep;
   for (int k = 0; k < 8; ++k) {
-    brep.vertices.emplace_back((k & 1) * size[0], (k / 2 % 2) * size[1],
-                               (k / 4) * size[2]);
+    brep.vertices.emplace_back((k & 1) * size[0], (k >> 1 & 1) * size[1],
+                               (k >> 2) * size[2]);
   }
   const std::vector<std::array<int, 4>> faces = {{0, 2, 3, 1}, {4, 5, 7, 6},
                                                  {0, 1, 5, 4}, {2, 6, 7, 3},

@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

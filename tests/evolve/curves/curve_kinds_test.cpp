@@ -101,7 +101,8 @@ TEST(Polyline, ArcsAreArcsOfCircles) {
 
 curves::CurveCopy copy_of(curves::CurveShape shape) {
   curves::CurveCopy copy;
-  copy.of = std::make_shared<const curves::Curve>("first", std::move(shape));
+  copy.of = std::make_shared<const curves::Curve>(
+      curves::Curve{"first", std::move(shape)});
   return copy;
 }
 

@@ -38,7 +38,7 @@ std::vector<curves::CurveShape> all_shapes() {
       {{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}},
       {std::nullopt, Vec3(3, 0, 0.2), std::nullopt, Vec3(-3, 0, 0)}};
   curves::CurveCopy copy{
-      .of = std::make_shared<const curves::Curve>("slot", slot),
+      .of = std::make_shared<const curves::Curve>(curves::Curve{"slot", slot}),
       .offset = 0.3,
       .scale = Vec3(1, 2, 0.5),
       .mirror = Vec3(1, 1, 0),
@@ -245,7 +245,8 @@ TEST(Curve, RefusesWhatIsNoCurveAndSaysWhy) {
 /// One of each kind, its numbers at `p`.
 curves::CurveCopy copy_at(double p, curves::CurveShape of,
                           std::optional<double> offset) {
-  return {.of = std::make_shared<const curves::Curve>("first", std::move(of)),
+  return {.of = std::make_shared<const curves::Curve>(
+              curves::Curve{"first", std::move(of)}),
           .offset = offset,
           .scale = Vec3(1.0 + p, 2.0, 1.0 - p),
           .mirror = Vec3(1.0, p, 0.5),
@@ -257,7 +258,8 @@ curves::CurveCopy copy_at(double p, curves::CurveShape of,
 
 curves::CurveCopy copy_rate(curves::CurveShape of,
                             std::optional<double> offset) {
-  return {.of = std::make_shared<const curves::Curve>("first", std::move(of)),
+  return {.of = std::make_shared<const curves::Curve>(
+              curves::Curve{"first", std::move(of)}),
           .offset = offset,
           .scale = Vec3(1.0, 0.0, -1.0),
           .mirror = Vec3(0.0, 1.0, 0.0),

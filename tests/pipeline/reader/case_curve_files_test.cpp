@@ -247,7 +247,8 @@ TEST_F(CurvesOfStep, ThatAreWrongAreRefusedByLine) {
 TEST_F(CurvesOfStep, OfSeveralEdgesMustClose) {
   solid::Brep box;
   for (int k = 0; k < 8; ++k) {
-    box.vertices.emplace_back((k & 1) * 3.0, (k / 2 % 2) * 2.0, (k / 4) * 1.0);
+    box.vertices.emplace_back((k & 1) * 3.0, (k >> 1 & 1) * 2.0,
+                              (k >> 2) * 1.0);
   }
   const std::vector<std::array<int, 4>> faces = {{0, 2, 3, 1}, {4, 5, 7, 6},
                                                  {0, 1, 5, 4}, {2, 6, 7, 3},

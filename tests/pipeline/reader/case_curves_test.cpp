@@ -214,7 +214,8 @@ TEST(CurveFiles, AreRefusedByLine) {
   EXPECT_THAT(file_problem("x,y,z\n1,2,3\n2,2,3\n1,2,3\n"),
               HasSubstr("2 points; a closed curve needs three"));
   EXPECT_THAT(file_problem("x [kg],y,z\n1,2,3\n"), HasSubstr("rim.csv:1: "));
-  EXPECT_THAT(file_problem("\x89PNG\r\n\x1a\n\0\xff"), HasSubstr("no column"));
+  EXPECT_THAT(file_problem(std::string("\x89PNG\r\n\x1a\n") + '\0' + '\xff'),
+              HasSubstr("no column"));
 }
 
 TEST(CaseCurves, ThatAreWrongAreRefusedByLine) {
