@@ -7,7 +7,8 @@ namespace meniscus {
 
 namespace {
 
-constexpr std::size_t kLongestName = 100;  // longer ones are no slips of a finger
+constexpr std::size_t kLongestName =
+    100;  // longer ones are no slips of a finger
 
 // Levenshtein's distance, one row at a time.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
