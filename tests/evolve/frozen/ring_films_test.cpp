@@ -10,8 +10,8 @@
 #include "core/geometry/surface_mesh.h"
 #include "evolve/frozen/film_model.h"
 #include "evolve/frozen/gap_between.h"
-#include "evolve/groom/check_complex.h"
 #include "evolve/start/start_complex.h"
+#include "tests/support/check_complex.h"
 
 namespace meniscus::ring_films_test {
 namespace {
@@ -65,7 +65,7 @@ TEST(Ring, BetweenCirclesOfOnePlaneIsFlatAndHasItsArea) {
       }
     }
   }
-  groom::check_complex(start::build_start(tube(), kRingEdge));
+  test_films::check_complex(start::build_start(tube(), kRingEdge));
 }
 
 TEST(Ring, BetweenPlanesIsAFrustum) {

@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "evolve/films/body_sides.h"
-#include "evolve/groom/check_complex.h"
 #include "evolve/groom/refine.h"
 #include "evolve/groom/remesh.h"
+#include "tests/support/check_complex.h"
 #include "tests/support/complex_builder.h"
 #include "tests/support/film_complexes.h"
 #include "tests/support/film_shapes.h"
@@ -42,7 +42,7 @@ TEST(PopEdges, MakesTwoTripleLinesOfFourFilms) {
     EXPECT_EQ(report.popped, 1);
     EXPECT_EQ(report.refused, 0);
     EXPECT_EQ(most_films(complex.mesh), 3);
-    groom::check_complex(complex);
+    test_films::check_complex(complex);
     ASSERT_EQ(complex.surfaces.size(), 5U);
     EXPECT_EQ(complex.surfaces[4].name, "popped1");
     // Those at 60 degrees went together, whichever of the two pairs.
@@ -65,7 +65,7 @@ TEST(PopEdges, TakesFilmsOffUntilThreeAreLeft) {
   const groom::PopReport report = groom::pop_edges(complex);
   EXPECT_EQ(report.popped, 3);
   EXPECT_EQ(most_films(complex.mesh), 3);
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   EXPECT_EQ(triple_lines(complex.mesh).of_films.size(), 4U);
   EXPECT_EQ(groom::pop_edges(complex).popped, 0);
 }
@@ -97,7 +97,7 @@ TEST(PopEdges, PopsAClosedLine) {
   films::FilmComplex complex = builder.complex();
   EXPECT_EQ(count_edges(complex.mesh, 4), kAround);
   EXPECT_EQ(groom::pop_edges(complex).popped, 1);
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   EXPECT_EQ(count_edges(complex.mesh, 4), 0);
   EXPECT_EQ(count_edges(complex.mesh, 3), 2 * kAround);
   // The first two bands make the smallest angle.
@@ -114,7 +114,7 @@ TEST(PopEdges, LeavesMarkedLinesAlone) {
   EXPECT_EQ(report.refused, 1);
   EXPECT_EQ(count_edges(complex.mesh, 4), 1);
   EXPECT_EQ(nonmanifold::edge_facets(complex.mesh).at({1, 2}).size(), 4U);
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
 }
 
 // Four unit cubes about the z axis; their common edge has four films.
@@ -171,11 +171,11 @@ double volume_of(const films::FilmComplex& complex, int body) {
 
 TEST(PopEdges, GivesTheNewFilmTheBodiesThatItParts) {
   films::FilmComplex complex = four_cubes();
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   EXPECT_EQ(most_films(complex.mesh), 4);
   EXPECT_EQ(groom::pop_edges(complex).popped, 1);
   EXPECT_EQ(most_films(complex.mesh), 3);
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   double sum = 0.0;
   for (int b = 0; b < 4; ++b) {
     EXPECT_NEAR(volume_of(complex, b), 1.0, 0.1);
@@ -198,13 +198,13 @@ TEST(PopVertices, SeparatesAPinchedNeck) {
     films::FilmComplex complex = shapes::tube(1.0, 2.0, around, 6, profile);
     EXPECT_EQ(nonmanifold::components(complex.mesh), 1);
     EXPECT_GT(groom::collapse_tiny_edges(complex, 0.05), 0);
-    groom::check_complex(complex);
+    test_films::check_complex(complex);
     EXPECT_EQ(nonmanifold::components(complex.mesh), 1);
     const groom::PopReport report = groom::pop_vertices(complex);
     EXPECT_EQ(report.popped, 1);
     ASSERT_EQ(report.places.size(), 1U);
     EXPECT_LT(report.places[0].norm(), 0.05);
-    groom::check_complex(complex);
+    test_films::check_complex(complex);
     EXPECT_EQ(nonmanifold::components(complex.mesh), 2);
     EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);  // two disks
     EXPECT_EQ(groom::pop_vertices(complex).popped, 0);
@@ -245,7 +245,7 @@ TEST(PopVertices, PopsTheConeOverACubeToASquareFilm) {
     EXPECT_EQ(groom::pop_edges(complex).popped, 0);
     const groom::PopReport report = groom::pop_vertices(complex);
     EXPECT_EQ(report.popped, 1);
-    groom::check_complex(complex);
+    test_films::check_complex(complex);
     const auto after = triple_lines(complex.mesh);
     // Eight lines to the corners and the square's four sides.
     EXPECT_EQ(after.junctions, 4);
@@ -292,7 +292,7 @@ TEST(PopVertices, PopsAConeOverAnOctahedronAfterItsEdges) {
   EXPECT_EQ(groom::pop_edges(complex).popped, 6);
   EXPECT_EQ(most_films(complex.mesh), 3);
   EXPECT_EQ(groom::pop_vertices(complex).popped, 1);
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   EXPECT_EQ(most_films(complex.mesh), 3);
   EXPECT_EQ(groom::pop_vertices(complex).popped, 0);
 }
@@ -304,12 +304,12 @@ TEST(CollapseTiny, TakesShortEdgesOnly) {
       0.99 * (complex.mesh.points[complex.mesh.facets.back()[0]] -
               complex.mesh.points.back());
   EXPECT_EQ(groom::collapse_tiny_edges(complex, 0.1), 1);
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);
   EXPECT_THROW(groom::collapse_tiny_edges(complex, std::nan("")), InvalidInput);
   films::FilmComplex frame = test_films::cube_frame_start();
   groom::collapse_tiny_edges(frame, 100.0);
-  groom::check_complex(frame);
+  test_films::check_complex(frame);
   EXPECT_EQ(frame.edges.size(), 12U);
 }
 

@@ -4,9 +4,9 @@
 
 #include "core/error.h"
 #include "evolve/films/body_sides.h"
-#include "evolve/groom/check_complex.h"
 #include "evolve/groom/remesh.h"
 #include "evolve/start/start_complex.h"
+#include "tests/support/check_complex.h"
 #include "tests/support/systems.h"
 
 namespace meniscus::refine_test {
@@ -18,7 +18,7 @@ TEST(Refine, KeepsOldVerticesAndPutsNewOnesInTheMiddle) {
     films::FilmComplex coarse = start::build_start(system, 0.4);
     groom::remesh_films(coarse, {.edge = 0.4});
     const groom::Refinement fine = groom::refine(coarse);
-    groom::check_complex(fine.complex);
+    test_films::check_complex(fine.complex);
     const std::size_t old = coarse.mesh.points.size();
     ASSERT_EQ(fine.complex.mesh.points.size(), old + fine.parents.size());
     EXPECT_EQ(fine.complex.mesh.facets.size(), 4 * coarse.mesh.facets.size());
@@ -80,32 +80,32 @@ TEST(Refine, ApproachesTheCircleAtSecondOrder) {
 TEST(CheckComplex, NamesWhatIsBroken) {
   const films::FilmComplex sound =
       start::build_start(systems::cylinder(2.0), 0.4);
-  groom::check_complex(sound);
+  test_films::check_complex(sound);
   films::FilmComplex broken = sound;
   broken.vertices.pop_back();
-  EXPECT_THROW(groom::check_complex(broken), MeshError);
+  EXPECT_THROW(test_films::check_complex(broken), MeshError);
   broken = sound;
   broken.mesh.points[0] += Vec3(0.1, 0, 0);
-  EXPECT_THROW(groom::check_complex(broken), MeshError);
+  EXPECT_THROW(test_films::check_complex(broken), MeshError);
   broken = sound;
   broken.mesh.facets.pop_back();
   broken.mesh.facet_label.pop_back();
-  EXPECT_THROW(groom::check_complex(broken), MeshError);
+  EXPECT_THROW(test_films::check_complex(broken), MeshError);
   broken = sound;
   std::swap(broken.mesh.facets[5][0], broken.mesh.facets[5][1]);
-  EXPECT_THROW(groom::check_complex(broken), MeshError);
+  EXPECT_THROW(test_films::check_complex(broken), MeshError);
   broken = sound;
   broken.bodies[0].sides[0].sign = -1;
-  EXPECT_THROW(groom::check_complex(broken), MeshError);
+  EXPECT_THROW(test_films::check_complex(broken), MeshError);
   broken = sound;
   broken.surfaces[1].name = "else";
-  EXPECT_THROW(groom::check_complex(broken), MeshError);
+  EXPECT_THROW(test_films::check_complex(broken), MeshError);
   broken = sound;
   broken.mesh.facets[0][0] = 100000;
-  EXPECT_THROW(groom::check_complex(broken), MeshError);
+  EXPECT_THROW(test_films::check_complex(broken), MeshError);
   broken = sound;
   broken.vertices.back().kind = films::VertexKind::Free;
-  EXPECT_THROW(groom::check_complex(broken), MeshError);
+  EXPECT_THROW(test_films::check_complex(broken), MeshError);
 }
 
 }  // namespace

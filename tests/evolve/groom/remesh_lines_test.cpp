@@ -4,10 +4,10 @@
 
 #include "core/error.h"
 #include "core/geometry/edge_key.h"
-#include "evolve/groom/check_complex.h"
 #include "evolve/groom/flip_average.h"
 #include "evolve/groom/refine.h"
 #include "evolve/groom/remesh.h"
+#include "tests/support/check_complex.h"
 #include "tests/support/film_complexes.h"
 #include "tests/support/nonmanifold_shapes.h"
 #include "tests/support/systems.h"
@@ -89,7 +89,7 @@ TEST(RemeshLines, KeepTheirFilmsAndJunctionsAtSeveralSizes) {
       EXPECT_EQ(junctions(complex.mesh), places);
       EXPECT_EQ(systems::euler_characteristic(complex.mesh), euler);
       EXPECT_NEAR(surface_area(complex.mesh) / area, 1.0, kAreaChange);
-      groom::check_complex(complex);
+      test_films::check_complex(complex);
       expect_marks_on_edges(complex);
       const auto q = systems::quality(complex, Part::Films);
       EXPECT_GT(q.smallest_angle, kLeastAngle);
@@ -140,12 +140,12 @@ TEST(RemeshLines, StayOnTheirWallWithTheirIntegrals) {
 TEST(CheckComplex, NamesWhatIsBrokenAtMarksAndWalls) {
   const films::FilmComplex sound =
       refined(test_films::sessile_cap_start(1.0), 1);
-  groom::check_complex(sound);
-  groom::check_complex(test_films::double_bubble_start());
+  test_films::check_complex(sound);
+  test_films::check_complex(test_films::double_bubble_start());
   const auto refuses = [&](const auto& breaks) {
     films::FilmComplex broken = sound;
     breaks(broken);
-    EXPECT_THROW(groom::check_complex(broken), MeshError);
+    EXPECT_THROW(test_films::check_complex(broken), MeshError);
   };
   refuses([](films::FilmComplex& c) { c.edges.pop_back(); });
   refuses([](films::FilmComplex& c) { c.edges.push_back(c.edges.front()); });

@@ -6,9 +6,9 @@
 #include "core/geometry/mesh_checks.h"
 #include "core/timer.h"
 #include "evolve/films/body_sides.h"
-#include "evolve/groom/check_complex.h"
 #include "evolve/groom/flip_average.h"
 #include "evolve/start/start_complex.h"
+#include "tests/support/check_complex.h"
 #include "tests/support/shapes.h"
 #include "tests/support/systems.h"
 
@@ -57,7 +57,7 @@ TEST(Remesh, MakesNeedlesIsotropicAndKeepsTheShape) {
     const films::FilmComplex raw = start::build_start(c.system, c.edge);
     films::FilmComplex complex = raw;
     groom::remesh_films(complex, {.edge = c.edge});
-    groom::check_complex(complex);
+    test_films::check_complex(complex);
     const auto q = systems::quality(complex, Part::Films);
     EXPECT_GT(q.smallest_angle, kRimAngle);
     EXPECT_GT(q.smallest_inner_angle, kInnerAngle);
@@ -78,7 +78,7 @@ TEST(Remesh, MakesNeedlesIsotropicAndKeepsTheShape) {
 TEST(Remesh, KeepsTheTopologyOfAnOpenFilm) {
   films::FilmComplex complex = start::build_start(systems::catenoid(), 0.1);
   groom::remesh_films(complex, {.edge = 0.1});
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   EXPECT_EQ(systems::euler_characteristic(complex.mesh), 0);
   EXPECT_GT(systems::quality(complex, Part::Films).smallest_angle, kRimAngle);
 }
@@ -87,7 +87,7 @@ TEST(Remesh, ChangesResolutionBothWays) {
   films::FilmComplex complex = start::build_start(systems::strut(), 0.2);
   for (const double edge : {0.2, 0.1, 0.4, 0.2}) {
     groom::remesh_films(complex, {.edge = edge});
-    groom::check_complex(complex);
+    test_films::check_complex(complex);
     EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);
   }
   EXPECT_NEAR(systems::quality(complex, Part::Films).mean, 0.2, 0.03);
@@ -109,7 +109,7 @@ TEST(Remesh, KeepsASphere) {
   complex.bodies = {{"ball", {{0, 1}}, {}, {}}};
   const double before = enclosed_volume(complex.mesh);
   groom::remesh_films(complex, {.edge = 0.1});
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   EXPECT_NEAR(enclosed_volume(complex.mesh) / before, 1.0, 0.01);
   EXPECT_GT(systems::quality(complex, Part::Films).smallest_angle, kInnerAngle);
 }
@@ -159,7 +159,7 @@ TEST(Remesh, EndsWhereRimsAreMuchCoarserOrFinerThanTheEdge) {
   for (const double edge : {0.05, 2.0}) {
     films::FilmComplex complex = start::build_start(systems::strut(), 0.4);
     groom::remesh_films(complex, {.edge = edge});
-    groom::check_complex(complex);
+    test_films::check_complex(complex);
     EXPECT_EQ(systems::euler_characteristic(complex.mesh), 2);
   }
 }
@@ -171,7 +171,7 @@ TEST(Equiangulate, RaisesTheSmallestAngleAndEnds) {
   const double before = systems::quality(complex, Part::Films).smallest_angle;
   groom::average_vertices(complex);
   groom::equiangulate(complex);
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   EXPECT_GE(systems::quality(complex, Part::Films).smallest_angle,
             0.9 * before);
 }
@@ -184,7 +184,7 @@ TEST(Average, LeavesAFlatDiskFlatAndItsAreaTheSame) {
   const double area = surface_area(complex.mesh);
   for (int i = 0; i < 5; ++i) {
     groom::average_vertices(complex);
-    groom::check_complex(complex);
+    test_films::check_complex(complex);
   }
   EXPECT_NEAR(surface_area(complex.mesh), area, 1e-12 * area);
 }

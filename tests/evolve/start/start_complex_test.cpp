@@ -10,8 +10,8 @@
 #include "core/error.h"
 #include "core/geometry/mesh_checks.h"
 #include "evolve/films/body_sides.h"
-#include "evolve/groom/check_complex.h"
 #include "evolve/start/disk_fill.h"
+#include "tests/support/check_complex.h"
 #include "tests/support/systems.h"
 
 namespace meniscus::start_complex_test {
@@ -35,7 +35,7 @@ std::string refusal(const films::FilmSystem& system, double edge = 0.4) {
 
 // Euler characteristic 2, outward, no finding but the raw start's needles.
 void expect_sound(const films::FilmComplex& complex) {
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   for (const films::ComplexBody& body : complex.bodies) {
     const SurfaceMesh shell = films::body_surface(complex, body);
     EXPECT_EQ(systems::euler_characteristic(shell), 2);
@@ -119,7 +119,7 @@ TEST(StartComplex, LoftAroundABendPairsInnerWithInner) {
                    {"b", curves::Circle{Vec3(3, 0, 3), Vec3::UnitX(), 1.0}}};
   system.films = {{"bend", films::FilmKind::Loft, {"a", "b"}, 1.0}};
   const films::FilmComplex complex = start::build_start(system, 0.2);
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   double longest = 0.0;
   for (const Triangle& t : complex.mesh.facets) {
     for (int k = 0; k < 3; ++k) {
@@ -134,7 +134,7 @@ TEST(StartComplex, LoftAroundABendPairsInnerWithInner) {
 TEST(StartComplex, OpenFilmNeedsNoBody) {
   const films::FilmComplex complex =
       start::build_start(systems::catenoid(), 0.2);
-  groom::check_complex(complex);
+  test_films::check_complex(complex);
   EXPECT_TRUE(complex.bodies.empty());
   EXPECT_EQ(systems::euler_characteristic(complex.mesh), 0);
 }

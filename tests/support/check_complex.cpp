@@ -1,4 +1,4 @@
-#include "evolve/groom/check_complex.h"
+#include "tests/support/check_complex.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "core/geometry/edge_key.h"
 #include "evolve/films/edge_marks.h"
 
-namespace meniscus::groom {
+namespace meniscus::test_films {
 
 namespace {
 
@@ -380,4 +380,4 @@ void check_complex(const films::FilmComplex& complex) {
   check_bodies(complex);
 }
 
-}  // namespace meniscus::groom
+}  // namespace meniscus::test_films

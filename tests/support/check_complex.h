@@ -3,7 +3,7 @@
 
 #include "evolve/films/film_complex.h"
 
-namespace meniscus::groom {
+namespace meniscus::test_films {
 
 /// Throws MeshError, naming ids, unless every invariant of a complex holds:
 /// indices, labels and kinds consistent, no facet twice, vertices on their
@@ -13,4 +13,4 @@ namespace meniscus::groom {
 /// walls or above columns, where the rest is integrals), outward.
 void check_complex(const films::FilmComplex& complex);
 
-}  // namespace meniscus::groom
+}  // namespace meniscus::test_films
