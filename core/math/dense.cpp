@@ -58,14 +58,6 @@ VectorX least_norm(const Eigen::MatrixXd& A, const VectorX& b) {
   return A.completeOrthogonalDecomposition().solve(b);
 }
 
-Vec3 least_norm_move(const Eigen::MatrixXd& A, const VectorX& b) {
-  return least_norm(A, b);
-}
-
-VectorX least_norm_forces(const Eigen::MatrixXd& rows, const Vec3& b) {
-  return least_norm(rows.transpose(), b);
-}
-
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A) {
   return A.completeOrthogonalDecomposition().pseudoInverse();
 }

@@ -50,11 +50,10 @@ struct LeastSquares {
 LeastSquares least_squares(const Eigen::MatrixXd& A, const VectorX& b);
 
 /// The shortest x of those that minimise |A x - b|, by a complete orthogonal
-/// decomposition. That of a wall's normals, n x 3, is a move in space.
+/// decomposition. Of n walls' normals N, n x 3: A = N a move in space by which
+/// n level sets change by b, A = N^T the forces along the normals that make up
+/// b.
 VectorX least_norm(const Eigen::MatrixXd& A, const VectorX& b);
-Vec3 least_norm_move(const Eigen::MatrixXd& A, const VectorX& b);
-/// The same for A = rows^T: the forces along n normals that make up b.
-VectorX least_norm_forces(const Eigen::MatrixXd& rows, const Vec3& b);
 
 /// Moore and Penrose's, by a complete orthogonal decomposition.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A);

@@ -330,7 +330,7 @@ Vec3 FilmSpace::back_on(const Wall& wall, Vec3 at) const {
     const Vec3 move =
         count == 1
             ? Vec3(rows.row(0).transpose() * (gap[0] / rows.squaredNorm()))
-            : least_norm_move(rows, gap);
+            : Vec3(least_norm(rows, gap));
     at -= move;
     if (!(move.norm() > kOnWall * at.norm())) {
       break;
@@ -398,7 +398,7 @@ Eigen::Matrix3d FilmSpace::wall_curvature(int k, const Vec3& at,
   // With lambda the forces of the walls, d2E of the way along the walls is
   // that of E - sum lambda f.
   const Eigen::MatrixX3d rows = wall_normals(k, at);
-  const VectorX lambda = least_norm_forces(rows, gradient);
+  const VectorX lambda = least_norm(rows.transpose(), gradient);
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < wall.level_sets.size(); ++i) {
     sum -= lambda[static_cast<Eigen::Index>(i)] *

@@ -138,7 +138,7 @@ Vec3 onto_walls(const FilmComplex& complex, int set, bool held,
     if (gap.size() == 0) {
       break;
     }
-    const Vec3 move = least_norm_move(rows, gap);
+    const Vec3 move = least_norm(rows, gap);
     if (!move.allFinite()) {
       break;
     }

@@ -63,7 +63,7 @@ Vec3 put_on_constraints(const FilmComplex& complex, int set, const Vec3& from) {
     if (off == 0.0) {
       return p;
     }
-    const Vec3 move = least_norm_move(gradients, f);
+    const Vec3 move = least_norm(gradients, f);
     p -= move;
     if (!p.allFinite() || move.norm() <= kStill * p.norm()) {
       break;

@@ -58,7 +58,7 @@ int update_contacts(films::FilmComplex& complex,
     // Multipliers of the walls as least-norm forces that balance the slope.
     // Complementarity: a held vertex must be pushed against its wall, a free
     // one must not be through it.
-    const VectorX push = least_norm_forces(rows, slope[v]);
+    const VectorX push = least_norm(rows.transpose(), slope[v]);
     bool through = false;
     bool pulled = false;
     for (std::size_t i = 0; i < set.size(); ++i) {

@@ -208,7 +208,7 @@ class Flow {
       const Eigen::MatrixX3d normals =
           space.wall_normals(static_cast<int>(k), complex_.mesh.points[v]);
       const Vec3& force = slope[v];
-      const VectorX pull = least_norm_forces(normals, force);
+      const VectorX pull = least_norm(normals.transpose(), force);
       rows.row(unknown_of_[v]) = force - normals.transpose() * pull;
     }
     return rows;

@@ -188,6 +188,13 @@ Monitor& monitor_of(const ForwardModelOptions& options) {
   return options.monitor != nullptr ? *options.monitor : silent_monitor();
 }
 
+bool film_and_mesh(const case_data::EvaluatedCase& inputs,
+                   const ForwardModelOptions& options, FrozenPart& part) {
+  Monitor& monitor = monitor_of(options);
+  return freeze_film(inputs, options, monitor, part) &&
+         fill_surface(inputs, {.monitor = &monitor}, monitor, part);
+}
+
 }  // namespace
 
 TetFigures figures_of(const TetMesh& mesh,
@@ -227,21 +234,19 @@ ResponseContext FrozenPart::context(
 }
 
 bool freeze_mesh(const ForwardModelOptions& options, FrozenPart& part) {
-  Monitor& monitor = monitor_of(options);
   part.start.design = case_data::initial_design(part.input);
-  const case_data::EvaluatedCase inputs =
-      case_data::evaluate(part.input, part.start.design);
-  return freeze_film(inputs, options, monitor, part) &&
-         fill_surface(inputs, {.monitor = &monitor}, monitor, part);
+  return film_and_mesh(case_data::evaluate(part.input, part.start.design),
+                       options, part);
 }
 
 void freeze_part(const ForwardModelOptions& options, FrozenPart& part) {
-  if (!freeze_mesh(options, part)) {
+  part.start.design = case_data::initial_design(part.input);
+  const case_data::EvaluatedCase inputs =
+      case_data::evaluate(part.input, part.start.design);
+  if (!film_and_mesh(inputs, options, part)) {
     return;
   }
   Monitor& monitor = monitor_of(options);
-  const case_data::EvaluatedCase inputs =
-      case_data::evaluate(part.input, part.start.design);
   part.exclusion = choose_exclusion(
       part.input, part.base_mesh,
       options.edge_factor > 1.0 ? EmptyZones::Allowed : EmptyZones::Refused);
