@@ -177,7 +177,8 @@ std::string find_unknown(const films::FilmSystem& system,
 /// pictures.
 void write_evolved(const case_data::Case& input,
                    const case_data::EvaluatedCase& inputs,
-                   const frozen::FilmModel& model, const fs::path& folder,
+                   const frozen::FilmModel& model,
+                   const films::NestingReport& nesting, const fs::path& folder,
                    const EvolveArguments& arguments, Monitor& monitor) {
   const settle::FilmState& film = model.reference();
   std::vector<std::string> solids;
@@ -194,6 +195,7 @@ void write_evolved(const case_data::Case& input,
       {.title = input.title,
        .units = input.units,
        .report = film.report,
+       .nesting = nesting,
        .failure = film.failure,
        .solids = solids,
        .areas = results::areas_of_films(input, model),
@@ -253,9 +255,17 @@ int evolve_command(const EvolveArguments& arguments) {
                                .refinements = input.resolution.refinements,
                                .monitor = &monitor});
   const settle::FilmState& film = model.reference();
-  write_evolved(input, inputs, model, folder, arguments, monitor);
+  const films::NestingReport nesting =
+      film.failure ? films::NestingReport{}
+                   : results::nesting_of_films(input, model);
+  write_evolved(input, inputs, model, nesting, folder, arguments, monitor);
   if (!common.quiet) {
     std::fputs(results::film_text(input, film.report).c_str(), stdout);
+    if (const std::string text =
+            films::nesting_text(nesting, input.units.length);
+        !text.empty()) {
+      std::printf("  films %s\n", text.c_str());
+    }
   }
   if (film.failure) {
     std::fprintf(stderr, "failed: %s\n", film.failure->message.c_str());

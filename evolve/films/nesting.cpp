@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "core/geometry/edge_key.h"
@@ -148,47 +149,90 @@ double share_within(const SurfaceMesh& mesh, const std::vector<int>& facets,
   return total > 0.0 ? within / total : 0.0;
 }
 
+/// Facets that hang together.
+struct Group {
+  std::string name;
+  std::vector<int> facets;
+};
+
 class Nesting {
  public:
-  Nesting(const SurfaceMesh& mesh, std::vector<int> films,
+  Nesting(const SurfaceMesh& mesh, const std::vector<int>& films,
           const NestingOptions& options)
-      : mesh_(mesh), films_(std::move(films)), options_(options) {
-    std::vector<int> place(mesh.labels.size(), -1);
-    for (std::size_t i = 0; i < films_.size(); ++i) {
-      place[films_[i]] = static_cast<int>(i);
+      : mesh_(mesh), options_(options) {
+    std::vector<char> taken(mesh.labels.size(), 0);
+    for (const int film : films) {
+      taken[film] = 1;
     }
-    facets_.resize(films_.size());
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-      const int i = place[mesh.facet_label[f]];
-      if (i >= 0 && area_vector2(mesh, static_cast<int>(f)).norm() > 0.0) {
-        facets_[i].push_back(static_cast<int>(f));
+      if (taken[mesh.facet_label[f]] != 0 &&
+          area_vector2(mesh, static_cast<int>(f)).norm() > 0.0) {
         all_.push_back(static_cast<int>(f));
       }
     }
+    group_facets();
   }
 
-  NestingReport take() {
+  NestingReport check() {
     find_crossings();
-    find_gaps();
-    find_order();
-    say();
+    if (groups_.size() <= static_cast<std::size_t>(options_.max_groups)) {
+      find_gaps();
+      find_order();
+    }
     return std::move(report_);
   }
 
  private:
-  const std::string& name(std::size_t i) const {
-    return mesh_.labels[films_[i]];
+  void group_facets() {
+    UnionFind joined(mesh_.points.size());
+    for (const int f : all_) {
+      const Triangle& t = mesh_.facets[f];
+      joined.join(t[0], t[1]);
+      joined.join(t[0], t[2]);
+    }
+    // Groups in the order of their first facets.
+    std::map<int, int> group_at;  // by root
+    group_of_.assign(mesh_.facets.size(), -1);
+    for (const int f : all_) {
+      const auto [at, is_new] = group_at.try_emplace(
+          joined.root(mesh_.facets[f][0]), static_cast<int>(groups_.size()));
+      if (is_new) {
+        groups_.emplace_back();
+      }
+      group_of_[f] = at->second;
+      groups_[at->second].facets.push_back(f);
+    }
+    name_groups();
+  }
+
+  void name_groups() {
+    std::map<std::string, int> seen;
+    for (Group& group : groups_) {
+      std::set<int> films;
+      for (const int f : group.facets) {
+        films.insert(mesh_.facet_label[f]);
+      }
+      group.name = mesh_.labels[*films.begin()];
+      if (films.size() > 1) {
+        group.name += fmt::format(" and {} more", films.size() - 1);
+      }
+      const int times = ++seen[group.name];
+      if (times > 1) {
+        group.name += fmt::format(" ({})", times);
+      }
+    }
   }
 
   void find_crossings() {
     for_each_near_pair(mesh_, all_, 0.0, [&](int f, int g) {
       const PairVerdict verdict = classify_pair(mesh_, f, g, 0.0);
       if (verdict.state == PairState::Crossing) {
-        crossed_[std::minmax(mesh_.facet_label[f], mesh_.facet_label[g])] =
-            verdict.position;
+        const int film = mesh_.facet_label[f];
+        const int other = mesh_.facet_label[g];
+        crossed_[std::minmax(group_of_[f], group_of_[g])] = verdict.position;
         if (report_.crossing_pairs++ < options_.max_crossings) {
-          report_.crossings.push_back({mesh_.labels[mesh_.facet_label[f]],
-                                       mesh_.labels[mesh_.facet_label[g]],
+          report_.crossings.push_back({mesh_.labels[film],
+                                       mesh_.labels[other],
                                        {f, g},
                                        verdict.position});
         }
@@ -199,89 +243,61 @@ class Nesting {
   }
 
   void find_gaps() {
-    for (std::size_t i = 0; i < films_.size(); ++i) {
-      for (std::size_t j = i + 1; j < films_.size(); ++j) {
-        if (!facets_[i].empty() && !facets_[j].empty()) {
-          report_.gaps.push_back(gap_between(i, j));
-        }
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+      for (std::size_t j = i + 1; j < groups_.size(); ++j) {
+        report_.gaps.push_back(gap_of(i, j));
       }
     }
   }
 
-  FilmGap gap_between(std::size_t i, std::size_t j) const {
-    FilmGap gap{name(i), name(j)};
-    const auto crossed = crossed_.find(std::minmax(films_[i], films_[j]));
+  GroupGap gap_of(std::size_t i, std::size_t j) const {
+    GroupGap gap{groups_[i].name, groups_[j].name};
+    const auto crossed =
+        crossed_.find({static_cast<int>(i), static_cast<int>(j)});
     if (crossed != crossed_.end()) {
-      gap.on_film = gap.on_other = crossed->second;
+      gap.on_group = gap.on_other = crossed->second;
       return gap;
     }
-    const ShortestLine line = shortest_line(mesh_, facets_[i], facets_[j]);
+    const ShortestLine line =
+        shortest_line(mesh_, groups_[i].facets, groups_[j].facets);
     gap.gap = line.length;
-    gap.on_film = line.from;
+    gap.on_group = line.from;
     gap.on_other = line.to;
-    gap.joined = line.length == 0.0;
     return gap;
   }
 
   void find_order() {
-    std::vector<Shell> shells;
-    shells.reserve(films_.size());
-    for (const auto& facets : facets_) {
-      shells.emplace_back(mesh_, facets);
-    }
-    std::vector<int> depth(films_.size(), 0);
-    for (std::size_t i = 0; i < films_.size(); ++i) {
-      for (std::size_t j = 0; j < films_.size(); ++j) {
-        if (i != j && share_within(mesh_, facets_[i], shells[j]) > 0.5) {
-          report_.inside.push_back({name(i), name(j)});
+    std::vector<int> depth(groups_.size(), 0);
+    for (std::size_t j = 0; groups_.size() > 1 && j < groups_.size(); ++j) {
+      const Shell shell(mesh_, groups_[j].facets);
+      for (std::size_t i = 0; i < groups_.size(); ++i) {
+        if (i != j && share_within(mesh_, groups_[i].facets, shell) > 0.5) {
+          report_.inside.push_back({groups_[i].name, groups_[j].name});
           ++depth[i];
         }
       }
     }
-    std::vector<int> order(films_.size());
+    std::vector<int> order(groups_.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return depth[a] > depth[b]; });
-    for (const int i : order) {
-      report_.order.push_back(name(i));
-    }
-  }
-
-  void say() {
-    if (!report_.apart) {
-      const FilmCrossing& first = report_.crossings.empty()
-                                      ? FilmCrossing{}
-                                      : report_.crossings.front();
-      report_.verdict = fmt::format(
-          "crossing: {} facet pairs; the first is facet {} of '{}' and {} of "
-          "'{}' at ({:.6g}, {:.6g}, {:.6g}); move their curves apart or "
-          "refine",
-          report_.crossing_pairs, first.facets[0], first.film, first.facets[1],
-          first.other, first.position.x(), first.position.y(),
-          first.position.z());
-      return;
-    }
-    const auto least = std::min_element(
-        report_.gaps.begin(), report_.gaps.end(),
-        [](const FilmGap& a, const FilmGap& b) { return a.gap < b.gap; });
-    report_.verdict = "apart: no two facets cross";
-    if (least != report_.gaps.end()) {
-      report_.verdict += fmt::format(
-          "; smallest gap {:.6g} between '{}' and '{}' at ({:.6g}, {:.6g}, "
-          "{:.6g})",
-          least->gap, least->film, least->other, least->on_film.x(),
-          least->on_film.y(), least->on_film.z());
+    for (const int g : order) {
+      report_.order.push_back(groups_[g].name);
     }
   }
 
   const SurfaceMesh& mesh_;
-  std::vector<int> films_;  // labels
   NestingOptions options_;
-  std::vector<std::vector<int>> facets_;  // per film
-  std::vector<int> all_;
-  std::map<std::pair<int, int>, Vec3> crossed_;
+  std::vector<int> all_;       // facets of the films
+  std::vector<int> group_of_;  // of each facet, or -1
+  std::vector<Group> groups_;
+  std::map<std::pair<int, int>, Vec3> crossed_;  // groups
   NestingReport report_;
 };
+
+std::string place_text(const Vec3& at) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", at.x(), at.y(), at.z());
+}
 
 }  // namespace
 
@@ -294,21 +310,33 @@ NestingReport check_nesting(const SurfaceMesh& mesh,
     all.resize(mesh.labels.size());
     std::iota(all.begin(), all.end(), 0);
   }
-  return Nesting(mesh, std::move(all), options).take();
+  return Nesting(mesh, all, options).check();
 }
 
-NestingReport check_nesting(const FilmComplex& complex,
-                            const NestingOptions& options) {
-  std::vector<int> films;
-  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
-    if (complex.surfaces[s].liquid) {
-      films.push_back(static_cast<int>(s));
-    }
+std::string nesting_text(const NestingReport& report,
+                         const std::string& length_unit) {
+  if (!report.crossings.empty()) {
+    const FilmCrossing& first = report.crossings.front();
+    return fmt::format(
+        "cross: {} pairs of facets; the first is facet {} of '{}' and {} of "
+        "'{}' at {}; move their curves apart, or change a volume",
+        report.crossing_pairs, first.facets[0], first.film, first.facets[1],
+        first.other, place_text(first.position));
   }
-  if (films.empty()) {
-    throw MeshError("nesting: the complex has no liquid film");
+  if (report.gaps.empty()) {
+    return "";
   }
-  return check_nesting(complex.mesh, films, options);
+  const GroupGap& least = *std::min_element(
+      report.gaps.begin(), report.gaps.end(),
+      [](const GroupGap& a, const GroupGap& b) { return a.gap < b.gap; });
+  std::string text = fmt::format(
+      "apart, no two facets cross; least gap {:.6g}{}, of '{}' and '{}' at {}",
+      least.gap, length_unit.empty() ? "" : " " + length_unit, least.group,
+      least.other, place_text(least.on_group));
+  if (!report.inside.empty()) {
+    text += fmt::format("; inside out: {}", fmt::join(report.order, ", "));
+  }
+  return text;
 }
 
 }  // namespace meniscus::films

@@ -16,52 +16,54 @@ struct FilmCrossing {
   Vec3 position = Vec3::Zero();
 };
 
-/// The shortest line between two films. Zero where they cross or share a
-/// vertex (`joined`).
-struct FilmGap {
-  std::string film;
+/// The shortest line between two groups; zero where they cross.
+struct GroupGap {
+  std::string group;
   std::string other;
   double gap = 0.0;  // [length]
-  bool joined = false;
-  Vec3 on_film = Vec3::Zero();
+  Vec3 on_group = Vec3::Zero();
   Vec3 on_other = Vec3::Zero();
 };
 
-struct FilmInside {
+struct GroupInside {
   std::string inner;
   std::string outer;
 };
 
+/// A group is facets that hang together; it has the name of its film, of
+/// several "'a' and 2 more", and a second group of that name "'a' (2)".
 struct NestingReport {
   bool apart = true;       // no two facets of the films cross
   int crossing_pairs = 0;  // of facets; the first are listed
   std::vector<FilmCrossing> crossings;
-  std::vector<FilmGap> gaps;       // one per pair of films
-  std::vector<FilmInside> inside;  // every pair of which one lies in the other
-  std::vector<std::string> order;  // inside out; films side by side as labelled
-  std::string verdict;             // in words, with names and places
+  std::vector<GroupGap> gaps;  // one per pair of groups
+  std::vector<GroupInside>
+      inside;                      // every pair, one of which lies in the other
+  std::vector<std::string> order;  // inside out; side by side as labelled
 };
 
 struct NestingOptions {
   int max_crossings = 20;  // listed
+  int max_groups = 50;     // of more, gaps and order are left out
 };
 
 /// Of the surfaces `films` (indices of labels; empty: all). No two facets
 /// crossing, judged by orientation signs in extended precision
-/// (core/geometry/facet_pairs.h), proves that the triangulated films do not
+/// (core/geometry/facet_pairs.h), says that the triangulated films do not
 /// cross; it says nothing of smooth films closer than the facets' sagitta,
 /// about edge^2 / (8 radius): compare with the gap.
 ///
-/// A film is inside another when more than half of its area is, by the parity
+/// A group is inside another when more than half of its area is, by the parity
 /// of rays; open films are closed by fans across their rims. Throws MeshError
-/// for labels, corners or points that are not sound. O(n log n) for films at a
-/// distance.
+/// for labels, corners or points that are not sound. O(n log n) for groups at
+/// a distance.
 NestingReport check_nesting(const SurfaceMesh& mesh,
                             const std::vector<int>& films = {},
                             const NestingOptions& options = {});
 
-/// Of the liquid surfaces.
-NestingReport check_nesting(const FilmComplex& complex,
-                            const NestingOptions& options = {});
+/// The report in a line for people, with names and places; empty for one group
+/// that does not cross itself. `length_unit` follows the gap.
+std::string nesting_text(const NestingReport& report,
+                         const std::string& length_unit = "");
 
 }  // namespace meniscus::films

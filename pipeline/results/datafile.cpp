@@ -179,6 +179,17 @@ settle::FilmState settle_and_pop(films::FilmComplex& complex,
   return lowest ? std::move(*lowest) : std::move(state);
 }
 
+films::NestingReport nesting_of_films(const films::FilmComplex& complex) {
+  std::vector<int> liquid;
+  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    if (complex.surfaces[s].liquid) {
+      liquid.push_back(static_cast<int>(s));
+    }
+  }
+  return liquid.empty() ? films::NestingReport{}
+                        : films::check_nesting(complex.mesh, liquid);
+}
+
 }  // namespace
 
 DatafileResult evolve_datafile(const std::filesystem::path& path,
@@ -215,6 +226,9 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
   result.report = std::move(state.report);
   result.report.seconds = timer.seconds();
   result.failure = std::move(state.failure);
+  if (!result.failure) {
+    result.nesting = nesting_of_films(result.complex);
+  }
   return result;
 }
 
@@ -234,6 +248,7 @@ std::string write_datafile_result(const DatafileResult& result,
   io::write_vtp(folder / "film.vtp", result.complex.mesh);
   EvolvedFilm film{.title = title,
                    .report = result.report,
+                   .nesting = result.nesting,
                    .failure = result.failure,
                    .solids = solids_of(result.complex),
                    .curves = pieces_of_curves(result.complex),
@@ -260,6 +275,10 @@ std::string datafile_text(const DatafileResult& result) {
     text += fmt::format("  smallest neck {:.4g} at ({:.4g}, {:.4g}, {:.4g})\n",
                         film.smallest_neck, film.neck_position.x(),
                         film.neck_position.y(), film.neck_position.z());
+  }
+  if (const std::string nesting = films::nesting_text(result.nesting);
+      !nesting.empty()) {
+    text += fmt::format("  films {}\n", nesting);
   }
   for (const settle::BodyState& body : film.bodies) {
     text += fmt::format("  {}: volume {:.12g}, pressure {:.8g}\n", body.name,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evolve/datafile/fe_complex.h"
+#include "evolve/films/nesting.h"
 #include "evolve/frozen/film_model.h"
 #include "evolve/settle/descent.h"
 
@@ -34,8 +35,9 @@ struct DatafileResult {
   settle::FilmReport report;
   std::vector<std::pair<std::string, double>> quantities;
   std::optional<Failure> failure;
-  std::string printed;  // by the macro
-  int popped = 0;       // junctions
+  films::NestingReport nesting;  // of a film that did not fail
+  std::string printed;           // by the macro
+  int popped = 0;                // junctions
 };
 
 /// Reads `path` and settles its films by our own route. Throws InvalidInput

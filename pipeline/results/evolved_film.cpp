@@ -22,6 +22,30 @@ Json numbers(const Points& points) {
   return std::vector<double>(values.begin(), values.end());
 }
 
+bool is_film(const case_data::Case& input, const std::string& name) {
+  return std::any_of(input.films.begin(), input.films.end(),
+                     [&](const case_data::FilmEntry& entry) {
+                       return entry.spec.name == name;
+                     });
+}
+
+Json nesting_json(const films::NestingReport& nesting) {
+  Json json = {{"apart", nesting.apart},
+               {"crossing_pairs", nesting.crossing_pairs},
+               {"gaps", Json::array()},
+               {"inside", Json::array()}};
+  for (const films::GroupGap& gap : nesting.gaps) {
+    json["gaps"].push_back(
+        {{"films", {gap.group, gap.other}},
+         {"gap", gap.gap},
+         {"place", {gap.on_group.x(), gap.on_group.y(), gap.on_group.z()}}});
+  }
+  for (const films::GroupInside& pair : nesting.inside) {
+    json["inside"].push_back({{"inner", pair.inner}, {"outer", pair.outer}});
+  }
+  return json;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, double>> areas_of_films(
@@ -30,15 +54,23 @@ std::vector<std::pair<std::string, double>> areas_of_films(
   std::vector<std::pair<std::string, double>> all;
   for (std::size_t k = 0; k < model.labels().size(); ++k) {
     const std::string& name = model.labels()[k];
-    const bool is_film = std::any_of(input.films.begin(), input.films.end(),
-                                     [&](const case_data::FilmEntry& entry) {
-                                       return entry.spec.name == name;
-                                     });
-    if (is_film) {
+    if (is_film(input, name)) {
       all.emplace_back(name, areas[static_cast<Eigen::Index>(k)]);
     }
   }
   return all;
+}
+
+films::NestingReport nesting_of_films(const case_data::Case& input,
+                                      const frozen::FilmModel& model) {
+  const SurfaceMesh mesh = model.fine_mesh(model.reference().points);
+  std::vector<int> all;
+  for (std::size_t k = 0; k < mesh.labels.size(); ++k) {
+    if (is_film(input, mesh.labels[k])) {
+      all.push_back(static_cast<int>(k));
+    }
+  }
+  return films::check_nesting(mesh, all);
 }
 
 std::vector<CurvePieces> pieces_of_curves(
@@ -92,6 +124,7 @@ void write_evolved_film(const EvolvedFilm& film,
     json["units"] = forward::units_json(*film.units);
   }
   json.update(forward::film_json(film.report));
+  json["nesting"] = nesting_json(film.nesting);
   for (const auto& [name, value] : film.quantities) {
     json["quantities"][name] = value;
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "evolve/films/film_complex.h"
+#include "evolve/films/nesting.h"
 #include "evolve/frozen/film_model.h"
 #include "pipeline/case_data/case.h"
 #include "pipeline/study/film_frames.h"
@@ -26,6 +27,7 @@ struct EvolvedFilm {
   std::string title;
   std::optional<UnitSystem> units;  // none: a datafile has none
   settle::FilmReport report;
+  films::NestingReport nesting;
   std::optional<Failure> failure;
   std::vector<std::string> solids;  // surfaces of film.vtp that are no films
   std::vector<std::pair<std::string, double>> areas;  // by film [length^2]
@@ -36,6 +38,10 @@ struct EvolvedFilm {
 /// The area of each film of the case at rest, at its own resolution.
 std::vector<std::pair<std::string, double>> areas_of_films(
     const case_data::Case& input, const frozen::FilmModel& model);
+
+/// How the films of the case at rest lie to each other.
+films::NestingReport nesting_of_films(const case_data::Case& input,
+                                      const frozen::FilmModel& model);
 
 /// The case's closed curves, in pieces short enough to look smooth.
 std::vector<CurvePieces> pieces_of_curves(

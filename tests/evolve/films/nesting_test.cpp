@@ -73,8 +73,8 @@ TEST(Nesting, ScaledCatenoidsSettledTogetherDoNotCross) {
   films::FilmComplex complex = tubes({1.0, 1.2, 1.44}, 1.2);
   complex = groom::refine(settled(std::move(complex))).complex;
   complex = settled(std::move(complex));
-  const films::NestingReport report = films::check_nesting(complex);
-  EXPECT_TRUE(report.apart) << report.verdict;
+  const films::NestingReport report = films::check_nesting(complex.mesh);
+  EXPECT_TRUE(report.apart) << films::nesting_text(report);
   EXPECT_THAT(report.order, ElementsAre("film_100", "film_120", "film_144"));
   EXPECT_EQ(report.inside.size(), 3U);
   ASSERT_EQ(report.gaps.size(), 3U);
@@ -82,7 +82,7 @@ TEST(Nesting, ScaledCatenoidsSettledTogetherDoNotCross) {
   // 0.2 x 0.911 between the waists. The pairs are scaled copies.
   EXPECT_NEAR(report.gaps[0].gap, 0.152, 0.01);
   EXPECT_NEAR(report.gaps[2].gap, 1.2 * report.gaps[0].gap, 1e-6);
-  EXPECT_NEAR((report.gaps[0].on_film - report.gaps[0].on_other).norm(),
+  EXPECT_NEAR((report.gaps[0].on_group - report.gaps[0].on_other).norm(),
               report.gaps[0].gap, 1e-15);
 }
 
@@ -101,7 +101,7 @@ TEST(Nesting, FilmsThatCrossAreNamedWithTheirPlace) {
   }
   append(complex, upper, "upper");
   complex = settled(std::move(complex));
-  const films::NestingReport report = films::check_nesting(complex);
+  const films::NestingReport report = films::check_nesting(complex.mesh);
   EXPECT_FALSE(report.apart);
   ASSERT_FALSE(report.crossings.empty());
   EXPECT_GT(report.crossing_pairs, 20);
@@ -110,8 +110,8 @@ TEST(Nesting, FilmsThatCrossAreNamedWithTheirPlace) {
   EXPECT_EQ(report.crossings[0].other, "upper");
   EXPECT_NEAR(report.crossings[0].position.head<2>().norm(), 0.956, 0.03);
   EXPECT_NEAR(report.crossings[0].position.z(), 0.28, 0.05);
-  EXPECT_THAT(report.verdict, HasSubstr("'lower'"));
-  EXPECT_THAT(report.verdict, HasSubstr("'upper'"));
+  EXPECT_THAT(films::nesting_text(report), HasSubstr("'lower'"));
+  EXPECT_THAT(films::nesting_text(report), HasSubstr("'upper'"));
   EXPECT_EQ(report.gaps[0].gap, 0.0);
 }
 
@@ -122,12 +122,12 @@ TEST(Nesting, ConcentricSpheresAreOrderedInsideOut) {
   append(mesh, shapes::sphere(1.0, 3), "middle", Vec3(0.2, 0, 0));
   append(mesh, shapes::sphere(1.0, 2), "beside", Vec3(5, 0, 0));
   const films::NestingReport report = films::check_nesting(mesh);
-  EXPECT_TRUE(report.apart) << report.verdict;
+  EXPECT_TRUE(report.apart) << films::nesting_text(report);
   EXPECT_THAT(report.order, ElementsAre("inner", "middle", "outer", "beside"));
   EXPECT_EQ(report.inside.size(), 3U);
   // Spheres of radius 0.5 and 1, centres 0.1 apart: 0.4 less the sagitta.
   EXPECT_NEAR(report.gaps[3].gap, 0.4, 0.01);
-  EXPECT_THAT(report.verdict, HasSubstr("apart"));
+  EXPECT_THAT(films::nesting_text(report), HasSubstr("apart"));
 }
 
 TEST(Nesting, GapIsThatOfEveryPairOfFacets) {
@@ -138,20 +138,26 @@ TEST(Nesting, GapIsThatOfEveryPairOfFacets) {
   const Vec3 corner(1, 1, 1);
   EXPECT_NEAR(report.gaps[0].gap, (Vec3(1.1, 1.3, 1.9) - corner).norm() - 0.5,
               0.02);
-  EXPECT_NEAR((report.gaps[0].on_film - corner).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((report.gaps[0].on_group - corner).norm(), 0.0, 1e-12);
 }
 
-TEST(Nesting, FilmsThatShareARimAreJoinedNotCrossing) {
+TEST(Nesting, FilmsThatShareARimAreOneGroup) {
   films::FilmComplex complex =
       shapes::tube(1, 1, 12, 4, [](double) { return 1.0; });
   complex.mesh.labels.push_back("upper");
   for (std::size_t f = 48; f < 96; ++f) {
     complex.mesh.facet_label[f] = 1;
   }
-  const films::NestingReport report = films::check_nesting(complex.mesh);
-  EXPECT_TRUE(report.apart) << report.verdict;
-  EXPECT_TRUE(report.gaps[0].joined);
-  EXPECT_TRUE(report.inside.empty());
+  films::NestingReport report = films::check_nesting(complex.mesh);
+  EXPECT_TRUE(report.apart);
+  EXPECT_TRUE(report.gaps.empty());
+  EXPECT_EQ(films::nesting_text(report), "");
+  // A ball within the tube lies in the group, in neither film alone.
+  append(complex.mesh, shapes::sphere(0.6, 2), "ball", Vec3(0, 0, 0));
+  report = films::check_nesting(complex.mesh);
+  ASSERT_EQ(report.inside.size(), 1U);
+  EXPECT_EQ(report.inside[0].inner, "ball");
+  EXPECT_THAT(report.inside[0].outer, HasSubstr("and 1 more"));
 }
 
 TEST(Nesting, RefusesBrokenMeshes) {

@@ -6,7 +6,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "tests/support/temp_folder.h"
 
@@ -14,6 +16,7 @@ namespace meniscus::datafile_test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // A square rim with a vertex in its middle.
 const std::string kSquare =
@@ -73,6 +76,27 @@ TEST(Datafile, RunsCommandsThatStandOutsideOfMacros) {
       evolved(kSquare + "read\nr 2\nprintf \"%d\\n\", facet_count\n", options);
   EXPECT_EQ(refined.report.facets, 64U);
   EXPECT_EQ(refined.printed, "64\n");
+}
+
+TEST(Datafile, SaysHowFilmsLieToEachOther) {
+  EXPECT_THAT(results::datafile_text(evolved(kSquare, {})),
+              Not(HasSubstr("apart")));
+  // A second square, 0.25 above the first.
+  const std::string two =
+      "vertices\n1 0 0 0 fixed\n2 1 0 0 fixed\n3 1 1 0 fixed\n4 0 1 0 "
+      "fixed\n5 0 0 .25 fixed\n6 1 0 .25 fixed\n7 1 1 .25 fixed\n8 0 1 .25 "
+      "fixed\nedges\n1 1 2 fixed\n2 2 3 fixed\n3 3 4 fixed\n4 4 1 fixed\n"
+      "5 5 6 fixed\n6 6 7 fixed\n7 7 8 fixed\n8 8 5 fixed\n"
+      "faces\n1 1 2 3 4\n2 5 6 7 8\n";
+  const results::DatafileResult result = evolved(two, {});
+  ASSERT_FALSE(result.failure) << result.failure->message;
+  EXPECT_TRUE(result.nesting.apart);
+  EXPECT_THAT(results::datafile_text(result), HasSubstr("least gap 0.25,"));
+  const TempFolder folder;
+  results::write_datafile_result(result, "two", folder.path());
+  const auto json = nlohmann::json::parse(read_file(folder / "film.json"));
+  ASSERT_EQ(json.at("nesting").at("gaps").size(), 1U);
+  EXPECT_DOUBLE_EQ(json.at("nesting").at("gaps")[0].at("gap"), 0.25);
 }
 
 TEST(Datafile, LeavesMacrosAloneUnlessAsked) {
