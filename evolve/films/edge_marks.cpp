@@ -9,6 +9,7 @@
 
 #include "core/geometry/edge_key.h"
 #include "core/math/dense.h"
+#include "core/math/golden_section.h"
 #include "evolve/films/rims.h"
 
 namespace meniscus::films {
@@ -18,8 +19,6 @@ namespace {
 constexpr int kWallSteps = 30;
 constexpr int kCurveSamples = 96;
 constexpr int kMarchSteps = 64;
-constexpr double kGolden = 0.6180339887498949;
-constexpr int kGoldenSteps = 48;  // to 1e-10 of the bracket
 
 bool along_curve(const ComplexEdge& mark) {
   return mark.kind == VertexKind::OnCurve || mark.kind == VertexKind::Slides;
@@ -29,30 +28,6 @@ bool on_curve_of(const ComplexEdge& mark, const ComplexVertex& vertex) {
   return (vertex.kind == VertexKind::OnCurve ||
           vertex.kind == VertexKind::Slides) &&
          vertex.curve == mark.curve;
-}
-
-template <typename Distance>
-double golden_section(double low, double high, const Distance& distance) {
-  double a = high - kGolden * (high - low);
-  double b = low + kGolden * (high - low);
-  double fa = distance(a);
-  double fb = distance(b);
-  for (int step = 0; step < kGoldenSteps; ++step) {
-    if (fa <= fb) {
-      high = b;
-      b = a;
-      fb = fa;
-      a = high - kGolden * (high - low);
-      fa = distance(a);
-    } else {
-      low = a;
-      a = b;
-      fa = fb;
-      b = low + kGolden * (high - low);
-      fb = distance(b);
-    }
-  }
-  return 0.5 * (low + high);
 }
 
 /// In closed form: samples may miss the near one of two sides close together.
@@ -214,6 +189,35 @@ PlacedVertex born_on(const FilmComplex& complex, const ComplexEdge& mark,
     }
   }
   return made;
+}
+
+BandPlace place_on_band(const FilmComplex& complex, int band,
+                        const PlacedVertex& at) {
+  const RuledBand& here = complex.bands[band];
+  const ComplexVertex& vertex = at.vertex;
+  if (vertex.kind == VertexKind::OnBand && vertex.curve == band) {
+    return {vertex.t, vertex.share};
+  }
+  if (vertex.kind == VertexKind::OnCurve && vertex.curve == here.outer) {
+    return {vertex.t, 0.0};
+  }
+  if (vertex.kind == VertexKind::OnCurve && vertex.curve == here.inner) {
+    return {here.partner_of_inner(vertex.t), 1.0};
+  }
+  // On a side that another polygon shares, whose parameter the vertex has.
+  return nearest_on_band(here, complex.curves, at.place);
+}
+
+PlacedVertex born_on_band(const FilmComplex& complex, int band,
+                          const PlacedVertex& a, const PlacedVertex& b) {
+  const BandPlace middle = middle_on_band(place_on_band(complex, band, a),
+                                          place_on_band(complex, band, b));
+  return {{.kind = VertexKind::OnBand,
+           .curve = band,
+           .t = middle.t,
+           .share = middle.share},
+          point_on_band(complex.bands[band], complex.curves, middle.t,
+                        middle.share)};
 }
 
 }  // namespace meniscus::films

@@ -45,6 +45,15 @@ struct PlacedVertex {
 PlacedVertex born_on(const FilmComplex& complex, const ComplexEdge& mark,
                      const PlacedVertex& a, const PlacedVertex& b);
 
+/// Where on a band a vertex stands that is inside its ring or on its curves.
+BandPlace place_on_band(const FilmComplex& complex, int band,
+                        const PlacedVertex& at);
+
+/// The vertex born in a ring, halfway between a and b of its band: inside it,
+/// or on its curves.
+PlacedVertex born_on_band(const FilmComplex& complex, int band,
+                          const PlacedVertex& a, const PlacedVertex& b);
+
 /// The point of the level sets of a constraint set next to `at`, by Newton's
 /// least steps with exact gradients. `held` false: one-sided ones count only
 /// where they are violated. Stays where it is when the gradients vanish.

@@ -11,6 +11,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/math/expression.h"
 #include "evolve/films/film_system.h"
+#include "evolve/films/ruled_band.h"
 
 namespace meniscus::films {
 
@@ -18,16 +19,18 @@ enum class VertexKind {
   Free,     // liquid: moves with its films, within its constraints
   OnCurve,  // held at point_at(curves[curve], t)
   Slides,   // liquid: moves along curves[curve], t is unknown
-  InCap,    // inside a solid cap: a fixed linear map of the cap's rim
+  InCap,    // inside a flat cap: a fixed linear map of the cap's rim
+  OnBand,   // inside a ring: held at point_on_band(bands[curve], t, share)
   Fixed     // solid
 };
 
 struct ComplexVertex {
   VertexKind kind = VertexKind::Free;
-  int curve = -1;        // OnCurve, Slides: index into curves
-  double t = 0.0;        // OnCurve, Slides: curve parameter
+  int curve = -1;        // OnCurve, Slides: index into curves; OnBand: bands
+  double t = 0.0;        // of the curve; OnBand: of the band's outer curve
   int constraints = -1;  // Free: index into constraint_sets; -1: none
   bool held = true;      // by them now; false: a one-sided wall was left
+  double share = 0.0;    // OnBand: of the way to the inner curve
 };
 
 /// Marked edges: those that refinement and grooming must know of. Every other
@@ -74,6 +77,7 @@ struct ComplexSurface {
   std::optional<Expression> tension_field;  // over x, y, z; replaces tension
   bool refine = true;                       // false: facets stay as they are
   int constraints = -1;  // of the vertices born inside it (obstacles)
+  int band = -1;         // of a ring: index into bands
 };
 
 /// One surface's part in a body: sign +1 where the surface's facet normals
@@ -138,6 +142,7 @@ struct FilmComplex {
   std::vector<ComplexSurface> surfaces;  // one per label
   std::vector<ComplexBody> bodies;
   std::vector<curves::Curve> curves;
+  std::vector<RuledBand> bands;  // of rings
   std::vector<LevelSet> level_sets;
   std::vector<std::vector<int>> constraint_sets;  // of indices of level_sets
   std::vector<LineIntegral> integrals;

@@ -81,25 +81,42 @@ Carry::Extension Carry::extend(const films::FilmComplex& reference,
 Carry::Carry(const films::FilmComplex& reference,
              const std::vector<int>& film_order)
     : reference_(reference.mesh.points),
-      kinds_(reference.vertices),
+      stands_(reference.curves.size()),
+      stands_on_curves_(reference.vertices.size(), 0),
       films_(extend(reference, films::VertexKind::Free, film_order)),
-      caps_(extend(reference, films::VertexKind::InCap, {})) {}
+      caps_(extend(reference, films::VertexKind::InCap, {})) {
+  for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
+    const films::ComplexVertex& vertex = reference.vertices[v];
+    const auto id = static_cast<int>(v);
+    if (vertex.kind == films::VertexKind::OnCurve) {
+      stands_on_curves_[v] = 1;
+      stands_[vertex.curve].push_back({id, vertex.t, 1.0});
+    } else if (vertex.kind == films::VertexKind::OnBand) {
+      const films::RuledBand& band = reference.bands[vertex.curve];
+      stands_on_curves_[v] = 1;
+      stands_[band.outer].push_back({id, vertex.t, 1.0 - vertex.share});
+      stands_[band.inner].push_back(
+          {id, band.partner_of_outer(vertex.t), vertex.share});
+    }
+  }
+}
 
 Points Carry::rim_moves(const std::vector<curves::Curve>& curves) const {
   Points moves(reference_.size(), Vec3::Zero());
-  std::vector<std::vector<std::size_t>> rims(curves.size());
-  std::vector<std::vector<double>> parameters(curves.size());
-  for (std::size_t v = 0; v < kinds_.size(); ++v) {
-    if (kinds_[v].kind == films::VertexKind::OnCurve) {
-      const auto c = static_cast<std::size_t>(kinds_[v].curve);
-      rims[c].push_back(v);
-      parameters[c].push_back(kinds_[v].t);
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    std::vector<double> parameters;
+    parameters.reserve(stands_[c].size());
+    for (const Stand& stand : stands_[c]) {
+      parameters.push_back(stand.t);
+    }
+    const Points places = curves::points_at(curves[c].shape, parameters);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      moves[stands_[c][k].vertex] += stands_[c][k].weight * places[k];
     }
   }
-  for (std::size_t c = 0; c < curves.size(); ++c) {
-    const Points places = curves::points_at(curves[c].shape, parameters[c]);
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      moves[rims[c][k]] = places[k] - reference_[rims[c][k]];
+  for (std::size_t v = 0; v < moves.size(); ++v) {
+    if (stands_on_curves_[v] != 0) {
+      moves[v] -= reference_[v];
     }
   }
   return moves;
@@ -145,8 +162,8 @@ Points Carry::transpose(const Points& by_points) const {
   Points result = by_points;
   add_transposed(films_, by_points, result);
   add_transposed(caps_, by_points, result);
-  for (std::size_t v = 0; v < kinds_.size(); ++v) {
-    if (kinds_[v].kind != films::VertexKind::OnCurve) {
+  for (std::size_t v = 0; v < reference_.size(); ++v) {
+    if (stands_on_curves_[v] == 0) {
       result[v].setZero();
     }
   }
@@ -166,8 +183,8 @@ Points Carry::at(const Points& rim_moves, double fraction) const {
     move *= fraction;
   }
   Points result = reference_;
-  for (std::size_t v = 0; v < kinds_.size(); ++v) {
-    if (kinds_[v].kind == films::VertexKind::OnCurve) {
+  for (std::size_t v = 0; v < reference_.size(); ++v) {
+    if (stands_on_curves_[v] != 0) {
       result[v] += moves[v];
     }
   }

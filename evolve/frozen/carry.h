@@ -8,7 +8,8 @@
 
 namespace meniscus::frozen {
 
-/// X(p) = X(p0) + C (r(p) - r(p0)): every vertex moves by a fixed mean of the
+/// X(p) = X(p0) + C (r(p) - r(p0)): vertices on curves and rings move with
+/// them (rim vertices here), every other vertex moves by a fixed mean of the
 /// moves of the rim vertices, with rows of C that sum to one. On films C is
 /// harmonic with positive weights (monotone: no vertex moves further than the
 /// rims do); on a flat cap it is harmonic with exact cotangents, which
@@ -20,6 +21,16 @@ class Carry {
   /// found it. Throws MeshError for a film whose Laplacian is singular.
   Carry(const films::FilmComplex& reference,
         const std::vector<int>& film_order);
+
+  /// A vertex that stands on a curve, or by a share on each of two: X_v = sum
+  /// of weight x point_at(curve, t).
+  struct Stand {
+    int vertex = 0;
+    double t = 0.0;
+    double weight = 1.0;
+  };
+  /// Per curve, in the complex's order.
+  const std::vector<std::vector<Stand>>& stands() const { return stands_; }
 
   /// Moves of the rim vertices from the reference to `curves` (same order as
   /// the complex's curves); zero at all other vertices.
@@ -51,7 +62,8 @@ class Carry {
                              const Points& by_points, Points& result);
 
   Points reference_;
-  std::vector<films::ComplexVertex> kinds_;
+  std::vector<std::vector<Stand>> stands_;
+  std::vector<char> stands_on_curves_;  // per vertex
   Extension films_;
   Extension caps_;
 };

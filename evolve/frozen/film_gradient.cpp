@@ -94,11 +94,10 @@ std::vector<RimGradient> FilmModel::Impl::rim_gradients(
   for (std::size_t c = 0; c < result.size(); ++c) {
     result[c].curve = complex.curves[c].name;
   }
-  for (std::size_t v = 0; v < by_rim.size(); ++v) {
-    const films::ComplexVertex& vertex = complex.vertices[v];
-    if (vertex.kind == films::VertexKind::OnCurve) {
-      result[vertex.curve].parameters.push_back(vertex.t);
-      result[vertex.curve].by_points.push_back(by_rim[v]);
+  for (std::size_t c = 0; c < result.size(); ++c) {
+    for (const Carry::Stand& stand : carry->stands()[c]) {
+      result[c].parameters.push_back(stand.t);
+      result[c].by_points.push_back(stand.weight * by_rim[stand.vertex]);
     }
   }
   return result;
@@ -158,22 +157,23 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
       .volumes = VectorX::Zero(energy->functionals()),
       .pressures = VectorX::Zero(energy->functionals())};
   // Rim points move at fixed parameters of their curves.
-  const Points still(complex.vertices.size(), Vec3::Zero());
-  for (const RimGradient& rim : rim_gradients(still)) {
-    const curves::Curve* curve = find_named(system.curves, rim.curve);
-    const curves::Curve* moving = find_named(rates.curves, rim.curve);
+  for (std::size_t c = 0; c < complex.curves.size(); ++c) {
+    const std::string& name = complex.curves[c].name;
+    const curves::Curve* curve = find_named(system.curves, name);
+    const curves::Curve* moving = find_named(rates.curves, name);
     if (curve == nullptr || moving == nullptr) {
-      throw InvalidInput(no_curve(rim.curve));
+      throw InvalidInput(no_curve(name));
+    }
+    const std::vector<Carry::Stand>& stands = carry->stands()[c];
+    std::vector<double> parameters;
+    parameters.reserve(stands.size());
+    for (const Carry::Stand& stand : stands) {
+      parameters.push_back(stand.t);
     }
     const Points moves =
-        curves::point_rates(curve->shape, moving->shape, rim.parameters);
-    std::size_t next = 0;
-    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-      const films::ComplexVertex& vertex = complex.vertices[v];
-      if (vertex.kind == films::VertexKind::OnCurve &&
-          complex.curves[vertex.curve].name == rim.curve) {
-        result.base[v] = moves[next++];
-      }
+        curves::point_rates(curve->shape, moving->shape, parameters);
+    for (std::size_t k = 0; k < stands.size(); ++k) {
+      result.base[stands[k].vertex] += stands[k].weight * moves[k];
     }
   }
   // The rest of the base follows by the constant weights of the discrete

@@ -1,4 +1,4 @@
-// Models without liquid: plane faces between polygons.
+// Models without liquid: plane faces and ruled rings.
 #include "evolve/frozen/film_model_impl.h"
 #include "evolve/groom/refine.h"
 #include "evolve/settle/equilibrium.h"
@@ -45,7 +45,7 @@ settle::FilmState FilmModel::Impl::rigid_state(
   state.heights = VectorX::Zero(0);
   state.report = settle::figures_of(*energy, goal, points,
                                     VectorX::Zero(energy->functionals()));
-  state.report.verdict = "no films, plane faces only";
+  state.report.verdict = "no films: faces of their curves alone";
   return state;
 }
 

@@ -19,6 +19,7 @@ struct EdgePlan {
   std::vector<int> middle;  // -1: stays whole
   std::vector<char> in_film;
   std::vector<int> obstacle;  // constraint set of its films, or -1
+  std::vector<int> band;      // of its rings, or -1
 };
 
 EdgePlan plan_edges(const films::FilmComplex& complex,
@@ -27,6 +28,7 @@ EdgePlan plan_edges(const films::FilmComplex& complex,
   list_edges(complex.mesh.facets, plan.edges, plan.facet_edges);
   plan.in_film.assign(plan.edges.size(), 0);
   plan.obstacle.assign(plan.edges.size(), -1);
+  plan.band.assign(plan.edges.size(), -1);
   // An edge is a film's, stays whole or meets an obstacle if any of its facets
   // says so.
   std::vector<char> whole(plan.edges.size(), 0);
@@ -37,6 +39,7 @@ EdgePlan plan_edges(const films::FilmComplex& complex,
       plan.in_film[e] |= surface.liquid ? 1 : 0;
       whole[e] |= surface.refine ? 0 : 1;
       plan.obstacle[e] = std::max(plan.obstacle[e], surface.constraints);
+      plan.band[e] = std::max(plan.band[e], surface.band);
     }
   }
   std::vector<char> seen(marks.all().size(), 0);
@@ -55,6 +58,7 @@ EdgePlan plan_edges(const films::FilmComplex& complex,
       plan.mark.push_back(static_cast<int>(m));
       plan.in_film.push_back(0);
       plan.obstacle.push_back(-1);
+      plan.band.push_back(-1);
       whole.push_back(0);
     }
   }
@@ -82,6 +86,9 @@ films::PlacedVertex middle_of(const films::FilmComplex& complex,
   if (plan.mark[e] >= 0) {
     return films::born_on(complex, marks.all()[plan.mark[e]], {va, pa},
                           {vb, pb});
+  }
+  if (plan.band[e] >= 0 && plan.in_film[e] == 0) {
+    return films::born_on_band(complex, plan.band[e], {va, pa}, {vb, pb});
   }
   films::PlacedVertex made;
   made.place = 0.5 * (pa + pb);

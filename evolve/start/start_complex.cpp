@@ -13,8 +13,10 @@
 #include "evolve/energy/fields.h"
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/body_sides.h"
+#include "evolve/films/edge_marks.h"
 #include "evolve/films/rim_grading.h"
 #include "evolve/films/shared_sides.h"
+#include "evolve/start/band_rows.h"
 #include "evolve/start/branch_facets.h"
 #include "evolve/start/cap_faces.h"
 #include "evolve/start/disk_fill.h"
@@ -302,8 +304,7 @@ class StartBuilder {
       loops.push_back(points_of(rims.back()));
     }
     if (!cap.inner.empty()) {
-      add_filling(fill_ring(loops[0], loops[1], edge_), rims, label,
-                  films::VertexKind::InCap);
+      add_ring(rims, label);
       return;
     }
     for (std::size_t k = 0; k < loops.size(); ++k) {
@@ -316,6 +317,41 @@ class StartBuilder {
         bounds.push_back(rims[k]);
       }
       fill(bounds, label, films::VertexKind::InCap);
+    }
+  }
+
+  void add_ring(const std::vector<Rim>& rims, int label) {
+    const auto id = static_cast<int>(result_.bands.size());
+    result_.surfaces[label].band = id;
+    result_.bands.push_back(
+        films::match_band(result_.curves, rims[0].curve, rims[1].curve));
+    const films::RuledBand& band = result_.bands.back();
+    std::vector<int> ids;
+    std::vector<BandRim> sides;
+    for (const Rim& rim : rims) {
+      BandRim& side = sides.emplace_back();
+      side.points = points_of(rim);
+      for (const int v : rim.ids) {
+        side.t.push_back(
+            films::place_on_band(result_, id,
+                                 {result_.vertices[v], result_.mesh.points[v]})
+                .t);
+      }
+      ids.insert(ids.end(), rim.ids.begin(), rim.ids.end());
+    }
+    const BandFilling filling =
+        fill_band(band, result_.curves, sides[0], sides[1], edge_);
+    for (std::size_t k = 0; k < filling.between.size(); ++k) {
+      ids.push_back(static_cast<int>(result_.mesh.points.size()));
+      const films::BandPlace& place = filling.between[k];
+      result_.vertices.push_back({.kind = films::VertexKind::OnBand,
+                                  .curve = id,
+                                  .t = place.t,
+                                  .share = place.share});
+      result_.mesh.points.push_back(filling.mesh.points[ids.size() - 1]);
+    }
+    for (const Triangle& t : filling.mesh.facets) {
+      add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
     }
   }
 

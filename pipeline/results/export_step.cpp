@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kMostDeviation = 0.1;  // of the film's edge: else a warning
 constexpr double kMostBreak = 1.0;      // [degree]
+constexpr double kFlat = 1e-7;          // of the part's size
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 solid::RimPiece line_piece(const Vec3& from, const Vec3& to) {
@@ -102,6 +103,30 @@ std::vector<solid::NamedRim> rims_of(const films::FilmSystem& system,
   return rims;
 }
 
+/// A disk, or a ring between curves of one plane; other rings are ruled.
+bool is_flat(const films::CapSpec& cap, const SurfaceMesh& mesh) {
+  const int label = mesh.label_of(cap.name);
+  if (cap.inner.empty() || label < 0) {
+    return true;
+  }
+  Vec3 normal = Vec3::Zero();
+  std::vector<int> vertices;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (mesh.facet_label[f] == label) {
+      normal += area_vector2(mesh, static_cast<int>(f));
+      const Triangle& t = mesh.facets[f];
+      vertices.insert(vertices.end(), t.begin(), t.end());
+    }
+  }
+  // Around a bore the areas cancel, and their sum has any direction.
+  normal.normalize();
+  const double most = kFlat * bounding_diagonal(mesh.points);
+  return std::all_of(vertices.begin(), vertices.end(), [&](int v) {
+    return std::abs(normal.dot(mesh.points[v] - mesh.points[vertices[0]])) <=
+           most;
+  });
+}
+
 /// Volumes are those of flat facets, and the smooth film encloses more where
 /// it bulges: the same system with each body's volume so much less.
 films::FilmSystem for_smooth_films(films::FilmSystem system,
@@ -111,7 +136,7 @@ films::FilmSystem for_smooth_films(films::FilmSystem system,
   for (const std::string& label : mesh.labels) {
     flat.push_back(std::any_of(system.caps.begin(), system.caps.end(),
                                [&](const films::CapSpec& cap) {
-                                 return cap.name == label;
+                                 return cap.name == label && is_flat(cap, mesh);
                                })
                        ? 1
                        : 0);
@@ -204,7 +229,9 @@ void export_step(const std::filesystem::path& file,
   mesh = model.boundary(model.reference().points);
   solid::FilmSolidInput input{mesh, rims_of(system, model), {}, options.edge};
   for (const films::CapSpec& cap : system.caps) {
-    input.caps.push_back(cap.name);
+    if (is_flat(cap, mesh)) {
+      input.caps.push_back(cap.name);
+    }
   }
   const solid::FilmSolid solid = solid::film_solid(input);
   tell(options, solid.report, step::write_step(file, solid.brep, names));

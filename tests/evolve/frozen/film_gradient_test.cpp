@@ -155,6 +155,34 @@ TEST(FilmGradient, OfACatenoidBetweenMovingRings) {
   }
 }
 
+/// A pressed film with a bore, closed by rings whose rims leave their planes.
+films::FilmSystem bored(double p) {
+  films::FilmSystem system;
+  system.curves = {
+      {"out_low", curves::Circle{{0, 0, 0}, Vec3(0.1 * p, 0, -1), 1.0}},
+      {"out_high", curves::Circle{{0, 0.1 * p, 0.8}, Vec3::UnitZ(), 1.0}},
+      {"in_low", curves::Circle{{0, 0, 0.1 * p}, Vec3::UnitZ(), 0.5}},
+      {"in_high",
+       curves::Circle{
+           {0.1 * p, 0, 0.8}, Vec3(0.2 * p, 0.1, -1.0), 0.4 + 0.1 * p}}};
+  system.films = {
+      {"outer", films::FilmKind::Branch, {"out_low", "out_high"}, 1.0, {}}};
+  system.caps = {{"low", "out_low", "in_low"},
+                 {"high", "out_high", "in_high"},
+                 {"bore", "in_low", "in_high"}};
+  system.bodies = {
+      {"wall", {"outer", "low", "high", "bore"}, 1.9 + 0.1 * p, {}}};
+  return system;
+}
+
+TEST(FilmGradient, OfRingsBetweenMovingRims) {
+  for (const int refinements : {0, 1}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        bored(0), {.edge = 0.25, .refinements = refinements});
+    expect_exact(model, bored, 0.3, 1e-2);
+  }
+}
+
 films::FilmSystem blown(double p) {
   films::FilmSystem system = systems::cylinder(1.5);
   system.curves[1].shape =

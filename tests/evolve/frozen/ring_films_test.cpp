@@ -78,6 +78,47 @@ TEST(Ring, BetweenPlanesIsAFrustum) {
               kHalfTurn * 1.6 * slant, kRingFacets * kHalfTurn);
 }
 
+/// A film with a bore of `radius` through it, whose mouths are `tilted` against
+/// each other.
+films::FilmSystem bored(double radius, double tilted) {
+  films::FilmSystem system = tube();
+  system.curves[2].shape = curves::Circle{{0, 0, 0}, Vec3::UnitZ(), radius};
+  system.curves[3].shape =
+      curves::Circle{{0, 0, 0.8}, Vec3(tilted, 0, -1), radius};
+  system.films.resize(1);
+  system.caps = {{"low", "out_low", "in_low"},
+                 {"high", "out_high", "in_high"},
+                 {"bore", "in_low", "in_high"}};
+  system.bodies = {{"wall", {"outer", "low", "high", "bore"}, 1.55, {}}};
+  return system;
+}
+
+// Vertices and mid-sides alike, at the design that was frozen and at others.
+TEST(Ring, BetweenEqualCirclesIsTheirCylinder) {
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      bored(0.5, 0.0), {.edge = kRingEdge, .refinements = 2});
+  ASSERT_FALSE(model.reference().failure) << model.reference().failure->message;
+  for (const double radius : {0.5, 0.45}) {
+    const settle::FilmState state = model.settle(bored(radius, 0.0));
+    ASSERT_FALSE(state.failure) << state.failure->message;
+    const QuadraticSurface surface = model.surface(state.points);
+    const int bore = surface.base.label_of("bore");
+    for (std::size_t f = 0; f < surface.base.facets.size(); ++f) {
+      if (surface.base.facet_label[f] != bore) {
+        continue;
+      }
+      for (int k = 0; k < 3; ++k) {
+        const Vec3& corner = surface.base.points[surface.base.facets[f][k]];
+        const Vec3& middle = surface.mid[surface.facet_edges[f][k]];
+        EXPECT_NEAR(corner.head<2>().norm(), radius, 1e-12);
+        EXPECT_NEAR(middle.head<2>().norm(), radius, 1e-12);
+      }
+    }
+    EXPECT_NEAR(area_of(model, state.points, "bore"),
+                2.0 * kHalfTurn * radius * 0.8, kRingFacets);
+  }
+}
+
 TEST(Ring, StaysFlatWhereItsRimsGo) {
   const frozen::FilmModel model =
       frozen::FilmModel::freeze(tube(), {.edge = kRingEdge});

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Rings are ruled: a thick tube made of them is Lame's, its STEP file has the
+cylinders, and its gradients are exact where the rims leave their planes."""
+import math
+import unittest
+
+from program import ProgramTest
+
+INSIDE, OUTSIDE, LENGTH = 10.0, 20.0, 30.0
+PRESSURE, MODULUS, RATIO = 100.0, 2e5, 0.3
+
+
+def circle(name, height, radius, normal):
+    return f"""
+[curves.{name}]
+kind = "circle"
+center = [0, 0, {height}]
+normal = {normal}
+radius = {radius}
+"""
+
+
+def ring(name, curve, inner):
+    return f"""
+[solids.{name}]
+kind = "ring"
+curve = "{curve}"
+inner = "{inner}"
+"""
+
+
+TUBE = f"""title = "A thick tube of rings"
+units = "mm-N-MPa"
+
+[design.wide]
+initial = {OUTSIDE}
+bounds = [15.0, 25.0]
+
+[design.tilt]
+initial = 0.0
+bounds = [-0.2, 0.2]
+""" + (
+    circle("in_low", 0, INSIDE, [0, 0, 1]) +
+    circle("in_high", LENGTH, INSIDE, '["tilt", 0, -1]') +
+    circle("out_low", 0, '"wide"', [0, 0, 1]) +
+    circle("out_high", LENGTH, OUTSIDE, [0, 0, 1]) +
+    ring("bore", "in_low", "in_high") +
+    ring("mantle", "out_low", "out_high") +
+    ring("foot", "out_low", "in_low") +
+    ring("head", "out_high", "in_high")) + f"""
+[bodies.tube]
+enclosed_by = ["bore", "mantle", "foot", "head"]
+material = "steel"
+
+[materials.steel]
+youngs_modulus = {MODULUS}
+poisson_ratio = {RATIO}
+density = 7.85e-9
+
+[load_cases.pressed]
+supports = [
+  {{ on = "foot", fix = "z" }},
+  {{ on = "head", fix = "z" }},
+  {{ on = "mantle", stiffness = [1, 1, 1] }},
+]
+loads = [{{ on = "bore", pressure = {PRESSURE} }}]
+
+[analysis]
+buckling = 0
+
+[responses.work]
+kind = "compliance"
+
+[responses.mass]
+kind = "mass"
+
+[resolution]
+fea = 5.0
+"""
+
+
+class Rings(ProgramTest):
+    def tube(self):
+        case = self.folder / "case.toml"
+        case.write_text(TUBE)
+        return case
+
+    def test_a_thick_tube_is_lames(self):
+        out = self.folder / "out"
+        self.expect(self.call("run", self.tube(), "--no-pictures",
+                              "--no-report", "--out", out), 0)
+        result = self.result(out)
+        a2, b2 = INSIDE**2, OUTSIDE**2
+        opening = ((1 + RATIO) * PRESSURE * INSIDE / (MODULUS * (b2 - a2)) *
+                   ((1 - 2 * RATIO) * a2 + b2))
+        work = PRESSURE * 2 * math.pi * INSIDE * LENGTH * opening
+        found = result["responses"]["work"]
+        self.assertAlmostEqual(found / work, 1, delta=5e-3)
+        self.assertLess(abs(found - work), result["response_errors"]["work"])
+        mass = math.pi * (b2 - a2) * LENGTH * 7.85e-9
+        self.assertAlmostEqual(result["responses"]["mass"] / mass, 1,
+                               delta=1e-3)
+        step = self.folder / "tube.step"
+        self.expect(self.call("export", out, "--format", "step", "--out",
+                              step), 0)
+        text = step.read_text()
+        self.assertEqual(text.count("CYLINDRICAL_SURFACE"), 2)
+        self.assertEqual(text.count("PLANE("), 2)
+
+    def test_its_gradients_are_exact(self):
+        self.expect(self.call("check-gradient", self.tube()), 0)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
