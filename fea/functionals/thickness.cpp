@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "fea/element/face_points.h"
 
 namespace meniscus::functionals {
@@ -18,6 +20,17 @@ constexpr double kAcross = -0.5;
 /// A wall beside (cosine above kAcross, below -kAcross) with a smaller ball
 /// than this part of the one across makes an edge; around a rod all are alike.
 constexpr double kBeside = 0.9;
+
+/// Of an edge whose wedge does not count: between its faces, and cosine of the
+/// faces' normals where they make such an edge.
+constexpr double kSharpestEdge = 10.0 * EIGEN_PI / 180.0;
+constexpr double kEdgeCosine = -0.17;
+/// Faces of a wedge: normals so near (cosine) to those at its edge, and the
+/// edge so near, times its distance were they plane.
+constexpr double kSameWall = 0.9;
+constexpr double kNearEdge = 1.5;
+
+constexpr double kBelowLeast = 0.05;  // of the least thickness
 
 /// The point of the seven at the centre is the first.
 constexpr int kCentre = 0;
@@ -46,12 +59,64 @@ std::vector<FaceCentre> outer_centres(const TetMesh& mesh) {
   return centres;
 }
 
+/// The middle of a sharp edge of the surface, and the normals of its faces.
+struct SharpEdge {
+  Vec3 place;
+  std::array<Vec3, 2> normal;
+};
+
+std::vector<SharpEdge> sharp_edges(const TetMesh& mesh) {
+  const element::FaceQuadrature plane(1, element::FaceRule::Seven);
+  std::map<Edge, int> first_face;
+  std::vector<SharpEdge> edges;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (!mesh.face_front.empty() && mesh.face_front[f] >= 0) {
+      continue;
+    }
+    const auto ids = mesh.face(f);
+    for (int k = 0; k < 3; ++k) {
+      const int a = ids[k];
+      const int b = ids[(k + 1) % 3];
+      const auto [known, is_new] = first_face.try_emplace(edge_key(a, b), f);
+      if (is_new) {
+        continue;
+      }
+      const Vec3 n = plane.at(mesh, known->second, kCentre).normal.normalized();
+      const Vec3 m = plane.at(mesh, f, kCentre).normal.normalized();
+      if (n.dot(m) < kEdgeCosine) {
+        edges.push_back({0.5 * (mesh.nodes[a] + mesh.nodes[b]), {n, m}});
+      }
+    }
+  }
+  return edges;
+}
+
+/// Are the faces, `diameter` apart, the two sides of a sharp edge's wedge?
+bool are_wedge(const FaceCentre& a, const FaceCentre& b, double diameter,
+               const std::vector<SharpEdge>& edges) {
+  const double cosine = -a.normal.dot(b.normal);  // of the wedge's angle
+  if (!(cosine < std::cos(kSharpestEdge))) {
+    return false;
+  }
+  const double to_edge =
+      0.5 * diameter * std::sqrt((1.0 + cosine) / (1.0 - cosine));
+  return std::any_of(edges.begin(), edges.end(), [&](const SharpEdge& edge) {
+    const auto along = [&](int side) {
+      return edge.normal[side].dot(a.normal) > kSameWall &&
+             edge.normal[1 - side].dot(b.normal) > kSameWall;
+    };
+    return (edge.place - a.place).norm() < kNearEdge * to_edge + diameter &&
+           (along(0) || along(1));
+  });
+}
+
 /// The face across from centre k, or -1 where none faces the other way.
-int across(const std::vector<FaceCentre>& centres, std::size_t k) {
+int across(const std::vector<FaceCentre>& centres, std::size_t k,
+           const std::vector<SharpEdge>& edges) {
   const FaceCentre& a = centres[k];
   double best = std::numeric_limits<double>::infinity();  // diameter
   double beside = best;
-  int face = -1;
+  const FaceCentre* other = nullptr;
   const auto look_at = [&](const FaceCentre& b) {
     const Vec3 e = b.place - a.place;
     const double depth = -a.normal.dot(e);
@@ -64,9 +129,10 @@ int across(const std::vector<FaceCentre>& centres, std::size_t k) {
       beside = std::min(beside, diameter);
       return;
     }
-    if (diameter < best || (diameter == best && b.face < face)) {
+    if (diameter < best ||
+        (diameter == best && other != nullptr && b.face < other->face)) {
       best = diameter;
-      face = b.face;
+      other = &b;
     }
   };
   // A ball's diameter is no less than the distance of two of its points.
@@ -82,7 +148,10 @@ int across(const std::vector<FaceCentre>& centres, std::size_t k) {
     }
     look_at(centres[i]);
   }
-  return beside < kBeside * best ? -1 : face;
+  return other == nullptr || beside < kBeside * best ||
+                 are_wedge(a, *other, best, edges)
+             ? -1
+             : other->face;
 }
 
 struct Distance {
@@ -110,10 +179,11 @@ Distance distance_of(const element::FacePoint& a, const element::FacePoint& b) {
 ThicknessPairs thickness_pairs(const TetMesh& base) {
   const std::vector<FaceCentre> centres = outer_centres(base);
   const int count = static_cast<int>(centres.size());
+  const std::vector<SharpEdge> edges = sharp_edges(base);
   std::vector<int> found(centres.size(), -1);
 #pragma omp parallel for schedule(dynamic, 64)
   for (int k = 0; k < count; ++k) {
-    found[k] = across(centres, static_cast<std::size_t>(k));
+    found[k] = across(centres, static_cast<std::size_t>(k), edges);
   }
   ThicknessPairs pairs;
   for (std::size_t k = 0; k < centres.size(); ++k) {
@@ -128,7 +198,13 @@ ThicknessPairs thickness_pairs(const TetMesh& base) {
                     count));
   }
   std::sort(pairs.faces.begin(), pairs.faces.end());
+  pairs.least = thinnest_place(base, pairs, 0.0).value;
   return pairs;
+}
+
+double usual_sharpness(const ThicknessPairs& pairs) {
+  const auto count = static_cast<double>(pairs.faces.size());
+  return std::max(1.0, std::log(count)) / (kBelowLeast * pairs.least);
 }
 
 ThinPlace thinnest_place(const TetMesh& mesh, const ThicknessPairs& pairs,

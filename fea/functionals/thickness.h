@@ -12,11 +12,18 @@ namespace meniscus::functionals {
 /// Faces of the outer surface, each with the one across the solid from it: the
 /// one whose centre lies on the smallest ball that touches the face at its own
 /// centre from within, of those that face the other way (normals more than 120
-/// degrees apart). None where a wall beside (60 to 120 degrees) has a clearly
-/// smaller ball: next to edges every solid is thin.
+/// degrees apart). None next to edges, where every solid is thin: where a wall
+/// beside (60 to 120 degrees) has a clearly smaller ball, and in the wedge of
+/// an edge sharper than 60 degrees, down to 10; below that a wedge is a thin
+/// wall.
 struct ThicknessPairs {
   std::vector<std::array<int, 2>> faces;
+  double least = 0.0;  // distance of a pair, at the base design [length]
 };
+
+/// 1 / smoothing of thickness_functional() that keeps its value within 5 % of
+/// `pairs.least` below the least distance, of however many pairs [1/length].
+double usual_sharpness(const ThicknessPairs& pairs);
 
 /// Ask once, at a model's base design: the same pairs must count in every
 /// design. Work grows with the square of the faces within a thickness of each

@@ -235,9 +235,12 @@ ResponsePartials radius(const ResponseTask& task) {
 }
 
 ResponsePartials thickness(const ResponseTask& task) {
+  const functionals::ThicknessPairs& pairs = *task.fields.pairs;
+  const double sharpness = task.response.smoothing
+                               ? 1.0 / *task.response.smoothing
+                               : functionals::usual_sharpness(pairs);
   return to_partials(functionals::thickness_functional(
-      task.fields.mesh, *task.fields.pairs,
-      sharpness_of(task.response, task.fields), task.derivatives));
+      task.fields.mesh, pairs, sharpness, task.derivatives));
 }
 
 ResponsePartials distance(const ResponseTask& task) {

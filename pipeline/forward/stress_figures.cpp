@@ -27,20 +27,20 @@ Json uniformity_json(const stress::Uniformity& u) {
 
 std::optional<StressFigures::Safety> safety_of(
     const TetMesh& mesh, const std::vector<element::Material>& materials,
-    const stress::RecoveredStress& stress, const std::vector<char>& excluded) {
-  const stress::SafetyFactors safety =
-      stress::safety_factors(mesh, materials, stress, excluded);
+    const stress::RecoveredStress& recovered,
+    const element::PointStress& points, const std::vector<char>& excluded) {
+  const stress::SafetyFactor safety =
+      stress::safety_factor(mesh, materials, recovered, points, excluded);
   if (!std::isfinite(safety.smallest)) {
     return std::nullopt;
   }
   const element::Material& weakest =
       materials[static_cast<std::size_t>(safety.region)];
-  return StressFigures::Safety{
-      .factor = safety.smallest,
-      .von_mises = safety.von_mises,
-      .position = mesh.nodes[static_cast<std::size_t>(safety.node)],
-      .material = weakest.name,
-      .yield_strength = *weakest.yield_strength};
+  return StressFigures::Safety{.factor = safety.smallest,
+                               .von_mises = safety.von_mises,
+                               .position = safety.position,
+                               .material = weakest.name,
+                               .yield_strength = *weakest.yield_strength};
 }
 
 std::vector<char> complement(std::vector<char> excluded) {
@@ -67,14 +67,15 @@ StressFigures figures_of(const EvaluationFields& fields,
   if (fields.exclusion.all.elements > 0) {
     const std::vector<char> counted = complement(excluded);
     stress::find_peak(mesh, counted, nodal);
-    figures.excluded =
-        StressFigures::Excluded{nodal.max_von_mises, place(),
-                                safety_of(mesh, materials, recovered, counted)};
+    figures.excluded = StressFigures::Excluded{
+        nodal.max_von_mises, place(),
+        safety_of(mesh, materials, recovered, points, counted)};
     stress::find_peak(mesh, excluded, nodal);
   }
   figures.max_von_mises = nodal.max_von_mises;
+  figures.readings = stress::peak_readings(mesh, recovered, points, excluded);
   figures.position = place();
-  figures.safety = safety_of(mesh, materials, recovered, excluded);
+  figures.safety = safety_of(mesh, materials, recovered, points, excluded);
   figures.uniformity =
       stress::stress_uniformity(mesh, materials, points, excluded);
   return figures;
@@ -101,7 +102,11 @@ Json stress_json(const std::vector<StressFigures>& figures) {
   Json json = Json::object();
   for (const StressFigures& f : figures) {
     Json entry = {{"max_von_mises", f.max_von_mises},
-                  {"position", files::place_json(f.position)}};
+                  {"position", files::place_json(f.position)},
+                  {"readings",
+                   {{"recovered", f.readings.recovered},
+                    {"averaged", f.readings.averaged},
+                    {"points", f.readings.points}}}};
     if (f.safety) {
       entry["safety_factor"] = safety_json(*f.safety);
     }

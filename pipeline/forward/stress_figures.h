@@ -15,8 +15,9 @@ namespace meniscus::forward {
 
 struct StressFigures {
   std::string load_case;
-  double max_von_mises = 0.0;    // of nodal stresses that count [pressure]
-  Vec3 position = Vec3::Zero();  // of that [length]
+  double max_von_mises = 0.0;     // of nodal stresses that count [pressure]
+  Vec3 position = Vec3::Zero();   // of that [length]
+  stress::PeakReadings readings;  // of the elements that count
   /// Where the part is nearest to yield, against each body's own material; none
   /// where no material has a yield strength.
   struct Safety {

@@ -89,6 +89,46 @@ TEST_P(Thickness, HasDerivatives) {
                InvalidInput);
 }
 
+/// A plate of thickness 1 whose ends lean: edges of 40 degrees.
+TEST_P(Thickness, SharpEdgesAreNoThinWalls) {
+  TetMesh plate = shapes::brick({6.0, 2.0, 1.0}, 24, 8, 4);
+  for (Vec3& p : plate.nodes) {
+    p.x() += 1.2 * p.z();
+  }
+  plate = of_order(plate);
+  const functionals::ThicknessPairs pairs = functionals::thickness_pairs(plate);
+  EXPECT_NEAR(pairs.least, 1.0, kThicknessRounding);
+  EXPECT_GT(pairs.faces.size(), 200U);
+}
+
+/// As long as it does not come to a feather: 6 degrees are a thin wall.
+TEST_P(Thickness, FeathersAreThin) {
+  TetMesh feather = shapes::brick({2.0, 1.0, 1.0}, 20, 6, 1);
+  for (Vec3& p : feather.nodes) {
+    p.z() *= 0.01 + 0.1 * p.x();
+  }
+  feather = of_order(feather);
+  EXPECT_LT(functionals::thickness_pairs(feather).least, 0.03);
+}
+
+/// However many pairs there are, and however small the wall.
+TEST_P(Thickness, UsualSharpnessStaysNearTheLeast) {
+  for (const int n : {2, 8, 20}) {
+    for (const double thickness : {0.02, 0.2}) {
+      const TetMesh plate =
+          of_order(shapes::brick({2.0, 1.0, thickness}, 2 * n, n, 1));
+      const functionals::ThicknessPairs pairs =
+          functionals::thickness_pairs(plate);
+      const double value =
+          functionals::thickness_functional(plate, pairs,
+                                            functionals::usual_sharpness(pairs))
+              .value;
+      EXPECT_LE(value, thickness);
+      EXPECT_GE(value, 0.9499 * thickness);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Orders, Thickness, testing::Values(1, 2));
 
 }  // namespace
