@@ -2,53 +2,88 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <Eigen/Geometry>
 
 #include "core/geometry/facet_tree.h"
+#include "core/geometry/orientation.h"
 
 namespace meniscus {
 
 namespace {
 
 using Corners = std::array<Vec3, 3>;
-using Vec3L = Eigen::Matrix<long double, 3, 1>;
 
 Corners corners_of(const SurfaceMesh& mesh, int facet) {
   const Triangle& t = mesh.facets[facet];
   return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
 }
 
-// Sign of the volume of (a, b, c, d): double behind a bound of its rounding
-// error, else extended precision; 0 where even that cannot tell.
-int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 u = b - a;
-  const Vec3 v = c - a;
-  const Vec3 w = d - a;
-  const double size = u.cwiseAbs().maxCoeff() * v.cwiseAbs().maxCoeff() *
-                      w.cwiseAbs().maxCoeff();
-  const double det = u.cross(v).dot(w);
-  if (std::abs(det) > 1e-14 * size) {
-    return det > 0.0 ? 1 : -1;
+// Does the closed segment p q meet the closed segment r s of one plane, seen
+// along an axis along which the plane is no line?
+bool segments_meet(int along, const Vec3& p, const Vec3& q, const Vec3& r,
+                   const Vec3& s) {
+  const int side_p = orientation_along(along, r, s, p);
+  const int side_q = orientation_along(along, r, s, q);
+  const int side_r = orientation_along(along, p, q, r);
+  const int side_s = orientation_along(along, p, q, s);
+  if (side_p != 0 || side_q != 0 || side_r != 0 || side_s != 0) {
+    return side_p * side_q <= 0 && side_r * side_s <= 0;
   }
-  const Vec3L al = a.cast<long double>();
-  const Vec3L ul = b.cast<long double>() - al;
-  const Vec3L vl = c.cast<long double>() - al;
-  const Vec3L wl = d.cast<long double>() - al;
-  const long double fine = ul.cross(vl).dot(wl);
-  if (std::abs(fine) > 1e-17L * static_cast<long double>(size)) {
-    return fine > 0.0L ? 1 : -1;
+  for (int k = 0; k < 3; ++k) {  // on one line: by their extents
+    if (k != along && (std::max(p[k], q[k]) < std::min(r[k], s[k]) ||
+                       std::max(r[k], s[k]) < std::min(p[k], q[k]))) {
+      return false;
+    }
   }
-  return 0;
+  return true;
 }
 
-// Where the segment p q passes through the triangle, its ends off the plane.
+// An axis along which the triangle is seen as one, and which way it turns.
+struct View {
+  int along = 0;
+  int turn = 0;
+};
+
+View view_of(const Corners& t) {
+  View view;
+  (t[1] - t[0]).cross(t[2] - t[0]).cwiseAbs().maxCoeff(&view.along);
+  view.turn = orientation_along(view.along, t[0], t[1], t[2]);
+  for (int more = 0; view.turn == 0 && more < 2; ++more) {  // n is rounded
+    view.along = (view.along + 1) % 3;
+    view.turn = orientation_along(view.along, t[0], t[1], t[2]);
+  }
+  return view;
+}
+
+// Does the segment p q meet the triangle, both in one plane?
+bool meets_in_plane(const Vec3& p, const Vec3& q, const Corners& t) {
+  const auto [along, turn] = view_of(t);
+  bool inside = true;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& a = t[k];
+    const Vec3& b = t[(k + 1) % 3];
+    if (segments_meet(along, p, q, a, b)) {
+      return true;
+    }
+    inside = inside && orientation_along(along, a, b, p) * turn > 0;
+  }
+  return inside;
+}
+
+// Where the segment p q meets the triangle, both with their ends and edges: by
+// exact signs; the place is rounded.
 std::optional<Vec3> pierce(const Vec3& p, const Vec3& q, const Corners& t) {
   const int side_p = orientation(t[0], t[1], t[2], p);
   const int side_q = orientation(t[0], t[1], t[2], q);
-  if (side_p * side_q >= 0) {
+  if (side_p * side_q > 0) {
     return std::nullopt;
+  }
+  if (side_p == 0 && side_q == 0) {
+    return meets_in_plane(p, q, t) ? std::optional<Vec3>(0.5 * (p + q))
+                                   : std::nullopt;
   }
   int positive = 0;
   int negative = 0;
@@ -57,7 +92,7 @@ std::optional<Vec3> pierce(const Vec3& p, const Vec3& q, const Corners& t) {
     positive += side > 0 ? 1 : 0;
     negative += side < 0 ? 1 : 0;
   }
-  if ((positive == 0) == (negative == 0)) {
+  if (positive > 0 && negative > 0) {
     return std::nullopt;
   }
   const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
@@ -125,19 +160,33 @@ double distance2(const Corners& s, const Corners& t) {
   return least;
 }
 
+// Rounding of a coordinate along an axis of length 1.
+double axis_rounding(const Corners& s, const Corners& t) {
+  double largest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    largest = std::max(
+        {largest, s[k].cwiseAbs().maxCoeff(), t[k].cwiseAbs().maxCoeff()});
+  }
+  return 64.0 * std::numeric_limits<double>::epsilon() * largest;
+}
+
 // Is `other` beyond the plane of t, or beyond one of its edges seen along its
 // normal, by more than `gap`? Corners flagged in `shared` are left out (they
-// lie on t); then an edge through that corner separates with no gap.
+// lie on t); then an edge through that corner separates with no gap. Never
+// where rounding may have made the gap.
 bool separated(const Corners& t, const Corners& other,
-               const std::array<bool, 3>& shared, double gap) {
+               const std::array<bool, 3>& shared, double gap, double rounding) {
   const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
   const auto beyond = [&](const Vec3& axis, const Vec3& origin, double least) {
     for (int k = 0; k < 3; ++k) {
-      if (!shared[k] && !(axis.dot(other[k] - origin) > least)) {
+      if (!shared[k] && !(axis.dot(other[k] - origin) > least + rounding)) {
         return false;
       }
     }
-    return true;
+    // The axis is rounded, too: a thin facet may reach beyond its own plane.
+    return std::all_of(t.begin(), t.end(), [&](const Vec3& p) {
+      return axis.dot(p - origin) <= 0.25 * rounding;
+    });
   };
   if (beyond(n, t[0], gap) || beyond(-n, t[0], gap)) {
     return true;
@@ -157,9 +206,17 @@ bool separated(const Corners& t, const Corners& other,
   return false;
 }
 
-// Facets with a common edge: folded flat onto each other?
+// Facets with a common edge: folded flat onto each other? Without a gap exactly
+// so.
 bool folded(const Corners& s, const Corners& t, int apex_s, int apex_t,
             double gap) {
+  if (!(gap > 0.0)) {
+    const Vec3& from = s[(apex_s + 1) % 3];
+    const Vec3& to = s[(apex_s + 2) % 3];
+    const View view = view_of(s);
+    return orientation(s[0], s[1], s[2], t[apex_t]) == 0 &&
+           orientation_along(view.along, from, to, t[apex_t]) == view.turn;
+  }
   const Vec3& a = s[(apex_s + 1) % 3];
   const Vec3 along = (s[(apex_s + 2) % 3] - a).normalized();
   const auto off = [&](const Vec3& p) {
@@ -251,12 +308,17 @@ PairVerdict classify_pair(const SurfaceMesh& mesh, int f, int g,
     return crossing_if(folded(s, t, apex(shared.s), apex(shared.t), rounding));
   }
   const double gap = shared.count == 0 ? tolerance : rounding;
-  if (separated(s, t, shared.t, gap) || separated(t, s, shared.s, gap)) {
+  const double of_axes = axis_rounding(s, t);
+  if (separated(s, t, shared.t, gap, of_axes) ||
+      separated(t, s, shared.s, gap, of_axes)) {
     return verdict;
   }
   if (const auto at = find_crossing(s, t, shared)) {
     verdict.position = *at;
     return crossing_if(true);
+  }
+  if (!(tolerance > 0.0)) {
+    return verdict;  // exactly apart; distances are rounded
   }
   if (shared.count == 1) {
     return crossing_if(overlap_at_corner(s, t, shared, rounding));

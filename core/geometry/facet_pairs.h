@@ -21,8 +21,10 @@ struct PairVerdict {
 /// at shared corners is fine; facets that share an edge cross when folded onto
 /// each other; only facets with no common corner can be too close, at a
 /// distance below `tolerance` [length].
-/// Separating planes first (Gottschalk 1996), then orientation signs in
-/// extended precision, then the distance of corners and edges (Ericson 2005).
+/// Separating planes first (Gottschalk 1996), where they are further off than
+/// rounding; then exact signs (orientation.h), then the distance of corners and
+/// edges (Ericson 2005). With a tolerance of 0 facets without a common corner
+/// are Crossing exactly where they meet, be it in one point.
 PairVerdict classify_pair(const SurfaceMesh& mesh, int f, int g,
                           double tolerance);
 
