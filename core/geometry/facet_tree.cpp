@@ -1,5 +1,6 @@
 #include "core/geometry/facet_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -104,6 +105,56 @@ NearestPoint nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
   return weighted(t, p, vb / sum, vc / sum);
 }
 
+namespace {
+
+void keep_nearer(NearestLine found, NearestLine& best) {
+  if (found.to.distance < best.to.distance) {
+    best = std::move(found);
+  }
+}
+
+/// The edge p q against edge k of the facet; nothing where they are parallel,
+/// whose ends say it.
+void edge_to_edge(const std::array<Vec3, 3>& t, std::size_t k, const Vec3& p,
+                  const Vec3& q, NearestLine& best) {
+  const std::size_t next = (k + 1) % 3;
+  const Vec3 d = q - p;
+  const Vec3 e = t[next] - t[k];
+  const Vec3 r = p - t[k];
+  const double dd = d.squaredNorm();
+  const double ee = e.squaredNorm();
+  const double de = d.dot(e);
+  const double denominator = dd * ee - de * de;
+  if (!(denominator > 0.0)) {
+    return;
+  }
+  double u =
+      std::clamp((de * e.dot(r) - ee * d.dot(r)) / denominator, 0.0, 1.0);
+  double v = (de * u + e.dot(r)) / ee;
+  if (v < 0.0 || v > 1.0) {
+    v = std::clamp(v, 0.0, 1.0);
+    u = std::clamp((de * v - d.dot(r)) / dd, 0.0, 1.0);
+  }
+  NearestLine found{.along = u, .from = p + u * d, .to = {}};
+  found.to.weights[k] = 1.0 - v;
+  found.to.weights[next] = v;
+  found.to.point = t[k] + v * e;
+  found.to.distance = (found.from - found.to.point).norm();
+  keep_nearer(std::move(found), best);
+}
+
+}  // namespace
+
+NearestLine nearest_in(const std::array<Vec3, 3>& t, const Vec3& p,
+                       const Vec3& q) {
+  NearestLine best{.along = 0.0, .from = p, .to = nearest_in(t, p)};
+  keep_nearer({.along = 1.0, .from = q, .to = nearest_in(t, q)}, best);
+  for (std::size_t k = 0; k < 3; ++k) {
+    edge_to_edge(t, k, p, q, best);
+  }
+  return best;
+}
+
 FacetTree::FacetTree(const SurfaceMesh& mesh, const std::vector<int>& facets,
                      double tolerance)
     : mesh_(mesh), tree_(boxes_of(mesh, facets, tolerance)) {}
@@ -156,8 +207,11 @@ std::optional<RayHit> FacetTree::first_hit(const Vec3& origin,
   return best;
 }
 
-std::optional<NearestPoint> FacetTree::nearest(const Vec3& place) const {
-  NearestPoint best{.distance = kNever};
+/// Calls visit(facet, corners) for the facets of all boxes whose away(bounds)
+/// is not above `most`, then what visit() returned last; nearer boxes first.
+template <class Away, class Visit>
+void FacetTree::visit_near(double most, const Away& away,
+                           const Visit& visit) const {
   const std::vector<BoxTree::Node>& nodes = tree_.nodes();
   std::vector<int> stack;
   if (!nodes.empty()) {
@@ -167,12 +221,12 @@ std::optional<NearestPoint> FacetTree::nearest(const Vec3& place) const {
     const int id = stack.back();
     stack.pop_back();
     const BoxTree::Node& node = nodes[id];
-    if (node.bounds.to(place) > best.distance) {
+    if (away(node.bounds) > most) {
       continue;
     }
     if (!node.is_leaf()) {
-      const bool first = nodes[id + 1].bounds.to(place) <=
-                         nodes[node.second_child].bounds.to(place);
+      const bool first =
+          away(nodes[id + 1].bounds) <= away(nodes[node.second_child].bounds);
       stack.push_back(first ? node.second_child : id + 1);
       stack.push_back(first ? id + 1 : node.second_child);
       continue;
@@ -180,19 +234,48 @@ std::optional<NearestPoint> FacetTree::nearest(const Vec3& place) const {
     for (int i = node.first; i < node.last; ++i) {
       const int f = tree_.items()[i].id;
       const Triangle& t = mesh_.facets[f];
-      NearestPoint found = nearest_in(
-          {mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]}, place);
-      found.facet = f;
-      if (found.distance < best.distance ||
-          (found.distance == best.distance && found.facet < best.facet)) {
-        best = found;
-      }
+      most =
+          visit(f, std::array<Vec3, 3>{mesh_.points[t[0]], mesh_.points[t[1]],
+                                       mesh_.points[t[2]]});
     }
   }
-  if (best.facet < 0) {
-    return std::nullopt;
-  }
-  return best;
+}
+
+std::optional<NearestPoint> FacetTree::nearest(const Vec3& place) const {
+  NearestPoint best{.distance = kNever};
+  visit_near(
+      kNever, [&](const AxisBox& box) { return box.to(place); },
+      [&](int f, const std::array<Vec3, 3>& corners) {
+        NearestPoint found = nearest_in(corners, place);
+        found.facet = f;
+        if (found.distance < best.distance ||
+            (found.distance == best.distance && f < best.facet)) {
+          best = found;
+        }
+        return best.distance;
+      });
+  return best.facet < 0 ? std::nullopt : std::optional(best);
+}
+
+std::optional<NearestLine> FacetTree::nearest(const Vec3& p, const Vec3& q,
+                                              double most) const {
+  AxisBox edge;
+  edge.add(p);
+  edge.add(q);
+  NearestLine best;
+  best.to.distance = most;
+  visit_near(
+      most, [&](const AxisBox& box) { return box.to(edge); },
+      [&](int f, const std::array<Vec3, 3>& corners) {
+        NearestLine found = nearest_in(corners, p, q);
+        found.to.facet = f;
+        if (found.to.distance < best.to.distance ||
+            (found.to.distance == best.to.distance && f < best.to.facet)) {
+          best = found;
+        }
+        return best.to.distance;
+      });
+  return best.to.facet < 0 ? std::nullopt : std::optional(best);
 }
 
 }  // namespace meniscus

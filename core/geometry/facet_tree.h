@@ -31,6 +31,18 @@ struct NearestPoint {
 /// 2005, 5.1.5). `facet` of the result is -1.
 NearestPoint nearest_in(const std::array<Vec3, 3>& corners, const Vec3& place);
 
+/// The shortest line between a straight edge and a facet.
+struct NearestLine {
+  double along = 0.0;  // where on the edge, from 0 to 1
+  Vec3 from = Vec3::Zero();
+  NearestPoint to;
+};
+
+/// Of the edge p q to a facet that it does not cross: the least of its ends to
+/// the facet and of edge to edge (Ericson, 5.1.9). `to.facet` is -1.
+NearestLine nearest_in(const std::array<Vec3, 3>& corners, const Vec3& p,
+                       const Vec3& q);
+
 /// Built in O(n log n); keeps a reference to the mesh.
 class FacetTree {
  public:
@@ -55,7 +67,15 @@ class FacetTree {
   /// nothing for no facets.
   std::optional<NearestPoint> nearest(const Vec3& place) const;
 
+  /// The shortest line from the edge p q, which crosses no facet, to all
+  /// facets, the lowest id of equals; nothing where it is not below `most`.
+  std::optional<NearestLine> nearest(const Vec3& p, const Vec3& q,
+                                     double most) const;
+
  private:
+  template <class Away, class Visit>
+  void visit_near(double most, const Away& away, const Visit& visit) const;
+
   const SurfaceMesh& mesh_;
   BoxTree tree_;
 };

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "core/geometry/facet_pairs.h"
 #include "core/geometry/facet_tree.h"
+#include "evolve/films/film_gap.h"
 #include "evolve/frozen/film_model_impl.h"
 
 namespace meniscus::frozen {
@@ -29,28 +30,36 @@ std::vector<int> facets_of(const SurfaceMesh& mesh, int label) {
   return facets;
 }
 
-std::vector<int> vertices_of(const SurfaceMesh& mesh,
-                             const std::vector<int>& facets) {
-  std::vector<int> vertices;
+std::vector<Edge> edges_of(const SurfaceMesh& mesh,
+                           const std::vector<int>& facets) {
+  std::vector<Edge> edges;
+  edges.reserve(3 * facets.size());
   for (const int f : facets) {
     const Triangle& t = mesh.facets[f];
-    vertices.insert(vertices.end(), t.begin(), t.end());
+    for (std::size_t k = 0; k < 3; ++k) {
+      edges.push_back(edge_key(t[k], t[(k + 1) % 3]));
+    }
   }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
 }
 
-struct Pair {
-  int vertex = 0;
-  NearestPoint nearest;
+struct EdgeLine {
+  Edge edge{};
+  NearestLine line;
 };
 
-void add_pairs(const SurfaceMesh& mesh, const std::vector<int>& from,
-               const std::vector<int>& to, std::vector<Pair>& pairs) {
+/// Of the edges that are nearer than `most`.
+void add_lines(const SurfaceMesh& mesh, const std::vector<int>& from,
+               const std::vector<int>& to, double most,
+               std::vector<EdgeLine>& lines) {
   const FacetTree tree(mesh, to);
-  for (const int v : vertices_of(mesh, from)) {
-    pairs.push_back({v, *tree.nearest(mesh.points[v])});
+  for (const Edge& edge : edges_of(mesh, from)) {
+    if (auto line =
+            tree.nearest(mesh.points[edge[0]], mesh.points[edge[1]], most)) {
+      lines.push_back({edge, *line});
+    }
   }
 }
 
@@ -76,7 +85,13 @@ void refuse_crossing(const SurfaceMesh& mesh, const std::vector<int>& film,
   });
 }
 
-std::vector<Pair> pairs_between(const SurfaceMesh& mesh, int film, int other) {
+struct FilmLines {
+  double least = 0.0;
+  std::vector<EdgeLine> lines;  // all that count
+};
+
+FilmLines lines_between(const SurfaceMesh& mesh, int film, int other,
+                        double smoothing) {
   const auto labels = static_cast<int>(mesh.labels.size());
   if (film < 0 || other < 0 || film >= labels || other >= labels ||
       film == other) {
@@ -88,19 +103,19 @@ std::vector<Pair> pairs_between(const SurfaceMesh& mesh, int film, int other) {
     throw InvalidInput("a gap needs two films with facets");
   }
   refuse_crossing(mesh, here, there);
-  std::vector<Pair> pairs;
-  add_pairs(mesh, here, there, pairs);
-  add_pairs(mesh, there, here, pairs);
-  for (const Pair& pair : pairs) {
-    if (!(pair.nearest.distance > 0.0)) {
-      const Vec3& at = pair.nearest.point;
-      throw InvalidInput(fmt::format(
-          "films '{}' and '{}' touch at ({:.4g}, {:.4g}, {:.4g}): there is no "
-          "gap between them",
-          mesh.labels[film], mesh.labels[other], at.x(), at.y(), at.z()));
-    }
+  const films::ShortestLine least = films::shortest_line(mesh, here, there);
+  if (!(least.length > 0.0)) {
+    const Vec3& at = least.from;
+    throw InvalidInput(fmt::format(
+        "films '{}' and '{}' touch at ({:.4g}, {:.4g}, {:.4g}): there is no "
+        "gap between them",
+        mesh.labels[film], mesh.labels[other], at.x(), at.y(), at.z()));
   }
-  return pairs;
+  FilmLines result{.least = least.length, .lines = {}};
+  const double most = least.length + kFar * smoothing;
+  add_lines(mesh, here, there, most, result.lines);
+  add_lines(mesh, there, here, most, result.lines);
+  return result;
 }
 
 }  // namespace
@@ -111,25 +126,17 @@ FilmResponse gap_between(const SurfaceMesh& mesh, int film, int other,
     throw InvalidInput(fmt::format(
         "the smoothing of a gap must be above 0, found {}", smoothing));
   }
-  const std::vector<Pair> pairs = pairs_between(mesh, film, other);
-  double least = std::numeric_limits<double>::infinity();
-  for (const Pair& pair : pairs) {
-    least = std::min(least, pair.nearest.distance);
-  }
+  const FilmLines between = lines_between(mesh, film, other, smoothing);
   double sum = 0.0;
   FilmResponse result;
   result.by.points.assign(mesh.points.size(), Vec3::Zero());
-  for (const Pair& pair : pairs) {
-    const NearestPoint& to = pair.nearest;
-    const double further = (to.distance - least) / smoothing;
-    if (further > kFar) {
-      continue;
-    }
-    const double share = std::exp(-further);
+  for (const auto& [edge, line] : between.lines) {
+    const NearestPoint& to = line.to;
+    const double share = std::exp((between.least - to.distance) / smoothing);
     sum += share;
-    const Vec3 by_place =
-        share / to.distance * (mesh.points[pair.vertex] - to.point);
-    result.by.points[pair.vertex] += by_place;
+    const Vec3 by_place = share / to.distance * (line.from - to.point);
+    result.by.points[edge[0]] += (1.0 - line.along) * by_place;
+    result.by.points[edge[1]] += line.along * by_place;
     for (int k = 0; k < 3; ++k) {
       result.by.points[mesh.facets[to.facet][k]] -= to.weights[k] * by_place;
     }
@@ -137,7 +144,7 @@ FilmResponse gap_between(const SurfaceMesh& mesh, int film, int other,
   for (Vec3& by_point : result.by.points) {
     by_point /= sum;
   }
-  result.value = least - smoothing * std::log(sum);
+  result.value = between.least - smoothing * std::log(sum);
   return result;
 }
 

@@ -184,7 +184,8 @@ TEST(Gap, OfParallelSheetsIsTheirDistanceLessTheSmoothing) {
     const frozen::FilmResponse gap =
         frozen::gap_between(sheets(kApart), 0, 1, smoothing);
     EXPECT_LE(gap.value, kApart + 1e-15);
-    EXPECT_GE(gap.value, kApart - smoothing * std::log(2.0 * 81.0) - 1e-12);
+    // 8 x 9 edges along each side and 64 across, of two sheets.
+    EXPECT_GE(gap.value, kApart - smoothing * std::log(416.0) - 1e-12);
   }
 }
 
@@ -196,7 +197,7 @@ TEST(Gap, HasTheDerivativeOfItsDifferences) {
     const auto t = static_cast<double>(v);
     way.emplace_back(std::sin(1.3 * t), std::cos(0.7 * t), std::sin(2.9 * t));
   }
-  constexpr double kStep = 1e-5;
+  constexpr double kStep = 2e-5;
   const auto at = [&](double s) {
     SurfaceMesh moved = mesh;
     for (std::size_t v = 0; v < way.size(); ++v) {
@@ -208,7 +209,10 @@ TEST(Gap, HasTheDerivativeOfItsDifferences) {
   for (std::size_t v = 0; v < way.size(); ++v) {
     exact += gap.by.points[v].dot(way[v]);
   }
-  EXPECT_NEAR((at(kStep) - at(-kStep)) / (2.0 * kStep), exact,
+  // The derivatives at all vertices nearly cancel along this way, so that the
+  // differences are extrapolated.
+  const auto slope = [&](double s) { return (at(s) - at(-s)) / (2.0 * s); };
+  EXPECT_NEAR((4.0 * slope(0.5 * kStep) - slope(kStep)) / 3.0, exact,
               1e-6 * std::abs(exact));
 }
 
