@@ -248,7 +248,7 @@ void Adjoint::add_expressions(const std::vector<char>& needed, int variable,
   const VectorX& design = in_.context.inputs.design;
   std::vector<std::string> problems;
   const case_data::CaseValues values(input, design, problems, variable);
-  const VectorX responses = respond(input, in_.context);
+  const VectorX& responses = in_.responses;
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
     if (needed[k] != 0 &&

@@ -33,7 +33,7 @@ std::string curve_text(const Rim& rim, int points, int variables) {
 
 }  // namespace
 
-std::string rim_case(int points, int variables, double length) {
+std::string rim_case(int points, int variables, double length, double edge) {
   std::string text = "title = \"A rim of many points\"\nunits = \"mm-N-MPa\"\n";
   for (int j = 0; j < variables; ++j) {
     text += fmt::format("[design.r{}]\ninitial = {}\nbounds = [70, 90]\n", j,
@@ -59,8 +59,8 @@ volume = {}
 material = "aluminium"
 
 [resolution]
-fea = 20
-film = 10
+fea = {}
+film = {}
 
 [materials.aluminium]
 youngs_modulus = "71.7 GPa"
@@ -82,7 +82,7 @@ kind = "mass"
 [study]
 kind = "analyse"
 )",
-                            20000.0 * length);
+                            20000.0 * length, edge, 0.5 * edge);
 }
 
 }  // namespace meniscus

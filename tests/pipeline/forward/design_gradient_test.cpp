@@ -2,9 +2,11 @@
 /// differences of the same map.
 #include <gmock/gmock.h>
 
+#include "core/operation_count.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/gradient_check.h"
 #include "tests/support/case_text.h"
+#include "tests/support/rim_case.h"
 
 namespace meniscus::design_gradient_test {
 namespace {
@@ -182,6 +184,60 @@ TEST(DesignGradient, HasTheSameBitsInAnotherOrderOfDesigns) {
   const Eigen::MatrixXd first = gradient_at(a);
   gradient_at(b);
   EXPECT_EQ(first, gradient_at(a));
+}
+
+/// What the gradient of an expression asks for.
+struct ExpressionCost {
+  long long weights = 0;  // evaluations of a response's weight, at a place each
+  double operations = 0.0;
+  int solves = 0;
+};
+
+/// Of a part of 200 points whose radii are so many design variables: 2 % away
+/// from the frozen design, the same part for any number.
+ExpressionCost expression_cost(int variables) {
+  std::string text = rim_case(200, variables, 30.0);
+  text = changed(text, "direction = [1, 0, 0]",
+                 "direction = [1, 0, 0]\nweight = \"1 + x / 100\"");
+  text = changed(text, "[study]",
+                 "[responses.price]\nkind = \"expression\"\n"
+                 "value = \"1e6 * mass + sqr(sway) / (1 + r0 / 100)\"\n\n"
+                 "[responses.dear]\nkind = \"expression\"\n"
+                 "value = \"price * mass\"\n\n[study]");
+  const case_data::Case input = read(text);
+  const forward::ForwardModel model(input);
+  forward::EvaluationFields fields;
+  forward::AdjointState adjoint;
+  const forward::Evaluation there = model.evaluate(
+      1.02 * case_data::initial_design(input), &fields, &adjoint);
+  EXPECT_FALSE(there.failure);
+  ExpressionCost cost;
+  loads::NumberOfPlace& weight = fields.inputs.responses[0].weight;
+  weight = [&cost, plain = weight](const Vec3& x) {
+    ++cost.weights;
+    return plain(x);
+  };
+  const double before = operations_done();
+  const forward::DesignGradient found =
+      model.gradient(there, fields, adjoint, {2, 3});
+  EXPECT_FALSE(found.failure);
+  EXPECT_EQ(found.jacobian.cols(), variables);
+  cost.operations = operations_done() - before;
+  cost.solves = found.solves;
+  return cost;
+}
+
+TEST(DesignGradient, OfExpressionsCostsTheSameForOneAnd200Variables) {
+  const ExpressionCost one = expression_cost(1);
+  EXPECT_GT(one.weights, 0);
+  EXPECT_EQ(one.solves, 1);
+  for (const int variables : {20, 200}) {
+    const ExpressionCost many = expression_cost(variables);
+    EXPECT_EQ(many.weights, one.weights) << variables;
+    EXPECT_EQ(many.solves, one.solves) << variables;
+    EXPECT_NEAR(many.operations, one.operations, 1e-3 * one.operations)
+        << variables;
+  }
 }
 
 TEST(DesignGradient, PeaksAreLeftOutByName) {
