@@ -7,7 +7,8 @@
 /// --scale X runs with X times the elements; --repeat N takes the fastest of N
 /// runs of ours (3); --compare adds a run of CalculiX that prints, and compares
 /// displacements and stresses; --large adds 480,000 ten-node elements. Ratios
-/// are of CPU seconds, user and system, of one thread.
+/// are of CPU seconds, user and system, of one thread. At full size it ends
+/// with 1 where a target is missed.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "core/thread_waits.h"
+#include "tests/support/bench_target.h"
 #include "tests/support/calculix.h"
 #include "tests/support/elastic_race.h"
 
@@ -27,6 +29,9 @@ namespace {
 constexpr double kMega = 1e6;
 constexpr double kTimeLimit = 900.0;  // of a peer's run [s]
 constexpr double kGrowthBound = 1.15;
+constexpr double kThreadsBound = 1.5;        // two threads, times one
+constexpr double kDisplacementBound = 1e-6;  // apart from CalculiX
+constexpr double kStressBound = 1e-5;
 
 struct BenchOptions {
   double scale = 1.0;
@@ -93,7 +98,19 @@ void print_threads(const ElasticRun& one, const ElasticRun& two) {
   std::fflush(stdout);
 }
 
-void print_agreement(const ElasticWork& work, double scale) {
+void judge_threads(const std::string& name, const ElasticRun& one,
+                   const ElasticRun& two, BenchTargets& targets) {
+  const std::string gain = name + ", two threads: ";
+  targets.at_least(gain + "assembly", one.next.setup / two.next.setup,
+                   kThreadsBound);
+  targets.at_least(gain + "iterations", one.next.solve / two.next.solve,
+                   kThreadsBound);
+  targets.at_least(gain + "stresses", one.next.stress / two.next.stress,
+                   kThreadsBound);
+}
+
+void print_agreement(const ElasticWork& work, double scale,
+                     BenchTargets& targets) {
   const CalculixAgreement apart =
       compare_with_calculix(work.make, scale, kTimeLimit);
   fmt::print(
@@ -101,15 +118,27 @@ void print_agreement(const ElasticWork& work, double scale) {
       "integration points {:.1e} (at most 1e-5)\n",
       apart.displacement, apart.stress);
   std::fflush(stdout);
+  targets.at_most(work.name + ", displacements apart from CalculiX's",
+                  apart.displacement, kDisplacementBound);
+  targets.at_most(work.name + ", stresses apart from CalculiX's", apart.stress,
+                  kStressBound);
 }
 
-void race(const ElasticWork& work, const BenchOptions& options) {
+void race(const ElasticWork& work, const BenchOptions& options,
+          BenchTargets& targets) {
   const ElasticRun own =
       fastest_run(work.make, options.scale, 1, options.repeat);
   fmt::print("{}: {} elements, {} unknowns\n", work.name, own.elements,
              own.dofs);
   print_own(own, 1);
-  print_threads(own, fastest_run(work.make, options.scale, 2, options.repeat));
+  targets.holds(work.name + " is solved", own.solved, own.message);
+  const ElasticRun two =
+      fastest_run(work.make, options.scale, 2, options.repeat);
+  print_threads(own, two);
+  // A four-node block is too small for a second thread in its iterations.
+  if (options.scale == 1.0 && work.large) {
+    judge_threads(work.name, own, two, targets);
+  }
   if (!options.calculix || !own.solved) {
     return;
   }
@@ -135,12 +164,20 @@ void race(const ElasticWork& work, const BenchOptions& options) {
   print_ratio("next design, than default", standard, own.next_cpu,
               work.least_next, work.aim_next);
   std::fflush(stdout);
+  if (options.scale == 1.0) {
+    targets.at_least(work.name + ", than CalculiX's default",
+                     standard / own.first_cpu, work.least_default);
+    targets.at_least(work.name + ", than CalculiX's best", best / own.first_cpu,
+                     work.least_best);
+    targets.at_least(work.name + ", the next design", standard / own.next_cpu,
+                     work.least_next);
+  }
   if (options.compare) {
-    print_agreement(work, options.scale);
+    print_agreement(work, options.scale, targets);
   }
 }
 
-void growth(const BenchOptions& options) {
+void growth(const BenchOptions& options, BenchTargets& targets) {
   fmt::print(
       "growth: block, ten nodes, CPU seconds ~ unknowns^p, p at most "
       "{:g}\n",
@@ -151,9 +188,11 @@ void growth(const BenchOptions& options) {
         fastest_run(large_block, scale * options.scale, 1, 1);
     print_own(run, 1);
     if (first && run.solved) {
-      fmt::print("  {} unknowns: p = {:.2f}\n", run.dofs,
-                 std::log(run.first_cpu / first->first_cpu) /
-                     std::log(1.0 * run.dofs / first->dofs));
+      const double power = std::log(run.first_cpu / first->first_cpu) /
+                           std::log(1.0 * run.dofs / first->dofs);
+      fmt::print("  {} unknowns: p = {:.2f}\n", run.dofs, power);
+      targets.at_most(fmt::format("power of the growth to {}", run.dofs), power,
+                      kGrowthBound);
     } else {
       fmt::print("  {} unknowns\n", run.dofs);
     }
@@ -194,15 +233,16 @@ int run(int count, char** words) {
     fmt::print("ccx (Debian package calculix-ccx) is not installed\n");
     options.calculix = false;
   }
+  BenchTargets targets;
   for (const ElasticWork& work : elastic_works()) {
     if (!options.only || work.name == *options.only) {
-      race(work, options);
+      race(work, options, targets);
     }
   }
   if (options.large) {
-    growth(options);
+    growth(options, targets);
   }
-  return 0;
+  return targets.finish();
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 ///
 /// --scale N runs at 1/4^N of the size; --repeat N takes the fastest of N runs
 /// of each program (2). Ratios are of CPU seconds, user and system, of one
-/// thread, one run at a time.
+/// thread, one run at a time. At full size it ends with 1 where a target is
+/// missed.
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -15,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "core/thread_waits.h"
+#include "tests/support/bench_target.h"
 #include "tests/support/evolver.h"
 #include "tests/support/film_complexes.h"
 #include "tests/support/film_race.h"
@@ -79,12 +81,28 @@ EvolverRun evolver_run(const SpeedWork& work, EvolverScript script,
   });
 }
 
-void race(const SpeedWork& work, const BenchOptions& options) {
+/// Bounds are for full size; at others everything is printed alone.
+void judge(const SpeedWork& work, const FilmRun& own, const EvolverRun& tuned,
+           const EvolverRun& typical, BenchTargets& targets) {
+  const double seconds = own.user_seconds + own.system_seconds;
+  targets.at_least(work.name + ", faster than tuned",
+                   (tuned.user_seconds + tuned.system_seconds) / seconds,
+                   work.least_tuned);
+  targets.at_least(work.name + ", faster than typical",
+                   (typical.user_seconds + typical.system_seconds) / seconds,
+                   work.least_typical);
+  targets.at_most(work.name + ", memory over evolver's",
+                  own.peak_bytes / tuned.peak_bytes, 1.0);
+}
+
+void race(const SpeedWork& work, const BenchOptions& options,
+          BenchTargets& targets) {
   const int refinements = std::max(0, work.refinements - options.scale);
   const FilmRun own = fastest(
       options.repeat, [&] { return run_film(work.start(), refinements); });
   fmt::print("{}, {} facets\n", work.name, own.facets);
   print_own(own);
+  targets.holds(work.name + " settles", own.settled, own.verdict);
   if (options.evolver) {
     const EvolverRun tuned =
         evolver_run(work, EvolverScript::Tuned, refinements, options.repeat);
@@ -98,11 +116,14 @@ void race(const SpeedWork& work, const BenchOptions& options) {
         ratio(tuned, own, work.least_tuned, work.aim_tuned),
         ratio(typical, own, work.least_typical, work.aim_typical),
         own.peak_bytes / tuned.peak_bytes);
+    if (options.scale == 0) {
+      judge(work, own, tuned, typical, targets);
+    }
   }
   std::fflush(stdout);
 }
 
-void growth(const BenchOptions& options) {
+void growth(const BenchOptions& options, BenchTargets& targets) {
   fmt::print("\ngrowth: catenoid, user seconds ~ facets^p, p at most {:g}\n",
              kGrowthBound);
   double first_seconds = 0.0;
@@ -124,16 +145,23 @@ void growth(const BenchOptions& options) {
     fmt::print("  {:>8} facets {:>8.2f} s  {:>6.0f} MB  p = {:.2f}\n",
                run.facets, run.user_seconds, run.peak_bytes / kMega, power);
     std::fflush(stdout);
+    if (options.scale == 0) {
+      targets.at_most(
+          fmt::format("power of the growth to {} facets", run.facets), power,
+          kGrowthBound);
+    }
   }
 }
 
-void large() {
+void large(BenchTargets& targets) {
   const FilmRun run = run_film(test_films::catenoid_start(), 8);
   fmt::print(
       "\nlarge: catenoid, {} facets: {:.1f} s, {:.0f} MB (at most "
       "{:.0f}), {}\n",
       run.facets, run.user_seconds, run.peak_bytes / kMega, kLargeBound / kMega,
       run.verdict);
+  targets.holds("the large film settles", run.settled, run.verdict);
+  targets.at_most("its memory [byte]", run.peak_bytes, kLargeBound);
 }
 
 int number(const char* text) {
@@ -178,18 +206,19 @@ int run(int count, char** words) {
   }
   fmt::print("{:<10} {:>8} {:>6} {:>8} {:>7} {:>19} {:>10}\n", "", "user s",
              "sys s", "wall s", "MB", "energy", "residual");
+  BenchTargets targets;
   for (const SpeedWork& work : speed_works()) {
     if (!options->only || work.name == *options->only) {
-      race(work, *options);
+      race(work, *options, targets);
     }
   }
   if (!options->only) {
-    growth(*options);
+    growth(*options, targets);
   }
   if (options->large) {
-    large();
+    large(targets);
   }
-  return 0;
+  return targets.finish();
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/study/design_evaluator.h"
 #include "pipeline/study/run_kind.h"
+#include "tests/support/bench_target.h"
 #include "tests/support/measured_child.h"
 #include "tests/support/temp_folder.h"
 
@@ -111,13 +112,20 @@ int main(int argc, char** argv) {
       "|---|---|---|\n",
       designs);
   int elements = 0;
+  double programs = 0.0;  // two at once
+  double jobs = 0.0;      // two in one
   for (const meniscus::Setting& setting : meniscus::kSettings) {
     const meniscus::Speed speed = meniscus::sweep_speed(setting, designs);
     elements = speed.elements;
+    (setting.jobs > 1 ? jobs : programs) = speed.designs_per_minute;
     std::printf("| %s | %.0f | %.0f |\n", setting.name,
                 speed.designs_per_minute, speed.peak_megabytes);
     std::fflush(stdout);
   }
   std::printf("%d ten-node tetrahedra\n", elements);
-  return 0;
+  constexpr double kLeastOfPrograms = 0.85;
+  meniscus::BenchTargets targets;
+  targets.at_least("`--jobs 2` over two programs", jobs / programs,
+                   kLeastOfPrograms);
+  return targets.finish();
 }

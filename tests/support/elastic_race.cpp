@@ -171,7 +171,7 @@ const std::vector<ElasticWork>& elastic_works() {
   static const std::vector<ElasticWork> works = {
       {"tube", tube, 20, 5, 40, 15, 40, 80},
       {"block", block, 20, 5, 40, 15, 40, 80},
-      {"linear_block", linear_block, 3, 1.5, 8, 4, 3, 8}};
+      {"linear_block", linear_block, 3, 1.5, 8, 4, 3, 8, false}};
   return works;
 }
 

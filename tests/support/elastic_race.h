@@ -30,6 +30,7 @@ struct ElasticWork {
   // The same for the next design, to its default.
   double least_next = 0.0;
   double aim_next = 0.0;
+  bool large = true;  // enough for the targets of threads and processes
 };
 
 void PrintTo(const ElasticWork& work, std::ostream* out);
