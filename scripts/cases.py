@@ -15,6 +15,8 @@ import sys
 import tempfile
 import time
 
+import calculix_peer
+
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 CASES = ROOT / "cases"
 # How far a figure of a kind may be off what is expected, relatively.
@@ -26,9 +28,10 @@ SECONDS = 180  # of one run at its default size on two cores
 KEYS = {
     "case": {"prepare", "runs", "convergence", "wrong"},
     "run": {"name", "command", "quick", "seconds", "exit", "pictures",
-            "expected", "expected_quick"},
+            "expected", "expected_quick", "calculix"},
+    "calculix": {"displacement", "stress"},
     "figure": {"value", "kind", "relative", "absolute", "why", "label",
-               "unit", "scale", "reference", "at_least", "at_most"},
+               "unit", "scale", "reference", "of", "at_least", "at_most"},
     "picture": {"file", "name", "caption"},
     "convergence": {"path", "runs", "exact", "order", "absolute", "label"},
     "wrong": {"what", "command", "replace", "exit", "says"},
@@ -67,6 +70,8 @@ def check_figure(figure, where):
     check_keys("figure", figure, where)
     if "value" in figure and figure["value"] is None:
         raise BadFormat(f"{where}: no value yet; scripts/gallery --fill")
+    check(("reference" in figure) == ("of" in figure), where,
+          "a reference says of whom ('of'), and nothing else does")
     if "value" not in figure:
         check("at_least" in figure or "at_most" in figure, where,
               "neither 'value' nor 'at_least' nor 'at_most'")
@@ -107,6 +112,10 @@ def read(folder, unfilled=False):
               f"the command is none of {', '.join(RESULT)}")
         if "quick" in run:
             check("expected_quick" in run, at, "'expected_quick' is missing")
+        if "calculix" in run:
+            check("quick" in run and command[0] == "run", at,
+                  "'calculix' is for quick sizes of 'run'")
+            check_keys("calculix", run["calculix"], at, ["displacement"])
         for table in () if unfilled else ("expected", "expected_quick"):
             for name, figure in run.get(table, {}).items():
                 check_figure(figure, f"{at}: {table}: {name}")
@@ -309,8 +318,31 @@ def execute(program, folder, run, out, quick=False, pictures=False):
     wanted = run["expected_quick" if quick else "expected"]
     outcome.rows = [Row(path, figure, find(outcome.result, path))
                     for path, figure in wanted.items()]
+    if quick and "calculix" in run:
+        try:
+            outcome.rows += calculix_rows(program, outcome, out)
+        except calculix_peer.NoPeer as error:
+            if shutil.which("ccx") or "MENISCUS_NO_SKIPS" in os.environ:
+                outcome.problems.append(str(error))
     outcome.problems += [str(row) for row in outcome.rows if not row.fine]
     return outcome
+
+
+def calculix_rows(program, outcome, out):
+    """The run's final design in CalculiX: all nodal displacements, and where it
+    is asked the von Mises stress's mean by volume."""
+    asked = outcome.run["calculix"]
+    rows = []
+    for peer in calculix_peer.solve(program, outcome.folder,
+                                    out / f"{outcome.run['name']} in calculix"):
+        rows.append(Row(f"calculix.{peer.name}.displacement",
+                        {"at_most": asked["displacement"]}, peer.apart))
+        if "stress" in asked:
+            ours = find(outcome.result, f"stress.{peer.name}.von_mises.mean")
+            rows.append(Row(f"calculix.{peer.name}.von_mises.mean",
+                            {"value": peer.mean, "relative": asked["stress"],
+                             "reference": peer.mean, "of": "CalculiX"}, ours))
+    return rows
 
 
 class Rate:

@@ -77,12 +77,9 @@ def run_table(outcome, reasons):
     """Figures as a table, what must be equal in a line below it."""
     lines = []
     figures = [row for row in outcome.rows if not row.exact]
-    referenced = any("reference" in row.figure for row in figures)
     command = f"`{outcome.run['command']}`"
     if figures:
-        head = [command, "expected", "found", "off", "allowed"]
-        if referenced:
-            head.insert(1, "reference")
+        head = [command, "reference", "expected", "found", "off", "allowed"]
         lines += ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     for row in figures:
         name = (row.label if row.label != row.path else f"`{row.path}`")
@@ -96,9 +93,10 @@ def run_table(outcome, reasons):
         cells = [name,
                  "" if row.wanted is None else scaled(row, row.wanted),
                  scaled(row, row.found), off_by(row), allowed(row)]
-        if referenced:
-            cells.insert(1, scaled(row, row.figure["reference"])
-                         if "reference" in row.figure else "")
+        # Without another source, what is expected is what came out once.
+        cells.insert(1, f"{scaled(row, row.figure['reference'])}, "
+                     f"{row.figure['of']}" if "reference" in row.figure
+                     else "snapshot" if row.wanted is not None else "")
         lines.append("| " + " | ".join(cells) + " |")
     equal = ", ".join(
         f"`{row.path}` {number(row.found)}" +
