@@ -18,6 +18,7 @@
 
 #include "core/error.h"
 #include "core/find_program.h"
+#include "core/frame.h"
 
 namespace meniscus {
 
@@ -173,6 +174,17 @@ int lifted(Descriptor& fd) {
   return fd.get();
 }
 
+/// At most the caller's own: nobody may raise that.
+rlim_t memory_limit_of(const ChildOptions& options) {
+  if (!options.memory_limit) {
+    return RLIM_INFINITY;
+  }
+  const auto wanted = static_cast<rlim_t>(*options.memory_limit);
+  rlimit own{};
+  return ::getrlimit(RLIMIT_AS, &own) == 0 ? std::min(wanted, own.rlim_cur)
+                                           : wanted;
+}
+
 enum class ErrorStream { Captured, Discarded };
 
 void start(const ChildOptions& options, ErrorStream error_stream,
@@ -205,9 +217,7 @@ void start(const ChildOptions& options, ErrorStream error_stream,
   launch.streams[2] = lifted(error.write);
   launch.report = lifted(report.write);
   launch.parent = ::getpid();
-  launch.memory = options.memory_limit
-                      ? static_cast<rlim_t>(*options.memory_limit)
-                      : RLIM_INFINITY;
+  launch.memory = memory_limit_of(options);
   launch.niceness = options.niceness;
   started.process = ::fork();
   if (started.process < 0) {
@@ -261,9 +271,6 @@ void send_some(Descriptor& input, std::string_view& rest) {
       rest = {};  // it does not listen any more; its exit code says why
     }
   }
-  if (rest.empty()) {
-    input.reset();
-  }
 }
 
 /// Reads what is there (after poll said so); closes at the end of the stream.
@@ -282,7 +289,7 @@ void receive_some(Descriptor& stream, std::string& text) {
 bool exchange_bytes(Started& child, std::string_view& rest, ChildResult& result,
                     std::size_t tail, int timeout) {
   std::array<pollfd, 3> polled = {
-      {{child.input.get(), POLLOUT, 0},
+      {{rest.empty() ? -1 : child.input.get(), POLLOUT, 0},
        {child.output.get(), POLLIN, 0},
        {child.error.get(), POLLIN, 0}}};  // poll skips negative ones
   if (::poll(polled.data(), polled.size(), timeout) <= 0) {
@@ -303,38 +310,19 @@ bool exchange_bytes(Started& child, std::string_view& rest, ChildResult& result,
   return polled[1].revents != 0 || polled[2].revents != 0;
 }
 
-}  // namespace
+/// Whether a child is to be ended, and why, in its result.
+bool is_over(const ChildOptions& options, Clock::time_point begin,
+             ChildResult& result) {
+  result.stopped =
+      options.monitor != nullptr && options.monitor->stop_requested();
+  result.timed_out = !result.stopped && options.time_limit &&
+                     seconds_since(begin) > *options.time_limit;
+  return result.stopped || result.timed_out;
+}
 
-ChildResult run_child(const ChildOptions& options) {
-  const auto begin = Clock::now();
-  ChildResult result;
-  Started child;
-  start(options, ErrorStream::Captured, child);
-  std::string_view rest = options.input;
-  if (rest.empty()) {
-    child.input.reset();
-  }
-  while (true) {
-    // Asked before the streams are read: what it wrote before its end is then
-    // in them, and nothing more will come.
-    const bool ended = has_ended(child.process);
-    const bool open = child.output.open() || child.error.open();
-    const int wait = ended ? 0 : open ? kTickMs : kExitTickMs;
-    const bool moved =
-        exchange_bytes(child, rest, result, options.error_tail, wait);
-    if (ended && !moved) {
-      break;
-    }
-    if (options.monitor != nullptr && options.monitor->stop_requested()) {
-      result.stopped = true;
-      break;
-    }
-    if (options.time_limit && seconds_since(begin) > *options.time_limit) {
-      result.timed_out = true;
-      break;
-    }
-  }
-  const int status = reap(child.process);
+/// Ends it, if it has not ended, and says how it ended.
+void finish(pid_t process, const ChildOptions& options, ChildResult& result) {
+  const int status = reap(process);
   if (WIFEXITED(status)) {
     result.exit_code = WEXITSTATUS(status);
   } else if (WIFSIGNALED(status)) {
@@ -343,6 +331,32 @@ ChildResult run_child(const ChildOptions& options) {
   if (result.error_tail.size() > options.error_tail) {
     result.error_tail.erase(0, result.error_tail.size() - options.error_tail);
   }
+}
+
+}  // namespace
+
+ChildResult run_child(const ChildOptions& options) {
+  const auto begin = Clock::now();
+  ChildResult result;
+  Started child;
+  start(options, ErrorStream::Captured, child);
+  std::string_view rest = options.input;
+  while (true) {
+    if (rest.empty()) {
+      child.input.reset();
+    }
+    // Asked before the streams are read: what it wrote before its end is then
+    // in them, and nothing more will come.
+    const bool ended = has_ended(child.process);
+    const bool open = child.output.open() || child.error.open();
+    const int wait = ended ? 0 : open ? kTickMs : kExitTickMs;
+    const bool moved =
+        exchange_bytes(child, rest, result, options.error_tail, wait);
+    if ((ended && !moved) || is_over(options, begin, result)) {
+      break;
+    }
+  }
+  finish(child.process, options, result);
   result.seconds = seconds_since(begin);
   return result;
 }
@@ -361,6 +375,56 @@ std::string describe_end(const ChildResult& result) {
   }
   return fmt::format("ended with exit code {}", result.exit_code);
 }
+
+struct AskedChild::Impl {
+  ChildOptions options;
+  Started child;
+  ChildResult result;
+};
+
+AskedChild::AskedChild(const ChildOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->options = options;
+  start(options, ErrorStream::Captured, impl_->child);
+}
+
+AskedChild::~AskedChild() {
+  if (impl_->child.process > 0) {
+    reap(impl_->child.process);
+  }
+}
+
+std::optional<std::string> AskedChild::ask(std::string_view question) {
+  Impl& impl = *impl_;
+  if (impl.child.process < 0) {
+    return std::nullopt;
+  }
+  const auto begin = Clock::now();
+  const std::string bytes = framed(question);
+  std::string_view rest = bytes;
+  impl.result.output.clear();
+  while (true) {
+    const bool ended = has_ended(impl.child.process);
+    const bool moved =
+        exchange_bytes(impl.child, rest, impl.result, impl.options.error_tail,
+                       ended ? 0 : kTickMs);
+    if (auto answer = unframed(impl.result.output)) {
+      return answer;
+    }
+    if ((ended && !moved) || is_over(impl.options, begin, impl.result)) {
+      break;
+    }
+    if (!impl.child.output.open() && !ended) {
+      ::poll(nullptr, 0, kExitTickMs);  // it is about to end
+    }
+  }
+  finish(impl.child.process, impl.options, impl.result);
+  impl.child.process = -1;
+  impl.result.seconds = seconds_since(begin);
+  return std::nullopt;
+}
+
+const ChildResult& AskedChild::end() const { return impl_->result; }
 
 BackgroundChild::BackgroundChild(const ChildOptions& options, double grace)
     : grace_(grace) {

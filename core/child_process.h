@@ -7,6 +7,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +53,27 @@ ChildResult run_child(const ChildOptions& options);
 /// How a child ended, in words: "ended with exit code 3", "killed by signal
 /// 11 (Segmentation fault)", "stopped after the time limit of 60 s".
 std::string describe_end(const ChildResult& result);
+
+/// A child that answers questions one after another (core/frame.h); its
+/// destructor ends it.
+class AskedChild {
+ public:
+  /// `input` is not used; the time limit is that of each question. Throws
+  /// IoError when it cannot be started.
+  explicit AskedChild(const ChildOptions& options);
+  ~AskedChild();
+  AskedChild(const AskedChild&) = delete;
+  AskedChild& operator=(const AskedChild&) = delete;
+
+  /// Its answer. Nothing where it ended, was stopped or ran into its time
+  /// limit: end() says how, and it answers no more.
+  std::optional<std::string> ask(std::string_view question);
+  const ChildResult& end() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// A child that runs beside its caller (a virtual display); its destructor
 /// ends it: SIGTERM, after `grace` seconds SIGKILL. No input, no limits; its

@@ -14,6 +14,7 @@
 #include "core/geometry/edge_uses.h"
 #include "core/geometry/facet_pairs.h"
 #include "core/geometry/findings.h"
+#include "core/heed_stop.h"
 
 namespace meniscus {
 
@@ -214,6 +215,7 @@ class Checker {
         mesh_, facets, tolerance_,
         [&](int f, int g) {
           last = f;
+          heed_stop("mesh");
           const PairVerdict verdict = classify_pair(mesh_, f, g, tolerance_);
           return verdict.state == PairState::Apart ||
                  add(verdict.state == PairState::Crossing
