@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include "core/error.h"
 #include "core/memory.h"
@@ -25,11 +26,40 @@ void use_one_blas_thread() {
   std::call_once(told, [] { openblas_set_num_threads(1); });
 }
 
+/// OpenBLAS asks for its buffer again and again where a limit of address space
+/// refuses it, without end. Each thread takes its own at its first system; they
+/// are kept.
+void require_blas_buffer() {
+  static thread_local bool taken = false;
+  if (taken) {
+    return;
+  }
+  constexpr std::size_t kBuffer = std::size_t{130} << 20;  // of 0.3.21: 128
+  void* room = ::mmap(nullptr, kBuffer, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) {
+    throw SolverError(fmt::format(
+        "the limit of address space (ulimit -v) leaves no {} MB for the "
+        "buffers of linear algebra; raise it",
+        kBuffer >> 20));
+  }
+  ::munmap(room, kBuffer);
+  // Large enough that OpenBLAS uses its buffer.
+  constexpr int kSize = 64;
+  std::vector<double> square(static_cast<std::size_t>(kSize) * kSize, 1.0);
+  std::vector<double> product(square.size());
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, kSize, kSize, kSize,
+              1.0, square.data(), kSize, square.data(), kSize, 0.0,
+              product.data(), kSize);
+  taken = true;
+}
+
 /// A CHOLMOD session.
 class Session {
  public:
   Session() {
     use_one_blas_thread();
+    require_blas_buffer();
     cholmod_l_start(&common);
     common.print = 0;
     common.error_handler = nullptr;
@@ -72,6 +102,13 @@ LowerView make_view(const SparseMatrix& lower) {
   s.sorted = 1;
   s.packed = 1;
   return view;
+}
+
+/// What CHOLMOD's status says, and what to try.
+std::string status_text(int status) {
+  return status == CHOLMOD_OUT_OF_MEMORY
+             ? "not enough memory; fewer unknowns need less"
+             : fmt::format("CHOLMOD status {}", status);
 }
 
 /// Of the numeric factor and the work space, known once it is analysed.
@@ -149,7 +186,7 @@ std::vector<int> expand_order(const std::vector<int>& node_order, int block) {
 struct SymmetricFactor::Impl {
   Session session;
   FactorKind kind = FactorKind::Cholesky;
-  cholmod_factor* factor = nullptr;
+  cholmod_factor* factor = nullptr;  // null: of no unknowns
   int failed_column = -1;
   int negative_pivots = 0;
   double factor_work = 0.0;  // operations of a factorisation
@@ -163,6 +200,9 @@ SymmetricFactor::SymmetricFactor(const SparseMatrix& lower, FactorKind kind,
     : impl_(std::make_unique<Impl>()) {
   LowerView view = make_view(lower);
   impl_->kind = kind;
+  if (lower.cols() == 0) {
+    return;  // CHOLMOD refuses arrays of no length
+  }
   cholmod_common& common = impl_->session.common;
   common.nmethods = 1;
   common.method[0].ordering = CHOLMOD_GIVEN;
@@ -179,9 +219,8 @@ SymmetricFactor::SymmetricFactor(const SparseMatrix& lower, FactorKind kind,
                                       0, &common);
   if (impl_->factor == nullptr) {
     throw SolverError(
-        fmt::format("analysis of a sparse matrix with {} unknowns failed "
-                    "(CHOLMOD status {}): not enough memory?",
-                    lower.cols(), common.status));
+        fmt::format("analysis of a sparse matrix with {} unknowns failed: {}",
+                    lower.cols(), status_text(common.status)));
   }
   impl_->factor_work = common.fl;
   impl_->factor_entries = common.lnz;
@@ -194,6 +233,9 @@ SymmetricFactor& SymmetricFactor::operator=(SymmetricFactor&&) noexcept =
 
 bool SymmetricFactor::factorize(const SparseMatrix& lower) {
   LowerView view = make_view(lower);
+  if (impl_->factor == nullptr) {
+    return true;
+  }
   cholmod_common& common = impl_->session.common;
   cholmod_factor& factor = *impl_->factor;
   if (factor.xtype == CHOLMOD_PATTERN) {  // not factorised before
@@ -238,10 +280,13 @@ bool SymmetricFactor::factorize(const SparseMatrix& lower) {
 }
 
 Eigen::MatrixXd SymmetricFactor::solve(const Eigen::MatrixXd& right) const {
-  const size_t n = impl_->factor->n;
+  const size_t n = impl_->factor == nullptr ? 0 : impl_->factor->n;
   if (static_cast<size_t>(right.rows()) != n) {
     throw SolverError(fmt::format(
         "solve: right side has {} rows, the factor {}", right.rows(), n));
+  }
+  if (right.size() == 0) {
+    return right;
   }
   // Per entry of L below the diagonal four, per pivot two, of each column.
   count_operations(
@@ -259,10 +304,8 @@ Eigen::MatrixXd SymmetricFactor::solve(const Eigen::MatrixXd& right) const {
   cholmod_dense* x =
       cholmod_l_solve(CHOLMOD_A, impl_->factor, &b, &session.common);
   if (x == nullptr) {
-    throw SolverError(
-        fmt::format("triangular solve of {} unknowns failed (CHOLMOD status "
-                    "{}): not enough memory?",
-                    n, session.common.status));
+    throw SolverError(fmt::format("triangular solve of {} unknowns failed: {}",
+                                  n, status_text(session.common.status)));
   }
   Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(
       static_cast<const double*>(x->x), right.rows(), right.cols());
@@ -275,6 +318,9 @@ int SymmetricFactor::failed_column() const { return impl_->failed_column; }
 int SymmetricFactor::negative_pivots() const { return impl_->negative_pivots; }
 
 long long SymmetricFactor::entries() const {
+  if (impl_->factor == nullptr) {
+    return 0;
+  }
   const cholmod_factor& factor = *impl_->factor;
   return static_cast<long long>(factor.is_super != 0 ? factor.xsize
                                                      : factor.nzmax);

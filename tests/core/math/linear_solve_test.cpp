@@ -130,5 +130,17 @@ TEST(NestedDissection, IsAPermutationEvenOfUnconnectedUnknowns) {
   }
 }
 
+TEST(SymmetricFactor, OfNoUnknownsSolvesNothing) {
+  SparseMatrix none(0, 0);
+  none.makeCompressed();
+  for (const FactorKind kind : {FactorKind::Cholesky, FactorKind::Indefinite}) {
+    SymmetricFactor factor(none, kind);
+    EXPECT_TRUE(factor.factorize(none));
+    EXPECT_EQ(factor.solve(Eigen::MatrixXd(0, 3)).cols(), 3);
+    EXPECT_EQ(factor.entries(), 0);
+    EXPECT_EQ(factor.negative_pivots(), 0);
+  }
+}
+
 }  // namespace
 }  // namespace meniscus::linear_solve_test
