@@ -4,6 +4,7 @@
 #include <new>
 
 #include "core/error.h"
+#include "core/math/expression.h"
 
 namespace meniscus::app {
 
@@ -35,7 +36,9 @@ int exit_code_of(study::RunStatus status) {
 }
 
 std::vector<ErrorRule> program_rules() {
-  return {on<InvalidInput>(kExitWrongInput), on<Interrupted>(kExitInterrupted),
+  return {on<InvalidInput>(kExitWrongInput),
+          on<ExpressionError>(kExitWrongInput),
+          on<Interrupted>(kExitInterrupted),
           on<std::exception>(kExitError, "error: ")};
 }
 

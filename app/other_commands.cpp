@@ -125,6 +125,11 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
   if (!warning.empty()) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
+  if (result.stopped) {
+    std::fprintf(stderr, "stopped by %s: the film is kept as it was\n",
+                 name_of_signal(stop_signal()));
+    return kExitInterrupted;
+  }
   if (result.failure) {
     std::fprintf(stderr, "failed: %s\n", result.failure->message.c_str());
     const FailureKind kind = result.failure->kind;

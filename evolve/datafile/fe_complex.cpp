@@ -41,6 +41,11 @@ class ComplexBuilder {
       : file_(file), values_(fe_values(file, parameters)) {}
 
   films::FilmComplex build() {
+    if (file_.faces.empty()) {
+      fe_fail(file_, {},
+              "the file has no faces; films are faces, and edges alone (string "
+              "models) are not supported");
+    }
     integrals_ = fe_formulas(file_, values_, complex_);
     for (std::size_t c = 0; c < file_.constraints.size(); ++c) {
       if (file_.constraints[c].global) {

@@ -163,6 +163,9 @@ class Runner {
         evaluator_.fail(statement.place,
                         fmt::format("'{}' is not supported", statement.name));
     }
+    if (session_.complex().mesh.facets.empty()) {
+      evaluator_.fail(statement.place, "no facet of the film is left");
+    }
   }
 
   template <class Work>
@@ -252,6 +255,10 @@ class Runner {
                : statement.name == "-=" ? left - result
                : statement.name == "*=" ? left * result
                                         : left / result;
+      if (!std::isfinite(result)) {
+        evaluator_.fail(last.place,
+                        fmt::format("'{}' becomes {}", last.name, result));
+      }
     }
     if (last.op == FeOperator::Name) {
       session_.assign(last.name, result);

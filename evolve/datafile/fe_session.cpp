@@ -73,6 +73,9 @@ int FeSession::mark_of(int edge) const {
 
 void FeSession::descend_steps(int count) {
   const energy::FilmEnergy energy(complex_, energy::FilmMotion::Anywhere);
+  if (energy.unknowns() == 0) {
+    return;  // nothing moves
+  }
   const films::FilmTargets targets = energy::targets_of(complex_);
   for (int step = 0; step < count;) {
     // Directions follow the film: anew every few steps.
@@ -99,6 +102,9 @@ void FeSession::descend_steps(int count) {
 
 void FeSession::newton_step() {
   const energy::FilmEnergy energy(complex_);
+  if (energy.unknowns() == 0) {
+    return;  // nothing moves
+  }
   const films::FilmTargets targets = energy::targets_of(complex_);
   const Points& points = complex_.mesh.points;
   settle::FilmNewton newton(energy, targets,

@@ -115,7 +115,9 @@ struct PlaceJet {
   Vec3 gradient = Vec3::Zero();
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
 };
-/// An expression of x, y, z. Throws ExpressionError where it has no value.
+/// An expression of x, y, z. Both throw ExpressionError, naming the place,
+/// where it has no value.
+double value_at(const Expression& expression, const Vec3& at);
 PlaceJet jet_at(const Expression& expression, const Vec3& at);
 
 }  // namespace meniscus::energy

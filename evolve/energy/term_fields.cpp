@@ -1,7 +1,5 @@
 #include "evolve/energy/term_fields.h"
 
-#include <span>
-
 #include "evolve/energy/film_space.h"
 
 namespace meniscus::energy {
@@ -11,7 +9,7 @@ FieldFunction expression_field(const films::VectorField& field) {
     FieldJet jet;
     for (int m = 0; m < 3; ++m) {
       if (order == JetOrder::Value) {  // duals cost several times as much
-        jet.value[m] = field[m].evaluate(std::span<const double>(at.data(), 3));
+        jet.value[m] = value_at(field[m], at);
         continue;
       }
       const PlaceJet part = jet_at(field[m], at);

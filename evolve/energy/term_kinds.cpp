@@ -163,7 +163,7 @@ class ScalarTerm : public FilmTerm {
       const Vec3 at = l[0] * c[0] + l[1] * c[1] + l[2] * c[2];
       PlaceJet f;
       if (order == JetOrder::Value) {  // duals cost several times as much
-        f.value = scalar_.evaluate(std::span<const double>(at.data(), 3));
+        f.value = value_at(scalar_, at);
       } else {
         f = jet_at(scalar_, at);
       }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/heed_stop.h"
 #include "core/math/dense.h"
 
 namespace meniscus::settle {
@@ -52,6 +53,7 @@ class Descent {
   double scale() const { return scale_; }
   const VectorX& pressure() const { return pressure_; }
   Points points() const { return at(h_); }
+  long evaluations() const { return evaluations_; }
 
   /// Force per lumped area along the directions, without what the volumes
   /// take; and the residual.
@@ -67,7 +69,7 @@ class Descent {
     }
     const Eigen::MatrixXd b = volume_slopes(x);
     const VectorX weight = metric_.cwiseInverse();
-    if (b.cols() > 0) {
+    if (b.size() > 0) {
       const VectorX y = solve_ldlt(b.transpose() * weight.asDiagonal() * b,
                                    b.transpose() * weight.cwiseProduct(r));
       r -= b * y;
@@ -95,6 +97,9 @@ class Descent {
 
   /// One step of the best scale. False where none lowers the energy.
   bool step() {
+    if (way_.size() == 0) {
+      return false;  // nothing moves
+    }
     if (scale_ == 0.0) {
       const double fastest = way_.cwiseAbs().maxCoeff();
       const double edge = energy_.mean_edge(base_);
@@ -148,6 +153,8 @@ class Descent {
     return b;
   }
   double value(const VectorX& h) const {
+    ++evaluations_;
+    heed_stop("film");
     const Points x = at(h);
     double sum = energy_.value(x, targets_);
     const VectorX volumes = energy_.volumes(x);
@@ -188,6 +195,7 @@ class Descent {
   /// Newton steps along the volume slopes; false where they do not arrive.
   bool restore(VectorX& h) const {
     for (int k = 0; k < kRestoreSteps && !held_.empty(); ++k) {
+      ++evaluations_;
       const Points x = at(h);
       const VectorX gap = missing(x);
       bool there = true;
@@ -265,7 +273,52 @@ class Descent {
   double now_ = 0.0;
   double residual_ = 0.0;
   double scale_ = 0.0;
+  mutable long evaluations_ = 0;
 };
+
+}  // namespace
+
+namespace {
+
+enum class DescentEnd { Moved, Converged, Steps, Evaluations, Stuck };
+
+/// One round: the force, the stop criteria, a step. Where no step falls, once
+/// more from the plain force, as rounding may have spoilt conjugacy.
+DescentEnd descend_once(Descent& descent, const DescentOptions& options,
+                        int steps) {
+  // Force -M^-1 r, r = E_h - sum p V_h with the pressures that keep the
+  // volumes to first order; the max norm of r is the residual.
+  descent.find_force();
+  if (descent.residual() <= options.residual_bound) {
+    return DescentEnd::Converged;
+  }
+  if (steps >= options.max_steps) {
+    return DescentEnd::Steps;
+  }
+  if (options.max_evaluations > 0 &&
+      descent.evaluations() >= options.max_evaluations) {
+    return DescentEnd::Evaluations;
+  }
+  if (descent.step()) {
+    return DescentEnd::Moved;
+  }
+  descent.restart();
+  descent.find_force();
+  return descent.step() ? DescentEnd::Moved : DescentEnd::Stuck;
+}
+
+const char* message_of(DescentEnd end) {
+  switch (end) {
+    case DescentEnd::Converged:
+      return "the residual is below its bound";
+    case DescentEnd::Evaluations:
+      return "the evaluations allowed are used up";
+    case DescentEnd::Stuck:
+      return "no step lowers the energy beyond rounding";
+    default:
+      return "the steps allowed are used up";
+  }
+}
 
 }  // namespace
 
@@ -273,41 +326,29 @@ DescentReport descend(const energy::FilmEnergy& energy,
                       const films::FilmTargets& targets,
                       const Points& directions, Points& points,
                       const DescentOptions& options) {
+  const Heeding heeding(options.monitor);
   Descent descent(energy, targets, directions, points, options);
   DescentReport report;
   report.energies.push_back(descent.now());
-  report.message = "the steps allowed are used up";
-  bool restarted = false;
-  for (;; ++report.steps) {
-    if (options.monitor != nullptr) {
-      throw_if_stopped(*options.monitor, "film");
-    }
-    // Force -M^-1 r, r = E_h - sum p V_h with the pressures that keep the
-    // volumes to first order; the max norm of r is the residual.
-    descent.find_force();
-    if (descent.residual() <= options.residual_bound) {
-      report.converged = true;
-      report.message = "the residual is below its bound";
-      break;
-    }
-    if (report.steps >= options.max_steps) {
-      break;
-    }
-    // A line search along the (conjugate) direction. Where it fails, once more
-    // from the plain force, as rounding may have spoilt conjugacy.
-    if (!descent.step()) {
-      if (restarted) {
-        report.message = "no step lowers the energy beyond rounding";
-        break;
+  DescentEnd end = DescentEnd::Moved;
+  try {
+    while (end == DescentEnd::Moved) {
+      if (options.monitor != nullptr) {
+        throw_if_stopped(*options.monitor, "film");
       }
-      descent.restart();
-      restarted = true;
-      --report.steps;
-      continue;
+      end = descend_once(descent, options, report.steps);
+      if (end == DescentEnd::Moved) {
+        ++report.steps;
+        report.energies.push_back(descent.now());
+      }
     }
-    restarted = false;
-    report.energies.push_back(descent.now());
+  } catch (const Interrupted&) {
+    points = descent.points();
+    throw;
   }
+  report.message = message_of(end);
+  report.converged = end == DescentEnd::Converged;
+  report.evaluations = descent.evaluations();
   report.residual = descent.residual();
   report.scale = descent.scale();
   report.pressure = descent.pressure();

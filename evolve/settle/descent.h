@@ -25,6 +25,9 @@ struct DescentOptions {
   DescentMethod method = DescentMethod::Gradient;
   DescentMetric metric = DescentMetric::LumpedArea;
   int max_steps = 1000;
+  /// Of the energy and the volumes, line searches included; where films are bad
+  /// a step takes hundreds. 0: no limit.
+  long max_evaluations = 0;
   double residual_bound = 0.0;      // [force], max norm along the directions
   double volume_tolerance = 1e-10;  // relative, restored after every step
   // Volumes that are off at the start are approached by heights of at most
@@ -37,6 +40,7 @@ struct DescentOptions {
 struct DescentReport {
   bool converged = false;
   int steps = 0;
+  long evaluations = 0;
   std::vector<double> energies;  // at the start and after every step
   double residual = 0.0;         // [force]
   double scale = 0.0;            // the last one: motion / (force in the metric)
@@ -48,7 +52,8 @@ struct DescentReport {
 /// downhill at the targets' volumes and pressures. The scale of each step is
 /// doubled or halved until the energy is bracketed, then taken at the minimum
 /// of the parabola through three points. Stops where no scale lowers the
-/// energy beyond rounding.
+/// energy beyond rounding. Throws Interrupted with `points` where the descent
+/// was.
 DescentReport descend(const energy::FilmEnergy& energy,
                       const films::FilmTargets& targets,
                       const Points& directions, Points& points,

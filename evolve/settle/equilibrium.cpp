@@ -184,6 +184,9 @@ energy::LowestMode lowest_mode_of(const energy::FilmEnergy& energy,
                                   const films::FilmTargets& targets,
                                   const Points& points,
                                   const VectorX& pressure) {
+  if (energy.unknowns() == 0) {
+    return {};  // nothing moves
+  }
   const Points own(points.begin(),
                    points.begin() + energy.space().vertex_count());
   const Points directions = energy.space().directions(own);

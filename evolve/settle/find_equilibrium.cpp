@@ -35,13 +35,6 @@ constexpr std::size_t kDirect = 6000;
 constexpr int kContactRounds = 40;
 constexpr double kLooseReduction = 1e-2;  // on levels that are refined further
 
-bool has_free_vertex(const films::FilmComplex& complex) {
-  return std::any_of(complex.vertices.begin(), complex.vertices.end(),
-                     [](const films::ComplexVertex& vertex) {
-                       return vertex.kind == films::VertexKind::Free;
-                     });
-}
-
 FilmState given_up(const films::FilmComplex& complex, const std::string& reason,
                    int steps) {
   const energy::FilmEnergy energy(complex);
@@ -143,12 +136,7 @@ FilmState settle_or_follow(films::FilmComplex& complex, double usual_neck,
 /// Newton, and vertex averaging so that facets are good where the film is.
 FilmState settle_and_polish(films::FilmComplex& complex,
                             const FindOptions& options, int& steps) {
-  if (!has_free_vertex(complex)) {
-    throw InvalidInput(fmt::format(
-        "the film has no vertex between its curves at a mean edge of {:.4g}; "
-        "use a shorter edge",
-        mean_edge_length(complex.mesh)));
-  }
+  require_motion(complex);
   FilmState state;
   for (int round = 0; round <= kPolishRounds; ++round) {
     if (round > 0) {
@@ -345,6 +333,15 @@ FilmState find_nested(films::FilmComplex& complex, const FindOptions& options,
 }
 
 }  // namespace
+
+void require_motion(const films::FilmComplex& complex) {
+  if (energy::FilmSpace(complex).unknowns() == 0) {
+    throw InvalidInput(fmt::format(
+        "the film has no vertex between its curves at a mean edge of {:.4g}; "
+        "use a shorter edge",
+        mean_edge_length(complex.mesh)));
+  }
+}
 
 FilmState find_equilibrium(films::FilmComplex& complex,
                            const FindOptions& options) {

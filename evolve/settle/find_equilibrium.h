@@ -17,6 +17,9 @@ struct FindOptions {
   SettleOptions settle;
 };
 
+/// Throws InvalidInput where no vertex of the film can move.
+void require_motion(const films::FilmComplex& complex);
+
 /// Coarse to fine: curvature flow with remeshing until the film is near rest
 /// at its volumes, nested refinement, remeshing to the next edge, and Newton
 /// along current normals at the end. `complex` becomes the settled film. The

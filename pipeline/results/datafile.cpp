@@ -7,6 +7,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/heed_stop.h"
+#include "core/math/expression.h"
 #include "core/timer.h"
 #include "evolve/datafile/fe_bodies.h"
 #include "evolve/datafile/fe_script.h"
@@ -27,6 +29,7 @@ namespace meniscus::results {
 namespace {
 
 constexpr double kEnoughFacets = 2000.0;
+constexpr long kEvaluationsPerStep = 30;   // on average; a dozen are usual
 constexpr double kDescentResidual = 1e-6;  // x tension x edge
 // Facets below which vertices slide: there what facets miss is more than a
 // rounding, and the shapes that sliding leaves do not matter.
@@ -92,24 +95,40 @@ settle::DescentReport descend_to_rest(films::FilmComplex& complex,
 /// The paper's motion, refined and groomed between its runs.
 settle::FilmState descend_by_levels(films::FilmComplex& complex,
                                     int refinements,
-                                    const DatafileOptions& options) {
+                                    const DatafileOptions& options,
+                                    bool& stopped) {
   const settle::DescentMethod method =
       options.method == DatafileMethod::Gradient
           ? settle::DescentMethod::Gradient
           : settle::DescentMethod::ConjugateGradients;
   settle::DescentReport report;
+  films::FilmComplex before;  // of grooming, which leaves nothing when stopped
   int steps = 0;
-  for (int level = 0; level <= refinements; ++level) {
-    if (level > 0) {
-      complex = groom::refine(complex).complex;
+  try {
+    for (int level = 0; level <= refinements; ++level) {
+      if (level > 0) {
+        complex = groom::refine(complex).complex;
+      }
+      before = complex;
+      groom::equiangulate(complex);
+      groom::average_vertices(complex);
+      report = descend_to_rest(
+          complex, {.method = method,
+                    .max_steps = options.max_steps,
+                    .max_evaluations = kEvaluationsPerStep * options.max_steps,
+                    .monitor = options.monitor});
+      steps += report.steps;
     }
-    groom::equiangulate(complex);
-    groom::average_vertices(complex);
-    report = descend_to_rest(complex, {.method = method,
-                                       .max_steps = options.max_steps,
-                                       .monitor = options.monitor});
-    steps += report.steps;
+  } catch (const Interrupted&) {  // what there is of it is kept
+    stopped = true;
+    const Heeding deaf(&silent_monitor());
+    if (complex.mesh.facets.empty()) {
+      complex = std::move(before);
+    }
+    report = descend_to_rest(complex, {.max_steps = 0, .most_restore = 0.0});
+    report.message = "stopped on request";
   }
+  settle::require_motion(complex);
   return state_after(complex, report, steps);
 }
 
@@ -123,6 +142,9 @@ settle::FilmState judge_macro(films::FilmComplex& complex, int iterations) {
     state.report.verdict = fmt::format(
         "not at rest: the macro ended at a residual of {:.3g} (bound {:.3g})",
         state.report.residual, state.report.residual_bound);
+  }
+  if (energy::FilmSpace(complex).unknowns() == 0) {
+    state.report.verdict = "as the file has it: nothing in it moves";
   }
   state.failure.reset();
   return state;
@@ -190,14 +212,10 @@ films::NestingReport nesting_of_films(const films::FilmComplex& complex) {
                         : films::check_nesting(complex.mesh, liquid);
 }
 
-}  // namespace
-
-DatafileResult evolve_datafile(const std::filesystem::path& path,
-                               const DatafileOptions& options) {
+DatafileResult evolve_film(const datafile::FeFile& file,
+                           const DatafileOptions& options) {
+  const Heeding heeding(options.monitor);
   const Timer timer;
-  const datafile::FeFile file =
-      datafile::read_fe(read_file(path), path.filename().string());
-  datafile::check_fe_bodies(file);
   // Commands of the file that stand outside its macros are part of the film.
   datafile::FeScriptResult script = datafile::run_fe_script(
       file, options.parameters,
@@ -215,7 +233,8 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
     state = options.pop ? settle_and_pop(result.complex, find, result.popped)
                         : settle(result.complex, find);
   } else {
-    state = descend_by_levels(result.complex, refinements, options);
+    state =
+        descend_by_levels(result.complex, refinements, options, result.stopped);
   }
   const energy::FilmEnergy energy(result.complex);
   const VectorX values = energy.quantities(result.complex.mesh.points);
@@ -230,6 +249,22 @@ DatafileResult evolve_datafile(const std::filesystem::path& path,
     result.nesting = nesting_of_films(result.complex);
   }
   return result;
+}
+
+}  // namespace
+
+DatafileResult evolve_datafile(const std::filesystem::path& path,
+                               const DatafileOptions& options) {
+  const datafile::FeFile file =
+      datafile::read_fe(read_file(path), path.filename().string());
+  datafile::check_fe_bodies(file);
+  try {
+    return evolve_film(file, options);
+  } catch (const ExpressionError& error) {
+    throw InvalidInput(
+        fmt::format("{}: a formula has no value where the film went: {}",
+                    file.name, error.what()));
+  }
 }
 
 std::vector<std::string> solids_of(const films::FilmComplex& complex) {

@@ -38,6 +38,7 @@ struct DatafileResult {
   films::NestingReport nesting;  // of a film that did not fail
   std::string printed;           // by the macro
   int popped = 0;                // junctions
+  bool stopped = false;  // a descent, on request: the film as it was then
 };
 
 /// Reads `path` and settles its films by our own route. Throws InvalidInput

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "evolve/groom/refine.h"
 #include "evolve/settle/equilibrium.h"
 #include "evolve/settle/slide_vertices.h"
@@ -102,6 +103,40 @@ INSTANTIATE_TEST_SUITE_P(
     ByName, Descends,
     testing::Values(settle::DescentMethod::Gradient,
                     settle::DescentMethod::ConjugateGradients));
+
+/// As a film that never comes to rest: it ends where the limit says, lower than
+/// it began.
+TEST(Descent, EndsWithItsEvaluations) {
+  const films::FilmComplex complex = near_sphere();
+  const energy::FilmEnergy energy(complex);
+  Points points = complex.mesh.points;
+  const settle::DescentReport report = settle::descend(
+      energy, energy::targets_of(complex), energy.space().directions(points),
+      points, {.max_steps = 1'000'000, .max_evaluations = 200});
+  EXPECT_FALSE(report.converged);
+  EXPECT_GE(report.evaluations, 200);
+  EXPECT_LT(report.evaluations, 1000);
+  EXPECT_EQ(report.message, "the evaluations allowed are used up");
+  EXPECT_LT(report.energies.back(), report.energies.front());
+}
+
+/// The points are where it was when the stop came.
+TEST(Descent, KeepsItsPlaceWhenStopped) {
+  struct AfterSome : Monitor {
+    bool stop_requested() const override { return ++asked > 20; }
+    mutable int asked = 0;
+  } monitor;
+  const films::FilmComplex complex = near_sphere();
+  const energy::FilmEnergy energy(complex);
+  const films::FilmTargets targets = energy::targets_of(complex);
+  Points points = complex.mesh.points;
+  EXPECT_THROW(
+      settle::descend(energy, targets, energy.space().directions(points),
+                      points, {.max_steps = 1'000'000, .monitor = &monitor}),
+      Interrupted);
+  EXPECT_LT(energy.value(points, targets),
+            energy.value(complex.mesh.points, targets));
+}
 
 }  // namespace
 }  // namespace meniscus::descent_test
