@@ -1,5 +1,3 @@
-#include "cad/step/step_edges.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -24,6 +22,7 @@
 #include <fmt/ranges.h>
 
 #include "cad/step/step_file.h"
+#include "cad/step/step_here.h"
 #include "cad/step/step_session.h"
 #include "core/error.h"
 #include "core/nearest_name.h"
@@ -102,7 +101,7 @@ void reverse(StepLoop& loop) {
 
 }  // namespace
 
-struct StepEdges::Impl {
+struct OpenStepEdges::Impl {
   StepFile file;
   TopTools_IndexedMapOfShape edges;
   TopTools_IndexedMapOfShape faces;
@@ -123,7 +122,7 @@ struct StepEdges::Impl {
   std::vector<StepPiece> chained(std::vector<StepPiece> pieces) const;
 };
 
-StepPiece StepEdges::Impl::piece(int edge) const {
+StepPiece OpenStepEdges::Impl::piece(int edge) const {
   const BRepAdaptor_Curve shape = curve(edge);
   StepPiece piece{.edge = edge};
   piece.kind = shape.GetType() == GeomAbs_Line     ? StepPiece::Kind::Line
@@ -151,7 +150,7 @@ StepPiece StepEdges::Impl::piece(int edge) const {
 }
 
 /// The circle or ellipse that an edge lies on.
-std::optional<solid::EllipseCurve> StepEdges::Impl::conic(int edge) const {
+std::optional<solid::EllipseCurve> OpenStepEdges::Impl::conic(int edge) const {
   const BRepAdaptor_Curve shape = curve(edge);
   gp_Ax2 axes;
   double u = 0.0;
@@ -174,7 +173,7 @@ std::optional<solid::EllipseCurve> StepEdges::Impl::conic(int edge) const {
 }
 
 /// The circle or ellipse that all pieces lie on, when they go around it once.
-std::optional<solid::EllipseCurve> StepEdges::Impl::whole(
+std::optional<solid::EllipseCurve> OpenStepEdges::Impl::whole(
     const std::vector<StepPiece>& pieces) const {
   auto first = conic(pieces.front().edge);
   if (!first) {
@@ -207,7 +206,7 @@ std::optional<solid::EllipseCurve> StepEdges::Impl::whole(
   return first;
 }
 
-std::string StepEdges::Impl::described(int edge) const {
+std::string OpenStepEdges::Impl::described(int edge) const {
   const BRepAdaptor_Curve shape = curve(edge);
   const std::string name = file.name_of(edges(edge));
   const double middle = 0.5 * (shape.FirstParameter() + shape.LastParameter());
@@ -220,7 +219,7 @@ std::string StepEdges::Impl::described(int edge) const {
                                             : shape.Value(middle))));
 }
 
-int StepEdges::Impl::find(const std::string& edge) const {
+int OpenStepEdges::Impl::find(const std::string& edge) const {
   std::vector<std::string> names;
   for (int k = 1; k <= edges.Extent(); ++k) {
     names.push_back(file.name_of(edges(k)));
@@ -247,7 +246,7 @@ int StepEdges::Impl::find(const std::string& edge) const {
       edges.Extent() > kNamesShown ? "; ..." : ""));
 }
 
-int StepEdges::Impl::find_face(const std::string& face) const {
+int OpenStepEdges::Impl::find_face(const std::string& face) const {
   std::vector<std::string> names;
   std::vector<int> found;
   for (int k = 1; k <= faces.Extent(); ++k) {
@@ -286,7 +285,7 @@ int StepEdges::Impl::find_face(const std::string& face) const {
 }
 
 /// In the order and direction in which they follow the first.
-std::vector<StepPiece> StepEdges::Impl::chained(
+std::vector<StepPiece> OpenStepEdges::Impl::chained(
     std::vector<StepPiece> pieces) const {
   const double near = kClosed * length_of(pieces);
   const auto refuse = [&](const Vec3& end, int edge, double gap, int nearest) {
@@ -325,18 +324,19 @@ std::vector<StepPiece> StepEdges::Impl::chained(
   return pieces;
 }
 
-StepEdges::StepEdges(const std::filesystem::path& path, const std::string& unit)
+OpenStepEdges::OpenStepEdges(const std::filesystem::path& path,
+                             const std::string& unit)
     : impl_(std::make_unique<Impl>()) {
   const StepSilence silence;
   open_step(impl_->file, path, unit);
   TopExp::MapShapes(impl_->file.shape, TopAbs_EDGE, impl_->edges);
   TopExp::MapShapes(impl_->file.shape, TopAbs_FACE, impl_->faces);
 }
-StepEdges::StepEdges(StepEdges&&) noexcept = default;
-StepEdges& StepEdges::operator=(StepEdges&&) noexcept = default;
-StepEdges::~StepEdges() = default;
+OpenStepEdges::OpenStepEdges(OpenStepEdges&&) noexcept = default;
+OpenStepEdges& OpenStepEdges::operator=(OpenStepEdges&&) noexcept = default;
+OpenStepEdges::~OpenStepEdges() = default;
 
-StepLoop StepEdges::loop(const std::vector<std::string>& edges) const {
+StepLoop OpenStepEdges::loop(const std::vector<std::string>& edges) const {
   const StepSilence silence;
   std::vector<StepPiece> pieces;
   for (const std::string& edge : edges) {
@@ -355,7 +355,7 @@ StepLoop StepEdges::loop(const std::vector<std::string>& edges) const {
   return loop;
 }
 
-StepLoop StepEdges::rim(const std::string& face) const {
+StepLoop OpenStepEdges::rim(const std::string& face) const {
   const StepSilence silence;
   const int number = impl_->find_face(face);
   const TopoDS_Face shape = TopoDS::Face(impl_->faces(number));

@@ -11,6 +11,8 @@
 
 namespace meniscus::step {
 
+class StepChild;
+
 /// One edge of a loop, in the loop's direction.
 struct StepPiece {
   enum class Kind { Line, Arc, Free };
@@ -31,11 +33,13 @@ struct StepLoop {
   std::vector<StepPiece> pieces;  // each starts where the last one ended
 };
 
-/// The edges of one file. Throws what open_step() throws. One at a time:
-/// OpenCASCADE's settings are the process's own.
+/// The edges of one file, held open in a process of its own
+/// (cad/step/step_child.h).
 class StepEdges {
  public:
-  /// `unit`: that lengths are wanted in: mm, m or in.
+  /// `unit`: that lengths are wanted in: mm, m or in. Throws InvalidInput (no
+  /// STEP, no shape, an unknown unit, a file that OpenCASCADE cannot read in
+  /// its process's limits), IoError, Interrupted.
   StepEdges(const std::filesystem::path& path, const std::string& unit);
   StepEdges(StepEdges&&) noexcept;
   StepEdges& operator=(StepEdges&&) noexcept;
@@ -54,8 +58,7 @@ class StepEdges {
   StepLoop rim(const std::string& face) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<StepChild> child_;
 };
 
 }  // namespace meniscus::step

@@ -1,5 +1,3 @@
-#include "cad/step/step_reader.h"
-
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
@@ -14,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cad/step/step_file.h"
+#include "cad/step/step_here.h"
 #include "cad/step/step_session.h"
 #include "core/error.h"
 
@@ -146,8 +145,8 @@ int label_named(SurfaceMesh& mesh, const std::string& name) {
 
 }  // namespace
 
-SurfaceMesh read_step_part(const std::filesystem::path& path,
-                           const ReadStepOptions& options) {
+SurfaceMesh tessellate_step(const std::filesystem::path& path,
+                            const ReadStepOptions& options) {
   const StepSilence silence;
   StepFile file;
   open(file, path, options);

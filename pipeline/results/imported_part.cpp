@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/heed_stop.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/forward/part_file.h"
@@ -134,6 +135,7 @@ TetMesh filled(const SurfaceMesh& surface, double edge, const std::string& path,
 
 SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
   while (true) {
+    heed_stop("mesh");
     std::vector<Edge> edges;
     std::vector<Triangle> facet_edges;
     list_edges(surface.facets, edges, facet_edges);
@@ -175,6 +177,7 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
                                   const RunPart& run, const FaceNames& names,
                                   Monitor* monitor,
                                   forward::EvaluationFields* kept) {
+  const Heeding heeding(monitor);
   const std::vector<case_data::BodyEntry> bodies =
       case_data::solid_bodies(run.input);
   if (std::any_of(bodies.begin(), bodies.end(),
@@ -188,8 +191,9 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
   }
   const double edge = run.input.resolution.fea;
   const SurfaceMesh surface = with_short_edges(
-      renamed(forward::read_part_file(
-                  path, {.unit = run.input.units.length, .edge = edge}),
+      renamed(forward::read_part_file(path, {.unit = run.input.units.length,
+                                             .edge = edge,
+                                             .monitor = monitor}),
               names, path.string()),
       kLongestEdge * edge);
   check_names(surface, run.fields.inputs, path.string());

@@ -1,0 +1,105 @@
+// meniscus-step: reads STEP for the program, which starts it under limits of
+// time and memory: OpenCASCADE may end its process on a damaged file. Questions
+// on stdin, answers on stdout (cad/step/step_messages.h).
+#include <fcntl.h>
+#include <new>
+#include <optional>
+#include <unistd.h>
+
+#include <Standard_Failure.hxx>
+#include <fmt/format.h>
+
+#include "cad/step/step_here.h"
+#include "cad/step/step_messages.h"
+
+namespace {
+
+using namespace meniscus;
+using namespace meniscus::step;
+
+/// Keeps the answers' stream for itself: OpenCASCADE may print on stdout.
+int take_stdout() {
+  const int out = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+  const int null = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  return out < 0 || null < 0 || ::dup2(null, STDOUT_FILENO) < 0 ? -1 : out;
+}
+
+class Reader {
+ public:
+  std::string answer(const std::string& question) {
+    try {
+      FrameWriter out;
+      out.put(StepAnswer::Done);
+      FrameReader in(question);
+      answer(in, out);
+      return out.bytes();
+    } catch (const InvalidInput& error) {
+      return refusal(StepAnswer::InvalidInput, error.what());
+    } catch (const std::bad_alloc&) {
+      return refusal(StepAnswer::NoMemory, "");
+    } catch (const std::exception& error) {
+      return refusal(StepAnswer::IoError, error.what());
+    } catch (const Standard_Failure& failure) {
+      const char* said = failure.GetMessageString();
+      return refusal(
+          StepAnswer::InvalidInput,
+          fmt::format("{}: OpenCASCADE cannot read it ({}{}{}); the file is "
+                      "damaged; write it anew from its CAD program",
+                      path_, failure.DynamicType()->Name(),
+                      said != nullptr && *said != 0 ? ": " : "",
+                      said != nullptr ? said : ""));
+    }
+  }
+
+ private:
+  static std::string refusal(StepAnswer kind, const std::string& message) {
+    FrameWriter out;
+    out.put(kind);
+    out.put_text(message);
+    return out.bytes();
+  }
+
+  void answer(FrameReader& in, FrameWriter& out) {
+    switch (in.get<StepQuestion>()) {
+      case StepQuestion::Part: {
+        path_ = in.get_text();
+        ReadStepOptions options{.unit = in.get_text()};
+        options.edge = in.get<double>();
+        put_mesh(out, tessellate_step(path_, options));
+        break;
+      }
+      case StepQuestion::Open: {
+        path_ = in.get_text();
+        edges_.emplace(path_, in.get_text());
+        break;
+      }
+      case StepQuestion::Loop: {
+        std::vector<std::string> names(in.get<std::uint64_t>());
+        for (std::string& name : names) {
+          name = in.get_text();
+        }
+        put_loop(out, edges_.value().loop(names));
+        break;
+      }
+      case StepQuestion::Rim:
+        put_loop(out, edges_.value().rim(in.get_text()));
+        break;
+    }
+  }
+
+  std::string path_;
+  std::optional<OpenStepEdges> edges_;
+};
+
+}  // namespace
+
+int main() {
+  const int out = take_stdout();
+  Reader reader;
+  while (const auto question = read_frame(STDIN_FILENO)) {
+    if (!write_frame(out, reader.answer(*question))) {
+      ::_exit(1);
+    }
+  }
+  ::_exit(0);  // shapes of a damaged file are not taken apart
+}

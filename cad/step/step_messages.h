@@ -1,0 +1,29 @@
+/// Internal: what the program and its helper `meniscus-step` say to each other
+/// (core/frame.h), both from one build.
+#pragma once
+
+#include <cstdint>
+
+#include "cad/step/step_edges.h"
+#include "core/frame.h"
+#include "core/geometry/surface_mesh.h"
+
+namespace meniscus::step {
+
+/// First in a question; then its arguments, texts but for the edge's length.
+enum class StepQuestion : std::int32_t {
+  Part,  // path, unit, edge: a mesh
+  Open,  // path, unit: nothing
+  Loop,  // names' number, names: a loop of the open file
+  Rim    // face: the same
+};
+
+/// First in an answer; behind any but Done a message.
+enum class StepAnswer : std::int32_t { Done, InvalidInput, IoError, NoMemory };
+
+void put_mesh(FrameWriter& out, const SurfaceMesh& mesh);
+SurfaceMesh get_mesh(FrameReader& in);
+void put_loop(FrameWriter& out, const StepLoop& loop);
+StepLoop get_loop(FrameReader& in);
+
+}  // namespace meniscus::step
