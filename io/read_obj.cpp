@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/geometry/outlier.h"
 #include "io/obj.h"
 
 namespace meniscus::io {
@@ -37,12 +38,34 @@ class Reader {
     if (mesh_.facets.empty()) {
       refuse("the file has no faces; expected an OBJ file with 'f' lines");
     }
+    refuse_outlier();
     return std::move(mesh_);
   }
 
  private:
   [[noreturn]] void refuse(const std::string& what) const {
     throw InvalidInput(fmt::format("{}:{}: {}", path_, line_, what));
+  }
+
+  /// Facets to a point far away would be cut into more than any machine holds.
+  void refuse_outlier() {
+    Points used;
+    std::vector<int> lines;
+    std::vector<char> seen(mesh_.points.size(), 0);
+    for (const Triangle& facet : mesh_.facets) {
+      for (const int v : facet) {
+        const auto at = static_cast<std::size_t>(v);
+        if (seen[at] == 0) {
+          seen[at] = 1;
+          used.push_back(mesh_.points[at]);
+          lines.push_back(first_[at]);
+        }
+      }
+    }
+    if (const auto outlier = find_outlier(used)) {
+      line_ = lines[static_cast<std::size_t>(outlier->point)];
+      refuse(outlier_text(*outlier, used));
+    }
   }
 
   /// With '\' at its end a line goes on in the next one.
@@ -125,6 +148,7 @@ class Reader {
         known_.emplace(x, static_cast<int>(mesh_.points.size()));
     if (is_new) {
       mesh_.points.emplace_back(x[0], x[1], x[2]);
+      first_.push_back(line_);
     }
     vertices_.push_back(entry->second);
   }
@@ -185,6 +209,7 @@ class Reader {
   std::string object_;
   std::vector<int> vertices_;  // of the file: points
   std::map<std::array<double, 3>, int> known_;
+  std::vector<int> first_;  // of each point: its line
   std::map<std::string, int> labels_;
 };
 

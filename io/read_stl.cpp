@@ -11,6 +11,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/geometry/outlier.h"
 #include "io/stl.h"
 
 namespace meniscus::io {
@@ -40,14 +41,17 @@ class StlReader {
   int point();
   int known(const std::array<double, 3>& x);
   void add_facet(int a, int b, int c);
+  void refuse_outlier() const;
   SurfaceMesh binary();
 
   const std::string& text_;
   const std::string& path_;
   std::size_t at_ = 0;
-  int line_ = 1;
+  int line_ = 1;  // in a binary file: the facet
+  bool is_binary_ = false;
   SurfaceMesh mesh_;
   std::map<std::array<double, 3>, int> known_;
+  std::vector<int> first_;  // of each point: its line, in binary its facet
 };
 
 void StlReader::skip_space(bool over_lines) {
@@ -115,8 +119,20 @@ int StlReader::known(const std::array<double, 3>& x) {
       known_.emplace(x, static_cast<int>(mesh_.points.size()));
   if (is_new) {
     mesh_.points.emplace_back(x[0], x[1], x[2]);
+    first_.push_back(line_);
   }
   return entry->second;
+}
+
+/// Facets to a point far away would be cut into more than any machine holds.
+void StlReader::refuse_outlier() const {
+  const auto outlier = find_outlier(mesh_.points);
+  if (outlier) {
+    throw InvalidInput(fmt::format(
+        "{}:{}{}: {}", path_, is_binary_ ? "facet " : "",
+        first_[static_cast<std::size_t>(outlier->point)],
+        is_binary_ ? " (from 0)" : "", outlier_text(*outlier, mesh_.points)));
+  }
 }
 
 /// After "facet".
@@ -144,6 +160,8 @@ void StlReader::add_facet(int a, int b, int c) {
 
 SurfaceMesh StlReader::binary() {
   mesh_.labels = {"unnamed"};
+  is_binary_ = true;
+  line_ = 0;
   for (std::size_t at = kHeadBytes; at < text_.size(); at += kStlFacetBytes) {
     std::array<float, 9> raw{};
     std::memcpy(raw.data(), text_.data() + at + 3 * sizeof(float), sizeof raw);
@@ -162,7 +180,9 @@ SurfaceMesh StlReader::binary() {
       corner[k] = known(x);
     }
     add_facet(corner[0], corner[1], corner[2]);
+    ++line_;
   }
+  refuse_outlier();
   return std::move(mesh_);
 }
 
@@ -223,6 +243,7 @@ SurfaceMesh StlReader::read() {
   if (mesh_.facets.empty()) {
     refuse("the file has no facets");
   }
+  refuse_outlier();
   return std::move(mesh_);
 }
 

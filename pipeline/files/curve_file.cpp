@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/outlier.h"
 #include "pipeline/files/text_table.h"
 
 namespace meniscus::files {
@@ -146,6 +147,11 @@ void Reader::close() {
     add(lines_.empty() ? 1 : lines_.back(),
         fmt::format("{} point{}; a closed curve needs three or more",
                     file_.points.size(), file_.points.size() == 1 ? "" : "s"));
+  }
+  if (const auto outlier = find_outlier(file_.points);
+      outlier && file_.problems.empty()) {
+    add(lines_[static_cast<std::size_t>(outlier->point)],
+        outlier_text(*outlier, file_.points));
   }
   warn_of_gap();
 }
