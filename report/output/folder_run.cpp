@@ -10,6 +10,7 @@
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_folder.h"
 #include "pipeline/study/film_frames.h"
+#include "pipeline/study/time_limit.h"
 #include "report/output/run_output.h"
 #include "report/page/report_page.h"
 
@@ -111,6 +112,9 @@ FolderRunResult FolderRun::run(const FolderRunListener& listener) {
   RunOutput output(input_, options_.folder, output_options(options_, listener));
   try {
     return {study(listener, output), nullptr};
+  } catch (const study::TimeIsUp& late) {
+    return {keep(listener, study::RunStatus::Stopped, late.what()),
+            std::current_exception()};
   } catch (const Interrupted&) {
     const std::string reason =
         listener.stop_reason ? listener.stop_reason() : "stopped on request";

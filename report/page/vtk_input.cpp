@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "report/page/vtk_bounds.h"
 
 namespace meniscus::page {
 
@@ -76,6 +77,9 @@ void copy_cells(vtkCellArray* cells, const fs::path& path, VtkInput& to) {
   const vtkIdType count = cells->GetNumberOfCells();
   if (count == 0) {
     return;
+  }
+  if (!cells->IsValid()) {
+    refuse_file(path, "has cells that do not fit their corners");
   }
   to.cell_size = static_cast<int>(cells->GetCellSize(0));
   to.cells.reserve(static_cast<std::size_t>(count * to.cell_size));
@@ -152,6 +156,7 @@ VtkInput read_vtk(const fs::path& path,
   if (!fs::is_regular_file(path, ignored)) {
     throw InvalidInput(fmt::format("there is no file '{}'", path.string()));
   }
+  check_vtk_bounds(path);
   const Hushed hushed;
   return path.extension() == ".vtu"
              ? read_with<vtkXMLUnstructuredGridReader>(path, skipped)

@@ -2,7 +2,8 @@
 ///
 /// VTK ends its process where there is no display, so a helper program
 /// (meniscus-render) draws, on a private virtual display (Xvfb) that this
-/// starts and ends: the same picture on every machine, with no window.
+/// starts and ends, and that opens to its own key only: the same picture on
+/// every machine, with no window.
 /// Without Xvfb the user's own DISPLAY serves. Whatever goes wrong is a
 /// warning: a run without pictures is still a run.
 #pragma once
