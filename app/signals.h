@@ -7,7 +7,8 @@ namespace meniscus::app {
 /// and the second of them ends the process at once with exit code 130. A
 /// signal that was ignored before (nohup) stays ignored. SIGXFSZ is ignored:
 /// a file too large for its limit becomes an error of writing like a full
-/// disk, not a sudden end.
+/// disk, not a sudden end. Where nobody asks stop_signal() for 5 s after the
+/// first, or the process still runs a minute after somebody did, it ends too.
 void catch_stop_signals();
 
 /// The first stop signal received (SIGINT, ...), 0 as long as there is none.

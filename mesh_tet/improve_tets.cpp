@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/heed_stop.h"
 #include "mesh_tet/tet_cavity.h"
 #include "mesh_tet/tet_editor.h"
 
@@ -127,6 +128,7 @@ class Improver {
     }
     const ImproveReport before = report;
     for (const int e : bad) {
+      heed_stop("mesh");
       if (tets_.evaluations() > budget_) {
         return 0;
       }

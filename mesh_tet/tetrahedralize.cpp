@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/geometry/mesh_checks.h"
+#include "core/heed_stop.h"
 #include "core/timer.h"
 #include "mesh_tet/improve_tets.h"
 #include "mesh_tet/surface_fit.h"
@@ -246,6 +247,7 @@ std::optional<Failure> refine(const SurfaceMesh& surface, const TetMesh& mesh,
 template <class Work>
 Tetrahedralization timed(const TetrahedralizeOptions& options, Work work) {
   check(options);
+  const Heeding heeding(options.monitor);
   const Timer timer;
   Tetrahedralization result;
   if (options.monitor != nullptr) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -196,6 +197,15 @@ std::vector<double> sample_parameters(const CurveShape& shape, double edge,
   std::vector<double> lengths(parts);
   for (int part = 0; part < parts; ++part) {
     lengths[part] = part_length(shape, part);
+  }
+  constexpr double kMostPieces = 1e6;
+  const double total = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  if (!(total <= kMostPieces * edge)) {
+    throw InvalidInput(
+        fmt::format("a curve of length {:.4g} has more than a million edges of "
+                    "{:.4g}; is a "
+                    "number of one of them wrong?",
+                    total, edge));
   }
   const std::vector<int> pieces = pieces_per_part(lengths, edge, least);
   if (const auto* e = std::get_if<Ellipse>(&shape)) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/geometry/edge_key.h"
+#include "core/heed_stop.h"
 #include "core/timer.h"
 #include "evolve/energy/fields.h"
 #include "evolve/energy/tension_field.h"
@@ -299,6 +300,7 @@ FilmModel::~FilmModel() = default;
 
 FilmModel FilmModel::freeze(const films::FilmSystem& initial,
                             const FilmModelOptions& options) {
+  const Heeding heeding(options.monitor);
   if (!(options.edge > 0.0) || !std::isfinite(options.edge)) {
     throw InvalidInput(fmt::format(
         "the film's edge length must be above 0, found {}", options.edge));

@@ -3,6 +3,7 @@
 #include <queue>
 
 #include "core/geometry/edge_key.h"
+#include "core/heed_stop.h"
 #include "evolve/groom/surface_editor.h"
 
 namespace meniscus::groom {
@@ -92,6 +93,7 @@ int SurfaceEditor::flip_all(FlipRule rule) {
   std::fill(changed_.begin(), changed_.end(), 0);
   int flips = 0;
   while (!queue.empty()) {
+    heed_stop("film");
     const auto [a, b] = queue.front();
     queue.pop();
     if (line(a, b) != nullptr || !gather(a, b)) {
@@ -201,6 +203,7 @@ double SurfaceEditor::worst_shape(int v,
 void SurfaceEditor::average(const EdgeTarget& target) {
   std::vector<Vec3> normals;
   for (int v = 0; v < static_cast<int>(mesh_.points.size()); ++v) {
+    heed_stop("film");
     if (rank_[v] == Rank::Held || star_[v].empty()) {
       continue;
     }

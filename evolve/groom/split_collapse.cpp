@@ -3,6 +3,11 @@
 #include <queue>
 #include <tuple>
 
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/heed_stop.h"
+#include "core/memory.h"
 #include "evolve/groom/surface_editor.h"
 
 namespace meniscus::groom {
@@ -50,6 +55,43 @@ double SurfaceEditor::longest(const EdgeTarget& target) const {
   return result;
 }
 
+double SurfaceEditor::expected_facets(const EdgeTarget& target) const {
+  const double of_facet = 0.25 * std::sqrt(3.0);  // area of one with edge 1
+  double sum = 0.0;
+  for (int f = 0; f < static_cast<int>(mesh_.facets.size()); ++f) {
+    if (alive(f) && frozen_[f] == 0) {
+      const Triangle& t = mesh_.facets[f];
+      const double edge = target.at(
+          (mesh_.points[t[0]] + mesh_.points[t[1]] + mesh_.points[t[2]]) / 3.0);
+      double longest = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        longest = std::max(
+            longest,
+            (mesh_.points[t[k]] - mesh_.points[t[(k + 1) % 3]]).norm());
+      }
+      sum +=
+          0.5 * normal2(f).norm() / (of_facet * edge * edge) + longest / edge;
+    }
+  }
+  return sum;
+}
+
+double SurfaceEditor::most_facets(const EdgeTarget& target) const {
+  constexpr double kBytes = 1500.0;  // of a facet, until its film is settled
+  constexpr double kMore = 10.0;     // x what is expected
+  constexpr double kSmall = 1e5;
+  const double expected = expected_facets(target);
+  const double held = available_memory() / kBytes;
+  if (expected > held) {
+    throw InvalidInput(fmt::format(
+        "the film takes about {:.2g} facets at edges of {:.4g}, and memory "
+        "holds {:.2g} ({:.2g} GB are free); use longer edges, or look for a "
+        "curve that is too far away or an edge that is too short",
+        expected, target.edge, held, kBytes * held / 1e9));
+  }
+  return std::min(kMore * expected + kSmall, held);
+}
+
 void SurfaceEditor::split(int a, int b, const films::PlacedVertex& made) {
   const LineEnd* found = line(a, b);
   const bool on_line = found != nullptr;
@@ -88,7 +130,17 @@ void SurfaceEditor::split_above(double factor, const EdgeTarget& target) {
     }
   };
   for_each_edge(push);
+  const double most =
+      static_cast<double>(mesh_.facets.size()) + most_facets(target);
   while (!queue.empty()) {
+    heed_stop("film");
+    if (static_cast<double>(mesh_.facets.size()) > most) {
+      throw InvalidInput(fmt::format(
+          "the film takes more than {:.2g} facets at edges of {:.4g} and still "
+          "more; films that lie on each other do that, or a number of an edge "
+          "or a curve that is wrong",
+          most, target.edge));
+    }
     const auto [r, a, b] = queue.top();
     queue.pop();
     if (!gather(a, b)) {
@@ -272,6 +324,7 @@ void SurfaceEditor::collapse_below(double factor, double longest,
   };
   for_each_edge(push);
   while (!queue.empty()) {
+    heed_stop("film");
     const auto [r, a, b] = queue.top();
     queue.pop();
     int kept = -1;

@@ -40,7 +40,16 @@ class SurfaceEditor {
   /// The longest edge that may be changed, x target.
   double longest(const EdgeTarget& target) const;
 
-  /// Halves edges longer than `factor` x target, the longest first.
+  /// Facets with edges of the target's length that the films take, by the area
+  /// and the longest edge of each of today's.
+  double expected_facets(const EdgeTarget& target) const;
+  /// So many that grooming has gone astray. Throws InvalidInput where memory
+  /// does not hold what is expected.
+  double most_facets(const EdgeTarget& target) const;
+
+  /// Halves edges longer than `factor` x target, the longest first. Throws
+  /// InvalidInput where that leaves far more facets than are expected, or more
+  /// than memory holds.
   void split_above(double factor, const EdgeTarget& target);
 
   /// Removes edges shorter than `factor` x target, the shortest first, where

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "core/geometry/box_tree.h"
+#include "core/heed_stop.h"
 #include "core/math/union_find.h"
 
 namespace meniscus::settle {
@@ -279,6 +280,7 @@ Neck narrowest_neck(const energy::FilmEnergy& energy, const Points& points,
   // A ray from every smooth film vertex along the inward normal, or both ways
   // where the film encloses nothing.
   for (int i = 0; i < energy.unknowns(); ++i) {
+    heed_stop("film");
     const int v = energy.vertices()[i];
     for (const int bit : {1, 2}) {
       if ((looks[i].sides & bit) == 0 || normals[i].isZero() ||

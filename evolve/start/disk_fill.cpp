@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/heed_stop.h"
 #include "evolve/groom/surface_editor.h"
 #include "evolve/start/loft.h"
 
@@ -58,6 +59,7 @@ class EarClipper {
     std::vector<Triangle> facets;
     std::vector<char> gone(ring_.size(), 0);
     for (std::size_t left = ring_.size(); left > 2; --left) {
+      heed_stop("film");
       int best = -1;
       for (std::size_t i = 0; i < ring_.size(); ++i) {
         if (gone[i] == 0 && (best < 0 || shape_[i] > shape_[best])) {

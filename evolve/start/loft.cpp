@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/heed_stop.h"
 #include "evolve/start/disk_fill.h"
 
 namespace meniscus::start {
@@ -84,6 +85,7 @@ Walk matched_walk(const Points& low, const std::vector<double>& low_along,
   Walk best;
   double least = std::numeric_limits<double>::infinity();
   for (int start = 0; start < m; ++start) {
+    heed_stop("film");
     Walk walk;
     Points path;
     for (int j = 0; j < m; ++j) {

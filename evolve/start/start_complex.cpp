@@ -131,8 +131,7 @@ class StartBuilder {
     rim.curve = static_cast<int>(found - system_.curves.begin());
     const auto cuts = facets_.cuts.find(rim.curve);
     const bool is_cut = cuts != facets_.cuts.end();
-    const std::vector<double> t =
-        is_cut ? cuts->second : curves::sample_parameters(found->shape, edge_);
+    const std::vector<double> t = is_cut ? cuts->second : sampled(*found);
     if (shared_.shares(rim.curve)) {
       rim.ids = shared_.rim(rim.curve, t, result_);
       if (is_cut && rim.ids.size() != t.size()) {
@@ -154,6 +153,15 @@ class StartBuilder {
       result_.vertices.push_back({films::VertexKind::OnCurve, rim.curve, at});
     }
     return rims_.emplace(curve_name, rim).first->second;
+  }
+
+  std::vector<double> sampled(const curves::Curve& curve) const {
+    try {
+      return curves::sample_parameters(curve.shape, edge_);
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(
+          fmt::format("curve '{}': {}", curve.name, error.what()));
+    }
   }
 
   Points points_of(const Rim& rim) const {

@@ -1,5 +1,6 @@
 #include "pipeline/forward/forward_model.h"
 
+#include "core/heed_stop.h"
 #include "fea/distributed/petsc_child.h"
 #include "pipeline/forward/design_stages.h"
 #include "pipeline/forward/frozen_part.h"
@@ -16,6 +17,7 @@ void require_solver(const case_data::Case& input) {
 ForwardModel::ForwardModel(const case_data::Case& input,
                            const ForwardModelOptions& options)
     : part_(std::make_unique<FrozenPart>()) {
+  const Heeding heeding(options.monitor);
   refuse_walls(input);
   require_solver(input);
   part_->input = input;
@@ -27,6 +29,7 @@ ForwardModel::ForwardModel(const case_data::Case& input,
 Evaluation ForwardModel::evaluate(const VectorX& design,
                                   EvaluationFields* fields,
                                   AdjointState* adjoint) const {
+  const Heeding heeding(part_->monitor);
   if (adjoint != nullptr) {
     *adjoint = {};  // as large as a stiffness matrix: not two at a time
   }
@@ -53,6 +56,7 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
                                       const EvaluationFields& fields,
                                       const AdjointState& adjoint,
                                       const std::vector<int>& responses) const {
+  const Heeding heeding(part_->monitor);
   try {
     return design_gradient({*part_,
                             part_->context(fields.inputs, adjoint.film,

@@ -10,6 +10,7 @@
 #include "pipeline/case_data/film_options.h"
 #include "pipeline/case_data/film_start.h"
 #include "pipeline/forward/walls.h"
+#include "pipeline/forward/work_estimate.h"
 
 namespace meniscus::forward {
 
@@ -24,15 +25,33 @@ const walls::ThickWall& first_with_findings(const walls::WallModel& walls) {
       [](const walls::ThickWall& wall) { return !wall.findings.empty(); });
 }
 
+/// Of the volumes that the case asks for.
+double solid_volume(const case_data::Case& input,
+                    const films::FilmSystem& system) {
+  double sum = 0.0;
+  for (const case_data::BodyEntry& body : case_data::solid_bodies(input)) {
+    for (const films::BodySpec& spec : system.bodies) {
+      sum += spec.name == body.name ? spec.volume.value_or(0.0) : 0.0;
+    }
+  }
+  return sum;
+}
+
 bool freeze_film(const case_data::EvaluatedCase& inputs,
                  const ForwardModelOptions& options, Monitor& monitor,
                  FrozenPart& part) {
   const StageMeter meter;
   Evaluation& start = part.start;
-  monitor.progress({.stage = "film", .detail = "settling the start"});
+  const double edge = inputs.fea_edge * options.edge_factor;
+  const WorkEstimate work =
+      estimate_work(solid_volume(part.input, inputs.film_system), 0, edge);
+  monitor.progress(
+      {.stage = "film",
+       .detail = "settling the start of a part of " + text_of(work)});
+  require_work(work, edge);
   part.film.emplace(case_data::freeze_films(
       part.input, inputs,
-      {.edge = inputs.fea_edge * options.edge_factor,
+      {.edge = edge,
        .refinements = case_data::film_refinements(part.input),
        .monitor = &monitor}));
   const settle::FilmState& film = part.film->reference();
@@ -57,9 +76,14 @@ bool fill_surface(const case_data::EvaluatedCase& inputs,
                   Monitor& monitor, FrozenPart& part) {
   const StageMeter meter;
   Evaluation& start = part.start;
-  monitor.progress({.stage = "mesh", .detail = "filling the surface"});
   const QuadraticSurface surface =
       part.surface(inputs, part.film->reference().points);
+  const double edge = options.edge.value_or(mean_edge_length(surface.base));
+  const WorkEstimate work = estimate_work(enclosed_volume(surface.base),
+                                          surface.base.facets.size(), edge);
+  monitor.progress(
+      {.stage = "mesh", .detail = "filling the surface, " + text_of(work)});
+  require_work(work, edge);
   mesh_tet::Tetrahedralization filled =
       mesh_tet::tetrahedralize(surface.base, options);
   if (filled.failure) {

@@ -194,6 +194,10 @@ Json FamilyRun::compute(const case_data::Case& member, const fs::path& folder,
       result.output_seconds = timer.seconds();
       result.total_seconds += result.output_seconds;
     }
+  } catch (const study::TimeIsUp& late) {
+    result = study::result_so_far(member, store.all());
+    result.status = study::RunStatus::Stopped;
+    result.message = late.what();
   } catch (const Interrupted&) {
     result = study::result_so_far(member, store.all());
     result.status = study::RunStatus::Interrupted;

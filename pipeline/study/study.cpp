@@ -8,9 +8,11 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "core/math/dense.h"
 #include "core/timer.h"
 #include "pipeline/forward/part_warnings.h"
+#include "pipeline/store/stored_case.h"
 #include "pipeline/study/accuracy_note.h"
 #include "pipeline/study/film_frames.h"
 #include "pipeline/study/study_monitor.h"
@@ -28,6 +30,10 @@ namespace {
 constexpr double kCoarserEdges = 2.0;
 constexpr double kErrorPerChange = 1.5;
 
+// A study looks at its limit between evaluations; so much later [s] the one
+// under way is given up.
+constexpr double kLateness = 0.5;
+
 /// From the frozen model to the answer with its error, step by step.
 class StudyRun {
  public:
@@ -39,8 +45,10 @@ class StudyRun {
         monitor_(options.monitor != nullptr ? *options.monitor
                                             : silent_monitor()),
         limit_(smaller_limit(options.time_limit, input.study.time_limit)),
-        limited_(monitor_, limit_) {
+        limited_(monitor_, limit_),
+        hard_limit_(monitor_, limit_ > 0.0 ? limit_ + kLateness : 0.0) {
     options_.time_limit = limit_;
+    options_.monitor = &hard_limit_;
   }
 
   RunResult run();
@@ -50,6 +58,8 @@ class StudyRun {
  private:
   void start_coarse();
   bool begin();
+  bool study_in_time();
+  void keep_best_in_time();
   bool may_refreeze() const;
   bool refreeze();
   std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
@@ -57,6 +67,7 @@ class StudyRun {
   void update_time_limit();
   void add_stage_totals();
   void conduct_study();
+  void take_outcome();
   bool finish_best();
   template <class Work>
   void run_if_time_left(const char* what, const Work& work);
@@ -72,8 +83,9 @@ class StudyRun {
   store::StudyStore& store_;
   StudyOptions options_;  // its start and time as stages leave them
   Monitor& monitor_;
-  double limit_;             // [s], 0: none
-  DeadlineMonitor limited_;  // of what may be left out at the end
+  double limit_;                // [s], 0: none
+  DeadlineMonitor limited_;     // of what may be left out at the end
+  DeadlineMonitor hard_limit_;  // of what is computed before
   std::vector<std::string> left_out_;
   Timer timer_;
   std::unique_ptr<case_data::Case>
@@ -218,6 +230,10 @@ void StudyRun::conduct_study() {
           stage_->evaluator().model().adaptation()) {
     result_.adaptation = *adaptation;
   }
+  take_outcome();
+}
+
+void StudyRun::take_outcome() {
   const StudyOutcome& outcome = stage_->outcome();
   result_.status = outcome.status;
   result_.message = outcome.message;
@@ -382,10 +398,48 @@ void StudyRun::count() {
   result_.seconds = own_seconds_;
 }
 
-RunResult StudyRun::run() {
-  start_coarse();
-  if (begin()) {
+/// The best of what was evaluated, where a computation outlasted the limit.
+void StudyRun::keep_best_in_time() {
+  hard_limit_.lift();
+  std::vector<store::EvaluationRecord> records;
+  if (stage_ != nullptr) {
+    records = stage_->records();
+  }
+  const bool any = std::any_of(
+      records.begin(), records.end(),
+      [](const store::EvaluationRecord& record) { return !record.failure; });
+  const std::string message =
+      fmt::format("the time limit of {:g} s is over", limit_);
+  if (!any) {
+    throw TimeIsUp(message + " before a first design was evaluated");
+  }
+  stage_->leave({.status = RunStatus::Stopped,
+                 .message = message,
+                 .best = store::best_record(input_, records).inputs});
+  take_outcome();
+}
+
+/// False where there is no answer. Throws TimeIsUp where the limit passes
+/// before any design was evaluated.
+bool StudyRun::study_in_time() {
+  try {
+    start_coarse();
+    if (!begin()) {
+      return false;
+    }
     conduct_study();
+  } catch (const Interrupted&) {
+    if (monitor_.stop_requested() || !hard_limit_.expired()) {
+      throw;
+    }
+    keep_best_in_time();
+  }
+  hard_limit_.lift();
+  return true;
+}
+
+RunResult StudyRun::run() {
+  if (study_in_time()) {
     if (finish_best()) {
       if (options_.answered) {
         options_.answered(fields_);

@@ -106,7 +106,8 @@ struct StudyOptions {
 /// Every evaluation is in `store` before the next begins; those that the store
 /// holds already (--resume) are read and not computed. `fields`, when given,
 /// receives the meshes of the best design. Interrupted passes through, after
-/// the store has what was finished.
+/// the store has what was finished; TimeIsUp is thrown where the time limit
+/// passes before a first design is evaluated.
 RunResult run_study(const case_data::Case& input, store::StudyStore& store,
                     const StudyOptions& options,
                     forward::EvaluationFields* fields = nullptr);

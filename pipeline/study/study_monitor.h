@@ -71,8 +71,8 @@ class StudyMonitor : public Monitor {
   Clock::time_point deadline_;
 };
 
-/// Asks to stop when the time is up too: for work that can be left out. May be
-/// called from several threads if `user` may.
+/// Asks to stop when the time is up too. May be called from several threads if
+/// `user` may.
 class DeadlineMonitor : public Monitor {
  public:
   /// `user` must outlive this; `limit` counts from now [s], 0: none.
@@ -86,12 +86,17 @@ class DeadlineMonitor : public Monitor {
     return user_.stop_requested() || expired();
   }
 
-  bool expired() const { return limit_ > 0.0 && timer_.seconds() >= limit_; }
+  bool expired() const {
+    return limit_ > 0.0 && !lifted_ && timer_.seconds() >= limit_;
+  }
   double limit() const { return limit_; }
+  /// From now on there is no limit.
+  void lift() { lifted_ = true; }
 
  private:
   Monitor& user_;
   double limit_;
+  std::atomic<bool> lifted_ = false;
   Timer timer_;
 };
 

@@ -130,6 +130,11 @@ void StudyStage::conduct(Leave leave) {
   evaluator_.set_observer({});
 }
 
+void StudyStage::leave(StudyOutcome outcome) {
+  evaluator_.set_observer({});
+  outcome_ = std::move(outcome);
+}
+
 CoarseStage run_coarse_stage(const case_data::Case& input,
                              store::StudyStore& store,
                              const StudyOptions& options) {

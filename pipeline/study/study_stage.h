@@ -44,6 +44,12 @@ class StudyStage {
   std::optional<store::Refreeze> wanted(const VectorX& best,
                                         bool converged) const;
   const StudyOutcome& outcome() const { return outcome_; }
+  /// Ends it from outside, with that outcome.
+  void leave(StudyOutcome outcome);
+  /// Of the designs that it has asked for.
+  std::vector<store::EvaluationRecord> records() const {
+    return store_.some(asked_);
+  }
   /// Designs that the stage has asked for.
   int evaluations() const { return static_cast<int>(asked_.size()); }
   bool stopped_early() const { return left_early_; }
@@ -60,9 +66,6 @@ class StudyStage {
   VectorX begin();
 
   void count(const store::EvaluationRecord& record);
-  std::vector<store::EvaluationRecord> records() const {
-    return store_.some(asked_);
-  }
   void stop_if_inverted(const store::EvaluationRecord& record);
 
   const case_data::Case& input_;

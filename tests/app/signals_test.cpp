@@ -1,7 +1,9 @@
 #include "app/signals.h"
 
+#include <chrono>
 #include <csignal>
 #include <functional>
+#include <thread>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
@@ -47,6 +49,20 @@ TEST(Signals, TheSecondEndsTheProcess) {
               raise(SIGINT);
             }),
             130);
+}
+
+// As in a library that cannot be asked to stop.
+TEST(Signals, AStepThatDoesNotHearIsEnded) {
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(exit_code_of([] {
+              app::catch_stop_signals();
+              raise(SIGTERM);
+              for (int k = 0; k < 60; ++k) {
+                std::this_thread::sleep_for(std::chrono::seconds(1));
+              }
+            }),
+            130);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
 TEST(Signals, WhatWasIgnoredStaysIgnored) {

@@ -1,0 +1,68 @@
+#include "pipeline/forward/work_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/memory.h"
+
+namespace meniscus::forward {
+
+namespace {
+
+constexpr double kElementsPerCube = 8.2;
+constexpr double kElementsPerFacet = 1.5;
+constexpr double kBytesPerElement = 4200.0;
+constexpr double kMostElements = 1e8;  // numbers of unknowns are int
+constexpr double kSmall = 3e7;         // [byte] not worth a question
+
+/// "110,000": two digits that count.
+std::string rounded(double count) {
+  if (!(count < 1e12)) {
+    return fmt::format("{:.1g}", count);
+  }
+  const double unit =
+      std::pow(10.0, std::max(0.0, std::floor(std::log10(count)) - 1.0));
+  std::string digits = fmt::format("{:.0f}", std::round(count / unit) * unit);
+  for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0;
+       at -= 3) {
+    digits.insert(static_cast<std::size_t>(at), ",");
+  }
+  return digits;
+}
+
+}  // namespace
+
+WorkEstimate estimate_work(double volume, std::size_t facets, double edge) {
+  const double elements =
+      std::max({1.0, kElementsPerFacet * static_cast<double>(facets),
+                kElementsPerCube * std::abs(volume) / std::pow(edge, 3)});
+  return {elements, kBytesPerElement * elements};
+}
+
+std::string text_of(const WorkEstimate& work) {
+  return fmt::format("about {} elements, {:.2g} GB", rounded(work.elements),
+                     work.bytes / 1e9);
+}
+
+void require_work(const WorkEstimate& work, double edge) {
+  if (work.bytes <= kSmall) {
+    return;
+  }
+  const double free = available_memory();
+  if (work.bytes <= free && work.elements <= kMostElements) {
+    return;
+  }
+  const double most = std::min(free / kBytesPerElement, kMostElements);
+  throw InvalidInput(fmt::format(
+      "the part needs {} at edges of {:.4g} (resolution.fea), and {:.2g} GB "
+      "are "
+      "free; edges of {:.2g} would fit, if no volume or place of a curve is "
+      "wrong",
+      text_of(work), edge, free / 1e9,
+      1.05 * edge * std::cbrt(work.elements / most)));
+}
+
+}  // namespace meniscus::forward
