@@ -1,15 +1,21 @@
 #include "report/picture/picture.h"
 
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <optional>
 #include <set>
+#include <thread>
+#include <unistd.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -213,6 +219,58 @@ TEST_F(PictureTest, StopsOnRequest) {
                                  {.monitor = &stopper}),
         Interrupted);
   }
+}
+
+/// What an X server says to a client that knocks with `key`, empty for none: 1
+/// come in, 0 refused.
+int knock(const std::string& display, const std::string& key) {
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = "/tmp/.X11-unix/X" + display.substr(1);
+  name.copy(address.sun_path, sizeof address.sun_path - 1);
+  std::string words("l\0\x0b\0\0\0\0\0\0\0\0\0", 12);
+  if (!key.empty()) {
+    words[6] = 18;
+    words[8] = static_cast<char>(key.size());
+    words += std::string("MIT-MAGIC-COOKIE-1\0\0", 20) + key;
+  }
+  char answer = -1;
+  if (::connect(socket, reinterpret_cast<const sockaddr*>(&address),
+                sizeof address) == 0 &&
+      ::write(socket, words.data(), words.size()) ==
+          static_cast<ssize_t>(words.size())) {
+    EXPECT_EQ(::read(socket, &answer, 1), 1);
+  }
+  ::close(socket);
+  return answer;
+}
+
+// Whoever could open the display could read the pictures, and draw into them.
+TEST_F(PictureTest, TheDisplayOpensToItsKeyOnly) {
+  if (!find_program("Xvfb")) {
+    MENISCUS_NOT_HERE("Xvfb is not installed");
+  }
+  const fs::path waiting = folder_ / "waiting";
+  write_file(waiting, fmt::format("#!/bin/sh\ncd '{}'\necho \"$DISPLAY\" > "
+                                  "name\ncp \"$XAUTHORITY\" part\nmv part "
+                                  "key\nsleep 60\n",
+                                  folder_.string()));
+  fs::permissions(waiting, fs::perms::owner_all);
+  ::setenv("MENISCUS_RENDER", waiting.c_str(), 1);
+  const picture::PicturesBeside pictures(
+      {job(picture::PictureKind::Part, "a.png")}, {});
+  const Timer timer;
+  while (!fs::exists(folder_ / "key") && timer.seconds() < 30.0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  std::string display = read_file(folder_ / "name");
+  display.pop_back();
+  const std::string file = read_file(folder_ / "key");
+  const std::string key = file.substr(file.size() - 16);
+  EXPECT_EQ(knock(display, ""), 0);
+  EXPECT_EQ(knock(display, std::string(16, 'x')), 0);
+  EXPECT_EQ(knock(display, key), 1);
 }
 
 TEST_F(PictureTest, ShapesInMemoryLookLikeThoseInFiles) {

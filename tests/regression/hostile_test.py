@@ -1,0 +1,248 @@
+#!/usr/bin/env python3
+"""What a hostile hand may give the program: an answer or a reason, in time and
+within the machine's limits."""
+import pathlib
+import random
+import resource
+import signal
+import struct
+import sys
+import time
+import unittest
+
+import program
+from program import CASE, COARSE, ProgramTest
+
+sys.path.insert(0, str(program.ROOT / "tests" / "mutations"))
+import mutations  # noqa: E402  (the folder is found only now)
+
+# A triangle between three vertices; FIXED or nothing.
+TRIANGLE = """{top}
+vertices
+1 0 0 0 fixed
+2 1 0 0 fixed
+3 0 1 0 fixed
+4 0.3 0.3 0 {middle}
+edges
+1 1 2 fixed
+2 2 3 fixed
+3 3 1 fixed
+4 1 4
+5 2 4
+6 3 4
+faces
+1 1 5 -4
+2 2 6 -5
+3 3 4 -6
+{rest}"""
+
+
+class Datafiles(ProgramTest):
+    def evolve(self, text, code, *patterns, options=()):
+        (self.folder / "film.fe").write_text(text)
+        return self.expect(
+            self.call("evolve", "film.fe", "--no-pictures", "--out", "out",
+                      *options), code, *patterns)
+
+    def still(self, rest=""):
+        return TRIANGLE.format(top="", middle="fixed", rest=rest)
+
+    def test_without_faces(self):
+        text = "vertices\n1 0 0 0\n2 1 0 0\nedges\n1 1 2\nfaces\nread\n"
+        self.evolve(text, 2, "no faces")
+
+    def test_a_script_on_what_does_not_move(self):
+        self.evolve(self.still("read\ngogo := { g 5; hessian; U; g 3; "
+                               "print total_area }\n"),
+                    0, "(?m)^0.5$", "nothing in it moves",
+                    options=["--script"])
+
+    def test_descents_of_what_does_not_move(self):
+        for method in ("gradient", "conjugate_gradients", "newton"):
+            self.evolve(self.still(), 2, "no vertex between its curves",
+                        options=["--method", method, "--refine", "0"])
+
+    def test_a_script_that_leaves_no_facet(self):
+        self.evolve(TRIANGLE.format(top="", middle="", rest=(
+            "read\ngogo := { unset vertex fixed; t 100 }\n")), 2,
+            r"film\.fe:\d+:\d+: ", options=["--script"])
+
+    def test_formulas_without_a_value(self):
+        for formula, what in (("1/(x - x)", "division of 1 by zero"),
+                              ("exp(846 + x)", "exp"),
+                              ("log(x - 5)", "log")):
+            for options in ([], ["--script"], ["--method", "gradient"]):
+                text = TRIANGLE.format(
+                    top="quantity q energy method facet_scalar_integral "
+                        f"global scalar_integrand: {formula}",
+                    middle="", rest="read\ngogo := { g 5; hessian }\n")
+                said = self.evolve(text, 2, options=options)
+                self.assertRegex(said.stderr, f"film.fe: .*{what}.* at \\(")
+
+    def test_a_variable_that_is_no_number(self):
+        self.evolve(TRIANGLE.format(top="", middle="", rest=(
+            "read\nnn := 1e200\ngogo := { nn *= nn; nn *= nn }\n")), 2,
+            r"film\.fe:\d+:\d+: 'nn' becomes inf", options=["--script"])
+
+    def test_a_descent_is_kept_when_it_is_stopped(self):
+        text = (program.ROOT / "cases/cube_to_sphere/cube.fe").read_text()
+        (self.folder / "film.fe").write_text(text)
+        running = self.start("evolve", "film.fe", "--no-pictures", "--out",
+                             "out", "--method", "gradient", "--refine", "7")
+        time.sleep(2.0)
+        running.send_signal(signal.SIGTERM)
+        begun = time.monotonic()
+        _, said = running.communicate(timeout=60)
+        self.assertEqual(running.returncode, 130, said)
+        self.assertIn("kept as it was", said)
+        self.assertLess(time.monotonic() - begun, 5.0)
+        self.assertTrue((self.folder / "out" / "film.vtp").exists())
+
+
+class Work(ProgramTest):
+    """Bounded, told before it begins, and stopped within a second or so."""
+
+    def far(self, distance):
+        return self.write_case(
+            (r"^center = \[-120, 0, 72\]", f"center = [-{distance}, 0, 72]"))
+
+    def test_more_elements_than_memory_holds(self):
+        for command in ("run", "evolve"):
+            path = self.write_case(name="fine.toml")
+            begun = time.monotonic()
+            self.expect(
+                self.call(command, path, "--out", "out", "--no-pictures",
+                          "--set", "resolution.fea=0.02"), 2, "GB")
+            self.assertLess(time.monotonic() - begun, 10.0)
+
+    def test_a_curve_in_the_next_town(self):
+        for distance in ("1e7", "1e12", "1e300"):
+            begun = time.monotonic()
+            self.expect(
+                self.call("evolve", self.far(distance), "--out", "out",
+                          "--no-pictures"), 2)
+            self.assertLess(time.monotonic() - begun, 15.0)
+
+    def test_a_signal_while_the_film_is_groomed(self):
+        path = self.far("120000")
+        for command in ("run", "evolve"):
+            running = self.start(command, path, "--out", f"out {command}",
+                                 "--no-pictures")
+            time.sleep(3.0)
+            self.assertIsNone(running.poll())
+            running.send_signal(signal.SIGTERM)
+            begun = time.monotonic()
+            _, said = running.communicate(timeout=60)
+            self.assertEqual(running.returncode, 130, said)
+            self.assertLess(time.monotonic() - begun, 3.0)
+            self.assertNotIn("does not stop", said)
+
+    def test_a_time_limit_while_the_film_is_groomed(self):
+        begun = time.monotonic()
+        done = self.expect(
+            self.call("run", self.far("120000"), "--out", "out",
+                      "--no-pictures", "--time-limit", "2"), 3,
+            "the time limit of 2 s is over before a first design")
+        self.assertLess(time.monotonic() - begun, 6.0, done.stderr)
+        self.assertEqual(self.result(self.folder / "out")["status"],
+                         "stopped")
+
+    def test_two_films_over_the_same_curves(self):
+        path = self.write_case((r"^\[solids\.support_pad\]", """[films.twin]
+kind = "branch"
+curves = ["support", "left", "right"]
+
+[solids.support_pad]"""))
+        for command in ("run", "evolve"):
+            begun = time.monotonic()
+            done = self.call(
+                command, path, "--out", "out", "--no-pictures",
+                "--set", "resolution.fea=16", "--set", "resolution.film=8",
+                preexec_fn=lambda: resource.setrlimit(
+                    resource.RLIMIT_AS, (3 << 30, 3 << 30)))
+            self.assertIn(done.returncode, (2, 3), done.stderr)
+            self.assertLess(time.monotonic() - begun, 60.0)
+
+    def test_little_address_space(self):
+        """OpenBLAS asks again and again for a buffer that it does not get."""
+        for space in (150, 300, 500):
+            size = space << 20
+            done = self.call(
+                "run", CASE, "--out", "out", "--no-pictures", *COARSE,
+                timeout=90, env={"OMP_NUM_THREADS": "1"},
+                preexec_fn=lambda size=size: resource.setrlimit(
+                    resource.RLIMIT_AS, (size, size)))
+            self.assertIn(done.returncode, (0, 2, 3, 4, 127), done.stderr)
+
+
+class Files(ProgramTest):
+    def run_once(self):
+        self.expect(
+            self.call("run", CASE, "--out", "run", "--no-pictures",
+                      "--no-frames", "--export", "stl", "--export", "obj",
+                      "--export", "step", *COARSE), 0)
+        return self.folder / "run"
+
+    def limited(self, *arguments):
+        """Under 3 GB of address space."""
+        begun = time.monotonic()
+        done = self.call(
+            *arguments, preexec_fn=lambda: resource.setrlimit(
+                resource.RLIMIT_AS, (3 << 30, 3 << 30)))
+        self.assertLess(time.monotonic() - begun, 60.0)
+        return done
+
+    def part_of(self, run, suffix):
+        return next(path for path in run.iterdir() if path.suffix == suffix)
+
+    def test_a_wild_coordinate_is_named(self):
+        run = self.run_once()
+        obj = self.part_of(run, ".obj").read_text().split("\n")
+        at = [k for k, line in enumerate(obj) if line.startswith("v ")][20]
+        obj[at] = obj[at].rsplit(" ", 1)[0] + " 7e8"
+        (self.folder / "wild.obj").write_text("\n".join(obj))
+        self.expect(self.limited("compare", run, "wild.obj"), 2,
+                    rf"wild\.obj:{at + 1}: the point \(.*7e\+08\)")
+        stl = bytearray(self.part_of(run, ".stl").read_bytes())
+        if not stl.startswith(b"solid"):
+            stl[84 + 50 * 3 + 12:84 + 50 * 3 + 16] = struct.pack("<f", 7e8)
+            (self.folder / "wild.stl").write_bytes(stl)
+            self.expect(self.limited("compare", run, "wild.stl"), 2,
+                        r"wild\.stl:facet 3 .*the point \(7e\+08")
+        rows = ["x,y,z"] + [f"{k % 4},{k // 4},0" for k in range(16)]
+        rows[9] = "1,2e7,0"
+        (self.folder / "rim.csv").write_text("\n".join(rows))
+        path = self.write_case(
+            (r'kind = "circle"\ncenter = \["support_x", 0, 0\]\nnormal = '
+             r'\[0, 0, -1\]\nradius = 35', 'file = "rim.csv"\n'))
+        self.expect(self.limited("check", path), 2,
+                    r"rim\.csv:10: the point \(1, 2e\+07, 0\)")
+
+    def test_a_damaged_step_file(self):
+        """As found: OpenCASCADE ends its process on one in five."""
+        run = self.run_once()
+        step = self.part_of(run, ".step").read_bytes()
+        choice = random.Random(17)
+        for number in range(25):
+            path = self.folder / f"part {number}.step"
+            path.write_bytes(mutations.mutate(choice, step, "text"))
+            done = self.limited("compare", run, path)
+            self.assertIn(done.returncode, (0, 2, 3),
+                          f"{path}: {done.stderr}")
+
+    def test_damaged_results(self):
+        run = self.run_once()
+        whole = (run / "part.vtu").read_bytes()
+        damaged = [whole[:len(whole) * k // 7] for k in range(1, 7)]
+        damaged.append(whole.replace(b'NumberOfPoints="', b'NumberOfPoints="9', 1))
+        damaged.append(whole.replace(b'NumberOfCells="', b'NumberOfCells="77', 1))
+        damaged.append(whole.replace(b' offset="', b' offset="8', 3))
+        for data in damaged:
+            (run / "part.vtu").write_bytes(data)
+            done = self.limited("report", run)
+            self.assertIn(done.returncode, (0, 2), done.stderr)
+            self.assertRegex(done.stderr + done.stdout, r"part\.vtu")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
