@@ -15,39 +15,6 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-void keep_shorter(ShortestLine& best, const Vec3& from, const Vec3& to) {
-  const double length = (to - from).norm();
-  if (length < best.length) {
-    best = {length, from, to};
-  }
-}
-
-/// Closest points of the segments p-q and r-s (Ericson 5.1.9), neither of
-/// length 0.
-void edge_to_edge(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s,
-                  ShortestLine& best) {
-  const Vec3 d1 = q - p;
-  const Vec3 d2 = s - r;
-  const double a = d1.squaredNorm();
-  const double e = d2.squaredNorm();
-  const double b = d1.dot(d2);
-  const double c = d1.dot(p - r);
-  const double f = d2.dot(p - r);
-  const double denominator = a * e - b * b;
-  if (!(a > 0.0) || !(e > 0.0)) {
-    return;  // corners cover points
-  }
-  double u = denominator > 0.0
-                 ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0)
-                 : 0.0;
-  double v = (b * u + f) / e;
-  if (v < 0.0 || v > 1.0) {
-    v = std::clamp(v, 0.0, 1.0);
-    u = std::clamp((b * v - c) / a, 0.0, 1.0);
-  }
-  keep_shorter(best, p + u * d1, r + v * d2);
-}
-
 struct GapTree {
   const SurfaceMesh& mesh;
   BoxTree boxes;
@@ -99,12 +66,16 @@ void search(const GapTree& a, int i, const GapTree& b, int j,
 
 ShortestLine shortest_line(const std::array<Vec3, 3>& a,
                            const std::array<Vec3, 3>& b) {
+  // Each edge of one against the other, ends and inside.
   ShortestLine best{kFar, {}, {}};
   for (int i = 0; i < 3; ++i) {
-    keep_shorter(best, a[i], nearest_in(b, a[i]).point);
-    keep_shorter(best, nearest_in(a, b[i]).point, b[i]);
-    for (int j = 0; j < 3; ++j) {
-      edge_to_edge(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3], best);
+    const NearestLine there = nearest_in(b, a[i], a[(i + 1) % 3]);
+    if (there.to.distance < best.length) {
+      best = {there.to.distance, there.from, there.to.point};
+    }
+    const NearestLine back = nearest_in(a, b[i], b[(i + 1) % 3]);
+    if (back.to.distance < best.length) {
+      best = {back.to.distance, back.to.point, back.from};
     }
   }
   return best;

@@ -167,7 +167,7 @@ void set_verdict(const energy::FilmEnergy& energy,
     fail(FailureKind::FilmUnstable,
          fmt::format("unstable: index {}, lowest eigenvalue {:.4g}, its mode "
                      "is largest at {}; {}; {}",
-                     report.index, report.min_eigenvalue,
+                     index_text(report), report.min_eigenvalue,
                      place(input.mode_position), where, kAdvice));
   } else if (thin) {
     fail(FailureKind::FilmPinched,
@@ -178,6 +178,11 @@ void set_verdict(const energy::FilmEnergy& energy,
   } else {
     report.verdict = "stable";
   }
+}
+
+std::string index_text(const FilmReport& film) {
+  return fmt::format("{}{}", film.index_at_least ? "at least " : "",
+                     film.index);
 }
 
 energy::LowestMode lowest_mode_of(const energy::FilmEnergy& energy,

@@ -36,6 +36,7 @@ struct FilmReport {
   double min_eigenvalue = 0.0;  // of the constrained Hessian in the metric of
                                 // lumped vertex area [force/length^3]
   int index = 0;                // its number of negative eigenvalues
+  bool index_at_least = false;  // only the lowest was looked for: may be more
   int iterations = 0;
   // Shortest line along an inward normal from film to film [length]; 0: none.
   double smallest_neck = 0.0;
@@ -44,6 +45,9 @@ struct FilmReport {
   std::vector<BodyState> bodies;
   double seconds = 0.0;
 };
+
+/// "2", or "at least 1".
+std::string index_text(const FilmReport& film);
 
 /// The film at one design: points of every vertex of the model's fine mesh, or
 /// why there is none. `heights` are h, one per free vertex.

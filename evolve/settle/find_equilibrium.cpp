@@ -155,7 +155,7 @@ FilmState settle_and_polish(films::FilmComplex& complex,
 struct Chain {
   std::vector<std::unique_ptr<energy::FilmEnergy>> energies;
   std::vector<FilmLevel> levels;
-  Neck neck;  // of the finest level that was factored
+  Neck neck;  // of the finest level that was measured
 
   void add(const films::FilmComplex& complex, std::vector<Edge> parents) {
     energies.push_back(std::make_unique<energy::FilmEnergy>(complex));
@@ -236,10 +236,12 @@ FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
   const NestedModes modes = newton.lowest_modes(guess.mode);
   state.report.min_eigenvalue = modes.eigenvalues[0];
   state.report.index = modes.eigenvalues[0] < 0.0 ? 1 : 0;
+  state.report.index_at_least = state.report.index > 0;
   state.points = found.points;
   state.heights = VectorX::Zero(energy.unknowns());
   VerdictInput input;
   input.mode_position = modes.position;
+  chain.measure_neck(complex);
   input.neck = chain.neck;
   set_verdict(energy, complex, input, state);
   return state;

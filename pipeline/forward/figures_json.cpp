@@ -52,6 +52,7 @@ nlohmann::ordered_json film_json(const settle::FilmReport& film) {
           {"residual_bound", film.residual_bound},
           {"min_eigenvalue", film.min_eigenvalue},
           {"index", film.index},
+          {"index_at_least", film.index_at_least},
           {"smallest_neck", film.smallest_neck},
           {"neck_position",
            {film.neck_position.x(), film.neck_position.y(),

@@ -25,6 +25,7 @@ struct PartReader {
   SurfaceMesh (*read)(const std::filesystem::path& path,
                       const step::ReadStepOptions& options);
   bool named = true;  // in messages; else another ending of the one before
+  bool curved = false;
 };
 
 SurfaceMesh stl(const std::filesystem::path& path,
@@ -48,8 +49,8 @@ SurfaceMesh datafile(const std::filesystem::path& path,
 constexpr std::array<PartReader, 5> kReaders = {
     {{".stl", stl},
      {".obj", obj},
-     {".step", step::read_step_part},
-     {".stp", step::read_step_part, false},
+     {".step", step::read_step_part, true, true},
+     {".stp", step::read_step_part, false, true},
      {".fe", datafile}}};
 
 std::string reader_endings() {
@@ -79,6 +80,11 @@ const PartReader* reader_of(const std::filesystem::path& path) {
 
 bool is_part_file(const std::filesystem::path& path) {
   return reader_of(path) != nullptr;
+}
+
+bool has_curved_faces(const std::filesystem::path& path) {
+  const PartReader* reader = reader_of(path);
+  return reader != nullptr && reader->curved;
 }
 
 SurfaceMesh read_part_file(const std::filesystem::path& path,

@@ -12,6 +12,9 @@ namespace meniscus::forward {
 /// .stp, .fe, in any case.
 bool is_part_file(const std::filesystem::path& path);
 
+/// Are the faces of such a file curved, and facets only what is made of them?
+bool has_curved_faces(const std::filesystem::path& path);
+
 /// The closed surface of such a file, its faces by name; `options` say how
 /// curved faces become facets. Throws what the format's reader throws,
 /// InvalidInput for another ending.

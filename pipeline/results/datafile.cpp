@@ -75,6 +75,7 @@ settle::FilmState state_after(const films::FilmComplex& complex,
       settle::lowest_mode_of(energy, targets, state.points, descent.pressure);
   figures.min_eigenvalue = mode.eigenvalue;
   figures.index = mode.eigenvalue < 0.0 ? 1 : 0;
+  figures.index_at_least = figures.index > 0;
   const bool at_rest = figures.residual <= figures.residual_bound;
   settle::set_verdict(energy, complex,
                       {.reason = at_rest ? "" : descent.message}, state);
@@ -305,7 +306,8 @@ std::string datafile_text(const DatafileResult& result) {
       "of the datafile)\n  residual {:.2e} (bound {:.2e}), smallest eigenvalue "
       "{:.4g}, index {}\n",
       film.verdict, film.vertices, film.facets, film.area, film.energy,
-      film.residual, film.residual_bound, film.min_eigenvalue, film.index);
+      film.residual, film.residual_bound, film.min_eigenvalue,
+      settle::index_text(film));
   if (film.smallest_neck > 0.0) {
     text += fmt::format("  smallest neck {:.4g} at ({:.4g}, {:.4g}, {:.4g})\n",
                         film.smallest_neck, film.neck_position.x(),

@@ -19,6 +19,8 @@ namespace {
 
 // Longest edge over the wanted one: halves of it are not below two thirds.
 constexpr double kLongestEdge = 4.0 / 3.0;
+// The faces are known to a fiftieth of this part of an edge.
+constexpr double kShapeInEdges = 0.15;
 
 constexpr const char* kNameless = "unnamed";  // as readers call it
 
@@ -111,9 +113,25 @@ SurfaceMesh renamed(SurfaceMesh surface, const FaceNames& names,
   return surface;
 }
 
-/// Ten-node elements with straight sides.
-TetMesh filled(const SurfaceMesh& surface, double edge, const std::string& path,
-               Monitor* monitor) {
+/// Labels of the facets beside each edge; twice the same where one face goes on
+/// across it.
+std::vector<Edge> labels_beside(const SurfaceMesh& surface,
+                                std::size_t edge_count,
+                                const std::vector<Triangle>& facet_edges) {
+  std::vector<Edge> labels(edge_count, Edge{-1, -1});
+  for (std::size_t f = 0; f < facet_edges.size(); ++f) {
+    const int label = surface.facet_label[f];
+    for (const int e : facet_edges[f]) {
+      Edge& beside = labels[static_cast<std::size_t>(e)];
+      beside = {beside[0] < 0 ? label : beside[0], label};
+    }
+  }
+  return labels;
+}
+
+/// Ten-node elements, their outer mid-sides on `shape`.
+TetMesh filled(const SurfaceMesh& surface, const PartShape* shape, double edge,
+               const std::string& path, Monitor* monitor) {
   const mesh_tet::Tetrahedralization linear =
       mesh_tet::tetrahedralize(surface, {.edge = edge, .monitor = monitor});
   if (linear.failure) {
@@ -123,29 +141,38 @@ TetMesh filled(const SurfaceMesh& surface, double edge, const std::string& path,
   QuadraticSurface quadratic;
   quadratic.base = surface;
   list_edges(surface.facets, quadratic.edges, quadratic.facet_edges);
-  for (const Edge& e : quadratic.edges) {
-    quadratic.mid.push_back(0.5 *
-                            (surface.points[static_cast<std::size_t>(e[0])] +
-                             surface.points[static_cast<std::size_t>(e[1])]));
+  const std::vector<Edge> labels =
+      labels_beside(surface, quadratic.edges.size(), quadratic.facet_edges);
+  for (std::size_t k = 0; k < quadratic.edges.size(); ++k) {
+    const auto [i, j] = quadratic.edges[k];
+    const Vec3& a = surface.points[static_cast<std::size_t>(i)];
+    const Vec3& b = surface.points[static_cast<std::size_t>(j)];
+    quadratic.mid.push_back(shape != nullptr ? shape->middle(a, b, labels[k])
+                                             : Vec3(0.5 * (a + b)));
   }
   return mesh_tet::make_quadratic(linear.mesh, quadratic);
 }
 
 }  // namespace
 
-SurfaceMesh with_short_edges(SurfaceMesh surface, double longest) {
+SurfaceMesh with_short_edges(SurfaceMesh surface, double longest,
+                             const PartShape* shape) {
   while (true) {
     heed_stop("mesh");
     std::vector<Edge> edges;
     std::vector<Triangle> facet_edges;
     list_edges(surface.facets, edges, facet_edges);
+    const std::vector<Edge> labels =
+        labels_beside(surface, edges.size(), facet_edges);
     std::vector<int> half(edges.size(), -1);
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const Vec3 a = surface.points[static_cast<std::size_t>(edges[e][0])];
       const Vec3 b = surface.points[static_cast<std::size_t>(edges[e][1])];
       if ((b - a).norm() > longest) {
         half[e] = static_cast<int>(surface.points.size());
-        surface.points.push_back(0.5 * (a + b));
+        surface.points.push_back(shape != nullptr
+                                     ? shape->middle(a, b, labels[e])
+                                     : Vec3(0.5 * (a + b)));
       }
     }
     SurfaceMesh next{.points = std::move(surface.points),
@@ -190,17 +217,23 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
         path.string(), bodies.size()));
   }
   const double edge = run.input.resolution.fea;
-  const SurfaceMesh surface = with_short_edges(
-      renamed(forward::read_part_file(path, {.unit = run.input.units.length,
-                                             .edge = edge,
-                                             .monitor = monitor}),
-              names, path.string()),
-      kLongestEdge * edge);
+  const auto read = [&](double size) {
+    return forward::read_part_file(
+        path,
+        {.unit = run.input.units.length, .edge = size, .monitor = monitor});
+  };
+  std::unique_ptr<PartShape> shape;
+  if (forward::has_curved_faces(path)) {
+    shape = std::make_unique<PartShape>(read(kShapeInEdges * edge));
+  }
+  const SurfaceMesh surface =
+      with_short_edges(renamed(read(edge), names, path.string()),
+                       kLongestEdge * edge, shape.get());
   check_names(surface, run.fields.inputs, path.string());
   forward::EvaluationFields fields;
   fields.inputs = run.fields.inputs;
   fields.inputs.materials.resize(1);
-  fields.mesh = filled(surface, edge, path.string(), monitor);
+  fields.mesh = filled(surface, shape.get(), edge, path.string(), monitor);
   fields.exclusion = forward::choose_exclusion(run.input, fields.mesh,
                                                forward::EmptyZones::Allowed);
   const elastic::ElasticModel elasticity(

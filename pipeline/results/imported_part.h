@@ -8,12 +8,15 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/monitor.h"
 #include "pipeline/results/part_comparison.h"
+#include "pipeline/results/part_shape.h"
 
 namespace meniscus::results {
 
 /// Edges longer than `longest` [length] halved, and again, until none is;
-/// shape, labels and bodies stay.
-SurfaceMesh with_short_edges(SurfaceMesh surface, double longest);
+/// labels and bodies stay. The new points stand on `shape`, without one in the
+/// middles of straight edges.
+SurfaceMesh with_short_edges(SurfaceMesh surface, double longest,
+                             const PartShape* shape = nullptr);
 
 /// A face's name in a file -> what the run calls it.
 using FaceNames = std::map<std::string, std::string>;
@@ -25,8 +28,9 @@ using FaceNames = std::map<std::string, std::string>;
 /// Meshed at the run's
 /// resolution.fea (shorter where the file's own facets are), of the run's
 /// material, held and loaded as the run's answer is by the names of its
-/// surfaces, and solved by the same solver. Sides are straight: the file knows
-/// no others.
+/// surfaces, and solved by the same solver. Faces of STEP are curved as they
+/// are in the file, to a few thousandths of an edge; the other formats know
+/// flat facets only.
 /// Throws InvalidInput (file, a name of a face that is not there, a surface
 /// that loads or supports name and the file does not have, a run of several
 /// materials), IoError, MeshError (no mesh), SolverError. `kept`, when given,

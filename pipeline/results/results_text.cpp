@@ -155,9 +155,9 @@ std::string film_text(const case_data::Case& input,
       film.verdict, film.vertices, film.facets, film.area,
       input.units.unit_of(Dimension::Area), film.energy,
       input.units.unit_of(Dimension::Energy), film.residual, input.units.force,
-      film.residual_bound, film.min_eigenvalue, film.index, film.smallest_neck,
-      input.units.length, film.neck_position.x(), film.neck_position.y(),
-      film.neck_position.z());
+      film.residual_bound, film.min_eigenvalue, settle::index_text(film),
+      film.smallest_neck, input.units.length, film.neck_position.x(),
+      film.neck_position.y(), film.neck_position.z());
   for (const settle::BodyState& body : film.bodies) {
     text += fmt::format("  body {}: volume {:.8g} {}, pressure {:.6g} {}\n",
                         body.name, body.volume,

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Rings are ruled: a thick tube made of them is Lame's, its STEP file has the
 cylinders, and its gradients are exact where the rims leave their planes."""
+import json
 import math
 import unittest
 
@@ -106,6 +107,26 @@ class Rings(ProgramTest):
         text = step.read_text()
         self.assertEqual(text.count("CYLINDRICAL_SURFACE"), 2)
         self.assertEqual(text.count("PLANE("), 2)
+        self.compare_as_step(out, step, work)
+
+    def compare_as_step(self, out, step, work):
+        """The tube again from its STEP file: curved faces, Lame's peak."""
+        a2, b2 = INSIDE**2, OUTSIDE**2
+        around = PRESSURE * (a2 + b2) / (b2 - a2)
+        along = RATIO * (around - PRESSURE)
+        peak = math.sqrt(0.5 * ((around + PRESSURE)**2 +
+                                (around - along)**2 +
+                                (along + PRESSURE)**2))
+        there = self.folder / "compare"
+        self.expect(self.call("compare", out, step, "--out", there), 0)
+        parts = json.loads((there / "compare.json").read_text())["parts"]
+        self.assertEqual(len(parts), 2)
+        for part in parts:
+            figures = part["load_cases"]["pressed"]
+            with self.subTest(part=part["name"]):
+                self.assertAlmostEqual(figures["work"] / work, 1, delta=5e-3)
+                self.assertAlmostEqual(figures["max_von_mises"] / peak, 1,
+                                       delta=0.06)
 
     def test_its_gradients_are_exact(self):
         self.expect(self.call("check-gradient", self.tube()), 0)
