@@ -20,11 +20,35 @@ using Unit = std::unique_ptr<ut_unit, decltype(&ut_free)>;
 using Converter = std::unique_ptr<cv_converter, decltype(&cv_free)>;
 
 constexpr std::size_t kLongestUnit = 64;
-constexpr std::array<Dimension, 12> kDimensions = {
-    Dimension::None,    Dimension::Length,   Dimension::Angle,
-    Dimension::Force,   Dimension::Pressure, Dimension::Volume,
-    Dimension::Area,    Dimension::Mass,     Dimension::Density,
-    Dimension::Tension, Dimension::Energy,   Dimension::Time};
+
+// In the order of Dimension.
+struct DimensionRow {
+  Dimension dimension;
+  const char* name;
+  UnitPowers powers;
+};
+constexpr std::array<DimensionRow, 15> kDimensions = {{
+    {Dimension::None, "number", {}},
+    {Dimension::Length, "length", {.length = 1}},
+    {Dimension::Angle, "angle", {}},
+    {Dimension::Force, "force", {.force = 1}},
+    {Dimension::Pressure, "pressure", {.length = -2, .force = 1}},
+    {Dimension::Volume, "volume", {.length = 3}},
+    {Dimension::Area, "area", {.length = 2}},
+    {Dimension::Mass, "mass", {.length = -1, .force = 1, .time = 2}},
+    {Dimension::Density, "density", {.length = -4, .force = 1, .time = 2}},
+    {Dimension::Tension,
+     "tension (force per length)",
+     {.length = -1, .force = 1}},
+    {Dimension::Energy, "energy", {.length = 1, .force = 1}},
+    {Dimension::Time, "time", {.time = 1}},
+    {Dimension::Acceleration, "acceleration", {.length = 1, .time = -2}},
+    {Dimension::Rate, "rate (angle per time)", {.time = -1}},
+    {Dimension::Foundation, "stiffness per area", {.length = -3, .force = 1}},
+}};
+const DimensionRow& row_of(Dimension dimension) {
+  return kDimensions[static_cast<std::size_t>(dimension)];
+}
 
 /// UDUNITS reads numbers in units by the thread's locale, where the decimal
 /// sign may be a comma; this holds the thread in the C locale.
@@ -47,37 +71,99 @@ class PlainLocale {
   locale_t before_;
 };
 
-/// The unit that UDUNITS understands for a quantity of the system.
-std::string definition(const UnitSystem& system, Dimension dimension) {
-  const std::string& l = system.length;
-  const std::string& f = system.force;
-  switch (dimension) {
-    case Dimension::None:
-      return "1";
-    case Dimension::Length:
-      return l;
-    case Dimension::Angle:
-      return "radian";
-    case Dimension::Force:
-      return f;
-    case Dimension::Pressure:
-      return f + "/" + l + "^2";
-    case Dimension::Volume:
-      return l + "^3";
-    case Dimension::Area:
-      return l + "^2";
-    case Dimension::Mass:
-      return f + " s^2/" + l;
-    case Dimension::Density:
-      return f + " s^2/" + l + "^4";
-    case Dimension::Tension:
-      return f + "/" + l;
-    case Dimension::Energy:
-      return f + " " + l;
-    case Dimension::Time:
-      return "s";
+/// A unit as UDUNITS' base units make it up.
+struct BasePowers {
+  double metre = 0.0;
+  double kilogram = 0.0;
+  double second = 0.0;
+  double angle = 0.0;
+  bool plain = true;  // of no other, with its zero at zero
+};
+
+void add_power(BasePowers& powers, const ut_unit* unit, int power) {
+  const char* symbol = ut_get_symbol(unit, UT_ASCII);
+  const std::string_view name = symbol == nullptr ? "" : symbol;
+  if (name == "m") {
+    powers.metre += power;
+  } else if (name == "kg") {
+    powers.kilogram += power;
+  } else if (name == "s") {
+    powers.second += power;
+  } else if (name == "rad") {
+    powers.angle += power;
+  } else {
+    powers.plain = false;
   }
-  return "1";
+}
+
+ut_status visit_basic(const ut_unit* unit, void* found) {
+  add_power(*static_cast<BasePowers*>(found), unit, 1);
+  return UT_SUCCESS;
+}
+
+ut_status visit_product(const ut_unit* /*unit*/, int count,
+                        const ut_unit* const* basics, const int* powers,
+                        void* found) {
+  for (int k = 0; k < count; ++k) {
+    add_power(*static_cast<BasePowers*>(found), basics[k], powers[k]);
+  }
+  return UT_SUCCESS;
+}
+
+ut_status visit_galilean(const ut_unit* unit, double scale, const ut_unit* of,
+                         double origin, void* found);
+
+// Of times since a date, and of decibels.
+ut_status visit_other(const ut_unit* /*unit*/, const ut_unit* /*of*/,
+                      double /*origin*/, void* found) {
+  static_cast<BasePowers*>(found)->plain = false;
+  return UT_SUCCESS;
+}
+ut_status visit_logarithmic(const ut_unit* unit, double /*base*/,
+                            const ut_unit* of, void* found) {
+  return visit_other(unit, of, 0.0, found);
+}
+
+constexpr ut_visitor kVisitor = {visit_basic, visit_product, visit_galilean,
+                                 visit_other, visit_logarithmic};
+
+ut_status visit_galilean(const ut_unit* /*unit*/, double /*scale*/,
+                         const ut_unit* of, double origin, void* found) {
+  if (origin != 0.0) {
+    static_cast<BasePowers*>(found)->plain = false;
+  }
+  return ut_accept_visitor(of, &kVisitor, found);
+}
+
+/// Nothing for units of temperature, current and the like.
+std::optional<BasePowers> base_powers(const ut_unit* unit) {
+  BasePowers found;
+  if (ut_accept_visitor(unit, &kVisitor, &found) != UT_SUCCESS ||
+      !found.plain) {
+    return std::nullopt;
+  }
+  return found;
+}
+
+UnitPowers powers_in_force(const BasePowers& base) {
+  // kg = N s^2 / m
+  return {.length = base.metre - base.kilogram,
+          .force = base.kilogram,
+          .time = base.second + 2.0 * base.kilogram};
+}
+
+/// The unit that UDUNITS understands for these powers in the system.
+std::string definition(const UnitSystem& system, const UnitPowers& powers) {
+  std::string text;
+  const auto add = [&](const std::string& unit, double power) {
+    for (double k = 0.0; k < std::abs(power); ++k) {
+      text += fmt::format("{}{}", power < 0.0 ? "/" : ".", unit);
+    }
+  };
+  add(system.length, powers.length);
+  add(system.force, powers.force);
+  add("s", powers.time);
+  return "1" + text;
 }
 
 /// UDUNITS' database, read once. The library keeps its status in a global, so
@@ -94,14 +180,18 @@ class Database {
   /// The system's unit that `from` converts to; none for no such one.
   Unit target(const Unit& from, std::optional<Dimension> dimension,
               const UnitSystem& system) const {
-    for (const Dimension each : kDimensions) {
-      Unit to = parse(definition(system, each));
-      if ((dimension ? each == *dimension : each != Dimension::None) && to &&
-          ut_are_convertible(from.get(), to.get()) != 0) {
-        return to;
-      }
+    const std::optional<BasePowers> base = base_powers(from.get());
+    if (!base) {
+      return {nullptr, &ut_free};
     }
-    return {nullptr, &ut_free};
+    const UnitPowers powers = powers_in_force(*base);
+    if (powers == powers_of(Dimension::Rate) && base->angle == 0.0) {
+      return {nullptr, &ut_free};  // turns or radians? "50 Hz" does not say
+    }
+    if (dimension && !(powers == powers_of(*dimension))) {
+      return {nullptr, &ut_free};
+    }
+    return parse(definition(system, powers));
   }
   std::mutex& lock() { return lock_; }
 
@@ -168,50 +258,56 @@ std::string advised_unit(std::optional<Dimension> dimension,
                               : system.unit_of(*dimension));
 }
 
-std::string no_such_dimension(std::string_view text,
+std::string no_such_dimension(std::string_view text, const ut_unit* found,
                               std::optional<Dimension> dimension,
                               const UnitSystem& system) {
   if (!dimension) {
     return fmt::format(
-        "'{}' is no quantity of a case; there are lengths, angles, forces, "
-        "pressures, volumes, areas, masses, densities, tensions, energies and "
-        "times",
+        "'{}' is no quantity of a case; there are powers of length, force, "
+        "mass and time, angles, and angles per time (rad/s, rpm)",
         text);
   }
-  return fmt::format("'{}' is no {}; try {}", text, name_of(*dimension),
+  const std::optional<BasePowers> base = base_powers(found);
+  const UnitPowers powers =
+      base ? powers_in_force(*base) : powers_of(*dimension);
+  const std::string but =
+      powers == powers_of(*dimension) ? "" : " but " + described(powers);
+  return fmt::format("'{}' is no {}{}; try {}", text, name_of(*dimension), but,
                      advised_unit(dimension, system));
 }
 
 }  // namespace
 
-const char* name_of(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::None:
-      return "number";
-    case Dimension::Length:
-      return "length";
-    case Dimension::Angle:
-      return "angle";
-    case Dimension::Force:
-      return "force";
-    case Dimension::Pressure:
-      return "pressure";
-    case Dimension::Volume:
-      return "volume";
-    case Dimension::Area:
-      return "area";
-    case Dimension::Mass:
-      return "mass";
-    case Dimension::Density:
-      return "density";
-    case Dimension::Tension:
-      return "tension (force per length)";
-    case Dimension::Energy:
-      return "energy";
-    case Dimension::Time:
-      return "time";
+const char* name_of(Dimension dimension) { return row_of(dimension).name; }
+
+bool UnitPowers::operator==(const UnitPowers& other) const {
+  constexpr double kRounding = 1e-9;
+  return std::abs(length - other.length) < kRounding &&
+         std::abs(force - other.force) < kRounding &&
+         std::abs(time - other.time) < kRounding;
+}
+
+UnitPowers powers_of(Dimension dimension) { return row_of(dimension).powers; }
+
+std::string described(const UnitPowers& powers) {
+  for (const DimensionRow& row : kDimensions) {
+    if (row.powers == powers) {
+      const bool vowel =
+          std::string_view("aeiou").find(row.name[0]) != std::string_view::npos;
+      return fmt::format("{} {}", vowel ? "an" : "a", row.name);
+    }
   }
-  return "number";
+  std::string text;
+  const auto add = [&](const char* base, double power) {
+    if (power != 0.0) {
+      text += fmt::format(" {}{}", base,
+                          power == 1.0 ? "" : fmt::format("^{:g}", power));
+    }
+  };
+  add("length", powers.length);
+  add("force", powers.force);
+  add("time", powers.time);
+  return "a quantity of" + text;
 }
 
 std::string UnitSystem::unit_of(Dimension dimension) const {
@@ -240,8 +336,26 @@ std::string UnitSystem::unit_of(Dimension dimension) const {
       return force + " " + length;
     case Dimension::Time:
       return "s";
+    case Dimension::Acceleration:
+      return length + "/s2";
+    case Dimension::Rate:
+      return "rad/s";
+    case Dimension::Foundation:
+      return force + "/" + length + "3";
   }
   return "";
+}
+
+ShownUnit UnitSystem::shown(Dimension dimension) const {
+  constexpr double kKilograms = 1e3;  // in a tonne
+  constexpr double kPounds = 386.0885826771654;
+  if (dimension == Dimension::Mass && mass == "t") {
+    return {kKilograms, "kg"};
+  }
+  if (dimension == Dimension::Mass && mass == "lbf s2/in") {
+    return {kPounds, "lb"};
+  }
+  return {1.0, unit_of(dimension)};
 }
 
 std::optional<UnitSystem> unit_system(std::string_view name) {
@@ -261,9 +375,11 @@ bool looks_like_quantity(std::string_view text) {
   return split(text).has_value();
 }
 
-double parse_quantity(std::string_view text, std::optional<Dimension> dimension,
-                      const UnitSystem& system) {
-  const std::optional<Parts> parts = split(text);
+namespace {
+
+/// The parts of a text that looks like a quantity.
+Parts parts_of(std::string_view text) {
+  std::optional<Parts> parts = split(text);
   if (!parts) {
     throw InvalidInput(
         fmt::format("'{}' is not a number, a space and a unit", text));
@@ -274,23 +390,53 @@ double parse_quantity(std::string_view text, std::optional<Dimension> dimension,
                     "characters",
                     text.substr(0, kLongestUnit), kLongestUnit));
   }
+  return *std::move(parts);
+}
+
+/// Of a text's unit; the caller holds the database's lock.
+Unit unit_in(const Database& database, const Parts& parts,
+             std::string_view text, std::optional<Dimension> dimension,
+             const UnitSystem& system) {
+  Unit unit = database.parse(parts.unit);
+  if (!unit) {
+    throw InvalidInput(fmt::format("unknown unit '{}' in '{}'; try {}",
+                                   parts.unit, text,
+                                   advised_unit(dimension, system)));
+  }
+  return unit;
+}
+
+}  // namespace
+
+UnitPowers quantity_powers(std::string_view text) {
+  const Parts parts = parts_of(text);
+  const UnitSystem system = *unit_system("mm-N-MPa");
   const PlainLocale plain;
   Database& database = Database::get();
   const std::lock_guard<std::mutex> guard(database.lock());
-  const Unit from = database.parse(parts->unit);
-  if (!from) {
-    throw InvalidInput(fmt::format("unknown unit '{}' in '{}'; try {}",
-                                   parts->unit, text,
-                                   advised_unit(dimension, system)));
+  const Unit unit = unit_in(database, parts, text, std::nullopt, system);
+  if (!database.target(unit, std::nullopt, system)) {
+    throw InvalidInput(
+        no_such_dimension(text, unit.get(), std::nullopt, system));
   }
+  return powers_in_force(*base_powers(unit.get()));
+}
+
+double parse_quantity(std::string_view text, std::optional<Dimension> dimension,
+                      const UnitSystem& system) {
+  const Parts parts = parts_of(text);
+  const PlainLocale plain;
+  Database& database = Database::get();
+  const std::lock_guard<std::mutex> guard(database.lock());
+  const Unit from = unit_in(database, parts, text, dimension, system);
   const Unit to = database.target(from, dimension, system);
   if (!to) {
-    throw InvalidInput(no_such_dimension(text, dimension, system));
+    throw InvalidInput(no_such_dimension(text, from.get(), dimension, system));
   }
   const Converter converter(ut_get_converter(from.get(), to.get()), &cv_free);
   const double value = converter == nullptr
                            ? std::nan("")
-                           : cv_convert_double(converter.get(), parts->number);
+                           : cv_convert_double(converter.get(), parts.number);
   if (!std::isfinite(value)) {
     throw InvalidInput(
         fmt::format("'{}' is too large for the units {}", text, system.name));

@@ -1,9 +1,14 @@
-/// Operations of compiled expressions: shared by the parser and the evaluator
-/// of core/math/expression.h, nothing else needs it.
+/// Operations of compiled expressions: shared by the parser and the evaluators
+/// of core/math/expression.h and measure.h, nothing else needs it.
 #pragma once
 
 #include <array>
 #include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/math/measure.h"
 
 namespace meniscus::expression_code {
 
@@ -49,6 +54,17 @@ constexpr std::array<Constant, 3> kConstants = {
     {{"pi", std::numbers::pi},
      {"e", std::numbers::e},
      {"deg", std::numbers::pi / 180.0}}};
+
+/// One step of postfix code, as the parser hands it on.
+struct Step {
+  int operation = Number;
+  int index = -1;       // of a name: its position; of a jump: where to
+  double number = 0.0;  // of a number
+  int column = 0;
+};
+/// The dimension that the code leaves (core/math/measure.h).
+Measure measure_steps(const std::vector<Step>& code, const std::string& text,
+                      std::span<const Measure> names);
 
 constexpr int arity(int operation) {
   if (operation >= FirstFunction) {

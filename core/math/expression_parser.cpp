@@ -36,6 +36,15 @@ class ExpressionParser {
   ExpressionParser(std::string_view text, const std::vector<std::string>& names)
       : text_(text), names_(names) {}
 
+  /// What it made of a text, for others.
+  static std::vector<Step> steps_of(const Expression& expression) {
+    std::vector<Step> steps;
+    for (const Expression::Instruction& at : expression.code_) {
+      steps.push_back({at.operation, at.index, at.number, at.column});
+    }
+    return steps;
+  }
+
   Expression parse() {
     if (text_.size() > kLongest) {
       throw ExpressionError(
@@ -311,6 +320,12 @@ class ExpressionParser {
 Expression Expression::parse(std::string_view text,
                              const std::vector<std::string>& names) {
   return ExpressionParser(text, names).parse();
+}
+
+Measure measure_of(const Expression& expression,
+                   std::span<const Measure> names) {
+  return measure_steps(ExpressionParser::steps_of(expression),
+                       expression.text(), names);
 }
 
 }  // namespace meniscus

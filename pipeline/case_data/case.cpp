@@ -351,6 +351,33 @@ std::vector<std::string> response_names(const Case& input) {
 
 Dimension dimension_of(ResponseKind kind) { return row_of(kind).dimension; }
 
+Measure measure_of(const ResponseEntry& response) {
+  if (response.kind == ResponseKind::Expression) {
+    const Measure& measure = response.value.measure;
+    return measure.is_known() ? measure : Measure{};
+  }
+  const Dimension dimension = dimension_of(response.kind);
+  const bool unknown = response.weight.has_value() ||
+                       response.kind == ResponseKind::CollapseMargin;
+  return unknown ? Measure{} : Measure::of(powers_of(dimension));
+}
+
+ShownUnit shown_unit(const Case& input, int response) {
+  return input.units.shown(
+      dimension_of(input.responses[static_cast<std::size_t>(response)].kind));
+}
+
+std::string unit_of(const UnitSystem& units, const Measure& measure) {
+  for (int d = 1; d <= static_cast<int>(Dimension::Foundation); ++d) {
+    const auto dimension = static_cast<Dimension>(d);
+    if (measure.is_known() && dimension != Dimension::Angle &&
+        powers_of(dimension) == measure.powers) {
+      return units.unit_of(dimension);
+    }
+  }
+  return "";
+}
+
 std::string response_unit(const Case& input, int response) {
   return input.units.unit_of(
       dimension_of(input.responses[static_cast<std::size_t>(response)].kind));

@@ -126,6 +126,13 @@ VectorX initial_design(const Case& input);
 std::vector<std::string> design_names(const Case& input);
 std::vector<std::string> response_names(const Case& input);
 Dimension dimension_of(ResponseKind kind);
+/// What is known of a response's dimension; of an expression what its parts
+/// say.
+Measure measure_of(const ResponseEntry& response);
 std::string response_unit(const Case& input, int response);
+/// What people are shown of it.
+ShownUnit shown_unit(const Case& input, int response);
+/// What a number is in whose dimension the case says; empty for others.
+std::string unit_of(const UnitSystem& units, const Measure& measure);
 
 }  // namespace meniscus::case_data

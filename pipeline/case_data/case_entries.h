@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/math/expression.h"
+#include "core/math/measure.h"
 #include "evolve/films/film_system.h"
 #include "evolve/scan/scan.h"
 #include "evolve/walls/thicken.h"
@@ -28,6 +29,7 @@ struct Quantity {
   Expression expression;
   SourceLine line = 0;
   std::string key;  // "curves.support.radius", for messages
+  Measure measure;  // its dimension, where that is known
 };
 using QuantityVector = std::array<Quantity, 3>;
 
@@ -44,6 +46,7 @@ struct DesignVariable {
   double lower = 0.0;
   double upper = 0.0;
   SourceLine line = 0;
+  Measure measure;  // of all three
 };
 
 struct Parameter {

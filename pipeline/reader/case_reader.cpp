@@ -39,8 +39,9 @@ void read_content(const std::string& text, case_data::CaseProblems& problems,
   }
   try {
     toml::table root = toml::parse(std::string_view(text));
-    const OverriddenNodes overridden =
+    OverriddenNodes overridden =
         apply_overrides(root, result.overrides, problems);
+    let_parameters_scatter(root, overridden);
     read_tables(root, overridden, problems, result);
     case_data::check_case(result, problems);
     std::string content = canonical_text(root);

@@ -117,7 +117,7 @@ TableSpec field_table() {
       {{"kind", K::Choice, D::None, true, "what acts",
         case_data::choices_of(field_kinds())},
        {"at", K::Vector, D::Length, false, "of point, plane"},
-       {"normal", K::Vector, D::None, false, "of plane; any length but 0"},
+       {"normal", K::Vector, std::nullopt, false, "of plane; any length but 0"},
        {"from", K::Vector, D::Length, false, "of segment"},
        {"to", K::Vector, D::Length, false, "of segment"},
        {"points", K::Vectors, D::Length, false,

@@ -239,17 +239,40 @@ std::optional<case_data::PlaceQuantity> CaseTable::place_quantity(
                              fmt::format("{}.{}", path_, key));
 }
 
-std::optional<double> CaseTable::constant(const char* key) const {
+std::optional<Constant> CaseTable::measured(const char* key) const {
   if (!has(key)) {
     return std::nullopt;
   }
   const IndexScope scope(*context_, indices_);
-  return read_constant(*context_, *node(key), dimension(key),
+  return read_measured(*context_, *node(key), dimension(key),
+                       fmt::format("{}.{}", path_, key));
+}
+
+std::optional<double> CaseTable::constant(const char* key) const {
+  const std::optional<Constant> found = measured(key);
+  return found ? std::optional(found->value) : std::nullopt;
+}
+
+std::optional<double> CaseTable::constant(const char* key,
+                                          Dimension dimension) const {
+  if (!has(key)) {
+    return std::nullopt;
+  }
+  const IndexScope scope(*context_, indices_);
+  return read_constant(*context_, *node(key), dimension,
                        fmt::format("{}.{}", path_, key));
 }
 
 std::vector<double> CaseTable::constants(const char* key) const {
   std::vector<double> result;
+  for (const Constant& found : measured_constants(key)) {
+    result.push_back(found.value);
+  }
+  return result;
+}
+
+std::vector<Constant> CaseTable::measured_constants(const char* key) const {
+  std::vector<Constant> result;
   if (!has(key)) {
     return result;
   }
@@ -261,7 +284,7 @@ std::vector<double> CaseTable::constants(const char* key) const {
   }
   const IndexScope scope(*context_, indices_);
   for (const toml::node& item : *array) {
-    if (const auto value = read_constant(*context_, item, dimension(key),
+    if (const auto value = read_measured(*context_, item, dimension(key),
                                          fmt::format("{}.{}", path_, key))) {
       result.push_back(*value);
     }

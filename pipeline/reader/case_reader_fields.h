@@ -37,6 +37,8 @@ struct CaseContext {
   std::vector<char> used;          // per name: some expression has it
   // Per name: its value when no design variable moves it.
   std::vector<std::optional<double>> constants;
+  // Per name, as far as it is known; empty while parameters are read.
+  std::vector<Measure> measures;
   bool bodies_good = false;  // nothing was wrong with them
   // Of the copy of an entry with `repeat` that is being read: i, j, k.
   std::vector<int> indices;
@@ -44,6 +46,12 @@ struct CaseContext {
       step_files;  // by path
 
   case_data::SourceLine line_of(const toml::node& node) const;
+};
+
+/// A constant and the dimension of its text.
+struct Constant {
+  double value = 0.0;
+  Measure measure;
 };
 
 /// "a table", "text 'abc'", "3.5": what was found, for messages.
@@ -84,7 +92,12 @@ class CaseTable {
   std::optional<case_data::Quantity> quantity(const char* key) const;
   std::optional<case_data::PlaceQuantity> place_quantity(const char* key) const;
   std::optional<double> constant(const char* key) const;
+  /// Of that dimension, whatever the vocabulary says.
+  std::optional<double> constant(const char* key, Dimension dimension) const;
+  /// The same with the dimension of its text.
+  std::optional<Constant> measured(const char* key) const;
   std::vector<double> constants(const char* key) const;
+  std::vector<Constant> measured_constants(const char* key) const;
   std::optional<case_data::QuantityVector> vector(const char* key) const;
   /// Points, and { at = [x, y, z], repeat = n } for several.
   std::vector<case_data::QuantityVector> vectors(const char* key) const;
@@ -94,6 +107,9 @@ class CaseTable {
   /// As vectors(), with points that arcs go through: { through = [x, y, z] }.
   std::vector<case_data::PathPoint> path_points(const char* key) const;
   std::optional<Vec3> constant_vector(const char* key) const;
+  /// Of that dimension, whatever the vocabulary says.
+  std::optional<Vec3> constant_vector(const char* key,
+                                      Dimension dimension) const;
   std::optional<std::array<case_data::PlaceQuantity, 3>> place_vector(
       const char* key) const;
   std::optional<element::LocalAxes> axes(const char* key) const;
@@ -109,9 +125,13 @@ class CaseTable {
  private:
   /// Of three items; null with a problem noted where it is anything else.
   const toml::array* three(const char* key, const char* wanted) const;
-  std::optional<Vec3> constants_of(const toml::node& node, const char* key,
+  std::optional<Vec3> constants_of(const toml::node& node,
+                                   std::optional<Dimension> dimension,
                                    const std::string& path) const;
   void note(const char* key, const std::string& expected) const;
+  /// Notes a vector whose components are of different dimensions.
+  void require_alike(const std::array<Measure, 3>& measures,
+                     const toml::node& node, const std::string& path) const;
   std::string filled_text(const toml::node& node, const std::string& text,
                           const std::vector<int>& indices) const;
   /// The numbers of the copies that an entry { ..., repeat = n } of an array
@@ -156,12 +176,26 @@ std::optional<case_data::PlaceQuantity> read_place_quantity(
     CaseContext& context, const toml::node& node,
     std::optional<Dimension> dimension, const std::string& key);
 
+/// The dimension of an expression over the context's names; where two parts do
+/// not fit each other, a note and nothing known.
+Measure measure_of(CaseContext& context, const case_data::Quantity& quantity);
+
+/// Notes a quantity whose dimension is known and another.
+void require_powers(CaseContext& context, const case_data::Quantity& quantity,
+                    const UnitPowers& powers);
+
 /// Notes a quantity that a design variable moves although `what`, of which it
 /// is a part, belongs to the frozen film.
 void require_frozen(CaseContext& context, const case_data::Quantity& quantity,
                     const char* what);
 
 /// The same where no design variable may have a say.
+std::optional<Constant> read_measured(CaseContext& context,
+                                      const toml::node& node,
+                                      std::optional<Dimension> dimension,
+                                      const std::string& key);
+
+/// Its value alone.
 std::optional<double> read_constant(CaseContext& context,
                                     const toml::node& node,
                                     std::optional<Dimension> dimension,

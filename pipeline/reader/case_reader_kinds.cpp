@@ -145,7 +145,7 @@ TableSpec study_table() {
         "of sweep by grid: design variable = number of values, ends of its "
         "bounds included; one that is left out stays at its initial value"},
        {"deviations", K::ConstantMap, std::nullopt, false,
-        "of tolerance: design variable = standard deviation"},
+        "of tolerance: design variable or parameter = standard deviation"},
        {"count", K::Integer, D::None, false,
         "of sweep by latin_hypercube or sobol: number of designs; of "
         "tolerance: samples that confirm it, none when left out; of pareto: "

@@ -45,12 +45,15 @@ void read_fix(CaseContext& context, const CaseTable& table,
 
 loads::SpringBed read_springs(CaseContext& context, const CaseTable& table) {
   loads::SpringBed bed;
-  bed.components = table.constant_vector("stiffness").value_or(Vec3::Zero());
-  bed.normal = table.constant("normal_stiffness").value_or(0.0);
-  bed.axes = table.axes("axes");
+  Dimension dimension = Dimension::Foundation;
   if (table.choice("stiffness_of") == "total") {
     bed.measure = loads::SpringMeasure::Total;
+    dimension = Dimension::Tension;  // force per length
   }
+  bed.components =
+      table.constant_vector("stiffness", dimension).value_or(Vec3::Zero());
+  bed.normal = table.constant("normal_stiffness", dimension).value_or(0.0);
+  bed.axes = table.axes("axes");
   if (bed.components.minCoeff() < 0.0 || bed.normal < 0.0 ||
       (bed.components.isZero(0.0) && bed.normal == 0.0)) {
     context.problems.add(
@@ -236,15 +239,40 @@ TableSpec load_table() {
         "axis"},
        {"pressure", K::Place, D::Pressure, false, "positive into the material"},
        {"traction", K::PlaceVector, D::Pressure, false, "force per area"},
-       {"gravity", K::Vector, std::nullopt, false, "force per mass"},
-       {"spin", K::Quantity, std::nullopt, false,
+       {"gravity", K::Vector, D::Acceleration, false, "force per mass"},
+       {"spin", K::Quantity, D::Rate, false,
         "angular velocity in radians per time"},
-       {"axis", K::Vector, D::None, false, "of spin; any length but 0"},
+       {"axis", K::Vector, std::nullopt, false, "of spin; any length but 0"},
        {"temperature", K::Place, D::None, false,
         "of all bodies; they expand from the reference"},
        {"reference", K::Quantity, D::None, false,
         "of temperature: where nothing has expanded; 0 when left out"}}};
 }
+
+namespace {
+
+/// A wall's sides by where they lie: FILM/outside is FILM, FILM/inside its
+/// back, for walls are turned so that their normals point outside.
+std::string without_side(const std::string& surface,
+                         const std::vector<std::string>& known) {
+  const auto is_known = [&](const std::string& name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  };
+  for (const auto& [side, ending] :
+       {std::pair<std::string, std::string>("/inside", "/back"),
+        std::pair<std::string, std::string>("/outside", "")}) {
+    const std::string film =
+        surface.ends_with(side)
+            ? surface.substr(0, surface.size() - side.size())
+            : "";
+    if (!film.empty() && !is_known(surface) && is_known(film + "/back")) {
+      return film + ending;
+    }
+  }
+  return surface;
+}
+
+}  // namespace
 
 std::string surface_on(CaseContext& context, const CaseTable& table,
                        const case_data::Case& result, const char* key) {
@@ -253,6 +281,7 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
     return surface;
   }
   const std::vector<std::string> known = case_data::surface_names(result);
+  surface = without_side(surface, known);
   int bodies = 0;
   int solid = 0;
   for (const case_data::BodyEntry& body : result.bodies) {

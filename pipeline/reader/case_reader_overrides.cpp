@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
+#include "core/units.h"
+
 namespace meniscus::reader {
 
 namespace {
@@ -100,6 +103,32 @@ Slot find_slot(toml::table& root, const std::string& name) {
   return slot;
 }
 
+/// What a text with a unit measures; nothing for anything else.
+std::optional<UnitPowers> powers_in(const toml::node* node) {
+  const auto* text = node == nullptr ? nullptr : node->as_string();
+  if (text == nullptr || !looks_like_quantity(text->get())) {
+    return std::nullopt;
+  }
+  try {
+    return quantity_powers(text->get());
+  } catch (const InvalidInput&) {
+    return std::nullopt;  // told where the value is read
+  }
+}
+
+/// Notes a value of another dimension than that which the file has there.
+void compare_dimensions(const toml::node* before, const toml::node* after,
+                        int number, case_data::CaseProblems& problems) {
+  const auto was = powers_in(before);
+  const auto is = powers_in(after);
+  if (was && is && !(*was == *is)) {
+    problems.add(-number,
+                 fmt::format("'{}' is {}; expected {}, as '{}' in the file is",
+                             *after->value<std::string>(), described(*is),
+                             described(*was), *before->value<std::string>()));
+  }
+}
+
 void mark(const toml::node& node, int number, OverriddenNodes& overridden) {
   overridden[&node] = number;
   if (const toml::array* array = node.as_array()) {
@@ -139,6 +168,8 @@ OverriddenNodes apply_overrides(toml::table& root,
       continue;
     }
     toml::table value = parse_value(trimmed(text.substr(equals + 1)));
+    compare_dimensions(slot.parent->get(slot.key), value.get("value"), number,
+                       problems);
     slot.parent->insert_or_assign(slot.key, std::move(*value.get("value")));
     put[{slot.parent, slot.key}] = number;
   }
@@ -149,6 +180,43 @@ OverriddenNodes apply_overrides(toml::table& root,
     }
   }
   return overridden;
+}
+
+void let_parameters_scatter(toml::table& root, OverriddenNodes& overridden) {
+  const auto kind = root["study"]["kind"].value<std::string>();
+  const toml::table* deviations = root["study"]["deviations"].as_table();
+  toml::table* parameters = root["parameters"].as_table();
+  if (kind != "tolerance" || deviations == nullptr || parameters == nullptr) {
+    return;
+  }
+  if (!root.contains("design")) {
+    root.insert("design", toml::table{});
+  }
+  toml::table* design = root["design"].as_table();
+  for (const auto& [key, deviation] : *deviations) {
+    const toml::node* value = parameters->get(key.str());
+    if (value == nullptr || design == nullptr || design->contains(key.str())) {
+      continue;
+    }
+    const auto set = overridden.find(value);
+    const int number = set == overridden.end() ? 0 : set->second;
+    if (number > 0) {
+      overridden.erase(set);
+    }
+    toml::table variable{{"initial", *value},
+                         {"bounds", toml::array{*value, *value}}};
+    parameters->erase(key.str());
+    const auto at = design->insert_or_assign(key.str(), std::move(variable));
+    if (number > 0) {
+      mark(at.first->second, number, overridden);
+    }
+  }
+  if (parameters->empty()) {
+    root.erase("parameters");
+  }
+  if (design != nullptr && design->empty()) {
+    root.erase("design");
+  }
 }
 
 }  // namespace meniscus::reader

@@ -19,4 +19,9 @@ OverriddenNodes apply_overrides(toml::table& root,
                                 const std::vector<std::string>& overrides,
                                 case_data::CaseProblems& problems);
 
+/// In a tolerance study parameters may scatter too: each that study.deviations
+/// names becomes a design variable that stays at its value. `overridden` is
+/// kept true.
+void let_parameters_scatter(toml::table& root, OverriddenNodes& overridden);
+
 }  // namespace meniscus::reader

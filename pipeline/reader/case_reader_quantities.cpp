@@ -39,14 +39,21 @@ std::optional<case_data::Quantity> read_expression(
         std::vector<double>(context.indices.begin(), context.indices.end()));
   }
   try {
-    result.expression =
-        looks_like_quantity(bound)
-            ? Expression(parse_quantity(bound, dimension, context.units))
-            : Expression::parse(bound, names);
+    if (looks_like_quantity(bound)) {
+      result.expression =
+          Expression(parse_quantity(bound, dimension, context.units));
+      result.measure = Measure::of(quantity_powers(bound));
+      return result;
+    }
+    result.expression = Expression::parse(bound, names);
     for (const int name : result.expression.names_used()) {
       if (static_cast<std::size_t>(name) < context.used.size()) {
         context.used[static_cast<std::size_t>(name)] = 1;
       }
+    }
+    result.measure = measure_of(context, result);
+    if (dimension) {
+      require_powers(context, result, powers_of(*dimension));
     }
     return result;
   } catch (const ExpressionError& error) {
@@ -57,6 +64,21 @@ std::optional<case_data::Quantity> read_expression(
     context.problems.add(result.line, fmt::format("{}: {}", key, error.what()));
   }
   return std::nullopt;
+}
+
+/// " (load is a mass)": the names of known dimension behind an expression.
+std::string origins(const CaseContext& context,
+                    const case_data::Quantity& quantity) {
+  std::string text;
+  for (const int name : quantity.expression.names_used()) {
+    const auto k = static_cast<std::size_t>(name);
+    if (k < context.measures.size() && context.measures[k].is_known()) {
+      text +=
+          fmt::format("{}{} is {}", text.empty() ? " (" : ", ",
+                      context.names[k], described(context.measures[k].powers));
+    }
+  }
+  return text.empty() ? text : text + ")";
 }
 
 /// The first name that a design variable moves or that has no value; empty
@@ -74,6 +96,42 @@ std::string moving_name(const CaseContext& context,
 }
 
 }  // namespace
+
+Measure measure_of(CaseContext& context, const case_data::Quantity& quantity) {
+  if (context.measures.empty() && !quantity.expression.is_constant()) {
+    return {};  // parameters are not ordered yet
+  }
+  std::vector<Measure> measures = context.measures;
+  const std::vector<int> used = quantity.expression.names_used();
+  if (!used.empty() &&
+      static_cast<std::size_t>(used.back()) >= measures.size()) {
+    measures.resize(static_cast<std::size_t>(used.back()) + 1);  // x, y, z
+  }
+  try {
+    return meniscus::measure_of(quantity.expression, measures);
+  } catch (const ExpressionError& error) {
+    context.problems.add(
+        quantity.line,
+        fmt::format("{}: {} at character {}{}; only like can be added or "
+                    "compared: write what differs with its unit, or without "
+                    "one",
+                    quantity.key, error.what(), error.column(),
+                    origins(context, quantity)));
+    return {};
+  }
+}
+
+void require_powers(CaseContext& context, const case_data::Quantity& quantity,
+                    const UnitPowers& powers) {
+  const Measure& measure = quantity.measure;
+  if (measure.is_known() && !(measure.powers == powers)) {
+    context.problems.add(
+        quantity.line,
+        fmt::format("{}: '{}' is {}{}; expected {}", quantity.key,
+                    quantity.expression.text(), described(measure.powers),
+                    origins(context, quantity), described(powers)));
+  }
+}
 
 std::optional<case_data::Quantity> read_quantity(
     CaseContext& context, const toml::node& node,
@@ -108,10 +166,10 @@ void require_frozen(CaseContext& context, const case_data::Quantity& quantity,
   }
 }
 
-std::optional<double> read_constant(CaseContext& context,
-                                    const toml::node& node,
-                                    std::optional<Dimension> dimension,
-                                    const std::string& key) {
+std::optional<Constant> read_measured(CaseContext& context,
+                                      const toml::node& node,
+                                      std::optional<Dimension> dimension,
+                                      const std::string& key) {
   const auto quantity = read_quantity(context, node, dimension, key);
   if (!quantity) {
     return std::nullopt;
@@ -131,12 +189,20 @@ std::optional<double> read_constant(CaseContext& context,
     values[k] = *context.constants[k];
   }
   try {
-    return quantity->expression.evaluate(values);
+    return Constant{quantity->expression.evaluate(values), quantity->measure};
   } catch (const ExpressionError& error) {
     context.problems.add(quantity->line,
                          fmt::format("{}: {}", key, error.what()));
     return std::nullopt;
   }
+}
+
+std::optional<double> read_constant(CaseContext& context,
+                                    const toml::node& node,
+                                    std::optional<Dimension> dimension,
+                                    const std::string& key) {
+  const auto found = read_measured(context, node, dimension, key);
+  return found ? std::optional(found->value) : std::nullopt;
 }
 
 }  // namespace meniscus::reader

@@ -118,9 +118,20 @@ case_data::Quantity read_value(CaseContext& context, const CaseTable& table,
                                  response.name) != context.names.end();
     // A name of the case hides a response of that name.
     context.names.push_back(taken ? "" : response.name);
+    context.measures.emplace_back();  // weighted sums of them are usual
   }
   case_data::Quantity value = table.quantity_or_zero("value");
+  std::vector<Measure> measures = context.measures;
   context.names.resize(own);
+  context.measures.resize(own);
+  for (std::size_t k = 0; k < result.responses.size(); ++k) {
+    measures[own + k] = case_data::measure_of(result.responses[k]);
+  }
+  try {
+    value.measure = measure_of(value.expression, measures);
+  } catch (const ExpressionError&) {
+    value.measure = {};  // such a sum: what it measures is its author's
+  }
   return value;
 }
 
@@ -273,13 +284,13 @@ TableSpec response_table() {
         case_data::choices_of(case_data::response_kinds())},
        {"on", K::Name, D::None, false,
         "of displacements and rotations: the surface"},
-       {"direction", K::Vector, D::None, false,
+       {"direction", K::Vector, std::nullopt, false,
         "of displacements and centre_of_mass; any length but 0"},
-       {"axis", K::Vector, D::None, false,
+       {"axis", K::Vector, std::nullopt, false,
         "of rotation, right-handed; any length but 0"},
        {"load_case", K::Name, D::None, false,
         "of what depends on loads; the first when left out"},
-       {"weight", K::Place, D::None, false,
+       {"weight", K::Place, std::nullopt, false,
         "of mean_displacement: what each place counts, an expression of x, y, "
         "z; the mean is still by area, so that a weight may change its sign"},
        {"power", K::Constant, D::None, false,

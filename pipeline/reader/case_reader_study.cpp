@@ -16,14 +16,19 @@ namespace {
 
 constexpr double kCoarsest = 8.0;  // edges of a coarser model over the case's
 
-/// The dimension of a response; notes an unknown name.
-std::optional<Dimension> response_dimension(CaseContext& context,
-                                            const case_data::Case& result,
-                                            const std::string& name,
-                                            case_data::SourceLine line) {
+/// The dimension of a response, and its measure; notes an unknown name.
+struct ResponseMeasure {
+  Dimension dimension = Dimension::None;
+  Measure measure;
+};
+std::optional<ResponseMeasure> response_measure(CaseContext& context,
+                                                const case_data::Case& result,
+                                                const std::string& name,
+                                                case_data::SourceLine line) {
   for (const case_data::ResponseEntry& response : result.responses) {
     if (response.name == name) {
-      return case_data::dimension_of(response.kind);
+      return ResponseMeasure{case_data::dimension_of(response.kind),
+                             case_data::measure_of(response)};
     }
   }
   context.problems.unknown(line, "response", name,
@@ -39,9 +44,8 @@ void read_equal(CaseContext& context, const CaseTable& table,
   std::set<std::string> seen;
   std::set<Dimension> dimensions;
   for (const std::string& name : study.equal) {
-    if (const auto dimension =
-            response_dimension(context, result, name, line)) {
-      dimensions.insert(*dimension);
+    if (const auto found = response_measure(context, result, name, line)) {
+      dimensions.insert(found->dimension);
     }
     if (!seen.insert(name).second) {
       context.problems.add(
@@ -76,11 +80,11 @@ void read_targets(CaseContext& context, const CaseTable& table,
   }
   for (const auto& [key, value] : *targets) {
     const std::string name(key.str());
-    if (const auto dimension =
-            response_dimension(context, result, name, context.line_of(value))) {
+    if (const auto found =
+            response_measure(context, result, name, context.line_of(value))) {
       result.study.targets.emplace_back(
           name,
-          read_constant(context, value, dimension, "study.targets." + name)
+          read_like(context, value, found->measure, "study.targets." + name)
               .value_or(0.0));
     }
   }
@@ -137,10 +141,29 @@ std::optional<int> find_response(CaseContext& context,
                                  const case_data::Case& result,
                                  const std::string& name,
                                  case_data::SourceLine line) {
-  if (!response_dimension(context, result, name, line)) {
+  if (!response_measure(context, result, name, line)) {
     return std::nullopt;
   }
   return case_data::response_index(result, name);
+}
+
+std::optional<double> read_like(CaseContext& context, const toml::node& node,
+                                const Measure& measure,
+                                const std::string& key) {
+  const auto found = read_measured(context, node, std::nullopt, key);
+  if (!found) {
+    return std::nullopt;
+  }
+  if (measure.is_known() && found->measure.is_known() &&
+      !(measure.powers == found->measure.powers)) {
+    context.problems.add(
+        context.line_of(node),
+        fmt::format("{} is {}, {}; expected {}", key, described(node),
+                    described(found->measure.powers),
+                    described(measure.powers)));
+    return std::nullopt;
+  }
+  return found->value;
 }
 
 namespace {
@@ -149,7 +172,7 @@ namespace {
 int index_of_response(CaseContext& context, const CaseTable& table,
                       const char* key, const case_data::Case& result) {
   const auto name = table.text(key);
-  if (!name || !response_dimension(context, result, *name, table.line(key))) {
+  if (!name || !response_measure(context, result, *name, table.line(key))) {
     return 0;
   }
   return case_data::response_index(result, *name);
@@ -162,13 +185,9 @@ std::optional<double> bound_of(CaseContext& context, const CaseTable& table,
   if (node == nullptr) {
     return std::nullopt;
   }
-  const case_data::ResponseKind kind = result.responses[response].kind;
-  return read_constant(
-      context, *node,
-      kind == case_data::ResponseKind::Expression
-          ? std::nullopt
-          : std::optional<Dimension>(case_data::dimension_of(kind)),
-      table.path() + "." + key);
+  return read_like(context, *node,
+                   case_data::measure_of(result.responses[response]),
+                   table.path() + "." + key);
 }
 
 void read_constraints(CaseContext& context, const CaseTable& table,

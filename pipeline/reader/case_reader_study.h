@@ -33,6 +33,11 @@ std::optional<int> find_response(CaseContext& context,
                                  const std::string& name,
                                  case_data::SourceLine line);
 
+/// A constant of the dimension `measure`, if that is known and the text says
+/// one; else a note and nothing.
+std::optional<double> read_like(CaseContext& context, const toml::node& node,
+                                const Measure& measure, const std::string& key);
+
 /// The two objectives and the number of points; before the constraints.
 void read_front(CaseContext& context, const CaseTable& table,
                 case_data::Case& result);

@@ -103,6 +103,24 @@ void check_name(CaseContext& context, const std::string& name,
   }
 }
 
+/// Parameters in the file's order; toml++ sorts by name. What an override put
+/// there keeps its place: the key's.
+std::vector<std::pair<std::string, const toml::node*>> in_file_order(
+    const toml::table* parameters) {
+  std::vector<std::pair<toml::source_position, std::string>> order;
+  for (const auto& [key, node] : *parameters) {
+    order.emplace_back(key.source().begin, key.str());
+  }
+  std::stable_sort(
+      order.begin(), order.end(),
+      [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::pair<std::string, const toml::node*>> found;
+  for (const auto& [position, name] : order) {
+    found.emplace_back(name, parameters->get(name));
+  }
+  return found;
+}
+
 /// All names that expressions know: design variables, then parameters.
 void claim_names(CaseContext& context, const std::vector<CaseTable>& design,
                  const toml::table* parameters, case_data::Case& result) {
@@ -126,10 +144,9 @@ void claim_names(CaseContext& context, const std::vector<CaseTable>& design,
     result.design.push_back({.name = table.name(), .line = table.line()});
   }
   if (parameters != nullptr) {
-    for (const auto& [key, node] : *parameters) {
-      const std::string name(key.str());
-      check_name(context, name, "parameters", context.line_of(node));
-      claim(name, context.line_of(node));
+    for (const auto& [name, node] : in_file_order(parameters)) {
+      check_name(context, name, "parameters", context.line_of(*node));
+      claim(name, context.line_of(*node));
     }
   }
   context.used.assign(context.names.size(), 0);
@@ -160,20 +177,78 @@ void find_constants(CaseContext& context, const case_data::Case& result) {
   }
 }
 
+/// A name without a unit may stand for anything.
+Measure of_a_name(const Measure& measure) {
+  return measure.is_known() ? measure : Measure{};
+}
+
+/// Dimensions of all names from those of the design variables; problems are
+/// those of `context`.
+void find_measures(CaseContext& context, case_data::Case& result) {
+  const std::size_t first = result.design.size();
+  context.measures.assign(context.names.size(), {});
+  for (std::size_t k = 0; k < first; ++k) {
+    context.measures[k] = of_a_name(result.design[k].measure);
+  }
+  for (const int k : result.parameter_order) {
+    const auto i = static_cast<std::size_t>(k);
+    case_data::Quantity& value = result.parameters[i].value;
+    if (!value.expression.is_constant()) {
+      value.measure = measure_of(context, value);
+    }
+    context.measures[first + i] = of_a_name(value.measure);
+  }
+}
+
 void read_parameters(CaseContext& context, const toml::table* parameters,
                      case_data::Case& result) {
   if (parameters != nullptr) {
-    for (const auto& [key, node] : *parameters) {
-      const std::string name(key.str());
-      const case_data::Quantity zero{.line = context.line_of(node),
+    for (const auto& [name, node] : in_file_order(parameters)) {
+      const case_data::Quantity zero{.line = context.line_of(*node),
                                      .key = "parameters." + name};
       result.parameters.push_back(
-          {name, read_quantity(context, node, std::nullopt, zero.key)
+          {name, read_quantity(context, *node, std::nullopt, zero.key)
                      .value_or(zero)});
     }
   }
   case_data::order_parameters(result, context.problems);
   find_constants(context, result);
+  // For the numbers of design variables, which know no other of them; what does
+  // not fit is told once these are known too.
+  case_data::CaseProblems later(result.path, result.overrides);
+  CaseContext silent{.problems = later,
+                     .overridden = context.overridden,
+                     .names = context.names};
+  find_measures(silent, result);
+  context.measures = std::move(silent.measures);
+}
+
+/// What the initial value or a bound says; notes where they differ.
+Measure measure_of_variable(CaseContext& context, const CaseTable& table,
+                            const std::optional<Constant>& initial,
+                            const std::vector<Constant>& bounds) {
+  Measure found = initial ? initial->measure : Measure{};
+  const char* from = "initial";
+  for (const Constant& bound : bounds) {
+    if (!bound.measure.is_known()) {
+      continue;
+    }
+    if (found.is_known() && !(found.powers == bound.measure.powers)) {
+      context.problems.add(
+          table.line("bounds"),
+          fmt::format("{}.bounds: {:g} is {}, and {} {}; a variable and its "
+                      "bounds are of one dimension",
+                      table.path(), bound.value,
+                      described(bound.measure.powers), from,
+                      described(found.powers)));
+      return {};
+    }
+    if (!found.is_known()) {
+      found = bound.measure;
+      from = "the other bound";
+    }
+  }
+  return found;
 }
 
 void read_design(const std::vector<CaseTable>& tables, CaseContext& context,
@@ -181,12 +256,13 @@ void read_design(const std::vector<CaseTable>& tables, CaseContext& context,
   for (std::size_t k = 0; k < tables.size(); ++k) {
     const CaseTable& table = tables[k];
     case_data::DesignVariable& variable = result.design[k];
-    const auto initial = table.constant("initial");
-    const std::vector<double> bounds = table.constants("bounds");
-    variable.initial = initial.value_or(0.0);
+    const auto initial = table.measured("initial");
+    const std::vector<Constant> bounds = table.measured_constants("bounds");
+    variable.initial = initial.value_or(Constant{}).value;
+    variable.measure = measure_of_variable(context, table, initial, bounds);
     if (bounds.size() == 2) {
-      variable.lower = bounds[0];
-      variable.upper = bounds[1];
+      variable.lower = bounds[0].value;
+      variable.upper = bounds[1].value;
       if (!(variable.lower <= variable.upper)) {
         context.problems.add(
             table.line("bounds"),
@@ -373,6 +449,7 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   claim_names(context, design, parameters, result);
   read_parameters(context, parameters, result);
   read_design(design, context, result);
+  find_measures(context, result);
   read_geometry(context, root, result);
   read_walls(context, root, result);
   read_fields(context, root, result);

@@ -25,12 +25,15 @@ void read_deviation(CaseContext& context, const std::string& name,
     for (const case_data::DesignVariable& variable : result.design) {
       names.push_back(variable.name);
     }
-    context.problems.unknown(context.line_of(node), "design variable", name,
-                             names);
+    for (const case_data::Parameter& parameter : result.parameters) {
+      names.push_back(parameter.name);
+    }
+    context.problems.unknown(context.line_of(node),
+                             "design variable or parameter", name, names);
     return;
   }
   const auto value =
-      read_constant(context, node, std::nullopt, "study.deviations." + name);
+      read_like(context, node, at->measure, "study.deviations." + name);
   if (value && !(*value > 0.0)) {
     context.problems.add(context.line_of(node),
                          fmt::format("study.deviations.{} is {:g}; a standard "
@@ -53,7 +56,7 @@ void read_tolerance(CaseContext& context, const CaseTable& table,
     context.problems.add(
         table.line("deviations"),
         fmt::format("study.deviations is {}; a tolerance study needs {{ "
-                    "variable = standard deviation }}",
+                    "variable = standard deviation }} (of parameters too)",
                     node == nullptr ? "missing" : described(*node)));
     return;
   }

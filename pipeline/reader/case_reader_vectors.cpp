@@ -67,11 +67,37 @@ std::optional<case_data::QuantityVector> CaseTable::vector(
     return std::nullopt;
   }
   const IndexScope scope(*context_, indices_);
-  return components(*array, fmt::format("{}.{}", path_, key),
-                    [&](const toml::node& item, const std::string& path) {
-                      return read_quantity(*context_, item, dimension(key),
-                                           path);
-                    });
+  const std::string whole = fmt::format("{}.{}", path_, key);
+  auto result = components(
+      *array, whole, [&](const toml::node& item, const std::string& path) {
+        return read_quantity(*context_, item, dimension(key), path);
+      });
+  if (result) {
+    require_alike(
+        {(*result)[0].measure, (*result)[1].measure, (*result)[2].measure},
+        *array, whole);
+  }
+  return result;
+}
+
+void CaseTable::require_alike(const std::array<Measure, 3>& measures,
+                              const toml::node& node,
+                              const std::string& path) const {
+  const Measure* first = nullptr;
+  for (const Measure& measure : measures) {
+    if (!measure.is_known()) {
+      continue;
+    }
+    if (first != nullptr && !(first->powers == measure.powers)) {
+      context_->problems.add(
+          context_->line_of(node),
+          fmt::format("{} has {} beside {}; components are of one dimension",
+                      path, described(first->powers),
+                      described(measure.powers)));
+      return;
+    }
+    first = &measure;
+  }
 }
 
 std::vector<case_data::QuantityVector> CaseTable::vectors(
@@ -170,7 +196,7 @@ std::vector<case_data::PathPoint> CaseTable::path_points(
 }
 
 std::optional<Vec3> CaseTable::constants_of(const toml::node& node,
-                                            const char* key,
+                                            std::optional<Dimension> dimension,
                                             const std::string& path) const {
   const toml::array* array = triple(node);
   if (array == nullptr) {
@@ -178,9 +204,14 @@ std::optional<Vec3> CaseTable::constants_of(const toml::node& node,
   }
   const auto values = components(
       *array, path, [&](const toml::node& item, const std::string& at) {
-        return read_constant(*context_, item, dimension(key), at);
+        return read_measured(*context_, item, dimension, at);
       });
-  return values ? std::optional(Vec3(values->data())) : std::nullopt;
+  if (!values) {
+    return std::nullopt;
+  }
+  const auto& [x, y, z] = *values;
+  require_alike({x.measure, y.measure, z.measure}, node, path);
+  return Vec3(x.value, y.value, z.value);
 }
 
 std::optional<Vec3> CaseTable::constant_vector(const char* key) const {
@@ -188,7 +219,17 @@ std::optional<Vec3> CaseTable::constant_vector(const char* key) const {
     return std::nullopt;
   }
   const IndexScope scope(*context_, indices_);
-  return constants_of(*node(key), key, fmt::format("{}.{}", path_, key));
+  return constants_of(*node(key), dimension(key),
+                      fmt::format("{}.{}", path_, key));
+}
+
+std::optional<Vec3> CaseTable::constant_vector(const char* key,
+                                               Dimension dimension) const {
+  if (three(key, "three constants") == nullptr) {
+    return std::nullopt;
+  }
+  const IndexScope scope(*context_, indices_);
+  return constants_of(*node(key), dimension, fmt::format("{}.{}", path_, key));
 }
 
 std::optional<std::array<case_data::PlaceQuantity, 3>> CaseTable::place_vector(
@@ -215,7 +256,7 @@ std::optional<element::LocalAxes> CaseTable::axes(const char* key) const {
   const std::size_t before = context_->problems.size();
   for (std::size_t k = 0; k < 2 && array != nullptr && array->size() == 2;
        ++k) {
-    const auto v = constants_of(*array->get(k), key,
+    const auto v = constants_of(*array->get(k), dimension(key),
                                 fmt::format("{}.{}[{}]", path_, key, k));
     if (!v) {
       array = nullptr;

@@ -95,7 +95,7 @@ std::vector<TableSpec> make_tables() {
          "of orthotropic: 12, 13, 23; nu_12 / E_1 = nu_21 / E_2"},
         {"shear_moduli", K::ConstantVector, D::Pressure, false,
          "of orthotropic: 12, 13, 23"},
-        {"axes", K::Axes, D::None, false,
+        {"axes", K::Axes, std::nullopt, false,
          "of orthotropic: axis 1, and one that spans the plane of 1 and 2; x "
          "and y when left out"},
         {"thermal_expansion", K::Constant, D::None, false,
@@ -124,7 +124,7 @@ std::vector<TableSpec> make_tables() {
          "area: stiffnesses are per area (when left out); total: of the whole "
          "surface",
          "area|total"},
-        {"axes", K::Axes, D::None, false,
+        {"axes", K::Axes, std::nullopt, false,
          "of components: x is along the first, y in the plane of both"}}},
       load_table(),
       analysis_table(),

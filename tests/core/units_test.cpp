@@ -88,8 +88,45 @@ TEST(Quantity, TakesAnyDimensionWhenNoneIsAsked) {
   EXPECT_EQ(parse_quantity("40 kN", std::nullopt, kMm), 40000.0);
   EXPECT_EQ(parse_quantity("2 GPa", std::nullopt, kMm), 2000.0);
   EXPECT_EQ(parse_quantity("3 m", std::nullopt, kMm), 3000.0);
-  EXPECT_THAT(error_of("3 volt", std::nullopt),
-              HasSubstr("'3 volt' is no quantity of a case"));
+  EXPECT_EQ(parse_quantity("3 kN/m2/s", std::nullopt, kMm), 0.003);
+  for (const char* other : {"3 volt", "20 degC", "3 K", "50 Hz"}) {
+    EXPECT_THAT(
+        error_of(other, std::nullopt),
+        HasSubstr(std::string("'") + other + "' is no quantity of a case"));
+  }
+}
+
+TEST(Quantity, KnowsItsPowers) {
+  const auto powers = [](const char* text) { return quantity_powers(text); };
+  EXPECT_EQ(powers("3 kg"), powers_of(Dimension::Mass));
+  EXPECT_EQ(powers("3 lbf"), powers_of(Dimension::Force));
+  EXPECT_EQ(powers("3 ksi"), powers_of(Dimension::Pressure));
+  EXPECT_EQ(powers("3 g/cm3"), powers_of(Dimension::Density));
+  EXPECT_EQ(powers("9.81 m/s2"), powers_of(Dimension::Acceleration));
+  EXPECT_EQ(powers("3000 rpm"), powers_of(Dimension::Rate));
+  EXPECT_EQ(powers("60 deg"), UnitPowers{});
+  EXPECT_EQ(powers("50 %"), UnitPowers{});
+  EXPECT_EQ(described(powers("2 m2")), "an area");
+  EXPECT_EQ(described(powers("2 N/s")), "a quantity of force time^-1");
+  EXPECT_NEAR(parse_quantity("3000 rpm", Dimension::Rate, kMm),
+              314.159265358979, 1e-9);
+  // Turns or radians? It does not say.
+  EXPECT_THAT(error_of("50 Hz", Dimension::Rate), HasSubstr("is no rate"));
+}
+
+// The powers say of each unit what UDUNITS says of it.
+TEST(Quantity, PowersAgreeWithEveryDimension) {
+  for (int d = 0; d <= static_cast<int>(Dimension::Foundation); ++d) {
+    const auto dimension = static_cast<Dimension>(d);
+    for (const UnitSystem& system : {kMm, kM, kInch}) {
+      const std::string unit = system.unit_of(dimension);
+      if (unit.empty() || unit.starts_with("lbf s2")) {
+        continue;
+      }
+      EXPECT_EQ(quantity_powers("2 " + unit), powers_of(dimension)) << unit;
+      EXPECT_EQ(parse_quantity("2 " + unit, dimension, system), 2.0) << unit;
+    }
+  }
 }
 
 TEST(Quantity, RefusesWrongUnitsByName) {
@@ -97,9 +134,9 @@ TEST(Quantity, RefusesWrongUnitsByName) {
             "unknown unit 'furlongs_per' in '20 furlongs_per'; try a value in "
             "mm");
   EXPECT_EQ(error_of("20 N", Dimension::Length),
-            "'20 N' is no length; try a value in mm");
+            "'20 N' is no length but a force; try a value in mm");
   EXPECT_EQ(error_of("20 mm", Dimension::None),
-            "'20 mm' is no number; try a value in plain numbers");
+            "'20 mm' is no number but a length; try a value in plain numbers");
   EXPECT_THAT(error_of("inf mm", Dimension::Length), HasSubstr("no finite"));
   EXPECT_THAT(error_of("1e308 km", Dimension::Length), HasSubstr("too large"));
   EXPECT_THAT(error_of("1 " + std::string(1000000, 'm'), Dimension::Length),

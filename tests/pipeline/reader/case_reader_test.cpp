@@ -79,8 +79,8 @@ TEST(CaseReader, ReadsTheTextOfANewCase) {
 TEST(CaseReader, TakesParametersFromParametersAndUnits) {
   const reader::CaseReading good = reader::read_case_text(
       changed(strut(), "load = 1000.0",
-              "load = \"2 * unit_load + height\"\nunit_load = \"1 kN\"\n"
-              "height = \"2 cm\""),
+              "load = \"2 * unit_load + more\"\nunit_load = \"1 kN\"\n"
+              "more = \"20 N\""),
       "case.toml");
   ASSERT_TRUE(good.input.has_value()) << good.problems[0];
   const auto values = case_data::parameter_values(
@@ -117,8 +117,62 @@ TEST(CaseReader, LetsConstantsBeExpressionsOfParameters) {
   EXPECT_THAT(problems_of(changed(strut(), "fea = 6.0", "fea = \"foot / 4\"")),
               Contains(HasSubstr("resolution.fea depends on 'foot', which a "
                                  "design variable moves")));
-  EXPECT_THAT(problems_of(changed(strut(), "sway = 0.01", "sway = \"1 N\"")),
-              Contains(HasSubstr("'1 N' is no length; try a value in mm")));
+  EXPECT_THAT(
+      problems_of(changed(strut(), "sway = 0.01", "sway = \"1 N\"")),
+      Contains(HasSubstr("the text '1 N', a force; expected a length")));
+}
+
+TEST(CaseReader, KeepsTheFilesOrderOfParameters) {
+  const std::string text =
+      changed(strut(), "load = 1000.0", "zeta = 3\nload = 1000.0\nalpha = 4");
+  for (const std::vector<std::string>& overrides :
+       {std::vector<std::string>{}, {"zeta=5", "length=61"}}) {
+    const reader::CaseReading reading =
+        reader::read_case_text(text, "case.toml", overrides);
+    ASSERT_TRUE(reading.input.has_value()) << reading.problems[0];
+    std::vector<std::string> names;
+    for (const case_data::Parameter& parameter : reading.input->parameters) {
+      names.push_back(parameter.name);
+    }
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"zeta", "load", "alpha", "length"}));
+  }
+}
+
+// A parameter that study.deviations names scatters like a design variable.
+TEST(CaseReader, LetsParametersScatter) {
+  const std::string text =
+      changed(strut(), "kind = \"match\"\ntargets = { sway = 0.01 }",
+              "kind = \"tolerance\"\ndeviations = { foot = 0.1, load = \"20 "
+              "N\", length = \"0.2 mm\" }");
+  for (const std::vector<std::string>& overrides :
+       {std::vector<std::string>{}, {"load=2 kN"}}) {
+    const reader::CaseReading reading =
+        reader::read_case_text(text, "case.toml", overrides);
+    ASSERT_TRUE(reading.input.has_value()) << reading.problems[0];
+    const case_data::Case& input = *reading.input;
+    ASSERT_EQ(input.design.size(), 3U);
+    EXPECT_TRUE(input.parameters.empty());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const case_data::DesignVariable& variable = input.design[k];
+      const double wanted = variable.name == "foot"   ? 0.1
+                            : variable.name == "load" ? 20.0
+                                                      : 0.2;
+      EXPECT_EQ(input.study.deviations[k], wanted);
+      if (variable.name == "load") {
+        EXPECT_EQ(variable.initial, overrides.empty() ? 1000.0 : 2000.0);
+        EXPECT_EQ(variable.lower, variable.initial);
+        EXPECT_EQ(variable.upper, variable.initial);
+      }
+    }
+  }
+  EXPECT_THAT(problems_of(changed(text, "length = \"0.2 mm\"", "lenght = 2")),
+              Contains(HasSubstr("did you mean 'length'")));
+  EXPECT_THAT(
+      problems_of(changed(changed(text, "load = 1000.0", "load = \"1 kN\""),
+                          "\"20 N\"", "\"20 mm\"")),
+      Contains(AllOf(HasSubstr("study.deviations.load"),
+                     HasSubstr("a length; expected a force"))));
 }
 
 TEST(CaseReader, ReadsEveryKindOfCurve) {

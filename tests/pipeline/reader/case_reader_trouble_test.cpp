@@ -86,7 +86,8 @@ const Trouble kMistakes[] = {
     {"ExpressionInVector", "\"length\"]", "\"lenght\"]",
      "20: curves.head.center[z]: unknown name 'lenght' (did you mean"},
     {"WrongUnit", "radius = 20", "radius = \"20 N\"",
-     "22: curves.head.radius: '20 N' is no length; try a value in mm"},
+     "22: curves.head.radius: '20 N' is no length but a force; try a value in "
+     "mm"},
     {"UnknownUnit", "radius = 20", "radius = \"20 furlong_ish\"",
      "22: curves.head.radius: unknown unit 'furlong_ish'"},
     {"ZeroRadius", "radius = 20", "radius = 0",
