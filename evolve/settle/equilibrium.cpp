@@ -22,9 +22,6 @@ std::string place(const Vec3& p) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
 }
 
-constexpr const char* kAdvice =
-    "a larger volume, shorter arms or larger rims would help";
-
 /// Normals that turn at every step make Newton's steps shrink by a factor only,
 /// and on a coarse film that may be near 1. From near rest it goes on along the
 /// normals as they are, where it converges quadratically.
@@ -155,26 +152,26 @@ void set_verdict(const energy::FilmEnergy& energy,
   // counts first.
   if (!reason.empty() && thin) {
     fail(FailureKind::FilmPinched,
-         fmt::format("pinching: {}; {} (after {} steps, {})", where, kAdvice,
+         fmt::format("pinching: {} (after {} steps, {})", where,
                      report.iterations, reason));
   } else if (!reason.empty()) {
     fail(FailureKind::FilmNotFound,
          fmt::format("no equilibrium of this topology found after {} steps "
-                     "({}; residual {:.3g}, bound {:.3g}); {}; {}",
+                     "({}; residual {:.3g}, bound {:.3g}); {}",
                      report.iterations, reason, report.residual,
-                     report.residual_bound, where, kAdvice));
+                     report.residual_bound, where));
   } else if (report.index > 0) {
     fail(FailureKind::FilmUnstable,
          fmt::format("unstable: index {}, lowest eigenvalue {:.4g}, its mode "
-                     "is largest at {}; {}; {}",
+                     "is largest at {}; {}",
                      index_text(report), report.min_eigenvalue,
-                     place(input.mode_position), where, kAdvice));
+                     place(input.mode_position), where));
   } else if (thin) {
     fail(FailureKind::FilmPinched,
          fmt::format("pinching: {}, below the {:.4g} that this film needs (two "
-                     "edges, or a fifth of its neck at the start); {}, shorter "
+                     "edges, or a fifth of its neck at the start); shorter "
                      "edges where the part is meant to be this thin",
-                     where, least, kAdvice));
+                     where, least));
   } else {
     report.verdict = "stable";
   }

@@ -64,7 +64,8 @@ const std::vector<ResponseRow>& response_kinds() {
       {"von_mises_ks",
        Kind::VonMisesKs,
        D::Pressure,
-       "smooth ones by volume (p-norm, Kreisselmeier-Steinhauser)",
+       "means of it over the volume that lean to its peak (p-norm, "
+       "Kreisselmeier-Steinhauser), and lie below it: no bound on the peak",
        {{}, {"load_case", "sharpness", "scale"}},
        E::Unknown},
       {"uniformity",

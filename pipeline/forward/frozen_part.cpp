@@ -7,6 +7,7 @@
 
 #include "core/timer.h"
 #include "mesh_tet/quadratic.h"
+#include "pipeline/case_data/film_advice.h"
 #include "pipeline/case_data/film_options.h"
 #include "pipeline/case_data/film_start.h"
 #include "pipeline/forward/walls.h"
@@ -57,6 +58,11 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
   const settle::FilmState& film = part.film->reference();
   start.film = film.report;
   start.failure = film.failure;
+  if (start.failure && !(options.edge_factor > 1.0)) {
+    const std::string advice = case_data::tried_advice(
+        inputs, *start.failure, {.edge = inputs.fea_edge, .monitor = &monitor});
+    start.failure->message += advice.empty() ? "" : "; " + advice;
+  }
   if (!start.failure && !inputs.walls.empty()) {
     monitor.progress({.stage = "film", .detail = "thickening the films"});
     part.walls.emplace(wall_model(inputs, *part.film, film.points));
