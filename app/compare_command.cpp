@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <omp.h>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/case_input.h"
@@ -75,12 +78,51 @@ void keep_surface(const case_data::Case& input,
   results::write_part_surface(folder / parts.back().surface, input, fields);
 }
 
-results::FaceNames face_names(const std::vector<std::string>& texts) {
-  results::FaceNames names;
-  for (const std::string& text : texts) {
+/// "--face NAME=FACE" is of every file, "--face FILE:NAME=FACE" of one, and
+/// that holds before the others.
+struct FaceArgument {
+  std::string file;  // as it stands in the arguments; empty: of all
+  std::string face;
+  std::string name;
+};
+
+std::vector<FaceArgument> face_arguments(const CompareArguments& arguments) {
+  std::vector<FaceArgument> faces;
+  for (const std::string& text : arguments.faces) {
     auto [name, face] = named_text(
-        "--face", text, "NAME=FACE, the run's name and the file's surface");
-    names[std::move(face)] = std::move(name);
+        "--face", text,
+        "NAME=FACE or FILE:NAME=FACE, the run's name and the file's surface");
+    FaceArgument found{"", std::move(face), std::move(name)};
+    const std::size_t colon = found.name.rfind(':');
+    if (colon != std::string::npos) {
+      found.file = found.name.substr(0, colon);
+      found.name.erase(0, colon + 1);
+      if (std::find(arguments.parts.begin(), arguments.parts.end(),
+                    found.file) == arguments.parts.end()) {
+        throw InvalidInput(
+            fmt::format("--face {}: '{}' is none of the parts; they are {}",
+                        text, found.file, fmt::join(arguments.parts, ", ")));
+      }
+    }
+    faces.push_back(std::move(found));
+  }
+  return faces;
+}
+
+results::FaceNames names_for(const std::vector<FaceArgument>& faces,
+                             const std::string& file) {
+  results::FaceNames names;
+  std::set<std::string> own;
+  for (const FaceArgument& face : faces) {
+    if (face.file == file) {
+      names[face.face] = face.name;
+      own.insert(face.name);
+    }
+  }
+  for (const FaceArgument& face : faces) {
+    if (face.file.empty() && own.count(face.name) == 0) {
+      names.try_emplace(face.face, face.name);
+    }
   }
   return names;
 }
@@ -90,7 +132,7 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
                                              Monitor& monitor,
                                              UnitSystem& units) {
   const fs::path folder = arguments.out;
-  const results::FaceNames names = face_names(arguments.faces);
+  const std::vector<FaceArgument> faces = face_arguments(arguments);
   std::vector<results::PartFigures> parts;
   if (forward::is_part_file(arguments.parts.front())) {
     throw InvalidInput(
@@ -112,8 +154,9 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
     const fs::path path = arguments.parts[k];
     if (forward::is_part_file(path)) {
       forward::EvaluationFields fields;
-      parts.push_back(results::imported_part_figures(path, first, names,
-                                                     &monitor, &fields));
+      parts.push_back(results::imported_part_figures(
+          path, first, names_for(faces, arguments.parts[k]), &monitor,
+          &fields));
       keep_surface(first.input, fields, folder, parts);
       continue;
     }

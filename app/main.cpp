@@ -242,9 +242,11 @@ int run_program(int argc, char** argv) {
       ->required()
       ->expected(2, 100);
   compare
-      ->add_option("--face", compare_arguments.faces,
-                   "what the run calls NAME is FACE in the files; repeatable")
-      ->type_name("NAME=FACE")
+      ->add_option(
+          "--face", compare_arguments.faces,
+          "what the run calls NAME is FACE in the files, or in FILE alone; "
+          "repeatable")
+      ->type_name("[FILE:]NAME=FACE")
       ->expected(1)
       ->take_all();
   compare->add_option("--out", compare_arguments.out,

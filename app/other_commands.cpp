@@ -14,6 +14,7 @@
 #include "core/atomic_file.h"
 #include "core/count_text.h"
 #include "io/vtk_files.h"
+#include "pipeline/case_data/film_advice.h"
 #include "pipeline/case_data/film_start.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/results/datafile.h"
@@ -273,7 +274,14 @@ int evolve_command(const EvolveArguments& arguments) {
     }
   }
   if (film.failure) {
-    std::fprintf(stderr, "failed: %s\n", film.failure->message.c_str());
+    const std::string advice = case_data::tried_advice(
+        inputs, *film.failure, {.edge = inputs.fea_edge, .monitor = &monitor});
+    std::string message = film.failure->message;
+    message += advice.empty() ? "" : "; " + advice;
+    if (arguments.pictures) {
+      message += "; look at " + (folder / "film.png").string();
+    }
+    std::fprintf(stderr, "failed: %s\n", message.c_str());
     return kExitNoSolution;
   }
   return write_walls(input, forward::make_walls(inputs, model, film.points),

@@ -1,6 +1,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include <nlohmann/json.hpp>
+
 #include "app/commands.h"
 #include "app/exit_code.h"
 #include "app/signals.h"
@@ -8,6 +10,7 @@
 #include "app/terminal_monitor.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/store/stored_case.h"
 #include "report/output/run_pictures.h"
@@ -20,6 +23,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// "worst_load_case" of result.json; empty where it has none.
+std::string stored_worst_case(const fs::path& folder) {
+  const fs::path file = folder / "result.json";
+  if (!fs::exists(file)) {
+    return "";
+  }
+  const auto result = parse_json(read_file(file));
+  return result.is_object() ? result.value("worst_load_case", "") : "";
+}
+
 /// The pictures again, of the answer whose meshes stand in the folder.
 void redraw_pictures(const fs::path& folder, Monitor& monitor) {
   if (!fs::exists(folder / "part_surface.vtp") ||
@@ -31,7 +44,8 @@ void redraw_pictures(const fs::path& folder, Monitor& monitor) {
   const case_data::EvaluatedCase inputs = case_data::evaluate(
       input, store::answer_of_run(input, store.all(), folder));
   warn(picture::render_pictures(
-      output::stored_run_pictures(input, inputs, folder),
+      output::stored_run_pictures(input, inputs, stored_worst_case(folder),
+                                  folder),
       {.monitor = &monitor}));
 }
 

@@ -1,6 +1,11 @@
 #include "pipeline/files/text_table.h"
 
 #include <algorithm>
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "core/units.h"
 
 namespace meniscus::files {
 
@@ -135,12 +140,38 @@ std::string aligned_text(const std::vector<TextRow>& rows) {
   return text;
 }
 
-void add_units(const std::map<std::string, std::string>& units,
-               TextRow& names) {
-  for (std::string& name : names) {
-    const auto unit = units.find(name);
-    if (unit != units.end() && !unit->second.empty()) {
-      name += " [" + unit->second + "]";
+namespace {
+
+/// A number times `factor`, with six digits; any other text as it is.
+std::string scaled(const std::string& cell, double factor) {
+  double value = 0.0;
+  const char* end = cell.data() + cell.size();
+  const auto [at, error] = std::from_chars(cell.data(), end, value);
+  return error == std::errc() && at == end && !cell.empty()
+             ? fmt::format("{:.6g}", factor * value)
+             : cell;
+}
+
+}  // namespace
+
+void show_units(const std::map<std::string, std::string>& units,
+                std::vector<TextRow>& rows) {
+  for (std::size_t k = 0; !rows.empty() && k < rows[0].size(); ++k) {
+    const auto unit = units.find(rows[0][k]);
+    if (unit == units.end() || unit->second.empty()) {
+      continue;
+    }
+    ShownUnit shown{1.0, unit->second};
+    if (unit->second == "t" || unit->second == "lbf s2/in") {
+      UnitSystem system;
+      system.mass = unit->second;
+      shown = system.shown(Dimension::Mass);
+    }
+    rows[0][k] += " [" + shown.unit + "]";
+    for (std::size_t r = 1; r < rows.size() && shown.factor != 1.0; ++r) {
+      if (k < rows[r].size()) {
+        rows[r][k] = scaled(rows[r][k], shown.factor);
+      }
     }
   }
 }

@@ -17,8 +17,11 @@ std::string csv_text(const std::vector<TextRow>& rows);
 /// characters of UTF-8. Rows may be shorter than the first, not longer.
 std::string aligned_text(const std::vector<TextRow>& rows);
 
-/// "mass" becomes "mass [t]": `units` by the names that stand in the row.
-void add_units(const std::map<std::string, std::string>& units, TextRow& names);
+/// For people: "mass" in the head line becomes "mass [kg]", and the numbers
+/// below it are in that. `units`: of the cells as they are, by the names in the
+/// head line; t is shown as kg, lbf s2/in as lb.
+void show_units(const std::map<std::string, std::string>& units,
+                std::vector<TextRow>& rows);
 
 struct CsvRow {
   int line = 0;  // where it begins, from 1

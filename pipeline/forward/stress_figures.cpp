@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/count_text.h"
 #include "pipeline/files/place_json.h"
 
 namespace meniscus::forward {
@@ -50,8 +52,8 @@ std::vector<char> complement(std::vector<char> excluded) {
   return excluded;
 }
 
-StressFigures figures_of(const EvaluationFields& fields,
-                         std::size_t load_case) {
+/// All but how even the stress is.
+StressFigures peaks_of(const EvaluationFields& fields, std::size_t load_case) {
   const TetMesh& mesh = fields.mesh;
   const auto& materials = fields.inputs.materials;
   const loads::LoadCase& loads = fields.inputs.load_cases[load_case];
@@ -76,9 +78,25 @@ StressFigures figures_of(const EvaluationFields& fields,
   figures.readings = stress::peak_readings(mesh, recovered, points, excluded);
   figures.position = place();
   figures.safety = safety_of(mesh, materials, recovered, points, excluded);
-  figures.uniformity =
-      stress::stress_uniformity(mesh, materials, points, excluded);
   return figures;
+}
+
+StressFigures figures_of(const EvaluationFields& fields,
+                         std::size_t load_case) {
+  StressFigures figures = peaks_of(fields, load_case);
+  figures.uniformity = stress::stress_uniformity(
+      fields.mesh, fields.inputs.materials, fields.stresses[load_case].points,
+      fields.exclusion.element);
+  return figures;
+}
+
+bool is_worse(const StressFigures& a, const StressFigures& b) {
+  if (a.safety && b.safety) {
+    return a.safety->factor < b.safety->factor;
+  }
+  return a.safety.has_value() == b.safety.has_value()
+             ? a.max_von_mises > b.max_von_mises
+             : a.safety.has_value();
 }
 
 Json safety_json(const StressFigures::Safety& safety) {
@@ -96,6 +114,42 @@ std::vector<StressFigures> stress_figures(const EvaluationFields& fields) {
     figures.push_back(figures_of(fields, k));
   }
   return figures;
+}
+
+std::size_t worst_load_case(const std::vector<StressFigures>& figures) {
+  std::size_t worst = 0;
+  for (std::size_t k = 1; k < figures.size(); ++k) {
+    if (is_worse(figures[k], figures[worst])) {
+      worst = k;
+    }
+  }
+  return worst;
+}
+
+std::size_t worst_load_case(const EvaluationFields& fields) {
+  std::vector<StressFigures> figures;
+  for (std::size_t k = 0; k < fields.inputs.load_cases.size(); ++k) {
+    figures.push_back(peaks_of(fields, k));
+  }
+  return worst_load_case(figures);
+}
+
+std::string stress_text(const std::vector<StressFigures>& figures,
+                        const UnitSystem& units) {
+  std::string text;
+  const std::size_t worst = worst_load_case(figures);
+  for (std::size_t k = 0; k < figures.size(); ++k) {
+    const StressFigures& f = figures[k];
+    const Vec3& at = f.position;
+    text += fmt::format(
+        "  peak stress, {:<8} {} at ({:.4g}, {:.4g}, {:.4g})", f.load_case,
+        quantity_text(f.max_von_mises, units.pressure), at.x(), at.y(), at.z());
+    if (f.safety) {
+      text += fmt::format(", safety {:.3g}", f.safety->factor);
+    }
+    text += figures.size() > 1 && k == worst ? "   <- the worst\n" : "\n";
+  }
+  return text;
 }
 
 Json stress_json(const std::vector<StressFigures>& figures) {

@@ -41,6 +41,18 @@ struct StressFigures {
 /// Of `fields.stresses`; elements of `fields.exclusion` are left out.
 std::vector<StressFigures> stress_figures(const EvaluationFields& fields);
 
+/// The load case that is nearest to yield, by the least safety factor; without
+/// any, the one of the highest peak. The first of equals, 0 for none.
+std::size_t worst_load_case(const std::vector<StressFigures>& figures);
+
+/// The same from the stresses themselves, at the price of their peaks.
+std::size_t worst_load_case(const EvaluationFields& fields);
+
+/// A line per load case for people: peak, place and safety, the worst marked
+/// where there are several.
+std::string stress_text(const std::vector<StressFigures>& figures,
+                        const UnitSystem& units);
+
 /// result.json's "stress": an entry per load case (docs/results.md).
 nlohmann::ordered_json stress_json(const std::vector<StressFigures>& figures);
 

@@ -152,11 +152,9 @@ std::string family_table_text(const std::string& csv,
       std::transform(cells.begin() + 1, cells.end(), cells.begin() + 1,
                      shortened);
     }
-    if (table.empty()) {
-      files::add_units(units, cells);
-    }
     table.push_back(std::move(cells));
   }
+  files::show_units(units, table);
   return table.empty() ? "" : files::aligned_text(table) + messages;
 }
 

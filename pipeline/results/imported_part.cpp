@@ -12,6 +12,7 @@
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/forward/part_file.h"
+#include "pipeline/results/face_list.h"
 
 namespace meniscus::results {
 
@@ -80,33 +81,30 @@ std::set<std::string> surfaces_used(const case_data::EvaluatedCase& numbers) {
 
 void check_names(const SurfaceMesh& surface,
                  const case_data::EvaluatedCase& numbers,
-                 const std::string& path) {
+                 const std::string& path, const std::string& length_unit) {
   for (const std::string& name : surfaces_used(numbers)) {
     if (surface.label_of(name) < 0) {
       const bool nameless =
           surface.labels.size() == 1 && surface.labels[0] == kNameless;
       throw InvalidInput(fmt::format(
-          "{}: no face '{}', which the run's loads and supports name; {}; "
+          "{}: no face '{}', which the run's loads and supports name; "
           "say which it is (--face {}=FACE), or write its facets as `solid {}` "
-          "of an ASCII STL file or as group `g {}` of an OBJ file",
-          path, name,
-          nameless
-              ? "the file has no names (binary STL never has)"
-              : fmt::format("there are {}", fmt::join(surface.labels, ", ")),
-          name, name, name));
+          "of an ASCII STL file or as group `g {}` of an OBJ file; {}",
+          path, name, name, name, name,
+          nameless ? "the file has no names (binary STL never has)"
+                   : "there are\n" + face_list(surface, length_unit)));
     }
   }
 }
 
 SurfaceMesh renamed(SurfaceMesh surface, const FaceNames& names,
-                    const std::string& path) {
+                    const std::string& path, const std::string& length_unit) {
   for (const auto& [face, name] : names) {
     const int label = surface.label_of(face);
     if (label < 0) {
       throw InvalidInput(
-          fmt::format("{}: no face '{}' (--face {}={}); there "
-                      "are {}",
-                      path, face, name, face, fmt::join(surface.labels, ", ")));
+          fmt::format("{}: no face '{}' (--face {}={}); there are\n{}", path,
+                      face, name, face, face_list(surface, length_unit)));
     }
     surface.labels[static_cast<std::size_t>(label)] = name;
   }
@@ -226,10 +224,11 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
   if (forward::has_curved_faces(path)) {
     shape = std::make_unique<PartShape>(read(kShapeInEdges * edge));
   }
-  const SurfaceMesh surface =
-      with_short_edges(renamed(read(edge), names, path.string()),
-                       kLongestEdge * edge, shape.get());
-  check_names(surface, run.fields.inputs, path.string());
+  const SurfaceMesh surface = with_short_edges(
+      renamed(read(edge), names, path.string(), run.input.units.length),
+      kLongestEdge * edge, shape.get());
+  check_names(surface, run.fields.inputs, path.string(),
+              run.input.units.length);
   forward::EvaluationFields fields;
   fields.inputs = run.fields.inputs;
   fields.inputs.materials.resize(1);

@@ -119,13 +119,7 @@ std::vector<study::FileBytes> files_of(const case_data::Case& input,
                                        const forward::EvaluationFields& fields,
                                        const fs::path& folder,
                                        const std::vector<fs::path>& exported) {
-  std::vector<std::string> names = {"film.vtp", "part.vtu", "part_surface.vtp"};
-  if (input.resolution.export_edges.empty()) {
-    names.push_back(stl_name(input.resolution.film));
-  }
-  for (const double edge : input.resolution.export_edges) {
-    names.push_back(stl_name(edge));
-  }
+  std::vector<std::string> names = mesh_names(input);
   for (const fs::path& file : exported) {
     const std::string name = file.filename().string();
     if (std::find(names.begin(), names.end(), name) == names.end()) {

@@ -194,6 +194,19 @@ Json part_json(const PartFigures& part) {
   if (!part.surface.empty()) {
     json["surface"] = part.surface;
   }
+  if (!part.zones.empty()) {
+    const auto share_json = [](const forward::ExclusionShare& share) {
+      return Json{{"elements", share.elements},
+                  {"volume_share", share.volume_share}};
+    };
+    json["exclusion"] = share_json(part.left_out);
+    json["exclusion"]["zones"] = Json::array();
+    for (const forward::ExclusionShare& zone : part.zones) {
+      Json entry = {{"where", zone.where}};
+      entry.update(share_json(zone));
+      json["exclusion"]["zones"].push_back(std::move(entry));
+    }
+  }
   for (const PartLoadFigures& f : part.load_cases) {
     Json entry = {{"stiffness", nullptr},
                   {"stiffness_per_mass", nullptr},
@@ -229,7 +242,9 @@ PartFigures part_figures(const std::string& name,
                                            element::Derivatives::None)
                   .value,
       .elements = fields.mesh.element_count(),
-      .load_cases = {}};
+      .load_cases = {},
+      .left_out = fields.exclusion.all,
+      .zones = fields.exclusion.zones};
   const std::vector<forward::StressFigures> stresses =
       forward::stress_figures(fields);
   for (std::size_t k = 0; k < stresses.size(); ++k) {
@@ -269,6 +284,15 @@ std::vector<std::vector<std::string>> comparison_table(
             [](const PartFigures& part) { return std::optional(part.mass); });
   table.add("volume", units.unit_of(Dimension::Volume),
             [](const PartFigures& part) { return std::optional(part.volume); });
+  const auto has_zones = [](const PartFigures& part) {
+    return !part.zones.empty();
+  };
+  if (std::any_of(parts.begin(), parts.end(), has_zones)) {
+    table.add("left out of stresses", "% of the volume",
+              [](const PartFigures& part) {
+                return std::optional(100.0 * part.left_out.volume_share);
+              });
+  }
   for (const std::string& name : load_case_names(parts)) {
     add_load_case(table, name, units);
   }

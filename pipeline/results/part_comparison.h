@@ -10,6 +10,7 @@
 
 #include "core/monitor.h"
 #include "pipeline/case_data/case.h"
+#include "pipeline/forward/exclusion.h"
 #include "pipeline/forward/forward_model.h"
 
 namespace meniscus::results {
@@ -37,6 +38,8 @@ struct PartFigures {
   double mass = 0.0;
   int elements = 0;
   std::vector<PartLoadFigures> load_cases;
+  forward::ExclusionShare left_out;  // of stress figures, all zones together
+  std::vector<forward::ExclusionShare> zones;
   std::string surface;  // file beside compare.json with its fields, or empty
 };
 

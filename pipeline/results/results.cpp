@@ -1,5 +1,6 @@
 #include "pipeline/results/results.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -9,8 +10,11 @@
 #include "core/json.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
+#include "pipeline/files/place_json.h"
 #include "pipeline/forward/figures_json.h"
+#include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/walls.h"
+#include "pipeline/results/run_files.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
@@ -29,8 +33,8 @@ Json seconds_json(const forward::StageSeconds& seconds) {
 }
 
 /// A field of `components` values per node from what numbers them by node.
-io::Field node_field(const char* name, const std::string& unit, int components,
-                     const double* values, std::size_t count) {
+io::Field node_field(const std::string& name, const std::string& unit,
+                     int components, const double* values, std::size_t count) {
   return {.name = name,
           .unit = unit,
           .components = components,
@@ -41,11 +45,12 @@ io::Field element_field(const char* name, const std::string& unit) {
   return {.name = name, .unit = unit};
 }
 
-/// What elements have of the first load case: stresses at integration points,
-/// one after the other, and their errors.
+/// What elements have of a load case: stresses at integration points, one after
+/// the other, and their errors.
 std::vector<io::Field> element_fields(const case_data::Case& input,
-                                      const forward::EvaluationFields& fields) {
-  const forward::PartStress& first = fields.stresses.front();
+                                      const forward::EvaluationFields& fields,
+                                      std::size_t load_case) {
+  const forward::PartStress& first = fields.stresses[load_case];
   io::Field stress = element_field("point_stress", input.units.pressure);
   stress.components = 6 * first.points.points_per_element;
   for (const element::Stress& s : first.points.stress) {
@@ -60,32 +65,47 @@ std::vector<io::Field> element_fields(const case_data::Case& input,
   return {std::move(stress), std::move(error), std::move(excluded)};
 }
 
-io::MeshFields part_fields(const case_data::Case& input,
-                           const forward::EvaluationFields& fields) {
-  const VectorX& u = fields.solution.displacements.front();
+/// Displacement and stresses of a load case at the nodes; `ending` of names.
+void add_node_fields(const case_data::Case& input,
+                     const forward::EvaluationFields& fields,
+                     std::size_t load_case, const std::string& ending,
+                     io::MeshFields& out) {
+  const VectorX& u = fields.solution.displacements[load_case];
   const stress::StressField nodal =
-      stress::nodal_stress(fields.mesh, fields.stresses.front().recovered);
-  io::MeshFields out;
-  out.points.push_back(node_field("displacement", input.units.length, 3,
-                                  u.data(),
+      stress::nodal_stress(fields.mesh, fields.stresses[load_case].recovered);
+  out.points.push_back(node_field("displacement" + ending, input.units.length,
+                                  3, u.data(),
                                   static_cast<std::size_t>(u.size())));
   io::Field stress{
-      .name = "stress", .unit = input.units.pressure, .components = 6};
+      .name = "stress" + ending, .unit = input.units.pressure, .components = 6};
   for (const auto& s : nodal.nodal) {
     // xx yy zz xy yz zx: VTK's order of a symmetric tensor too.
     stress.values.insert(stress.values.end(), s.begin(), s.end());
   }
   out.points.push_back(std::move(stress));
-  out.points.push_back(node_field("von_mises", input.units.pressure, 1,
+  out.points.push_back(node_field("von_mises" + ending, input.units.pressure, 1,
                                   nodal.von_mises.data(),
                                   nodal.von_mises.size()));
-  out.cells = element_fields(input, fields);
+}
+
+/// The worst load case first, by plain names; all by their own where there are
+/// several.
+io::MeshFields part_fields(const case_data::Case& input,
+                           const forward::EvaluationFields& fields) {
+  const std::size_t worst = forward::worst_load_case(fields);
+  io::MeshFields out;
+  add_node_fields(input, fields, worst, "", out);
+  for (std::size_t k = 0;
+       input.load_cases.size() > 1 && k < fields.stresses.size(); ++k) {
+    add_node_fields(input, fields, k, "_" + input.load_cases[k].name, out);
+  }
+  out.cells = element_fields(input, fields, worst);
   out.notes = {{"title", input.title},
                {"length_unit", input.units.length},
-               {"load_case", input.load_cases.front().name}};
+               {"load_case", input.load_cases[worst].name}};
   for (const forward::ModeShape& mode : fields.modes) {
     out.points.push_back(
-        node_field(mode.name.c_str(), "", 3, mode.shape.data(),
+        node_field(mode.name, "", 3, mode.shape.data(),
                    static_cast<std::size_t>(mode.shape.size())));
     out.notes.emplace_back(mode.name, mode.value);
   }
@@ -131,6 +151,25 @@ Json refrozen_json(const case_data::Case& input,
          {"shift", value_map(case_data::response_names(input), r.shift)}});
   }
   return json;
+}
+
+/// Means over the volume beside the peaks, where there are such responses.
+void add_norm_peaks(const case_data::Case& input, const VectorX& responses,
+                    const std::vector<forward::StressFigures>& stress,
+                    Json& json) {
+  for (const forward::NormPeak& peak :
+       forward::norm_peaks(input, responses, stress)) {
+    const std::string& name =
+        input.responses[static_cast<std::size_t>(peak.response)].name;
+    json["norm_peaks"][name] = {{"norm", peak.value},
+                                {"load_case", peak.load_case},
+                                {"peak", peak.peak},
+                                {"position", files::place_json(peak.position)}};
+    if (std::isfinite(peak.bound)) {
+      json["norm_peaks"][name]["bound"] = peak.bound;
+      json["norm_peaks"][name]["peak_within_bound"] = peak.peak <= peak.bound;
+    }
+  }
 }
 
 }  // namespace
@@ -200,6 +239,13 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
     json["adaptation"] = forward::adaptation_json(input, *result.adaptation);
   }
   json["stress"] = forward::stress_json(result.stress);
+  if (!result.stress.empty()) {
+    json["worst_load_case"] =
+        result.stress[forward::worst_load_case(result.stress)].load_case;
+  }
+  if (best != nullptr) {
+    add_norm_peaks(input, best->responses, result.stress, json);
+  }
   if (result.eigen) {
     forward::add_eigen_json(*result.eigen, json);
   }
@@ -237,21 +283,29 @@ void write_part_surface(const std::filesystem::path& file,
   io::write_boundary_vtp(file, fields.mesh, part_fields(input, fields));
 }
 
+std::vector<std::string> mesh_names(const case_data::Case& input) {
+  std::vector<std::string> names = {"film.vtp", "part.vtu", "part_surface.vtp"};
+  std::vector<double> edges = input.resolution.export_edges;
+  if (edges.empty()) {
+    edges.push_back(input.resolution.film);
+  }
+  for (const double edge : edges) {
+    names.push_back(stl_name(edge));
+  }
+  return names;
+}
+
 std::vector<std::string> write_meshes(const case_data::Case& input,
                                       const forward::EvaluationFields& fields,
                                       const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  const auto path = [&](const std::string& name) {
-    names.push_back(name);
-    return folder / name;
-  };
+  std::vector<std::string> names = mesh_names(input);
+  claim_files(folder, names);
   const io::MeshFields part = part_fields(input, fields);
-  names.emplace_back("film.vtp");
   write_film(input, fields.film, folder);
-  io::write_vtu(path("part.vtu"), fields.mesh, part);
-  io::write_boundary_vtp(path("part_surface.vtp"), fields.mesh, part);
+  io::write_vtu(folder / "part.vtu", fields.mesh, part);
+  io::write_boundary_vtp(folder / "part_surface.vtp", fields.mesh, part);
   const auto write_part_stl = [&](const SurfaceMesh& mesh, double edge) {
-    io::write_stl(path(stl_name(edge)), mesh,
+    io::write_stl(folder / stl_name(edge), mesh,
                   {.name = input.title, .unit = input.units.length});
   };
   if (input.resolution.export_edges.empty()) {
@@ -268,6 +322,7 @@ std::vector<std::string> write_unfilled(const forward::EvaluationFields& fields,
   if (fields.surface.base.facets.empty() || !fields.mesh.nodes.empty()) {
     return {};
   }
+  claim_files(folder, {"findings.vtp", "unfilled_surface.vtp"});
   io::write_findings_vtp(folder / "findings.vtp", fields.surface.base,
                          fields.findings);
   // Broken corners cannot be drawn; the findings leave them out.

@@ -44,7 +44,10 @@ void write_part_surface(const std::filesystem::path& file,
                         const case_data::Case& input,
                         const forward::EvaluationFields& fields);
 
-/// film.vtp, part.vtu, part_surface.vtp and the STL files of a finished run.
+/// Names of film.vtp, part.vtu, part_surface.vtp and the case's STL files.
+std::vector<std::string> mesh_names(const case_data::Case& input);
+
+/// The same files of a finished run; the folder owns them (run_files.h).
 /// Returns the names written. Throws IoError.
 std::vector<std::string> write_meshes(const case_data::Case& input,
                                       const forward::EvaluationFields& fields,

@@ -4,6 +4,7 @@
 
 #include "core/count_text.h"
 #include "pipeline/forward/eigen_figures.h"
+#include "pipeline/forward/norm_peaks.h"
 #include "pipeline/results/results.h"
 
 namespace meniscus::results {
@@ -11,12 +12,24 @@ namespace meniscus::results {
 namespace {
 
 std::string with_error(double value, const VectorX& errors, Eigen::Index k,
-                       const std::string& unit) {
-  std::string text = quantity_text(value, unit);
+                       const ShownUnit& unit) {
+  std::string text = quantity_text(unit.factor * value, unit.unit);
   if (k < errors.size()) {
-    text += "  +- " + quantity_text(errors[k], unit, 2);
+    text += "  +- " + quantity_text(unit.factor * errors[k], unit.unit, 2);
   }
   return text;
+}
+
+/// "   at its lower bound" of a variable that a study moved there.
+std::string at_bound(const case_data::DesignVariable& variable, double value) {
+  constexpr double kThere = 1e-6;  // of the range
+  const double near = kThere * (variable.upper - variable.lower);
+  if (!(variable.upper > variable.lower)) {
+    return "";
+  }
+  return value <= variable.lower + near   ? "   at its lower bound"
+         : value >= variable.upper - near ? "   at its upper bound"
+                                          : "";
 }
 
 /// What another mesh changed most, relative to the answer.
@@ -40,22 +53,65 @@ std::string shift_text(const case_data::Case& input,
 std::string bounds_text(const case_data::Case& input,
                         const case_data::ConstraintEntry& entry,
                         const study::Constraint& constraint) {
-  const std::string unit = case_data::response_unit(input, entry.response);
+  constexpr double kAtBound = 1e-3;  // of the bound
+  const ShownUnit unit = case_data::shown_unit(input, entry.response);
+  const auto shown = [&](double value) {
+    return quantity_text(unit.factor * value, unit.unit);
+  };
+  const auto is_at = [&](double bound) {
+    return std::isfinite(bound) &&
+           std::abs(constraint.value - bound) <= kAtBound * std::abs(bound);
+  };
   std::string bounds;
+  bool active = false;
   if (entry.lower == entry.upper) {
-    bounds = "wanted " + quantity_text(entry.lower, unit);
+    bounds = "wanted " + shown(entry.lower);
   } else {
     if (std::isfinite(entry.lower)) {
-      bounds = "at least " + quantity_text(entry.lower, unit);
+      bounds = "at least " + shown(entry.lower);
     }
     if (std::isfinite(entry.upper)) {
-      bounds += (bounds.empty() ? "at most " : ", at most ") +
-                quantity_text(entry.upper, unit);
+      bounds +=
+          (bounds.empty() ? "at most " : ", at most ") + shown(entry.upper);
     }
+    active = is_at(entry.lower) || is_at(entry.upper);
   }
   return fmt::format("  {:<20} {}, {}: {}\n", constraint.name,
-                     quantity_text(constraint.value, unit), bounds,
-                     constraint.satisfied ? "kept" : "VIOLATED");
+                     shown(constraint.value), bounds,
+                     !constraint.satisfied ? "VIOLATED"
+                     : active              ? "kept, at its bound"
+                                           : "kept");
+}
+
+/// "  sigma   a mean over the volume; the nodal peak of 'lift' is 308 MPa ...".
+std::string peak_text(const case_data::Case& input,
+                      const forward::NormPeak& peak) {
+  return fmt::format(
+      "  {:<20} is a mean over the volume, {}; the nodal peak of '{}' is "
+      "{}{}\n",
+      input.responses[static_cast<std::size_t>(peak.response)].name,
+      quantity_text(peak.value, input.units.pressure, 4), peak.load_case,
+      quantity_text(peak.peak, input.units.pressure, 4),
+      !std::isfinite(peak.bound) ? ""
+      : peak.peak > peak.bound   ? ", ABOVE the bound"
+                                 : ", within the bound");
+}
+
+/// "58 evaluations (45 of models before the last, 13 of the last; 2 failed)".
+std::string counts_text(const study::RunResult& result) {
+  std::string text =
+      count_text(static_cast<std::size_t>(result.evaluations), "evaluation");
+  std::string parts;
+  if (result.evaluations_of_models.size() > 1) {
+    const int last = result.evaluations_of_models.back().second;
+    parts = fmt::format("{} on models frozen before, {} on the last",
+                        result.evaluations - last, last);
+  }
+  if (result.failed_evaluations > 0) {
+    parts += fmt::format("{}{} failed", parts.empty() ? "" : "; ",
+                         result.failed_evaluations);
+  }
+  return parts.empty() ? text : text + " (" + parts + ")";
 }
 
 }  // namespace
@@ -68,21 +124,26 @@ std::string result_text(const case_data::Case& input,
   }
   const forward::Evaluation& best = *result.best;
   const std::vector<std::string> designs = case_data::design_names(input);
+  const bool moves = input.study.kind != case_data::StudyKind::Analyse;
   for (Eigen::Index k = 0; k < best.design.size(); ++k) {
-    text +=
-        fmt::format("  {:<20} {}\n", designs[k],
-                    with_error(best.design[k], result.design_errors, k, ""));
+    const case_data::DesignVariable& variable = input.design[k];
+    text += fmt::format(
+        "  {:<20} {}{}\n", designs[k],
+        with_error(best.design[k], result.design_errors, k,
+                   {1.0, case_data::unit_of(input.units, variable.measure)}),
+        moves ? at_bound(variable, best.design[k]) : "");
   }
   const std::vector<std::string> names = case_data::response_names(input);
   for (Eigen::Index k = 0; k < best.responses.size(); ++k) {
-    const std::string unit =
-        case_data::response_unit(input, static_cast<int>(k));
+    const ShownUnit unit = case_data::shown_unit(input, static_cast<int>(k));
     text += fmt::format(
         "  {:<20} {}", names[k],
         with_error(best.responses[k], result.response_errors, k, unit));
     if (result.start && result.start->responses.size() > k) {
-      text += "   (at the start " +
-              quantity_text(result.start->responses[k], unit) + ")";
+      text +=
+          "   (at the start " +
+          quantity_text(unit.factor * result.start->responses[k], unit.unit) +
+          ")";
     }
     text += "\n";
   }
@@ -94,6 +155,11 @@ std::string result_text(const case_data::Case& input,
                               c.name, c.value, c.bound)
                 : bounds_text(input, input.study.constraints[k], c);
   }
+  for (const forward::NormPeak& peak :
+       forward::norm_peaks(input, best.responses, result.stress)) {
+    text += peak_text(input, peak);
+  }
+  text += forward::stress_text(result.stress, input.units);
   if (result.sweep) {
     text += study::sweep_text(input, *result.sweep);
   }
@@ -135,14 +201,11 @@ std::string result_text(const case_data::Case& input,
       best.film.verdict, best.film.facets, best.film.residual,
       best.film.residual_bound, best.film.min_eigenvalue, best.tet.elements,
       best.fea.dofs, best.tet.min_dihedral_deg, best.tet.max_dihedral_deg,
-      count_text(static_cast<std::size_t>(result.evaluations), "evaluation"),
+      counts_text(result),
       count_text(static_cast<std::size_t>(result.gradient_evaluations),
                  "gradient"),
       result.total_seconds, result.seconds.film, result.seconds.mesh,
       result.seconds.fea, result.seconds.gradient);
-  if (result.ledger) {
-    text += study::ledger_text(*result.ledger, input.units.length);
-  }
   return text;
 }
 

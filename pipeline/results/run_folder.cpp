@@ -5,6 +5,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "pipeline/results/results.h"
+#include "pipeline/results/run_files.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/film_frames.h"
 #include "pipeline/study/partial_result.h"
@@ -20,11 +21,13 @@ store::StudyStore open_run(const case_data::Case& input, const fs::path& folder,
   const store::StudyMeta meta{.program_version = program_version,
                               .case_hash = input.hash,
                               .case_text = store::stored_case(input)};
+  const bool was_run = fs::exists(folder / "study.sqlite");
   store::StudyStore store =
       begins == RunBegins::Resumed
           ? store::StudyStore::resume(folder.string(), meta)
           : store::StudyStore::start(folder.string(), meta);
   remove_leftovers(folder);
+  remove_owned_files(folder, was_run);
   try {
     for (const char* name : {"result.json", "family.csv", "report.html"}) {
       fs::remove(folder / name);
@@ -33,6 +36,7 @@ store::StudyStore open_run(const case_data::Case& input, const fs::path& folder,
   } catch (const fs::filesystem_error& error) {
     throw IoError(error.what());
   }
+  claim_files(folder, {"history.csv"});
   return store;
 }
 

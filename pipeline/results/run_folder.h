@@ -14,7 +14,8 @@ enum class RunBegins { Anew, Resumed };
 
 /// Opens the study of `input` in the folder, which must be there, and removes
 /// what an earlier run left that would stand beside a study not its own: half
-/// files of killed runs, result.json, the family's table, frames, the page.
+/// files of killed runs, result.json, the family's table, frames, the page, and
+/// all that it owned (run_files.h): meshes, findings, pictures, exports.
 /// Throws IoError as StudyStore does.
 store::StudyStore open_run(const case_data::Case& input,
                            const std::filesystem::path& folder,

@@ -54,6 +54,13 @@ std::map<std::string, std::string> stored_units(
       units[input.responses[k].name] =
           case_data::response_unit(input, static_cast<int>(k));
     }
+    for (const case_data::DesignVariable& variable : input.design) {
+      units[variable.name] = case_data::unit_of(input.units, variable.measure);
+    }
+    for (const case_data::Parameter& parameter : input.parameters) {
+      units[parameter.name] =
+          case_data::unit_of(input.units, parameter.value.measure);
+    }
   } catch (const Error&) {
     units.clear();  // of another version, or not begun: tables go without
   }

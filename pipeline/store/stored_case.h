@@ -18,7 +18,8 @@ std::string stored_case(const case_data::Case& input);
 /// The case back. Throws IoError when the study holds none that can be read.
 case_data::Case restore_case(const StudyMeta& meta);
 
-/// Units of the responses, by name, of the run in `folder` or of a family's
+/// Units of the responses, and of variables and parameters whose case says
+/// them, by name, of the run in `folder` or of a family's
 /// first member there; none where that has no case that can be read.
 std::map<std::string, std::string> stored_units(
     const std::filesystem::path& folder);

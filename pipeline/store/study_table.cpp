@@ -85,7 +85,7 @@ std::string study_table_text(const std::vector<EvaluationRecord>& records,
                              const std::map<std::string, std::string>& units) {
   std::vector<Cells> rows =
       table(records, [](double value) { return fmt::format("{:.6g}", value); });
-  files::add_units(units, rows.front());
+  files::show_units(units, rows);
   std::string text = files::aligned_text(rows);
   for (const EvaluationRecord& record : records) {
     if (record.failure) {

@@ -251,10 +251,10 @@ std::string frame_caption(const case_data::Case& input,
         "{} = {:.4g}", designs[static_cast<std::size_t>(k)], frame.design[k]));
   }
   const auto add = [&](int k) {
-    const std::string unit = case_data::response_unit(input, k);
+    const auto [factor, unit] = case_data::shown_unit(input, k);
     parts.push_back(fmt::format(
         "{} = {:.4g}{}{}", input.responses[static_cast<std::size_t>(k)].name,
-        frame.responses[k], unit.empty() ? "" : " ", unit));
+        factor * frame.responses[k], unit.empty() ? "" : " ", unit));
   };
   const int first = input.study.objective.value_or(-1);
   if (first >= 0) {

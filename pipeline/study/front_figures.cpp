@@ -27,9 +27,9 @@ double share(const std::vector<FrontPoint>& points, const FrontPoint& point,
 
 std::string value_text(const case_data::Case& input, int response,
                        double value) {
-  const std::string unit = case_data::response_unit(input, response);
-  return fmt::format("{} = {:.6g}{}{}", input.responses[response].name, value,
-                     unit.empty() ? "" : " ", unit);
+  const auto [factor, unit] = case_data::shown_unit(input, response);
+  return fmt::format("{} = {:.6g}{}{}", input.responses[response].name,
+                     factor * value, unit.empty() ? "" : " ", unit);
 }
 
 }  // namespace

@@ -42,7 +42,4 @@ struct Ledger {
 /// The part `ledger` of result.json (docs/results.md).
 nlohmann::ordered_json ledger_json(const Ledger& ledger);
 
-/// A line per stage and one for the files, for people.
-std::string ledger_text(const Ledger& ledger, const std::string& length_unit);
-
 }  // namespace meniscus::study

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/math/dense.h"
 #include "core/timer.h"
+#include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/part_warnings.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/accuracy_note.h"
@@ -141,6 +142,10 @@ bool StudyRun::begin() {
     if (model.failure()) {
       fields_.surface.base = model.unfilled_surface();
       fields_.findings = model.findings();
+      const Points& film = model.film().reference().points;
+      if (model.film().reference().failure && !film.empty()) {
+        fields_.film = model.film().fine_mesh(film);
+      }
     }
     return false;
   }
@@ -260,6 +265,11 @@ bool StudyRun::finish_best() {
   result_.exclusion = fields_.exclusion;
   for (std::string& warning :
        forward::part_warnings(input_, fields_, result_.stress)) {
+    result_.warnings.push_back(std::move(warning));
+  }
+  for (std::string& warning : forward::norm_warnings(
+           input_, forward::norm_peaks(input_, result_.best->responses,
+                                       result_.stress))) {
     result_.warnings.push_back(std::move(warning));
   }
   for (std::string& warning :
@@ -392,6 +402,12 @@ void StudyRun::count() {
     if (store::is_study_model(record.model)) {
       ++result_.evaluations;
       result_.failed_evaluations += record.failure ? 1 : 0;
+      auto& models = result_.evaluations_of_models;
+      const auto at = std::find_if(
+          models.begin(), models.end(),
+          [&](const auto& model) { return model.first == record.model; });
+      ++(at != models.end() ? *at : models.emplace_back(record.model, 0))
+            .second;
     }
   }
   result_.gradient_evaluations = earlier_gradients_;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/monitor.h"
@@ -74,6 +75,9 @@ struct RunResult {
   /// Designs evaluated at the case's own resolution, each once per frozen
   /// model, finite-difference ones included: as many as the database holds.
   int evaluations = 0;
+  /// The same by frozen model, in the order in which the models were made; of
+  /// the last one the message tells.
+  std::vector<std::pair<std::string, int>> evaluations_of_models;
   int failed_evaluations = 0;
   int gradient_evaluations = 0;
   forward::Evaluation frozen;    // the freeze of the case's own model

@@ -53,10 +53,10 @@ std::string describe(const case_data::Case& input,
     return text + "; cannot evaluate here: " + record.failure->message;
   }
   for (Eigen::Index k = 0; k < record.responses.size(); ++k) {
+    const ShownUnit unit = case_data::shown_unit(input, static_cast<int>(k));
     text += fmt::format(
         "{} {} = {}", k == 0 ? ";" : ",", record.response_names[k],
-        quantity_text(record.responses[k],
-                      case_data::response_unit(input, static_cast<int>(k))));
+        quantity_text(unit.factor * record.responses[k], unit.unit));
   }
   if (record.mismatch) {
     text += fmt::format("; mismatch {:.3g}", *record.mismatch);

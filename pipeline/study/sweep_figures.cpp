@@ -109,15 +109,15 @@ std::string sweep_text(const case_data::Case& input,
   text += "\n";
   for (std::size_t k = 0; k < figures.responses.size(); ++k) {
     const ResponseRange& range = figures.responses[k];
-    std::string unit = case_data::response_unit(input, static_cast<int>(k));
+    auto [factor, unit] = case_data::shown_unit(input, static_cast<int>(k));
     unit.insert(0, unit.empty() ? "" : " ");
     text += fmt::format(
         "  {:<20} mean {:.6g}{}\n"
         "  {:<20} least {:.6g}{} at {}\n"
         "  {:<20} largest {:.6g}{} at {}\n",
-        input.responses[k].name, range.mean, unit, "", range.least, unit,
-        place_text(input, range.least_at), "", range.largest, unit,
-        place_text(input, range.largest_at));
+        input.responses[k].name, factor * range.mean, unit, "",
+        factor * range.least, unit, place_text(input, range.least_at), "",
+        factor * range.largest, unit, place_text(input, range.largest_at));
   }
   return text;
 }

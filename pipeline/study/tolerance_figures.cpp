@@ -94,13 +94,13 @@ std::string tolerance_text(const case_data::Case& input,
                            const ToleranceFigures& figures) {
   std::string text;
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
-    const std::string unit =
-        case_data::response_unit(input, static_cast<int>(k));
+    const auto [factor, unit] =
+        case_data::shown_unit(input, static_cast<int>(k));
     text += fmt::format("  {:<20} deviation", input.responses[k].name);
     const Eigen::Index row = row_of(figures, static_cast<int>(k));
     if (row >= 0) {
-      text +=
-          fmt::format(" {:.4g} by gradient (", figures.linear.deviation[row]);
+      text += fmt::format(" {:.4g} by gradient (",
+                          factor * figures.linear.deviation[row]);
       for (std::size_t j = 0; j < input.design.size(); ++j) {
         text += fmt::format(
             "{}{} {:.0f} %", j == 0 ? "" : ", ", input.design[j].name,
@@ -110,10 +110,10 @@ std::string tolerance_text(const case_data::Case& input,
     }
     if (figures.sampled) {
       const auto i = static_cast<Eigen::Index>(k);
-      text += fmt::format("{} {:.4g} +- {:.1g} by {} samples",
-                          row >= 0 ? "," : "", figures.sampled->deviation[i],
-                          figures.sampled->deviation_error[i],
-                          figures.sampled->count);
+      text += fmt::format(
+          "{} {:.4g} +- {:.1g} by {} samples", row >= 0 ? "," : "",
+          factor * figures.sampled->deviation[i],
+          factor * figures.sampled->deviation_error[i], figures.sampled->count);
     }
     text += (unit.empty() ? "" : " [" + unit + "]") + "\n";
   }
