@@ -7,6 +7,7 @@
 #include "pipeline/results/export_part.h"
 #include "pipeline/results/make_ledger.h"
 #include "pipeline/results/results.h"
+#include "pipeline/results/run_files.h"
 #include "pipeline/study/film_frames.h"
 #include "report/output/run_pictures.h"
 
@@ -24,7 +25,15 @@ RunOutput::RunOutput(const case_data::Case& input, fs::path folder,
 
 void RunOutput::begin(const forward::EvaluationFields& fields) {
   if (options_.pictures && !fields.mesh.nodes.empty()) {
-    pictures_.emplace(run_pictures(input_, fields, folder_),
+    std::vector<picture::PictureJob> jobs =
+        run_pictures(input_, fields, folder_);
+    std::vector<std::string> names;
+    names.reserve(jobs.size());
+    for (const picture::PictureJob& job : jobs) {
+      names.push_back(fs::path(job.output).filename().string());
+    }
+    results::claim_files(folder_, names);
+    pictures_.emplace(std::move(jobs),
                       picture::PictureOptions{.monitor = options_.monitor});
   }
 }
@@ -42,6 +51,9 @@ void RunOutput::finish(const forward::EvaluationFields& fields,
       finish_pictures(fields, result);
     }
   }
+  if (fields.mesh.nodes.empty() && !fields.film.facets.empty()) {
+    show_failed_film(fields, result);
+  }
   if (result.best && !fields.mesh.nodes.empty()) {
     result.output_seconds = timer.seconds();
     result.ledger =
@@ -50,6 +62,26 @@ void RunOutput::finish(const forward::EvaluationFields& fields,
   for (const std::string& name : results::write_unfilled(fields, folder_)) {
     result.warnings.push_back("look at the surface in " + name);
   }
+}
+
+/// A film that does not stand, to be looked at.
+void RunOutput::show_failed_film(const forward::EvaluationFields& fields,
+                                 study::RunResult& result) {
+  results::claim_files(folder_, {"film.vtp", "film.png"});
+  results::write_film(input_, fields.film, folder_);
+  if (!options_.pictures) {
+    result.warnings.emplace_back("look at the film in film.vtp");
+    return;
+  }
+  std::vector<std::string> solids;
+  for (const case_data::CapEntry& cap : input_.caps) {
+    solids.push_back(cap.spec.name);
+  }
+  for (std::string& warning :
+       draw_film(input_.title, solids, {}, folder_, monitor_)) {
+    result.warnings.push_back(std::move(warning));
+  }
+  result.warnings.emplace_back("look at the film in film.png");
 }
 
 /// The answer in the formats asked for, as `meniscus export` writes it.
@@ -62,6 +94,7 @@ std::vector<fs::path> RunOutput::export_all(study::RunResult& result) {
           folder_, {.format = format,
                     .program_version = options_.program_version,
                     .monitor = options_.monitor}));
+      results::claim_files(folder_, {files.back().filename().string()});
     } catch (const Interrupted&) {
       throw;
     } catch (const IoError&) {

@@ -41,6 +41,8 @@ class RunOutput {
               study::RunResult& result);
 
  private:
+  void show_failed_film(const forward::EvaluationFields& fields,
+                        study::RunResult& result);
   std::vector<std::filesystem::path> export_all(study::RunResult& result);
   void finish_pictures(const forward::EvaluationFields& fields,
                        study::RunResult& result);

@@ -1,9 +1,14 @@
 #include "report/output/run_pictures.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "io/vtk_files.h"
+#include "pipeline/forward/stress_figures.h"
 #include "pipeline/study/film_frames.h"
 #include "report/picture/picture.h"
 
@@ -13,10 +18,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string load_label(const Vec3& force, const std::string& unit) {
-  const double size = force.norm();
+std::string load_label(double size, const std::string& unit) {
   return size >= 1e4 && unit == "N" ? fmt::format("{:.4g} kN", size / 1e3)
                                     : fmt::format("{:.4g} {}", size, unit);
+}
+
+/// "12 kN m" of 1.2e7 N mm.
+std::string moment_label(double size, const UnitSystem& units) {
+  if (units.name == "mm-N-MPa") {
+    return size >= 1e6 ? fmt::format("{:.4g} kN m", size / 1e6)
+                       : fmt::format("{:.4g} N m", size / 1e3);
+  }
+  return fmt::format("{:.4g} {}", size, units.unit_of(Dimension::Energy));
 }
 
 // Print resolution: 200 mm at 300 dots an inch.
@@ -39,59 +52,154 @@ Points corners_of_all(const std::vector<forward::FilmFrame>& frames) {
   return corners;
 }
 
-/// What all three have in common; the shapes are the caller's.
+std::string support_label(const loads::Support& support) {
+  if (support.kind == loads::SupportKind::Normal) {
+    return "slides";
+  }
+  if (support.kind == loads::SupportKind::Symmetry) {
+    return "symmetry";
+  }
+  std::string label = "held ";
+  label += support.fix_x ? "x" : "";
+  label += support.fix_y ? "y" : "";
+  label += support.fix_z ? "z" : "";
+  return label;
+}
+
+void add_supports(const loads::LoadCase& load_case, picture::PictureJob& job) {
+  for (const loads::Support& support : load_case.supports) {
+    job.supports.push_back(support.surface);
+    job.support_labels.push_back(support_label(support));
+  }
+  for (const loads::SpringBed& bed : load_case.springs) {
+    job.supports.push_back(bed.surface);
+    job.support_labels.emplace_back("on springs");
+  }
+}
+
+void add_forces(const loads::LoadCase& load_case, const UnitSystem& units,
+                picture::PictureJob& job) {
+  using Kind = picture::PictureLoadKind;
+  const auto add = [&](const std::string& surface, const Vec3& direction,
+                       Kind kind, const std::string& label) {
+    if (direction.norm() > 0.0) {
+      job.loads.push_back({surface, direction, label, kind});
+    }
+  };
+  for (const loads::RemoteLoad& load : load_case.remote_loads) {
+    add(load.surface, load.force, Kind::Force,
+        load_label(load.force.norm(), units.force));
+    add(load.surface, load.moment, Kind::Moment,
+        moment_label(load.moment.norm(), units));
+  }
+  for (const loads::SurfaceForce& force : load_case.forces) {
+    add(force.surface, force.total, Kind::Force,
+        load_label(force.total.norm(), units.force));
+  }
+  // Of fields the arrows say where, the label that it changes.
+  const std::string varies = "pressure that varies";
+  for (const loads::SurfacePressure& p : load_case.pressures) {
+    const double sign = p.field ? 1.0 : p.pressure;
+    add(p.surface, Vec3(sign, 0, 0), Kind::Pressure,
+        p.field ? varies : load_label(std::abs(sign), units.pressure));
+  }
+  for (const loads::SurfaceTraction& t : load_case.tractions) {
+    if (!t.field) {
+      add(t.surface, t.traction, Kind::Traction,
+          load_label(t.traction.norm(), units.pressure));
+    }
+  }
+}
+
+/// What acts on the whole part: gravity as an arrow, the rest in words.
+void add_body_loads(const loads::LoadCase& load_case,
+                    picture::PictureJob& job) {
+  if (load_case.gravity.norm() > 0.0) {
+    job.loads.push_back(
+        {"", load_case.gravity, "gravity", picture::PictureLoadKind::Body});
+  }
+  const bool varied = std::any_of(
+      load_case.tractions.begin(), load_case.tractions.end(),
+      [](const loads::SurfaceTraction& t) { return bool(t.field); });
+  for (const auto& [acts, what] :
+       {std::pair(load_case.spin.has_value(), ", it spins"),
+        std::pair(load_case.temperature.has_value(), ", it is heated"),
+        std::pair(varied, ", a traction that varies")}) {
+    job.load_case += acts ? what : "";
+  }
+}
+
+/// What all have in common; the shapes are the caller's.
 picture::PictureJob run_job(const case_data::Case& input,
                             const case_data::EvaluatedCase& numbers) {
   picture::PictureJob job;
   job.title = input.title;
+  job.length_unit = input.units.length;
   for (const films::CapSpec& cap : numbers.film_system.caps) {
     job.solids.push_back(cap.name);
-  }
-  const loads::LoadCase& load_case = numbers.load_cases.front();
-  for (const loads::Support& support : load_case.supports) {
-    job.supports.push_back(support.surface);
-  }
-  for (const loads::SpringBed& bed : load_case.springs) {
-    job.supports.push_back(bed.surface);
-  }
-  for (const loads::RemoteLoad& load : load_case.remote_loads) {
-    if (load.force.norm() > 0.0) {
-      job.loads.push_back({.surface = load.surface,
-                           .direction = load.force,
-                           .label = load_label(load.force, input.units.force)});
-    }
-  }
-  for (const loads::SurfaceForce& force : load_case.forces) {
-    job.loads.push_back({.surface = force.surface,
-                         .direction = force.total,
-                         .label = load_label(force.total, input.units.force)});
   }
   return job;
 }
 
-std::vector<picture::PictureJob> three_of(picture::PictureJob job,
-                                          const fs::path& folder) {
+/// `remark`: on the load case's name.
+picture::PictureJob of_load_case(picture::PictureJob job,
+                                 const case_data::Case& input,
+                                 const loads::LoadCase& load_case,
+                                 const std::string& remark) {
+  job.load_case = fmt::format("'{}'{}", load_case.name, remark);
+  add_supports(load_case, job);
+  add_forces(load_case, input.units, job);
+  add_body_loads(load_case, job);
+  return job;
+}
+
+void add_job(picture::PictureJob job, picture::PictureKind kind,
+             const fs::path& file, std::vector<picture::PictureJob>& jobs) {
+  const bool overview = kind == picture::PictureKind::Overview;
+  job.kind = kind;
+  job.output = file.string();
+  job.width = overview ? 2700 : kStillWidth;
+  job.height = overview ? 945 : kStillHeight;
+  jobs.push_back(std::move(job));
+}
+
+/// part.png, film.png and overview.png of the worst load case and, `with_each`,
+/// a part_NAME.png of each where there are several. `shape(k)`: the part under
+/// load case k.
+template <class Shape>
+std::vector<picture::PictureJob> all_pictures(
+    const picture::PictureJob& common, const case_data::Case& input,
+    const case_data::EvaluatedCase& numbers, std::size_t worst, bool with_each,
+    const fs::path& folder, const Shape& shape) {
+  using Kind = picture::PictureKind;
   std::vector<picture::PictureJob> jobs;
-  const auto add = [&](picture::PictureKind kind, const char* name, int width,
-                       int height) {
-    job.kind = kind;
-    job.output = (folder / name).string();
-    job.width = width;
-    job.height = height;
-    jobs.push_back(job);
-  };
-  add(picture::PictureKind::Part, "part.png", kStillWidth, kStillHeight);
-  add(picture::PictureKind::Film, "film.png", kStillWidth, kStillHeight);
-  add(picture::PictureKind::Overview, "overview.png", 2700, 945);
+  const std::size_t count = numbers.load_cases.size();
+  const std::string remark =
+      with_each && count > 1 ? fmt::format(" (the worst of {})", count) : "";
+  picture::PictureJob job =
+      of_load_case(common, input, numbers.load_cases[worst], remark);
+  shape(worst, "", job);
+  add_job(job, Kind::Part, folder / "part.png", jobs);
+  add_job(job, Kind::Film, folder / "film.png", jobs);
+  add_job(job, Kind::Overview, folder / "overview.png", jobs);
+  for (std::size_t k = 0; k < count && with_each && count > 1; ++k) {
+    const std::string ending = "_" + numbers.load_cases[k].name;
+    picture::PictureJob each = of_load_case(
+        common, input, numbers.load_cases[k], k == worst ? remark : "");
+    shape(k, ending, each);
+    add_job(std::move(each), Kind::Part, folder / ("part" + ending + ".png"),
+            jobs);
+  }
   return jobs;
 }
 
 picture::PictureSurface part_surface(const case_data::Case& input,
-                                     const forward::EvaluationFields& fields) {
+                                     const forward::EvaluationFields& fields,
+                                     std::size_t load_case) {
   io::BoundarySurface boundary = io::boundary_surface(fields.mesh);
   const stress::StressField nodal =
-      stress::nodal_stress(fields.mesh, fields.stresses.front().recovered);
-  const VectorX& u = fields.solution.displacements.front();
+      stress::nodal_stress(fields.mesh, fields.stresses[load_case].recovered);
+  const VectorX& u = fields.solution.displacements[load_case];
   picture::PictureSurface surface;
   surface.mesh = std::move(boundary.mesh);
   surface.length_unit = input.units.length;
@@ -125,21 +233,37 @@ std::vector<picture::PictureJob> run_pictures(
   film.mesh = fields.film;
   job.film.data =
       std::make_shared<const picture::PictureSurface>(std::move(film));
-  job.part_surface.data = std::make_shared<const picture::PictureSurface>(
-      part_surface(input, fields));
   job.part.data =
       std::make_shared<const picture::PictureTets>(corner_tets(fields.mesh));
-  return three_of(std::move(job), folder);
+  std::map<std::size_t, std::shared_ptr<const picture::PictureSurface>> made;
+  return all_pictures(
+      job, input, fields.inputs, forward::worst_load_case(fields), true, folder,
+      [&](std::size_t k, const std::string&, picture::PictureJob& to) {
+        auto& surface = made[k];
+        if (surface == nullptr) {
+          surface = std::make_shared<const picture::PictureSurface>(
+              part_surface(input, fields, k));
+        }
+        to.part_surface.data = surface;
+      });
 }
 
 std::vector<picture::PictureJob> stored_run_pictures(
     const case_data::Case& input, const case_data::EvaluatedCase& numbers,
-    const fs::path& folder) {
+    const std::string& worst, const fs::path& folder) {
   picture::PictureJob job = run_job(input, numbers);
   job.part.file = (folder / "part.vtu").string();
   job.part_surface.file = (folder / "part_surface.vtp").string();
   job.film.file = (folder / "film.vtp").string();
-  return three_of(std::move(job), folder);
+  std::size_t number = 0;
+  for (std::size_t k = 0; k < numbers.load_cases.size(); ++k) {
+    number = numbers.load_cases[k].name == worst ? k : number;
+  }
+  return all_pictures(
+      job, input, numbers, number, !worst.empty(), folder,
+      [](std::size_t, const std::string& ending, picture::PictureJob& to) {
+        to.field_ending = ending;
+      });
 }
 
 std::vector<std::string> draw_film(const std::string& title,

@@ -12,16 +12,19 @@
 namespace meniscus::output {
 
 /// film.png, part.png and overview.png in `folder`, of a design whose stresses
-/// are known; they need no other file.
+/// are known, under its worst load case; of several load cases a part_NAME.png
+/// each. They need no other file.
 std::vector<picture::PictureJob> run_pictures(
     const case_data::Case& input, const forward::EvaluationFields& fields,
     const std::filesystem::path& folder);
 
 /// The same of what stands in `folder`: film.vtp, part.vtu, part_surface.vtp;
-/// `numbers`: of the run's answer.
+/// `numbers`: of the run's answer; `worst`: the load case that the files' plain
+/// fields are of; empty: the first, and they have no others (of older
+/// versions).
 std::vector<picture::PictureJob> stored_run_pictures(
-    const case_data::Case& input, const case_data::EvaluatedCase& inputs,
-    const std::filesystem::path& folder);
+    const case_data::Case& input, const case_data::EvaluatedCase& numbers,
+    const std::string& worst, const std::filesystem::path& folder);
 
 /// film.png from the film.vtp in `folder`; `solids`: its surfaces that are no
 /// films; `hidden`: those left out (PictureJob::hidden). Returns warnings for

@@ -103,6 +103,12 @@ void copy_node_fields(const VtkInput& input, PageMesh& mesh) {
   if (const auto* s = find_array(input.point_data, "von_mises", count)) {
     mesh.von_mises = *s;
   }
+  const std::string prefix = "von_mises_";
+  for (const auto& [name, values] : input.point_data) {
+    if (name.starts_with(prefix) && values.size() == count) {
+      mesh.case_von_mises.emplace_back(name.substr(prefix.size()), values);
+    }
+  }
 }
 
 /// Adds elements' values to their nodes and divides by how many came.

@@ -53,6 +53,9 @@ void keep_nodes(PageMesh& mesh, const std::vector<int>& kept) {
   mesh.von_mises = chosen(mesh.von_mises, kept, 1);
   mesh.energy_density = chosen(mesh.energy_density, kept, 1);
   mesh.stress_error = chosen(mesh.stress_error, kept, 1);
+  for (auto& [name, values] : mesh.case_von_mises) {
+    values = chosen(values, kept, 1);
+  }
 }
 
 /// Nodes that triangles or elements name, ascending.
@@ -139,11 +142,12 @@ PageMesh clustered(const PageMesh& mesh, double cell) {
 double page_bytes(const PageMesh& mesh) {
   constexpr double kBase64 = 4.0 / 3.0;
   const auto nodes = static_cast<double>(mesh.nodes.size());
-  const double numbers = 3.0 + static_cast<double>(mesh.displacement.size() +
-                                                   mesh.von_mises.size() +
-                                                   mesh.energy_density.size() +
-                                                   mesh.stress_error.size()) /
-                                   std::max(nodes, 1.0);
+  const double numbers =
+      3.0 + static_cast<double>(mesh.case_von_mises.size()) +
+      static_cast<double>(mesh.displacement.size() + mesh.von_mises.size() +
+                          mesh.energy_density.size() +
+                          mesh.stress_error.size()) /
+          std::max(nodes, 1.0);
   const double id = mesh.nodes.size() > 65536 ? 4.0 : 2.0;
   return kBase64 *
          (2.0 * numbers * nodes +
@@ -176,7 +180,8 @@ nlohmann::ordered_json to_json(const PageMesh& mesh) {
   if (!mesh.displacement.empty()) {
     json["displacement"] = pack_reals(mesh.displacement, 3);
   }
-  const auto add = [&](const char* name, const std::vector<double>& values) {
+  const auto add = [&](const std::string& name,
+                       const std::vector<double>& values) {
     if (!values.empty()) {
       json["fields"][name] = pack_reals(values, 1);
     }
@@ -185,6 +190,9 @@ nlohmann::ordered_json to_json(const PageMesh& mesh) {
   add("von_mises", mesh.von_mises);
   add("energy_density", mesh.energy_density);
   add("stress_error", mesh.stress_error);
+  for (const auto& [name, values] : mesh.case_von_mises) {
+    add("von_mises:" + name, values);
+  }
   return json;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -30,6 +31,8 @@ struct PageMesh {
   std::vector<double> energy_density;    // [pressure], of the strain energy
   std::vector<double> stress_error;      // [pressure], see load_page_part
   std::string load_case;                 // of the fields; may be empty
+  /// Von Mises stress of each load case by name, where the files have several.
+  std::vector<std::pair<std::string, std::vector<double>>> case_von_mises;
 };
 
 /// part_surface.vtp and, where `part` exists, part.vtu of the same run.

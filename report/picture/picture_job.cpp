@@ -171,12 +171,22 @@ PictureJob to_job(const Cbor& json, StoredShapes& shapes) {
   json.at("width").get_to(job.width);
   json.at("height").get_to(job.height);
   json.at("supports").get_to(job.supports);
+  json.at("support_labels").get_to(job.support_labels);
   json.at("solids").get_to(job.solids);
   for (const Cbor& load : json.at("loads")) {
+    const int load_kind = load.at("kind").get<int>();
+    if (load_kind < 0 || load_kind > static_cast<int>(PictureLoadKind::Body)) {
+      throw InvalidInput("picture jobs: a load of kind " +
+                         std::to_string(load_kind));
+    }
     job.loads.push_back({load.at("surface").get<std::string>(),
                          to_vector(load.at("direction")),
-                         load.at("label").get<std::string>()});
+                         load.at("label").get<std::string>(),
+                         static_cast<PictureLoadKind>(load_kind)});
   }
+  json.at("load_case").get_to(job.load_case);
+  json.at("field_ending").get_to(job.field_ending);
+  json.at("length_unit").get_to(job.length_unit);
   job.view = to_vector(json.at("view"));
   json.at("facet_edges").get_to(job.facet_edges);
   json.at("hidden").get_to(job.hidden);
@@ -199,7 +209,8 @@ Cbor to_json(const PictureJob& job, Shapes& shapes) {
   for (const PictureLoad& load : job.loads) {
     loads.push_back({{"surface", load.surface},
                      {"direction", to_json(load.direction)},
-                     {"label", load.label}});
+                     {"label", load.label},
+                     {"kind", static_cast<int>(load.kind)}});
   }
   return {{"kind", kKinds.at(static_cast<std::size_t>(job.kind))},
           {"output", job.output},
@@ -210,8 +221,12 @@ Cbor to_json(const PictureJob& job, Shapes& shapes) {
           {"width", job.width},
           {"height", job.height},
           {"supports", job.supports},
+          {"support_labels", job.support_labels},
           {"solids", job.solids},
           {"loads", std::move(loads)},
+          {"load_case", job.load_case},
+          {"field_ending", job.field_ending},
+          {"length_unit", job.length_unit},
           {"view", to_json(job.view)},
           {"facet_edges", job.facet_edges},
           {"hidden", job.hidden},

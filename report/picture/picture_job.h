@@ -16,11 +16,22 @@ enum class PictureKind {
   Overview  // film, cut mesh and stressed part side by side
 };
 
-/// An arrow on a loaded surface.
+enum class PictureLoadKind {
+  Force,     // an arrow
+  Moment,    // an arrow about its axis
+  Pressure,  // many on the surface, along its normal: into the part where
+             // direction.x is above 0
+  Traction,  // many on the surface, along the direction
+  Body       // an arrow beside the part: gravity
+};
+
+/// What acts on a surface, or on the whole part.
 struct PictureLoad {
   std::string surface;
-  Vec3 direction = Vec3::Zero();  // its length is relative to the others'
+  Vec3 direction = Vec3::Zero();  // its length is relative to the others' of
+                                  // its kind
   std::string label;              // "40 kN"
+  PictureLoadKind kind = PictureLoadKind::Force;
 };
 
 /// A shape of a picture: in memory, else in a file (UTF-8).
@@ -31,8 +42,9 @@ struct PictureSource {
 };
 
 /// Part needs `part_surface` with displacement and von Mises stress (in a
-/// file: the point fields `displacement` and `von_mises` and the cell data
-/// `surface`); Film needs `film`; Overview needs both and `part`.
+/// file: the point fields `displacement` and `von_mises`, with `field_ending`
+/// at their names' end, and the cell data `surface`); Film needs `film`;
+/// Overview needs both and `part`.
 struct PictureJob {
   PictureKind kind = PictureKind::Part;
   std::string output;                          // PNG, replaced whole; UTF-8
@@ -43,11 +55,16 @@ struct PictureJob {
   int width = 1600;                            // [pixel], 200 to 8000
   int height = 1000;                           // [pixel], 200 to 8000
   std::vector<std::string> supports;           // surfaces that are held
+  std::vector<std::string> support_labels;     // of the same, may be shorter
   std::vector<std::string> solids;             // of the film: caps, plates
   std::vector<PictureLoad> loads;
+  std::string load_case;     // of the loads, "lift (the worst of 3)"; may be
+                             // empty
+  std::string field_ending;  // "_lift"; see above
   Vec3 view = Vec3(0.26, -1.0, 0.62);  // from the part to the eye; z is up
   bool facet_edges = false;            // Film: thin lines along facets
   std::vector<std::string> hidden;     // Film: surfaces left out
+  std::string length_unit;             // of the scale; empty: no scale
   // Film, of a series seen by one fixed camera:
   Points seen;          // what must be in view; empty: the film
   std::string caption;  // a line below the title

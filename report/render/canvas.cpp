@@ -107,6 +107,31 @@ void Canvas::fill(double left, double bottom, double right, double top,
   }
 }
 
+void Canvas::line(double x0, double y0, double x1, double y1, double width,
+                  const Colour& colour) {
+  const double half = 0.5 * width;
+  const double dx = x1 - x0;
+  const double dy = y1 - y0;
+  const double square = dx * dx + dy * dy;
+  const auto low = [&](double a, double b) {
+    return static_cast<int>(std::floor(std::min(a, b) - half - 1.0));
+  };
+  const auto high = [&](double a, double b) {
+    return static_cast<int>(std::ceil(std::max(a, b) + half + 1.0));
+  };
+  for (int y = low(y0, y1); y <= high(y0, y1); ++y) {
+    for (int x = low(x0, x1); x <= high(x0, x1); ++x) {
+      const double px = x + 0.5 - x0;
+      const double py = y + 0.5 - y0;
+      const double t = square > 0.0
+                           ? std::clamp((px * dx + py * dy) / square, 0.0, 1.0)
+                           : 0.0;
+      const double away = std::hypot(px - t * dx, py - t * dy);
+      blend(x, y, colour, std::clamp(half + 0.5 - away, 0.0, 1.0));
+    }
+  }
+}
+
 void Canvas::write(const TextImage& text, int x, int y, const Colour& colour) {
   std::size_t at = 0;
   for (int v = text.box.bottom; v < text.box.top; ++v) {

@@ -49,6 +49,9 @@ class Canvas {
   /// A box with its sides anywhere between pixels.
   void fill(double left, double bottom, double right, double top,
             const Colour& colour);
+  /// A straight line between two places, with round ends.
+  void line(double x0, double y0, double x1, double y1, double width,
+            const Colour& colour);
   /// Text with its position at a pixel; what lies beyond the rim is cut off.
   void write(const TextImage& text, int x, int y, const Colour& colour);
   /// Pixels of the box that are not white, or beyond the rim.

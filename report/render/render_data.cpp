@@ -19,7 +19,6 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -64,10 +63,11 @@ std::vector<std::string> names_in(vtkPolyData* data) {
   return names;
 }
 
-void read_point_fields(vtkPolyData* data, picture::PictureSurface& surface) {
+void read_point_fields(vtkPolyData* data, const std::string& ending,
+                       picture::PictureSurface& surface) {
   const vtkIdType count = data->GetNumberOfPoints();
   vtkPointData* fields = data->GetPointData();
-  if (auto* u = fields->GetArray("displacement");
+  if (auto* u = fields->GetArray(("displacement" + ending).c_str());
       u != nullptr && u->GetNumberOfComponents() == 3) {
     surface.length_unit = unit_of(u);
     surface.displacement.resize(static_cast<std::size_t>(count));
@@ -75,7 +75,8 @@ void read_point_fields(vtkPolyData* data, picture::PictureSurface& surface) {
       u->GetTuple(i, surface.displacement[static_cast<std::size_t>(i)].data());
     }
   }
-  if (auto* stress = fields->GetArray("von_mises"); stress != nullptr) {
+  if (auto* stress = fields->GetArray(("von_mises" + ending).c_str());
+      stress != nullptr) {
     surface.stress_unit = unit_of(stress);
     for (vtkIdType i = 0; i < count; ++i) {
       surface.von_mises.push_back(stress->GetComponent(i, 0));
@@ -85,7 +86,8 @@ void read_point_fields(vtkPolyData* data, picture::PictureSurface& surface) {
 
 }  // namespace
 
-picture::PictureSurface load_surface(const std::string& path) {
+picture::PictureSurface load_surface(const std::string& path,
+                                     const std::string& ending) {
   require_file(path);
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(path.c_str());
@@ -114,7 +116,7 @@ picture::PictureSurface load_surface(const std::string& path) {
                                    static_cast<int>(ids->GetId(2))});
     surface.mesh.facet_label.push_back(label);
   }
-  read_point_fields(data, surface);
+  read_point_fields(data, ending, surface);
   return surface;
 }
 
@@ -194,21 +196,18 @@ std::vector<Side> bare_sides(const picture::PictureTets& tets,
 
 }  // namespace
 
-SurfaceMesh cut_open(const picture::PictureTets& tets, const Vec3& normal) {
+SurfaceMesh cut_open(const picture::PictureTets& tets, const CutPlane& plane) {
   std::vector<double> height(tets.nodes.size());
-  Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < height.size(); ++i) {
-    box.extend(tets.nodes[i]);
-    height[i] = normal.dot(tets.nodes[i]);
+    height[i] = plane.normal.dot(tets.nodes[i]);
   }
-  const double level = normal.dot(box.center());
   std::vector<char> kept(tets.corners.size());
   for (std::size_t t = 0; t < kept.size(); ++t) {
     double sum = 0.0;
     for (const int id : tets.corners[t]) {
       sum += 0.25 * height[static_cast<std::size_t>(id)];
     }
-    kept[t] = static_cast<char>(sum <= level);
+    kept[t] = static_cast<char>(sum <= plane.level);
   }
   const std::vector<Side> bare = bare_sides(tets, kept);
   // Only elements with a bare face's three corners can be its other side.

@@ -39,27 +39,47 @@ std::string grouped(std::size_t count) {
   return text;
 }
 
+/// "load case 'lift' (the worst of 3): "; nothing without a name.
+std::string case_text(const picture::PictureJob& job) {
+  return job.load_case.empty() ? "" : "load case " + job.load_case + ": ";
+}
+
+std::shared_ptr<const picture::PictureSurface> stressed_part(
+    const picture::PictureJob& job) {
+  return shape_of(job.part_surface, [&](const std::string& path) {
+    return load_surface(path, job.field_ending);
+  });
+}
+
+std::shared_ptr<const picture::PictureSurface> film_of(
+    const picture::PictureJob& job) {
+  return shape_of(job.film,
+                  [](const std::string& path) { return load_surface(path); });
+}
+
 void draw_one(const picture::PictureJob& job) {
   Panel panel({0, 0, 1, 1}, job.width, job.height);
   ViewLayout layout;
   layout.text = std::max(12, job.height / 42);
   std::string line;
   if (job.kind == picture::PictureKind::Part) {
-    const auto part = shape_of(job.part_surface, load_surface);
+    const auto part = stressed_part(job);
     const PartFigures figures = draw_part(panel, job, *part, layout);
     line = fmt::format(
-        "deflection drawn \u00d7 {:g} (largest {}), peak stress {}",
-        figures.factor, with_unit(figures.largest, part->length_unit),
+        "{}deflection drawn \u00d7 {:g} (largest {}), peak stress {}",
+        case_text(job), figures.factor,
+        with_unit(figures.largest, part->length_unit),
         with_unit(figures.peak, part->stress_unit));
   } else {
     layout.model = {0.05, 0.05, 0.95, 0.87};
-    const auto film = shape_of(job.film, load_surface);
+    const auto film = film_of(job);
     picture::PictureSurface shown;
     shown.mesh = without(film->mesh, job.hidden);
     draw_film(panel, job, shown);
     line = job.caption;
   }
   panel.fit_camera(job.view, layout.model);
+  panel.add_axes(job.length_unit, layout.text * 4 / 5);
   panel.add_text(0.025, 1.0 - 2.2 * layout.text / job.height, job.title,
                  {.size = layout.text * 3 / 2, .bold = true});
   panel.add_text(0.025, 1.0 - 4.0 * layout.text / job.height, line,
@@ -96,7 +116,7 @@ OverviewLayout overview_layout(const picture::PictureJob& job,
 }
 
 void draw_overview(const picture::PictureJob& job) {
-  const auto surface = shape_of(job.film, load_surface);
+  const auto surface = film_of(job);
   const OverviewLayout overview = overview_layout(job, surface->mesh.points);
   const ViewLayout& layout = overview.view;
   const int height = overview.height;
@@ -106,8 +126,7 @@ void draw_overview(const picture::PictureJob& job) {
   const auto tets = shape_of(job.part, load_tets);
   const bool liquid = draw_film(film, job, *surface);
   draw_cut_mesh(mesh, job, *tets);
-  const PartFigures figures =
-      draw_part(part, job, *shape_of(job.part_surface, load_surface), layout);
+  const PartFigures figures = draw_part(part, job, *stressed_part(job), layout);
   const auto caption = [&](Panel& panel, const std::string& title,
                            const std::string& line) {
     const double row = layout.text / static_cast<double>(height);
@@ -129,8 +148,10 @@ void draw_overview(const picture::PictureJob& job) {
                       liquid ? " at rest" : ""));
   caption(mesh, "Solid, cut open",
           fmt::format("{} tetrahedra", grouped(tets->corners.size())));
-  caption(part, "Stress under load",
-          fmt::format("deflection \u00d7 {:g}", figures.factor));
+  caption(
+      part, "Stress under load",
+      fmt::format("{}deflection \u00d7 {:g}", case_text(job), figures.factor));
+  film.add_axes(job.length_unit, layout.text * 4 / 5);
   std::vector<Panel::Key> keys = {
       {kCapColour, liquid ? "cap" : "face"},
       {kRimColour, liquid ? "boundary curve" : "edge"}};

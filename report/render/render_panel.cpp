@@ -8,6 +8,7 @@
 #include <vtkArrowSource.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
+#include <vtkConeSource.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -125,6 +126,25 @@ void Panel::add_arrow(const Vec3& tail, const Vec3& tip, const Colour& colour) {
   show({tail, tip});
 }
 
+void Panel::add_cone(const Vec3& base, const Vec3& tip, double radius,
+                     const Colour& colour) {
+  vtkNew<vtkConeSource> cone;
+  const Vec3 middle = 0.5 * (base + tip);
+  const Vec3 along = tip - base;
+  cone->SetCenter(middle.x(), middle.y(), middle.z());
+  cone->SetDirection(along.x(), along.y(), along.z());
+  cone->SetHeight(along.norm());
+  cone->SetRadius(radius);
+  cone->SetResolution(36);
+  cone->Update();
+  add_surface(cone->GetOutput(), {.colour = colour, .only_front = true});
+}
+
+void Panel::add_axes(const std::string& length_unit, int text_size) {
+  axes_unit_ = length_unit;
+  axes_text_ = text_size;
+}
+
 void Panel::add_label(const Vec3& at, const Vec3& away, const std::string& text,
                       const TextStyle& style) {
   labels_.push_back({at, away, text, style});
@@ -136,7 +156,8 @@ void Panel::add_text(double x, double y, const std::string& text,
 }
 
 void Panel::add_colour_bar(const Box& place, const std::string& title,
-                           double top, double step, int text_size) {
+                           const BarScale& scale, int text_size) {
+  const auto [top, step, clipped] = scale;
   constexpr int kCells = 256;
   const double width = place.right - place.left;
   for (int i = 0; i < kCells; ++i) {
@@ -155,7 +176,11 @@ void Panel::add_colour_bar(const Box& place, const std::string& title,
         {{x - thick, place.bottom - tick_height, x + thick, place.bottom},
          tick_style.colour});
     add_text(x, place.bottom - tick_height - 1.25 * text_size / height_,
-             fmt::format("{:.6g}", i * step), tick_style);
+             fmt::format(
+                 "{}{:.6g}",
+                 clipped && (i + 1) * step > top * (1 + 1e-9) ? "\u2265 " : "",
+                 i * step),
+             tick_style);
   }
   TextStyle title_style = tick_style;
   title_style.bold = true;
@@ -236,9 +261,71 @@ void Panel::finish(Canvas& canvas) const {
                  static_cast<int>(std::lround(bottom_ + text.y * height_)),
                  text.style.colour);
   }
+  if (axes_text_ > 0) {
+    draw_axes(canvas);
+  }
   for (const Label& label : labels_) {
     place_label(label, canvas);
   }
+}
+
+void Panel::draw_axes(Canvas& canvas) const {
+  constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+  constexpr Colour kAxisInk = {0.38, 0.42, 0.48};
+  const double length = 2.2 * axes_text_;
+  const Eigen::Vector2d origin(left_ + 3.4 * axes_text_,
+                               bottom_ + 3.2 * axes_text_);
+  const double wide = std::max(1.5, axes_text_ / 9.0);
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 seen = view_.turned(Vec3::Unit(k));
+    const Eigen::Vector2d tip = origin + length * seen.head<2>();
+    canvas.line(origin.x(), origin.y(), tip.x(), tip.y(), wide, kAxisInk);
+    // An axis that points at the eye has its letter beside the origin.
+    const Eigen::Vector2d aside = seen.head<2>().norm() > 0.3
+                                      ? seen.head<2>().normalized().eval()
+                                      : Eigen::Vector2d(-0.7, -0.7);
+    const Eigen::Vector2d at = tip + 0.65 * axes_text_ * aside;
+    canvas.write(text_image(kNames[static_cast<std::size_t>(k)],
+                            {.size = axes_text_,
+                             .colour = kAxisInk,
+                             .justify = Justify::Centre,
+                             .stand = Stand::Centred}),
+                 static_cast<int>(std::lround(at.x())),
+                 static_cast<int>(std::lround(at.y())), kAxisInk);
+  }
+  if (!axes_unit_.empty() && !shown_.empty()) {
+    draw_scale(canvas, origin.x() + 2.2 * length, bottom_ + 1.6 * axes_text_);
+  }
+}
+
+void Panel::draw_scale(Canvas& canvas, double left, double bottom) const {
+  constexpr double kShare = 0.16;  // of the panel's width, at most
+  constexpr Colour kAxisInk = {0.38, 0.42, 0.48};
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : shown_) {
+    middle += p / static_cast<double>(shown_.size());
+  }
+  const double pixel = view_.pixel_at(middle);
+  const double length = round_down_nice(kShare * width_ * pixel);
+  const double right = left + length / pixel;
+  const double wide = std::max(1.5, axes_text_ / 9.0);
+  const double tick = 0.3 * axes_text_;
+  canvas.line(left, bottom, right, bottom, wide, kAxisInk);
+  canvas.line(left, bottom - tick, left, bottom + tick, wide, kAxisInk);
+  canvas.line(right, bottom - tick, right, bottom + tick, wide, kAxisInk);
+  canvas.write(
+      text_image(
+          fmt::format("{:g} {}", length, axes_unit_),
+          {.size = axes_text_, .colour = kAxisInk, .justify = Justify::Centre}),
+      static_cast<int>(std::lround(0.5 * (left + right))),
+      static_cast<int>(std::lround(bottom + 0.4 * axes_text_)), kAxisInk);
+}
+
+/// Pixels of the box that belong to other panels.
+int Panel::beyond(const PixelBox& box) const {
+  const double across = std::max(0.0, left_ - box.left) +
+                        std::max(0.0, box.right - left_ - width_);
+  return static_cast<int>(across * (box.top - box.bottom));
 }
 
 void Panel::place_label(const Label& label, Canvas& canvas) const {
@@ -270,10 +357,11 @@ void Panel::place_label(const Label& label, Canvas& canvas) const {
                                          .round()
                                          .cast<int>();
       const int room = style.size / 4;
-      const int taken = canvas.taken({corner.x() + text.box.left - room,
-                                      corner.y() + text.box.bottom - room,
-                                      corner.x() + text.box.right + room,
-                                      corner.y() + text.box.top + room});
+      const PixelBox box = {corner.x() + text.box.left - room,
+                            corner.y() + text.box.bottom - room,
+                            corner.x() + text.box.right + room,
+                            corner.y() + text.box.top + room};
+      const int taken = canvas.taken(box) + beyond(box);
       if (least < 0 || taken < least) {
         least = taken;
         best = corner;

@@ -27,15 +27,25 @@ class Panel {
   void add_tubes(const Points& points, const std::vector<Edge>& edges,
                  double radius, const Colour& colour);
   void add_arrow(const Vec3& tail, const Vec3& tip, const Colour& colour);
+  void add_cone(const Vec3& base, const Vec3& tip, double radius,
+                const Colour& colour);
   /// Text near a place of the model, where the picture is free: best on the
   /// side that `away` points to, else around; never across another label.
   void add_label(const Vec3& at, const Vec3& away, const std::string& text,
                  const TextStyle& style);
   /// Text at a place of the panel.
   void add_text(double x, double y, const std::string& text, const TextStyle&);
-  /// Horizontal, from 0 to `top`, a tick every `step`.
-  void add_colour_bar(const Box& place, const std::string& title, double top,
-                      double step, int text_size);
+  struct BarScale {
+    double top = 1.0;
+    double step = 0.5;
+    bool clipped = false;  // the last tick reads "≥ top"
+  };
+  /// Horizontal, from 0 to the top, a tick every step.
+  void add_colour_bar(const Box& place, const std::string& title,
+                      const BarScale& scale, int text_size);
+  /// Directions x, y, z in the lower left corner and, with a unit, a bar of a
+  /// round length beside them, true in the middle of the model.
+  void add_axes(const std::string& length_unit, int text_size);
 
   /// A row of colours with their names, over the panel's width.
   struct Key {
@@ -74,7 +84,10 @@ class Panel {
     TextStyle style;
   };
 
+  int beyond(const PixelBox& box) const;
   void place_label(const Label& label, Canvas& canvas) const;
+  void draw_axes(Canvas& canvas) const;
+  void draw_scale(Canvas& canvas, double left, double bottom) const;
 
   Box place_;
   double left_, bottom_, width_, height_;  // [pixel]
@@ -84,6 +97,8 @@ class Panel {
   std::vector<FlatBox> boxes_;
   std::vector<Text> texts_;
   std::vector<Label> labels_;
+  int axes_text_ = 0;  // [pixel]; 0: no axes
+  std::string axes_unit_;
   vtkSmartPointer<vtkRenderer> renderer_;
 };
 

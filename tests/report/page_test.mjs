@@ -137,6 +137,10 @@ function makeRuns() {
   fs.writeFileSync(path.join(output, "struts.toml"), STRUTS);
   run(0, "run", "struts.toml", "--no-pictures", "--out", "struts");
   run(0, "compare", "arms", "even", "--out", "compared");
+  // As many members as fit a page, each of its own height.
+  const members = Array.from({ length: 28 }, (_, k) => `[study.members.m${k + 1}]\nheight = ${40 + k}\n`).join("");
+  fs.writeFileSync(path.join(output, "many.toml"), STRUTS.replace(/\[study\.members[^]*/, members));
+  run(0, "run", "many.toml", "--no-pictures", "--no-frames", "--out", "many");
   fs.writeFileSync(path.join(output, "open.stl"), "solid left_pad\nendsolid\n");
   run(2, "compare", "arms", "open.stl", "--out", "nothing");
   assert.deepEqual(fs.readdirSync(path.join(output, "nothing")), []);
@@ -419,6 +423,52 @@ async function testOthers(browser) {
   await compared.leave();
 }
 
+/** Names of 28 members stand over their own parts, none over another. */
+async function testMany(browser) {
+  const many = await Visit.to(browser, "many");
+  const cells = await many.page.evaluate(() => {
+    const canvas = document.querySelector("canvas");
+    const frame = canvas.getBoundingClientRect();
+    const copy = document.createElement("canvas");
+    copy.width = frame.width;
+    copy.height = frame.height;
+    const context = copy.getContext("2d");
+    context.drawImage(canvas, 0, 0, frame.width, frame.height);
+    const titles = [...document.querySelectorAll(".pane-title")].map((t) => [t.textContent, t.getBoundingClientRect()]);
+    const lefts = [...new Set(titles.map(([, box]) => Math.round(box.left)))].sort((a, b) => a - b);
+    const tops = [...new Set(titles.map(([, box]) => Math.round(box.top)))].sort((a, b) => a - b);
+    const width = frame.width / lefts.length;
+    const height = frame.height / tops.length;
+    return titles.map(([name, box], k) => {
+      const pixels = context.getImageData(box.left - frame.left, box.top - frame.top, width, height).data;
+      let drawn = 0;
+      for (let i = 3; i < pixels.length; i += 4) {
+        drawn += pixels[i] > 0 ? 1 : 0;
+      }
+      return {
+        name,
+        column: lefts.indexOf(Math.round(box.left)),
+        row: tops.indexOf(Math.round(box.top)),
+        columns: lefts.length,
+        inside: box.left >= frame.left - 1 && box.right <= frame.right + 1 && box.top >= frame.top - 1 && box.bottom <= frame.bottom + 1,
+        drawn,
+        k,
+        area: width * height,
+      };
+    });
+  });
+  assert.equal(cells.length, 28);
+  for (const cell of cells) {
+    assert.equal(cell.name, `m${cell.k + 1}`);
+    assert.equal(cell.row * cell.columns + cell.column, cell.k, cell.name);
+    assert.ok(cell.inside, `${cell.name} lies beside the canvas`);
+    assert.ok(cell.drawn > 0.02 * cell.area, `nothing is drawn below ${cell.name}`);
+  }
+  assert.ok(cells[0].columns < 28 && cells[0].columns > 3, `${cells[0].columns} columns`);
+  await many.shot("many");
+  await many.leave();
+}
+
 async function testWithoutWebgl() {
   const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-3d-apis"] });
   const visit = await Visit.to(browser, "arms");
@@ -434,6 +484,7 @@ const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? 
 try {
   await testRun(browser);
   await testOthers(browser);
+  await testMany(browser);
 } finally {
   await browser.close();
 }

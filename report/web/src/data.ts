@@ -165,6 +165,14 @@ export interface StressFigures {
   energy_density?: Distribution;
 }
 
+export interface NormPeak {
+  norm: number | null;
+  load_case: string;
+  peak: number | null;
+  bound?: number | null;
+  peak_within_bound?: boolean;
+}
+
 export interface MemberResult {
   name: string;
   folder: string;
@@ -233,6 +241,10 @@ export interface Result {
   };
   element_errors?: { energy: number };
   stress?: Record<string, StressFigures>;
+  /** Nearest to yield; of older results none. */
+  worst_load_case?: string;
+  /** Means over the volume beside the peaks they are bounded for. */
+  norm_peaks?: Record<string, NormPeak>;
   buckling?: Record<
     string,
     { factors?: (number | null)[]; none_below?: number | null }
@@ -289,6 +301,7 @@ export interface ComparedPart {
   volume: number;
   mass: number;
   elements: number;
+  exclusion?: { volume_share: number };
   load_cases: Record<
     string,
     {

@@ -28,13 +28,23 @@ export function number(
   return value < 0 ? MINUS + text : text;
 }
 
+/** Factor and unit in which people read masses: kg, where a case counts in tonnes. */
+export function shownUnit(unit: string): [number, string] {
+  const shown: Record<string, [number, string]> = {
+    t: [1000, "kg"],
+    "lbf s2/in": [386.0885826771654, "lb"],
+  };
+  return shown[unit] ?? [1, unit];
+}
+
 /** "0.1040 mm". */
 export function quantity(
   value: number | null | undefined,
-  unit = "",
+  caseUnit = "",
   digits = 4,
 ): string {
-  const text = number(value, digits);
+  const [factor, unit] = shownUnit(caseUnit);
+  const text = number(typeof value === "number" ? factor * value : value, digits);
   return unit === "" || text === "\u2013" ? text : `${text}\u202f${unit}`;
 }
 

@@ -1,6 +1,6 @@
 import type { MemberResult, PageData } from "./data";
 import { h, section, table } from "./dom";
-import { number, quantity, seconds, unitText, words } from "./format";
+import { number, quantity, seconds, shownUnit, unitText, words } from "./format";
 
 /** A family's members in one table. */
 export function familySection(data: PageData): HTMLElement | null {
@@ -15,7 +15,10 @@ export function familySection(data: PageData): HTMLElement | null {
   const parameters = keysOf((m) => m.parameters);
   const design = keysOf((m) => m.design);
   const responses = keysOf((m) => m.responses);
-  const unitOf = (name: string) => unitText(data.case?.responses.find((r) => r.name === name)?.unit ?? "");
+  const shownOf = (name: string) => shownUnit(data.case?.responses.find((r) => r.name === name)?.unit ?? "");
+  const unitOf = (name: string) => unitText(shownOf(name)[1]);
+  const shown = (name: string, value: number | null | undefined) =>
+    typeof value === "number" ? shownOf(name)[0] * value : value;
   return section(
     "members",
     "Members",
@@ -37,7 +40,7 @@ export function familySection(data: PageData): HTMLElement | null {
           sized ? "\u2713 done" : h("strong", { class: "bad", title: m.message }, `\u2717 ${m.status}`),
           ...parameters.map((n) => number(m.parameters?.[n])),
           ...design.map((n) => number(m.design?.[n])),
-          ...responses.map((n) => number(m.responses?.[n])),
+          ...responses.map((n) => number(shown(n, m.responses?.[n]))),
           String(m.evaluations ?? 0),
           seconds(m.seconds),
         ];
@@ -69,6 +72,9 @@ export function comparisonSection(data: PageData): HTMLElement | null {
   add("pieces", "", parts.map((p) => p.parts));
   add("mass", units.mass, parts.map((p) => p.mass));
   add("volume", `${units.length}\u00b3`, parts.map((p) => p.volume));
+  if (parts.some((p) => p.exclusion)) {
+    add("volume left out of stresses", "%", parts.map((p) => 100 * (p.exclusion?.volume_share ?? 0)));
+  }
   const stiffness = `${units.force}/${units.length}`;
   for (const name of [...new Set(parts.flatMap((p) => Object.keys(p.load_cases)))]) {
     const of = parts.map((p) => p.load_cases[name]);

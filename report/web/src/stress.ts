@@ -35,6 +35,21 @@ export function stressSection(data: PageData): HTMLElement | null {
   const cases = Object.entries(data.result?.stress ?? {});
   const units = data.result!.units!;
   const children: HTMLElement[] = [];
+  if (cases.length > 1) {
+    const worst = data.result?.worst_load_case;
+    children.push(
+      table(
+        "Load cases",
+        [{ head: "load case" }, { head: "largest von Mises stress", numeric: true }, { head: "safety against yield", numeric: true }, { head: "" }],
+        cases.map(([name, f]) => [
+          words(name),
+          quantity(f.max_von_mises, units.pressure),
+          number(f.safety_factor?.smallest, 3),
+          name === worst ? h("strong", {}, "the worst") : "",
+        ]),
+      ),
+    );
+  }
   for (const [name, figures] of cases) {
     const von = figures.von_mises;
     const energy = figures.energy_density;

@@ -1,4 +1,4 @@
-import type { PageData, Result } from "./data";
+import type { PageData, Result, StressFigures } from "./data";
 import { h, section, table } from "./dom";
 import { count, number, percent, plusMinus, quantity, seconds, unitText, words } from "./format";
 
@@ -62,6 +62,22 @@ function card(value: string, what: string): HTMLElement {
   return h("div", { class: "card" }, h("dd", {}, value), h("dt", {}, what));
 }
 
+/** Name and figures of the load case nearest to yield, and how many there are. */
+function worstLoadCase(result: Result): [string, StressFigures, number] | null {
+  const cases = Object.entries(result.stress ?? {});
+  if (cases.length === 0) {
+    return null;
+  }
+  // Results of older versions do not say which.
+  const safety = (f: StressFigures) => f.safety_factor?.smallest ?? Infinity;
+  const worse = (a: StressFigures, b: StressFigures) =>
+    safety(a) !== safety(b) ? safety(a) < safety(b) : (a.max_von_mises ?? 0) > (b.max_von_mises ?? 0);
+  const found =
+    cases.find(([name]) => name === result.worst_load_case) ??
+    cases.reduce((most, one) => (worse(one[1], most[1]) ? one : most));
+  return [found[0], found[1], cases.length > 1 ? cases.length : 0];
+}
+
 /** The few figures that one wants first. */
 export function keyFigures(data: PageData): HTMLElement | null {
   const result = data.result;
@@ -75,11 +91,13 @@ export function keyFigures(data: PageData): HTMLElement | null {
       cards.push(card(quantity(value, unitText(response.unit)), words(response.name)));
     }
   }
-  const first = Object.values(result.stress ?? {})[0];
-  if (first) {
-    cards.push(card(quantity(first.max_von_mises, result.units?.pressure ?? ""), "largest von Mises stress"));
-    if (first.safety_factor?.smallest) {
-      cards.push(card(number(first.safety_factor.smallest, 3), "safety against yield"));
+  const worst = worstLoadCase(result);
+  if (worst) {
+    const [name, figures, several] = worst;
+    const where = several ? `, \u201c${words(name)}\u201d (the worst of ${several} load cases)` : "";
+    cards.push(card(quantity(figures.max_von_mises, result.units?.pressure ?? ""), `largest von Mises stress${where}`));
+    if (figures.safety_factor?.smallest) {
+      cards.push(card(number(figures.safety_factor.smallest, 3), `safety against yield${where}`));
     }
   }
   if (result.evaluations && result.seconds?.total !== undefined) {
@@ -98,9 +116,17 @@ export function answerSection(data: PageData): HTMLElement | null {
   const designs = data.case?.design ?? [];
   const names = designs.map((d) => d.name);
   const parameters = result.parameters ?? {};
+  const atBound = (value: number | null | undefined, d: { lower: number | null; upper: number | null }) => {
+    const [low, high] = [d.lower ?? -Infinity, d.upper ?? Infinity];
+    if (result.evaluations === 1 || typeof value !== "number" || !(high > low)) {
+      return "";
+    }
+    const near = Number.isFinite(high - low) ? 1e-6 * (high - low) : 0;
+    return value <= low + near ? " (at its lower bound)" : value >= high - near ? " (at its upper bound)" : "";
+  };
   const designRows = designs.map((d) => [
     words(d.name),
-    number(parameters[d.name]),
+    number(parameters[d.name]) + atBound(parameters[d.name], d),
     plusMinus(result.parameter_errors?.[d.name]),
     number(result.start?.parameters[d.name] ?? d.initial),
     `${number(d.lower)} to ${number(d.upper)}`,
@@ -147,15 +173,30 @@ function constraintTable(data: PageData, result: Result): HTMLElement | null {
     return null;
   }
   const matches = data.case?.study.kind === "match";
+  const peaks = result.norm_peaks ?? {};
+  const beside = constraints.some(([name]) => peaks[name]);
+  const unit = result.units?.pressure ?? "";
   return table(
     matches ? "Targets: relative mismatch" : "Constraints",
-    [{ head: matches ? "target" : "constraint" }, { head: "value", numeric: true }, { head: matches ? "tolerance" : "bound", numeric: true }, { head: "kept" }],
-    constraints.map(([name, c]) => [
-      words(name),
-      number(c.value),
-      number(c.bound),
-      c.satisfied ? "\u2713 yes" : h("strong", { class: "bad" }, "\u2717 no"),
-    ]),
+    [
+      { head: matches ? "target" : "constraint" },
+      { head: "value", numeric: true },
+      { head: matches ? "tolerance" : "bound", numeric: true },
+      { head: "kept" },
+      ...(beside ? [{ head: "nodal peak", numeric: true }] : []),
+    ],
+    constraints.map(([name, c]) => {
+      const peak = peaks[name];
+      const text = peak ? quantity(peak.peak, unit) : "";
+      const over = peak?.peak_within_bound === false;
+      return [
+        peak ? `${words(name)} (a mean over the volume)` : words(name),
+        number(c.value),
+        number(c.bound),
+        c.satisfied ? "\u2713 yes" : h("strong", { class: "bad" }, "\u2717 no"),
+        ...(beside ? [over ? h("strong", { class: "bad" }, `${text} \u2717 above the bound`) : text] : []),
+      ];
+    }),
   );
 }
 

@@ -52,6 +52,20 @@ export function fieldInfos(units: Units): FieldInfo[] {
   ];
 }
 
+/** Stress of one load case of several: "von_mises:NAME". */
+export function caseFieldInfos(keys: string[], units: Units): FieldInfo[] {
+  const prefix = "von_mises:";
+  return keys
+    .filter((key) => key.startsWith(prefix))
+    .map((key) => ({
+      key,
+      label: `von Mises stress, ${key.slice(prefix.length).replace(/_/g, " ")}`,
+      unit: units.pressure,
+      on: "part",
+      about: "Of this load case; loads and deflection are drawn of the worst.",
+    }));
+}
+
 /** Least and largest finite value of all. */
 export function rangeOf(fields: (Float32Array | undefined)[]): [number, number] {
   let low = Infinity;

@@ -128,7 +128,7 @@ export class Model {
 
   private addLoads(): void {
     const pane = this.panes[0];
-    const loadCase = this.firstLoadCase();
+    const loadCase = this.shownLoadCase();
     const surface = pane?.part?.mesh;
     if (!loadCase || !surface) {
       return;
@@ -164,7 +164,7 @@ export class Model {
     });
   }
 
-  private firstLoadCase(): LoadCase | undefined {
+  private shownLoadCase(): LoadCase | undefined {
     const name = this.data.parts[0]?.mesh.load_case;
     const cases = this.data.loads ?? [];
     return cases.find((c) => c.name === name) ?? cases[0];

@@ -24,12 +24,15 @@ export class Stage {
   readonly canvas: HTMLCanvasElement;
   readonly panes: Pane[] = [];
   readonly labels: Label[] = [];
+  /** Of the panes in their order: each stands over its own. */
+  readonly titles: HTMLElement[] = [];
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
   private readonly camera = new THREE.PerspectiveCamera(FIELD, 1, 0.1, 10);
   private readonly controls: OrbitControls;
   private asked = false;
   private radius = 1;
+  private looked = false; // with the canvas at its size
 
   /** Throws where the browser has no WebGL. */
   constructor(canvas: HTMLCanvasElement) {
@@ -157,6 +160,10 @@ export class Stage {
     if (width === 0 || height === 0) {
       return;
     }
+    if (!this.looked) {
+      this.looked = true;
+      this.look(VIEWS.Oblique);
+    }
     this.renderer.setSize(width, height, false);
     this.renderer.setScissorTest(false);
     this.renderer.setClearColor(0x000000, 0);
@@ -178,6 +185,12 @@ export class Stage {
       }
       this.renderer.render(this.scene, this.camera);
       this.place(pane, x, y, w, h);
+      const title = this.titles[k];
+      if (title) {
+        title.style.left = `${x}px`;
+        title.style.top = `${y}px`;
+        title.style.maxWidth = `${w}px`;
+      }
     });
     this.canvas.dataset.drawn = String(
       Number(this.canvas.dataset.drawn ?? "0") + 1,

@@ -3,7 +3,7 @@ import { mapGradient, MAPS, type MapName } from "../colours";
 import type { PageData, Units } from "../data";
 import { h } from "../dom";
 import { number, quantity, words } from "../format";
-import { fieldInfos, middleRange, rangeOf, type FieldInfo } from "./fields";
+import { caseFieldInfos, fieldInfos, middleRange, rangeOf, type FieldInfo } from "./fields";
 import { historyControl } from "./history";
 import { Model } from "./model";
 import { mapTexture, type Shared } from "./shading";
@@ -54,7 +54,9 @@ class View {
   ) {
     this.stage = new Stage(canvas);
     this.model = new Model(data, this.shared, this.stage, this.overlay);
-    this.infos = fieldInfos(units).filter((info) =>
+    const keys = this.model.panes.flatMap((p) => [...(p.part?.mesh.fields.keys() ?? [])]);
+    const infos = [...fieldInfos(units), ...caseFieldInfos([...new Set(keys)], units)];
+    this.infos = infos.filter((info) =>
       info.on === "film"
         ? this.model.film !== null
         : this.model.panes.some((p) => p.part?.mesh.fields.has(info.key)),
@@ -67,7 +69,7 @@ class View {
       this.overlay,
       this.bar,
     );
-    this.paneTitles();
+    this.paneTitles(frameBox);
     const hint =
       "Drag to turn, with the right button to move; after a click the wheel " +
       "zooms. Arrow keys turn, + and \u2212 zoom, 0 resets.";
@@ -81,19 +83,19 @@ class View {
     document.addEventListener("meniscus-look", () => this.stage.draw());
   }
 
-  private paneTitles(): void {
+  private paneTitles(frame: HTMLElement): void {
     if (this.model.panes.length < 2) {
       return;
     }
-    const [columns, rows] = this.stage.grid();
+    // Small panes are of no use: room for more than one row of them.
+    const many = Math.ceil(this.model.panes.length / 6);
+    frame.style.height = many > 2 ? `${Math.min(1600, 240 * many)}px` : "";
     this.model.panes.forEach((pane, k) => {
       const link = this.data.parts[k]?.link;
       const title = link
         ? h("a", { href: link, class: "pane-title" }, pane.name)
         : h("span", { class: "pane-title" }, pane.name);
-      title.style.left = `${(100 * (k % columns)) / columns}%`;
-      title.style.top = `${(100 * Math.floor(k / columns)) / rows}%`;
-      title.style.maxWidth = `${100 / columns}%`;
+      this.stage.titles.push(title);
       this.overlay.append(title);
     });
     this.overlay.removeAttribute("aria-hidden");
