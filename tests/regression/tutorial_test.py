@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""docs/tutorial.md, done as it says: its commands run in order in an empty
+"""docs/tutorial.md and docs/arms.md, done as they say: its commands run in order in an empty
 folder, its tables are put into the files that it names, and what it shows is
 what comes out, but for the clock and the last digits."""
 import os
@@ -10,7 +10,7 @@ import unittest
 import program
 from program import ProgramTest
 
-TUTORIAL = program.ROOT / "docs" / "tutorial.md"
+DOCS = program.ROOT / "docs"
 CLOSE = 0.02       # of numbers: libraries and processors differ
 NOISE = 1e-4       # below it residuals and mismatches are only small
 LOOSE = 0.5        # of numbers after +-, of counts, of necks
@@ -108,10 +108,21 @@ class Tutorial(ProgramTest):
         return done.returncode, done.stdout
 
     def test_everything_in_it(self):
+        commands, shown = self.follow(DOCS / "tutorial.md")
+        self.assertGreater(commands, 8)
+        self.assertGreater(shown, 5)
+
+    def test_arms(self):
+        commands, shown = self.follow(DOCS / "arms.md")
+        self.assertGreater(commands, 4)
+        self.assertGreater(shown, 2)
+
+    def follow(self, page):
+        """Numbers of commands done and of outputs compared."""
         commands = 0
         shown = 0
         code, said = 0, ""
-        for info, content in blocks(TUTORIAL.read_text(encoding="utf-8")):
+        for info, content in blocks(page.read_text(encoding="utf-8")):
             words = info.split()
             if words[:1] == ["sh"] and "untested" not in words:
                 code, said = self.run_script(content)
@@ -126,9 +137,9 @@ class Tutorial(ProgramTest):
             elif words[:1] == ["toml"]:
                 self.assertEqual(len(words), 2, f"whose file? {info}")
                 path = self.folder / words[1]
-                path.write_text(put_tables(path.read_text(), content))
-        self.assertGreater(commands, 8)
-        self.assertGreater(shown, 5)
+                text = path.read_text() if path.exists() else ""
+                path.write_text(put_tables(text, content))
+        return commands, shown
 
     def test_what_differs_is_seen(self):
         shown = "film: stable\n...\nmass 2.10 kg +- 0.02 in 3.1 s\n"
