@@ -174,6 +174,22 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
   return parts;
 }
 
+/// Surfaces of an earlier comparison of more parts.
+void remove_other_surfaces(const fs::path& folder, std::size_t parts) {
+  if (!fs::exists(folder / "compare.json")) {
+    return;
+  }
+  const auto earlier = parse_json(read_file(folder / "compare.json"));
+  if (!earlier.is_object() || !earlier.contains("parts") ||
+      !earlier["parts"].is_array()) {
+    return;
+  }
+  for (std::size_t part = parts + 1; part <= earlier["parts"].size(); ++part) {
+    std::error_code ignored;
+    fs::remove(folder / surface_name(part), ignored);
+  }
+}
+
 void compare(const CompareArguments& arguments, Surfaces& surfaces,
              Monitor& monitor) {
   const fs::path folder = arguments.out;
@@ -185,6 +201,7 @@ void compare(const CompareArguments& arguments, Surfaces& surfaces,
   if (!arguments.quiet) {
     std::fputs(for_people(table).c_str(), stdout);
   }
+  remove_other_surfaces(folder, parts.size());
   write_file(folder / "compare.csv", files::csv_text(table));
   write_file(
       folder / "compare.json",

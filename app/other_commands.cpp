@@ -22,6 +22,7 @@
 #include "pipeline/results/family_table.h"
 #include "pipeline/results/new_case.h"
 #include "pipeline/results/results.h"
+#include "pipeline/results/run_files.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
 #include "pipeline/study/film_frames.h"
@@ -187,6 +188,12 @@ void write_evolved(const case_data::Case& input,
                    const films::NestingReport& nesting, const fs::path& folder,
                    const EvolveArguments& arguments, Monitor& monitor) {
   const settle::FilmState& film = model.reference();
+  const std::vector<std::string> owned = results::owned_files(folder);
+  if (!arguments.pictures &&
+      std::find(owned.begin(), owned.end(), "film.png") != owned.end()) {
+    fs::remove(folder / "film.png");  // of another film
+  }
+  results::claim_files(folder, {"film.vtp", "film.json", "film.png"});
   std::vector<std::string> solids;
   for (const films::CapSpec& cap : inputs.film_system.caps) {
     solids.push_back(cap.name);

@@ -162,6 +162,73 @@ class WorstCase(ProgramTest):
         for name, text in mine.items():
             self.assertEqual((out / name).read_text(), text)
 
+    def test_an_older_films_picture_goes(self):
+        path = self.folder / "case.toml"
+        path.write_text(CASE)
+        for options, there in ((["--out", "film"], True),
+                               (["--out", "film", "--no-pictures"], False)):
+            done = self.call("evolve", path, *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual((self.folder / "film" / "film.png").exists(), there)
+        # One that is the user's stays.
+        (self.folder / "own").mkdir()
+        (self.folder / "own" / "film.png").write_text("mine")
+        self.call("evolve", path, "--out", "own", "--no-pictures")
+        self.assertEqual((self.folder / "own" / "film.png").read_text(), "mine")
+
+    def test_compare_tells_what_is_left_out_of_each_part(self):
+        text = CASE.replace(
+            "buckling = 0",
+            'buckling = 0\nexclude = [{ near = "ground", distance = 9 }]')
+        for out, foot in (("a", 25), ("b", 30), ("c", 21)):
+            self.run_case(text, "--no-pictures", "--no-report", "--set",
+                          f"foot={foot}", out=out)
+        done = self.call("compare", "a", "b", "c", "--out", "side")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        row = re.search(r"left out of stresses \[% of the volume\](.*)",
+                        done.stdout).group(1).split()
+        parts = json.loads(
+            (self.folder / "side" / "compare.json").read_text())["parts"]
+        shown = [float(row[k]) for k in (0, 1, 3)]
+        for value, part in zip(shown, parts):
+            share = 100 * part["exclusion"]["volume_share"]
+            self.assertGreater(share, 5)
+            self.assertAlmostEqual(value / share, 1, 4)
+            self.assertEqual(len(part["exclusion"]["zones"]), 1)
+        self.assertNotAlmostEqual(shown[0], shown[1], 3)
+        self.assertTrue((self.folder / "side" / "part_3.vtp").exists())
+        self.call("compare", "a", "b", "--out", "side")
+        self.assertFalse((self.folder / "side" / "part_3.vtp").exists())
+
+    def test_faces_are_told_so_that_one_finds_them(self):
+        self.run_case(CASE, "--no-pictures", "--no-report")
+        done = self.call("export", "out", "--format", "obj")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        file = next((self.folder / "out").glob("part*.obj"))
+        text = file.read_text().replace("g ground", "g a").replace("g top", "g b")
+        for name in ("one.obj", "two.obj"):
+            (self.folder / name).write_text(text)
+        lost = self.call("compare", "out", "one.obj", "--out", "x")
+        self.assertEqual(lost.returncode, 2)
+        self.assertRegex(lost.stderr, r"a: plane at \([^)]*\), outwards "
+                         r"\(0, 0, -1\), area [\d.e+]+ mm2")
+        self.assertRegex(lost.stderr, r"skin: curved at ")
+        # Names of one file alone come before those of all.
+        (self.folder / "two.obj").write_text(
+            text.replace("g a", "g p").replace("g b", "g q"))
+        found = self.call("compare", "out", "one.obj", "two.obj", "--out", "x",
+                          "--face", "ground=a", "--face", "top=b",
+                          "--face", "two.obj:ground=p", "--face",
+                          "two.obj:top=q")
+        self.assertEqual(found.returncode, 0, found.stderr)
+        parts = json.loads(
+            (self.folder / "x" / "compare.json").read_text())["parts"]
+        self.assertEqual(parts[1]["mass"], parts[2]["mass"])
+        wrong = self.call("compare", "out", "one.obj", "--out", "x", "--face",
+                          "other.obj:ground=a")
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("'other.obj' is none of the parts", wrong.stderr)
+
     def test_advice_was_tried(self):
         path = self.folder / "case.toml"
         path.write_text(CASE)
