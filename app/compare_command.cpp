@@ -32,8 +32,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Labels flush left in a table whose columns are flush right.
-std::string for_people(std::vector<files::TextRow> table) {
+/// The row's values (not its ratios) times `factor`, "[from" now "[to".
+void show_row(double factor, const std::string& from, const std::string& to,
+              files::TextRow& row) {
+  row[0].replace(row[0].size() - from.size(), from.size(), to);
+  for (std::size_t k = 1; k < row.size(); k += k == 1 ? 1 : 2) {
+    if (!row[k].empty()) {
+      row[k] = fmt::format("{:.6g}", factor * std::stod(row[k]));
+    }
+  }
+}
+
+/// Masses as people read them, labels flush left in a table whose columns are
+/// flush right.
+std::string for_people(std::vector<files::TextRow> table,
+                       const UnitSystem& units) {
+  const ShownUnit mass = units.shown(Dimension::Mass);
+  const std::string whole = "[" + units.mass + "]";
+  const std::string per = "/" + units.mass + "]";
+  for (files::TextRow& row : table) {
+    if (row[0].ends_with(whole)) {
+      show_row(mass.factor, whole, "[" + mass.unit + "]", row);
+    } else if (row[0].ends_with(per)) {
+      show_row(1.0 / mass.factor, per, "/" + mass.unit + "]", row);
+    }
+  }
   std::size_t width = 0;
   for (const files::TextRow& row : table) {
     width = std::max(width, row[0].size());
@@ -199,7 +222,7 @@ void compare(const CompareArguments& arguments, Surfaces& surfaces,
   const std::vector<files::TextRow> table =
       results::comparison_table(parts, units);
   if (!arguments.quiet) {
-    std::fputs(for_people(table).c_str(), stdout);
+    std::fputs(for_people(table, units).c_str(), stdout);
   }
   remove_other_surfaces(folder, parts.size());
   write_file(folder / "compare.csv", files::csv_text(table));
