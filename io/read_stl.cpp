@@ -128,10 +128,10 @@ int StlReader::known(const std::array<double, 3>& x) {
 void StlReader::refuse_outlier() const {
   const auto outlier = find_outlier(mesh_.points);
   if (outlier) {
-    throw InvalidInput(fmt::format(
-        "{}:{}{}: {}", path_, is_binary_ ? "facet " : "",
-        first_[static_cast<std::size_t>(outlier->point)],
-        is_binary_ ? " (from 0)" : "", outlier_text(*outlier, mesh_.points)));
+    throw InvalidInput(
+        fmt::format("{}:{}{}: {}", path_, is_binary_ ? "facet " : "",
+                    first_[static_cast<std::size_t>(outlier->point)],
+                    outlier_text(*outlier, mesh_.points)));
   }
 }
 

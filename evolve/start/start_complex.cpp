@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/memory.h"
 #include "evolve/energy/fields.h"
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/body_sides.h"
@@ -55,6 +56,7 @@ class StartBuilder {
         rim_of(name, cap.name);
       }
     }
+    require_room_for_caps();
     shared_.mark_edges(result_);
     for (const films::FilmSpec& film : system_.films) {
       add_film(film);
@@ -63,6 +65,7 @@ class StartBuilder {
       add_cap(cap);
     }
     raise_disks(system_, result_);
+    refuse_twins();
     for (const films::BodySpec& body : system_.bodies) {
       result_.bodies.push_back(films::make_body(body, result_.mesh));
     }
@@ -110,6 +113,57 @@ class StartBuilder {
     }
     for (const films::CapSpec& cap : system_.caps) {
       add(cap.name);
+    }
+  }
+
+  /// Before they are filled: their flat areas alone tell edges that are far too
+  /// short.
+  void require_room_for_caps() {
+    constexpr double kBytes = 1500.0;  // of a facet
+    double area = 0.0;
+    for (const films::CapSpec& cap : system_.caps) {
+      if (!cap.start && cap.inner.empty()) {
+        for (const std::string& name : cap.curves()) {
+          area += polygon_area_vector(points_of(rims_.at(name))).norm();
+        }
+      }
+    }
+    const double facets = area / (0.25 * std::sqrt(3.0) * edge_ * edge_);
+    const double held = available_memory() / kBytes;
+    if (facets > held) {
+      throw InvalidInput(fmt::format(
+          "the caps take about {:.2g} facets at edges of {:.4g}, and memory "
+          "holds {:.2g}; use longer edges, or look for a curve that is too "
+          "large",
+          facets, edge_, held));
+    }
+  }
+
+  /// Two films that begin with the same facets never come apart: all of them
+  /// lie on each other.
+  void refuse_twins() const {
+    std::map<Triangle, int> film_of;
+    for (std::size_t f = 0; f < result_.mesh.facets.size(); ++f) {
+      const int film = result_.mesh.facet_label[f];
+      Triangle corners = result_.mesh.facets[f];
+      const bool on_rims =
+          std::all_of(corners.begin(), corners.end(), [&](int v) {
+            return result_.vertices[v].kind == films::VertexKind::OnCurve;
+          });
+      if (!result_.surfaces[film].liquid || !on_rims ||
+          system_.films[static_cast<std::size_t>(film)].kind ==
+              films::FilmKind::Disk) {  // disks are raised
+        continue;
+      }
+      std::sort(corners.begin(), corners.end());
+      const auto [other, is_new] = film_of.emplace(corners, film);
+      if (!is_new && other->second != film) {
+        throw InvalidInput(fmt::format(
+            "films '{}' and '{}' begin with the same facets between the same "
+            "curves and lie on each other; leave one out, or give it a curve "
+            "of its own",
+            result_.surfaces[other->second].name, result_.surfaces[film].name));
+      }
     }
   }
 

@@ -44,11 +44,12 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
   const StageMeter meter;
   Evaluation& start = part.start;
   const double edge = inputs.fea_edge * options.edge_factor;
-  const WorkEstimate work =
-      estimate_work(solid_volume(part.input, inputs.film_system), 0, edge);
-  monitor.progress(
-      {.stage = "film",
-       .detail = "settling the start of a part of " + text_of(work)});
+  const double volume = solid_volume(part.input, inputs.film_system);
+  const WorkEstimate work = estimate_work(volume, 0, edge);
+  monitor.progress({.stage = "film",
+                    .detail = volume > 0.0
+                                  ? "settling the start of " + text_of(work)
+                                  : std::string("settling the start")});
   require_work(work, edge);
   part.film.emplace(case_data::freeze_films(
       part.input, inputs,

@@ -104,6 +104,7 @@ settle::FilmState descend_by_levels(films::FilmComplex& complex,
           : settle::DescentMethod::ConjugateGradients;
   settle::DescentReport report;
   films::FilmComplex before;  // of grooming, which leaves nothing when stopped
+  std::optional<Heeding> deaf;  // to the stop that was heard
   int steps = 0;
   try {
     for (int level = 0; level <= refinements; ++level) {
@@ -122,7 +123,7 @@ settle::FilmState descend_by_levels(films::FilmComplex& complex,
     }
   } catch (const Interrupted&) {  // what there is of it is kept
     stopped = true;
-    const Heeding deaf(&silent_monitor());
+    deaf.emplace(&silent_monitor());
     if (complex.mesh.facets.empty()) {
       complex = std::move(before);
     }

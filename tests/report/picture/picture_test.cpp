@@ -255,7 +255,7 @@ TEST_F(PictureTest, TheDisplayOpensToItsKeyOnly) {
   write_file(waiting, fmt::format("#!/bin/sh\ncd '{}'\necho \"$DISPLAY\" > "
                                   "name\ncp \"$XAUTHORITY\" part\nmv part "
                                   "key\nsleep 60\n",
-                                  folder_.string()));
+                                  folder_.path().string()));
   fs::permissions(waiting, fs::perms::owner_all);
   ::setenv("MENISCUS_RENDER", waiting.c_str(), 1);
   const picture::PicturesBeside pictures(
