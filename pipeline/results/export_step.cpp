@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kMostDeviation = 0.1;  // of the film's edge: else a warning
 constexpr double kMostBreak = 1.0;      // [degree]
-constexpr double kFlat = 1e-7;          // of the part's size
+constexpr double kFlatRing = 1e-7;      // of the part's size
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 solid::RimPiece line_piece(const Vec3& from, const Vec3& to) {
@@ -120,7 +120,7 @@ bool is_flat(const films::CapSpec& cap, const SurfaceMesh& mesh) {
   }
   // Around a bore the areas cancel, and their sum has any direction.
   normal.normalize();
-  const double most = kFlat * bounding_diagonal(mesh.points);
+  const double most = kFlatRing * bounding_diagonal(mesh.points);
   return std::all_of(vertices.begin(), vertices.end(), [&](int v) {
     return std::abs(normal.dot(mesh.points[v] - mesh.points[vertices[0]])) <=
            most;
