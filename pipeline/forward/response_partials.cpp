@@ -251,7 +251,7 @@ ResponsePartials distance(const ResponseTask& task) {
 
 ResponsePartials gap(const ResponseTask& task) {
   // Films run beside each other over wide areas, and many vertices count.
-  constexpr double kGapPartOfEdge = 0.02;
+  constexpr double kGapPartOfEdge = 0.01;
   const double usual = kGapPartOfEdge * task.fields.inputs.fea_edge;
   return to_partials(task.fields.film->gap(
       task.fields.film_state->points, task.response.films[0],

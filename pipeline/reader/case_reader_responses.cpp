@@ -310,7 +310,7 @@ TableSpec response_table() {
         "of thickness, distance, gap: all places within about as much of the "
         "worst one count, and the value is on the safe side of it by no more "
         "than this times the logarithm of their number; a tenth of "
-        "resolution.fea when left out, of gap a fiftieth, of thickness what "
+        "resolution.fea when left out, of gap a hundredth, of thickness what "
         "keeps the value within 5 % of the least one"},
        {"film", K::Name, D::None, false,
         "of film_area: one film; all when left out"},

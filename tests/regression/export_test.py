@@ -321,7 +321,7 @@ class Export(ProgramTest):
         there = self.home / "from_datafile"
         alone = ["compare", self.out, self.file("fe"), "--out", there]
         said = self.refused(alone)
-        self.assertIn("there are film_1, ", said)
+        self.assertIn("there are\n  film_1: ", said)
         self.assertIn("--face", said)
         # Solids in the order of the case.
         caps = re.findall(r"(?m)^\[solids\.(\w+)\]", self.case.read_text())

@@ -31,7 +31,7 @@ constexpr double kVolumeReach = 0.02;
 constexpr int kVolumes = 3;  // the last variables
 constexpr int kSamples = 20;
 constexpr int kLighter = 6;  // of them began below the optimum's mass
-constexpr int kMostTries = 10;
+constexpr int kMostTries = 20;
 constexpr int kCorrections = 8;
 // What a feasible sample may miss a constraint by [its scale]; the multipliers
 // make of it less than the gain below.
