@@ -101,7 +101,9 @@ def of_curve(choice, folder, bases):
     circle = text[text.index('kind = "circle"'):text.index("[curves.left]")]
     if choice.randrange(3) > 0:
         source = next(p for p in bases.parts if p.suffix == ".step").read_bytes()
-        file, keys = "curve.step", f'edge = {choice.randint(1, 6)}'
+        file = "curve.step"
+        keys = choice.choice(('face = "support_pad"', 'face = "left_pad"',
+                              f"edge = {choice.randint(1, 6)}"))
         data = mutations.mutate(choice, source, "text")
     else:
         rows = [f"{35 * c:.6f},{35 * s:.6f},0" for c, s in (
@@ -114,7 +116,8 @@ def of_curve(choice, folder, bases):
     (folder / file).write_bytes(data)
     target = folder / "case.toml"
     target.write_text(
-        text.replace(circle, f'file = "{file}"\n{keys}\n\n'))
+        text.replace(circle,
+                     f'kind = "file"\nfile = "{file}"\n{keys}\n\n'))
     if choice.randrange(2):
         return ["check", target]
     return ["evolve", target, "--out", folder / "out", "--no-pictures",
