@@ -20,6 +20,7 @@
 #include "core/json.h"
 #include "pipeline/files/text_table.h"
 #include "pipeline/forward/part_file.h"
+#include "pipeline/forward/stress_figures.h"
 #include "pipeline/results/imported_part.h"
 #include "pipeline/results/part_comparison.h"
 #include "pipeline/results/results.h"
@@ -92,13 +93,15 @@ class Surfaces {
   std::size_t parts_;
 };
 
-/// Its surface with stresses beside compare.json, for the report page.
+/// Its surface with stresses beside compare.json, for the report page; of the
+/// same load case for all.
 void keep_surface(const case_data::Case& input,
                   const forward::EvaluationFields& fields,
-                  const fs::path& folder,
+                  const std::string& load_case, const fs::path& folder,
                   std::vector<results::PartFigures>& parts) {
   parts.back().surface = surface_name(parts.size());
-  results::write_part_surface(folder / parts.back().surface, input, fields);
+  results::write_part_surface(folder / parts.back().surface, input, fields,
+                              load_case);
 }
 
 /// "--face NAME=FACE" is of every file, "--face FILE:NAME=FACE" of one, and
@@ -172,7 +175,9 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
       results::load_run_part(arguments.parts.front(), &monitor);
   units = first.input.units;
   parts.push_back(first.figures);
-  keep_surface(first.input, first.fields, folder, parts);
+  const std::string worst =
+      first.input.load_cases[forward::worst_load_case(first.fields)].name;
+  keep_surface(first.input, first.fields, worst, folder, parts);
   for (std::size_t k = 1; k < arguments.parts.size(); ++k) {
     const fs::path path = arguments.parts[k];
     if (forward::is_part_file(path)) {
@@ -180,7 +185,7 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
       parts.push_back(results::imported_part_figures(
           path, first, names_for(faces, arguments.parts[k]), &monitor,
           &fields));
-      keep_surface(first.input, fields, folder, parts);
+      keep_surface(first.input, fields, worst, folder, parts);
       continue;
     }
     const results::RunPart run = results::load_run_part(path, &monitor);
@@ -192,7 +197,7 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
           units.name));
     }
     parts.push_back(run.figures);
-    keep_surface(run.input, run.fields, folder, parts);
+    keep_surface(run.input, run.fields, worst, folder, parts);
   }
   return parts;
 }

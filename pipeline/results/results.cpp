@@ -88,11 +88,15 @@ void add_node_fields(const case_data::Case& input,
                                   nodal.von_mises.size()));
 }
 
-/// The worst load case first, by plain names; all by their own where there are
-/// several.
+/// Those of one load case by plain names, the worst where `load_case` is none;
+/// all by their own where there are several.
 io::MeshFields part_fields(const case_data::Case& input,
-                           const forward::EvaluationFields& fields) {
-  const std::size_t worst = forward::worst_load_case(fields);
+                           const forward::EvaluationFields& fields,
+                           const std::string& load_case = "") {
+  std::size_t worst = forward::worst_load_case(fields);
+  for (std::size_t k = 0; k < input.load_cases.size(); ++k) {
+    worst = input.load_cases[k].name == load_case ? k : worst;
+  }
   io::MeshFields out;
   add_node_fields(input, fields, worst, "", out);
   for (std::size_t k = 0;
@@ -279,8 +283,10 @@ void write_part(const std::filesystem::path& file, const case_data::Case& input,
 
 void write_part_surface(const std::filesystem::path& file,
                         const case_data::Case& input,
-                        const forward::EvaluationFields& fields) {
-  io::write_boundary_vtp(file, fields.mesh, part_fields(input, fields));
+                        const forward::EvaluationFields& fields,
+                        const std::string& load_case) {
+  io::write_boundary_vtp(file, fields.mesh,
+                         part_fields(input, fields, load_case));
 }
 
 std::vector<std::string> mesh_names(const case_data::Case& input) {

@@ -39,10 +39,13 @@ void write_part(
     const forward::EvaluationFields& fields,
     const std::vector<std::pair<std::string, std::string>>& notes = {});
 
-/// The boundary of the same, with its point data, as a .vtp file.
+/// The boundary of the same, with its point data, as a .vtp file. `load_case`:
+/// what the plain fields are of, so that several parts can be compared; empty
+/// or none of the case's: the worst.
 void write_part_surface(const std::filesystem::path& file,
                         const case_data::Case& input,
-                        const forward::EvaluationFields& fields);
+                        const forward::EvaluationFields& fields,
+                        const std::string& load_case = "");
 
 /// Names of film.vtp, part.vtu, part_surface.vtp and the case's STL files.
 std::vector<std::string> mesh_names(const case_data::Case& input);

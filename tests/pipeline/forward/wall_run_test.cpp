@@ -146,6 +146,25 @@ TEST(WallRuns, OfAPipeAreLames) {
   EXPECT_NEAR(stress.max_von_mises, largest, 0.05 * largest);
 }
 
+// The pressure inside widens the pipe (above), by that name too.
+TEST(WallRuns, NameTheirSidesByInsideAndOutside) {
+  const auto surface_of = [](const std::string& name) {
+    return read(changed(cylinder(), "on = \"skin/back\", pressure",
+                        "on = \"" + name + "\", pressure"))
+        .load_cases[0]
+        .loads[0]
+        .surface;
+  };
+  EXPECT_EQ(surface_of("skin/inside"), "skin/back");
+  EXPECT_EQ(surface_of("skin/outside"), "skin");
+  EXPECT_EQ(surface_of("skin/back"), "skin/back");
+  const std::vector<std::string> problems =
+      problems_of(changed(cylinder(), "on = \"skin/back\", pressure",
+                          "on = \"skin/insode\", pressure"));
+  ASSERT_FALSE(problems.empty());
+  EXPECT_THAT(problems[0], testing::HasSubstr("no surface 'skin/insode'"));
+}
+
 TEST(WallRuns, HaveExactGradients) {
   const case_data::Case input =
       read(fixed_springs(changed(changed(cylinder(), "fea = 5.0", "fea = 9.0"),

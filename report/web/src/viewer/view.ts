@@ -90,11 +90,15 @@ class View {
     // Small panes are of no use: room for more than one row of them.
     const many = Math.ceil(this.model.panes.length / 6);
     frame.style.height = many > 2 ? `${Math.min(1600, 240 * many)}px` : "";
+    // Members may each have a worst load case of their own.
+    const cases = new Set(this.data.parts.map((p) => p.mesh.load_case));
     this.model.panes.forEach((pane, k) => {
+      const of = this.data.parts[k]?.mesh.load_case;
+      const name = cases.size > 1 && of ? `${pane.name}, ${of.replace(/_/g, " ")}` : pane.name;
       const link = this.data.parts[k]?.link;
       const title = link
-        ? h("a", { href: link, class: "pane-title" }, pane.name)
-        : h("span", { class: "pane-title" }, pane.name);
+        ? h("a", { href: link, class: "pane-title" }, name)
+        : h("span", { class: "pane-title" }, name);
       this.stage.titles.push(title);
       this.overlay.append(title);
     });
