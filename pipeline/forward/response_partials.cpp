@@ -250,7 +250,7 @@ ResponsePartials distance(const ResponseTask& task) {
 }
 
 ResponsePartials gap(const ResponseTask& task) {
-  // Films run beside each other over wide areas, and many vertices count.
+  // Films run beside each other over wide areas, and many edges count.
   constexpr double kGapPartOfEdge = 0.01;
   const double usual = kGapPartOfEdge * task.fields.inputs.fea_edge;
   return to_partials(task.fields.film->gap(
