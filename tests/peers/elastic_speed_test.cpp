@@ -1,4 +1,6 @@
 // The elasticity's speed table at 1/8 of its size: faster than CalculiX.
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/calculix.h"
@@ -9,11 +11,23 @@ namespace meniscus::elastic_speed_test {
 namespace {
 
 constexpr double kScale = 0.125;
-// Direct solvers gain on small meshes, and runs of 0.1 s are timed to a third
-// on a busy machine: a fifth of the full table's ratios is asked.
-constexpr double kLooser = 0.2;
+// Of the ratios that docs/performance.md claims for this size: runs of 0.1 s
+// are timed to a quarter on a busy machine.
+constexpr double kNoise = 0.7;
 constexpr int kRuns = 3;  // of ours, of which the fastest counts
 constexpr double kTimeLimit = 200.0;
+
+/// How many times faster than CalculiX, as docs/performance.md has it for this
+/// size: than its default solver, than its best, and of the next design.
+struct ElasticClaim {
+  double standard = 0.0;
+  double best = 0.0;
+  double next = 0.0;
+};
+const std::map<std::string, ElasticClaim> kClaims = {
+    {"tube", {15.2, 15.2, 20.0}},
+    {"block", {35.0, 16.8, 56.0}},
+    {"linear_block", {6.6, 4.6, 19.0}}};
 
 class ElasticSpeed : public ::testing::TestWithParam<ElasticWork> {};
 
@@ -25,6 +39,7 @@ TEST_P(ElasticSpeed, BeatsCalculix) {
   MENISCUS_NOT_HERE("times of a build without optimisation say nothing");
 #endif
   const ElasticWork& work = GetParam();
+  const ElasticClaim& claim = kClaims.at(work.name);
   double own = HUGE_VAL;
   double next = HUGE_VAL;
   for (int i = 0; i < kRuns; ++i) {
@@ -39,11 +54,10 @@ TEST_P(ElasticSpeed, BeatsCalculix) {
       time_calculix(work.make, kScale, "ITERATIVE CHOLESKY", kTimeLimit);
   ASSERT_TRUE(standard.ended && iterative.ended);
   const double best = std::min(standard.user_seconds, iterative.user_seconds);
-  EXPECT_GT(standard.user_seconds / own, kLooser * work.least_default)
+  EXPECT_GT(standard.user_seconds / own, kNoise * claim.standard)
       << own << " s";
-  EXPECT_GT(best / own, kLooser * work.least_best) << own << " s";
-  EXPECT_GT(standard.user_seconds / next, kLooser * work.least_next)
-      << next << " s";
+  EXPECT_GT(best / own, kNoise * claim.best) << own << " s";
+  EXPECT_GT(standard.user_seconds / next, kNoise * claim.next) << next << " s";
 }
 
 /// Seconds of one run, the next design included.

@@ -1,5 +1,7 @@
-// The speed table at 1/16 of its size: films settle faster than Surface
+// The speed table at a quarter of its size: films settle faster than Surface
 // Evolver's, at an energy that is no higher.
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/evolver.h"
@@ -9,16 +11,27 @@
 namespace meniscus::film_speed_test {
 namespace {
 
-constexpr int kScale = 2;  // 1/4^2 of the facets
-// At 15k facets our time is mostly that of the coarse levels, which do not
-// shrink with the size, and a run of 0.1 s is timed to a third on a busy
-// machine: a fifth of the full table's ratios is asked.
-constexpr double kLooser = 0.2;
+constexpr int kScale = 1;  // 1/4 of the facets
+// Of the ratios that docs/performance.md claims for this size: runs of 0.1 s
+// are timed to a quarter on a busy machine, Evolver's longer ones better.
+constexpr double kNoise = 0.7;
 constexpr double kEnergyAbove = 1e-4;  // relative, at equal facet counts
-constexpr int kRuns = 5;               // of which the fastest counts
+constexpr int kRuns = 5;               // of ours, of which the fastest counts
 
-EvolverRun evolver_run(const SpeedWork& work, EvolverScript script) {
-  return fastest(kRuns, [&] {
+/// How many times faster than Surface Evolver, as docs/performance.md has it
+/// for this size.
+struct FilmClaim {
+  double tuned = 0.0;
+  double typical = 0.0;
+};
+const std::map<std::string, FilmClaim> kClaims = {{"catenoid", {9.7, 32.0}},
+                                                  {"cube", {13.0, 50.0}},
+                                                  {"strut", {9.8, 47.0}},
+                                                  {"triple_disk", {9.1, 27.0}},
+                                                  {"cube_frame", {4.9, 21.0}}};
+
+EvolverRun evolver_run(const SpeedWork& work, EvolverScript script, int runs) {
+  return fastest(runs, [&] {
     return run_evolver(work.start(), {.refinements = work.refinements - kScale,
                                       .script = script,
                                       .descent = work.descent});
@@ -38,16 +51,19 @@ TEST_P(FilmSpeed, BeatsSurfaceEvolver) {
   const FilmRun own = fastest(
       kRuns, [&] { return run_film(work.start(), work.refinements - kScale); });
   EXPECT_TRUE(own.settled) << own.verdict;
-  const EvolverRun tuned = evolver_run(work, EvolverScript::Tuned);
-  const EvolverRun typical = evolver_run(work, EvolverScript::Typical);
+  const EvolverRun tuned = evolver_run(work, EvolverScript::Tuned, 2);
+  const EvolverRun typical = evolver_run(work, EvolverScript::Typical, 1);
   ASSERT_TRUE(tuned.ended) << tuned.output;
   ASSERT_TRUE(typical.ended) << typical.output;
   EXPECT_EQ(own.facets, tuned.facets);
-  EXPECT_GT(tuned.user_seconds / own.user_seconds, kLooser * work.least_tuned)
-      << own.user_seconds << " s";
-  EXPECT_GT(typical.user_seconds / own.user_seconds,
-            kLooser * work.least_typical)
-      << own.user_seconds << " s";
+  const auto seconds = [](const auto& run) {
+    return run.user_seconds + run.system_seconds;
+  };
+  EXPECT_GT(seconds(tuned) / seconds(own), kNoise * kClaims.at(work.name).tuned)
+      << seconds(own) << " s";
+  EXPECT_GT(seconds(typical) / seconds(own),
+            kNoise * kClaims.at(work.name).typical)
+      << seconds(own) << " s";
   EXPECT_LT(own.energy, (1.0 + kEnergyAbove) * typical.energy);
 }
 
