@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-import calculix_peer
+import peers
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 CASES = ROOT / "cases"
@@ -28,7 +28,7 @@ SECONDS = 180  # of one run at its default size on two cores
 KEYS = {
     "case": {"prepare", "runs", "convergence", "wrong"},
     "run": {"name", "command", "quick", "seconds", "exit", "pictures",
-            "expected", "expected_quick", "calculix"},
+            "expected", "expected_quick", "calculix", "evolver"},
     "calculix": {"displacement", "stress"},
     "figure": {"value", "kind", "relative", "absolute", "why", "label",
                "unit", "scale", "reference", "of", "at_least", "at_most"},
@@ -112,9 +112,10 @@ def read(folder, unfilled=False):
               f"the command is none of {', '.join(RESULT)}")
         if "quick" in run:
             check("expected_quick" in run, at, "'expected_quick' is missing")
-        if "calculix" in run:
+        for peer in {"calculix", "evolver"} & set(run):
             check("quick" in run and command[0] == "run", at,
-                  "'calculix' is for quick sizes of 'run'")
+                  f"'{peer}' is for quick sizes of 'run'")
+        if "calculix" in run:
             check_keys("calculix", run["calculix"], at, ["displacement"])
         for table in () if unfilled else ("expected", "expected_quick"):
             for name, figure in run.get(table, {}).items():
@@ -318,11 +319,14 @@ def execute(program, folder, run, out, quick=False, pictures=False):
     wanted = run["expected_quick" if quick else "expected"]
     outcome.rows = [Row(path, figure, find(outcome.result, path))
                     for path, figure in wanted.items()]
-    if quick and "calculix" in run:
-        try:
-            outcome.rows += calculix_rows(program, outcome, out)
-        except calculix_peer.NoPeer as error:
-            if shutil.which("ccx") or "MENISCUS_NO_SKIPS" in os.environ:
+    for peer, program_of_peer, rows in (
+            ("calculix", "ccx", calculix_rows),
+            ("evolver", "evolver", evolver_rows)):
+        if quick and peer in run and (shutil.which(program_of_peer) or
+                                      "MENISCUS_NO_SKIPS" in os.environ):
+            try:
+                outcome.rows += rows(program, outcome, out)
+            except peers.NoPeer as error:
                 outcome.problems.append(str(error))
     outcome.problems += [str(row) for row in outcome.rows if not row.fine]
     return outcome
@@ -333,7 +337,7 @@ def calculix_rows(program, outcome, out):
     is asked the von Mises stress's mean by volume."""
     asked = outcome.run["calculix"]
     rows = []
-    for peer in calculix_peer.solve(program, outcome.folder,
+    for peer in peers.solve(program, outcome.folder,
                                     out / f"{outcome.run['name']} in calculix"):
         rows.append(Row(f"calculix.{peer.name}.displacement",
                         {"at_most": asked["displacement"]}, peer.apart))
@@ -343,6 +347,19 @@ def calculix_rows(program, outcome, out):
                             {"value": peer.mean, "relative": asked["stress"],
                              "reference": peer.mean, "of": "CalculiX"}, ours))
     return rows
+
+
+def evolver_rows(program, outcome, out):
+    """The film's energy and volumes as Surface Evolver has them."""
+    energy, volume = peers.evolver_energy(
+        program, outcome.folder, out / f"{outcome.run['name']} in evolver")
+    film = outcome.result["film"]
+    held = sum(body["volume"] for body in film["bodies"].values())
+    return [Row(f"evolver.{name}", {"value": theirs, "reference": theirs,
+                                    "relative": outcome.run["evolver"],
+                                    "of": "Surface Evolver"}, ours)
+            for name, theirs, ours in (("energy", energy, film["energy"]),
+                                       ("volume", volume, held))]
 
 
 class Rate:

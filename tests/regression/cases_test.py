@@ -15,6 +15,8 @@ from program import ProgramTest
 
 sys.path.insert(0, str(program.ROOT / "scripts"))
 import cases  # noqa: E402  (scripts/ is found only now)
+import gallery  # noqa: E402
+import peers  # noqa: E402
 
 GOOD = {
     "runs": [{
@@ -70,6 +72,11 @@ class Cases(ProgramTest):
                 (("runs", 0, "expected_quick"), None, "'expected_quick'"),
                 (("runs", 0, "quick"), None, "no run has a quick size"),
                 ((*figure, "kind"), "guess", "kind 'guess'"),
+                ((*figure, "reference"), 99.0, "says of whom"),
+                ((*figure, "of"), "the paper", "says of whom"),
+                (("runs", 0, "calculix"), {"displacement": 1e-6},
+                 "'calculix' is for quick sizes of 'run'"),
+                (("runs", 0, "evolver"), 1e-10, "'evolver' is for"),
                 ((*figure, "relative"), 0.006, "more room.*say 'why'"),
                 ((*figure, "absolute"), 0.6, "more room.*say 'why'"),
                 (figure, {"value": 1.0}, "no 'kind'"),
@@ -89,6 +96,35 @@ class Cases(ProgramTest):
                     table[last] = new
                 with self.assertRaisesRegex(cases.BadFormat, told):
                     self.read(spec)
+
+    def test_figures_without_another_source_are_called_snapshots(self):
+        for of, told in (({}, "snapshot"),
+                         ({"reference": 101.0, "of": "the paper"},
+                          "101, the paper")):
+            run = copy.deepcopy(GOOD["runs"][0])
+            run["expected"]["film.area"].update(of)
+            outcome = cases.Outcome(run)
+            outcome.rows = [cases.Row("film.area", run["expected"]["film.area"],
+                                      100.1)]
+            self.assertIn(f"| {told} |", "\n".join(gallery.run_table(outcome,
+                                                                     [])))
+
+    def test_the_stress_of_calculix_is_read_as_it_prints_it(self):
+        """Jacobians of an element, the lines of a deck, the measure itself."""
+        self.assertAlmostEqual(peers.von_mises([3.0, 0, 0, 0, 0, 0]), 3.0)
+        self.assertAlmostEqual(peers.von_mises([0, 0, 0, 0, 1.0, 0]), 3 ** 0.5)
+        corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 2]]
+        nodes = corners + [[(a + b) / 2 for a, b in
+                            zip(corners[c], corners[d])]
+                           for c, d in peers.EDGES]
+        for point in peers.POINTS:
+            self.assertAlmostEqual(peers.jacobian(nodes, point), 2.0)
+        deck = ("*NODE, NSET=NALL\n1, 0., 0., 0.\n2, 1., 0., 0.\n"
+                "*ELEMENT, TYPE=C3D10, ELSET=ALL\n7, 1, 2, 3, 4, 5, 6, 7, 8,\n"
+                "9, 10\n*NSET, NSET=X\n1, 2\n")
+        found, elements = peers.mesh_of(deck)
+        self.assertEqual(found[2], [1.0, 0.0, 0.0])
+        self.assertEqual(elements, {7: list(range(1, 11))})
 
     def test_figures_without_a_value_are_told(self):
         spec = copy.deepcopy(GOOD)

@@ -1,9 +1,11 @@
-"""A finished run said again to CalculiX: its deck is exported and solved by
-`ccx`; what CalculiX finds stands beside what the run found. cases.py uses it for
-runs whose expected.json has `calculix`."""
+"""A finished run said again to other programs: its deck is exported and solved by
+CalculiX, its datafile loaded by Surface Evolver; what they find stands beside what
+the run found. cases.py uses it for runs whose expected.json has `calculix` or
+`evolver`."""
 import json
 import math
 import pathlib
+import re
 import subprocess
 
 EDGES = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]  # of the mid-sides
@@ -14,16 +16,20 @@ POINTS = [[NEAR, NEAR, NEAR], [FAR, NEAR, NEAR], [NEAR, FAR, NEAR],
 
 
 class NoPeer(Exception):
-    """ccx is not there, or ended badly."""
+    """The other program is not there, or ended badly."""
 
 
 def call(*command, folder=None):
-    done = subprocess.run([str(c) for c in command], capture_output=True,
-                          text=True, errors="replace", timeout=900, cwd=folder,
-                          check=False)
+    try:
+        done = subprocess.run([str(c) for c in command], capture_output=True,
+                              text=True, errors="replace", timeout=900,
+                              cwd=folder, check=False)
+    except FileNotFoundError as error:
+        raise NoPeer(f"{command[0]} is not installed") from error
     if done.returncode != 0:
         raise NoPeer(f"{command[0]} ended with {done.returncode}:\n"
                      f"{done.stdout[-2000:]}{done.stderr[-2000:]}")
+    return done.stdout
 
 
 def sections(msh, name):
@@ -120,6 +126,22 @@ class Peer:
         self.mean = mean    # von Mises stress by volume
 
 
+def evolver_energy(program, run, place):
+    """Of the run's film as Surface Evolver loads it: (energy of the films alone,
+    for its own total has the work of given pressures, volumes' sum)."""
+    place = pathlib.Path(place)
+    place.mkdir(parents=True, exist_ok=True)
+    call(program, "export", run, "--format", "fe", "--out", place / "peer.fe")
+    script = place / "measure.cmd"
+    script.write_text('printf "LOADED %.17g %.17g\\n",'
+                      "sum(facet,area*tension),sum(body,volume)\nq\nq\n")
+    said = call("evolver", "-x", "-f", script, place / "peer.fe")
+    loaded = re.search(r"LOADED (-?\d\S*) (-?\d\S*)", said)
+    if not loaded:
+        raise NoPeer(f"evolver does not load the film:\n{said[-2000:]}")
+    return float(loaded.group(1)), float(loaded.group(2))
+
+
 def solve(program, run, place):
     """CalculiX on the run's final design: a Peer for each load case."""
     place = pathlib.Path(place)
@@ -127,11 +149,7 @@ def solve(program, run, place):
     for form in ("inp", "msh"):
         call(program, "export", run, "--format", form, "--out",
              place / f"peer.{form}")
-    try:
-        call("ccx", "-i", "peer", folder=place)
-    except FileNotFoundError as error:
-        raise NoPeer("ccx (Debian package calculix-ccx) is not installed") \
-            from error
+    call("ccx", "-i", "peer", folder=place)
     dat = (place / "peer.dat").read_text()
     deck = (place / "peer.inp").read_text()
     nodes, elements = mesh_of(deck)
