@@ -127,14 +127,16 @@ class Peer:
 
 
 def evolver_energy(program, run, place):
-    """Of the run's film as Surface Evolver loads it: (energy of the films alone,
-    for its own total has the work of given pressures, volumes' sum)."""
+    """Of the run's film as Surface Evolver loads it: (energy of films and
+    fields, without the work of given pressures that its own total has, volumes'
+    sum)."""
     place = pathlib.Path(place)
     place.mkdir(parents=True, exist_ok=True)
     call(program, "export", run, "--format", "fe", "--out", place / "peer.fe")
     script = place / "measure.cmd"
     script.write_text('printf "LOADED %.17g %.17g\\n",'
-                      "sum(facet,area*tension),sum(body,volume)\nq\nq\n")
+                      "total_energy+sum(body where not fixed,"
+                      "pressure*volume),sum(body,volume)\nq\nq\n")
     said = call("evolver", "-x", "-f", script, place / "peer.fe")
     loaded = re.search(r"LOADED (-?\d\S*) (-?\d\S*)", said)
     if not loaded:

@@ -66,7 +66,8 @@ std::vector<double> tensions_at(const films::FilmComplex& complex,
 }
 
 Expression positive_only(const Expression& field) {
-  return Expression::parse(fmt::format("if(({0})>0,{0},0/0)", field.text()),
+  // No constant without a value: datafiles would have to hold it.
+  return Expression::parse(fmt::format("if(({0})>0,{0},({0})/0)", field.text()),
                            {"x", "y", "z"});
 }
 
