@@ -1,9 +1,8 @@
 #include "optimize/ceres_match.h"
 
-#include <limits>
-
 #include <ceres/ceres.h>
 
+#include "optimize/bounded_match.h"
 #include "optimize/differences.h"
 
 namespace meniscus::optimize {
@@ -14,16 +13,9 @@ namespace {
 constexpr double kGoodStep = 0.25;
 // Relative change of cost below which nothing visible is gained.
 constexpr double kCostTolerance = 1e-9;
-// A match that cannot be met ends in a flat valley, where Ceres would wander
-// for long: it ends after this many evaluations, and some per variable,
-// without a visible gain of the best cost.
-constexpr double kVisibleGain = 1e-4;
-constexpr int kPatience = 8;
-constexpr int kPatiencePerVariable = 4;
 // Relative size of a step that only moves rounding.
 constexpr double kStepTolerance = 1e-12;
-// Large: the first step is the full Gauss-Newton step. The bounds and the
-// projected line search keep it honest, and bisect when a point fails.
+// Large: the first step is the full Gauss-Newton step.
 constexpr double kFirstRadius = 1e8;
 // Our limits are those of the evaluator.
 constexpr int kManyIterations = 10000;
@@ -51,15 +43,19 @@ class MatchCost : public ceres::CostFunction {
                 double** jacobians) const override {
     const Eigen::Map<const VectorX> x(parameters[0], evaluator_.size());
     Eigen::Map<VectorX> r(residuals, evaluator_.residual_count());
+    const VectorX place = evaluator_.place(x);
     const ResidualAnswer* answer =
-        finished() ? nullptr : evaluator_.evaluate(x, EvaluationPhase::Step);
+        finished() ? nullptr
+                   : evaluator_.evaluate(place, EvaluationPhase::Step);
+    held_up_ =
+        held_up_ || answer == nullptr || answer->failure || at_bound(place);
     if (jacobians == nullptr || jacobians[0] == nullptr) {
-      return answer != nullptr && !answer->failure && accept(x, *answer, r);
+      return answer != nullptr && !answer->failure && accept(place, *answer, r);
     }
     // Asked at accepted points only, so there is an answer unless the match is
     // over; then zeros end Ceres at once, where `false` makes it complain.
     Eigen::Map<RowMajor> jacobian(jacobians[0], r.size(), x.size());
-    if (answer == nullptr || answer->failure || !linearise(x, *answer)) {
+    if (answer == nullptr || answer->failure || !linearise(place, *answer)) {
       r.setZero();
       jacobian.setZero();
     } else {
@@ -70,9 +66,18 @@ class MatchCost : public ceres::CostFunction {
   }
 
   const Linearisation& last() const { return last_; }
-  bool finished() const { return secant_failed_ || evaluator_.halted(); }
+  bool finished() const {
+    return secant_failed_ || held_up_ || evaluator_.halted();
+  }
+  /// By a bound or a point that failed.
+  bool held_up() const { return held_up_; }
 
  private:
+  bool at_bound(const VectorX& x) const {
+    return (x.array() <= evaluator_.lower().array()).any() ||
+           (x.array() >= evaluator_.upper().array()).any();
+  }
+
   // False for a point that is worse although the updated Jacobian promised
   // better: it has gone stale, and this run of Ceres ends.
   bool accept(const VectorX& x, const ResidualAnswer& answer,
@@ -130,35 +135,26 @@ class MatchCost : public ceres::CostFunction {
   // Ceres sees a function; what it costs to be one is kept beside.
   mutable Linearisation last_;
   mutable bool secant_failed_ = false;
+  mutable bool held_up_ = false;
 };
 
 class StopWhenFinished : public ceres::IterationCallback {
  public:
   StopWhenFinished(const MatchCost& cost, const MatchEvaluator& evaluator)
-      : cost_(cost), evaluator_(evaluator) {}
+      : cost_(cost), watch_(evaluator) {}
 
   ceres::CallbackReturnType operator()(
       const ceres::IterationSummary& /*summary*/) override {
     if (cost_.finished()) {
       return ceres::SOLVER_ABORT;
     }
-    const double best = cost_of(evaluator_.best_answer());
-    if (!(best >= (1.0 - kVisibleGain) * gained_)) {
-      gained_ = best;
-      gained_at_ = evaluator_.evaluations();
-    }
-    const int patience =
-        kPatience + kPatiencePerVariable * static_cast<int>(evaluator_.size());
-    return evaluator_.evaluations() - gained_at_ > patience
-               ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-               : ceres::SOLVER_CONTINUE;
+    return watch_.idle() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                         : ceres::SOLVER_CONTINUE;
   }
 
  private:
   const MatchCost& cost_;
-  const MatchEvaluator& evaluator_;
-  double gained_ = std::numeric_limits<double>::infinity();
-  int gained_at_ = 0;
+  GainWatch watch_;
 };
 
 ceres::Solver::Options solver_options() {
@@ -216,6 +212,13 @@ BackendResult ceres_match(MatchEvaluator& evaluator, const VectorX& start) {
     result.iterations += summary.num_successful_steps;
     result.jacobian = cost.last().jacobian;
     result.message = ceres_words(summary.termination_type);
+    if (cost.held_up() && !evaluator.halted()) {
+      const BackendResult rest = bounded_match(evaluator, evaluator.best());
+      result.iterations += rest.iterations;
+      result.jacobian = rest.jacobian;
+      result.message = rest.message;
+      return result;
+    }
     again = !evaluator.halted() && cost.last().secant;
     x = evaluator.best();
   }

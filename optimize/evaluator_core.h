@@ -3,6 +3,7 @@
 /// libraries that must not see them.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <exception>
@@ -18,6 +19,12 @@ namespace meniscus::optimize {
 /// Throws InvalidInput, naming it, for a variable with bounds or an initial
 /// value that cannot be, and when there is none; equal bounds pass.
 void check_variables(const std::vector<Variable>& variables, const char* study);
+
+/// Designs nearer than this in every variable, x its range, are one to a search
+/// that is to end at `tolerance`: no such step gains anything.
+inline double same_design_at(double tolerance) {
+  return std::clamp(1e-2 * tolerance, 1e-10, 1e-7);
+}
 
 struct EvaluationLimits {
   const char* study = "";  // "match", "minimize": named in messages
@@ -39,7 +46,19 @@ class AnswerMemory {
     return known == answers_.end() ? nullptr : &known->second;
   }
   Answer& keep(const VectorX& x, Answer answer) {
+    points_.push_back(x);
     return answers_.emplace(key_of(x), std::move(answer)).first->second;
+  }
+  /// The first point asked that is within `distance` of x in every variable
+  /// [ranges], or x.
+  VectorX place(const VectorX& x, const VectorX& ranges,
+                double distance) const {
+    for (const VectorX& point : points_) {
+      if (((point - x).cwiseAbs().array() <= distance * ranges.array()).all()) {
+        return point;
+      }
+    }
+    return x;
   }
 
  private:
@@ -47,6 +66,7 @@ class AnswerMemory {
   static Key key_of(const VectorX& x);
 
   std::map<Key, Answer> answers_;
+  std::vector<VectorX> points_;  // in the order asked
 };
 
 class EvaluatorCore {

@@ -44,9 +44,49 @@ std::vector<VectorX> normalised(const std::vector<VectorX>& members) {
 }  // namespace
 
 std::vector<FamilyStep> family_tree(const std::vector<VectorX>& members) {
+  return family_tree(members, {});
+}
+
+namespace {
+
+// The members that have their place, parents first.
+std::vector<FamilyStep> kept_steps(const std::vector<VectorX>& points,
+                                   const std::map<int, int>& kept) {
   std::vector<FamilyStep> steps;
+  std::map<int, int> depth;
+  while (depth.size() < kept.size()) {
+    const std::size_t before = depth.size();
+    for (const auto& [member, parent] : kept) {
+      if (depth.count(member) > 0 ||
+          (parent >= 0 && depth.count(parent) == 0)) {
+        continue;
+      }
+      FamilyStep step{.member = member};
+      if (parent >= 0) {
+        step.parent = parent;
+        step.depth = depth[parent] + 1;
+        step.distance = (points[static_cast<std::size_t>(member)] -
+                         points[static_cast<std::size_t>(parent)])
+                            .norm();
+      }
+      depth[member] = step.depth;
+      steps.push_back(step);
+    }
+    if (depth.size() == before) {
+      throw InvalidInput(
+          "family: the members that are kept have a parent that is not, or "
+          "begin from each other");
+    }
+  }
+  return steps;
+}
+
+}  // namespace
+
+std::vector<FamilyStep> family_tree(const std::vector<VectorX>& members,
+                                    const std::map<int, int>& kept) {
   if (members.empty()) {
-    return steps;
+    return {};
   }
   check_members(members);
   const std::vector<VectorX> points = normalised(members);
@@ -56,10 +96,26 @@ std::vector<FamilyStep> family_tree(const std::vector<VectorX>& members) {
   std::vector<bool> joined(count, false);
   for (std::size_t i = 0; i < count; ++i) {
     best[i].member = static_cast<int>(i);
-    best[i].distance = i == 0 ? 0.0 : kFar;
+    best[i].distance = i == 0 && kept.empty() ? 0.0 : kFar;
   }
+  const auto join = [&](const FamilyStep& step) {
+    const auto next = static_cast<std::size_t>(step.member);
+    joined[next] = true;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double distance = (points[i] - points[next]).norm();
+      if (!joined[i] && distance < best[i].distance) {
+        best[i].parent = step.member;
+        best[i].depth = step.depth + 1;
+        best[i].distance = distance;
+      }
+    }
+  };
+  std::vector<FamilyStep> steps = kept_steps(points, kept);
   steps.reserve(count);
-  for (std::size_t round = 0; round < count; ++round) {
+  for (const FamilyStep& step : steps) {
+    join(step);
+  }
+  while (steps.size() < count) {
     std::size_t next = count;
     for (std::size_t i = 0; i < count; ++i) {
       if (!joined[i] &&
@@ -67,16 +123,8 @@ std::vector<FamilyStep> family_tree(const std::vector<VectorX>& members) {
         next = i;
       }
     }
-    joined[next] = true;
     steps.push_back(best[next]);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double distance = (points[i] - points[next]).norm();
-      if (!joined[i] && distance < best[i].distance) {
-        best[i].parent = static_cast<int>(next);
-        best[i].depth = best[next].depth + 1;
-        best[i].distance = distance;
-      }
-    }
+    join(best[next]);
   }
   return steps;
 }

@@ -2,6 +2,7 @@
 /// the first is computed: any number of jobs gives the same answers.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,13 @@ struct FamilyStep {
 /// parent precedes its children. Each member: same length, finite; else
 /// InvalidInput naming the member.
 std::vector<FamilyStep> family_tree(const std::vector<VectorX>& members);
+
+/// The same tree grown on: members of `kept` have their place, a parent (-1:
+/// none) that is among them; the others join them as they would join each
+/// other. Throws InvalidInput for a parent that is not kept, or a circle.
+std::vector<FamilyStep> family_tree(
+    const std::vector<VectorX>& members,
+    const std::map<int, int>& kept);  // member -> parent
 
 /// The steps by depth: what can run side by side, one wave after another.
 std::vector<std::vector<int>> family_waves(

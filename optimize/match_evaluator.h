@@ -22,6 +22,13 @@ class MatchEvaluator : public EvaluatorCore {
   /// options.jacobian, or null when there is none or it failed.
   const Eigen::MatrixXd* jacobian(const VectorX& x) noexcept;
 
+  /// x within the bounds, or the first point asked that is the same design as
+  /// far as steps of a search go: what to evaluate in the place of x.
+  VectorX place(const VectorX& x) const {
+    return memory_.place(inside(x), ranges(), same_design());
+  }
+  double same_design() const { return same_design_at(options_.tolerance); }
+
   const MatchOptions& options() const { return options_; }
   bool has_best() const { return best_x_.size() > 0; }
   const VectorX& best() const { return best_x_; }

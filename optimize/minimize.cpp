@@ -1,6 +1,7 @@
 #include "optimize/minimize.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -154,6 +155,11 @@ const std::vector<MinimizeMethod>& minimize_methods() {
     return list;
   }();
   return methods;
+}
+
+double kept_objective(double objective, double violation) {
+  constexpr double kPrice = 10.0;
+  return objective + kPrice * std::abs(objective) * std::max(violation, 0.0);
 }
 
 const MinimizeMethod* find_minimize_method(const std::string& name) {

@@ -56,6 +56,12 @@ struct MinimizeOptions {
   VectorX value_error = {};
 };
 
+/// What designs that keep every constraint are compared by: the objective, and
+/// ten times its magnitude x the violation [scales] that still counts as kept.
+/// Else what is missed within the tolerance would buy a better objective than
+/// a minimum has.
+double kept_objective(double objective, double violation);
+
 struct ConstraintState {
   std::string name;
   double value = 0.0;
@@ -70,9 +76,10 @@ struct ConstraintState {
 struct MinimizeReport {
   Termination termination = Termination::Stalled;
   std::string message;  // why it stopped, in words, with figures
-  /// The incumbent, kept by us: the least objective among the points that keep
-  /// every constraint (a converged point goes before one that is better by no
-  /// more than 10 tolerances), else the one that violates them least.
+  /// The incumbent, kept by us: the least kept_objective() among the points
+  /// that keep every constraint, else the one that violates them least. A
+  /// search that converged ends there or at a point that is better by no more
+  /// than 10 tolerances.
   VectorX best;
   VectorX values;  // at `best`: objective, constraints
   double objective = 0.0;
@@ -93,9 +100,10 @@ struct MinimizeMethod {
   bool global = false;     // spends most of max_evaluations, then polishes
 };
 
-/// slsqp (Kraft 1994), mma, ccsa (Svanberg 2002), bobyqa (Powell 2009), cobyla
-/// (Powell 1994), sbplx (Rowan 1990), neldermead, isres (Runarsson & Yao 2005),
-/// crs2 (Kaelo & Ali 2006), direct_l (Gablonsky & Kelley 2001).
+/// slsqp (Kraft 1994; steps by optimize/trust_region.h), mma, ccsa (Svanberg
+/// 2002), bobyqa (Powell 2009), cobyla (Powell 1994), sbplx (Rowan 1990),
+/// neldermead, isres (Runarsson & Yao 2005), crs2 (Kaelo & Ali 2006), direct_l
+/// (Gablonsky & Kelley 2001).
 const std::vector<MinimizeMethod>& minimize_methods();
 
 /// The method of that name, or null.

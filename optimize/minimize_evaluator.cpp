@@ -121,7 +121,12 @@ const MinimizePoint* MinimizeEvaluator::ask_jacobian(const VectorX& x) {
       !best_is_feasible() || point->values[0] <= best_objective_ + better;
   if (scaled_ && !flat && least && keeps_all(point->values) &&
       conditions(inner, *point).residual <= options_.optimality_tolerance) {
-    make_incumbent(inner, point->values);
+    // One that is better by less is the answer where it meets them too.
+    const MinimizePoint& best = best_point();
+    if (!best.jacobian ||
+        conditions(best_x_, best).residual > options_.optimality_tolerance) {
+      make_incumbent(inner, point->values);
+    }
     set_halt(Halt::Converged);
     return nullptr;
   }
@@ -199,9 +204,11 @@ void MinimizeEvaluator::account(const VectorX& x, const MinimizePoint& point) {
   worst_objective_ = std::max(worst_objective_, objective);
   worst_violation_ = std::max(worst_violation_, off);
   const bool kept = off <= options_.feasibility_tolerance;
-  const bool better = !has_best() || (kept && !best_is_feasible()) ||
-                      (kept ? objective < best_objective_
-                            : !best_is_feasible() && off < best_violation_);
+  const bool better =
+      !has_best() || (kept && !best_is_feasible()) ||
+      (kept ? kept_objective(objective, off) <
+                  kept_objective(best_objective_, best_violation_)
+            : !best_is_feasible() && off < best_violation_);
   if (better) {
     make_incumbent(x, point.values);
   }

@@ -43,6 +43,15 @@ class MinimizeEvaluator : public EvaluatorCore {
   /// when `derivatives` is given. To be called once, before sides().
   void fix_scales(const VectorX& start, const Eigen::MatrixXd* derivatives);
 
+  /// x within the bounds, or the first point asked that is the same design as
+  /// far as steps of a search with derivatives go.
+  VectorX place(const VectorX& x) const {
+    return memory_.place(inside(x), ranges(), same_design());
+  }
+  double same_design() const {
+    return same_design_at(options_.optimality_tolerance);
+  }
+
   const MinimizeProblem& problem() const { return problem_; }
   const MinimizeOptions& options() const { return options_; }
   const std::vector<ConstraintSide>& sides() const { return sides_; }

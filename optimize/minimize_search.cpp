@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "optimize/nlopt_minimize.h"
+#include "optimize/trust_region.h"
 
 namespace meniscus::optimize {
 namespace {
@@ -49,6 +50,9 @@ constexpr double kFinerSteps = 1e-3;
 constexpr std::array<double, 4> kLoose = {1e-2, 1e-3, 1e-5, 0.0};
 constexpr double kGainPart = 1.0;
 constexpr double kFirstTrustRadius = 0.25;
+// Of later runs of the trust region, and the gain that asks for one.
+constexpr double kRestartRadius = 0.05;
+constexpr double kRestartGain = 1e-5;
 constexpr int kMostTurns = 8;
 
 struct Tightening {
@@ -278,8 +282,14 @@ double next_radius(double radius, const NloptResult& last, bool walled,
   return walled || !gain ? kShrink * radius : std::min(1.0, radius / kShrink);
 }
 
+SearchResult trust_region_search(MinimizeEvaluator& evaluator,
+                                 const VectorX& start);
+
 SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
                           const NloptTraits& traits) {
+  if (traits.style == ConstraintStyle::TrustRegion) {
+    return trust_region_search(evaluator, start);
+  }
   SearchResult result;
   NloptTask task = first_task(evaluator, start);
   Tightening tightening;
@@ -320,6 +330,35 @@ SearchResult local_search(MinimizeEvaluator& evaluator, const VectorX& start,
       break;
     }
     task.start = box.leads(evaluator) ? box.x : evaluator.best();
+  }
+  return result;
+}
+
+// Runs of the trust region, each from the best design so far without what the
+// one before learnt of the function, until one gains nothing.
+SearchResult trust_region_search(MinimizeEvaluator& evaluator,
+                                 const VectorX& start) {
+  SearchResult result;
+  VectorX from = start;
+  double radius = kFirstTrustRadius;
+  for (int round = 0; round < kMostRuns; ++round) {
+    const Merit before = merit_of(evaluator);
+    const SearchResult last = trust_region_run(evaluator, from, radius);
+    result.iterations += last.iterations;
+    result.finished = last.finished;
+    result.walled = last.walled;
+    result.message = last.message;
+    if (evaluator.halted()) {
+      break;
+    }
+    const double scale =
+        std::max(evaluator.objective_scale(), evaluator.objective_unit());
+    if (!gained(before, merit_of(evaluator),
+                (last.walled ? kWalledGain : kRestartGain) * scale)) {
+      break;
+    }
+    from = evaluator.best();
+    radius = kRestartRadius;
   }
   return result;
 }

@@ -119,8 +119,10 @@ class Run {
 };
 
 const MinimizePoint* Run::at(const double* s, bool derivatives) {
-  const VectorX x =
-      Eigen::Map<const VectorX>(s, units_.size()).cwiseProduct(units_);
+  VectorX x = Eigen::Map<const VectorX>(s, units_.size()).cwiseProduct(units_);
+  if (traits_.method.gradients) {
+    x = evaluator_.place(x);
+  }
   const int evaluations = evaluator_.evaluations();
   const MinimizePoint* point = evaluator_.evaluate(x, EvaluationPhase::Step);
   if (point != nullptr && !point->failure && derivatives) {
@@ -316,7 +318,7 @@ NloptResult Run::go() {
 const std::vector<NloptTraits>& nlopt_traits() {
   using Style = ConstraintStyle;
   static const std::vector<NloptTraits> table = {
-      {{"slsqp", true, false}, nlopt::LD_SLSQP, Style::Native, true, false},
+      {{"slsqp", true, false}, -1, Style::TrustRegion, true, false},
       {{"mma", true, false},
        nlopt::LD_MMA,
        Style::NativeInequalities,

@@ -7,6 +7,7 @@ namespace meniscus::optimize {
 
 /// Who keeps the constraints.
 enum class ConstraintStyle {
+  TrustRegion,         // no algorithm of NLopt's (optimize/trust_region.h)
   Native,              // the algorithm
   NativeInequalities,  // the algorithm, equations by augmented Lagrangian
   Lagrangian,          // augmented Lagrangian, all of them
@@ -16,7 +17,7 @@ enum class ConstraintStyle {
 
 struct NloptTraits {
   MinimizeMethod method;
-  int algorithm = 0;  // nlopt::algorithm
+  int algorithm = 0;  // nlopt::algorithm, -1: none
   ConstraintStyle style = ConstraintStyle::Native;
   /// What a point that cannot be evaluated looks like: +infinity where the
   /// algorithm steps back from it, else worse than anything seen.

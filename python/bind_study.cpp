@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include "core/error.h"
+#include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_store.h"
 #include "pipeline/study/ordered_jobs.h"
@@ -46,7 +47,7 @@ StudyTable read_table(const std::string& folder) {
   const bool some = std::any_of(table.records.begin(), table.records.end(),
                                 [](const store::EvaluationRecord& record) {
                                   return !record.failure &&
-                                         record.model == store::kStudyModel;
+                                         store::is_study_model(record.model);
                                 });
   if (some) {
     const VectorX answer =

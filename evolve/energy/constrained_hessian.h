@@ -11,6 +11,7 @@
 /// (Gould 1985); a column that S cannot resolve counts as not positive.
 #pragma once
 
+#include "core/error.h"
 #include "core/math/linear_solve.h"
 
 namespace meniscus::energy {
@@ -23,6 +24,13 @@ struct LowestMode {
 struct LowestModes {
   VectorX eigenvalues;    // ascending
   Eigen::MatrixXd modes;  // columns v with v' diag(metric) v = 1
+};
+
+/// A film has no modes, or they were not found: nothing that the machine
+/// refused, but what this film answers.
+class ModesNotFound : public SolverError {
+ public:
+  using SolverError::SolverError;
 };
 
 class ConstrainedHessian {
@@ -56,7 +64,7 @@ class ConstrainedHessian {
   /// The `count` lowest of a positive definite Hessian (index 0, not shifted)
   /// to rounding, copies of equal ones included: Rayleigh and Ritz on the
   /// block Krylov space of the inverse. Fewer where there are fewer. Throws
-  /// SolverError where they are not found.
+  /// ModesNotFound where they are not found.
   LowestModes lowest_modes(const VectorX& metric, int count) const;
 
  private:

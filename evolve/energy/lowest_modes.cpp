@@ -14,8 +14,12 @@ namespace meniscus::energy {
 namespace {
 
 constexpr int kMostBlocks = 40;
-constexpr int kMoreColumns = 2;       // than modes wanted, in a block
-constexpr double kResidual = 1e-10;   // of an eigenvalue of the inverse
+constexpr int kMoreColumns = 2;      // than modes wanted, in a block
+constexpr int kRestarts = 3;         // from the best vectors of a full space
+constexpr double kResidual = 1e-10;  // of an eigenvalue of the inverse
+// The same x the largest of them: next to collapse the first one dwarfs the
+// others, which solves then know to no more digits.
+constexpr double kRounding = 1e-14;
 constexpr double kDependent = 1e-10;  // a column's part that is new
 
 /// Fixed columns with parts in every mode, whatever the film's symmetry.
@@ -82,7 +86,7 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
   Eigen::MatrixXd small(most, most);  // upper triangle
   Eigen::MatrixXd block = apply(start_block(n, width));
   Eigen::Index built = 0;
-  for (;;) {
+  for (int restarts = 0;;) {
     const Eigen::Index before = built;
     built = extend_basis(block, built, basis);
     const Eigen::Index added = built - before;
@@ -102,13 +106,20 @@ LowestModes ConstrainedHessian::lowest_modes(const VectorX& metric,
         image.leftCols(built) * y - modes * theta.asDiagonal();
     const bool done =
         found == wanted &&
-        (left.colwise().norm().transpose().array() <= kResidual * theta.array())
+        (left.colwise().norm().transpose().array() <=
+         (kResidual * theta.array()).max(kRounding * std::abs(theta[0])))
             .all();
+    if (!done && built == most && built < room && restarts < kRestarts) {
+      block = basis.leftCols(built) * ritz.vectors.rightCols(width);
+      built = 0;
+      ++restarts;
+      continue;
+    }
     if (done || added == 0 || built == most) {
       if (!done && built < room) {
-        throw SolverError(fmt::format(
+        throw ModesNotFound(fmt::format(
             "the {} lowest eigenvalues of a film were not found in {} steps",
-            wanted, built));
+            wanted, (restarts + 1) * most));
       }
       // Back from the inverse and from the metric's coordinates.
       result.eigenvalues = theta.cwiseInverse();

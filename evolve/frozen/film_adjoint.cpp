@@ -34,7 +34,7 @@ FilmAdjoint::FilmAdjoint(const energy::FilmEnergy& energy,
       energy_slope_(energy.gradient(points, targets)),
       slope_(energy_slope_) {
   if (!saddle_.factored()) {
-    throw SolverError(
+    throw energy::ModesNotFound(
         "the film's Hessian is not finite: it has no gradient by its design");
   }
   for (int b = 0; b < energy.functionals(); ++b) {

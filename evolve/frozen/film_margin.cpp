@@ -100,7 +100,8 @@ FilmResponse film_margin(const energy::FilmEnergy& energy,
         options.modes, options.sharpness, scale));
   }
   if (!saddle.factored() || saddle.system().index() != 0) {
-    throw SolverError("the margin of an unstable film is not defined");
+    throw energy::ModesNotFound(
+        "the margin of an unstable film is not defined");
   }
   const energy::LowestModes lowest =
       saddle.system().lowest_modes(saddle.metric(), options.modes);

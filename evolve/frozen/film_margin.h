@@ -11,7 +11,8 @@ namespace meniscus::frozen {
 /// Of the film at `points` along `directions`, in the metric of lumped area
 /// [force/length^3]; `pressure` and `saddle` are of that film, `scale` > 0 an
 /// eigenvalue [force/length^3] that must not depend on the design. Throws
-/// InvalidInput for options out of range, SolverError for an unstable film.
+/// InvalidInput for options out of range, energy::ModesNotFound for an unstable
+/// film and for modes that are not found.
 FilmResponse film_margin(const energy::FilmEnergy& energy,
                          const films::FilmTargets& targets,
                          const Points& points, const Points& directions,

@@ -194,6 +194,10 @@ void FilmModel::Impl::find_reference(const films::FilmSystem& initial,
     build_rigid(initial, options);
     return;
   }
+  if (options.start != nullptr && !initial.keep_facets) {
+    settle_reference(*options.start, 0, initial, options, settle);
+    return;
+  }
   const int halvings = start::start_halvings(initial, options.edge);
   find_reference_from(halvings, initial, options, settle);
   const auto tears = [this] {
@@ -206,7 +210,7 @@ void FilmModel::Impl::find_reference(const films::FilmSystem& initial,
   // Coarse facets may fold where rims are not much larger than they: once more
   // without them.
   const films::FilmComplex coarse = complex;
-  const SurfaceMesh coarse_mesh = meshed;
+  const films::FilmComplex coarse_meshed = meshed_complex;
   const std::vector<Edge> coarse_parents = parents;
   const std::size_t coarse_near = near_parents;
   const settle::FilmState failed = reference;
@@ -214,7 +218,8 @@ void FilmModel::Impl::find_reference(const films::FilmSystem& initial,
   find_reference_from(0, initial, options, settle);
   if (tears()) {
     complex = coarse;
-    meshed = coarse_mesh;
+    meshed = coarse_meshed.mesh;
+    meshed_complex = coarse_meshed;
     parents = coarse_parents;
     near_parents = coarse_near;
     reference = failed;
@@ -231,7 +236,18 @@ void FilmModel::Impl::find_reference_from(int halvings,
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   monitor.progress({"film", "building the start", 0.0});
   start_edge = std::ldexp(options.edge, halvings);
-  complex = start::build_start(initial, start_edge);
+  settle_reference(start::build_start(initial, start_edge), halvings, initial,
+                   options, settle);
+}
+
+void FilmModel::Impl::settle_reference(films::FilmComplex first, int halvings,
+                                       const films::FilmSystem& initial,
+                                       const FilmModelOptions& options,
+                                       const settle::SettleOptions& settle) {
+  Monitor& monitor =
+      options.monitor != nullptr ? *options.monitor : silent_monitor();
+  start_edge = std::ldexp(options.edge, halvings);
+  complex = std::move(first);
   parents.clear();
   near_parents = 0;
   refinements = 0;
@@ -245,6 +261,7 @@ void FilmModel::Impl::find_reference_from(int halvings,
   }
   reference = settle::find_equilibrium(complex, find);
   meshed = complex.mesh;
+  meshed_complex = complex;
   for (int level = 0; level < options.refinements; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
     refine_once(level);
@@ -450,26 +467,38 @@ std::vector<int> FilmModel::rim(const std::string& curve) const {
   return result;
 }
 
-films::FilmComplex FilmModel::complex_at(
-    const settle::FilmState& state, const films::FilmSystem& system) const {
+films::FilmComplex FilmModel::Impl::at_design(
+    films::FilmComplex at, const settle::FilmState& state,
+    const films::FilmSystem& system) const {
   if (state.failure) {
     throw InvalidInput("there is no film: " + state.failure->message);
   }
-  films::FilmComplex complex = impl_->complex;
   if (state.points.size() != complex.mesh.points.size()) {
     throw InvalidInput("the film's state is not of this model");
   }
-  complex.mesh.points = state.points;
-  complex.curves = impl_->curves_of_system(system);
-  const films::FilmTargets targets = impl_->targets_of_system(system);
-  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
-    complex.surfaces[s].tension = targets.tension[s];
+  // A level's vertices come before those of its refinements.
+  std::copy_n(state.points.begin(), at.mesh.points.size(),
+              at.mesh.points.begin());
+  at.curves = curves_of_system(system);
+  const films::FilmTargets goal = targets_of_system(system);
+  for (std::size_t s = 0; s < at.surfaces.size(); ++s) {
+    at.surfaces[s].tension = goal.tension[s];
   }
-  for (std::size_t b = 0; b < complex.bodies.size(); ++b) {
-    complex.bodies[b].volume = targets.bodies[b].volume;
-    complex.bodies[b].pressure = targets.bodies[b].pressure;
+  for (std::size_t b = 0; b < at.bodies.size(); ++b) {
+    at.bodies[b].volume = goal.bodies[b].volume;
+    at.bodies[b].pressure = goal.bodies[b].pressure;
   }
-  return complex;
+  return at;
+}
+
+films::FilmComplex FilmModel::complex_at(
+    const settle::FilmState& state, const films::FilmSystem& system) const {
+  return impl_->at_design(impl_->complex, state, system);
+}
+
+films::FilmComplex FilmModel::meshed_at(const settle::FilmState& state,
+                                        const films::FilmSystem& system) const {
+  return impl_->at_design(impl_->meshed_complex, state, system);
 }
 
 }  // namespace meniscus::frozen

@@ -30,6 +30,9 @@ namespace meniscus::frozen {
 struct FilmModelOptions {
   double edge = 0.0;    // target edge of the meshed film [length], > 0
   int refinements = 1;  // nested 1:4 refinements up to the film's own mesh
+  /// A settled film of the system to begin from in the place of first facets,
+  /// at about `edge`: meshed_at() of another model. On loan; null: none.
+  const films::FilmComplex* start = nullptr;
   Monitor* monitor = nullptr;
 };
 
@@ -137,6 +140,11 @@ class FilmModel {
   /// InvalidInput for a state that failed or is not this model's.
   films::FilmComplex complex_at(const settle::FilmState& state,
                                 const films::FilmSystem& system) const;
+
+  /// The meshed level of complex_at(): what a model of that design begins from
+  /// (FilmModelOptions::start). Throws likewise.
+  films::FilmComplex meshed_at(const settle::FilmState& state,
+                               const films::FilmSystem& system) const;
 
   /// Facets of the meshed level, caps and voids included: for what else is
   /// made of the films. It has no points; corners are vertices of the film.

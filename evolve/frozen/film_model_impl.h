@@ -18,7 +18,8 @@ struct FilmModel::Impl {
   std::vector<Edge> parents;     // of the refinements' new vertices
   std::size_t near_parents = 0;  // of the first two refinements
   int refinements = 0;
-  SurfaceMesh meshed;  // the meshed level at the reference film
+  SurfaceMesh meshed;                 // the meshed level at the reference film
+  films::FilmComplex meshed_complex;  // the same with all it is made of
   std::optional<energy::FilmEnergy> energy;
   std::optional<Carry> carry;
   films::FilmTargets targets;
@@ -43,10 +44,19 @@ struct FilmModel::Impl {
   void find_reference(const films::FilmSystem& initial,
                       const FilmModelOptions& options,
                       const settle::SettleOptions& settle);
-  /// The same, from a start whose edges are options.edge x 2^halvings.
+  /// The same, from first facets whose edges are options.edge x 2^halvings.
   void find_reference_from(int halvings, const films::FilmSystem& initial,
                            const FilmModelOptions& options,
                            const settle::SettleOptions& settle);
+  /// The same from `first`, of that many halvings to come.
+  void settle_reference(films::FilmComplex first, int halvings,
+                        const films::FilmSystem& initial,
+                        const FilmModelOptions& options,
+                        const settle::SettleOptions& settle);
+  /// A complex of the model's at a design.
+  films::FilmComplex at_design(films::FilmComplex complex,
+                               const settle::FilmState& state,
+                               const films::FilmSystem& system) const;
   void build_rigid(const films::FilmSystem& initial,
                    const FilmModelOptions& options);
   /// One level finer; keeps the new vertices' parents.

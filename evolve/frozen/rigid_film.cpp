@@ -19,6 +19,7 @@ void FilmModel::Impl::build_rigid(const films::FilmSystem& initial,
   start_edge = options.edge;
   complex = start::build_start(initial, start_edge);
   meshed = complex.mesh;
+  meshed_complex = complex;
   for (int level = 0; level < options.refinements; ++level) {
     refine_once(level);
   }

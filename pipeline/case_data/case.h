@@ -35,6 +35,7 @@ struct Case {
   std::vector<std::string> overrides;  // as given, "name=value"
   std::vector<CaseFile> files;         // that it names, in the order of use
   std::string hash;  // of all that evaluations depend on (docs/case-file.md)
+  std::string answer_hash;  // of all that a study's answer depends on
   UnitSystem units;
   std::vector<DesignVariable> design;
   std::vector<Parameter> parameters;
@@ -54,6 +55,9 @@ struct Case {
   StudyEntry study;
   std::vector<MergedCurves> merged;  // films and solids name the kept ones
   std::vector<std::string> remarks;  // "PATH:LINE: ...": how it was read
+  /// Designs that a study's models were frozen at before the one at `initial`,
+  /// in order: its film begins from theirs (pipeline/store/refreeze.h).
+  std::vector<VectorX> earlier_freezes;
 };
 
 /// The bodies that are not void, in order: the regions of the mesh. Without

@@ -1,8 +1,14 @@
 #include "pipeline/case_data/film_start.h"
 
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evolve/curves/curve.h"
 
 namespace meniscus::case_data {
 
@@ -26,10 +32,75 @@ SourceLine line_of_start(const Case& input, const std::string& message) {
   return line;
 }
 
+namespace {
+
+// A curve longer or shorter by more than this asks for other divisions.
+constexpr double kLonger = 4.0 / 3.0;
+// Films whose areas differ by less are one, on other facets.
+constexpr double kSameFilm = 0.05;
+
+bool rims_keep_their_size(const films::FilmSystem& before,
+                          const films::FilmSystem& after) {
+  for (std::size_t k = 0; k < after.curves.size(); ++k) {
+    const double ratio = curves::length_of(after.curves[k].shape) /
+                         curves::length_of(before.curves[k].shape);
+    if (!(ratio < kLonger && ratio > 1.0 / kLonger)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The next model on a study's way; nothing where the film does not follow.
+std::optional<frozen::FilmModel> freeze_next(const frozen::FilmModel& before,
+                                             const films::FilmSystem& from,
+                                             const films::FilmSystem& system,
+                                             frozen::FilmModelOptions options) {
+  if (before.reference().failure) {
+    return std::nullopt;
+  }
+  const settle::FilmState state =
+      before.settle(system, {.monitor = options.monitor});
+  if (state.failure) {
+    return std::nullopt;
+  }
+  if (!rims_keep_their_size(from, system)) {
+    frozen::FilmModel anew = frozen::FilmModel::freeze(system, options);
+    const settle::FilmState& found = anew.reference();
+    if (!found.failure && std::abs(found.report.area - state.report.area) <=
+                              kSameFilm * state.report.area) {
+      return anew;
+    }
+  }
+  const films::FilmComplex settled = before.meshed_at(state, system);
+  options.start = &settled;
+  frozen::FilmModel result = frozen::FilmModel::freeze(system, options);
+  if (result.reference().failure) {
+    return std::nullopt;
+  }
+  return result;
+}
+
+}  // namespace
+
 frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
                                const frozen::FilmModelOptions& options) {
   try {
-    return frozen::FilmModel::freeze(inputs.film_system, options);
+    std::vector<films::FilmSystem> way;
+    for (const VectorX& design : input.earlier_freezes) {
+      way.push_back(evaluate(input, design).film_system);
+    }
+    way.push_back(inputs.film_system);
+    frozen::FilmModel model = frozen::FilmModel::freeze(way.front(), options);
+    for (std::size_t k = 1; k < way.size(); ++k) {
+      std::optional<frozen::FilmModel> next =
+          freeze_next(model, way[k - 1], way[k], options);
+      if (!next) {  // as a case of its own
+        return frozen::FilmModel::freeze(way.back(), options);
+      }
+      model = *std::move(next);
+    }
+    return model;
   } catch (const InvalidInput& error) {
     const std::string message = error.what();
     throw InvalidInput(fmt::format(

@@ -13,7 +13,11 @@ namespace meniscus::case_data {
 SourceLine line_of_start(const Case& input, const std::string& message);
 
 /// FilmModel::freeze() of the case's films; what it refuses is told with the
-/// line of the case. Throws InvalidInput.
+/// line of the case. After earlier_freezes it begins from the film that the
+/// model before settles at this design, not from first facets, which may find
+/// another film there or none. Rims keep their divisions on that way: where one
+/// is longer or shorter by a third, first facets come first, and count where
+/// they lead to the same film (areas within 5 %). Throws InvalidInput.
 frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
                                const frozen::FilmModelOptions& options);
 

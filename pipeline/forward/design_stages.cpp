@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "evolve/energy/constrained_hessian.h"
 #include "mesh_tet/motion_check.h"
 #include "mesh_tet/quadratic.h"
 #include "pipeline/forward/frozen_part.h"
@@ -103,6 +104,9 @@ bool compute_responses(const FrozenPart& part, StagedDesign& staged) {
                                          fields.mesh, fields.solution));
   } catch (const InvalidInput& error) {  // an expression of place
     result.failure = Failure{FailureKind::NotANumber, error.what()};
+    return false;
+  } catch (const energy::ModesNotFound& error) {
+    result.failure = Failure{FailureKind::SolverFailed, error.what()};
     return false;
   }
   if (!result.responses.allFinite()) {

@@ -1,6 +1,7 @@
 #include "pipeline/forward/forward_model.h"
 
 #include "core/heed_stop.h"
+#include "evolve/energy/constrained_hessian.h"
 #include "fea/distributed/petsc_child.h"
 #include "pipeline/forward/design_stages.h"
 #include "pipeline/forward/frozen_part.h"
@@ -66,6 +67,10 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
   } catch (const InvalidInput& error) {
     DesignGradient none;
     none.failure = Failure{FailureKind::NotANumber, error.what()};
+    return none;
+  } catch (const energy::ModesNotFound& error) {
+    DesignGradient none;
+    none.failure = Failure{FailureKind::SolverFailed, error.what()};
     return none;
   }
 }

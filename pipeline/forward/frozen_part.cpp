@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/timer.h"
+#include "evolve/energy/constrained_hessian.h"
 #include "mesh_tet/quadratic.h"
 #include "pipeline/case_data/film_advice.h"
 #include "pipeline/case_data/film_options.h"
@@ -283,7 +284,11 @@ void freeze_part(const ForwardModelOptions& options, FrozenPart& part) {
       options.edge_factor > 1.0 ? EmptyZones::Allowed : EmptyZones::Refused);
   if (freeze_pairs(part) && freeze_elasticity(inputs, monitor, part) &&
       part.input.analysis.adapt) {
-    adapt(inputs, monitor, part);
+    try {
+      adapt(inputs, monitor, part);
+    } catch (const energy::ModesNotFound& error) {
+      part.start.failure = Failure{FailureKind::SolverFailed, error.what()};
+    }
   }
 }
 

@@ -44,11 +44,13 @@ void read_content(const std::string& text, case_data::CaseProblems& problems,
     let_parameters_scatter(root, overridden);
     read_tables(root, overridden, problems, result);
     case_data::check_case(result, problems);
-    std::string content = canonical_text(root);
+    std::string files;
     for (const case_data::CaseFile& file : result.files) {
-      content += fmt::format("file {}:{}", file.text.size(), file.text);
+      files += fmt::format("file {}:{}", file.text.size(), file.text);
     }
-    result.hash = case_data::content_hash(content);
+    result.hash = case_data::content_hash(canonical_text(root) + files);
+    result.answer_hash =
+        case_data::content_hash(canonical_answer_text(root) + files);
   } catch (const toml::parse_error& error) {
     problems.add(static_cast<int>(error.source().begin.line),
                  fmt::format("this is not TOML: {} (column {})",

@@ -100,12 +100,42 @@ std::size_t skip_string(std::string_view text, std::size_t at) {
 
 }  // namespace
 
+namespace {
+
+/// Tables whose models follow the order of their entries.
+const std::set<std::string>& ordered_tables() {
+  static const std::set<std::string> names = {
+      "design", "curves", "films",     "solids",     "bodies",
+      "walls",  "fields", "materials", "load_cases", "responses"};
+  return names;
+}
+
+}  // namespace
+
+std::string canonical_answer_text(const toml::table& root) {
+  std::string text = "meniscus-answer-1;";
+  for (const auto& [key, node] : root) {
+    const std::string name(key.str());
+    const toml::table* table = node.as_table();
+    if (name == "title") {
+      continue;
+    }
+    write(name, text);
+    text += '=';
+    if (table != nullptr && ordered_tables().count(name) > 0) {
+      write_entries(*table, text);
+    } else if (table != nullptr && name == "study") {
+      write_table(*table, {"members", "time_limit"}, text);
+    } else {
+      write(node, text);
+    }
+  }
+  return text;
+}
+
 std::string canonical_text(const toml::table& root) {
   static const std::set<std::string> eigenvalues = {"frequencies",
                                                     "supports_of", "buckling"};
-  static const std::set<std::string> ordered = {
-      "design", "curves", "films",     "solids",     "bodies",
-      "walls",  "fields", "materials", "load_cases", "responses"};
   std::string text = "meniscus-case-1;";
   for (const auto& [key, node] : root) {
     const std::string name(key.str());
@@ -117,7 +147,7 @@ std::string canonical_text(const toml::table& root) {
     }
     write(name, text);
     text += '=';
-    if (table != nullptr && ordered.count(name) > 0) {
+    if (table != nullptr && ordered_tables().count(name) > 0) {
       write_entries(*table, text);
     } else if (table != nullptr && name == "study") {
       write_table(*table,

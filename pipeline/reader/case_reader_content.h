@@ -18,6 +18,11 @@ namespace meniscus::reader {
 /// family's table of members, which its members' evaluations do not depend on.
 std::string canonical_text(const toml::table& root);
 
+/// The same with all that a study's answer depends on: left out are title, time
+/// limits and a family's table of members. Rows added to that leave the answers
+/// of the others what they are.
+std::string canonical_answer_text(const toml::table& root);
+
 /// The first line with a dotted key of more than 30 parts, or 0. The TOML
 /// library recurses by them without a limit of its own.
 int line_of_deep_key(std::string_view text);

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/film_options.h"
+#include "pipeline/case_data/film_start.h"
 #include "pipeline/forward/design_stages.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/store/refreeze.h"
@@ -47,11 +48,13 @@ const SettledFilm& ExportJob::film() {
       options_.edge
           ? inputs_
           : case_data::evaluate(input_, case_data::initial_design(input_));
-  frozen::FilmModel model = frozen::FilmModel::freeze(
-      frozen.film_system,
-      {.edge = options_.edge.value_or(frozen.fea_edge),
-       .refinements = options_.edge ? 0 : case_data::film_refinements(input_),
-       .monitor = options_.monitor});
+  const frozen::FilmModelOptions options{
+      .edge = options_.edge.value_or(frozen.fea_edge),
+      .refinements = options_.edge ? 0 : case_data::film_refinements(input_),
+      .monitor = options_.monitor};
+  frozen::FilmModel model =
+      options_.edge ? frozen::FilmModel::freeze(frozen.film_system, options)
+                    : case_data::freeze_films(input_, frozen, options);
   settle::FilmState state = model.reference();
   if (!options_.edge && !state.failure) {
     state = model.settle(inputs_.film_system, {.monitor = options_.monitor});

@@ -27,6 +27,9 @@ const std::vector<ExportFormat>& export_formats();
 /// Their names: "stl, 3mf, ...".
 std::string export_format_names();
 
+/// How the warning of a run begins that lacks a format it was asked for.
+inline constexpr const char* kNotWritten = "not written as ";
+
 struct ExportOptions {
   std::string format = "stl";   // of export_formats()
   std::optional<double> edge;   // [length]; the run's own when absent

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <omp.h>
 #include <optional>
@@ -17,10 +18,10 @@
 #include "optimize/family_tree.h"
 #include "pipeline/case_data/content_hash.h"
 #include "pipeline/reader/family_members.h"
+#include "pipeline/results/export_part.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_folder.h"
 #include "pipeline/store/run_lock.h"
-#include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
 #include "pipeline/study/partial_result.h"
 #include "pipeline/study/study_records.h"
@@ -81,6 +82,12 @@ store::StudyStore open_store(const case_data::Case& member,
                   options.program_version);
 }
 
+/// Of all that a member's answer depends on but where it starts.
+std::string fingerprint_of(const FamilyOptions& options,
+                           const case_data::Case& member) {
+  return case_data::content_hash(options.program_version + member.answer_hash);
+}
+
 class FamilyRun {
  public:
   FamilyRun(const case_data::Case& family, const FamilyOptions& options)
@@ -101,6 +108,8 @@ class FamilyRun {
   void work(const std::vector<int>& wave, std::atomic<std::size_t>& next);
   void size(std::size_t k);
   Json study(std::size_t k, const std::optional<VectorX>& start);
+  std::optional<Json> finished_result(std::size_t k) const;
+  std::map<int, int> find_finished();
   Json compute(const case_data::Case& member, const fs::path& folder,
                store::StudyStore& store, const study::StudyOptions& options);
   study::StudyListener listener_of(std::size_t k) const;
@@ -123,6 +132,7 @@ class FamilyRun {
   std::mutex mutex_;  // of all below and of result_.rows while threads run
   std::exception_ptr error_;
   std::atomic<bool> stopping_{false};
+  std::vector<std::vector<std::string>> missing_;  // files, by member
   int finished_ = 0;
   int computed_ = 0;      // of these not only read
   double seconds_ = 0.0;  // that computing them took
@@ -135,6 +145,7 @@ void FamilyRun::prepare() {
   // An older result must not stand beside a study that is not its own.
   fs::remove(options_.folder / "result.json");
   parents_.assign(members_.size(), -1);
+  missing_.assign(members_.size(), {});
   for (std::size_t k = 0; k < members_.size(); ++k) {
     const std::string& name = family_.study.members[k].name;
     FamilyRow row;
@@ -172,8 +183,7 @@ Json FamilyRun::fingerprint(std::size_t k,
       {"name", name},
       {"parent",
        start ? result_.rows[static_cast<std::size_t>(parents_[k])].name : ""},
-      {"fingerprint", case_data::content_hash(options_.program_version +
-                                              store::stored_case(members_[k]))},
+      {"fingerprint", fingerprint_of(options_, members_[k])},
       {"start", Json::array()}};
   if (start) {
     json["start"] = std::vector<double>(start->begin(), start->end());
@@ -215,6 +225,49 @@ Json FamilyRun::compute(const case_data::Case& member, const fs::path& folder,
   return result_json(member, result, options_.program_version);
 }
 
+/// The member's result where it is finished: it stays what it is, whatever it
+/// started from, though the family has other members now.
+std::optional<Json> FamilyRun::finished_result(std::size_t k) const {
+  if (!options_.resume) {
+    return std::nullopt;
+  }
+  const std::string& name = family_.study.members[k].name;
+  std::optional<Json> known = stored_result(options_.folder / "members" / name);
+  if (!known) {
+    return std::nullopt;
+  }
+  const Json member = known->value("member", Json::object());
+  const bool same =
+      member.value("name", "") == name &&
+      member.value("fingerprint", "") == fingerprint_of(options_, members_[k]);
+  const std::string status = known->value("status", "");
+  if (!same || status == "stopped" || status == "interrupted") {
+    return std::nullopt;
+  }
+  return known;
+}
+
+/// Finished members with the parents that they have: the tree grows on them.
+/// One whose parent is gone, or has to begin again, keeps its answer and stands
+/// at a root.
+std::map<int, int> FamilyRun::find_finished() {
+  std::map<int, int> finished;
+  std::map<std::string, int> by_name;
+  std::vector<std::string> parents(members_.size());
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    if (const std::optional<Json> known = finished_result(k)) {
+      parents[k] = (*known)["member"].value("parent", "");
+      by_name[family_.study.members[k].name] = static_cast<int>(k);
+      finished[static_cast<int>(k)] = -1;
+    }
+  }
+  for (auto& [member, parent] : finished) {
+    const auto at = by_name.find(parents[static_cast<std::size_t>(member)]);
+    parent = at == by_name.end() ? -1 : at->second;
+  }
+  return finished;
+}
+
 /// The family's, told whose event it is.
 study::StudyListener FamilyRun::listener_of(std::size_t k) const {
   if (!options_.listener) {
@@ -232,15 +285,9 @@ study::StudyListener FamilyRun::listener_of(std::size_t k) const {
 Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
   const case_data::Case& member = members_[k];
   const fs::path folder = options_.folder / result_.rows[k].folder;
-  const Json own = fingerprint(k, start);
   make_folder(folder);
-  if (options_.resume) {
-    const std::optional<Json> known = stored_result(folder);
-    if (known && known->value("member", Json()) == own &&
-        (*known)["status"] != "stopped" &&
-        (*known)["status"] != "interrupted") {
-      return *known;
-    }
+  if (const std::optional<Json> known = finished_result(k)) {
+    return *known;
   }
   store::StudyStore store = open_store(member, folder, options_);
   MemberMonitor monitor(monitor_, result_.rows[k].name);
@@ -252,7 +299,7 @@ Json FamilyRun::study(std::size_t k, const std::optional<VectorX>& start) {
        .start = start,
        .listener = listener_of(k),
        .monitor = &monitor});
-  json["member"] = own;
+  json["member"] = fingerprint(k, start);
   write_file(folder / "result.json", json_text(json, 2) + "\n");
   const std::lock_guard<std::mutex> guard(mutex_);
   ++computed_;
@@ -266,6 +313,13 @@ void FamilyRun::finish(std::size_t k, const Json& result) {
   row.name = result_.rows[k].name;
   row.folder = result_.rows[k].folder;
   row.parent = result["member"].value("parent", "");
+  missing_[k].clear();
+  for (const Json& warning : result.value("warnings", Json::array())) {
+    const std::string text = warning.is_string() ? warning : "";
+    if (text.rfind(kNotWritten, 0) == 0) {  // asked for, and not there
+      missing_[k].push_back(row.name + ": " + text);
+    }
+  }
   result_.rows[k] = std::move(row);
   ++finished_;
   write_table();
@@ -342,7 +396,7 @@ FamilyResult FamilyRun::run() {
     numbers.push_back(reader::member_numbers(member));
   }
   const std::vector<optimize::FamilyStep> steps =
-      optimize::family_tree(numbers);
+      optimize::family_tree(numbers, find_finished());
   if (family_.study.kind !=
       case_data::StudyKind::Analyse) {  // that has no start
     for (const optimize::FamilyStep& step : steps) {
@@ -358,6 +412,9 @@ FamilyResult FamilyRun::run() {
     }
   }
   set_status(result_);
+  for (const std::vector<std::string>& files : missing_) {
+    result_.warnings.insert(result_.warnings.end(), files.begin(), files.end());
+  }
   if (stopping_) {
     result_.status = study::RunStatus::Interrupted;
   }

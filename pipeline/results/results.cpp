@@ -152,6 +152,8 @@ Json refrozen_json(const case_data::Case& input,
         {{"evaluation", r.evaluation},
          {"reason", r.reason},
          {"parameters", value_map(case_data::design_names(input), r.design)},
+         {"responses",
+          value_map(case_data::response_names(input), r.responses)},
          {"shift", value_map(case_data::response_names(input), r.shift)}});
   }
   return json;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimize/minimize.h"
 #include "pipeline/store/refreeze.h"
 
 namespace meniscus::store {
@@ -34,7 +35,9 @@ bool is_better(const Merit& a, const Merit& b) {
   if (a.feasible() != b.feasible()) {
     return a.feasible();
   }
-  return a.feasible() ? a.objective < b.objective : a.violation < b.violation;
+  return a.feasible() ? optimize::kept_objective(a.objective, a.violation) <
+                            optimize::kept_objective(b.objective, b.violation)
+                      : a.violation < b.violation;
 }
 
 const EvaluationRecord* best_by_objective(

@@ -26,8 +26,9 @@ struct Merit {
 /// Of a study with an objective; `responses` of all, in the case's order.
 Merit merit_of(const case_data::StudyEntry& study, const VectorX& responses);
 
-/// Among designs that keep every constraint the lower objective, else the
-/// smaller violation; a design that keeps all goes before one that does not.
+/// The optimizer's order: among designs that keep every constraint the lower
+/// optimize::kept_objective(), else the smaller violation; a design that keeps
+/// all goes before one that does not.
 bool is_better(const Merit& a, const Merit& b);
 
 /// The first of the best records of the answering model by objective and

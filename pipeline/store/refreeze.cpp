@@ -1,6 +1,8 @@
 #include "pipeline/store/refreeze.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,25 +20,23 @@ constexpr double kFlatter = 0.5;
 constexpr double kSame = 1e-3;
 constexpr double kNear = 0.25;
 
-/// Largest difference of a variable, x its range.
-double distance(const case_data::Case& input, const VectorX& a,
-                const VectorX& b) {
-  double largest = 0.0;
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    const case_data::DesignVariable& v = input.design[k];
-    const auto j = static_cast<Eigen::Index>(k);
-    if (v.upper > v.lower) {
-      largest = std::max(largest, std::abs(a[j] - b[j]) / (v.upper - v.lower));
-    }
-  }
-  return largest;
-}
-
 double min_dihedral_of(const EvaluationRecord& record) {
   const auto figures = parse_json(record.figures);
   const nlohmann::json::json_pointer at("/tet/min_dihedral_deg");
   return figures.is_object() && figures.contains(at) ? figures[at].get<double>()
                                                      : 0.0;
+}
+
+/// The designs that inverted elements of the stage's model.
+std::vector<const EvaluationRecord*> inverted_of(const FrozenStage& stage) {
+  std::vector<const EvaluationRecord*> inverted;
+  for (const EvaluationRecord& record : stage.records) {
+    if (record.model == stage.model && record.failure &&
+        record.failure->kind == FailureKind::ElementsInverted) {
+      inverted.push_back(&record);
+    }
+  }
+  return inverted;
 }
 
 /// Why the model no longer serves at `best`; empty: it does.
@@ -48,18 +48,45 @@ std::string reason_at(const FrozenStage& stage, const EvaluationRecord& best) {
         "that of the frozen mesh {:.1f}",
         angle, stage.min_dihedral_deg);
   }
-  const auto inverted = std::count_if(
-      stage.records.begin(), stage.records.end(),
-      [&](const EvaluationRecord& record) {
-        return record.model == stage.model && record.failure &&
-               record.failure->kind == FailureKind::ElementsInverted &&
-               distance(stage.input, record.inputs, best.inputs) <= kNear;
+  const std::vector<const EvaluationRecord*> inverted = inverted_of(stage);
+  const auto near = std::count_if(
+      inverted.begin(), inverted.end(), [&](const EvaluationRecord* record) {
+        return design_distance(stage.input, record->inputs, best.inputs) <=
+               kNear;
       });
-  return stage.converged || inverted == 0
-             ? ""
-             : fmt::format("{} design{} near the best one invert{} elements",
-                           inverted, inverted == 1 ? "" : "s",
-                           inverted == 1 ? "s" : "");
+  if (stage.converged || inverted.empty()) {
+    return "";
+  }
+  if (near > 0) {
+    return fmt::format("{} design{} near the best one invert{} elements", near,
+                       near == 1 ? "" : "s", near == 1 ? "s" : "");
+  }
+  return std::ssize(inverted) >= kMostInverted
+             ? fmt::format("{} designs invert elements", inverted.size())
+             : "";
+}
+
+/// Of the designs that answered off the freeze, the one nearest to one that
+/// inverted elements: from there the search can go on towards it.
+const EvaluationRecord* nearest_to_inverted(const FrozenStage& stage) {
+  const VectorX frozen = case_data::initial_design(stage.input);
+  const EvaluationRecord* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const EvaluationRecord& record : stage.records) {
+    if (record.failure || record.model != stage.model ||
+        design_distance(stage.input, record.inputs, frozen) <= kSame) {
+      continue;
+    }
+    for (const EvaluationRecord* inverted : inverted_of(stage)) {
+      const double distance =
+          design_distance(stage.input, record.inputs, inverted->inputs);
+      if (distance < least) {
+        least = distance;
+        nearest = &record;
+      }
+    }
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -87,7 +114,21 @@ std::string answering_model(const std::vector<EvaluationRecord>& records) {
   return last == records.rend() ? kStudyModel : last->model;
 }
 
+double design_distance(const case_data::Case& input, const VectorX& a,
+                       const VectorX& b) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < input.design.size(); ++k) {
+    const case_data::DesignVariable& v = input.design[k];
+    const auto j = static_cast<Eigen::Index>(k);
+    if (v.upper > v.lower) {
+      largest = std::max(largest, std::abs(a[j] - b[j]) / (v.upper - v.lower));
+    }
+  }
+  return largest;
+}
+
 case_data::Case frozen_at(case_data::Case input, const VectorX& design) {
+  input.earlier_freezes.push_back(case_data::initial_design(input));
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     input.design[k].initial = design[static_cast<Eigen::Index>(k)];
   }
@@ -96,12 +137,25 @@ case_data::Case frozen_at(case_data::Case input, const VectorX& design) {
 
 case_data::Case frozen_as_answered(
     case_data::Case input, const std::vector<EvaluationRecord>& records) {
-  const std::string model = answering_model(records);
-  const auto at = std::find_if(records.begin(), records.end(),
-                               [&](const EvaluationRecord& record) {
-                                 return refrozen_model(record.number) == model;
-                               });
-  return at == records.end() ? input : frozen_at(std::move(input), at->inputs);
+  // Back from the last model to the first: each names the design that it is
+  // frozen at, whose record names the model before.
+  std::vector<VectorX> way;
+  std::string model = answering_model(records);
+  while (model != kStudyModel) {
+    const auto at = std::find_if(
+        records.begin(), records.end(), [&](const EvaluationRecord& record) {
+          return refrozen_model(record.number) == model;
+        });
+    if (at == records.end()) {
+      return input;
+    }
+    way.push_back(at->inputs);
+    model = at->model;
+  }
+  for (auto design = way.rbegin(); design != way.rend(); ++design) {
+    input = frozen_at(std::move(input), *design);
+  }
+  return input;
 }
 
 std::optional<Refreeze> find_refreeze(const FrozenStage& stage) {
@@ -110,19 +164,30 @@ std::optional<Refreeze> find_refreeze(const FrozenStage& stage) {
                                    return record.model == stage.model &&
                                           record.inputs == stage.best;
                                  });
-  if (best == stage.records.end() || best->failure ||
-      distance(stage.input, stage.best,
-               case_data::initial_design(stage.input)) <= kSame) {
+  if (best == stage.records.end() || best->failure) {
     return std::nullopt;
   }
   const std::string reason = reason_at(stage, *best);
   if (reason.empty()) {
     return std::nullopt;
   }
-  return Refreeze{.evaluation = best->number,
+  Refreeze result{.evaluation = best->number,
                   .design = stage.best,
                   .reason = reason,
-                  .shift = {}};
+                  .shift = {},
+                  .responses = best->responses};
+  if (design_distance(stage.input, stage.best,
+                      case_data::initial_design(stage.input)) <= kSame) {
+    const EvaluationRecord* there = nearest_to_inverted(stage);
+    if (there == nullptr) {
+      return std::nullopt;
+    }
+    result.evaluation = there->number;
+    result.design = there->inputs;
+    result.responses = there->responses;
+    result.go_on_from = stage.best;
+  }
+  return result;
 }
 
 }  // namespace meniscus::store

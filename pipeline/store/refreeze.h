@@ -18,9 +18,16 @@ struct Refreeze {
   std::string reason;  // in words
   VectorX shift;       // responses there, the new model's less those of the one
                        // before: what another mesh changes
+  VectorX responses;   // of the model before, there
+  std::optional<VectorX> go_on_from = {};  // the best design, where the model
+                                           // is frozen at another
 };
 
 inline constexpr int kMostRefreezes = 3;
+
+/// How often an answer may be judged on a model frozen at it, and the study go
+/// on from there.
+inline constexpr int kMostJudgements = 4;
 
 /// How the database names a model: "frozen at evaluation 12".
 std::string refrozen_model(int evaluation);
@@ -36,10 +43,19 @@ int count_of_model(const std::vector<EvaluationRecord>& records,
 /// has.
 std::string answering_model(const std::vector<EvaluationRecord>& records);
 
-/// The case with `design` for its initial one.
+/// A model frozen this near to a design, x the ranges of the variables, is one
+/// of that design.
+inline constexpr double kAtDesign = 1e-2;
+
+/// The largest difference of a variable, x its range.
+double design_distance(const case_data::Case& input, const VectorX& a,
+                       const VectorX& b);
+
+/// The case with `design` for its initial one, whose film begins from that of
+/// the model before.
 case_data::Case frozen_at(case_data::Case input, const VectorX& design);
 
-/// The case whose freeze is the answering model.
+/// The case whose freeze is the answering model, with all before it.
 case_data::Case frozen_as_answered(
     case_data::Case input, const std::vector<EvaluationRecord>& records);
 
@@ -53,10 +69,16 @@ struct FrozenStage {
   bool converged = false;
 };
 
+/// Designs that invert elements, after which a search is ended early for a new
+/// model.
+inline constexpr int kMostInverted = 6;
+
 /// Where the study should go on with a new model, shift not filled in: at its
-/// best design when the elements there have become flat, or when the search
-/// ended among designs that invert elements. Nothing where the model is frozen
-/// at that very design.
+/// best design when the elements there have become flat, when so many designs
+/// inverted elements, or when the search ended beside some that did. Where the
+/// model is frozen at that very design the new one is frozen at the design that
+/// answered nearest to those that did not, and the study goes on from its best.
+/// Nothing where no other design has answered.
 std::optional<Refreeze> find_refreeze(const FrozenStage& stage);
 
 }  // namespace meniscus::store

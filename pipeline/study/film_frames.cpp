@@ -11,6 +11,7 @@
 #include "io/vtk_files.h"
 #include "optimize/problem.h"
 #include "pipeline/store/incumbent.h"
+#include "pipeline/store/refreeze.h"
 
 namespace meniscus::study {
 
@@ -53,7 +54,7 @@ bool beaten(const case_data::StudyEntry& study,
   return std::any_of(
       records.begin(), records.end(),
       [&](const store::EvaluationRecord& other) {
-        return !other.failure && other.model == store::kStudyModel &&
+        return !other.failure && store::is_study_model(other.model) &&
                store::merit_of(study, other.responses).feasible() &&
                value(other, first) <= value(record, first) &&
                value(other, second) <= value(record, second) &&
@@ -72,7 +73,11 @@ std::vector<KeptDesign> candidates(
   const store::EvaluationRecord* incumbent = nullptr;
   bool best_found = false;
   for (const store::EvaluationRecord& record : records) {
-    if (record.failure || record.model != store::kStudyModel) {
+    const bool again =
+        std::any_of(kept.begin(), kept.end(), [&](const KeptDesign& other) {
+          return other.record->inputs == record.inputs;  // on another mesh
+        });
+    if (record.failure || again || !store::is_study_model(record.model)) {
       continue;
     }
     const bool neighbour =

@@ -61,6 +61,11 @@ nlohmann::ordered_json front_json(const case_data::Case& input,
                   {second, point.second},
                   {"end", point.end},
                   {"parameters", Json::object()}};
+    if (point.own_mesh) {
+      entry["own_mesh"] = {{first, point.own_mesh->first},
+                           {second, point.own_mesh->second},
+                           {"kept", point.own_mesh->kept}};
+    }
     for (std::size_t j = 0; j < input.design.size(); ++j) {
       entry["parameters"][input.design[j].name] =
           point.design[static_cast<Eigen::Index>(j)];
@@ -83,6 +88,13 @@ std::string front_text(const case_data::Case& input,
                       point.design[static_cast<Eigen::Index>(j)]);
     }
     text += fmt::format(" ({})\n", point.end);
+    if (point.own_mesh) {
+      text += fmt::format(
+          "      on a mesh of its own {}, {}{}\n",
+          value_text(input, *input.study.objective, point.own_mesh->first),
+          value_text(input, *input.study.second, point.own_mesh->second),
+          point.own_mesh->kept ? "" : ": not every constraint is kept");
+    }
   }
   return text;
 }

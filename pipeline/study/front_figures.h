@@ -1,6 +1,7 @@
 /// The compromises that a study of two objectives found.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,19 @@
 
 namespace meniscus::study {
 
+/// Both objectives on a mesh that was made for the design.
+struct OwnMesh {
+  double first = 0.0;
+  double second = 0.0;
+  bool kept = true;  // every constraint, there
+};
+
 struct FrontPoint {
   VectorX design;
   double first = 0.0;  // value of study.objectives[0]
   double second = 0.0;
   std::string end;  // how its minimisation ended: "converged", "stalled", ...
+  std::optional<OwnMesh> own_mesh = {};
 };
 
 struct FrontFigures {

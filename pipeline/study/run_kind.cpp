@@ -8,6 +8,7 @@
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/forward/responses.h"
+#include "pipeline/store/incumbent.h"
 
 namespace meniscus::study {
 
@@ -46,6 +47,19 @@ optimize::JacobianFunction match_jacobian(const StudyTask& task) {
   };
 }
 
+std::vector<Constraint> constraints_of(const case_data::StudyEntry& study,
+                                       const MatchTargets& targets,
+                                       const VectorX& mismatch) {
+  std::vector<Constraint> constraints;
+  for (Eigen::Index k = 0; k < mismatch.size(); ++k) {
+    constraints.push_back({.name = targets.name(k),
+                           .value = mismatch[k],
+                           .bound = study.tolerance,
+                           .satisfied = mismatch[k] <= study.tolerance});
+  }
+  return constraints;
+}
+
 StudyOutcome match(const StudyTask& task) {
   const case_data::StudyEntry& study = task.input.study;
   if (study.fit) {
@@ -73,17 +87,45 @@ StudyOutcome match(const StudyTask& task) {
                        .best = report.best,
                        .objective = report.cost,
                        .jacobian = report.jacobian};
-  for (Eigen::Index k = 0; k < report.answer.mismatch.size(); ++k) {
-    const double value = report.answer.mismatch[k];
-    outcome.constraints.push_back({.name = task.targets->name(k),
-                                   .value = value,
-                                   .bound = study.tolerance,
-                                   .satisfied = value <= study.tolerance});
+  if (report.answer.mismatch.size() > 0) {
+    outcome.constraints =
+        constraints_of(study, *task.targets, report.answer.mismatch);
   }
   return outcome;
 }
 
 }  // namespace
+
+std::vector<Constraint> bound_constraints(const case_data::Case& input,
+                                          const VectorX& responses) {
+  std::vector<Constraint> constraints;
+  for (const case_data::ConstraintEntry& entry : input.study.constraints) {
+    const double value = responses[entry.response];
+    constraints.push_back(
+        {.name = input.responses[static_cast<std::size_t>(entry.response)].name,
+         .value = value,
+         .bound = nearer_bound(entry.lower, entry.upper, value),
+         .satisfied = store::violation_of(entry, value) <= store::kFeasible});
+  }
+  return constraints;
+}
+
+std::vector<Constraint> match_constraints(const case_data::Case& input,
+                                          const MatchTargets* targets,
+                                          const VectorX& responses) {
+  const case_data::StudyEntry& study = input.study;
+  if (targets != nullptr) {
+    return constraints_of(study, *targets, targets->mismatch(responses));
+  }
+  if (!(study.tolerance > 0.0)) {
+    return {};
+  }
+  const double value = responses[*study.fit];
+  return {{.name = input.responses[static_cast<std::size_t>(*study.fit)].name,
+           .value = value,
+           .bound = study.tolerance,
+           .satisfied = value <= study.tolerance}};
+}
 
 double nearer_bound(double lower, double upper, double value) {
   const bool above = value > 0.5 * (lower + upper);

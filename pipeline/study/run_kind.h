@@ -67,6 +67,14 @@ double nearer_bound(double lower, double upper, double value);
 /// As result.json has it, with the nearer bound.
 Constraint to_constraint(const optimize::ConstraintState& state);
 
+/// The constraints of a minimum, and the targets of a match (`targets` null: a
+/// fit to a scan), as they are at `responses`.
+std::vector<Constraint> bound_constraints(const case_data::Case& input,
+                                          const VectorX& responses);
+std::vector<Constraint> match_constraints(const case_data::Case& input,
+                                          const MatchTargets* targets,
+                                          const VectorX& responses);
+
 /// Computes the neighbours of a difference side by side.
 std::function<void(const std::vector<VectorX>&)> prefetch_of(
     const StudyTask& task);

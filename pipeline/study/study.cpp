@@ -16,6 +16,7 @@
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/accuracy_note.h"
 #include "pipeline/study/film_frames.h"
+#include "pipeline/study/run_kind.h"
 #include "pipeline/study/study_monitor.h"
 #include "pipeline/study/study_records.h"
 #include "pipeline/study/study_stage.h"
@@ -34,6 +35,16 @@ constexpr double kErrorPerChange = 1.5;
 // A study looks at its limit between evaluations; so much later [s] the one
 // under way is given up.
 constexpr double kLateness = 0.5;
+
+/// What a point of a front is on a mesh of its own.
+void judge_point(const case_data::Case& input, const VectorX& responses,
+                 FrontPoint& point) {
+  point.own_mesh = OwnMesh{.first = responses[*input.study.objective],
+                           .second = responses[*input.study.second]};
+  for (const Constraint& constraint : bound_constraints(input, responses)) {
+    point.own_mesh->kept = point.own_mesh->kept && constraint.satisfied;
+  }
+}
 
 /// From the frozen model to the answer with its error, step by step.
 class StudyRun {
@@ -63,12 +74,18 @@ class StudyRun {
   void keep_best_in_time();
   bool may_refreeze() const;
   bool refreeze();
+  bool go_on_at(store::Refreeze wanted);
   std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
+                                       const std::string& name,
                                        const case_data::Case& input);
   void update_time_limit();
   void add_stage_totals();
   void conduct_study();
   void take_outcome();
+  bool has_answer_to_judge() const;
+  void judge_answer();
+  void judge_front();
+  void doubt_margins();
   bool finish_best();
   template <class Work>
   void run_if_time_left(const char* what, const Work& work);
@@ -160,13 +177,13 @@ void StudyRun::add_stage_totals() {
 
 /// A stage on a model frozen there, or null where it cannot be.
 std::unique_ptr<StudyStage> StudyRun::stage_at(const store::Refreeze& refreeze,
+                                               const std::string& name,
                                                const case_data::Case& input) {
   std::string reason;
   try {
     auto stage = std::make_unique<StudyStage>(
         input, store_, options_,
-        StageModel{.name = store::refrozen_model(refreeze.evaluation),
-                   .reference = result_.start->responses});
+        StageModel{.name = name, .reference = result_.start->responses});
     if (!stage->failure()) {
       return stage;
     }
@@ -194,25 +211,81 @@ bool StudyRun::refreeze() {
   if (!wanted) {
     return false;
   }
+  return go_on_at(*std::move(wanted));
+}
+
+/// With a model frozen there; false where there is none.
+bool StudyRun::go_on_at(store::Refreeze wanted) {
   monitor_.log(Severity::Info,
                fmt::format("a new model is frozen at evaluation {}: {}",
-                           wanted->evaluation, wanted->reason));
+                           wanted.evaluation, wanted.reason));
   auto input = std::make_unique<case_data::Case>(
-      store::frozen_at(input_, wanted->design));
-  input->study.max_evaluations -= evaluations;
+      store::frozen_at(frozen_ ? *frozen_ : input_, wanted.design));
+  input->study.max_evaluations =
+      std::max(1, input_.study.max_evaluations - earlier_evaluations_ -
+                      stage_->evaluations());
   update_time_limit();
-  std::unique_ptr<StudyStage> stage = stage_at(*wanted, *input);
+  std::unique_ptr<StudyStage> stage =
+      stage_at(wanted, store::refrozen_model(wanted.evaluation), *input);
   if (stage == nullptr) {
     return false;
   }
-  wanted->shift = stage->start().responses -
-                  store_.find(stage_->model_name(), wanted->design)->responses;
+  wanted.shift = stage->start().responses - wanted.responses;
   add_stage_totals();
-  options_.start.reset();
+  options_.start = wanted.go_on_from;
   stage_ = std::move(stage);
   frozen_ = std::move(input);
-  result_.refrozen.push_back(*std::move(wanted));
+  result_.refrozen.push_back(std::move(wanted));
   return true;
+}
+
+/// One of a study that seeks designs, where its model is frozen elsewhere.
+bool StudyRun::has_answer_to_judge() const {
+  const case_data::StudyKind kind = input_.study.kind;
+  const VectorX& best = stage_->outcome().best;
+  return (kind == case_data::StudyKind::Match ||
+          kind == case_data::StudyKind::Minimize ||
+          kind == case_data::StudyKind::Pareto) &&
+         best.size() > 0 && stage_->was_answered(best) &&
+         store::design_distance(input_, best, stage_->start().design) >
+             store::kAtDesign;
+}
+
+/// The mesh of an answer was dragged to it from another design: it is evaluated
+/// on one of its own, and what is not kept there is not kept. Then the study
+/// goes on from that model, so often.
+void StudyRun::judge_answer() {
+  if (input_.study.kind == case_data::StudyKind::Pareto) {
+    return;
+  }
+  for (int round = 1; has_answer_to_judge(); ++round) {
+    const StudyOutcome found = stage_->outcome();
+    if (limited_.expired()) {
+      left_out_.emplace_back("the answer on a mesh of its own");
+      return;
+    }
+    const store::EvaluationRecord record =
+        *store_.find(stage_->model_name(), found.best);
+    if (!go_on_at({.evaluation = record.number,
+                   .design = found.best,
+                   .reason = "the answer on a mesh of its own",
+                   .shift = {},
+                   .responses = record.responses})) {
+      return;
+    }
+    stage_->judge(found);
+    const bool lost = found.status == RunStatus::Converged &&
+                      stage_->outcome().status != RunStatus::Converged;
+    const bool spent = earlier_evaluations_ + stage_->evaluations() >=
+                       input_.study.max_evaluations;
+    if (!lost || !input_.study.refreeze || spent ||
+        round >= store::kMostJudgements) {
+      return;
+    }
+    monitor_.log(Severity::Info,
+                 "not kept on a mesh of its own: the study goes on there");
+    stage_->conduct();
+  }
 }
 
 bool StudyRun::may_refreeze() const {
@@ -223,6 +296,93 @@ bool StudyRun::may_refreeze() const {
           study.kind == case_data::StudyKind::Minimize);
 }
 
+/// Each point of a front on a mesh of its own, that of the part last: the
+/// others tell how much of the front is the mesh's.
+void StudyRun::judge_front() {
+  StudyOutcome found = stage_->outcome();
+  if (!found.front || found.best.size() == 0) {
+    return;
+  }
+  for (FrontPoint& point : found.front->points) {
+    const std::optional<store::EvaluationRecord> record =
+        store_.find(stage_->model_name(), point.design);
+    const bool of_part = point.design == found.best;
+    if (!record || limited_.expired()) {
+      left_out_.emplace_back("a point of the front on a mesh of its own");
+      continue;
+    }
+    if (of_part) {
+      continue;
+    }
+    store::Refreeze wanted{.evaluation = record->number,
+                           .design = point.design,
+                           .reason =
+                               "a point of the front, on a mesh of its "
+                               "own",
+                           .shift = {},
+                           .responses = record->responses};
+    const case_data::Case input = store::frozen_at(input_, point.design);
+    // A model that only looks: the study's answer is not of it.
+    const std::unique_ptr<StudyStage> stage = stage_at(
+        wanted, fmt::format("point of evaluation {}", record->number), input);
+    if (stage != nullptr) {
+      own_seconds_ += stage->evaluator().seconds();
+      judge_point(input_, stage->start().responses, point);
+    }
+  }
+  if (has_answer_to_judge()) {
+    const store::EvaluationRecord record =
+        *store_.find(stage_->model_name(), found.best);
+    if (!go_on_at({.evaluation = record.number,
+                   .design = found.best,
+                   .reason = "the answer on a mesh of its own",
+                   .shift = {},
+                   .responses = record.responses})) {
+      return;
+    }
+    for (FrontPoint& point : found.front->points) {
+      if (point.design == found.best) {
+        judge_point(input_, stage_->start().responses, point);
+      }
+    }
+    stage_->judge(found);
+  }
+}
+
+/// A margin that its own error makes nothing is no margin: the film may be
+/// there on this mesh alone.
+void StudyRun::doubt_margins() {
+  if (input_.study.kind != case_data::StudyKind::Minimize ||
+      result_.response_errors.size() == 0) {
+    return;
+  }
+  for (const case_data::ConstraintEntry& entry : input_.study.constraints) {
+    const case_data::ResponseEntry& response =
+        input_.responses[static_cast<std::size_t>(entry.response)];
+    const double value = result_.best->responses[entry.response];
+    const double error = result_.response_errors[entry.response];
+    if (response.kind != case_data::ResponseKind::CollapseMargin ||
+        !std::isfinite(entry.lower) || value > error) {
+      continue;
+    }
+    for (Constraint& constraint : result_.constraints) {
+      if (constraint.name == response.name) {
+        constraint.satisfied = false;
+      }
+    }
+    const std::string note = fmt::format(
+        "'{}' is {:.2g} and the mesh's own error of it {:.2g}: the film may be "
+        "there on this mesh alone, so the bound is not kept; raise it above "
+        "the error, or shorten resolution.fea",
+        response.name, value, error);
+    result_.message += ". " + note;
+    result_.warnings.push_back(note);
+    if (result_.status == RunStatus::Converged) {
+      result_.status = RunStatus::Infeasible;
+    }
+  }
+}
+
 void StudyRun::conduct_study() {
   using Leave = StudyStage::Leave;
   do {
@@ -231,6 +391,8 @@ void StudyRun::conduct_study() {
   if (stage_->stopped_early()) {
     stage_->conduct();
   }
+  judge_answer();
+  judge_front();
   if (const forward::Adaptation* adaptation =
           stage_->evaluator().model().adaptation()) {
     result_.adaptation = *adaptation;
@@ -464,6 +626,7 @@ RunResult StudyRun::run() {
                        [&] { solve_eigenproblems(); });
       if (options_.estimate_errors) {
         run_if_time_left("estimates of the errors", [&] { estimate_errors(); });
+        doubt_margins();
       }
       if (options_.frames > 0) {
         run_if_time_left("films of the history", [&] { keep_history(); });

@@ -89,13 +89,14 @@ void StudyStage::count(const store::EvaluationRecord& record) {
   }
 }
 
-/// Ends the study after so many designs that invert elements, when the mesh is
-/// what holds it up.
+/// Ends the study after so many designs that invert elements, as soon as there
+/// is a design to freeze another model at.
 void StudyStage::stop_if_inverted(const store::EvaluationRecord& record) {
-  constexpr int kMaxInverted = 6;
-  if (!record.failure ||
-      record.failure->kind != FailureKind::ElementsInverted ||
-      ++inverted_ < kMaxInverted) {
+  inverted_ +=
+      record.failure && record.failure->kind == FailureKind::ElementsInverted
+          ? 1
+          : 0;
+  if (inverted_ < store::kMostInverted) {
     return;
   }
   const VectorX best = store::best_record(input_, records()).inputs;
@@ -133,6 +134,41 @@ void StudyStage::conduct(Leave leave) {
 void StudyStage::leave(StudyOutcome outcome) {
   evaluator_.set_observer({});
   outcome_ = std::move(outcome);
+}
+
+void StudyStage::judge(const StudyOutcome& found) {
+  outcome_ = found;
+  outcome_.best = start_.design;
+  outcome_.constraints =
+      input_.study.kind == case_data::StudyKind::Match
+          ? match_constraints(input_, targets(), start_.responses)
+          : bound_constraints(input_, start_.responses);
+  std::string missed;
+  for (const Constraint& c : outcome_.constraints) {
+    if (!c.satisfied) {
+      missed +=
+          fmt::format("{}'{}' is {:.6g} and its bound {:.6g}",
+                      missed.empty() ? "" : ", ", c.name, c.value, c.bound);
+    }
+  }
+  if (input_.study.kind == case_data::StudyKind::Match) {
+    if (targets() != nullptr) {
+      outcome_.objective =
+          0.5 * targets()->residuals(start_.responses).squaredNorm();
+    }
+  } else {
+    outcome_.objective = start_.responses[*input_.study.objective];
+    outcome_.message += fmt::format(
+        ". On a mesh made for it: {} {:.6g}",
+        input_.responses[*input_.study.objective].name, outcome_.objective);
+  }
+  if (!missed.empty()) {
+    outcome_.message += fmt::format(
+        ". On a mesh made for this design it is not kept: {}", missed);
+    if (outcome_.status == RunStatus::Converged) {
+      outcome_.status = RunStatus::Infeasible;
+    }
+  }
 }
 
 CoarseStage run_coarse_stage(const case_data::Case& input,

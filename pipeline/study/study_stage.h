@@ -40,6 +40,10 @@ class StudyStage {
   /// model; a second call then does the rest.
   enum class Leave { Late, Early };
   void conduct(Leave leave = Leave::Late);
+  /// The outcome of a study on another model, with the objective and the
+  /// constraints that its best design, which this model is frozen at, has
+  /// here. Converged it stays where all is kept.
+  void judge(const StudyOutcome& found);
   /// What a new model is wanted for, as things stand.
   std::optional<store::Refreeze> wanted(const VectorX& best,
                                         bool converged) const;
@@ -57,6 +61,11 @@ class StudyStage {
   const std::string& model_name() const { return model_.name; }
   DesignEvaluator& evaluator() { return evaluator_; }
   const DesignEvaluator& evaluator() const { return evaluator_; }
+  /// True for a design that this model has evaluated with success.
+  bool was_answered(const VectorX& design) const {
+    const auto record = store_.find(model_.name, design);
+    return record && !record->failure;
+  }
   /// Of a match, else null.
   const MatchTargets* targets() const {
     return targets_ ? &*targets_ : nullptr;

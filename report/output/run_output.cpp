@@ -101,7 +101,7 @@ std::vector<fs::path> RunOutput::export_all(study::RunResult& result) {
       throw;
     } catch (const Error& error) {
       result.warnings.push_back(
-          fmt::format("not written as {}: {}", format, error.what()));
+          fmt::format("{}{}: {}", results::kNotWritten, format, error.what()));
     }
   }
   return files;

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/study_kinds.h"
+#include "pipeline/store/refreeze.h"
 #include "report/page/packed_array.h"
 
 namespace meniscus::page {
@@ -195,7 +196,7 @@ Json page_gradients(const case_data::Case& input,
   const store::EvaluationRecord* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const store::EvaluationRecord& record : records) {
-    if (record.model != store::kStudyModel || record.gradient.size() == 0 ||
+    if (!store::is_study_model(record.model) || record.gradient.size() == 0 ||
         record.inputs.size() != design.size()) {
       continue;
     }

@@ -32,6 +32,43 @@ TEST(FamilyTree, JoinsEachMemberToItsNearest) {
   EXPECT_NEAR(steps[3].distance, 10.0 / 300.0, 1e-15);
 }
 
+// Rows are added to a family that is sized: whatever they are, those before
+// keep their parents, and a new one joins the nearest.
+TEST(FamilyTree, GrowsOnWhatIsThere) {
+  const std::vector<VectorX> all = optimize::latin_hypercube_samples(2, 30, 9);
+  const std::vector<VectorX> first(all.begin(), all.begin() + 20);
+  std::map<int, int> kept;
+  for (const optimize::FamilyStep& step : optimize::family_tree(first)) {
+    kept[step.member] = step.parent.value_or(-1);
+  }
+  const auto grown = optimize::family_tree(all, kept);
+  ASSERT_EQ(grown.size(), all.size());
+  std::vector<int> depth(all.size(), -1);
+  for (std::size_t k = 0; k < grown.size(); ++k) {
+    const optimize::FamilyStep& step = grown[k];
+    EXPECT_EQ(depth[static_cast<std::size_t>(step.member)], -1);
+    const int parent = step.parent.value_or(-1);
+    if (k < first.size()) {
+      EXPECT_EQ(parent, kept.at(step.member));
+    } else {
+      EXPECT_GE(step.member, 20);
+      ASSERT_GE(parent, 0);
+    }
+    depth[static_cast<std::size_t>(step.member)] = step.depth;
+    EXPECT_EQ(step.depth,
+              parent < 0 ? 0 : depth[static_cast<std::size_t>(parent)] + 1);
+  }
+  // All anew is one of them: the tree of a family that was never sized.
+  const auto anew = optimize::family_tree(all, {});
+  const auto plain = optimize::family_tree(all);
+  for (std::size_t k = 0; k < anew.size(); ++k) {
+    EXPECT_EQ(anew[k].member, plain[k].member);
+    EXPECT_EQ(anew[k].parent, plain[k].parent);
+  }
+  EXPECT_THROW(optimize::family_tree(all, {{0, 1}}), InvalidInput);
+  EXPECT_THROW(optimize::family_tree(all, {{0, 1}, {1, 0}}), InvalidInput);
+}
+
 TEST(FamilyTree, DoesNotDependOnUnits) {
   std::vector<VectorX> metres = optimize::latin_hypercube_samples(3, 20, 5);
   std::vector<VectorX> other = metres;

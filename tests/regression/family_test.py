@@ -110,6 +110,49 @@ class Family(ProgramTest):
                          stamp)
         self.compare(out)
 
+    def test_a_row_that_is_added_leaves_the_others_as_they_are(self):
+        case = self.family()
+        out, _ = self.sized(case, "out", 0)
+        before = {m["name"]: m for m in self.result(out)["members"]}
+        files = {name: (out / "members" / name / "result.json").read_bytes()
+                 for name in before}
+        # In the middle, nearer to `long` than its parent is; and a comment.
+        rows = MEMBERS.splitlines(keepends=True)
+        (self.folder / "members.csv").write_text(
+            "".join(rows[:3] + ["between,57,8,4700,,\n"] + rows[3:]))
+        case.write_text("# grown\n" + case.read_text())
+        self.sized(case, "out", 0, "--resume")
+        after = {m["name"]: m for m in self.result(out)["members"]}
+        self.assertEqual(list(after), ["short", "middle", "between", "far",
+                                       "long"])
+        for name, member in before.items():
+            self.assertEqual(after[name], member)
+            self.assertEqual(
+                (out / "members" / name / "result.json").read_bytes(),
+                files[name])
+        self.assertIn(after["between"]["parent"], before)
+        self.assertEqual(after["between"]["status"], "converged")
+
+    def test_a_format_that_a_member_lacks_is_told(self):
+        case = self.family("name,length\none,48\ntwo,50\n",
+                           ('each = "minimize"\nobjective = "mass"\n',
+                            'each = "analyse"\n'),
+                           ('method = "slsqp"\n', ""))
+        case.write_text(re.sub(r"(?s)\nconstraints = \[.*?\n\]", "",
+                               case.read_text()))
+        out, _ = self.sized(case, "out", 0, "--export", "step")
+        self.assertTrue((out / "members/two/part_10.step").is_file())
+        # As a part whose film has no STEP leaves it.
+        path = out / "members/two/result.json"
+        result = json.loads(path.read_text())
+        result["warnings"].append("not written as step: film 'skin': a patch")
+        path.write_text(json.dumps(result))
+        _, done = self.sized(case, "out", 0, "--export", "step", "--resume")
+        self.assertIn("two: not written as step: film 'skin'",
+                      done.stdout + done.stderr)
+        self.assertIn("two: not written as step: film 'skin': a patch",
+                      self.result(out)["warnings"])
+
     def compare(self, out):
         """Two members side by side; and a block of known stiffness."""
         there = self.folder / "sides"

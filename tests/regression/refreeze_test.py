@@ -95,10 +95,13 @@ class Refreeze(Study):
         self.assertAlmostEqual(result["responses"]["middle"], 33, 1)
         self.assertEqual(result["evaluations"], len(
             (out / "history.csv").read_text().splitlines()) - 1)
-        self.assertTrue(1 <= len(result["refrozen"]) <= 3)
+        self.assertTrue(1 <= len(result["refrozen"]) <= 7)
         for refrozen in result["refrozen"]:
             self.assertEqual(set(refrozen), documented()["refrozen"])
-            self.assertRegex(refrozen["reason"], "dihedral|invert")
+            self.assertRegex(refrozen["reason"],
+                             "dihedral|invert|a mesh of its own")
+            # The mesh before, and what the new one changes.
+            self.assertGreater(refrozen["responses"]["sway"], 0)
             self.assertTrue(15 < refrozen["parameters"]["angle"] < 135)
             # Another mesh of the same part.
             self.assertTrue(0 < abs(refrozen["shift"]["sway"]) < 0.1 *
@@ -112,7 +115,34 @@ class Refreeze(Study):
 
         plain = self.folder / "plain"
         self.expect(self.run_study(plain, "--set", "study.refreeze=false"), 3)
-        self.assertNotIn("refrozen", self.result(plain))
+        # It goes on from no new model, but its answer is judged on one.
+        self.assertEqual([r["reason"] for r in
+                          self.result(plain).get("refrozen", [])],
+                         ["the answer on a mesh of its own"])
+
+    def test_the_answer_is_judged_on_its_own_mesh(self):
+        out = self.folder / "out"
+        self.expect(self.call("run", self.case, "--no-pictures",
+                              "--set", "study.targets.middle=25",
+                              "--out", out, env=self.env), 0)
+        result = self.result(out)
+        last = result["refrozen"][-1]
+        # The model that the answer is of was frozen within a hundredth of the
+        # ranges of it, and what it says of the answer is what the study says.
+        self.assertLess(abs(last["parameters"]["angle"] -
+                            result["parameters"]["angle"]), 0.01 * 120)
+        self.assertTrue(all(c["satisfied"]
+                            for c in result["constraints"].values()))
+        self.assertLess(abs(result["responses"]["middle"] / 25 - 1), 1e-3)
+        # A case of its own, frozen at the answer, is another mesh yet; it
+        # agrees with the judged answer at least as well as the dragged mesh.
+        alone = self.folder / "alone"
+        self.expect(self.call(
+            "run", self.case, "--no-pictures", "--set", "study.kind=analyse",
+            "--set", f"angle={result['parameters']['angle']!r}",
+            "--out", alone, env=self.env), 0)
+        sway = self.result(alone)["responses"]["sway"]
+        self.assertLess(abs(result["responses"]["sway"] / sway - 1), 0.02)
 
     def test_killed_it_ends_with_the_same_bits(self):
         whole = self.undisturbed()

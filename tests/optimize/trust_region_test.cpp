@@ -1,0 +1,239 @@
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "optimize/minimize.h"
+#include "optimize/quadratic_program.h"
+#include "tests/support/standard_problems.h"
+
+namespace meniscus::trust_region_test {
+namespace {
+
+using tests::vector_of;
+
+constexpr double kOpen = std::numeric_limits<double>::infinity();
+
+optimize::VectorAnswer no_film() {
+  return {.values = {},
+          .failure = Failure{FailureKind::FilmPinched, "the neck closes"}};
+}
+
+// KKT's conditions of the answer, and no better point among random ones: what
+// tells a minimiser from everything else.
+TEST(QuadraticProgram, FindsTheMinimumOfRandomOnes) {
+  constexpr double kRounding = 1e-6;  // 1e-7 of each variable
+  std::mt19937 draw(11);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int round = 0; round < 300; ++round) {
+    const int n = 1 + round % 7;
+    const int m = round % 6;
+    const auto random = [&](int rows, int columns) {
+      return Eigen::MatrixXd(Eigen::MatrixXd::NullaryExpr(
+          rows, columns, [&] { return normal(draw); }));
+    };
+    const Eigen::MatrixXd root = random(n, n);
+    optimize::QuadraticProgram program{
+        .hessian =
+            root * root.transpose() + 0.01 * Eigen::MatrixXd::Identity(n, n),
+        .slope = random(n, 1),
+        .low = -VectorX::Constant(n, unit(draw)),
+        .high = VectorX::Constant(n, unit(draw)),
+        .rows = random(m, n),
+        .limits = random(m, 1).cwiseAbs()};  // 0 keeps them all
+    const auto answer = optimize::solve_quadratic(program);
+    ASSERT_TRUE(answer) << round;
+    const VectorX& d = answer->step;
+    EXPECT_TRUE((d.array() >= program.low.array()).all() &&
+                (d.array() <= program.high.array()).all());
+    const auto value = [&](const VectorX& x) {
+      return program.slope.dot(x) + 0.5 * x.dot(program.hessian * x);
+    };
+    const double size = 1.0 + std::abs(value(d));
+    if (m > 0) {
+      EXPECT_LT((program.rows * d - program.limits).maxCoeff(), kRounding);
+      EXPECT_GE(answer->multipliers.minCoeff(), 0.0);
+      EXPECT_LT(
+          std::abs(answer->multipliers.dot(program.rows * d - program.limits)),
+          kRounding * (size + answer->multipliers.maxCoeff()));
+    }
+    const VectorX slope = program.slope + program.hessian * d +
+                          program.rows.transpose() * answer->multipliers;
+    for (int j = 0; j < n; ++j) {
+      const bool low = d[j] <= program.low[j] + kRounding;
+      const bool high = d[j] >= program.high[j] - kRounding;
+      EXPECT_TRUE((low || slope[j] < 1e-6 * size) &&
+                  (high || slope[j] > -1e-6 * size))
+          << round << " " << j << " " << slope[j];
+    }
+  }
+}
+
+TEST(QuadraticProgram, SaysWhatExcludesItself) {
+  optimize::QuadraticProgram program{.hessian = Eigen::MatrixXd::Identity(2, 2),
+                                     .slope = vector_of({1.0, 1.0}),
+                                     .low = vector_of({-1.0, -1.0}),
+                                     .high = vector_of({1.0, 1.0})};
+  program.rows.resize(0, 2);
+  program.add(vector_of({1.0, 0.0}), -3.0);  // x <= -3
+  EXPECT_FALSE(optimize::solve_quadratic(program));
+  // Missed by 2 at x = -1.
+  EXPECT_NEAR(optimize::least_misses(program)[0], 2.0, 1e-6);
+  // Two that pull at one: x <= -0.6 and x >= 0.2, missed by 0.4 each.
+  program.limits[0] = -0.6;
+  program.add(vector_of({-1.0, 0.0}), -0.2);
+  const VectorX missed = optimize::least_misses(program);
+  EXPECT_NEAR(missed[0], 0.4, 1e-6);
+  EXPECT_NEAR(missed[1], 0.4, 1e-6);
+}
+
+// As a sizing: mass falls along variables that thin the part; it fails where it
+// is too thin, and the deflection binds a little before.
+struct Sizing {
+  int variables = 2;
+  double start = 0.95;   // of the ranges: far from the answer
+  double beside = 0.02;  // of the range, from the bound to the failures
+  std::vector<VectorX> asked = {};
+
+  optimize::MinimizeProblem problem() {
+    optimize::MinimizeProblem result;
+    for (int j = 0; j < variables; ++j) {
+      result.variables.push_back(
+          {fmt::format("t{}", j), 1.0 + 9.0 * start, 1.0, 10.0});
+    }
+    result.objective = "mass";
+    result.constraints = {{"deflection", -kOpen, 1.0, {}}};
+    result.function = [this](const VectorX& x) -> optimize::VectorAnswer {
+      asked.push_back(x);
+      if (soft(x) > 1.0 + 9.0 * beside) {
+        return no_film();
+      }
+      return {.values = vector_of({weight().dot(x), soft(x)}), .failure = {}};
+    };
+    result.jacobian = [this](const VectorX& x) -> optimize::JacobianAnswer {
+      Eigen::MatrixXd jacobian(2, x.size());
+      jacobian.row(0) = weight().transpose();
+      jacobian.row(1) =
+          (-3.0 * 27.0 / variables * x.array().pow(-4.0)).matrix().transpose();
+      return {.jacobian = jacobian, .failure = {}};
+    };
+    return result;
+  }
+  VectorX weight() const { return VectorX::LinSpaced(variables, 1.0, 2.0); }
+  // Sum of 27 / (n t^3): 1 at t = 3.
+  double soft(const VectorX& x) const {
+    return (27.0 / variables * x.array().pow(-3.0)).sum();
+  }
+  // Lagrange: w = m 81 / (n t^4), so t ~ w^(-1/4).
+  double least() const {
+    const VectorX shape = weight().array().pow(-0.25);
+    return std::cbrt(soft(shape)) * weight().dot(shape);
+  }
+};
+
+TEST(TrustRegion, AFarStartBesideFailuresEndsAtTheMinimum) {
+  for (const int variables : {1, 2, 5, 19}) {
+    for (const double beside : {1e-3, 0.02, 0.3}) {
+      Sizing sizing{.variables = variables, .beside = beside};
+      const optimize::MinimizeReport report =
+          optimize::minimize(sizing.problem(), {.optimality_tolerance = 1e-4});
+      EXPECT_EQ(report.termination, optimize::Termination::Converged)
+          << variables << " " << beside << ": " << report.message;
+      EXPECT_NEAR(report.objective / sizing.least(), 1.0, 1e-3);
+      // Steps are learnt from what failed: not two fifths of the designs.
+      EXPECT_LE(5 * report.failed_evaluations, 2 * report.evaluations)
+          << variables << " " << beside;
+      EXPECT_LE(report.evaluations, 60);
+    }
+  }
+}
+
+// A design that is another one to seven digits tells nothing new.
+TEST(TrustRegion, NoDesignIsAskedForTwiceToSevenDigits) {
+  for (const char* method : {"slsqp", "mma", "ccsa"}) {
+    Sizing sizing{.variables = 3};
+    optimize::minimize(sizing.problem(), {.method = method});
+    for (std::size_t i = 0; i < sizing.asked.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        EXPECT_GT((sizing.asked[i] - sizing.asked[j]).cwiseAbs().maxCoeff(),
+                  9.0 * 1e-7)
+            << method << " " << i << " " << j;
+      }
+    }
+  }
+}
+
+// The wall is all there is: no constraint sees it. Sliding along it, the search
+// comes within 2 % of what it allows.
+TEST(TrustRegion, SlidesAlongAWallThatOnlyFailuresShow) {
+  std::mt19937 draw(5);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int round = 0; round < 20; ++round) {
+    const VectorX normal =
+        vector_of({0.3 + unit(draw), 0.3 + unit(draw)}).normalized();
+    const VectorX target = vector_of({0.6 + 0.3 * unit(draw), 0.9});
+    const double reach = 0.7 * normal.dot(target);
+    optimize::MinimizeProblem problem;
+    problem.variables = {{"a", 0.1, 0.0, 1.0}, {"b", 0.1, 0.0, 1.0}};
+    problem.objective = "distance";
+    problem.function = [&](const VectorX& x) -> optimize::VectorAnswer {
+      return normal.dot(x) > reach
+                 ? no_film()
+                 : optimize::VectorAnswer{
+                       .values = vector_of({1.0 + (x - target).squaredNorm()}),
+                       .failure = {}};
+    };
+    problem.jacobian = [&](const VectorX& x) -> optimize::JacobianAnswer {
+      return {.jacobian = 2.0 * (x - target).transpose(), .failure = {}};
+    };
+    const double least = 1.0 + std::pow(normal.dot(target) - reach, 2);
+    const optimize::MinimizeReport report = optimize::minimize(problem);
+    EXPECT_LT(report.objective, 1.02 * least)
+        << round << ": " << report.message;
+  }
+}
+
+// The answer is the best of the designs that were asked for, in the order that
+// the log tells them by.
+TEST(TrustRegion, TheAnswerIsTheBestThatWasTold) {
+  for (const tests::StandardProblem& known : tests::standard_problems()) {
+    optimize::MinimizeProblem problem = known.problem;
+    std::vector<VectorX> values;
+    problem.function = [&](const VectorX& x) {
+      optimize::VectorAnswer answer = known.problem.function(x);
+      values.push_back(answer.values);
+      return answer;
+    };
+    const optimize::MinimizeReport report = optimize::minimize(problem);
+    const auto violation = [&](const VectorX& v) {
+      double worst = 0.0;
+      for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
+        const optimize::ResponseBounds& bounds = problem.constraints[k];
+        const double g = v[static_cast<Eigen::Index>(k) + 1];
+        double scale = 0.0;
+        for (const double bound : {bounds.lower, bounds.upper}) {
+          scale =
+              std::isfinite(bound) ? std::max(scale, std::abs(bound)) : scale;
+        }
+        worst = std::max({worst, (g - bounds.upper) / (scale > 0 ? scale : 1),
+                          (bounds.lower - g) / (scale > 0 ? scale : 1)});
+      }
+      return worst;
+    };
+    const double answer =
+        optimize::kept_objective(report.objective, violation(report.values));
+    for (const VectorX& v : values) {
+      if (violation(v) <= 1e-6) {
+        EXPECT_LE(answer, optimize::kept_objective(v[0], violation(v)) +
+                              1e-4 * std::abs(report.objective))
+            << known.name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meniscus::trust_region_test
