@@ -1,6 +1,7 @@
 #include "pipeline/results/study_watch.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "pipeline/files/text_table.h"
 #include "pipeline/results/family_table.h"
 #include "pipeline/results/results.h"
+#include "pipeline/store/refreeze.h"
 #include "pipeline/store/run_lock.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/study_records.h"
@@ -75,16 +77,26 @@ void StudyWatch::poll_study(StudyStatus& status) {
     status.text = "  no evaluation has ended yet\n";
     return;
   }
-  study::ProgressTracker tracker(input, records.back().model);
+  // What is the best so far is so on its own model; evaluations of the study's
+  // own models are counted together.
+  std::map<std::string, study::ProgressTracker> trackers;
+  int evaluations = 0;
+  int failed = 0;
   study::EvaluationEvent event;
   for (const store::EvaluationRecord& record : records) {
+    study::ProgressTracker& tracker =
+        trackers.try_emplace(record.model, input, record.model).first->second;
     tracker.add(record);
-    if (record.number > last_seen_ && record.model == records.back().model) {
-      status.new_lines.push_back(line_of(input, tracker.event(record)));
+    event = tracker.event(record);
+    if (store::is_study_model(record.model)) {
+      event.evaluations = ++evaluations;
+      event.failed = failed += record.failure ? 1 : 0;
+    }
+    if (record.number > last_seen_) {
+      status.new_lines.push_back(line_of(input, event));
     }
   }
   last_seen_ = records.back().number;
-  event = tracker.event(records.back());
   event.left = status.at_work ? time_left(records, event) : std::nullopt;
   status.text = fmt::format(
       "  {} evaluations{}{}\n  {}\n", event.evaluations,

@@ -260,8 +260,11 @@ void StudyRun::judge_answer() {
   }
   for (int round = 1; has_answer_to_judge(); ++round) {
     const StudyOutcome found = stage_->outcome();
-    if (limited_.expired()) {
-      left_out_.emplace_back("the answer on a mesh of its own");
+    if (found.status == RunStatus::Stopped || limited_.expired()) {
+      // Of no use yet: with a higher limit the study goes on from its model.
+      result_.warnings.emplace_back(
+          "a limit ended the study: its best design was not evaluated on a "
+          "mesh of its own");
       return;
     }
     const store::EvaluationRecord record =

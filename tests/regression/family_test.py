@@ -25,9 +25,10 @@ middle,54,8,5000,,
 far,54,14,5000,,
 long,60,8,4500,0.9,1.4
 """
-# Both searches end where the first-order residual is below 1e-4: about that
-# part of the mass may be left in each.
-COLD = 3e-4
+# Both searches end where the first-order residual is below 1e-4, and each
+# answer is judged on a mesh of its own: 8e-4 of the mass was seen between two
+# such meshes of some 500 elements.
+COLD = 3e-3
 
 
 class Family(ProgramTest):
@@ -141,7 +142,7 @@ class Family(ProgramTest):
         case.write_text(re.sub(r"(?s)\nconstraints = \[.*?\n\]", "",
                                case.read_text()))
         out, _ = self.sized(case, "out", 0, "--export", "step")
-        self.assertTrue((out / "members/two/part_10.step").is_file())
+        self.assertEqual(len(list((out / "members/two").glob("*.step"))), 1)
         # As a part whose film has no STEP leaves it.
         path = out / "members/two/result.json"
         result = json.loads(path.read_text())
