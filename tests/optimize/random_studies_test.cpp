@@ -168,9 +168,10 @@ TEST(RandomStudies, EndAtTheBestKnown) {
   RecordProperty("failed", failed);
   EXPECT_LE(missed, kMostMissed) << told;
   EXPECT_EQ(worse, 0);
-  // 12 evaluations each in the mean, not a quarter of them failed.
-  EXPECT_LE(evaluations, 30 * kStudies);
-  EXPECT_LE(4 * failed, evaluations);
+  // 14 evaluations each in the mean were seen, 5 % of them failed; a line
+  // search that halves where designs fail took 18 and 11 %.
+  EXPECT_LE(evaluations, 16 * kStudies);
+  EXPECT_LE(100 * failed, 8 * evaluations);
 }
 
 }  // namespace

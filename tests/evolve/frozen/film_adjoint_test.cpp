@@ -265,5 +265,29 @@ TEST(LowestModes, AreThoseOfTheDenseProblem) {
             n - 1);
 }
 
+// Next to collapse one eigenvalue is nothing beside the others: solves know
+// these to no more digits than that one leaves, and that is enough.
+TEST(LowestModes, AreFoundBesideOneThatIsNearlyNothing) {
+  constexpr int kSize = 3000;
+  constexpr double kNothing = 1e-9;
+  SparseMatrix hessian(kSize, kSize);
+  std::vector<int> order;
+  for (int i = 0; i < kSize; ++i) {
+    hessian.insert(i, i) = i == 0 ? kNothing : static_cast<double>(i);
+    order.push_back(i);
+  }
+  hessian.makeCompressed();
+  energy::ConstrainedHessian system(hessian, order);
+  const VectorX metric = VectorX::Ones(kSize);
+  ASSERT_TRUE(
+      system.factorize(hessian, metric, 0.0, Eigen::MatrixXd(kSize, 0)));
+  const energy::LowestModes found = system.lowest_modes(metric, 4);
+  ASSERT_EQ(found.eigenvalues.size(), 4);
+  EXPECT_NEAR(found.eigenvalues[0] / kNothing, 1.0, 1e-6);
+  for (int k = 1; k < 4; ++k) {
+    EXPECT_NEAR(found.eigenvalues[k], k, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace meniscus::film_adjoint_test
