@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 #include "pipeline/reader/case_reader_study.h"
 
 namespace meniscus::reader {
@@ -84,12 +84,12 @@ void read_sweep(CaseContext& context, const CaseTable& table,
   if (study.method == "sobol") {
     refuse(context, table, "seed", "a Sobol sequence has nothing random");
     if (static_cast<int>(result.design.size()) >
-        optimize::kMostSobolDimensions) {
+        samples::kMostSobolDimensions) {
       context.problems.add(
           table.line("method"),
           fmt::format("method sobol serves {} design variables at most, the "
                       "case has {}; try latin_hypercube",
-                      optimize::kMostSobolDimensions, result.design.size()));
+                      samples::kMostSobolDimensions, result.design.size()));
     }
   }
   if (!table.has("count")) {

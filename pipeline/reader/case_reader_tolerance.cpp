@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 #include "pipeline/reader/case_reader_study.h"
 
 namespace meniscus::reader {
@@ -65,12 +65,12 @@ void read_tolerance(CaseContext& context, const CaseTable& table,
     read_deviation(context, std::string(key.str()), value, result);
   }
   if (result.study.method == "sobol" &&
-      static_cast<int>(deviations->size()) > optimize::kMostSobolDimensions) {
+      static_cast<int>(deviations->size()) > samples::kMostSobolDimensions) {
     context.problems.add(
         table.line("deviations"),
         fmt::format("method sobol serves {} variables that scatter at most, "
                     "found {}; try latin_hypercube",
-                    optimize::kMostSobolDimensions, deviations->size()));
+                    samples::kMostSobolDimensions, deviations->size()));
   }
   if (result.study.method == "sobol" && table.has("seed")) {
     context.problems.add(table.line("seed"),

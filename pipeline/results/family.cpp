@@ -15,7 +15,7 @@
 #include "core/atomic_file.h"
 #include "core/json.h"
 #include "core/timer.h"
-#include "optimize/family_tree.h"
+#include "optimize/samples/family_tree.h"
 #include "pipeline/case_data/content_hash.h"
 #include "pipeline/reader/family_members.h"
 #include "pipeline/results/export_part.h"
@@ -395,18 +395,18 @@ FamilyResult FamilyRun::run() {
   for (const case_data::Case& member : members_) {
     numbers.push_back(reader::member_numbers(member));
   }
-  const std::vector<optimize::FamilyStep> steps =
-      optimize::family_tree(numbers, find_finished());
+  const std::vector<samples::FamilyStep> steps =
+      samples::family_tree(numbers, find_finished());
   if (family_.study.kind !=
       case_data::StudyKind::Analyse) {  // that has no start
-    for (const optimize::FamilyStep& step : steps) {
+    for (const samples::FamilyStep& step : steps) {
       parents_[static_cast<std::size_t>(step.member)] =
           step.parent.value_or(-1);
     }
   }
   write_table();
   tell();
-  for (const std::vector<int>& wave : optimize::family_waves(steps)) {
+  for (const std::vector<int>& wave : samples::family_waves(steps)) {
     if (!stopping_) {
       run_wave(wave);
     }

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 #include "pipeline/store/incumbent.h"
 #include "pipeline/study/run_kind.h"
 
@@ -14,8 +14,8 @@ namespace {
 std::vector<VectorX> grid_designs(const StudyTask& task) {
   std::vector<int> levels = task.input.study.levels;
   std::replace(levels.begin(), levels.end(), 0, 1);
-  std::vector<VectorX> designs = optimize::designs_of(
-      variables_of(task.input, task.start), optimize::grid_samples(levels));
+  std::vector<VectorX> designs = samples::designs_of(
+      variables_of(task.input, task.start), samples::grid_samples(levels));
   for (VectorX& design : designs) {
     for (std::size_t k = 0; k < levels.size(); ++k) {
       if (task.input.study.levels[k] == 0) {
@@ -33,10 +33,10 @@ std::vector<VectorX> designs_of_sweep(const StudyTask& task) {
     return grid_designs(task);
   }
   const int variables = static_cast<int>(task.input.design.size());
-  return optimize::designs_of(
+  return samples::designs_of(
       variables_of(task.input, task.start),
-      study.method == "sobol" ? optimize::sobol_samples(variables, study.count)
-                              : optimize::latin_hypercube_samples(
+      study.method == "sobol" ? samples::sobol_samples(variables, study.count)
+                              : samples::latin_hypercube_samples(
                                     variables, study.count,
                                     static_cast<std::uint64_t>(study.seed)));
 }

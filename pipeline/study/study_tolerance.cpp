@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/study/run_kind.h"
 
@@ -19,17 +19,17 @@ std::vector<VectorX> scattered_designs(const StudyTask& task) {
     }
   }
   const int dimension = static_cast<int>(moving.size());
-  optimize::Samples samples =
+  samples::Samples samples =
       study.method == "sobol"
-          ? optimize::sobol_samples(dimension, study.count)
-          : optimize::latin_hypercube_samples(
+          ? samples::sobol_samples(dimension, study.count)
+          : samples::latin_hypercube_samples(
                 dimension, study.count, static_cast<std::uint64_t>(study.seed));
   for (VectorX& sample : samples) {
     VectorX all = VectorX::Constant(task.start.size(), 0.5);
     all(moving) = sample;
     sample = std::move(all);
   }
-  return optimize::normal_designs(
+  return samples::normal_designs(
       task.start,
       Eigen::Map<const VectorX>(study.deviations.data(), task.start.size()),
       samples);
@@ -49,7 +49,7 @@ bool spread_by_gradient(const StudyTask& task, ToleranceFigures& figures,
         "no gradient at the initial design: " + answer.failure->message;
     return false;
   }
-  figures.linear = optimize::linear_spread(
+  figures.linear = samples::linear_spread(
       answer.jacobian(figures.responses, Eigen::all),
       Eigen::Map<const VectorX>(task.input.study.deviations.data(),
                                 task.start.size()));
@@ -71,7 +71,7 @@ void confirm(const StudyTask& task, ToleranceFigures& figures,
   figures.samples = static_cast<int>(records.size());
   figures.failed = figures.samples - static_cast<int>(values.size());
   if (values.size() >= 2) {
-    figures.sampled = optimize::sampled_spread(values);
+    figures.sampled = samples::sampled_spread(values);
   }
   if (figures.samples < task.input.study.count) {
     outcome.status = RunStatus::Stopped;

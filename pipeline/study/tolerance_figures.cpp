@@ -26,7 +26,7 @@ Eigen::Index row_of(const ToleranceFigures& figures, int response) {
   return at == figures.responses.end() ? -1 : at - figures.responses.begin();
 }
 
-Json sampled_json(const optimize::SampledSpread& sampled, Eigen::Index k) {
+Json sampled_json(const samples::SampledSpread& sampled, Eigen::Index k) {
   return {{"mean", sampled.mean[k]},
           {"mean_error", sampled.mean_error[k]},
           {"deviation", sampled.deviation[k]},

@@ -7,18 +7,18 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "optimize/spread.h"
+#include "optimize/samples/spread.h"
 #include "pipeline/case_data/case.h"
 
 namespace meniscus::study {
 
 struct ToleranceFigures {
-  std::vector<int> responses;     // with exact derivatives: indices
-  optimize::LinearSpread linear;  // of those, a row each; see linear_spread()
-  int samples = 0;                // evaluated to confirm it
-  int failed = 0;                 // of those
+  std::vector<int> responses;    // with exact derivatives: indices
+  samples::LinearSpread linear;  // of those, a row each; see linear_spread()
+  int samples = 0;               // evaluated to confirm it
+  int failed = 0;                // of those
   /// Of all responses, in the case's order, where two samples answered.
-  std::optional<optimize::SampledSpread> sampled;
+  std::optional<samples::SampledSpread> sampled;
 };
 
 /// Sentences for responses whose sampled deviation is off the linear one by

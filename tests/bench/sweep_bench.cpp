@@ -15,7 +15,7 @@
 #include "core/memory.h"
 #include "core/thread_waits.h"
 #include "core/timer.h"
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/study/design_evaluator.h"
 #include "pipeline/study/run_kind.h"
@@ -53,9 +53,9 @@ std::string sweep_seconds(const Setting& setting, int designs) {
   store::StudyStore store = store::StudyStore::start(folder.path().string(),
                                                      {.case_hash = input.hash});
   study::DesignEvaluator evaluator(input, store, {.jobs = setting.jobs});
-  const std::vector<VectorX> points = optimize::designs_of(
+  const std::vector<VectorX> points = samples::designs_of(
       study::variables_of(input, case_data::initial_design(input)),
-      optimize::sobol_samples(1, designs));
+      samples::sobol_samples(1, designs));
   const Timer timer;
   const auto records = evaluator.evaluate_all(points, "sweep");
   const double seconds = timer.seconds();

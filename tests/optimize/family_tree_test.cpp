@@ -1,4 +1,4 @@
-#include "optimize/family_tree.h"
+#include "optimize/samples/family_tree.h"
 
 #include <limits>
 #include <numeric>
@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "core/error.h"
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 #include "tests/support/standard_problems.h"
 
 namespace meniscus::family_tree_test {
@@ -17,8 +17,8 @@ using tests::vector_of;
 TEST(FamilyTree, JoinsEachMemberToItsNearest) {
   // Lengths 100, 400, 110, 390 at one load: two pairs, joined by 110 - 390.
   const auto steps =
-      optimize::family_tree({vector_of({100.0, 5.0}), vector_of({400.0, 5.0}),
-                             vector_of({110.0, 5.0}), vector_of({390.0, 5.0})});
+      samples::family_tree({vector_of({100.0, 5.0}), vector_of({400.0, 5.0}),
+                            vector_of({110.0, 5.0}), vector_of({390.0, 5.0})});
   ASSERT_EQ(steps.size(), 4U);
   EXPECT_EQ(steps[0].member, 0);
   EXPECT_FALSE(steps[0].parent);
@@ -35,17 +35,17 @@ TEST(FamilyTree, JoinsEachMemberToItsNearest) {
 // Rows are added to a family that is sized: whatever they are, those before
 // keep their parents, and a new one joins the nearest.
 TEST(FamilyTree, GrowsOnWhatIsThere) {
-  const std::vector<VectorX> all = optimize::latin_hypercube_samples(2, 30, 9);
+  const std::vector<VectorX> all = samples::latin_hypercube_samples(2, 30, 9);
   const std::vector<VectorX> first(all.begin(), all.begin() + 20);
   std::map<int, int> kept;
-  for (const optimize::FamilyStep& step : optimize::family_tree(first)) {
+  for (const samples::FamilyStep& step : samples::family_tree(first)) {
     kept[step.member] = step.parent.value_or(-1);
   }
-  const auto grown = optimize::family_tree(all, kept);
+  const auto grown = samples::family_tree(all, kept);
   ASSERT_EQ(grown.size(), all.size());
   std::vector<int> depth(all.size(), -1);
   for (std::size_t k = 0; k < grown.size(); ++k) {
-    const optimize::FamilyStep& step = grown[k];
+    const samples::FamilyStep& step = grown[k];
     EXPECT_EQ(depth[static_cast<std::size_t>(step.member)], -1);
     const int parent = step.parent.value_or(-1);
     if (k < first.size()) {
@@ -59,24 +59,24 @@ TEST(FamilyTree, GrowsOnWhatIsThere) {
               parent < 0 ? 0 : depth[static_cast<std::size_t>(parent)] + 1);
   }
   // All anew is one of them: the tree of a family that was never sized.
-  const auto anew = optimize::family_tree(all, {});
-  const auto plain = optimize::family_tree(all);
+  const auto anew = samples::family_tree(all, {});
+  const auto plain = samples::family_tree(all);
   for (std::size_t k = 0; k < anew.size(); ++k) {
     EXPECT_EQ(anew[k].member, plain[k].member);
     EXPECT_EQ(anew[k].parent, plain[k].parent);
   }
-  EXPECT_THROW(optimize::family_tree(all, {{0, 1}}), InvalidInput);
-  EXPECT_THROW(optimize::family_tree(all, {{0, 1}, {1, 0}}), InvalidInput);
+  EXPECT_THROW(samples::family_tree(all, {{0, 1}}), InvalidInput);
+  EXPECT_THROW(samples::family_tree(all, {{0, 1}, {1, 0}}), InvalidInput);
 }
 
 TEST(FamilyTree, DoesNotDependOnUnits) {
-  std::vector<VectorX> metres = optimize::latin_hypercube_samples(3, 20, 5);
+  std::vector<VectorX> metres = samples::latin_hypercube_samples(3, 20, 5);
   std::vector<VectorX> other = metres;
   for (VectorX& member : other) {
     member = member.cwiseProduct(vector_of({1024.0, 0.5, 4096.0}));
   }
-  const auto a = optimize::family_tree(metres);
-  const auto b = optimize::family_tree(other);
+  const auto a = samples::family_tree(metres);
+  const auto b = samples::family_tree(other);
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].member, b[i].member);
     EXPECT_EQ(a[i].parent, b[i].parent);
@@ -89,7 +89,7 @@ TEST(FamilyTree, IsNoLongerThanAnyOther) {
       vector_of({0.0, 0.0}), vector_of({1.0, 0.2}), vector_of({0.4, 1.0}),
       vector_of({0.7, 0.6})};
   double length = 0.0;
-  for (const optimize::FamilyStep& step : optimize::family_tree(members)) {
+  for (const samples::FamilyStep& step : samples::family_tree(members)) {
     length += step.distance;
   }
   for (int a = 0; a < 4; ++a) {
@@ -124,14 +124,14 @@ TEST(FamilyTree, IsNoLongerThanAnyOther) {
 
 TEST(FamilyTree, ParentsComeFirstAndWavesHoldEveryone) {
   const auto steps =
-      optimize::family_tree(optimize::latin_hypercube_samples(4, 30, 3));
+      samples::family_tree(samples::latin_hypercube_samples(4, 30, 3));
   std::vector<bool> seen(30, false);
-  for (const optimize::FamilyStep& step : steps) {
+  for (const samples::FamilyStep& step : steps) {
     EXPECT_TRUE(!step.parent || seen[static_cast<std::size_t>(*step.parent)]);
     seen[static_cast<std::size_t>(step.member)] = true;
   }
   std::size_t count = 0;
-  for (const auto& wave : optimize::family_waves(steps)) {
+  for (const auto& wave : samples::family_waves(steps)) {
     EXPECT_FALSE(wave.empty());
     count += wave.size();
   }
@@ -139,16 +139,16 @@ TEST(FamilyTree, ParentsComeFirstAndWavesHoldEveryone) {
 }
 
 TEST(FamilyTree, EqualMembersAndEmptyFamilies) {
-  EXPECT_TRUE(optimize::family_tree({}).empty());
-  EXPECT_TRUE(optimize::family_waves({}).empty());
+  EXPECT_TRUE(samples::family_tree({}).empty());
+  EXPECT_TRUE(samples::family_waves({}).empty());
   const auto steps =
-      optimize::family_tree(std::vector<VectorX>(3, vector_of({2.0})));
+      samples::family_tree(std::vector<VectorX>(3, vector_of({2.0})));
   EXPECT_EQ(steps[2].parent, 0);
   EXPECT_EQ(steps[2].distance, 0.0);
-  EXPECT_THROW(optimize::family_tree({vector_of({1.0}), vector_of({1.0, 2.0})}),
+  EXPECT_THROW(samples::family_tree({vector_of({1.0}), vector_of({1.0, 2.0})}),
                InvalidInput);
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(optimize::family_tree({vector_of({1.0}), vector_of({kNaN})}),
+  EXPECT_THROW(samples::family_tree({vector_of({1.0}), vector_of({kNaN})}),
                InvalidInput);
 }
 

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "core/error.h"
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 #include "tests/support/standard_problems.h"
 
 namespace meniscus::first_order_test {
@@ -18,8 +18,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 TEST(NonnegativeLeastSquares, MeetsItsOwnConditions) {
   // x >= 0, the gain A'(b - A x) <= 0, and both not at once.
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const optimize::Samples rows =
-        optimize::latin_hypercube_samples(9, 14, seed);
+    const samples::Samples rows = samples::latin_hypercube_samples(9, 14, seed);
     Eigen::MatrixXd A(14, 8);
     VectorX b(14);
     for (Eigen::Index i = 0; i < 14; ++i) {

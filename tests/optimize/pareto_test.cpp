@@ -4,8 +4,8 @@
 
 #include <gmock/gmock.h>
 
-#include "optimize/sampling.h"
-#include "optimize/spread.h"
+#include "optimize/samples/sampling.h"
+#include "optimize/samples/spread.h"
 #include "tests/support/standard_problems.h"
 
 namespace meniscus::pareto_test {
@@ -81,19 +81,19 @@ TEST(Spread, FirstOrderAgreesWithSamplesOfALinearFunction) {
   Eigen::MatrixXd jacobian(2, 3);
   jacobian << 3.0, -4.0, 0.0, 0.0, 0.0, 0.0;
   const VectorX deviations = vector_of({0.1, 0.1, 5.0});
-  const optimize::LinearSpread linear =
-      optimize::linear_spread(jacobian, deviations);
+  const samples::LinearSpread linear =
+      samples::linear_spread(jacobian, deviations);
   EXPECT_NEAR(linear.deviation[0], 0.5, 1e-15);
   EXPECT_NEAR(linear.shares(0, 0), 0.36, 1e-15);
   EXPECT_NEAR(linear.shares(0, 1), 0.64, 1e-15);
   EXPECT_EQ(linear.deviation[1], 0.0);
   const VectorX mean = vector_of({1.0, 2.0, 3.0});
   std::vector<VectorX> values;
-  for (const VectorX& x : optimize::normal_designs(
-           mean, deviations, optimize::sobol_samples(3, 4095))) {
+  for (const VectorX& x : samples::normal_designs(
+           mean, deviations, samples::sobol_samples(3, 4095))) {
     values.push_back(jacobian * x);
   }
-  const optimize::SampledSpread sampled = optimize::sampled_spread(values);
+  const samples::SampledSpread sampled = samples::sampled_spread(values);
   // Low-discrepancy samples do better than the error bars of random ones.
   EXPECT_NEAR(sampled.deviation[0], 0.5, sampled.deviation_error[0]);
   EXPECT_NEAR(sampled.mean[0], -5.0, sampled.mean_error[0]);
@@ -109,14 +109,14 @@ TEST(Spread, TheSecondOrderTermIsWhatFirstOrderLeavesOut) {
   const auto miss = [](double d) {
     std::vector<VectorX> values;
     for (const VectorX& x :
-         optimize::normal_designs(vector_of({1.0}), vector_of({d}),
-                                  optimize::sobol_samples(1, 65535))) {
+         samples::normal_designs(vector_of({1.0}), vector_of({d}),
+                                 samples::sobol_samples(1, 65535))) {
       values.push_back(x.cwiseAbs2());
     }
     const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Constant(1, 1, 2.0);
     const double linear =
-        optimize::linear_spread(jacobian, vector_of({d})).deviation[0];
-    return optimize::sampled_spread(values).deviation[0] / linear - 1.0;
+        samples::linear_spread(jacobian, vector_of({d})).deviation[0];
+    return samples::sampled_spread(values).deviation[0] / linear - 1.0;
   };
   EXPECT_NEAR(miss(0.4), std::sqrt(1.0 + 0.08) - 1.0, 2e-3);
   EXPECT_NEAR(std::log2(miss(0.4) / miss(0.2)), 2.0, 0.1);
@@ -124,16 +124,16 @@ TEST(Spread, TheSecondOrderTermIsWhatFirstOrderLeavesOut) {
 
 TEST(Spread, RefusesWhatCannotBe) {
   const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Ones(1, 2);
-  EXPECT_THROW(optimize::linear_spread(jacobian, vector_of({1.0})),
+  EXPECT_THROW(samples::linear_spread(jacobian, vector_of({1.0})),
                InvalidInput);
-  EXPECT_THROW(optimize::linear_spread(jacobian, vector_of({1.0, -1.0})),
+  EXPECT_THROW(samples::linear_spread(jacobian, vector_of({1.0, -1.0})),
                InvalidInput);
-  EXPECT_THROW(optimize::sampled_spread({vector_of({1.0})}), InvalidInput);
+  EXPECT_THROW(samples::sampled_spread({vector_of({1.0})}), InvalidInput);
   EXPECT_THROW(
-      optimize::sampled_spread({vector_of({1.0}), vector_of({1.0, 2.0})}),
+      samples::sampled_spread({vector_of({1.0}), vector_of({1.0, 2.0})}),
       InvalidInput);
-  EXPECT_THROW(optimize::normal_designs(vector_of({1.0}), vector_of({1.0}),
-                                        {VectorX::Zero(2)}),
+  EXPECT_THROW(samples::normal_designs(vector_of({1.0}), vector_of({1.0}),
+                                       {VectorX::Zero(2)}),
                InvalidInput);
 }
 

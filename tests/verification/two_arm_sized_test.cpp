@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "optimize/minimize.h"
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/reader/case_reader.h"
@@ -218,7 +218,7 @@ TEST(TwoArmSized, TwoStartsComeToOneMassAndNoSampleIsLighter) {
   int feasible = 0;
   int lighter = 0;  // of the feasible, as they were drawn
   double least = HUGE_VAL;
-  for (const VectorX& t : optimize::latin_hypercube_samples(
+  for (const VectorX& t : samples::latin_hypercube_samples(
            static_cast<int>(input.design.size()), kMostTries * kSamples, 1)) {
     if (feasible >= kSamples && lighter >= kLighter) {
       break;

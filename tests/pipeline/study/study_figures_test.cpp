@@ -96,7 +96,7 @@ TEST(ToleranceFigures, WarnsWhereTheSampleIsFarFromLinear) {
   study::ToleranceFigures figures;
   figures.responses = {0};
   figures.linear.deviation = one(1.0);
-  optimize::SampledSpread sampled;
+  samples::SampledSpread sampled;
   sampled.count = 10;
   sampled.deviation = VectorX::Constant(count, 1.2);
   sampled.deviation_error = VectorX::Constant(count, 0.1);

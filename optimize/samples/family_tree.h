@@ -9,7 +9,7 @@
 
 #include "core/types.h"
 
-namespace meniscus::optimize {
+namespace meniscus::samples {
 
 struct FamilyStep {
   int member = 0;
@@ -37,4 +37,4 @@ std::vector<FamilyStep> family_tree(
 std::vector<std::vector<int>> family_waves(
     const std::vector<FamilyStep>& steps);
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::samples

@@ -5,7 +5,7 @@
 
 #include "core/types.h"
 
-namespace meniscus::optimize {
+namespace meniscus::samples {
 
 struct LinearSpread {
   VectorX deviation;       // standard deviation per response
@@ -38,4 +38,4 @@ struct SampledSpread {
 /// Of at least two answers of equal size; throws InvalidInput otherwise.
 SampledSpread sampled_spread(const std::vector<VectorX>& values);
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::samples

@@ -1,4 +1,4 @@
-#include "optimize/spread.h"
+#include "optimize/samples/spread.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 
-namespace meniscus::optimize {
+namespace meniscus::samples {
 namespace {
 
 constexpr double kInside = 0x1p-33;
@@ -107,4 +107,4 @@ SampledSpread sampled_spread(const std::vector<VectorX>& values) {
   return spread;
 }
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::samples

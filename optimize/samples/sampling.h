@@ -7,7 +7,7 @@
 
 #include "optimize/problem.h"
 
-namespace meniscus::optimize {
+namespace meniscus::samples {
 
 /// Each point is a VectorX of the dimension's length, entries in [0, 1].
 using Samples = std::vector<VectorX>;
@@ -32,11 +32,11 @@ constexpr int kMostSobolDimensions = 3667;
 constexpr int kMostSamples = 10'000'000;
 
 /// lower + t (upper - lower), t = 0 and 1 giving the bounds themselves.
-std::vector<VectorX> designs_of(const std::vector<Variable>& variables,
+std::vector<VectorX> designs_of(const std::vector<optimize::Variable>& variables,
                                 const Samples& samples);
 
 /// The quantile of the standard normal distribution, 0 < p < 1, to 1e-15
 /// relative (M. J. Wichura, Applied Statistics 37, 1988, algorithm AS 241).
 double normal_quantile(double p);
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::samples

@@ -1,4 +1,4 @@
-#include "optimize/family_tree.h"
+#include "optimize/samples/family_tree.h"
 
 #include <algorithm>
 #include <limits>
@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace meniscus::optimize {
+namespace meniscus::samples {
 namespace {
 
 void check_members(const std::vector<VectorX>& members) {
@@ -142,4 +142,4 @@ std::vector<std::vector<int>> family_waves(
   return waves;
 }
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::samples

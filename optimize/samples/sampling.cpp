@@ -1,4 +1,4 @@
-#include "optimize/sampling.h"
+#include "optimize/samples/sampling.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <boost/random/sobol.hpp>
 #include <fmt/format.h>
 
-namespace meniscus::optimize {
+namespace meniscus::samples {
 
 static_assert(kMostSobolDimensions ==
               boost::random::default_sobol_table::max_dimension);
@@ -138,8 +138,8 @@ Samples sobol_samples(int dimension, int count, int first) {
   return samples;
 }
 
-std::vector<VectorX> designs_of(const std::vector<Variable>& variables,
-                                const Samples& samples) {
+std::vector<VectorX> designs_of(
+    const std::vector<optimize::Variable>& variables, const Samples& samples) {
   std::vector<VectorX> designs;
   designs.reserve(samples.size());
   for (const VectorX& t : samples) {
@@ -150,7 +150,8 @@ std::vector<VectorX> designs_of(const std::vector<Variable>& variables,
     }
     VectorX x(t.size());
     for (Eigen::Index j = 0; j < x.size(); ++j) {
-      const Variable& variable = variables[static_cast<std::size_t>(j)];
+      const optimize::Variable& variable =
+          variables[static_cast<std::size_t>(j)];
       x[j] = t[j] >= 1.0
                  ? variable.upper
                  : variable.lower + t[j] * (variable.upper - variable.lower);
@@ -222,4 +223,4 @@ double normal_quantile(double p) {
   return q < 0.0 ? -tail : tail;
 }
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::samples
