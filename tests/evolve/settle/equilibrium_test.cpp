@@ -126,6 +126,14 @@ TEST(Equilibrium, CylinderAtFixedVolumeIsStableBelowTwoPi) {
 
 // Gravity on bodies without weight moves nothing: the bubble floats still, and
 // its lowest mode is that of a sphere, 4 T / R^2.
+TEST(Equilibrium, AnIndexThatWasNotCountedIsAtLeastThat) {
+  settle::FilmReport film;
+  film.index = 1;
+  EXPECT_EQ(settle::index_text(film), "1");
+  film.index_at_least = true;
+  EXPECT_EQ(settle::index_text(film), "at least 1");
+}
+
 TEST(Equilibrium, GravityWithoutWeightHoldsNothing) {
   films::FilmComplex bubble = test_films::cube_start();
   bubble.gravity = Vec3(0, 0, -9.81);

@@ -125,17 +125,6 @@ TEST(Datafile, PopsAnOctahedronToItsLowestFilm) {
   EXPECT_NEAR(popped.report.energy, std::sqrt(32.0), 1e-12);
 }
 
-// A descent looks for the lowest eigenvalue only: of the twelve films of an
-// octahedron, which rest by symmetry, there may be more below 0.
-TEST(Datafile, DescentsSayAtLeast) {
-  const results::DatafileResult cone =
-      evolved(octahedron(),
-              {.refinements = 1, .method = results::DatafileMethod::Gradient});
-  EXPECT_EQ(cone.report.index, 1) << cone.report.verdict;
-  EXPECT_TRUE(cone.report.index_at_least);
-  EXPECT_THAT(results::datafile_text(cone), HasSubstr("index at least 1"));
-}
-
 TEST(Datafile, PopsAPinchedNeckIntoTwoDisks) {
   // Hexagons of radius 1, 2 apart: beyond the last catenoid.
   std::string text = "vertices\n";
