@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "optimize/differences.h"
-#include "optimize/failed_points.h"
-#include "optimize/quadratic_program.h"
+#include "optimize/quadratic/failed_points.h"
+#include "optimize/quadratic/quadratic_program.h"
 
 namespace meniscus::optimize {
 namespace {
@@ -50,7 +50,7 @@ class BoundedMatch {
   double radius_ = kFirstBox;
   double ratio_ = 0.0;
   int failures_ = 0;  // in a row
-  FailedPoints failed_;
+  quadratic::FailedPoints failed_;
 };
 
 // False once halted.
@@ -77,7 +77,7 @@ bool BoundedMatch::differentiate() {
 }
 
 VectorX BoundedMatch::step() const {
-  QuadraticProgram program;
+  quadratic::QuadraticProgram program;
   const Eigen::MatrixXd hessian = jacobian_.transpose() * jacobian_;
   const double largest = hessian.diagonal().maxCoeff();
   program.slope = jacobian_.transpose() * residuals_;
@@ -95,7 +95,8 @@ VectorX BoundedMatch::step() const {
     program.hessian = hessian;
     program.hessian.diagonal().array() +=
         largest > 0.0 ? unfelt * largest : 1.0;
-    const std::optional<QuadraticAnswer> found = solve_quadratic(program);
+    const std::optional<quadratic::QuadraticAnswer> found =
+        quadratic::solve_quadratic(program);
     const double promised =
         !found ? 0.0
                : residuals_.squaredNorm() -

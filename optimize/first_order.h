@@ -44,7 +44,4 @@ struct FirstOrderReport {
 /// Throws InvalidInput when sizes do not fit.
 FirstOrderReport first_order(const FirstOrderInput& input);
 
-/// x >= 0 that minimises |A x - b|. Same input, same bits.
-VectorX nonnegative_least_squares(const Eigen::MatrixXd& A, const VectorX& b);
-
 }  // namespace meniscus::optimize

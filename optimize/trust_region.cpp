@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optimize/failed_points.h"
-#include "optimize/quadratic_program.h"
+#include "optimize/quadratic/failed_points.h"
+#include "optimize/quadratic/quadratic_program.h"
 
 namespace meniscus::optimize {
 namespace {
@@ -93,11 +93,12 @@ class TrustRegion {
   bool linearise(const VectorX& x, Linearised& into);
   VectorX sides_at(const VectorX& values) const;
   std::optional<Proposal> propose(const VectorX& sides) const;
-  std::optional<QuadraticAnswer> solve_with_bends(QuadraticProgram program,
-                                                  QuadraticAnswer plain) const;
+  std::optional<quadratic::QuadraticAnswer> solve_with_bends(
+      quadratic::QuadraticProgram program,
+      quadratic::QuadraticAnswer plain) const;
   void learn_bends(const VectorX& step, const VectorX& values);
   bool blame_constraints(const VectorX& step);
-  QuadraticProgram program_for(const VectorX& sides) const;
+  quadratic::QuadraticProgram program_for(const VectorX& sides) const;
   double merit(double objective, double missed) const {
     return objective + penalty_ * missed;
   }
@@ -117,7 +118,7 @@ class TrustRegion {
   Eigen::MatrixXd hessian_;
   bool first_update_ = true;
   double penalty_ = 0.0;
-  FailedPoints failed_;
+  quadratic::FailedPoints failed_;
   VectorX bends_;     // per side: g is up to bend |d|^2 / 2 above its slope
   int cautious_ = 0;  // steps for which bends count, since a point failed
   int caution_ = 1;   // how many the next failure asks for, half
@@ -162,8 +163,10 @@ bool TrustRegion::linearise(const VectorX& x, Linearised& into) {
 }
 
 // `sides`: values that the sides have without a step.
-QuadraticProgram TrustRegion::program_for(const VectorX& sides) const {
-  QuadraticProgram program{.hessian = hessian_, .slope = centre_.slope};
+quadratic::QuadraticProgram TrustRegion::program_for(
+    const VectorX& sides) const {
+  quadratic::QuadraticProgram program{.hessian = hessian_,
+                                      .slope = centre_.slope};
   program.low = (evaluator_.lower() - centre_.x)
                     .cwiseQuotient(ranges_)
                     .cwiseMax(-radius_)
@@ -214,8 +217,9 @@ bool TrustRegion::blame_constraints(const VectorX& step) {
 
 // The step whose end keeps the sides with their bends, by rounds of its own
 // length.
-std::optional<QuadraticAnswer> TrustRegion::solve_with_bends(
-    QuadraticProgram program, QuadraticAnswer plain) const {
+std::optional<quadratic::QuadraticAnswer> TrustRegion::solve_with_bends(
+    quadratic::QuadraticProgram program,
+    quadratic::QuadraticAnswer plain) const {
   const VectorX limits = program.limits;
   for (int round = 0; round < kBendRounds; ++round) {
     Eigen::Index row = 0;
@@ -232,7 +236,8 @@ std::optional<QuadraticAnswer> TrustRegion::solve_with_bends(
           std::min(kBendSafety * 0.5 * bends_[k] * plain.step.squaredNorm(),
                    most);
     }
-    const std::optional<QuadraticAnswer> found = solve_quadratic(program);
+    const std::optional<quadratic::QuadraticAnswer> found =
+        quadratic::solve_quadratic(program);
     if (!found) {
       return std::nullopt;
     }
@@ -242,27 +247,28 @@ std::optional<QuadraticAnswer> TrustRegion::solve_with_bends(
 }
 
 std::optional<Proposal> TrustRegion::propose(const VectorX& sides) const {
-  QuadraticProgram program = program_for(sides);
+  quadratic::QuadraticProgram program = program_for(sides);
   const Eigen::Index own = program.limits.size();
-  QuadraticProgram cut = program;
+  quadratic::QuadraticProgram cut = program;
   failed_.cut(centre_.x, ranges_, radius_, cut);
   Proposal proposal;
-  std::optional<QuadraticAnswer> found = solve_quadratic(cut);
+  std::optional<quadratic::QuadraticAnswer> found =
+      quadratic::solve_quadratic(cut);
   if (found && cautious_ > 0) {
     found = solve_with_bends(cut, *found);
   }
   if (!found && own > 0) {
     // What cannot be kept is missed by as little as can be; points that failed
     // are kept away from by the same step.
-    const VectorX missed = least_misses(cut).head(own);
+    const VectorX missed = quadratic::least_misses(cut).head(own);
     cut.limits.head(own) += missed;
     cut.limits.array().head(own) += kRoom * (1.0 + missed.maxCoeff());
     proposal.relaxed = true;
-    found = solve_quadratic(cut);
+    found = quadratic::solve_quadratic(cut);
   }
   if (!found) {  // rounding, of a model with curvatures of all sizes
     cut.hessian.diagonal().array() += cut.hessian.diagonal().maxCoeff();
-    found = solve_quadratic(cut);
+    found = quadratic::solve_quadratic(cut);
   }
   if (!found) {
     return std::nullopt;

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "core/error.h"
+#include "optimize/quadratic/nonnegative_least_squares.h"
 #include "optimize/samples/sampling.h"
 #include "tests/support/standard_problems.h"
 
@@ -27,14 +28,14 @@ TEST(NonnegativeLeastSquares, MeetsItsOwnConditions) {
       b[i] = row[8];
     }
     A.col(5) = A.col(2);  // a dependent column does no harm
-    const VectorX x = optimize::nonnegative_least_squares(A, b);
+    const VectorX x = quadratic::nonnegative_least_squares(A, b);
     const VectorX gain = A.transpose() * (b - A * x);
     EXPECT_GE(x.minCoeff(), 0.0);
     EXPECT_LE(gain.maxCoeff(), 1e-12);
     EXPECT_LE(x.cwiseProduct(gain).cwiseAbs().maxCoeff(), 1e-12);
   }
-  EXPECT_EQ(optimize::nonnegative_least_squares(Eigen::MatrixXd(3, 0),
-                                                VectorX::Ones(3))
+  EXPECT_EQ(quadratic::nonnegative_least_squares(Eigen::MatrixXd(3, 0),
+                                                 VectorX::Ones(3))
                 .size(),
             0);
 }

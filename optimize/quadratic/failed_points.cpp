@@ -1,9 +1,9 @@
-#include "optimize/failed_points.h"
+#include "optimize/quadratic/failed_points.h"
 
 #include <array>
 #include <cmath>
 
-namespace meniscus::optimize {
+namespace meniscus::quadratic {
 namespace {
 
 // The part of the way to a failed point that a step may go, by how often it
@@ -51,4 +51,4 @@ bool FailedPoints::near(const VectorX& x, const VectorX& ranges,
   return false;
 }
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::quadratic

@@ -1,4 +1,4 @@
-#include "optimize/quadratic_program.h"
+#include "optimize/quadratic/quadratic_program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <Eigen/Core>
 
 #include "core/math/dense.h"
-#include "optimize/first_order.h"
+#include "optimize/quadratic/nonnegative_least_squares.h"
 
-namespace meniscus::optimize {
+namespace meniscus::quadratic {
 namespace {
 
 // |f - E u|^2 below this: no point keeps the inequalities (about 1 / |y|^2 of
@@ -182,4 +182,4 @@ VectorX least_misses(const QuadraticProgram& program) {
   return (program.rows * step - program.limits).cwiseMax(0.0);
 }
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::quadratic

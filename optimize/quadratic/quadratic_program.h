@@ -7,7 +7,7 @@
 
 #include "core/types.h"
 
-namespace meniscus::optimize {
+namespace meniscus::quadratic {
 
 /// Variables of about the size 1: 1e-7 is nothing.
 /// min slope . d + d . hessian d / 2  over  low <= d <= high, rows d <= limits.
@@ -39,4 +39,4 @@ std::optional<QuadraticAnswer> solve_quadratic(const QuadraticProgram& program);
 /// to be kept within the box: 0 where they can be kept [m].
 VectorX least_misses(const QuadraticProgram& program);
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::quadratic

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "optimize/quadratic_program.h"
+#include "optimize/quadratic/quadratic_program.h"
 
-namespace meniscus::optimize {
+namespace meniscus::quadratic {
 
 /// Points x and steps d = (x - centre) / ranges.
 class FailedPoints {
@@ -33,4 +33,4 @@ class FailedPoints {
   std::vector<Point> points_;
 };
 
-}  // namespace meniscus::optimize
+}  // namespace meniscus::quadratic
