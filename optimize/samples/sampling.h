@@ -32,8 +32,8 @@ constexpr int kMostSobolDimensions = 3667;
 constexpr int kMostSamples = 10'000'000;
 
 /// lower + t (upper - lower), t = 0 and 1 giving the bounds themselves.
-std::vector<VectorX> designs_of(const std::vector<optimize::Variable>& variables,
-                                const Samples& samples);
+std::vector<VectorX> designs_of(
+    const std::vector<optimize::Variable>& variables, const Samples& samples);
 
 /// The quantile of the standard normal distribution, 0 < p < 1, to 1e-15
 /// relative (M. J. Wichura, Applied Statistics 37, 1988, algorithm AS 241).
