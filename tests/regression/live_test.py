@@ -122,7 +122,7 @@ class Watch(Live):
         self.assertIn(f"{result['evaluations']} evaluations", once.stdout)
         shown = self.expect(self.call("study", "show", out), 0)
         self.assertRegex(shown.stdout.splitlines()[0],
-                         r"sway \[mm\] +mass \[t\]")
+                         r"sway \[mm\] +mass \[kg\]")
 
     def test_a_killed_run_and_a_folder_without_one(self):
         out = self.folder / "out"
