@@ -129,7 +129,8 @@ void DesignEvaluator::compute(const std::vector<VectorX>& designs,
                       },
                   .cancel = [&] { group.cancel(); }});
   } catch (const Interrupted&) {
-    if (monitor_.user_stops()) {
+    const bool is_late = deadline_ && StudyMonitor::Clock::now() >= *deadline_;
+    if (monitor_.user_stops() && !is_late) {
       throw;
     }  // else the time is up: what is done is kept
   }
