@@ -20,7 +20,10 @@ struct NormPeak {
   double bound = std::numeric_limits<double>::infinity();  // of the study
 
   /// Kept by the mean and not by the peak.
-  bool hides_peak() const { return value <= bound && peak > bound; }
+  bool hides_peak() const {
+    constexpr double kKept = 1e-3;  // of the bound, as a study keeps it
+    return value <= (1.0 + kKept) * bound && peak > (1.0 + kKept) * bound;
+  }
 };
 
 /// In the responses' order; none without responses or stresses.

@@ -35,11 +35,13 @@ std::string at_bound(const case_data::DesignVariable& variable, double value) {
 /// What another mesh changed most, relative to the answer.
 std::string shift_text(const case_data::Case& input,
                        const store::Refreeze& refreeze, const VectorX& answer) {
+  constexpr double kOfNothing = 10.0;
   Eigen::Index worst = -1;
   double largest = 0.0;
   for (Eigen::Index k = 0; k < refreeze.shift.size(); ++k) {
     const double relative = std::abs(refreeze.shift[k] / answer[k]);
-    if (std::isfinite(relative) && relative > largest) {
+    // Of an answer near 0 a part of it says nothing.
+    if (relative < kOfNothing && relative > largest) {
       worst = k;
       largest = relative;
     }
