@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What a hostile hand may give the program: an answer or a reason, in time and
 within the machine's limits."""
+import os
 import pathlib
 import random
 import resource
@@ -169,6 +170,46 @@ curves = ["support", "left", "right"]
                 preexec_fn=lambda size=size: resource.setrlimit(
                     resource.RLIMIT_AS, (size, size)))
             self.assertIn(done.returncode, (0, 2, 3, 4, 127), done.stderr)
+
+
+class Orphans(ProgramTest):
+    """Helpers, the virtual display among them, end with a run that is killed."""
+
+    def processes(self):
+        mark = f"MENISCUS_TEST_MARK={self.folder}".encode()
+        found = []
+        for path in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                if mark in (path / "environ").read_bytes().split(b"\0"):
+                    found.append((path / "cmdline").read_bytes())
+            except OSError:
+                pass
+        return found
+
+    def test_none_is_left(self):
+        env = {**os.environ, "MENISCUS_TEST_MARK": str(self.folder)}
+        begun = time.monotonic()
+        whole = self.start("run", CASE, "--out", "whole", *COARSE, env=env)
+        helpers = set()
+        while whole.poll() is None:
+            helpers.update(line.split(b"\0")[0].split(b"/")[-1]
+                           for line in self.processes())
+            time.sleep(0.02)
+        whole.communicate()
+        length = time.monotonic() - begun
+        self.assertIn(b"Xvfb", helpers)
+        self.assertIn(b"meniscus-render", helpers)
+        choice = random.Random(5)
+        for number in range(12):
+            running = self.start("run", CASE, "--out", f"out {number}",
+                                 *COARSE, env=env)
+            time.sleep(length * choice.uniform(0.05, 1.0))
+            running.kill()
+            running.communicate()
+            until = time.monotonic() + 5.0
+            while self.processes() and time.monotonic() < until:
+                time.sleep(0.05)
+            self.assertEqual(self.processes(), [], number)
 
 
 class Files(ProgramTest):
