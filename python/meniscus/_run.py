@@ -84,7 +84,8 @@ class Run:
     def answer(self) -> "Optional[numpy.ndarray[Any, Any]]":
         """The answer's design, float64 (design variables,): Model(run.case)
         .evaluate(run.answer) has the responses of result.json to the last
-        bit. None without an answer."""
+        bit, unless the study went on from another model (`refrozen` there).
+        None without an answer."""
         answer = self.evaluations._answer
         return numpy.array(answer) if answer else None
 

@@ -207,7 +207,8 @@ TEST(TwoArmSized, TwoStartsComeToOneMassAndNoSampleIsLighter) {
       << optimum.message;
   EXPECT_LE(optimum.first_order->residual, kOptimality);
   const optimize::MinimizeReport other = minimum_from(
-      loop, start({15, 26, 26, 28, 75, 60, 25, 26, 66, 4.2e5, 2.1e5, 2.0e5}));
+      loop,
+      start({8, 27, 26.5, 27.5, 70, 62, 25, 25.5, 62, 3.9e5, 2.2e5, 2.15e5}));
   EXPECT_EQ(other.termination, optimize::Termination::Converged)
       << other.message;
   EXPECT_LE(other.first_order->residual, kOptimality);
