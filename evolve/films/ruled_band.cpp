@@ -70,6 +70,7 @@ Points points_at_shares(const curves::CurveShape& shape,
                         const LengthShares& table, int count, double turn,
                         double shift) {
   std::vector<double> t;
+  t.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
     t.push_back(
         interpolated(table.share, table.t, wrapped(turn * k / count + shift)));

@@ -115,6 +115,7 @@ std::vector<std::pair<std::string, const toml::node*>> in_file_order(
       order.begin(), order.end(),
       [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::pair<std::string, const toml::node*>> found;
+  found.reserve(order.size());
   for (const auto& [position, name] : order) {
     found.emplace_back(name, parameters->get(name));
   }

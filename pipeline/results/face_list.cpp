@@ -164,6 +164,7 @@ FaceShape face_shape(const SurfaceMesh& mesh, int label) {
 std::string face_list(const SurfaceMesh& mesh, const std::string& length_unit,
                       std::size_t most) {
   std::vector<FaceShape> shapes;
+  shapes.reserve(mesh.labels.size());
   for (int label = 0; label < static_cast<int>(mesh.labels.size()); ++label) {
     shapes.push_back(face_shape(mesh, label));
   }
