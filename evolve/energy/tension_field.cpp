@@ -66,9 +66,11 @@ std::vector<double> tensions_at(const films::FilmComplex& complex,
 }
 
 Expression positive_only(const Expression& field) {
-  // No constant without a value: datafiles would have to hold it.
-  return Expression::parse(fmt::format("if(({0})>0,{0},({0})/0)", field.text()),
-                           {"x", "y", "z"});
+  // No value below 0, but nothing that is none as it stands: Surface Evolver
+  // refuses a division by 0 as it reads.
+  return Expression::parse(
+      fmt::format("if(({0})>0,{0},sqrt(-1-x*x))", field.text()),
+      {"x", "y", "z"});
 }
 
 }  // namespace meniscus::energy

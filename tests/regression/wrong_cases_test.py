@@ -158,7 +158,7 @@ WRONG = {
                'curve = "\0"': 'curve = "right"'}, 3,
               (r"neck of width [\d.]+( mm)? at \(.*\) between "
                r"'(left|right)_skin'",
-               "shorter arms"), command="run case.toml"),
+               "tried in vain: 1.3 times the volume of"), command="run case.toml"),
         Wrong("open", "an arm without its pad",
               {'"left_joint", "left_pad"]': '"left_joint"]'}, 2,
               not_closed("left_arm", "left", "add 'left_pad'"),
