@@ -33,6 +33,7 @@ constexpr int kPolishRounds = 2;      // of averaging and Newton at the end
 constexpr std::size_t kGroomed = 1500;
 constexpr std::size_t kDirect = 6000;
 constexpr int kContactRounds = 40;
+constexpr double kNearNeck = 16.0;        // x mean edge
 constexpr double kLooseReduction = 1e-2;  // on levels that are refined further
 
 FilmState given_up(const films::FilmComplex& complex, const std::string& reason,
@@ -241,7 +242,11 @@ FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
   state.heights = VectorX::Zero(energy.unknowns());
   VerdictInput input;
   input.mode_position = modes.position;
-  chain.measure_neck(complex);
+  // Rays from every fine vertex take as long as settling does: only where the
+  // coarse neck is near what a film needs do the fine facets decide.
+  if (chain.neck.width < kNearNeck * energy.mean_edge(complex.mesh.points)) {
+    chain.measure_neck(complex);
+  }
   input.neck = chain.neck;
   set_verdict(energy, complex, input, state);
   return state;

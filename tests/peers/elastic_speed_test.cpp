@@ -13,7 +13,7 @@ namespace {
 constexpr double kScale = 0.125;
 // Of the ratios that docs/performance.md claims for this size: runs of 0.1 s
 // are timed to a quarter on a busy machine.
-constexpr double kNoise = 0.7;
+constexpr double kNoise = 0.5;
 constexpr int kRuns = 3;  // of ours, of which the fastest counts
 constexpr double kTimeLimit = 200.0;
 
