@@ -1,15 +1,13 @@
 #include "app/signals.h"
 
-#include <array>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <fcntl.h>
 #include <initializer_list>
 #include <string_view>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 
 namespace meniscus::app {
 namespace {
@@ -22,31 +20,47 @@ constexpr std::chrono::seconds kSlow(60);
 
 std::atomic<int> received{0};
 std::atomic<bool> heard{false};
-static_assert(std::atomic<int>::is_always_lock_free,
-              "a signal handler must not lock");
-std::array<int, 2> wake = {-1, -1};  // the handler writes, the watch reads
 
-extern "C" void on_stop_signal(int signal) {
-  int none = 0;
-  if (!received.compare_exchange_strong(none, signal)) {
-    _exit(kInterrupted);
+sigset_t all_stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    sigaddset(&signals, signal);
   }
-  const int before = errno;
-  [[maybe_unused]] const auto sent = ::write(wake[1], "", 1);
-  errno = before;
+  return signals;
 }
 
-/// Ends the process where the computation does not end by itself: it may stand
-/// in a library that nobody can ask to stop. Finished evaluations are in the
-/// study's database.
-void watch_stop() {
+// Libraries start threads before main() (OpenBLAS does), and a thread that
+// leaves a signal unblocked may be given it: they start with the signals
+// blocked, the program's own thread allows them again.
+void block_before_libraries(int, char**, char**) {
+  const sigset_t signals = all_stop_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)(
+    int, char**, char**) = block_before_libraries;
+
+[[gnu::constructor]] void allow_after_libraries() {
+  const sigset_t signals = all_stop_signals();
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+}
+
+/// The one thread that receives `signals`. After the first it ends the process
+/// where the computation does not end by itself: it may stand in a library
+/// that nobody can ask to stop. Finished evaluations are in the study's
+/// database.
+void watch_stop(const sigset_t& signals) {
   using Clock = std::chrono::steady_clock;
-  char byte = 0;
-  while (::read(wake[0], &byte, 1) < 0 && errno == EINTR) {
+  int signal = 0;
+  while (sigwait(&signals, &signal) != 0) {
   }
+  received = signal;
   const auto begin = Clock::now();
+  const timespec moment{.tv_sec = 0, .tv_nsec = 50'000'000};
   while (Clock::now() - begin < (heard ? kSlow : kDeaf)) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (sigtimedwait(&signals, nullptr, &moment) > 0) {
+      _exit(kInterrupted);
+    }
   }
   const std::string_view text =
       "ended in the middle of a step that does not stop; finished evaluations "
@@ -59,21 +73,20 @@ void watch_stop() {
 }  // namespace
 
 void catch_stop_signals() {
-  if (wake[0] < 0 && ::pipe2(wake.data(), O_CLOEXEC) == 0) {
-    std::thread(watch_stop).detach();
+  static bool caught = false;
+  if (std::exchange(caught, true)) {
+    return;
   }
+  sigset_t signals = all_stop_signals();
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
     sigaction(signal, nullptr, &action);
     if (action.sa_handler == SIG_IGN) {
-      continue;
+      sigdelset(&signals, signal);
     }
-    action = {};
-    action.sa_handler = on_stop_signal;
-    action.sa_flags = SA_RESTART;
-    sigemptyset(&action.sa_mask);
-    sigaction(signal, &action, nullptr);
   }
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread(watch_stop, signals).detach();
   std::signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -4,7 +4,9 @@
 namespace meniscus::app {
 
 /// From now on SIGINT, SIGTERM and SIGHUP set a flag that stop_signal() shows,
-/// and the second of them ends the process at once with exit code 130. A
+/// and the second of them ends the process at once with exit code 130. They
+/// are blocked and received by a thread of their own, so that no library's
+/// handler meets them (METIS takes SIGTERM for an error of its own). A
 /// signal that was ignored before (nohup) stays ignored. SIGXFSZ is ignored:
 /// a file too large for its limit becomes an error of writing like a full
 /// disk, not a sudden end. Where nobody asks stop_signal() for 5 s after the

@@ -33,7 +33,7 @@ constexpr int kPolishRounds = 2;      // of averaging and Newton at the end
 constexpr std::size_t kGroomed = 1500;
 constexpr std::size_t kDirect = 6000;
 constexpr int kContactRounds = 40;
-constexpr double kNearNeck = 16.0;        // x mean edge
+constexpr double kCoarseNeck = 3.0;       // x mean edge of the coarse level
 constexpr double kLooseReduction = 1e-2;  // on levels that are refined further
 
 FilmState given_up(const films::FilmComplex& complex, const std::string& reason,
@@ -242,9 +242,12 @@ FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
   state.heights = VectorX::Zero(energy.unknowns());
   VerdictInput input;
   input.mode_position = modes.position;
-  // Rays from every fine vertex take as long as settling does: only where the
-  // coarse neck is near what a film needs do the fine facets decide.
-  if (chain.neck.width < kNearNeck * energy.mean_edge(complex.mesh.points)) {
+  // Rays from every fine vertex take half as long as settling does: only where
+  // few coarse edges cross the neck do the fine facets decide. Else its width
+  // would have to fall to a third between the levels to be too thin.
+  const double near = kCoarseNeck * chain.levels.front().energy->mean_edge(
+                                        complex.mesh.points);
+  if (chain.neck.surface >= 0 && chain.neck.width < near) {
     chain.measure_neck(complex);
   }
   input.neck = chain.neck;

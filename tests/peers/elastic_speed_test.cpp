@@ -11,10 +11,10 @@ namespace meniscus::elastic_speed_test {
 namespace {
 
 constexpr double kScale = 0.125;
-// Of the ratios that docs/performance.md claims for this size: runs of 0.1 s
-// are timed to a quarter on a busy machine.
-constexpr double kNoise = 0.5;
-constexpr int kRuns = 3;  // of ours, of which the fastest counts
+// Of the ratios that docs/performance.md claims for this size.
+constexpr double kNoise = 0.7;
+constexpr int kRounds = 1;  // at least
+constexpr int kMostRounds = 10;
 constexpr double kTimeLimit = 200.0;
 
 /// How many times faster than CalculiX, as docs/performance.md has it for this
@@ -25,9 +25,9 @@ struct ElasticClaim {
   double next = 0.0;
 };
 const std::map<std::string, ElasticClaim> kClaims = {
-    {"tube", {15.2, 15.2, 20.0}},
-    {"block", {35.0, 16.8, 56.0}},
-    {"linear_block", {6.6, 4.6, 19.0}}};
+    {"tube", {10.5, 10.5, 22.0}},
+    {"block", {21.5, 10.8, 51.0}},
+    {"linear_block", {5.5, 3.8, 9.7}}};
 
 class ElasticSpeed : public ::testing::TestWithParam<ElasticWork> {};
 
@@ -40,24 +40,33 @@ TEST_P(ElasticSpeed, BeatsCalculix) {
 #endif
   const ElasticWork& work = GetParam();
   const ElasticClaim& claim = kClaims.at(work.name);
+  // The programs take turns until every ratio is reached: what else the machine
+  // does slows single runs of 0.03 s, and the fastest of each counts.
   double own = HUGE_VAL;
   double next = HUGE_VAL;
-  for (int i = 0; i < kRuns; ++i) {
+  double standard = HUGE_VAL;
+  double best = HUGE_VAL;
+  const auto reached = [&] {
+    return standard / own > kNoise * claim.standard &&
+           best / own > kNoise * claim.best &&
+           standard / next > kNoise * claim.next;
+  };
+  for (int i = 0; i < kMostRounds && (i < kRounds || !reached()); ++i) {
     const ElasticRun run = run_elastic(work.make, kScale, 1);
     ASSERT_TRUE(run.solved) << run.message;
     own = std::min(own, run.first_cpu);
     next = std::min(next, run.next_cpu);
+    const CalculixTime spooles =
+        time_calculix(work.make, kScale, "SPOOLES", kTimeLimit);
+    const CalculixTime iterative =
+        time_calculix(work.make, kScale, "ITERATIVE CHOLESKY", kTimeLimit);
+    ASSERT_TRUE(spooles.ended && iterative.ended);
+    standard = std::min(standard, spooles.user_seconds);
+    best = std::min({best, spooles.user_seconds, iterative.user_seconds});
   }
-  const CalculixTime standard =
-      time_calculix(work.make, kScale, "SPOOLES", kTimeLimit);
-  const CalculixTime iterative =
-      time_calculix(work.make, kScale, "ITERATIVE CHOLESKY", kTimeLimit);
-  ASSERT_TRUE(standard.ended && iterative.ended);
-  const double best = std::min(standard.user_seconds, iterative.user_seconds);
-  EXPECT_GT(standard.user_seconds / own, kNoise * claim.standard)
-      << own << " s";
+  EXPECT_GT(standard / own, kNoise * claim.standard) << own << " s";
   EXPECT_GT(best / own, kNoise * claim.best) << own << " s";
-  EXPECT_GT(standard.user_seconds / next, kNoise * claim.next) << next << " s";
+  EXPECT_GT(standard / next, kNoise * claim.next) << next << " s";
 }
 
 /// Seconds of one run, the next design included.
@@ -76,9 +85,8 @@ TEST_P(ElasticSpeed, AutomaticIsNearTheBestSolver) {
   MENISCUS_NOT_HERE("times of a build without optimisation say nothing");
 #endif
   constexpr double kNear = 1.3;
+  constexpr int kTurns = 3;
   constexpr double kClock = 0.015;  // [s] what such short runs scatter by
-  constexpr int kRounds = 3;
-  constexpr int kMostRounds = 12;
   for (const double scale : {0.002, 0.008, 0.03, 0.06}) {
     double direct = HUGE_VAL;
     double multigrid = HUGE_VAL;
@@ -86,7 +94,7 @@ TEST_P(ElasticSpeed, AutomaticIsNearTheBestSolver) {
     const auto is_near = [&] {
       return automatic <= kNear * std::min(direct, multigrid) + kClock;
     };
-    for (int i = 0; i < kRounds || (i < kMostRounds && !is_near()); ++i) {
+    for (int i = 0; i < kTurns || (i < kMostRounds && !is_near()); ++i) {
       const ElasticWork& work = GetParam();
       direct = std::min(
           direct, seconds_of(work, scale, equations::SolverKind::Cholesky));
