@@ -37,8 +37,9 @@ void block_before_libraries(int, char**, char**) {
   const sigset_t signals = all_stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
-[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)(
-    int, char**, char**) = block_before_libraries;
+[[gnu::section(".preinit_array"),
+  gnu::used]] void (*const before_libraries)(int, char**,
+                                             char**) = block_before_libraries;
 
 [[gnu::constructor]] void allow_after_libraries() {
   const sigset_t signals = all_stop_signals();

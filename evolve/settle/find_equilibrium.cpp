@@ -245,8 +245,8 @@ FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
   // Rays from every fine vertex take half as long as settling does: only where
   // few coarse edges cross the neck do the fine facets decide. Else its width
   // would have to fall to a third between the levels to be too thin.
-  const double near = kCoarseNeck * chain.levels.front().energy->mean_edge(
-                                        complex.mesh.points);
+  const double near =
+      kCoarseNeck * chain.levels.front().energy->mean_edge(complex.mesh.points);
   if (chain.neck.surface >= 0 && chain.neck.width < near) {
     chain.measure_neck(complex);
   }

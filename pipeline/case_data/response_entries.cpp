@@ -1,23 +1,48 @@
 #include "pipeline/case_data/response_entries.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "core/error.h"
 #include "pipeline/case_data/response_kinds.h"
 
 namespace meniscus::case_data {
 
+namespace {
+
+/// The responses that an expression's value is made of.
+std::vector<int> responses_in(const Case& input, const ResponseEntry& entry) {
+  const auto names =
+      static_cast<int>(input.design.size() + input.parameters.size());
+  std::vector<int> responses;
+  for (const int name : entry.value.expression.names_used()) {
+    if (name >= names) {
+      responses.push_back(name - names);
+    }
+  }
+  return responses;
+}
+
+}  // namespace
+
 bool has_derivatives(const Case& input, int response) {
   const ResponseEntry& entry = input.responses[response];
   if (entry.kind != ResponseKind::Expression) {
     return row_of(entry.kind).has_derivatives;
   }
-  const std::vector<int> used = entry.value.expression.names_used();
-  const auto names =
-      static_cast<int>(input.design.size() + input.parameters.size());
-  return std::all_of(used.begin(), used.end(), [&](int name) {
-    return name < names || has_derivatives(input, name - names);
-  });
+  const std::vector<int> used = responses_in(input, entry);
+  return std::all_of(used.begin(), used.end(),
+                     [&](int other) { return has_derivatives(input, other); });
+}
+
+bool is_extreme(const Case& input, int response) {
+  const ResponseEntry& entry = input.responses[response];
+  if (entry.kind != ResponseKind::Expression) {
+    return row_of(entry.kind).is_extreme;
+  }
+  const std::vector<int> used = responses_in(input, entry);
+  return std::any_of(used.begin(), used.end(),
+                     [&](int other) { return is_extreme(input, other); });
 }
 
 int response_index(const Case& input, const std::string& name) {

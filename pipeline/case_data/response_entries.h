@@ -10,6 +10,10 @@ namespace meniscus::case_data {
 /// False for peaks of nodal stress, and for what is made of them.
 bool has_derivatives(const Case& input, int response);
 
+/// Of a field near its largest or smallest value (response_kinds.h), or made of
+/// such a response.
+bool is_extreme(const Case& input, int response);
+
 /// Position of a response of the case; it must exist.
 int response_index(const Case& input, const std::string& name);
 

@@ -28,6 +28,9 @@ struct ResponseRow {
   ErrorSource error = ErrorSource::Exact;
   bool of_films = false;  // a case without films has none
   bool has_derivatives = true;
+  /// Of a field near its largest or smallest value: from mesh to mesh it shows
+  /// no order, and at a clamped edge or a sharp corner it may have no limit.
+  bool is_extreme = false;
 };
 
 /// All of them, in the order of the reference.

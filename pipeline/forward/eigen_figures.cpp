@@ -1,6 +1,7 @@
 #include "pipeline/forward/eigen_figures.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -90,6 +91,9 @@ std::string buckling_line(const BucklingFigures& b) {
     for (const double factor : modes.factors) {
       factors.push_back(fmt::format("{:.4g}", factor));
     }
+    if (std::isfinite(b.error)) {
+      factors.front() += fmt::format(" +- {:.2g}", b.error);
+    }
     text += fmt::format("{}{} x the loads", b.roughly ? "about " : "",
                         fmt::join(factors, ", "));
   } else if (!modes.failure) {
@@ -139,11 +143,24 @@ EigenFigures eigen_figures(const case_data::Case& input,
   return figures;
 }
 
+bool deserve_errors(const case_data::Case& input, const EigenFigures& figures) {
+  return input.analysis.buckling.value_or(0) > 0 ||
+         input.analysis.frequencies > 0 ||
+         std::any_of(figures.buckling.begin(), figures.buckling.end(),
+                     [](const BucklingFigures& b) {
+                       return !b.modes.factors.empty() &&
+                              b.modes.factors.front() <= kSafelyStable;
+                     });
+}
+
 void add_eigen_json(const EigenFigures& figures, Json& json) {
   Json buckling = Json::object();
   for (const BucklingFigures& b : figures.buckling) {
     Json entry = {{"factors", b.modes.factors},
                   {"residuals", b.modes.residuals}};
+    if (std::isfinite(b.error)) {
+      entry["error"] = b.error;
+    }
     if (b.modes.factors.empty() && !b.modes.failure) {
       entry["none_below"] = b.modes.none_below;
     }
@@ -157,6 +174,9 @@ void add_eigen_json(const EigenFigures& figures, Json& json) {
         {"rigid_motions", modes.rigid_motions},
         {"values", modes.frequencies},
         {"residuals", modes.residuals}};
+    if (!figures.frequencies->errors.empty()) {
+      json["natural_frequencies"]["errors"] = figures.frequencies->errors;
+    }
   }
 }
 
@@ -169,6 +189,12 @@ std::string eigen_text(const EigenFigures& figures) {
     std::vector<std::string> values;
     for (const double f : figures.frequencies->modes.frequencies) {
       values.push_back(fmt::format("{:.5g}", f));
+    }
+    const std::vector<double>& errors = figures.frequencies->errors;
+    for (std::size_t k = 0; k < std::min(values.size(), errors.size()); ++k) {
+      if (std::isfinite(errors[k])) {
+        values[k] += fmt::format(" +- {:.2g}", errors[k]);
+      }
     }
     const modes::NaturalModes& modes = figures.frequencies->modes;
     const std::string held =

@@ -1,6 +1,7 @@
 /// A part's buckling factors and natural frequencies.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,11 +19,14 @@ struct BucklingFigures {
   std::string load_case;
   modes::BucklingModes modes;  // as many as the case asks for, or the first
   bool roughly = false;        // unasked, not converged, and far above 1
+  /// The mesh's own error of the first factor; NaN: not estimated.
+  double error = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct FrequencyFigures {
   std::string load_case;  // whose supports hold the part; or "free"
   modes::NaturalModes modes;
+  std::vector<double> errors;  // of each [Hz]; empty: not estimated
 };
 
 struct EigenFigures {
@@ -40,6 +44,10 @@ EigenFigures eigen_figures(const case_data::Case& input,
                            const EvaluationFields& fields,
                            const elastic::ElasticModel& model,
                            Monitor* monitor = nullptr);
+
+/// Whether somebody reads them closely: they were asked for, or a factor is
+/// near enough to 1 to matter.
+bool deserve_errors(const case_data::Case& input, const EigenFigures& figures);
 
 /// Adds "buckling" and "natural_frequencies" to result.json (docs/results.md).
 void add_eigen_json(const EigenFigures& figures, nlohmann::ordered_json& json);

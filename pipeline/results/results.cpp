@@ -18,6 +18,7 @@
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
+#include "pipeline/study/mesh_errors.h"
 
 namespace meniscus::results {
 
@@ -215,6 +216,14 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   json["responses"] =
       value_map(names, best != nullptr ? best->responses : VectorX());
   json["response_errors"] = value_map(names, result.response_errors);
+  if (result.meshes[1].size() > 0 || result.meshes[2].size() > 0) {
+    json["meshes"] = Json::array();
+    for (std::size_t m = 0; m < study::kEdgeFactors.size(); ++m) {
+      json["meshes"].push_back(
+          {{"edge", study::kEdgeFactors[m] * input.resolution.fea},
+           {"responses", value_map(names, result.meshes[m])}});
+    }
+  }
   if (result.element_errors) {
     json["element_errors"] = {
         {"energy", result.element_errors->energy},

@@ -14,7 +14,7 @@ namespace {
 std::string with_error(double value, const VectorX& errors, Eigen::Index k,
                        const ShownUnit& unit) {
   std::string text = quantity_text(unit.factor * value, unit.unit);
-  if (k < errors.size()) {
+  if (k < errors.size() && std::isfinite(errors[k])) {
     text += "  +- " + quantity_text(unit.factor * errors[k], unit.unit, 2);
   }
   return text;

@@ -16,6 +16,7 @@
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/accuracy_note.h"
 #include "pipeline/study/film_frames.h"
+#include "pipeline/study/mesh_errors.h"
 #include "pipeline/study/run_kind.h"
 #include "pipeline/study/study_monitor.h"
 #include "pipeline/study/study_records.h"
@@ -25,12 +26,6 @@
 namespace meniscus::study {
 
 namespace {
-
-// A response's error estimate is its change when all edges double, times a
-// factor: 1 / (2^p - 1) at the order p = 0.74 of a clamped rim
-// (docs/decisions/0006, docs/verification.md).
-constexpr double kCoarserEdges = 2.0;
-constexpr double kErrorPerChange = 1.5;
 
 // A study looks at its limit between evaluations; so much later [s] the one
 // under way is given up.
@@ -93,7 +88,8 @@ class StudyRun {
   void solve_eigenproblems();
   void estimate_element_errors_of_best();
   void estimate_errors();
-  void combine_errors(const VectorX& coarse);
+  void add_coarser(std::size_t m, bool with_eigen, MeshSequence& meshes);
+  void combine_errors(const MeshSequence& meshes);
   void warn();
   void count();
 
@@ -502,41 +498,75 @@ void StudyRun::estimate_element_errors_of_best() {
 
 void StudyRun::estimate_errors() {
   estimate_element_errors_of_best();
-  monitor_.progress({.stage = "accuracy",
-                     .detail = "a second model with edges twice as long"});
-  try {
-    const forward::ForwardModel coarse(
-        frozen_ ? *frozen_ : input_,
-        {.edge_factor = kCoarserEdges, .monitor = &limited_});
-    own_seconds_ += coarse.frozen().seconds;
-    const std::optional<Failure>& failure = coarse.failure();
-    forward::Evaluation there;
-    if (!failure) {
-      there = coarse.evaluate(stage_->outcome().best);
-      own_seconds_ += there.seconds;
-    }
-    if (failure || there.failure) {
-      result_.warnings.push_back(
-          "no error estimate, the coarser model cannot be evaluated: " +
-          (failure ? *failure : *there.failure).message);
-      return;
-    }
-    combine_errors(there.responses);
-  } catch (const MeshError& error) {
-    result_.warnings.push_back(std::string("no error estimate: ") +
-                               error.what());
+  MeshSequence meshes;
+  meshes.responses[0] = result_.best->responses;
+  const bool with_eigen =
+      result_.eigen && forward::deserve_errors(input_, *result_.eigen);
+  for (std::size_t m = 1; m < kEdgeFactors.size(); ++m) {
+    add_coarser(m, with_eigen, meshes);
+  }
+  if (!meshes.has_coarser()) {
+    result_.warnings.push_back(fmt::format(
+        "no error estimate{}, the coarser models cannot be evaluated: {}",
+        result_.element_errors ? " beyond the elements' own part" : "",
+        meshes.failures[1]));
+  }
+  if (meshes.has_coarser() || result_.element_errors) {
+    combine_errors(meshes);
+  }
+  if (with_eigen && meshes.has_coarser()) {
+    meshes.eigen[0] = std::move(*result_.eigen);
+    add_eigen_errors(meshes);
+    result_.eigen = std::move(meshes.eigen[0]);
   }
 }
 
-/// From the responses of the coarser model.
-void StudyRun::combine_errors(const VectorX& coarse) {
-  result_.response_errors =
-      kErrorPerChange * (coarse - result_.best->responses).cwiseAbs();
-  if (result_.element_errors) {  // no smaller than the elements' own part
-    result_.response_errors = result_.response_errors.binaryExpr(
-        result_.element_errors->responses, [](double all, double part) {
-          return std::isfinite(part) ? std::max(all, std::abs(part)) : all;
-        });
+/// The best design on a model with edges kEdgeFactors[m] times as long.
+void StudyRun::add_coarser(std::size_t m, bool with_eigen,
+                           MeshSequence& meshes) {
+  monitor_.progress(
+      {.stage = "accuracy",
+       .detail = fmt::format("a model with edges {:.2g} times as long",
+                             kEdgeFactors[m])});
+  try {
+    const forward::ForwardModel coarser(
+        frozen_ ? *frozen_ : input_,
+        {.edge_factor = kEdgeFactors[m], .monitor = &limited_});
+    own_seconds_ += coarser.frozen().seconds;
+    if (coarser.failure()) {
+      meshes.failures[m] = coarser.failure()->message;
+      return;
+    }
+    forward::EvaluationFields fields;
+    const forward::Evaluation there = coarser.evaluate(
+        stage_->outcome().best, with_eigen ? &fields : nullptr);
+    own_seconds_ += there.seconds;
+    if (there.failure) {
+      meshes.failures[m] = there.failure->message;
+      return;
+    }
+    meshes.responses[m] = there.responses;
+    if (with_eigen) {
+      meshes.eigen[m] = forward::eigen_figures(input_, fields,
+                                               coarser.elasticity(), &limited_);
+      own_seconds_.fea += meshes.eigen[m].seconds;
+    }
+  } catch (const MeshError& error) {
+    meshes.failures[m] = error.what();
+  }
+}
+
+void StudyRun::combine_errors(const MeshSequence& meshes) {
+  const std::vector<FigureError> errors = response_errors(
+      input_, meshes,
+      result_.element_errors ? result_.element_errors->responses : VectorX());
+  result_.response_errors.resize(static_cast<Eigen::Index>(errors.size()));
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    result_.response_errors[static_cast<Eigen::Index>(r)] = errors[r].bound;
+  }
+  result_.meshes = meshes.responses;
+  for (std::string& warning : unsettled_warnings(input_, meshes, errors)) {
+    result_.warnings.push_back(std::move(warning));
   }
   if (stage_->targets() != nullptr && stage_->outcome().jacobian.size() > 0) {
     const Eigen::MatrixXd inverse = pseudo_inverse(stage_->outcome().jacobian);

@@ -1,6 +1,7 @@
 /// Runs a case's study from the frozen model to the answer with its error.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -63,6 +64,9 @@ struct RunResult {
   std::optional<FrontFigures> front;
   VectorX response_errors;  // estimated discretisation errors; may be empty
   VectorX design_errors;    // of the matched variables; may be empty
+  /// The responses on the meshes that the errors come from (mesh_errors.h):
+  /// edges as asked, sqrt(2) and 2 times as long; empty where one failed.
+  std::array<VectorX, 3> meshes;
   std::vector<forward::StressFigures>
       stress;                    // of the best design, per load case
   forward::Exclusion exclusion;  // what these leave out

@@ -1,0 +1,156 @@
+#include "pipeline/study/mesh_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/count_text.h"
+#include "pipeline/case_data/response_entries.h"
+
+namespace meniscus::study {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// Clamped rims are singular: displacements show 0.6 to 1 there, never more for
+// long. Where two changes differ in sign no order is seen.
+constexpr double kLeastOrder = 0.5;
+constexpr double kMostOrder = 1.0;
+constexpr double kUnseenOrder = 0.7;
+constexpr double kSafety = 1.5;
+
+/// What is left after a mesh whose edges are `factor` times shorter moved a
+/// figure by `change`, at that order.
+double rest(double change, double factor, double order) {
+  return kSafety * std::abs(change) / (std::pow(factor, order) - 1.0);
+}
+
+/// Of an extreme, which shows no order. Its factor is that of a change between
+/// edges h and 2 h for every change: the changes of a peak come in leaps.
+double rest_of_extreme(double change) {
+  return rest(change, kEdgeFactors[2], kLeastOrder);
+}
+
+}  // namespace
+
+FigureError figure_error(const MeshValues& values, FigureKind kind) {
+  const auto [fine, middle, coarse] = values;
+  const bool has_middle = std::isfinite(middle);
+  const bool has_coarse = std::isfinite(coarse);
+  if (!std::isfinite(fine) || (!has_middle && !has_coarse)) {
+    return {kNaN, true};
+  }
+  // 1. Two meshes show no order: the least is assumed.
+  if (!has_middle || !has_coarse) {
+    return {has_coarse ? rest(fine - coarse, kEdgeFactors[2], kLeastOrder)
+                       : rest(fine - middle, kEdgeFactors[1], kLeastOrder),
+            true};
+  }
+  // 2. The order of three, and whether the changes shrink.
+  const double last = fine - middle;
+  const double before = middle - coarse;
+  const double change =
+      std::max({std::abs(last), std::abs(before), std::abs(fine - coarse)});
+  if (change == 0.0) {
+    return {0.0, true};
+  }
+  const bool same_way = last * before > 0.0;
+  const double order = same_way
+                           ? std::log(before / last) / std::log(kEdgeFactors[1])
+                           : kUnseenOrder;
+  const bool settles = !same_way || order >= kLeastOrder;
+  // 3. What is left.
+  if (kind == FigureKind::Extreme) {
+    return {rest_of_extreme(change), settles};
+  }
+  return {
+      rest(change, kEdgeFactors[2], std::clamp(order, kLeastOrder, kMostOrder)),
+      settles};
+}
+
+std::vector<FigureError> response_errors(const case_data::Case& input,
+                                         const MeshSequence& meshes,
+                                         const VectorX& dual) {
+  std::vector<FigureError> errors;
+  for (int r = 0; r < static_cast<int>(input.responses.size()); ++r) {
+    MeshValues values{};
+    for (std::size_t m = 0; m < values.size(); ++m) {
+      values[m] =
+          meshes.responses[m].size() > 0 ? meshes.responses[m][r] : kNaN;
+    }
+    FigureError error = figure_error(values, case_data::is_extreme(input, r)
+                                                 ? FigureKind::Extreme
+                                                 : FigureKind::Integral);
+    if (dual.size() > 0 && std::isfinite(dual[r])) {
+      // fmax: the dual's where the meshes gave none
+      error.bound = std::fmax(error.bound, std::abs(dual[r]));
+    }
+    errors.push_back(error);
+  }
+  return errors;
+}
+
+void add_eigen_errors(MeshSequence& meshes) {
+  auto& [fine, middle, coarse] = meshes.eigen;
+  const auto factor = [](const forward::EigenFigures& figures, std::size_t k) {
+    return k < figures.buckling.size() &&
+                   !figures.buckling[k].modes.factors.empty()
+               ? figures.buckling[k].modes.factors.front()
+               : kNaN;
+  };
+  for (std::size_t k = 0; k < fine.buckling.size(); ++k) {
+    fine.buckling[k].error =
+        figure_error({factor(fine, k), factor(middle, k), factor(coarse, k)},
+                     FigureKind::Extreme)
+            .bound;
+  }
+  if (!fine.frequencies) {
+    return;
+  }
+  const auto frequency = [](const forward::EigenFigures& figures,
+                            std::size_t k) {
+    return figures.frequencies &&
+                   k < figures.frequencies->modes.frequencies.size()
+               ? figures.frequencies->modes.frequencies[k]
+               : kNaN;
+  };
+  for (std::size_t k = 0; k < fine.frequencies->modes.frequencies.size(); ++k) {
+    fine.frequencies->errors.push_back(
+        figure_error(
+            {frequency(fine, k), frequency(middle, k), frequency(coarse, k)},
+            FigureKind::Integral)
+            .bound);
+  }
+}
+
+std::vector<std::string> unsettled_warnings(
+    const case_data::Case& input, const MeshSequence& meshes,
+    const std::vector<FigureError>& errors) {
+  std::vector<std::string> warnings;
+  for (int r = 0; r < static_cast<int>(errors.size()); ++r) {
+    // Integrals have a limit, which their error knows.
+    if (errors[r].settles || !case_data::is_extreme(input, r)) {
+      continue;
+    }
+    const ShownUnit unit = case_data::shown_unit(input, r);
+    const auto text = [&](std::size_t mesh) {
+      return fmt::format("{:.4g}", unit.factor * meshes.responses[mesh][r]);
+    };
+    warnings.push_back(fmt::format(
+        "'{}' may have no limit: it is {}, {} and {} at edges of {:.3g}, "
+        "{:.3g} and {:.3g} {}, so its +- is no bound. Stress has none at a "
+        "clamped rim or a sharp corner: leave such places out by "
+        "analysis.exclude, or look at shorter edges",
+        input.responses[r].name, text(2), text(1),
+        quantity_text(unit.factor * meshes.responses[0][r], unit.unit, 4),
+        kEdgeFactors[2] * input.resolution.fea,
+        kEdgeFactors[1] * input.resolution.fea, input.resolution.fea,
+        input.units.length));
+  }
+  return warnings;
+}
+
+}  // namespace meniscus::study

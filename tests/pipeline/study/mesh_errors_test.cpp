@@ -1,0 +1,85 @@
+#include "pipeline/study/mesh_errors.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace meniscus::mesh_errors_test {
+namespace {
+
+using namespace study;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// limit + slope h^order on the three meshes.
+MeshValues values_of(double limit, double slope, double order) {
+  MeshValues values{};
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    values[m] = limit + slope * std::pow(kEdgeFactors[m], order);
+  }
+  return values;
+}
+
+// Of figures that fall by any order from the least that is assumed.
+TEST(MeshErrors, CoverEveryOrderFromAHalf) {
+  std::mt19937 random(20261123);
+  std::uniform_real_distribution<double> orders(0.5, 4.0);
+  std::uniform_real_distribution<double> numbers(-1.0, 1.0);
+  for (int k = 0; k < 2000; ++k) {
+    const double slope = numbers(random);
+    const double order = orders(random);
+    const MeshValues values = values_of(10.0 * numbers(random), slope, order);
+    for (const FigureKind kind : {FigureKind::Integral, FigureKind::Extreme}) {
+      const FigureError error = figure_error(values, kind);
+      EXPECT_GE(error.bound, std::abs(slope)) << "order " << order;
+      EXPECT_TRUE(error.settles) << "order " << order;
+    }
+    // No wilder than needed where the order is that of the films and elements.
+    if (order <= 1.0) {
+      EXPECT_LT(figure_error(values, FigureKind::Integral).bound,
+                1.6 * std::abs(slope));
+    }
+  }
+}
+
+// The third mesh changes what the two others say: errors by a change alone
+// could not tell these apart.
+TEST(MeshErrors, FollowTheOrderOfThreeMeshes) {
+  const double slow = figure_error({1.0, 2.0, 3.3}, FigureKind::Integral).bound;
+  const double fast = figure_error({1.0, 1.4, 3.3}, FigureKind::Integral).bound;
+  EXPECT_GT(slow, 1.2 * fast);
+}
+
+TEST(MeshErrors, FiguresWithoutLimitDoNotSettle) {
+  for (const double order : {-0.5, -0.1, 0.2}) {
+    EXPECT_FALSE(
+        figure_error(values_of(0.0, 1.0, order), FigureKind::Extreme).settles);
+  }
+  // A logarithm's changes are all alike.
+  EXPECT_FALSE(figure_error({3.0, 2.0, 1.0}, FigureKind::Extreme).settles);
+}
+
+TEST(MeshErrors, ScatterIsNoOrder) {
+  const FigureError error = figure_error({1.0, 1.1, 1.0}, FigureKind::Integral);
+  EXPECT_GT(error.bound, 0.1);
+  EXPECT_TRUE(error.settles);
+  EXPECT_EQ(figure_error({2.0, 2.0, 2.0}, FigureKind::Extreme).bound, 0.0);
+}
+
+TEST(MeshErrors, TwoMeshesSayLessThanThree) {
+  const MeshValues all = values_of(5.0, 1.0, 1.0);
+  const double three = figure_error(all, FigureKind::Integral).bound;
+  const double without_coarse =
+      figure_error({all[0], all[1], kNaN}, FigureKind::Integral).bound;
+  const double without_middle =
+      figure_error({all[0], kNaN, all[2]}, FigureKind::Integral).bound;
+  EXPECT_GT(without_coarse, three);
+  EXPECT_GT(without_middle, three);
+  EXPECT_TRUE(std::isnan(
+      figure_error({all[0], kNaN, kNaN}, FigureKind::Integral).bound));
+}
+
+}  // namespace
+}  // namespace meniscus::mesh_errors_test

@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""What stands behind +-: random struts on a mesh as users take it, against the
+same on one of edges nearly three times shorter. MENISCUS_ERROR_BARS=N for N
+struts with a table; two otherwise."""
+import math
+import os
+import random
+import statistics
+import unittest
+
+from program import ProgramTest
+
+COUNT = int(os.environ.get("MENISCUS_ERROR_BARS", "2"))
+FINER = 2.0 ** 1.5
+# Of those whose reference is known better than what it judges.
+COVERED = {"integral": 0.9, "extreme": 0.6}
+
+CASE = """title = "A random strut"
+units = "mm-N-MPa"
+
+[curves.foot]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = {foot}
+
+[curves.end]
+kind = "circle"
+center = [{offset}, 0, {length}]
+normal = ["sin({tilt}*deg)", 0, "cos({tilt}*deg)"]
+radius = {end}
+
+[films.skin]
+kind = "branch"
+curves = ["foot", "end"]
+
+[solids.foot_pad]
+kind = "cap"
+curve = "foot"
+
+[solids.end_pad]
+kind = "cap"
+curve = "end"
+
+[bodies.part]
+enclosed_by = ["skin", "foot_pad", "end_pad"]
+volume = "{fill} * {length} * pi * ({foot}^2 + {end}^2) / 2"
+material = "aluminium"
+
+[materials.aluminium]
+youngs_modulus = 70000
+poisson_ratio = 0.33
+density = 2.8e-9
+
+[resolution]
+fea = 5.0
+film = 2.5
+
+[load_cases.push]
+supports = [{{ on = "foot_pad", fix = "xyz" }}]
+loads = [{{ on = "end_pad", force = [{across}, {aside}, {along}] }}]
+
+[responses.sink]
+kind = "mean_displacement"
+on = "end_pad"
+direction = [0, 0, -1]
+
+[responses.sway]
+kind = "mean_displacement"
+on = "end_pad"
+direction = [1, 0, 0]
+
+[responses.turn]
+kind = "rotation"
+on = "end_pad"
+axis = [0, 1, 0]
+
+[responses.work]
+kind = "compliance"
+
+[responses.mass]
+kind = "mass"
+
+[responses.peak]
+kind = "max_von_mises"
+
+[responses.norm]
+kind = "von_mises_norm"
+power = 8
+
+[responses.waist]
+kind = "radius"
+
+[analysis]
+buckling = 1
+frequencies = 2
+
+[study]
+kind = "analyse"
+"""
+EXTREMES = {"peak", "norm", "waist", "buckling"}
+
+
+def draw(seed):
+    r = random.Random(f"error bars {seed}")
+    foot, end = r.uniform(10, 22), r.uniform(8, 20)
+    length = min(r.uniform(30, 90), 4.0 * min(foot, end))
+    words = dict(foot=foot, end=end, length=length, offset=r.uniform(-10, 10),
+                 tilt=r.uniform(-30, 30), fill=r.uniform(0.95, 1.3),
+                 across=r.uniform(-3e3, 3e3), aside=r.uniform(-3e3, 3e3),
+                 along=-r.uniform(0, 5e3))
+    return words, min(foot, end) * r.uniform(0.25, 0.5)
+
+
+class ErrorBars(ProgramTest):
+    def figures(self, seed, text, edge):
+        """{name: (value, bar)} of a mesh."""
+        case = self.folder / f"strut_{seed}.toml"
+        case.write_text(text)
+        out = self.folder / f"strut_{seed}_{edge:.3f}"
+        done = self.call(
+            "run", case, "--out", out, "--no-pictures", "--no-report",
+            "--quiet", "--set", f"resolution.fea={edge:.6g}",
+            "--set", f"resolution.film={edge / 2:.6g}")
+        if done.returncode != 0:
+            return None
+        result = self.result(out)
+        found = {name: (value, result["response_errors"][name])
+                 for name, value in result["responses"].items()}
+        buckling = result["buckling"]["push"]
+        if buckling["factors"]:
+            found["buckling"] = (buckling["factors"][0], buckling["error"])
+        modes = result["natural_frequencies"]
+        for k, value in enumerate(modes["values"]):
+            found[f"frequency {k + 1}"] = (value, modes["errors"][k])
+        return found
+
+    def test_bars_cover_what_a_finer_mesh_shows(self):
+        judged = {"integral": [], "extreme": []}
+        struts = 0
+        for seed in range(4 * COUNT):
+            words, edge = draw(seed)
+            text = CASE.format(**words)
+            here = self.figures(seed, text, edge)
+            there = here and self.figures(seed, text, edge / FINER)
+            if not there:
+                continue  # a film that does not stand is no matter of meshes
+            struts += 1
+            for name, (value, bar) in here.items():
+                self.assertTrue(math.isfinite(bar), f"{name} of strut {seed}")
+                error = abs(value - there[name][0])
+                kind = "extreme" if name in EXTREMES else "integral"
+                judged[kind].append((bar / max(error, 1e-9 * abs(value)),
+                                     name, seed, value, bar,
+                                     there[name][0]))
+            if struts == COUNT:
+                break
+        self.assertEqual(struts, COUNT)
+        for kind, rows in judged.items():
+            ratios = [row[0] for row in rows]
+            covered = sum(r >= 1.0 for r in ratios) / len(ratios)
+            print(f"{kind}: {len(rows)} figures, {covered:.2f} covered, bar "
+                  f"over error: median {statistics.median(ratios):.1f}, least "
+                  f"{min(ratios):.2f}")
+            for row in sorted(rows)[:6]:
+                print("  %.2f  %s of strut %d: %.5g +- %.2g, finer %.5g" % row)
+            self.assertGreaterEqual(covered, COVERED[kind], sorted(rows)[:6])
+            # A bar that covers all because it is huge says nothing.
+            self.assertLess(statistics.median(ratios), 15.0)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
