@@ -67,6 +67,12 @@ Field thick_sphere(const element::Material& material, double a, double b,
 /// plane strain.
 Field hole_in_plate(const element::Material& material, double a, double pull);
 
+/// Golovin: a quarter of a ring a < r < b about z bent by opposite moments on
+/// its ends (x = 0 and y = 0, which keeps its plane), per length along z;
+/// tension inside, plane strain.
+Field bent_ring(const element::Material& material, double a, double b,
+                double moment);
+
 /// Goodier: spherical cavity of radius 1 in a solid pulled along z. Built from
 /// Kelvin's doublet and a harmonic quadrupole; the three constants follow from
 /// a cavity free of traction.

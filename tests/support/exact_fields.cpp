@@ -90,6 +90,32 @@ Field hole_in_plate(const element::Material& m, double a, double pull) {
           }};
 }
 
+Field bent_ring(const element::Material& m, double a, double b, double moment) {
+  // Timoshenko and Goodier, Theory of elasticity (3rd edition), section 29; in
+  // plane strain with E / (1 - nu^2) and nu / (1 - nu).
+  const double nu = m.poisson_ratio / (1.0 - m.poisson_ratio);
+  const double e = m.youngs_modulus / (1.0 - m.poisson_ratio * m.poisson_ratio);
+  const double w = b * b - a * a;
+  const double l = std::log(b / a);
+  const double n = w * w - 4.0 * a * a * b * b * l * l;
+  const double A = -4.0 * moment / n * a * a * b * b * l;
+  const double B = -2.0 * moment / n * w;
+  const double C =
+      moment / n * (w + 2.0 * (b * b * std::log(b) - a * a * std::log(a)));
+  return {m, [=](const DualVec& x) -> DualVec {
+            const Dual r2 = x[0] * x[0] + x[1] * x[1];
+            const Dual r = sqrt(r2);
+            // u_r / r and u_theta / r
+            const Dual out =
+                (-(1.0 + nu) * A / r2 + 2.0 * (1.0 - nu) * B * log(r) -
+                 B * (1.0 + nu) + 2.0 * C * (1.0 - nu)) /
+                e;
+            const Dual around = 4.0 * B * atan2(x[1], x[0]) / e;
+            return {out * x[0] - around * x[1], out * x[1] + around * x[0],
+                    Dual(0.0)};
+          }};
+}
+
 Field spherical_cavity(const element::Material& m, double pull) {
   const auto field = [m](double far, const Vec3& constants) {
     return Field(m, [m, far, constants](const DualVec& x) {

@@ -45,6 +45,33 @@ TEST(ExactField, HoleInAPlateIsKirschs) {
   EXPECT_NEAR(plate.at({0.0, 1e6, 0.0}).stress[0], 2.0, 1e-9);
 }
 
+// Free of traction inside and outside; on each section the moment and no force.
+TEST(ExactField, BentRingIsGolovins) {
+  const double a = 2.0;
+  const double b = 3.0;
+  const exact::Field ring = exact::bent_ring(parts::steel(), a, b, 5.0);
+  for (const double t : {0.0, 0.4, 1.2}) {
+    const Vec3 n(std::cos(t), std::sin(t), 0.0);
+    const Vec3 along(-n.y(), n.x(), 0.0);
+    EXPECT_LE(traction(ring, a * n, n).norm(), 1e-11);
+    EXPECT_LE(traction(ring, b * n, n).norm(), 1e-11);
+    EXPECT_LE(ring.at(2.3 * n).body_force.norm(), 1e-11);
+    constexpr int kSteps = 2000;
+    Vec3 force = Vec3::Zero();
+    double moment = 0.0;
+    for (int k = 0; k < kSteps; ++k) {
+      const double r = a + (b - a) * (k + 0.5) / kSteps;
+      const Vec3 pull = traction(ring, r * n, along) * (b - a) / kSteps;
+      force += pull;
+      moment += r * pull.dot(along);
+    }
+    EXPECT_LE(force.norm(), 1e-5);
+    EXPECT_NEAR(std::abs(moment), 5.0, 1e-5);
+    EXPECT_GT(traction(ring, a * n, along).dot(along), 0.0);
+  }
+  EXPECT_NEAR(ring.at({2.5, 0.0, 0.0}).u.y(), 0.0, 1e-15);
+}
+
 TEST(ExactField, SphericalCavityIsGoodiers) {
   const element::Material steel = parts::steel();
   const double nu = steel.poisson_ratio;

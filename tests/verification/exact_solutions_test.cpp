@@ -278,15 +278,14 @@ struct ReadingShares {
   }
 };
 
-ReadingShares read_peaks(const exact::Field& field,
+ReadingShares read_peaks(const exact::Field& field, const char* loaded,
                          const std::function<TetMesh(unsigned)>& mesh_of,
-                         const std::vector<loads::Support>& supports,
-                         double exact_peak) {
+                         const loads::LoadCase& held, double exact_peak) {
   ReadingShares shares;
   for (unsigned seed = 0; seed < 8; ++seed) {
     const TetMesh mesh = mesh_of(seed);
-    loads::LoadCase load{.supports = supports};
-    load.nodal = exact::loads(mesh, field, {"outer"}, exact::BodyForce::None);
+    loads::LoadCase load = held;
+    load.nodal = exact::loads(mesh, field, {loaded}, exact::BodyForce::None);
     const VectorX u = solve(mesh, parts::steel(), load);
     const element::PointStress points =
         element::point_stress(mesh, {parts::steel()}, u);
@@ -314,14 +313,39 @@ void expect_readings(const char* name, const ReadingShares& shares,
 TEST(PeakReadings, OfAHoleOnUnevenMeshes) {
   for (const int n : {2, 4}) {
     const ReadingShares shares = read_peaks(
-        exact::hole_in_plate(parts::steel(), 1.0, 1.0),
+        exact::hole_in_plate(parts::steel(), 1.0, 1.0), "outer",
         [&](unsigned seed) {
           return jittered(shapes::quarter_ring(1.0, 4.0, 1.0, 2 * n, 2 * n, n),
                           0.25, seed);
         },
-        {held_x("x0"), held_y("y0"), held_z("z0"), held_z("z1")},
+        {.supports = {held_x("x0"), held_y("y0"), held_z("z0"), held_z("z1")}},
         3.0 * std::sqrt(1.0 - 0.3 + 0.09));  // held along z: nu s in the plane
     expect_readings(n == 2 ? "hole, coarse" : "hole", shares, 1.0);
+  }
+}
+
+// The curved beam of every text book, outer radius 1.5 times the inner. Nothing
+// holds it along x but springs that carry no force.
+TEST(PeakReadings, OfACurvedBeamOnUnevenMeshes) {
+  constexpr double kInner = 2.0;
+  constexpr double kOuter = 3.0;
+  const exact::Field ring =
+      exact::bent_ring(parts::steel(), kInner, kOuter, 1.0);
+  const double around = ring.at({kInner, 0.0, 0.0}).stress[1];
+  for (const int n : {2, 4}) {
+    loads::LoadCase held{
+        .supports = {held_y("y0"), held_z("z0"), held_z("z1")}};
+    held.springs.push_back({"y0", Vec3(1e-3, 0.0, 0.0)});
+    const ReadingShares shares = read_peaks(
+        ring, "x0",
+        [&](unsigned seed) {
+          return jittered(
+              shapes::quarter_ring(kInner, kOuter, 0.5, n, 4 * n, n), 0.25,
+              seed);
+        },
+        held, std::abs(around) * std::sqrt(1.0 - 0.3 + 0.09));
+    expect_readings(n == 2 ? "curved beam, coarse" : "curved beam", shares,
+                    1.0);
   }
 }
 
@@ -334,12 +358,12 @@ TEST(PeakReadings, OfACavityOnUnevenMeshes) {
       std::sqrt(along * along + around * around - along * around);
   for (const int n : {2, 4}) {
     const ReadingShares shares = read_peaks(
-        exact::spherical_cavity(parts::steel(), 1.0),
+        exact::spherical_cavity(parts::steel(), 1.0), "outer",
         [&](unsigned seed) {
           return jittered(shapes::octant_shell(1.0, 4.0, 2 * n, 2 * n), 0.12,
                           seed);
         },
-        {held_x("x0"), held_y("y0"), held_z("z0")}, exact);
+        {.supports = {held_x("x0"), held_y("y0"), held_z("z0")}}, exact);
     expect_readings(n == 2 ? "cavity, coarse" : "cavity", shares, 1.0);
   }
 }
