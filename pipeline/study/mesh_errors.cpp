@@ -8,6 +8,7 @@
 
 #include "core/count_text.h"
 #include "pipeline/case_data/response_entries.h"
+#include "pipeline/case_data/response_kinds.h"
 
 namespace meniscus::study {
 
@@ -21,6 +22,10 @@ constexpr double kLeastOrder = 0.5;
 constexpr double kMostOrder = 1.0;
 constexpr double kUnseenOrder = 0.7;
 constexpr double kSafety = 1.5;
+// Films show 2 (docs/verification.md). Their coarsest model, of few edges
+// around a rim, may be far off: the change to the nearer one counts.
+constexpr double kLeastFilmOrder = 1.0;
+constexpr double kMostFilmOrder = 2.0;
 
 /// What is left after a mesh whose edges are `factor` times shorter moved a
 /// figure by `change`, at that order.
@@ -34,6 +39,16 @@ double rest_of_extreme(double change) {
   return rest(change, kEdgeFactors[2], kLeastOrder);
 }
 
+FigureKind kind_of(const case_data::Case& input, int response) {
+  if (case_data::is_extreme(input, response)) {
+    return FigureKind::Extreme;
+  }
+  const auto r = static_cast<std::size_t>(response);
+  return case_data::row_of(input.responses[r].kind).of_films
+             ? FigureKind::Film
+             : FigureKind::Integral;
+}
+
 }  // namespace
 
 FigureError figure_error(const MeshValues& values, FigureKind kind) {
@@ -44,9 +59,11 @@ FigureError figure_error(const MeshValues& values, FigureKind kind) {
     return {kNaN, true};
   }
   // 1. Two meshes show no order: the least is assumed.
+  const bool of_film = kind == FigureKind::Film;
   if (!has_middle || !has_coarse) {
-    return {has_coarse ? rest(fine - coarse, kEdgeFactors[2], kLeastOrder)
-                       : rest(fine - middle, kEdgeFactors[1], kLeastOrder),
+    const double order = of_film ? kLeastFilmOrder : kLeastOrder;
+    return {has_coarse ? rest(fine - coarse, kEdgeFactors[2], order)
+                       : rest(fine - middle, kEdgeFactors[1], order),
             true};
   }
   // 2. The order of three, and whether the changes shrink.
@@ -66,6 +83,12 @@ FigureError figure_error(const MeshValues& values, FigureKind kind) {
   if (kind == FigureKind::Extreme) {
     return {rest_of_extreme(change), settles};
   }
+  if (of_film) {
+    return {rest(last, kEdgeFactors[1],
+                 same_way ? std::clamp(order, kLeastFilmOrder, kMostFilmOrder)
+                          : kLeastFilmOrder),
+            settles};
+  }
   return {
       rest(change, kEdgeFactors[2], std::clamp(order, kLeastOrder, kMostOrder)),
       settles};
@@ -81,11 +104,10 @@ std::vector<FigureError> response_errors(const case_data::Case& input,
       values[m] =
           meshes.responses[m].size() > 0 ? meshes.responses[m][r] : kNaN;
     }
-    FigureError error = figure_error(values, case_data::is_extreme(input, r)
-                                                 ? FigureKind::Extreme
-                                                 : FigureKind::Integral);
-    if (dual.size() > 0 && std::isfinite(dual[r])) {
-      // fmax: the dual's where the meshes gave none
+    FigureError error = figure_error(values, kind_of(input, r));
+    // A dual of 0 is that of a figure in which the elements make no error: no
+    // error of its own where the meshes gave none.
+    if (dual.size() > 0 && std::isfinite(dual[r]) && dual[r] != 0.0) {
       error.bound = std::fmax(error.bound, std::abs(dual[r]));
     }
     errors.push_back(error);

@@ -20,6 +20,7 @@ using MeshValues = std::array<double, 3>;
 
 /// What the figure is of decides what may be assumed of its order.
 enum class FigureKind {
+  Film,      // areas, energies, pressures, margins of films: no singular rims
   Integral,  // displacements, masses, energies, frequencies
   Extreme    // peaks, necks, gaps, buckling factors: local, of no known order
 };

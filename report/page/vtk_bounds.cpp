@@ -141,15 +141,85 @@ class BoundsCheck {
       if (!offset) {
         refuse("has an array that is not appended");
       }
-      unpacked_ += unpacked(*offset);
+      constexpr std::uint64_t kMostComponents = 64;
+      const std::uint64_t width =
+          number(array, "NumberOfComponents").value_or(1);
+      if (width < 1 || width > kMostComponents) {
+        refuse(fmt::format("has an array of {} components", width));
+      }
+      const std::uint64_t bytes = unpacked(*offset);
+      unpacked_ += bytes;
+      require_bytes(at, array, bytes);
       if (const auto tuples = number(array, "NumberOfTuples")) {
         require_count("values", *tuples);
       }
-      constexpr std::uint64_t kMostComponents = 64;
-      if (const auto width = number(array, "NumberOfComponents");
-          width && *width > kMostComponents) {
-        refuse(fmt::format("has an array of {} components", *width));
+    }
+  }
+
+  /// Bytes of one value of the array.
+  std::uint64_t value_size(std::string_view array) const {
+    const std::string_view type = text(array, "type");
+    const std::size_t digits = type.find_first_of("0123456789");
+    int bits = 0;
+    if (digits != std::string_view::npos) {
+      std::from_chars(type.data() + digits, type.data() + type.size(), bits);
+    }
+    if (bits != 8 && bits != 16 && bits != 32 && bits != 64) {
+      refuse(fmt::format("has an array of type '{}'", type.substr(0, 40)));
+    }
+    return static_cast<std::uint64_t>(bits) / 8;
+  }
+
+  /// As many as the section of the piece needs that the array stands in: VTK
+  /// reads on behind an array that holds fewer.
+  void require_bytes(std::size_t at, std::string_view array,
+                     std::uint64_t bytes) const {
+    struct Section {
+      std::string_view open, count, more;
+    };
+    constexpr Section kSections[] = {
+        {"<PointData", "NumberOfPoints", ""},
+        {"<Points", "NumberOfPoints", ""},
+        {"<CellData", "NumberOfCells", "NumberOfPolys"},
+        {"<Cells", "NumberOfCells", ""},
+        {"<Verts", "NumberOfVerts", ""},
+        {"<Lines", "NumberOfLines", ""},
+        {"<Strips", "NumberOfStrips", ""},
+        {"<Polys", "NumberOfPolys", ""}};
+    const std::size_t piece_at = head_.rfind("<Piece", at);
+    if (piece_at == std::string_view::npos) {
+      return;  // of the file: texts
+    }
+    const Section* section = nullptr;
+    std::size_t nearest = piece_at;
+    for (const Section& s : kSections) {
+      const std::size_t open = head_.rfind(s.open, at);
+      if (open != std::string_view::npos && open > nearest) {
+        nearest = open;
+        section = &s;
       }
+    }
+    if (section == nullptr) {
+      return;
+    }
+    const std::string_view piece = tag("<Piece", piece_at);
+    std::uint64_t items = number(piece, section->count).value_or(0);
+    if (section->more == "NumberOfPolys" && items == 0) {  // of a surface
+      for (const char* kind : {"NumberOfVerts", "NumberOfLines",
+                               "NumberOfStrips", "NumberOfPolys"}) {
+        items += number(piece, kind).value_or(0);
+      }
+    }
+    const std::string_view name = text(array, "Name");
+    const std::uint64_t width = number(array, "NumberOfComponents").value_or(1);
+    const std::uint64_t size = width * value_size(array);
+    // Corners: as many as the offsets say, one or more of each cell.
+    const bool enough = name == "connectivity"
+                            ? bytes % size == 0 && bytes / size >= items
+                            : bytes / size == items && bytes % size == 0;
+    if (!enough) {
+      refuse(fmt::format("has {} bytes of '{}' for {} items", bytes,
+                         name.substr(0, 40), items));
     }
   }
 

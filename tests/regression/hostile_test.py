@@ -274,6 +274,11 @@ class Files(ProgramTest):
         damaged.append(whole.replace(b'NumberOfPoints="', b'NumberOfPoints="9', 1))
         damaged.append(whole.replace(b'NumberOfCells="', b'NumberOfCells="77', 1))
         damaged.append(whole.replace(b' offset="', b' offset="8', 3))
+        # Bytes put in: what comes behind them is read from the wrong places.
+        begin = whole.index(b"<AppendedData")
+        for k in range(1, 10):
+            cut = begin + k * (len(whole) - begin) // 10
+            damaged.append(whole[:cut] + b"\0" * k + whole[cut:])
         for data in damaged:
             (run / "part.vtu").write_bytes(data)
             done = self.limited("report", run)

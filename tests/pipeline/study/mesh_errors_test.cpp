@@ -36,6 +36,11 @@ TEST(MeshErrors, CoverEveryOrderFromAHalf) {
       EXPECT_GE(error.bound, std::abs(slope)) << "order " << order;
       EXPECT_TRUE(error.settles) << "order " << order;
     }
+    if (order >= 1.0 && order <= 2.0) {
+      const double bound = figure_error(values, FigureKind::Film).bound;
+      EXPECT_GE(bound, std::abs(slope)) << "order " << order;
+      EXPECT_LT(bound, 1.6 * std::abs(slope)) << "order " << order;
+    }
     // No wilder than needed where the order is that of the films and elements.
     if (order <= 1.0) {
       EXPECT_LT(figure_error(values, FigureKind::Integral).bound,
