@@ -86,6 +86,10 @@ EvaluatorCore::EvaluatorCore(std::vector<Variable> variables,
   check_variables(variables_, limits_.study);
   check_limits(limits_);
   ranges_ = upper() - lower();
+  for (std::size_t j = 0; j < variables_.size(); ++j) {
+    double& range = ranges_[static_cast<Eigen::Index>(j)];
+    range = variables_[j].range.value_or(range);
+  }
 }
 
 VectorX EvaluatorCore::start() const {
@@ -168,8 +172,9 @@ std::string EvaluatorCore::bounds_reached(const VectorX& x) const {
     const double near = kAtBound * ranges_[i];
     const bool low = x[i] <= variable.lower + near;
     if (low || x[i] >= variable.upper - near) {
-      text += fmt::format("{}{} at its {} bound {}", text.empty() ? "" : ", ",
+      text += fmt::format("{}{} at its {} {} {}", text.empty() ? "" : ", ",
                           variable.name, low ? "lower" : "upper",
+                          variable.range ? "end here," : "bound",
                           low ? variable.lower : variable.upper);
     }
   }

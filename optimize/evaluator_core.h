@@ -89,7 +89,7 @@ class EvaluatorCore {
   const std::vector<Variable>& variables() const { return variables_; }
   const EvaluationLimits& limits() const { return limits_; }
   Eigen::Index size() const { return ranges_.size(); }
-  const VectorX& ranges() const { return ranges_; }  // upper - lower
+  const VectorX& ranges() const { return ranges_; }  // units of the variables
   VectorX start() const;
   VectorX lower() const;
   VectorX upper() const;

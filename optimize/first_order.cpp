@@ -27,6 +27,7 @@ void check_sizes(const FirstOrderInput& input) {
   const Eigen::Index m = input.values.size() - 1;
   const bool fits =
       m >= 0 && input.lower.size() == n && input.upper.size() == n &&
+      (input.ranges.size() == 0 || input.ranges.size() == n) &&
       input.jacobian.rows() == m + 1 && input.jacobian.cols() == n &&
       input.constraint_lower.size() == m &&
       input.constraint_upper.size() == m && input.constraint_scale.size() == m;
@@ -85,7 +86,9 @@ FirstOrderReport first_order(const FirstOrderInput& input) {
   check_sizes(input);
   // With the ranges as units, and f over its scale, the residual is a pure
   // number.
-  const VectorX ranges = input.upper - input.lower;
+  const VectorX ranges = input.ranges.size() > 0
+                             ? input.ranges
+                             : VectorX(input.upper - input.lower);
   const Eigen::Index n = ranges.size();
   const VectorX gradient =
       input.jacobian.row(0).transpose().cwiseProduct(ranges);

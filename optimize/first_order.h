@@ -11,17 +11,18 @@ struct FirstOrderInput {
   VectorX x;
   VectorX lower;  // of x; lower < upper
   VectorX upper;
+  VectorX ranges;            // units of x, > 0; empty: upper - lower
   VectorX values;            // objective, then constraints
   Eigen::MatrixXd jacobian;  // d value_i / d x_j
   VectorX constraint_lower;  // may be -infinity
   VectorX constraint_upper;  // may be +infinity
   VectorX constraint_scale;  // what counts as one unit of violation, > 0
   /// What counts as one unit of objective, > 0; 0: its largest change
-  /// |d f / d x_j| (upper_j - lower_j).
+  /// |d f / d x_j| range_j.
   double objective_scale = 0.0;
 };
 
-/// With s_j = x_j / (upper_j - lower_j) the multipliers solve
+/// With s_j = x_j / range_j the multipliers solve
 ///   min |f_s + sum_i m_i c_i,s + bounds|^2 + sum_i (m_i slack_i)^2,
 /// of the sign that each side allows (least squares, Lawson & Hanson, Solving
 /// Least Squares Problems, 1974, algorithm NNLS). The residual is the larger

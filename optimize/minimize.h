@@ -21,6 +21,10 @@ struct ResponseBounds {
   /// automatic: the larger |finite bound|, and when that is 0 the larger of
   /// |value at the start| and its change over the range of a variable, or 1.
   std::optional<double> scale = {};
+  /// True for a value that falls like a square root towards designs that have
+  /// none (the lowest eigenvalue before a fold): the search sees its square,
+  /// which is nearly straight there. No effect on a bound of 0.
+  bool root_like = false;
 };
 
 /// The function answers with 1 + constraints.size() values: the objective,

@@ -272,10 +272,12 @@ void MinimizeEvaluator::make_sides(const VectorX& start,
     constraint_scale_[row - 1] = scale;
     const bool equation = all[i].lower == all[i].upper;
     if (std::isfinite(all[i].upper)) {
-      sides_.push_back({row, 1.0, all[i].upper, scale, equation});
+      sides_.push_back({row, 1.0, all[i].upper, scale, equation,
+                        all[i].root_like && all[i].upper != 0.0});
     }
     if (std::isfinite(all[i].lower) && !equation) {
-      sides_.push_back({row, -1.0, all[i].lower, scale, false});
+      sides_.push_back({row, -1.0, all[i].lower, scale, false,
+                        all[i].root_like && all[i].lower != 0.0});
     }
   }
 }
@@ -296,11 +298,13 @@ double MinimizeEvaluator::violation(const VectorX& values) const {
 FirstOrderReport MinimizeEvaluator::conditions(const VectorX& x,
                                                const MinimizePoint& point,
                                                const VectorX& low,
-                                               const VectorX& high) const {
+                                               const VectorX& high,
+                                               const VectorX& units) const {
   const auto count = static_cast<Eigen::Index>(problem_.constraints.size());
   FirstOrderInput input{.x = x,
                         .lower = low,
                         .upper = high,
+                        .ranges = units,
                         .values = point.values,
                         .jacobian = *point.jacobian,
                         .constraint_lower = VectorX(count),

@@ -2,21 +2,33 @@
 /// incumbent, and stops at a point that meets the first-order conditions.
 #pragma once
 
+#include <cmath>
+
 #include "optimize/evaluator_core.h"
 #include "optimize/minimize.h"
 
 namespace meniscus::optimize {
 
 /// One side of a constraint: sign (value[row] - bound) / scale <= 0, or = 0.
+/// Squared, sign (value |value| - bound |bound|) / (2 |bound| scale), which has
+/// the same value and slope at the bound to first order.
 struct ConstraintSide {
   Eigen::Index row = 0;  // of the values; 0 is the objective
   double sign = 1.0;
   double bound = 0.0;
   double scale = 1.0;
   bool equation = false;
+  bool squared = false;
 
   double value(const VectorX& values) const {
-    return sign * (values[row] - bound) / scale;
+    const double v = values[row];
+    const double above =
+        squared ? 0.5 * (v * std::abs(v) / std::abs(bound) - bound) : v - bound;
+    return sign * above / scale;
+  }
+  /// What the value's row of the Jacobian is multiplied by.
+  double slope_factor(const VectorX& values) const {
+    return sign / scale * (squared ? std::abs(values[row] / bound) : 1.0);
   }
 };
 
@@ -65,11 +77,12 @@ class MinimizeEvaluator : public EvaluatorCore {
   }
   FirstOrderReport conditions(const VectorX& x,
                               const MinimizePoint& point) const {
-    return conditions(x, point, lower(), upper());
+    return conditions(x, point, lower(), upper(), ranges());
   }
-  /// The same with other bounds on the variables, their ranges as the units.
+  /// The same with other bounds on the variables, and other units of them.
   FirstOrderReport conditions(const VectorX& x, const MinimizePoint& point,
-                              const VectorX& low, const VectorX& high) const;
+                              const VectorX& low, const VectorX& high,
+                              const VectorX& units) const;
 
   bool has_best() const { return best_x_.size() > 0; }
   const VectorX& best() const { return best_x_; }

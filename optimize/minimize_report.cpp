@@ -15,6 +15,9 @@ namespace {
 constexpr std::size_t kNamed = 3;
 // A kept constraint this close to its bound, in scales, stands in the way.
 constexpr double kInTheWay = 1e-3;
+// A search by gradients whose steps came to nothing is at a minimum as far as
+// the function lets it see where the residual is below this x the tolerance.
+constexpr double kNearlyStationary = 30.0;
 
 constexpr const char* kWalled =
     "It stands beside designs that cannot be evaluated: add a constraint (a "
@@ -146,8 +149,12 @@ void set_ended(const MinimizeEvaluator& evaluator, const SearchResult& search,
   const bool stationary =
       report.first_order &&
       report.first_order->residual <= evaluator.options().optimality_tolerance;
-  const bool gradients = uses_gradients(evaluator.options().method);
-  if (stationary || (!gradients && search.finished)) {
+  const bool nearly =
+      !uses_gradients(evaluator.options().method) ||
+      (report.first_order &&
+       report.first_order->residual <=
+           kNearlyStationary * evaluator.options().optimality_tolerance);
+  if (stationary || (nearly && search.finished)) {
     report.termination = Termination::Converged;
     report.message = fmt::format(
         "{}: {}", stationary ? "minimum found" : "nothing better found nearby",

@@ -148,7 +148,7 @@ bool Run::uses_up_box(const VectorX& x, const MinimizePoint& point) const {
     return false;
   }
   const double ahead = task_.radius * evaluator_.conditions(x, point).residual;
-  return evaluator_.conditions(x, point, low_, high_).residual <=
+  return evaluator_.conditions(x, point, low_, high_, high_ - low_).residual <=
          kLeftInBox * ahead;
 }
 
@@ -159,7 +159,7 @@ double Run::wall() const {
 
 VectorX Run::slope(const MinimizePoint& point,
                    const ConstraintSide& side) const {
-  return side.sign / side.scale *
+  return side.slope_factor(point.values) *
          point.jacobian->row(side.row).transpose().cwiseProduct(units_);
 }
 

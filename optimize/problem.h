@@ -19,6 +19,9 @@ struct Variable {
   double initial = 0.0;
   double lower = 0.0;
   double upper = 0.0;  // initial within; lower == upper: it is held there
+  /// What counts as one unit of it, > 0; none: upper - lower. Larger where the
+  /// bounds hold a search near its start.
+  std::optional<double> range = {};
 };
 
 /// The values of all responses at a design, or why there are none.

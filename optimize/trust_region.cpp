@@ -22,8 +22,8 @@ constexpr double kMuchShorter = 0.25;
 // Powell's damping, and how far the first curvature may be off 1.
 constexpr double kDamping = 0.2;
 constexpr double kFirstCurvature = 1e4;
-// The penalty is this much above the multipliers, and takes this part of what
-// the constraints gain.
+// Penalties are this much above the multipliers, and take this part of what the
+// constraints gain.
 constexpr double kAboveMultipliers = 1.5;
 constexpr double kPenaltyPart = 0.5;
 // Least misses are relaxed by this, so that rounding leaves room.
@@ -38,6 +38,9 @@ constexpr double kForgotten = 0.5;  // of a bend, per step that shows less
 constexpr int kBendRounds = 3;
 constexpr int kMostCaution = 16;
 constexpr double kBendSafety = 1.5;  // bends grow towards where parts fail
+// A root-like value that was kept may be missed by this much: beyond, parts
+// change fast and fail, and the way back is long.
+constexpr double kMostMissed = 0.05;
 // Changes of the merit below this, relative, are rounding.
 constexpr double kRoundingOfMerit = 1e-13;
 // Beside points that fail the search ends after so many evaluations, and one
@@ -46,13 +49,15 @@ constexpr double kRoundingOfMerit = 1e-13;
 constexpr double kWorthIt = 1e-3;
 constexpr int kPatience = 12;
 
-double total_missed(const VectorX& values, const std::vector<char>& equation) {
-  double sum = 0.0;
+// By how much each side is missed, >= 0.
+VectorX misses(const VectorX& values, const std::vector<char>& equation) {
+  VectorX result = values.cwiseMax(0.0);
   for (Eigen::Index k = 0; k < values.size(); ++k) {
-    sum += equation[static_cast<std::size_t>(k)] ? std::abs(values[k])
-                                                 : std::max(values[k], 0.0);
+    if (equation[static_cast<std::size_t>(k)]) {
+      result[k] = std::abs(values[k]);
+    }
   }
-  return sum;
+  return result;
 }
 
 // The problem at a point, in units of the ranges and scales.
@@ -68,7 +73,7 @@ struct Proposal {
   VectorX step;                 // x the ranges
   VectorX multipliers;          // per side, equations signed
   double objective_gain = 0.0;  // by the model
-  double missed = 0.0;          // sum, by the model
+  VectorX missed;               // per side, by the model
   bool relaxed = false;         // not all sides can be kept in the box
 };
 
@@ -99,14 +104,15 @@ class TrustRegion {
   void learn_bends(const VectorX& step, const VectorX& values);
   bool blame_constraints(const VectorX& step);
   quadratic::QuadraticProgram program_for(const VectorX& sides) const;
-  double merit(double objective, double missed) const {
-    return objective + penalty_ * missed;
+  double merit(double objective, const VectorX& sides) const {
+    return objective + penalties_.dot(misses(sides, equation_));
   }
-  void raise_penalty(const Proposal& proposal);
+  void set_penalties(const Proposal& proposal);
   Outcome attempt(const Proposal& proposal);
+  bool leaves_roots(const VectorX& sides) const;
   Outcome judge(const VectorX& x, const MinimizePoint& point, double promised);
   Outcome correct(const Proposal& proposal, const MinimizePoint& point,
-                  double promised);
+                  double promised, Outcome first);
   void adjust_radius(Outcome outcome, double length);
   void update_hessian(const Linearised& before, const VectorX& multipliers);
   bool worth_going_on();
@@ -117,7 +123,8 @@ class TrustRegion {
   std::vector<char> equation_;
   Eigen::MatrixXd hessian_;
   bool first_update_ = true;
-  double penalty_ = 0.0;
+  VectorX penalties_;  // per side: one that is steep and hardly counts would
+                       // spoil every step by the multiplier of another
   quadratic::FailedPoints failed_;
   VectorX bends_;     // per side: g is up to bend |d|^2 / 2 above its slope
   int cautious_ = 0;  // steps for which bends count, since a point failed
@@ -156,7 +163,7 @@ bool TrustRegion::linearise(const VectorX& x, Linearised& into) {
   into.side_slopes.resize(into.sides.size(), ranges_.size());
   for (std::size_t k = 0; k < sides.size(); ++k) {
     into.side_slopes.row(static_cast<Eigen::Index>(k)) =
-        sides[k].sign / sides[k].scale *
+        sides[k].slope_factor(point->values) *
         point->jacobian->row(sides[k].row).cwiseProduct(ranges_.transpose());
   }
   return true;
@@ -258,11 +265,11 @@ std::optional<Proposal> TrustRegion::propose(const VectorX& sides) const {
     found = solve_with_bends(cut, *found);
   }
   if (!found && own > 0) {
-    // What cannot be kept is missed by as little as can be; points that failed
-    // are kept away from by the same step.
-    const VectorX missed = quadratic::least_misses(cut).head(own);
-    cut.limits.head(own) += missed;
-    cut.limits.array().head(own) += kRoom * (1.0 + missed.maxCoeff());
+    // What cannot be kept, points that failed to keep away from among it, is
+    // missed by as little as can be.
+    const VectorX missed = quadratic::least_misses(cut);
+    cut.limits += missed;
+    cut.limits.array() += kRoom * (1.0 + missed.maxCoeff());
     proposal.relaxed = true;
     found = quadratic::solve_quadratic(cut);
   }
@@ -286,36 +293,54 @@ std::optional<Proposal> TrustRegion::propose(const VectorX& sides) const {
       -(centre_.slope.dot(proposal.step) +
         0.5 * proposal.step.dot(hessian_ * proposal.step));
   proposal.missed =
-      total_missed(sides + centre_.side_slopes * proposal.step, equation_);
+      misses(sides + centre_.side_slopes * proposal.step, equation_);
   return proposal;
 }
 
-void TrustRegion::raise_penalty(const Proposal& proposal) {
-  if (!proposal.relaxed && proposal.multipliers.size() > 0) {
-    penalty_ =
-        std::max(penalty_, kAboveMultipliers *
-                               proposal.multipliers.cwiseAbs().maxCoeff());
+// M. J. D. Powell, A fast algorithm for nonlinearly constrained optimization
+// calculations (1978): they follow the multipliers up at once, down by halves.
+void TrustRegion::set_penalties(const Proposal& proposal) {
+  if (!proposal.relaxed) {
+    const VectorX wanted = kAboveMultipliers * proposal.multipliers.cwiseAbs();
+    penalties_ = wanted.cwiseMax(0.5 * (penalties_ + wanted));
   }
-  const double closed =
-      total_missed(centre_.sides, equation_) - proposal.missed;
-  if (closed > kRoom) {
-    penalty_ =
-        std::max(penalty_, -proposal.objective_gain / (kPenaltyPart * closed));
+  const VectorX closed = misses(centre_.sides, equation_) - proposal.missed;
+  const double lacking =
+      -proposal.objective_gain / kPenaltyPart - penalties_.dot(closed);
+  const VectorX helped = closed.cwiseMax(0.0);
+  if (lacking > 0.0 && helped.sum() > kRoom) {
+    penalties_.array() +=
+        lacking / helped.sum() * (helped.array() > 0.0).cast<double>();
   }
+}
+
+// True where a root-like side comes to be missed by much.
+bool TrustRegion::leaves_roots(const VectorX& sides) const {
+  const std::vector<ConstraintSide>& all = evaluator_.sides();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    if (all[k].squared &&
+        sides[row] > std::max(kMostMissed, centre_.sides[row])) {
+      return true;
+    }
+  }
+  return false;
 }
 
 TrustRegion::Outcome TrustRegion::judge(const VectorX& x,
                                         const MinimizePoint& point,
                                         double promised) {
   const double unit = evaluator_.objective_unit();
-  const double before =
-      merit(centre_.objective, total_missed(centre_.sides, equation_));
-  const double after = merit(point.values[0] / unit,
-                             total_missed(sides_at(point.values), equation_));
+  const double before = merit(centre_.objective, centre_.sides);
+  const double after = merit(point.values[0] / unit, sides_at(point.values));
   const double rounding = kRoundingOfMerit * (1.0 + std::abs(before));
   ratio_ = promised <= rounding && after <= before + rounding
                ? 1.0
                : (before - after) / std::max(promised, rounding);
+  if (leaves_roots(sides_at(point.values))) {
+    ratio_ = 0.0;
+    return Outcome::Rejected;
+  }
   // The incumbent is where the search stands, whatever the merit says.
   const bool best = evaluator_.best() == x;
   if (ratio_ < kAccepted && !best) {
@@ -330,15 +355,19 @@ TrustRegion::Outcome TrustRegion::judge(const VectorX& x,
 
 // The constraints' curvature along the step, taken off in a second one (A. R.
 // Conn, N. I. M. Gould, P. L. Toint, Trust-Region Methods, 2000, 15.3.2.3).
+// `first`: what the step without came to, which stands where this is no better.
+// A step that is merely accepted at the edge of the box is corrected, too: else
+// a curved constraint keeps the box as small as that curvature asks, and the
+// search creeps along it.
 TrustRegion::Outcome TrustRegion::correct(const Proposal& proposal,
                                           const MinimizePoint& point,
-                                          double promised) {
+                                          double promised, Outcome first) {
   const VectorX curved =
       sides_at(point.values) - centre_.side_slopes * proposal.step;
   const std::optional<Proposal> again = propose(curved);
   if (!again || (again->step - proposal.step).cwiseAbs().maxCoeff() <=
                     evaluator_.same_design()) {
-    return Outcome::Rejected;
+    return first;
   }
   const VectorX x =
       evaluator_.place(centre_.x + again->step.cwiseProduct(ranges_));
@@ -347,16 +376,25 @@ TrustRegion::Outcome TrustRegion::correct(const Proposal& proposal,
     return Outcome::Halted;
   }
   if (there->failure) {
-    return Outcome::Rejected;
+    return first;
   }
-  return judge(x, *there, promised);
+  const double ratio = ratio_;
+  const VectorX accepted = accepted_;
+  const Outcome second = judge(x, *there, promised);
+  if (first == Outcome::Accepted &&
+      (second != Outcome::Accepted || ratio_ <= ratio)) {
+    ratio_ = ratio;
+    accepted_ = accepted;
+    return first;
+  }
+  return second;
 }
 
 TrustRegion::Outcome TrustRegion::attempt(const Proposal& proposal) {
-  raise_penalty(proposal);
+  set_penalties(proposal);
   const double promised =
       proposal.objective_gain +
-      penalty_ * (total_missed(centre_.sides, equation_) - proposal.missed);
+      penalties_.dot(misses(centre_.sides, equation_) - proposal.missed);
   const VectorX x =
       evaluator_.place(centre_.x + proposal.step.cwiseProduct(ranges_));
   const MinimizePoint* point = evaluator_.evaluate(x, EvaluationPhase::Step);
@@ -373,8 +411,12 @@ TrustRegion::Outcome TrustRegion::attempt(const Proposal& proposal) {
   }
   learn_bends(proposal.step, point->values);
   const Outcome outcome = judge(x, *point, promised);
-  return outcome == Outcome::Rejected && !equation_.empty()
-             ? correct(proposal, *point, promised)
+  const bool held_back =
+      outcome == Outcome::Rejected ||
+      (ratio_ < kVeryGood &&
+       proposal.step.cwiseAbs().maxCoeff() >= kAtEdge * radius_);
+  return held_back && !equation_.empty()
+             ? correct(proposal, *point, promised, outcome)
              : outcome;
 }
 
@@ -448,6 +490,7 @@ SearchResult TrustRegion::run(const VectorX& start) {
     return result;
   }
   bends_ = VectorX::Zero(centre_.sides.size());
+  penalties_ = VectorX::Zero(centre_.sides.size());
   const double least = evaluator_.same_design();
   result.message = "the steps are too small to matter";
   result.finished = true;
@@ -475,7 +518,10 @@ SearchResult TrustRegion::run(const VectorX& start) {
       if (!linearise(accepted_, centre_)) {
         break;
       }
-      update_hessian(before, proposal->multipliers);
+      // Where sides cannot be kept their multipliers have no limit.
+      update_hessian(
+          before,
+          proposal->multipliers.cwiseMin(penalties_).cwiseMax(-penalties_));
     }
   }
   constexpr double kBeside = 0.1;  // x the ranges

@@ -91,6 +91,26 @@ Inequalities in_coordinates(const QuadraticProgram& program,
   return result;
 }
 
+// The largest step that the box allows, or 1 without a box, as a power of two:
+// division by it keeps every bit.
+double box_size(const QuadraticProgram& program) {
+  double size = 0.0;
+  for (const Bounded& bound : bounds_of(program)) {
+    size = std::max(size, std::abs(bound.limit));
+  }
+  return size > 0.0 ? std::exp2(std::round(std::log2(size))) : 1.0;
+}
+
+// The same in steps of `unit`.
+QuadraticProgram in_steps_of(double unit, QuadraticProgram program) {
+  program.hessian *= unit * unit;
+  program.slope *= unit;
+  program.low /= unit;
+  program.high /= unit;
+  program.rows *= unit;
+  return program;
+}
+
 bool keeps_rows(const QuadraticProgram& program, const VectorX& step) {
   const VectorX missed = program.rows * step - program.limits;
   for (Eigen::Index k = 0; k < missed.size(); ++k) {
@@ -113,8 +133,11 @@ void QuadraticProgram::add(const VectorX& row, double limit) {
   limits[m] = limit;
 }
 
-std::optional<QuadraticAnswer> solve_quadratic(
-    const QuadraticProgram& program) {
+namespace {
+
+// `unit_of_variables`: in those that the program was given in.
+std::optional<QuadraticAnswer> solve_of_unit_size(
+    const QuadraticProgram& program, double unit_of_variables) {
   const Eigen::MatrixXd W = unit_coordinates(program.hessian);
   if (W.size() == 0) {
     return std::nullopt;
@@ -145,26 +168,57 @@ std::optional<QuadraticAnswer> solve_quadratic(
         (unit / rest[n]) * u.head(m).cwiseQuotient(length.head(m).cwiseProduct(
                                all.length.head(m).cwiseMax(1e-300)));
   }
+  answer.step = answer.step.cwiseMax(program.low).cwiseMin(program.high);
+  if (!answer.step.allFinite() || !keeps_rows(program, answer.step)) {
+    return std::nullopt;
+  }
   // Rounding off a bound is no distance from it.
+  VectorX at_bounds = answer.step;
   for (Eigen::Index j = 0; j < n; ++j) {
-    double& d = answer.step[j];
-    const double near =
-        std::min(kAtBox, 0.25 * (program.high[j] - program.low[j]));
+    double& d = at_bounds[j];
+    const double near = std::min(kAtBox / unit_of_variables,
+                                 0.25 * (program.high[j] - program.low[j]));
     d = d <= program.low[j] + near    ? program.low[j]
         : d >= program.high[j] - near ? program.high[j]
                                       : d;
   }
-  if (!answer.step.allFinite() || !keeps_rows(program, answer.step)) {
-    return std::nullopt;
+  if (keeps_rows(program, at_bounds)) {
+    answer.step = at_bounds;
   }
   return answer;
 }
 
-VectorX least_misses(const QuadraticProgram& program) {
+}  // namespace
+
+std::optional<QuadraticAnswer> solve_quadratic(
+    const QuadraticProgram& program) {
+  const double size = box_size(program);
+  std::optional<QuadraticAnswer> answer =
+      solve_of_unit_size(in_steps_of(size, program), size);
+  if (answer) {
+    answer->step *= size;
+  }
+  return answer;
+}
+
+VectorX least_misses(const QuadraticProgram& given) {
+  // 1. In steps of the box, with the farthest that it lets a row go as the unit
+  // of the rows.
+  const double size = box_size(given);
+  QuadraticProgram program = in_steps_of(size, given);
+  double reach = 0.0;
+  for (Eigen::Index k = 0; k < program.limits.size(); ++k) {
+    reach = std::max(reach, program.rows.row(k).lpNorm<1>());
+  }
+  if (!(reach > 0.0)) {
+    return (-given.limits).cwiseMax(0.0);
+  }
+  program.rows /= reach;
+  program.limits /= reach;
   const Eigen::Index n = program.slope.size();
   const Eigen::Index m = program.limits.size();
   constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-  // Over (d, t): rows d - t <= limits, least |t|^2 and, lightly, |d|^2.
+  // 2. Over (d, t): rows d - t <= limits, least |t|^2 and, lightly, |d|^2.
   QuadraticProgram loose;
   loose.hessian = Eigen::MatrixXd::Identity(n + m, n + m);
   loose.hessian.topLeftCorner(n, n) *= kLightStep;
@@ -177,9 +231,10 @@ VectorX least_misses(const QuadraticProgram& program) {
   loose.rows.leftCols(n) = program.rows;
   loose.rows.rightCols(m) = -Eigen::MatrixXd::Identity(m, m);
   loose.limits = program.limits;
-  const std::optional<QuadraticAnswer> found = solve_quadratic(loose);
-  const VectorX step = found ? VectorX(found->step.head(n)) : VectorX::Zero(n);
-  return (program.rows * step - program.limits).cwiseMax(0.0);
+  const std::optional<QuadraticAnswer> found = solve_of_unit_size(loose, size);
+  const VectorX step =
+      found ? VectorX(size * found->step.head(n)) : VectorX::Zero(n);
+  return (given.rows * step - given.limits).cwiseMax(0.0);
 }
 
 }  // namespace meniscus::quadratic

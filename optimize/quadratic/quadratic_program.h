@@ -9,7 +9,7 @@
 
 namespace meniscus::quadratic {
 
-/// Variables of about the size 1: 1e-7 is nothing.
+/// 1e-7 of the variables is nothing.
 /// min slope . d + d . hessian d / 2  over  low <= d <= high, rows d <= limits.
 struct QuadraticProgram {
   Eigen::MatrixXd hessian;  // n x n, symmetric, positive definite

@@ -126,6 +126,82 @@ TEST(TrustRegion, SlidesAlongAWallThatOnlyFailuresShow) {
   }
 }
 
+// A margin to collapse falls like a root towards the fold, beyond which nothing
+// answers: told so, the search asks for fewer designs that have none.
+TEST(TrustRegion, ARootIsFollowedByItsSquare) {
+  std::mt19937 draw(7);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int plain_failed = 0;
+  int failed = 0;
+  for (int round = 0; round < 20; ++round) {
+    const VectorX normal =
+        vector_of({0.3 + unit(draw), 0.3 + unit(draw), 0.3 + unit(draw)})
+            .normalized();
+    const double fold = 0.3 + 0.2 * unit(draw);
+    const double bound = 0.05 + 0.1 * unit(draw);
+    const auto height = [&](const VectorX& x) {
+      return normal.dot(x) + 0.2 * x.squaredNorm() - fold;
+    };
+    optimize::MinimizeProblem problem;
+    problem.variables = {
+        {"a", 0.9, 0.0, 1.0}, {"b", 0.9, 0.0, 1.0}, {"c", 0.9, 0.0, 1.0}};
+    problem.objective = "mass";
+    problem.function = [&](const VectorX& x) -> optimize::VectorAnswer {
+      if (!(height(x) > 0.0)) {
+        return no_film();
+      }
+      return {.values = vector_of({1.0 + x.sum(), std::sqrt(height(x))}),
+              .failure = {}};
+    };
+    problem.jacobian = [&](const VectorX& x) -> optimize::JacobianAnswer {
+      Eigen::MatrixXd jacobian(2, 3);
+      jacobian.row(0).setOnes();
+      jacobian.row(1) =
+          (normal + 0.4 * x).transpose() / (2.0 * std::sqrt(height(x)));
+      return {.jacobian = jacobian, .failure = {}};
+    };
+    double least = 0.0;
+    for (const bool root_like : {false, true}) {
+      problem.constraints = {{"margin", bound, kOpen, {}, root_like}};
+      const optimize::MinimizeReport report =
+          optimize::minimize(problem, {.optimality_tolerance = 1e-6});
+      EXPECT_TRUE(report.feasible) << report.message;
+      (root_like ? failed : plain_failed) += report.failed_evaluations;
+      if (root_like) {
+        EXPECT_EQ(report.termination, optimize::Termination::Converged)
+            << round << ": " << report.message;
+        EXPECT_NEAR(report.values[1], bound, 1e-3 * bound);
+        EXPECT_LE(report.objective, least * (1.0 + 1e-4)) << round;
+      }
+      least = report.objective;
+    }
+  }
+  EXPECT_LT(2 * failed, plain_failed) << failed << " of " << plain_failed;
+}
+
+// Held near to its start a search ends at the best design there, and judges it
+// in the units of the whole ranges.
+TEST(TrustRegion, AHeldSearchStaysAndConverges) {
+  Sizing sizing{.variables = 3, .start = 0.5};
+  optimize::MinimizeProblem problem = sizing.problem();
+  for (optimize::Variable& v : problem.variables) {
+    v.range = v.upper - v.lower;
+    v.lower = v.initial - 0.03 * *v.range;
+    v.upper = v.initial + 0.03 * *v.range;
+  }
+  const optimize::MinimizeReport report =
+      optimize::minimize(problem, {.optimality_tolerance = 1e-4});
+  EXPECT_EQ(report.termination, optimize::Termination::Converged)
+      << report.message;
+  for (Eigen::Index j = 0; j < report.best.size(); ++j) {
+    EXPECT_EQ(report.best[j],
+              problem.variables[static_cast<std::size_t>(j)].lower);
+  }
+  // What a bound costs does not depend on how near the others are.
+  ASSERT_TRUE(report.first_order);
+  EXPECT_NEAR(report.first_order->bound_multipliers[0], -1.0, 1e-3);
+}
+
 // The answer is the best of the designs that were asked for, in the order that
 // the log tells them by.
 TEST(TrustRegion, TheAnswerIsTheBestThatWasTold) {

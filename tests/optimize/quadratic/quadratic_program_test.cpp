@@ -63,6 +63,59 @@ TEST(QuadraticProgram, FindsTheMinimumOfRandomOnes) {
   }
 }
 
+// A trust region shrinks by orders of magnitude: the same problem in other
+// units of the variables has the same answer, rows that cannot be kept
+// included.
+TEST(QuadraticProgram, IsTheSameInBoxesOfAllSizes) {
+  std::mt19937 draw(12);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 100; ++round) {
+    const int n = 2 + round % 4;
+    const int m = 1 + round % 3;
+    const auto random = [&](int rows, int columns) {
+      return Eigen::MatrixXd(Eigen::MatrixXd::NullaryExpr(
+          rows, columns, [&] { return normal(draw); }));
+    };
+    const Eigen::MatrixXd root = random(n, n);
+    const quadratic::QuadraticProgram program{
+        .hessian =
+            root * root.transpose() + 0.01 * Eigen::MatrixXd::Identity(n, n),
+        .slope = random(n, 1),
+        .low = -VectorX::Ones(n),
+        .high = VectorX::Ones(n),
+        .rows = random(m, n),
+        .limits = random(m, 1)};
+    const auto answer = quadratic::solve_quadratic(program);
+    const VectorX missed = quadratic::least_misses(program);
+    for (const double size : {1e3, 1e-2, 1e-4, 1e-6}) {
+      quadratic::QuadraticProgram small = program;
+      small.hessian /= size * size;
+      small.slope /= size;
+      small.low *= size;
+      small.high *= size;
+      small.rows /= size;
+      const auto there = quadratic::solve_quadratic(small);
+      ASSERT_EQ(there.has_value(), answer.has_value()) << round << " " << size;
+      if (answer) {
+        // 1e-7 is nothing, however small the box.
+        EXPECT_LT((there->step / size - answer->step).cwiseAbs().maxCoeff(),
+                  1e-6 + 1.1e-7 / size)
+            << round << " " << size;
+      }
+      EXPECT_LT((quadratic::least_misses(small) - missed).cwiseAbs().maxCoeff(),
+                1e-6)
+          << round << " " << size;
+    }
+    // Rows that ask for far more than the box gives are come as near as can be.
+    quadratic::QuadraticProgram far = program;
+    far.limits.array() -= 1e4;
+    const VectorX short_of = quadratic::least_misses(far);
+    EXPECT_LT((short_of + far.limits).norm(),
+              program.rows.rowwise().lpNorm<1>().norm() + 1e-6);
+    EXPECT_LT(short_of.norm(), far.limits.norm());
+  }
+}
+
 TEST(QuadraticProgram, SaysWhatExcludesItself) {
   quadratic::QuadraticProgram program{
       .hessian = Eigen::MatrixXd::Identity(2, 2),
