@@ -216,9 +216,12 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   json["responses"] =
       value_map(names, best != nullptr ? best->responses : VectorX());
   json["response_errors"] = value_map(names, result.response_errors);
-  if (result.meshes[1].size() > 0 || result.meshes[2].size() > 0) {
+  if (result.meshes[0].size() > 0) {
     json["meshes"] = Json::array();
     for (std::size_t m = 0; m < study::kEdgeFactors.size(); ++m) {
+      if (m == study::kFinerMesh && result.meshes[m].size() == 0) {
+        continue;
+      }
       json["meshes"].push_back(
           {{"edge", study::kEdgeFactors[m] * input.resolution.fea},
            {"responses", value_map(names, result.meshes[m])}});

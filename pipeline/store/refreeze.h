@@ -2,6 +2,7 @@
 /// them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,9 +26,11 @@ struct Refreeze {
 
 inline constexpr int kMostRefreezes = 3;
 
-/// How often an answer may be judged on a model frozen at it, and the study go
-/// on from there.
-inline constexpr int kMostJudgements = 4;
+/// An answer that is not kept on a model frozen at it is sought there again, so
+/// often and this near to it, x the ranges of the variables: another mesh moves
+/// every figure by its own noise, so that a search without these bounds would
+/// find another answer on each. The last is within kAtDesign.
+inline constexpr std::array<double, 4> kReaches = {1.0, 0.1, 0.03, 0.009};
 
 /// How the database names a model: "frozen at evaluation 12".
 std::string refrozen_model(int evaluation);

@@ -52,19 +52,27 @@ FigureKind kind_of(const case_data::Case& input, int response) {
 }  // namespace
 
 FigureError figure_error(const MeshValues& values, FigureKind kind) {
-  const auto [fine, middle, coarse] = values;
+  const auto [fine, middle, coarse, finer] = values;
   const bool has_middle = std::isfinite(middle);
   const bool has_coarse = std::isfinite(coarse);
-  if (!std::isfinite(fine) || (!has_middle && !has_coarse)) {
+  const bool has_other = has_middle || has_coarse || std::isfinite(finer);
+  if (!std::isfinite(fine) || !has_other) {
     return {kNaN, true};
   }
   // 1. Two meshes show no order: the least is assumed.
   const bool of_film = kind == FigureKind::Film;
   if (!has_middle || !has_coarse) {
     const double order = of_film ? kLeastFilmOrder : kLeastOrder;
-    return {has_coarse ? rest(fine - coarse, kEdgeFactors[2], order)
-                       : rest(fine - middle, kEdgeFactors[1], order),
-            true};
+    if (has_coarse) {
+      return {rest(fine - coarse, kEdgeFactors[2], order), true};
+    }
+    if (has_middle) {
+      return {rest(fine - middle, kEdgeFactors[1], order), true};
+    }
+    const double factor = 1.0 / kEdgeFactors[kFinerMesh];
+    return {
+        kSafety * std::abs(fine - finer) + rest(fine - finer, factor, order),
+        true};
   }
   // 2. The order of three, and whether the changes shrink.
   const double last = fine - middle;
@@ -116,7 +124,7 @@ std::vector<FigureError> response_errors(const case_data::Case& input,
 }
 
 void add_eigen_errors(MeshSequence& meshes) {
-  auto& [fine, middle, coarse] = meshes.eigen;
+  auto& [fine, middle, coarse, finer] = meshes.eigen;
   const auto factor = [](const forward::EigenFigures& figures, std::size_t k) {
     return k < figures.buckling.size() &&
                    !figures.buckling[k].modes.factors.empty()
@@ -124,10 +132,10 @@ void add_eigen_errors(MeshSequence& meshes) {
                : kNaN;
   };
   for (std::size_t k = 0; k < fine.buckling.size(); ++k) {
-    fine.buckling[k].error =
-        figure_error({factor(fine, k), factor(middle, k), factor(coarse, k)},
-                     FigureKind::Extreme)
-            .bound;
+    fine.buckling[k].error = figure_error({factor(fine, k), factor(middle, k),
+                                           factor(coarse, k), factor(finer, k)},
+                                          FigureKind::Extreme)
+                                 .bound;
   }
   if (!fine.frequencies) {
     return;
@@ -141,9 +149,9 @@ void add_eigen_errors(MeshSequence& meshes) {
   };
   for (std::size_t k = 0; k < fine.frequencies->modes.frequencies.size(); ++k) {
     fine.frequencies->errors.push_back(
-        figure_error(
-            {frequency(fine, k), frequency(middle, k), frequency(coarse, k)},
-            FigureKind::Integral)
+        figure_error({frequency(fine, k), frequency(middle, k),
+                      frequency(coarse, k), frequency(finer, k)},
+                     FigureKind::Integral)
             .bound);
   }
 }

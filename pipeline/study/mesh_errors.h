@@ -11,12 +11,14 @@
 
 namespace meniscus::study {
 
-/// Edges of the meshes, times the case's own.
-inline constexpr std::array<double, 3> kEdgeFactors = {1.0, 1.4142135623730951,
-                                                       2.0};
+/// Edges of the meshes, times the case's own. The last is made only where
+/// neither of the two before can be.
+inline constexpr std::array<double, 4> kEdgeFactors = {
+    1.0, 1.4142135623730951, 2.0, 0.70710678118654752};
+inline constexpr std::size_t kFinerMesh = 3;
 
 /// A figure on these meshes, in that order; NaN where it has none.
-using MeshValues = std::array<double, 3>;
+using MeshValues = std::array<double, 4>;
 
 /// What the figure is of decides what may be assumed of its order.
 enum class FigureKind {
@@ -39,15 +41,19 @@ struct FigureError {
 /// docs/decisions/0006-mesh-error.md.
 FigureError figure_error(const MeshValues& values, FigureKind kind);
 
-/// The same design on the model and two coarser ones.
+/// The same design on the model and others.
 struct MeshSequence {
-  /// By mesh, one each in the case's order; empty: that model failed.
-  std::array<VectorX, 3> responses;
-  std::array<forward::EigenFigures, 3> eigen;
-  std::array<std::string, 3> failures;  // why; empty where it did not
+  /// By mesh, one each in the case's order; empty: that model failed, or was
+  /// not made.
+  std::array<VectorX, kEdgeFactors.size()> responses;
+  std::array<forward::EigenFigures, kEdgeFactors.size()> eigen;
+  std::array<std::string, kEdgeFactors.size()> failures;  // why it failed
 
   bool has_coarser() const {
     return responses[1].size() > 0 || responses[2].size() > 0;
+  }
+  bool has_others() const {
+    return has_coarser() || responses[kFinerMesh].size() > 0;
   }
 };
 

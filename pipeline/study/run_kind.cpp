@@ -187,15 +187,23 @@ bool uses_gradients(const case_data::Case& input) {
 }
 
 std::vector<optimize::Variable> variables_of(const case_data::Case& input,
-                                             const VectorX& start) {
+                                             const VectorX& start,
+                                             double reach) {
   std::vector<optimize::Variable> variables;
   variables.reserve(input.design.size());
   for (const case_data::DesignVariable& v : input.design) {
     const auto k = static_cast<Eigen::Index>(variables.size());
-    variables.push_back({.name = v.name,
-                         .initial = start[k],
-                         .lower = v.lower,
-                         .upper = v.upper});
+    optimize::Variable variable{.name = v.name,
+                                .initial = start[k],
+                                .lower = v.lower,
+                                .upper = v.upper};
+    const double range = v.upper - v.lower;
+    if (reach < 1.0 && range > 0.0) {
+      variable.lower = std::max(v.lower, start[k] - reach * range);
+      variable.upper = std::min(v.upper, start[k] + reach * range);
+      variable.range = range;
+    }
+    variables.push_back(std::move(variable));
   }
   return variables;
 }

@@ -20,13 +20,15 @@ struct StudyTask {
   DesignEvaluator& evaluator;
   const StudyOptions& options;
   const MatchTargets* targets = nullptr;  // of a match, else null
-  VectorX start;  // where to begin; evaluated, within the bounds
+  VectorX start;       // where to begin; evaluated, within the bounds
+  double reach = 1.0;  // designs stay this near to it, x the ranges
 };
 
 struct StudyOutcome {
   RunStatus status = RunStatus::Failed;
-  std::string message;  // why it ended, in words, with figures
-  VectorX best;         // a design that has been evaluated
+  std::string message;    // why it ended, in words, with figures
+  VectorX best;           // a design that has been evaluated
+  bool unproven = false;  // stopped because the search ended by itself
   double objective = 0.0;
   std::vector<Constraint> constraints;
   Eigen::MatrixXd jacobian;  // of a match: d residual / d x near `best`
@@ -82,8 +84,10 @@ std::function<void(const std::vector<VectorX>&)> prefetch_of(
 /// The study's method asks for derivatives, and all that it looks at have them.
 bool uses_gradients(const case_data::Case& input);
 
-/// The design variables as the optimizers want them, starting at `start`.
+/// The design variables as the optimizers want them, starting at `start` and
+/// staying within `reach` x their ranges of it; 1 or more: within their bounds.
 std::vector<optimize::Variable> variables_of(const case_data::Case& input,
-                                             const VectorX& start);
+                                             const VectorX& start,
+                                             double reach = 1.0);
 
 }  // namespace meniscus::study

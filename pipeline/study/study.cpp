@@ -31,6 +31,21 @@ namespace {
 // under way is given up.
 constexpr double kLateness = 0.5;
 
+// A margin to collapse that its own error makes nothing is held above it by
+// this much, or raised by that where the film is on no other mesh; so often.
+constexpr double kAboveError = 1.25;
+constexpr double kRaise = 1.5;
+constexpr int kMostRaises = 3;
+
+bool keeps_all(const StudyOutcome& outcome) {
+  return std::all_of(outcome.constraints.begin(), outcome.constraints.end(),
+                     [](const Constraint& c) { return c.satisfied; });
+}
+
+bool ended_by_limit(const StudyOutcome& outcome) {
+  return outcome.status == RunStatus::Stopped && !outcome.unproven;
+}
+
 /// What a point of a front is on a mesh of its own.
 void judge_point(const case_data::Case& input, const VectorX& responses,
                  FrontPoint& point) {
@@ -47,6 +62,7 @@ class StudyRun {
   StudyRun(const case_data::Case& input, store::StudyStore& store,
            const StudyOptions& options)
       : input_(input),
+        case_(input),
         store_(store),
         options_(options),
         monitor_(options.monitor != nullptr ? *options.monitor
@@ -80,6 +96,7 @@ class StudyRun {
   bool has_answer_to_judge() const;
   void judge_answer();
   void judge_front();
+  bool raise_doubted_margins();
   void doubt_margins();
   bool finish_best();
   template <class Work>
@@ -88,12 +105,14 @@ class StudyRun {
   void solve_eigenproblems();
   void estimate_element_errors_of_best();
   void estimate_errors();
-  void add_coarser(std::size_t m, bool with_eigen, MeshSequence& meshes);
+  MeshSequence other_meshes(bool with_eigen);
+  void add_mesh(std::size_t m, bool with_eigen, MeshSequence& meshes);
   void combine_errors(const MeshSequence& meshes);
   void warn();
   void count();
 
   const case_data::Case& input_;
+  case_data::Case case_;  // with the bounds that the search keeps
   store::StudyStore& store_;
   StudyOptions options_;  // its start and time as stages leave them
   Monitor& monitor_;
@@ -103,8 +122,10 @@ class StudyRun {
   std::vector<std::string> left_out_;
   Timer timer_;
   std::unique_ptr<case_data::Case>
-      frozen_;  // what the stage's model is frozen of, where
-                // that is not the case's initial design
+      frozen_;           // what the stage's model is frozen of, where
+                         // that is not the case's initial design
+  bool raised_ = false;  // bounds of margins, above those of the input
+  std::optional<std::pair<VectorX, MeshSequence>> judged_;  // by design
   std::unique_ptr<StudyStage> stage_;
   forward::EvaluationFields fields_;
   forward::StageSeconds own_seconds_;  // beside those of the evaluator
@@ -140,7 +161,7 @@ void StudyRun::update_time_limit() {
 }
 
 bool StudyRun::begin() {
-  stage_ = std::make_unique<StudyStage>(input_, store_, options_);
+  stage_ = std::make_unique<StudyStage>(case_, store_, options_);
   const forward::ForwardModel& model = stage_->evaluator().model();
   if (const forward::Adaptation* adaptation = model.adaptation()) {
     result_.adaptation = *adaptation;
@@ -198,7 +219,7 @@ std::unique_ptr<StudyStage> StudyRun::stage_at(const store::Refreeze& refreeze,
 bool StudyRun::refreeze() {
   const StudyOutcome& outcome = stage_->outcome();
   const int evaluations = earlier_evaluations_ + stage_->evaluations();
-  if (!may_refreeze() || outcome.status == RunStatus::Stopped ||
+  if (!may_refreeze() || ended_by_limit(outcome) ||
       evaluations >= input_.study.max_evaluations) {
     return false;
   }
@@ -216,7 +237,7 @@ bool StudyRun::go_on_at(store::Refreeze wanted) {
                fmt::format("a new model is frozen at evaluation {}: {}",
                            wanted.evaluation, wanted.reason));
   auto input = std::make_unique<case_data::Case>(
-      store::frozen_at(frozen_ ? *frozen_ : input_, wanted.design));
+      store::frozen_at(frozen_ ? *frozen_ : case_, wanted.design));
   input->study.max_evaluations =
       std::max(1, input_.study.max_evaluations - earlier_evaluations_ -
                       stage_->evaluations());
@@ -254,9 +275,9 @@ void StudyRun::judge_answer() {
   if (input_.study.kind == case_data::StudyKind::Pareto) {
     return;
   }
-  for (int round = 1; has_answer_to_judge(); ++round) {
+  for (std::size_t round = 0; has_answer_to_judge(); ++round) {
     const StudyOutcome found = stage_->outcome();
-    if (found.status == RunStatus::Stopped || limited_.expired()) {
+    if (ended_by_limit(found) || limited_.expired()) {
       // Of no use yet: with a higher limit the study goes on from its model.
       result_.warnings.emplace_back(
           "a limit ended the study: its best design was not evaluated on a "
@@ -272,18 +293,17 @@ void StudyRun::judge_answer() {
                    .responses = record.responses})) {
       return;
     }
-    stage_->judge(found);
-    const bool lost = found.status == RunStatus::Converged &&
-                      stage_->outcome().status != RunStatus::Converged;
+    stage_->judge(found, input_);
+    const bool lost = keeps_all(found) && !keeps_all(stage_->outcome());
     const bool spent = earlier_evaluations_ + stage_->evaluations() >=
                        input_.study.max_evaluations;
     if (!lost || !input_.study.refreeze || spent ||
-        round >= store::kMostJudgements) {
+        round >= store::kReaches.size()) {
       return;
     }
     monitor_.log(Severity::Info,
                  "not kept on a mesh of its own: the study goes on there");
-    stage_->conduct();
+    stage_->conduct(StudyStage::Leave::Late, store::kReaches[round]);
   }
 }
 
@@ -344,8 +364,65 @@ void StudyRun::judge_front() {
         judge_point(input_, stage_->start().responses, point);
       }
     }
-    stage_->judge(found);
+    stage_->judge(found, input_);
   }
+}
+
+/// True where a margin's bound was raised, for the study to go on with: the
+/// answer's own margin is within the mesh's error of it, so that the film may
+/// be there on this mesh alone.
+bool StudyRun::raise_doubted_margins() {
+  const StudyOutcome& outcome = stage_->outcome();
+  case_data::Case& working = frozen_ ? *frozen_ : case_;
+  const bool goes_on = input_.study.kind == case_data::StudyKind::Minimize &&
+                       input_.study.refreeze && options_.estimate_errors &&
+                       keeps_all(outcome) && !limited_.expired() &&
+                       earlier_evaluations_ + stage_->evaluations() <
+                           input_.study.max_evaluations;
+  if (!goes_on) {
+    return false;
+  }
+  bool raised = false;
+  for (case_data::ConstraintEntry& entry : working.study.constraints) {
+    const case_data::ResponseEntry& response =
+        input_.responses[static_cast<std::size_t>(entry.response)];
+    if (response.kind != case_data::ResponseKind::CollapseMargin ||
+        !(entry.lower > 0.0) || !std::isfinite(entry.lower)) {
+      continue;
+    }
+    if (!judged_ || judged_->first != outcome.best) {
+      judged_ = {outcome.best, other_meshes(false)};
+    }
+    const double value = judged_->second.responses[0][entry.response];
+    const double error =
+        response_errors(input_, judged_->second, {})[entry.response].bound;
+    if (value > error) {
+      continue;
+    }
+    entry.lower = std::isfinite(error)
+                      ? kAboveError * std::max(error, entry.lower)
+                      : kRaise * std::max(value, entry.lower);
+    raised = true;
+    const std::string why =
+        std::isfinite(error)
+            ? fmt::format("the mesh's own error of it is {:.2g}", error)
+            : "the film is on no other mesh";
+    monitor_.log(Severity::Info,
+                 fmt::format("'{}' is {:.2g}, and {}: the study goes on and "
+                             "holds it at {:.2g}",
+                             response.name, value, why, entry.lower));
+    result_.warnings.push_back(fmt::format(
+        "'{}' was {:.2g} at a first answer, and {}: it is held at {:.2g} or "
+        "more, above its bound",
+        response.name, value, why, entry.lower));
+  }
+  if (raised) {
+    raised_ = true;
+    working.study.max_evaluations =
+        std::max(1, input_.study.max_evaluations - earlier_evaluations_ -
+                        stage_->evaluations());
+  }
+  return raised;
 }
 
 /// A margin that its own error makes nothing is no margin: the film may be
@@ -360,6 +437,7 @@ void StudyRun::doubt_margins() {
         input_.responses[static_cast<std::size_t>(entry.response)];
     const double value = result_.best->responses[entry.response];
     const double error = result_.response_errors[entry.response];
+    const bool known = std::isfinite(error);
     if (response.kind != case_data::ResponseKind::CollapseMargin ||
         !std::isfinite(entry.lower) || value > error) {
       continue;
@@ -370,10 +448,12 @@ void StudyRun::doubt_margins() {
       }
     }
     const std::string note = fmt::format(
-        "'{}' is {:.2g} and the mesh's own error of it {:.2g}: the film may be "
-        "there on this mesh alone, so the bound is not kept; raise it above "
-        "the error, or shorten resolution.fea",
-        response.name, value, error);
+        "'{}' is {:.2g} and {}: the film may be there on this mesh alone, so "
+        "the bound is not kept; raise it{}, or shorten resolution.fea",
+        response.name, value,
+        known ? fmt::format("the mesh's own error of it {:.2g}", error)
+              : "the film is on no other mesh",
+        known ? " above the error" : "");
     result_.message += ". " + note;
     result_.warnings.push_back(note);
     if (result_.status == RunStatus::Converged) {
@@ -391,6 +471,10 @@ void StudyRun::conduct_study() {
     stage_->conduct();
   }
   judge_answer();
+  for (int k = 0; k < kMostRaises && raise_doubted_margins(); ++k) {
+    stage_->conduct();
+    judge_answer();
+  }
   judge_front();
   if (const forward::Adaptation* adaptation =
           stage_->evaluator().model().adaptation()) {
@@ -498,39 +582,52 @@ void StudyRun::estimate_element_errors_of_best() {
 
 void StudyRun::estimate_errors() {
   estimate_element_errors_of_best();
-  MeshSequence meshes;
-  meshes.responses[0] = result_.best->responses;
   const bool with_eigen =
       result_.eigen && forward::deserve_errors(input_, *result_.eigen);
-  for (std::size_t m = 1; m < kEdgeFactors.size(); ++m) {
-    add_coarser(m, with_eigen, meshes);
-  }
-  if (!meshes.has_coarser()) {
+  const bool known =
+      !with_eigen && judged_ && judged_->first == result_.best->design;
+  MeshSequence meshes =
+      known ? std::move(judged_->second) : other_meshes(with_eigen);
+  if (!meshes.has_others()) {
     result_.warnings.push_back(fmt::format(
-        "no error estimate{}, the coarser models cannot be evaluated: {}",
+        "no error estimate{}, neither coarser nor finer models can be "
+        "evaluated: {}",
         result_.element_errors ? " beyond the elements' own part" : "",
-        meshes.failures[1]));
+        meshes.failures[kFinerMesh]));
   }
-  if (meshes.has_coarser() || result_.element_errors) {
+  if (meshes.has_others() || result_.element_errors) {
     combine_errors(meshes);
   }
-  if (with_eigen && meshes.has_coarser()) {
+  if (with_eigen && meshes.has_others()) {
     meshes.eigen[0] = std::move(*result_.eigen);
     add_eigen_errors(meshes);
     result_.eigen = std::move(meshes.eigen[0]);
   }
 }
 
+/// The best design on its own mesh and on others, the finer one where neither
+/// coarser one can be made.
+MeshSequence StudyRun::other_meshes(bool with_eigen) {
+  MeshSequence meshes;
+  meshes.responses[0] =
+      store_.find(stage_->model_name(), stage_->outcome().best)->responses;
+  for (std::size_t m = 1; m < kEdgeFactors.size(); ++m) {
+    if (m != kFinerMesh || !meshes.has_coarser()) {
+      add_mesh(m, with_eigen, meshes);
+    }
+  }
+  return meshes;
+}
+
 /// The best design on a model with edges kEdgeFactors[m] times as long.
-void StudyRun::add_coarser(std::size_t m, bool with_eigen,
-                           MeshSequence& meshes) {
+void StudyRun::add_mesh(std::size_t m, bool with_eigen, MeshSequence& meshes) {
   monitor_.progress(
       {.stage = "accuracy",
        .detail = fmt::format("a model with edges {:.2g} times as long",
                              kEdgeFactors[m])});
   try {
     const forward::ForwardModel coarser(
-        frozen_ ? *frozen_ : input_,
+        frozen_ ? *frozen_ : case_,
         {.edge_factor = kEdgeFactors[m], .monitor = &limited_});
     own_seconds_ += coarser.frozen().seconds;
     if (coarser.failure()) {
@@ -652,6 +749,10 @@ bool StudyRun::study_in_time() {
 RunResult StudyRun::run() {
   if (study_in_time()) {
     if (finish_best()) {
+      if (raised_) {
+        result_.constraints =
+            bound_constraints(input_, result_.best->responses);
+      }
       if (options_.answered) {
         options_.answered(fields_);
       }

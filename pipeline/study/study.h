@@ -19,6 +19,7 @@
 #include "pipeline/store/study_store.h"
 #include "pipeline/study/front_figures.h"
 #include "pipeline/study/ledger.h"
+#include "pipeline/study/mesh_errors.h"
 #include "pipeline/study/progress_tracker.h"
 #include "pipeline/study/sweep_figures.h"
 #include "pipeline/study/tolerance_figures.h"
@@ -65,8 +66,8 @@ struct RunResult {
   VectorX response_errors;  // estimated discretisation errors; may be empty
   VectorX design_errors;    // of the matched variables; may be empty
   /// The responses on the meshes that the errors come from (mesh_errors.h):
-  /// edges as asked, sqrt(2) and 2 times as long; empty where one failed.
-  std::array<VectorX, 3> meshes;
+  /// empty where one failed.
+  std::array<VectorX, kEdgeFactors.size()> meshes;
   std::vector<forward::StressFigures>
       stress;                    // of the best design, per load case
   forward::Exclusion exclusion;  // what these leave out

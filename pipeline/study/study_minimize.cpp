@@ -20,13 +20,17 @@ optimize::MinimizeProblem minimize_problem(const StudyTask& task,
                                            const std::string& phase) {
   const case_data::Case& input = task.input;
   optimize::MinimizeProblem problem;
-  problem.variables = variables_of(input, task.start);
+  problem.variables = variables_of(input, task.start, task.reach);
   problem.objective = input.responses[*input.study.objective].name;
   for (const case_data::ConstraintEntry& constraint : input.study.constraints) {
+    const case_data::ResponseEntry& response =
+        input.responses[static_cast<std::size_t>(constraint.response)];
     problem.constraints.push_back(
-        {.name = input.responses[constraint.response].name,
+        {.name = response.name,
          .lower = constraint.lower,
-         .upper = constraint.upper});
+         .upper = constraint.upper,
+         .root_like =
+             response.kind == case_data::ResponseKind::CollapseMargin});
   }
   if (input.study.second) {
     problem.constraints.push_back(
@@ -80,10 +84,15 @@ StudyOutcome minimize(const StudyTask& task) {
   std::string phase = "start";
   const optimize::MinimizeReport report = meniscus::optimize::minimize(
       minimize_problem(task, phase), minimize_options(task, phase));
-  StudyOutcome outcome{.status = status_of(report.termination),
-                       .message = report.message,
-                       .best = report.best,
-                       .objective = report.objective};
+  // A search that stalled where all is kept has an answer, not a proof.
+  const bool kept =
+      report.termination == optimize::Termination::Stalled && report.feasible;
+  StudyOutcome outcome{
+      .status = kept ? RunStatus::Stopped : status_of(report.termination),
+      .message = report.message,
+      .best = report.best,
+      .unproven = kept,
+      .objective = report.objective};
   for (const optimize::ConstraintState& state : report.constraints) {
     outcome.constraints.push_back(to_constraint(state));
   }

@@ -105,7 +105,7 @@ void StudyStage::stop_if_inverted(const store::EvaluationRecord& record) {
   }
 }
 
-void StudyStage::conduct(Leave leave) {
+void StudyStage::conduct(Leave leave, double reach) {
   const VectorX start = begin();
   evaluator_.reset_counts();  // the kinds of study ask for the start again
   left_early_ = false;
@@ -121,7 +121,8 @@ void StudyStage::conduct(Leave leave) {
                                          .evaluator = evaluator_,
                                          .options = options_,
                                          .targets = targets(),
-                                         .start = start});
+                                         .start = start,
+                                         .reach = reach});
   } catch (const EarlyStop& left) {
     left_early_ = true;
     outcome_ = {.status = RunStatus::Infeasible,
@@ -136,13 +137,14 @@ void StudyStage::leave(StudyOutcome outcome) {
   outcome_ = std::move(outcome);
 }
 
-void StudyStage::judge(const StudyOutcome& found) {
+void StudyStage::judge(const StudyOutcome& found,
+                       const case_data::Case& asked) {
   outcome_ = found;
   outcome_.best = start_.design;
   outcome_.constraints =
       input_.study.kind == case_data::StudyKind::Match
           ? match_constraints(input_, targets(), start_.responses)
-          : bound_constraints(input_, start_.responses);
+          : bound_constraints(asked, start_.responses);
   std::string missed;
   for (const Constraint& c : outcome_.constraints) {
     if (!c.satisfied) {

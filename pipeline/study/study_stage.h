@@ -37,13 +37,14 @@ class StudyStage {
   /// Does what the case's study asks, from options.start where that can be
   /// evaluated, else from the initial design. `Leave::Early`: ends it, without
   /// convergence, once it is clear that find_refreeze() will want a new
-  /// model; a second call then does the rest.
+  /// model; a second call then does the rest. `reach`: how near to the start a
+  /// minimisation stays, x the ranges of the variables.
   enum class Leave { Late, Early };
-  void conduct(Leave leave = Leave::Late);
+  void conduct(Leave leave = Leave::Late, double reach = 1.0);
   /// The outcome of a study on another model, with the objective and the
   /// constraints that its best design, which this model is frozen at, has
-  /// here. Converged it stays where all is kept.
-  void judge(const StudyOutcome& found);
+  /// here, by the bounds of `asked`. Converged it stays where all is kept.
+  void judge(const StudyOutcome& found, const case_data::Case& asked);
   /// What a new model is wanted for, as things stand.
   std::optional<store::Refreeze> wanted(const VectorX& best,
                                         bool converged) const;

