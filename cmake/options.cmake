@@ -102,8 +102,9 @@ function(meniscus_add_test name)
   if(ARG_LABELS)
     set(labels LABELS "${ARG_LABELS}")
   endif()
-  # Threads wait as in the program (core/thread_waits.h).
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
+  # Threads wait as in the program (core/thread_waits.h). Values of parameters
+  # would put bytes of memory into the tests' names.
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
     PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT OMP_WAIT_POLICY=passive
       ${labels} ${alone})
 endfunction()

@@ -105,6 +105,10 @@ class StudyRun {
   void solve_eigenproblems();
   void estimate_element_errors_of_best();
   void estimate_errors();
+  bool is_judged(const VectorX& design) const {
+    return judged_ && judged_->model == stage_->model_name() &&
+           judged_->design == design;
+  }
   MeshSequence other_meshes(bool with_eigen);
   void add_mesh(std::size_t m, bool with_eigen, MeshSequence& meshes);
   void combine_errors(const MeshSequence& meshes);
@@ -125,7 +129,13 @@ class StudyRun {
       frozen_;           // what the stage's model is frozen of, where
                          // that is not the case's initial design
   bool raised_ = false;  // bounds of margins, above those of the input
-  std::optional<std::pair<VectorX, MeshSequence>> judged_;  // by design
+  // The last best design that was put on other meshes, of that model.
+  struct OnOtherMeshes {
+    std::string model;
+    VectorX design;
+    MeshSequence meshes;
+  };
+  std::optional<OnOtherMeshes> judged_;
   std::unique_ptr<StudyStage> stage_;
   forward::EvaluationFields fields_;
   forward::StageSeconds own_seconds_;  // beside those of the evaluator
@@ -390,12 +400,12 @@ bool StudyRun::raise_doubted_margins() {
         !(entry.lower > 0.0) || !std::isfinite(entry.lower)) {
       continue;
     }
-    if (!judged_ || judged_->first != outcome.best) {
-      judged_ = {outcome.best, other_meshes(false)};
+    if (!is_judged(outcome.best)) {
+      judged_ = {stage_->model_name(), outcome.best, other_meshes(false)};
     }
-    const double value = judged_->second.responses[0][entry.response];
+    const double value = judged_->meshes.responses[0][entry.response];
     const double error =
-        response_errors(input_, judged_->second, {})[entry.response].bound;
+        response_errors(input_, judged_->meshes, {})[entry.response].bound;
     if (value > error) {
       continue;
     }
@@ -584,10 +594,9 @@ void StudyRun::estimate_errors() {
   estimate_element_errors_of_best();
   const bool with_eigen =
       result_.eigen && forward::deserve_errors(input_, *result_.eigen);
-  const bool known =
-      !with_eigen && judged_ && judged_->first == result_.best->design;
+  const bool known = !with_eigen && is_judged(result_.best->design);
   MeshSequence meshes =
-      known ? std::move(judged_->second) : other_meshes(with_eigen);
+      known ? std::move(judged_->meshes) : other_meshes(with_eigen);
   if (!meshes.has_others()) {
     result_.warnings.push_back(fmt::format(
         "no error estimate{}, neither coarser nor finer models can be "
