@@ -71,8 +71,8 @@ Json evaluation_json(const case_data::Case& input,
   return json;
 }
 
-/// "minimize: evaluation 12 of at most 300, mass = 0.0123 t, violation 0.02,
-/// best so far mass = 0.012 t (evaluation 9), at most 3 min left".
+/// "minimize: evaluation 12 of at most 300, mass = 0.0123 t, violation 0.02 of
+/// 'sway', best so far mass = 0.012 t (evaluation 9), at most 3 min left".
 std::string status_text(const case_data::Case& input,
                         const study::EvaluationEvent& event) {
   std::string text =

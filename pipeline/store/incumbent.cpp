@@ -24,9 +24,11 @@ double violation_of(const case_data::ConstraintEntry& constraint,
 Merit merit_of(const case_data::StudyEntry& study, const VectorX& responses) {
   Merit standing{.objective = responses[*study.objective]};
   for (const case_data::ConstraintEntry& constraint : study.constraints) {
-    standing.violation =
-        std::max(standing.violation,
-                 violation_of(constraint, responses[constraint.response]));
+    const double off = violation_of(constraint, responses[constraint.response]);
+    if (off > standing.violation) {
+      standing.violation = off;
+      standing.worst = constraint.response;
+    }
   }
   return standing;
 }

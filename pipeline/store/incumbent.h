@@ -19,6 +19,7 @@ double violation_of(const case_data::ConstraintEntry& constraint, double value);
 struct Merit {
   double violation = 0.0;  // the largest of all constraints
   double objective = 0.0;
+  int worst = -1;  // response of that constraint; -1: all are kept
 
   bool feasible() const { return violation <= kFeasible; }
 };

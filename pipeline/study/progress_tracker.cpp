@@ -53,6 +53,10 @@ DesignStatus ProgressTracker::merit_of(
     standing.objective = found.objective;
     if (!study.constraints.empty()) {
       standing.violation = found.violation;
+      if (found.worst >= 0) {
+        standing.worst =
+            input_.responses[static_cast<std::size_t>(found.worst)].name;
+      }
     }
   }
   return standing;
@@ -134,7 +138,8 @@ std::string progress_text(const EvaluationEvent& event) {
   if (event.status.violation) {
     add(*event.status.violation <= store::kFeasible
             ? "keeps all constraints"
-            : fmt::format("violation {:.2g}", *event.status.violation));
+            : fmt::format("violation {:.2g} of '{}'", *event.status.violation,
+                          event.status.worst));
   }
   if (event.best && event.best->evaluation != event.status.evaluation) {
     const bool kept = event.best->violation.value_or(0.0) <= store::kFeasible;
@@ -142,7 +147,8 @@ std::string progress_text(const EvaluationEvent& event) {
         "best so far {} = {}{} (evaluation {})", event.objective_name,
         quantity_text(*event.best->objective, event.objective_unit),
         kept ? ""
-             : fmt::format(" with violation {:.2g}", *event.best->violation),
+             : fmt::format(" with violation {:.2g} of '{}'",
+                           *event.best->violation, event.best->worst),
         event.best->evaluation));
   } else if (event.best) {
     add("the best so far");

@@ -20,6 +20,7 @@ struct DesignStatus {
   int evaluation = 0;
   std::optional<double> objective;
   std::optional<double> violation;
+  std::string worst;  // the response that is off by it; empty: none is
 };
 
 struct EvaluationEvent {

@@ -730,9 +730,13 @@ void StudyRun::keep_best_in_time() {
   if (!any) {
     throw TimeIsUp(message + " before a first design was evaluated");
   }
-  stage_->leave({.status = RunStatus::Stopped,
-                 .message = message,
-                 .best = store::best_record(input_, records).inputs});
+  const store::EvaluationRecord best = store::best_record(input_, records);
+  StudyOutcome outcome{
+      .status = RunStatus::Stopped, .message = message, .best = best.inputs};
+  if (input_.study.kind == case_data::StudyKind::Minimize) {
+    outcome.constraints = bound_constraints(input_, best.responses);
+  }
+  stage_->leave(std::move(outcome));
   take_outcome();
 }
 

@@ -130,7 +130,7 @@ TEST(ProgressTracker, KnowsTheBestSoFarAndWhatIsLeft) {
   EXPECT_THAT(study::progress_text(event), HasSubstr("the best so far"));
   const store::EvaluationRecord worse = record(4, 1.5, 3.0);
   const std::string text = study::progress_text(tracker.add_new(worse));
-  EXPECT_THAT(text, HasSubstr("violation 0.5"));
+  EXPECT_THAT(text, HasSubstr("violation 0.5 of '"));
   EXPECT_THAT(text, HasSubstr("best so far mass = 6 t (evaluation 3)"));
   EXPECT_THAT(study::duration_text(61.0), Not(HasSubstr("min")));
   EXPECT_EQ(study::duration_text(119.5), "2 min");
