@@ -331,13 +331,14 @@ TrustRegion::Outcome TrustRegion::judge(const VectorX& x,
                                         const MinimizePoint& point,
                                         double promised) {
   const double unit = evaluator_.objective_unit();
+  const VectorX sides = sides_at(point.values);
   const double before = merit(centre_.objective, centre_.sides);
-  const double after = merit(point.values[0] / unit, sides_at(point.values));
+  const double after = merit(point.values[0] / unit, sides);
   const double rounding = kRoundingOfMerit * (1.0 + std::abs(before));
   ratio_ = promised <= rounding && after <= before + rounding
                ? 1.0
                : (before - after) / std::max(promised, rounding);
-  if (leaves_roots(sides_at(point.values))) {
+  if (leaves_roots(sides)) {
     ratio_ = 0.0;
     return Outcome::Rejected;
   }

@@ -2,7 +2,6 @@
 /// them.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,12 +25,6 @@ struct Refreeze {
 
 inline constexpr int kMostRefreezes = 3;
 
-/// An answer that is not kept on a model frozen at it is sought there again, so
-/// often and this near to it, x the ranges of the variables: another mesh moves
-/// every figure by its own noise, so that a search without these bounds would
-/// find another answer on each. The last is within kAtDesign.
-inline constexpr std::array<double, 4> kReaches = {1.0, 0.1, 0.03, 0.009};
-
 /// How the database names a model: "frozen at evaluation 12".
 std::string refrozen_model(int evaluation);
 
@@ -45,10 +38,6 @@ int count_of_model(const std::vector<EvaluationRecord>& records,
 /// The last of these models that has evaluated a design; kStudyModel when none
 /// has.
 std::string answering_model(const std::vector<EvaluationRecord>& records);
-
-/// A model frozen this near to a design, x the ranges of the variables, is one
-/// of that design.
-inline constexpr double kAtDesign = 1e-2;
 
 /// The largest difference of a variable, x its range.
 double design_distance(const case_data::Case& input, const VectorX& a,

@@ -1,6 +1,7 @@
 #include "pipeline/study/study.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -31,6 +32,16 @@ namespace {
 // under way is given up.
 constexpr double kLateness = 0.5;
 
+// A model frozen this near to a design, x the ranges of the variables, is one
+// of that design.
+constexpr double kAtDesign = 1e-2;
+
+// An answer that is not kept on a model frozen at it is sought there again, so
+// often and this near to it, x the ranges of the variables: another mesh moves
+// every figure by its own noise, so that a search without these bounds would
+// find another answer on each. The last is within kAtDesign.
+constexpr std::array<double, 4> kReaches = {1.0, 0.1, 0.03, 0.009};
+
 // A margin to collapse that its own error makes nothing is held above it by
 // this much, or raised by that where the film is on no other mesh; so often.
 constexpr double kAboveError = 1.25;
@@ -40,6 +51,21 @@ constexpr int kMostRaises = 3;
 bool keeps_all(const StudyOutcome& outcome) {
   return std::all_of(outcome.constraints.begin(), outcome.constraints.end(),
                      [](const Constraint& c) { return c.satisfied; });
+}
+
+/// A bound that keeps the film from its collapse.
+bool holds_margin(const case_data::Case& input,
+                  const case_data::ConstraintEntry& entry) {
+  return input.responses[static_cast<std::size_t>(entry.response)].kind ==
+             case_data::ResponseKind::CollapseMargin &&
+         std::isfinite(entry.lower);
+}
+
+/// Why a margin is doubted; `error` of it, NaN where no other mesh has one.
+std::string doubt_text(double error) {
+  return std::isfinite(error)
+             ? fmt::format("the mesh's own error of it is {:.2g}", error)
+             : "the film is on no other mesh";
 }
 
 bool ended_by_limit(const StudyOutcome& outcome) {
@@ -90,6 +116,10 @@ class StudyRun {
                                        const std::string& name,
                                        const case_data::Case& input);
   void update_time_limit();
+  int evaluations_left() const {
+    return input_.study.max_evaluations - earlier_evaluations_ -
+           stage_->evaluations();
+  }
   void add_stage_totals();
   void conduct_study();
   void take_outcome();
@@ -228,9 +258,7 @@ std::unique_ptr<StudyStage> StudyRun::stage_at(const store::Refreeze& refreeze,
 /// false when there is none.
 bool StudyRun::refreeze() {
   const StudyOutcome& outcome = stage_->outcome();
-  const int evaluations = earlier_evaluations_ + stage_->evaluations();
-  if (!may_refreeze() || ended_by_limit(outcome) ||
-      evaluations >= input_.study.max_evaluations) {
+  if (!may_refreeze() || ended_by_limit(outcome) || evaluations_left() <= 0) {
     return false;
   }
   std::optional<store::Refreeze> wanted =
@@ -248,9 +276,7 @@ bool StudyRun::go_on_at(store::Refreeze wanted) {
                            wanted.evaluation, wanted.reason));
   auto input = std::make_unique<case_data::Case>(
       store::frozen_at(frozen_ ? *frozen_ : case_, wanted.design));
-  input->study.max_evaluations =
-      std::max(1, input_.study.max_evaluations - earlier_evaluations_ -
-                      stage_->evaluations());
+  input->study.max_evaluations = std::max(1, evaluations_left());
   update_time_limit();
   std::unique_ptr<StudyStage> stage =
       stage_at(wanted, store::refrozen_model(wanted.evaluation), *input);
@@ -275,7 +301,7 @@ bool StudyRun::has_answer_to_judge() const {
           kind == case_data::StudyKind::Pareto) &&
          best.size() > 0 && stage_->was_answered(best) &&
          store::design_distance(input_, best, stage_->start().design) >
-             store::kAtDesign;
+             kAtDesign;
 }
 
 /// The mesh of an answer was dragged to it from another design: it is evaluated
@@ -305,15 +331,13 @@ void StudyRun::judge_answer() {
     }
     stage_->judge(found, input_);
     const bool lost = keeps_all(found) && !keeps_all(stage_->outcome());
-    const bool spent = earlier_evaluations_ + stage_->evaluations() >=
-                       input_.study.max_evaluations;
-    if (!lost || !input_.study.refreeze || spent ||
-        round >= store::kReaches.size()) {
+    if (!lost || !input_.study.refreeze || evaluations_left() <= 0 ||
+        round >= kReaches.size()) {
       return;
     }
     monitor_.log(Severity::Info,
                  "not kept on a mesh of its own: the study goes on there");
-    stage_->conduct(StudyStage::Leave::Late, store::kReaches[round]);
+    stage_->conduct(StudyStage::Leave::Late, kReaches[round]);
   }
 }
 
@@ -387,17 +411,13 @@ bool StudyRun::raise_doubted_margins() {
   const bool goes_on = input_.study.kind == case_data::StudyKind::Minimize &&
                        input_.study.refreeze && options_.estimate_errors &&
                        keeps_all(outcome) && !limited_.expired() &&
-                       earlier_evaluations_ + stage_->evaluations() <
-                           input_.study.max_evaluations;
+                       evaluations_left() > 0;
   if (!goes_on) {
     return false;
   }
   bool raised = false;
   for (case_data::ConstraintEntry& entry : working.study.constraints) {
-    const case_data::ResponseEntry& response =
-        input_.responses[static_cast<std::size_t>(entry.response)];
-    if (response.kind != case_data::ResponseKind::CollapseMargin ||
-        !(entry.lower > 0.0) || !std::isfinite(entry.lower)) {
+    if (!holds_margin(input_, entry) || !(entry.lower > 0.0)) {
       continue;
     }
     if (!is_judged(outcome.best)) {
@@ -413,24 +433,20 @@ bool StudyRun::raise_doubted_margins() {
                       ? kAboveError * std::max(error, entry.lower)
                       : kRaise * std::max(value, entry.lower);
     raised = true;
-    const std::string why =
-        std::isfinite(error)
-            ? fmt::format("the mesh's own error of it is {:.2g}", error)
-            : "the film is on no other mesh";
+    const std::string& name =
+        input_.responses[static_cast<std::size_t>(entry.response)].name;
     monitor_.log(Severity::Info,
                  fmt::format("'{}' is {:.2g}, and {}: the study goes on and "
                              "holds it at {:.2g}",
-                             response.name, value, why, entry.lower));
+                             name, value, doubt_text(error), entry.lower));
     result_.warnings.push_back(fmt::format(
         "'{}' was {:.2g} at a first answer, and {}: it is held at {:.2g} or "
         "more, above its bound",
-        response.name, value, why, entry.lower));
+        name, value, doubt_text(error), entry.lower));
   }
   if (raised) {
     raised_ = true;
-    working.study.max_evaluations =
-        std::max(1, input_.study.max_evaluations - earlier_evaluations_ -
-                        stage_->evaluations());
+    working.study.max_evaluations = std::max(1, evaluations_left());
   }
   return raised;
 }
@@ -447,9 +463,7 @@ void StudyRun::doubt_margins() {
         input_.responses[static_cast<std::size_t>(entry.response)];
     const double value = result_.best->responses[entry.response];
     const double error = result_.response_errors[entry.response];
-    const bool known = std::isfinite(error);
-    if (response.kind != case_data::ResponseKind::CollapseMargin ||
-        !std::isfinite(entry.lower) || value > error) {
+    if (!holds_margin(input_, entry) || value > error) {
       continue;
     }
     for (Constraint& constraint : result_.constraints) {
@@ -460,10 +474,8 @@ void StudyRun::doubt_margins() {
     const std::string note = fmt::format(
         "'{}' is {:.2g} and {}: the film may be there on this mesh alone, so "
         "the bound is not kept; raise it{}, or shorten resolution.fea",
-        response.name, value,
-        known ? fmt::format("the mesh's own error of it {:.2g}", error)
-              : "the film is on no other mesh",
-        known ? " above the error" : "");
+        response.name, value, doubt_text(error),
+        std::isfinite(error) ? " above the error" : "");
     result_.message += ". " + note;
     result_.warnings.push_back(note);
     if (result_.status == RunStatus::Converged) {
