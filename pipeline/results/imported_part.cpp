@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -12,6 +13,7 @@
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/forward/part_file.h"
+#include "pipeline/forward/work_estimate.h"
 #include "pipeline/results/face_list.h"
 
 namespace meniscus::results {
@@ -22,6 +24,8 @@ namespace {
 constexpr double kLongestEdge = 4.0 / 3.0;
 // The faces are known to a fiftieth of this part of an edge.
 constexpr double kShapeInEdges = 0.15;
+// x the run's own part: an inch or a metre for a millimetre is above it.
+constexpr double kMostLarger = 20.0;
 
 constexpr const char* kNameless = "unnamed";  // as readers call it
 
@@ -127,6 +131,40 @@ std::vector<Edge> labels_beside(const SurfaceMesh& surface,
   return labels;
 }
 
+/// Throws where the part is of another order of size than the run's own: its
+/// unit is another one, or a point of it is wrong.
+void check_size(const SurfaceMesh& surface, const Points& own,
+                const std::string& path, const std::string& length_unit) {
+  const double size = bounding_diagonal(surface.points);
+  const double expected = bounding_diagonal(own);
+  if (size > kMostLarger * expected || kMostLarger * size < expected) {
+    throw InvalidInput(fmt::format(
+        "{}: the part is {:.4g} {} across, the run's own {:.4g} {}; is the "
+        "file's unit {}, as it was read, or is a point of it wrong?",
+        path, size, length_unit, expected, length_unit, length_unit));
+  }
+}
+
+/// How many facets with_short_edges() leaves, somewhat more rather than less.
+std::size_t facets_with_short_edges(const SurfaceMesh& surface,
+                                    double longest) {
+  constexpr double kShorter = 2.0;  // halves are up to half as long
+  const double equilateral = 0.25 * std::sqrt(3.0) * longest * longest;
+  double sides = 0.0;
+  for (const Triangle& t : surface.facets) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      sides += (surface.points[static_cast<std::size_t>(t[(k + 1) % 3])] -
+                surface.points[static_cast<std::size_t>(t[k])])
+                   .norm();
+    }
+  }
+  constexpr double kMost = 1e12;
+  return surface.facets.size() +
+         static_cast<std::size_t>(std::min(
+             kMost,
+             kShorter * surface_area(surface) / equilateral + sides / longest));
+}
+
 /// Ten-node elements, their outer mid-sides on `shape`.
 TetMesh filled(const SurfaceMesh& surface, const PartShape* shape, double edge,
                const std::string& path, Monitor* monitor) {
@@ -220,15 +258,21 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
         path,
         {.unit = run.input.units.length, .edge = size, .monitor = monitor});
   };
+  const double longest = kLongestEdge * edge;
+  SurfaceMesh own =
+      renamed(read(edge), names, path.string(), run.input.units.length);
+  check_names(own, run.fields.inputs, path.string(), run.input.units.length);
+  check_size(own, run.fields.mesh.nodes, path.string(), run.input.units.length);
+  forward::require_work(
+      forward::estimate_work(enclosed_volume(own),
+                             facets_with_short_edges(own, longest), edge),
+      edge);
   std::unique_ptr<PartShape> shape;
   if (forward::has_curved_faces(path)) {
     shape = std::make_unique<PartShape>(read(kShapeInEdges * edge));
   }
-  const SurfaceMesh surface = with_short_edges(
-      renamed(read(edge), names, path.string(), run.input.units.length),
-      kLongestEdge * edge, shape.get());
-  check_names(surface, run.fields.inputs, path.string(),
-              run.input.units.length);
+  const SurfaceMesh surface =
+      with_short_edges(std::move(own), longest, shape.get());
   forward::EvaluationFields fields;
   fields.inputs = run.fields.inputs;
   fields.inputs.materials.resize(1);

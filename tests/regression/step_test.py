@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import subprocess
+import time
 import unittest
 
 import program
@@ -179,6 +180,32 @@ class Step(program.ProgramTest):
         self.assertEqual(file.read_bytes(), again.read_bytes())
 
         self.compare_with_itself(run, file)
+        self.refuse_another_size(run, file)
+
+    def refuse_another_size(self, run, file):
+        """A file in another unit, and one with a point far away: told before
+        a surface of millions of facets is filled."""
+        own = self.folder / "own.obj"
+        self.expect(self.call("export", run, "--format", "obj", "--out", own),
+                    0)
+        large = self.folder / "large.obj"
+        large.write_text(re.sub(
+            r"(?m)^v (\S+) (\S+) (\S+)", lambda found: " ".join(
+                ["v", *(str(1000.0 * float(x)) for x in found.groups())]),
+            own.read_text()))
+        points = re.findall(r"CARTESIAN_POINT\('[^']*',\(([^)]*)\)\)",
+                            file.read_text())
+        far = self.folder / "far.step"
+        x, y, z = points[len(points) // 2].split(",")
+        far.write_text(file.read_text().replace(
+            f"({x},{y},{z})", f"({x},-344690258.,{z})"))
+        for path in (large, far):
+            begun = time.monotonic()
+            self.expect(self.call("compare", run, path, "--out",
+                                  self.folder / "refused"), 2,
+                        re.escape(path.name),
+                        "mm across|OpenCASCADE|needs about|cannot be filled")
+            self.assertLess(time.monotonic() - begun, 30.0)
 
     def compare_with_itself(self, run, file):
         """A run's own STEP file under its loads, named faces and all."""
