@@ -25,6 +25,7 @@ COARSE = {
     "bracket_vs_solid": (10, 5), "stepped_shaft": (8, 8),
     "strut_family": (10, 10), "femur": (8, 8), "two_arm": (20, 20),
     "two_arm_sized": (24, 24), "h_beam_casting": (32, 32),
+    "bell_crank": (16, 16),
     "fuselage": (200, 200),
 }
 # The mistakes that a case has no room for, and why.
@@ -41,6 +42,7 @@ NO_ROOM = {
     "fuselage": {"member": "no family"},
     "two_arm": {"thick": "no walls"},
     "two_arm_sized": {"thick": "no walls", "member": "no family"},
+    "bell_crank": {"thick": "no walls", "member": "no family"},
     "h_beam_casting": {"member": "no family"},
 }
 KINDS = ("swapped", "open", "crossing", "thick", "member")
@@ -459,6 +461,22 @@ WRONG = {
                r"the convex hull",), "[films.hub_skin]",
               "evolve case.toml --set reach=-20 "
               "--set design.reach.bounds=[-30,80]"),
+    ],
+    "bell_crank": [
+        Wrong("swapped", "the tips of both arms",
+              {'["a_middle", "a_tip"]': '["a_middle", "b_tip"]',
+               '["b_root", "b_tip"]': '["b_root", "a_tip"]'}, 2,
+              not_closed("middle_m", "a_tip", "let film 'arm_m' end at "
+                         "'a_tip', not at 'b_tip'"),
+              'enclosed_by = ["arm_m"'),
+        Wrong("open", "a pin's eye without its bore",
+              {'["eye_a", "pin_a", "a_tip_cap"]': '["eye_a", "a_tip_cap"]'}, 2,
+              not_closed("end_a", "a_front", "add 'pin_a'"),
+              'enclosed_by = ["eye_a"'),
+        Wrong("crossing", "roots that meet", {}, 2,
+              (r"case\.toml:{line}: curves 'a_root' and 'b_root' meet near ",),
+              "[curves.b_root]", "check case.toml --set root=12 "
+              "--set high_b=18"),
     ],
     "h_beam_casting": [
         Wrong("swapped", "the rings of both blends",
