@@ -24,4 +24,17 @@ const char* name_of(FailureKind kind) {
   return "unknown";
 }
 
+std::string what_prevents(const std::function<void()>& make) {
+  try {
+    make();
+  } catch (const MeshError& error) {
+    return error.what();
+  } catch (const InvalidInput& error) {
+    return error.what();
+  } catch (const SolverError& error) {
+    return error.what();
+  }
+  return {};
+}
+
 }  // namespace meniscus

@@ -6,6 +6,7 @@
 /// case, surface name, facet ids, position) and what to try.
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -45,6 +46,12 @@ class Interrupted : public Error {
  public:
   using Error::Error;
 };
+
+/// What `make` ends with: the message of its MeshError, InvalidInput or
+/// SolverError, empty where it was done. For what an answer can do without, as
+/// a model of other edges, whatever keeps it from being made (no film, no mesh,
+/// more memory than there is). Lets other errors pass, Interrupted too.
+std::string what_prevents(const std::function<void()>& make);
 
 /// Why a design cannot be evaluated.
 enum class FailureKind {

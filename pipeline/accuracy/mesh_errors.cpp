@@ -1,4 +1,4 @@
-#include "pipeline/study/mesh_errors.h"
+#include "pipeline/accuracy/mesh_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/response_kinds.h"
 
-namespace meniscus::study {
+namespace meniscus::accuracy {
 
 namespace {
 
@@ -183,4 +183,4 @@ std::vector<std::string> unsettled_warnings(
   return warnings;
 }
 
-}  // namespace meniscus::study
+}  // namespace meniscus::accuracy

@@ -10,6 +10,7 @@
 #include "core/json.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
+#include "pipeline/accuracy/mesh_errors.h"
 #include "pipeline/files/place_json.h"
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/forward/norm_peaks.h"
@@ -18,7 +19,6 @@
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
-#include "pipeline/study/mesh_errors.h"
 
 namespace meniscus::results {
 
@@ -218,12 +218,12 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   json["response_errors"] = value_map(names, result.response_errors);
   if (result.meshes[0].size() > 0) {
     json["meshes"] = Json::array();
-    for (std::size_t m = 0; m < study::kEdgeFactors.size(); ++m) {
-      if (m == study::kFinerMesh && result.meshes[m].size() == 0) {
+    for (std::size_t m = 0; m < accuracy::kEdgeFactors.size(); ++m) {
+      if (m == accuracy::kFinerMesh && result.meshes[m].size() == 0) {
         continue;
       }
       json["meshes"].push_back(
-          {{"edge", study::kEdgeFactors[m] * input.resolution.fea},
+          {{"edge", accuracy::kEdgeFactors[m] * input.resolution.fea},
            {"responses", value_map(names, result.meshes[m])}});
     }
   }

@@ -177,6 +177,16 @@ std::string result_text(const case_data::Case& input,
         "volume\n",
         zone.where, zone.elements, 100.0 * zone.volume_share);
   }
+  if (result.coarse) {
+    text += fmt::format(
+        "  first with edges {:.3g} times as long: {} and {}{}\n",
+        result.coarse->edge_factor,
+        count_text(static_cast<std::size_t>(result.coarse->evaluations),
+                   "evaluation"),
+        count_text(static_cast<std::size_t>(result.coarse->gradients),
+                   "gradient"),
+        result.coarse->design.size() > 0 ? "" : ", which gave no start");
+  }
   for (const store::Refreeze& r : result.refrozen) {
     text += fmt::format("  frozen anew at evaluation {}: {}{}\n", r.evaluation,
                         r.reason, shift_text(input, r, best.responses));

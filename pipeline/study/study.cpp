@@ -12,12 +12,13 @@
 #include "core/error.h"
 #include "core/math/dense.h"
 #include "core/timer.h"
+#include "pipeline/accuracy/doubted_margins.h"
+#include "pipeline/accuracy/mesh_errors.h"
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/part_warnings.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/accuracy_note.h"
 #include "pipeline/study/film_frames.h"
-#include "pipeline/study/mesh_errors.h"
 #include "pipeline/study/run_kind.h"
 #include "pipeline/study/study_monitor.h"
 #include "pipeline/study/study_records.h"
@@ -42,10 +43,7 @@ constexpr double kAtDesign = 1e-2;
 // find another answer on each. The last is within kAtDesign.
 constexpr std::array<double, 4> kReaches = {1.0, 0.1, 0.03, 0.009};
 
-// A margin to collapse that its own error makes nothing is held above it by
-// this much, or raised by that where the film is on no other mesh; so often.
-constexpr double kAboveError = 1.25;
-constexpr double kRaise = 1.5;
+// Bounds of margins to collapse are raised above their errors so often.
 constexpr int kMostRaises = 3;
 
 bool keeps_all(const StudyOutcome& outcome) {
@@ -53,23 +51,16 @@ bool keeps_all(const StudyOutcome& outcome) {
                      [](const Constraint& c) { return c.satisfied; });
 }
 
-/// A bound that keeps the film from its collapse.
-bool holds_margin(const case_data::Case& input,
-                  const case_data::ConstraintEntry& entry) {
-  return input.responses[static_cast<std::size_t>(entry.response)].kind ==
-             case_data::ResponseKind::CollapseMargin &&
-         std::isfinite(entry.lower);
-}
-
-/// Why a margin is doubted; `error` of it, NaN where no other mesh has one.
-std::string doubt_text(double error) {
-  return std::isfinite(error)
-             ? fmt::format("the mesh's own error of it is {:.2g}", error)
-             : "the film is on no other mesh";
-}
-
 bool ended_by_limit(const StudyOutcome& outcome) {
   return outcome.status == RunStatus::Stopped && !outcome.unproven;
+}
+
+VectorX bounds_of(const std::vector<accuracy::FigureError>& errors) {
+  VectorX bounds(static_cast<Eigen::Index>(errors.size()));
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    bounds[static_cast<Eigen::Index>(r)] = errors[r].bound;
+  }
+  return bounds;
 }
 
 /// What a point of a front is on a mesh of its own.
@@ -139,9 +130,8 @@ class StudyRun {
     return judged_ && judged_->model == stage_->model_name() &&
            judged_->design == design;
   }
-  MeshSequence other_meshes(bool with_eigen);
-  void add_mesh(std::size_t m, bool with_eigen, MeshSequence& meshes);
-  void combine_errors(const MeshSequence& meshes);
+  accuracy::MeshSequence other_meshes(bool with_eigen);
+  void combine_errors(const accuracy::MeshSequence& meshes);
   void warn();
   void count();
 
@@ -163,7 +153,7 @@ class StudyRun {
   struct OnOtherMeshes {
     std::string model;
     VectorX design;
-    MeshSequence meshes;
+    accuracy::MeshSequence meshes;
   };
   std::optional<OnOtherMeshes> judged_;
   std::unique_ptr<StudyStage> stage_;
@@ -236,18 +226,18 @@ void StudyRun::add_stage_totals() {
 std::unique_ptr<StudyStage> StudyRun::stage_at(const store::Refreeze& refreeze,
                                                const std::string& name,
                                                const case_data::Case& input) {
-  std::string reason;
-  try {
-    auto stage = std::make_unique<StudyStage>(
+  std::unique_ptr<StudyStage> stage;
+  std::string reason = what_prevents([&] {
+    stage = std::make_unique<StudyStage>(
         input, store_, options_,
         StageModel{.name = name, .reference = result_.start->responses});
-    if (!stage->failure()) {
-      return stage;
-    }
+  });
+  if (stage != nullptr && !stage->failure()) {
+    return stage;
+  }
+  if (stage != nullptr) {
     own_seconds_ += stage->evaluator().seconds();
     reason = stage->failure()->message;
-  } catch (const MeshError& error) {
-    reason = error.what();
   }
   result_.warnings.push_back(fmt::format(
       "{}, but no new model can be frozen there: {}", refreeze.reason, reason));
@@ -415,34 +405,37 @@ bool StudyRun::raise_doubted_margins() {
   if (!goes_on) {
     return false;
   }
+  auto& constraints = working.study.constraints;
+  const bool any = std::any_of(
+      constraints.begin(), constraints.end(), [&](const auto& entry) {
+        return accuracy::holds_margin(input_, entry) && entry.lower > 0.0;
+      });
+  if (!any) {
+    return false;
+  }
+  if (!is_judged(outcome.best)) {
+    judged_ = {stage_->model_name(), outcome.best, other_meshes(false)};
+  }
   bool raised = false;
-  for (case_data::ConstraintEntry& entry : working.study.constraints) {
-    if (!holds_margin(input_, entry) || !(entry.lower > 0.0)) {
+  for (const accuracy::DoubtedMargin& margin :
+       accuracy::doubted_margins(input_, judged_->meshes.responses[0],
+                                 bounds_of(accuracy::response_errors(
+                                     input_, judged_->meshes, VectorX())))) {
+    double& lower = constraints[margin.constraint].lower;
+    if (!(lower > 0.0)) {
       continue;
     }
-    if (!is_judged(outcome.best)) {
-      judged_ = {stage_->model_name(), outcome.best, other_meshes(false)};
-    }
-    const double value = judged_->meshes.responses[0][entry.response];
-    const double error =
-        response_errors(input_, judged_->meshes, {})[entry.response].bound;
-    if (value > error) {
-      continue;
-    }
-    entry.lower = std::isfinite(error)
-                      ? kAboveError * std::max(error, entry.lower)
-                      : kRaise * std::max(value, entry.lower);
+    lower = accuracy::raised_bound(margin, lower);
     raised = true;
-    const std::string& name =
-        input_.responses[static_cast<std::size_t>(entry.response)].name;
     monitor_.log(Severity::Info,
                  fmt::format("'{}' is {:.2g}, and {}: the study goes on and "
                              "holds it at {:.2g}",
-                             name, value, doubt_text(error), entry.lower));
+                             margin.name, margin.value,
+                             accuracy::doubt_text(margin), lower));
     result_.warnings.push_back(fmt::format(
         "'{}' was {:.2g} at a first answer, and {}: it is held at {:.2g} or "
         "more, above its bound",
-        name, value, doubt_text(error), entry.lower));
+        margin.name, margin.value, accuracy::doubt_text(margin), lower));
   }
   if (raised) {
     raised_ = true;
@@ -451,31 +444,24 @@ bool StudyRun::raise_doubted_margins() {
   return raised;
 }
 
-/// A margin that its own error makes nothing is no margin: the film may be
-/// there on this mesh alone.
+/// A margin that its own error makes nothing is no margin.
 void StudyRun::doubt_margins() {
   if (input_.study.kind != case_data::StudyKind::Minimize ||
       result_.response_errors.size() == 0) {
     return;
   }
-  for (const case_data::ConstraintEntry& entry : input_.study.constraints) {
-    const case_data::ResponseEntry& response =
-        input_.responses[static_cast<std::size_t>(entry.response)];
-    const double value = result_.best->responses[entry.response];
-    const double error = result_.response_errors[entry.response];
-    if (!holds_margin(input_, entry) || value > error) {
-      continue;
-    }
+  for (const accuracy::DoubtedMargin& margin : accuracy::doubted_margins(
+           input_, result_.best->responses, result_.response_errors)) {
     for (Constraint& constraint : result_.constraints) {
-      if (constraint.name == response.name) {
+      if (constraint.name == margin.name) {
         constraint.satisfied = false;
       }
     }
     const std::string note = fmt::format(
         "'{}' is {:.2g} and {}: the film may be there on this mesh alone, so "
         "the bound is not kept; raise it{}, or shorten resolution.fea",
-        response.name, value, doubt_text(error),
-        std::isfinite(error) ? " above the error" : "");
+        margin.name, margin.value, accuracy::doubt_text(margin),
+        std::isfinite(margin.error) ? " above the error" : "");
     result_.message += ". " + note;
     result_.warnings.push_back(note);
     if (result_.status == RunStatus::Converged) {
@@ -607,83 +593,43 @@ void StudyRun::estimate_errors() {
   const bool with_eigen =
       result_.eigen && forward::deserve_errors(input_, *result_.eigen);
   const bool known = !with_eigen && is_judged(result_.best->design);
-  MeshSequence meshes =
+  accuracy::MeshSequence meshes =
       known ? std::move(judged_->meshes) : other_meshes(with_eigen);
   if (!meshes.has_others()) {
     result_.warnings.push_back(fmt::format(
         "no error estimate{}, neither coarser nor finer models can be "
         "evaluated: {}",
         result_.element_errors ? " beyond the elements' own part" : "",
-        meshes.failures[kFinerMesh]));
+        meshes.failures[accuracy::kFinerMesh]));
   }
   if (meshes.has_others() || result_.element_errors) {
     combine_errors(meshes);
   }
   if (with_eigen && meshes.has_others()) {
     meshes.eigen[0] = std::move(*result_.eigen);
-    add_eigen_errors(meshes);
+    accuracy::add_eigen_errors(meshes);
     result_.eigen = std::move(meshes.eigen[0]);
   }
 }
 
-/// The best design on its own mesh and on others, the finer one where neither
-/// coarser one can be made.
-MeshSequence StudyRun::other_meshes(bool with_eigen) {
-  MeshSequence meshes;
-  meshes.responses[0] =
-      store_.find(stage_->model_name(), stage_->outcome().best)->responses;
-  for (std::size_t m = 1; m < kEdgeFactors.size(); ++m) {
-    if (m != kFinerMesh || !meshes.has_coarser()) {
-      add_mesh(m, with_eigen, meshes);
-    }
-  }
+/// The best design on its own mesh and on others.
+accuracy::MeshSequence StudyRun::other_meshes(bool with_eigen) {
+  accuracy::MeshSequence meshes = accuracy::evaluate_on_other_meshes(
+      frozen_ ? *frozen_ : case_, stage_->outcome().best,
+      store_.find(stage_->model_name(), stage_->outcome().best)->responses,
+      with_eigen, limited_);
+  own_seconds_ += meshes.seconds;
   return meshes;
 }
 
-/// The best design on a model with edges kEdgeFactors[m] times as long.
-void StudyRun::add_mesh(std::size_t m, bool with_eigen, MeshSequence& meshes) {
-  monitor_.progress(
-      {.stage = "accuracy",
-       .detail = fmt::format("a model with edges {:.2g} times as long",
-                             kEdgeFactors[m])});
-  try {
-    const forward::ForwardModel coarser(
-        frozen_ ? *frozen_ : case_,
-        {.edge_factor = kEdgeFactors[m], .monitor = &limited_});
-    own_seconds_ += coarser.frozen().seconds;
-    if (coarser.failure()) {
-      meshes.failures[m] = coarser.failure()->message;
-      return;
-    }
-    forward::EvaluationFields fields;
-    const forward::Evaluation there = coarser.evaluate(
-        stage_->outcome().best, with_eigen ? &fields : nullptr);
-    own_seconds_ += there.seconds;
-    if (there.failure) {
-      meshes.failures[m] = there.failure->message;
-      return;
-    }
-    meshes.responses[m] = there.responses;
-    if (with_eigen) {
-      meshes.eigen[m] = forward::eigen_figures(input_, fields,
-                                               coarser.elasticity(), &limited_);
-      own_seconds_.fea += meshes.eigen[m].seconds;
-    }
-  } catch (const MeshError& error) {
-    meshes.failures[m] = error.what();
-  }
-}
-
-void StudyRun::combine_errors(const MeshSequence& meshes) {
-  const std::vector<FigureError> errors = response_errors(
+void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
+  const std::vector<accuracy::FigureError> errors = accuracy::response_errors(
       input_, meshes,
       result_.element_errors ? result_.element_errors->responses : VectorX());
-  result_.response_errors.resize(static_cast<Eigen::Index>(errors.size()));
-  for (std::size_t r = 0; r < errors.size(); ++r) {
-    result_.response_errors[static_cast<Eigen::Index>(r)] = errors[r].bound;
-  }
+  result_.response_errors = bounds_of(errors);
   result_.meshes = meshes.responses;
-  for (std::string& warning : unsettled_warnings(input_, meshes, errors)) {
+  for (std::string& warning :
+       accuracy::unsettled_warnings(input_, meshes, errors)) {
     result_.warnings.push_back(std::move(warning));
   }
   if (stage_->targets() != nullptr && stage_->outcome().jacobian.size() > 0) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/monitor.h"
+#include "pipeline/accuracy/mesh_errors.h"
 #include "pipeline/case_data/case.h"
 #include "pipeline/forward/adaptation.h"
 #include "pipeline/forward/eigen_figures.h"
@@ -19,7 +20,6 @@
 #include "pipeline/store/study_store.h"
 #include "pipeline/study/front_figures.h"
 #include "pipeline/study/ledger.h"
-#include "pipeline/study/mesh_errors.h"
 #include "pipeline/study/progress_tracker.h"
 #include "pipeline/study/sweep_figures.h"
 #include "pipeline/study/tolerance_figures.h"
@@ -67,7 +67,7 @@ struct RunResult {
   VectorX design_errors;    // of the matched variables; may be empty
   /// The responses on the meshes that the errors come from (mesh_errors.h):
   /// empty where one failed.
-  std::array<VectorX, kEdgeFactors.size()> meshes;
+  std::array<VectorX, accuracy::kEdgeFactors.size()> meshes;
   std::vector<forward::StressFigures>
       stress;                    // of the best design, per load case
   forward::Exclusion exclusion;  // what these leave out

@@ -1,5 +1,8 @@
 #include "pipeline/study/study_records.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +15,48 @@ namespace meniscus::study {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr Eigen::Index kMostNamed = 6;  // in a line that a person reads
+
+/// Indices of all responses; of more than kMostNamed what the study asks for.
+std::vector<int> named_responses(const case_data::Case& input,
+                                 Eigen::Index count) {
+  std::vector<int> named;
+  if (count <= kMostNamed) {
+    named.resize(static_cast<std::size_t>(count));
+    std::iota(named.begin(), named.end(), 0);
+    return named;
+  }
+  const auto add = [&](int response) {
+    if (response >= 0 && response < count &&
+        static_cast<Eigen::Index>(named.size()) < kMostNamed &&
+        std::find(named.begin(), named.end(), response) == named.end()) {
+      named.push_back(response);
+    }
+  };
+  const case_data::StudyEntry& study = input.study;
+  const std::vector<std::string> names = case_data::response_names(input);
+  const auto add_name = [&](const std::string& name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    add(at == names.end() ? -1 : static_cast<int>(at - names.begin()));
+  };
+  add(study.objective.value_or(-1));
+  add(study.second.value_or(-1));
+  add(study.fit.value_or(-1));
+  for (const std::string& name : study.equal) {
+    add_name(name);
+  }
+  for (const auto& [name, value] : study.targets) {
+    add_name(name);
+  }
+  for (const case_data::ConstraintEntry& entry : study.constraints) {
+    add(entry.response);
+  }
+  for (int k = 0; k < count; ++k) {
+    add(k);
+  }
+  return named;
+}
 
 }  // namespace
 
@@ -45,18 +90,23 @@ std::string describe(const case_data::Case& input,
                      const store::EvaluationRecord& record) {
   std::string text = fmt::format("evaluation {} ({}):", record.number,
                                  store::purpose_of(record));
-  for (Eigen::Index k = 0; k < record.inputs.size(); ++k) {
-    text += fmt::format(" {} = {}", record.input_names[k],
-                        quantity_text(record.inputs[k], ""));
+  if (record.inputs.size() <= kMostNamed) {
+    for (Eigen::Index k = 0; k < record.inputs.size(); ++k) {
+      text += fmt::format(" {} = {}", record.input_names[k],
+                          quantity_text(record.inputs[k], ""));
+    }
+    text += record.inputs.size() > 0 ? ";" : "";
   }
   if (record.failure) {
-    return text + "; cannot evaluate here: " + record.failure->message;
+    return text + " cannot evaluate here: " + record.failure->message;
   }
-  for (Eigen::Index k = 0; k < record.responses.size(); ++k) {
-    const ShownUnit unit = case_data::shown_unit(input, static_cast<int>(k));
+  const char* between = " ";
+  for (const int k : named_responses(input, record.responses.size())) {
+    const ShownUnit unit = case_data::shown_unit(input, k);
     text += fmt::format(
-        "{} {} = {}", k == 0 ? ";" : ",", record.response_names[k],
+        "{}{} = {}", between, record.response_names[k],
         quantity_text(unit.factor * record.responses[k], unit.unit));
+    between = ", ";
   }
   if (record.mismatch) {
     text += fmt::format("; mismatch {:.3g}", *record.mismatch);

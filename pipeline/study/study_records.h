@@ -16,6 +16,8 @@ store::EvaluationRecord make_record(const case_data::Case& input,
 forward::Evaluation to_evaluation(const store::EvaluationRecord& record);
 
 /// One line: "evaluation 3 (step): support_x = 12.3; left_deflection = ...".
+/// More than six variables are left out; of more than six responses six are
+/// there, what the study asks for before others. The database has all.
 std::string describe(const case_data::Case& input,
                      const store::EvaluationRecord& record);
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/accuracy/mesh_sequence.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/study_records.h"
@@ -179,25 +180,49 @@ CoarseStage run_coarse_stage(const case_data::Case& input,
   const double factor = input.study.coarse_first;
   CoarseStage result;
   result.figures.edge_factor = factor;
-  try {
-    StudyStage stage(
-        input, store, options,
-        {.name = fmt::format("coarse x{}", factor), .edge_factor = factor});
-    result.seconds = stage.evaluator().seconds();
-    if (stage.failure()) {
-      result.figures.message = stage.failure()->message;
-      return result;
+  const std::string name = fmt::format("coarse x{}", factor);
+  const std::string prevented = what_prevents([&] {
+    case_data::Case working = input;
+    StudyOptions asked = options;
+    std::optional<VectorX> reference;
+    // Each round on a mesh of the last one's best design, which many of its
+    // designs have left the reach of.
+    for (int round = 0;; ++round) {
+      StudyStage stage(
+          working, store, asked,
+          {.name = round == 0 ? name : fmt::format("{} ({})", name, round + 1),
+           .edge_factor = factor,
+           .reference = reference});
+      if (stage.failure()) {
+        result.seconds += stage.evaluator().seconds();
+        result.figures.message =
+            result.best ? result.figures.message : stage.failure()->message;
+        return;
+      }
+      const bool last = !input.study.refreeze || round == store::kMostRefreezes;
+      stage.conduct(last ? StudyStage::Leave::Late : StudyStage::Leave::Early);
+      const int evaluations =
+          store::count_of_model(store.all(), stage.model_name());
+      result.seconds += stage.evaluator().seconds();
+      result.best = stage.outcome().best;
+      result.figures.design = stage.outcome().best;
+      result.figures.message = stage.outcome().message;
+      result.figures.evaluations += evaluations;
+      result.figures.gradients += stage.evaluator().counts().gradients;
+      if (!stage.stopped_early()) {
+        return;
+      }
+      working = store::frozen_at(std::move(working), *result.best);
+      working.study.max_evaluations =
+          std::max(1, working.study.max_evaluations - evaluations);
+      asked.start.reset();
+      if (round == 0) {
+        reference = stage.start().responses;
+      }
     }
-    stage.conduct();
-    result.best = stage.outcome().best;
-    result.figures.design = stage.outcome().best;
-    result.figures.message = stage.outcome().message;
-    result.figures.evaluations =
-        store::count_of_model(store.all(), stage.model_name());
-    result.figures.gradients = stage.evaluator().counts().gradients;
-    result.seconds = stage.evaluator().seconds();
-  } catch (const MeshError& error) {
-    result.figures.message = error.what();
+  });
+  if (!prevented.empty()) {
+    result.figures.message = prevented;
   }
   return result;
 }

@@ -104,6 +104,20 @@ class Minimize(ProgramTest):
         self.assertTrue(any("coarser model gave no start" in text
                             for text in result["warnings"]))
 
+    def test_a_coarser_film_without_vertices_is_told_and_left(self):
+        """Between two caps a film's coarser start has rims alone: that model
+        fails, and what the case's own model found is not lost."""
+        source = program.ROOT / "cases" / "bell_crank" / "case.toml"
+        case = self.folder / "analysed.toml"
+        case.write_text(source.read_text().split("[study]")[0])
+        out = self.folder / "analysed"
+        self.expect(self.call("run", case, "--set", "resolution.fea=16",
+                              "--set", "resolution.film=8", "--no-pictures",
+                              "--out", out), 0)
+        result = self.result(out)
+        self.assertEqual(result["status"], "converged")
+        self.assertGreater(result["response_errors"]["turn_a"], 0.0)
+
     def test_least_mass_at_equal_deflections(self):
         case = self.sized()
         done, result = self.minimum(case, "a")

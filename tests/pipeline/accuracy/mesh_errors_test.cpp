@@ -1,4 +1,4 @@
-#include "pipeline/study/mesh_errors.h"
+#include "pipeline/accuracy/mesh_errors.h"
 
 #include <cmath>
 #include <limits>
@@ -9,7 +9,7 @@
 namespace meniscus::mesh_errors_test {
 namespace {
 
-using namespace study;
+using namespace accuracy;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

@@ -1,0 +1,51 @@
+#include "pipeline/accuracy/doubted_margins.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace meniscus::accuracy {
+
+bool holds_margin(const case_data::Case& input,
+                  const case_data::ConstraintEntry& entry) {
+  return input.responses[static_cast<std::size_t>(entry.response)].kind ==
+             case_data::ResponseKind::CollapseMargin &&
+         std::isfinite(entry.lower);
+}
+
+std::vector<DoubtedMargin> doubted_margins(const case_data::Case& input,
+                                           const VectorX& responses,
+                                           const VectorX& errors) {
+  std::vector<DoubtedMargin> doubted;
+  const auto& constraints = input.study.constraints;
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    const int response = constraints[k].response;
+    // An error that is not known keeps nothing.
+    if (holds_margin(input, constraints[k]) &&
+        !(responses[response] > errors[response])) {
+      doubted.push_back(
+          {.constraint = k,
+           .name = input.responses[static_cast<std::size_t>(response)].name,
+           .value = responses[response],
+           .error = errors[response]});
+    }
+  }
+  return doubted;
+}
+
+std::string doubt_text(const DoubtedMargin& margin) {
+  return std::isfinite(margin.error)
+             ? fmt::format("the mesh's own error of it is {:.2g}", margin.error)
+             : "the film is on no other mesh";
+}
+
+double raised_bound(const DoubtedMargin& margin, double lower) {
+  constexpr double kAboveError = 1.25;
+  constexpr double kRaise = 1.5;
+  return std::isfinite(margin.error)
+             ? kAboveError * std::max(margin.error, lower)
+             : kRaise * std::max(margin.value, lower);
+}
+
+}  // namespace meniscus::accuracy
