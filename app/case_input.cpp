@@ -1,5 +1,6 @@
 #include "app/case_input.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <span>
 
@@ -8,12 +9,52 @@
 #include "app/signals.h"
 #include "core/error.h"
 #include "core/math/expression.h"
+#include "pipeline/store/stored_case.h"
 
 namespace meniscus::app {
 
+namespace {
+
+std::vector<std::string> start_overrides(const CommonArguments& common,
+                                         const case_data::Case& input) {
+  try {
+    return store::answer_as_overrides(common.from, input);
+  } catch (const IoError& error) {
+    throw InvalidInput(fmt::format("--from {}: {}", common.from, error.what()));
+  }
+}
+
+/// With the answer of `common.from` as the start, but for what --set says.
+reader::CaseReading read_case(const std::string& path,
+                              const CommonArguments& common) {
+  reader::CaseReading reading = reader::read_case_file(path, common.overrides);
+  if (common.from.empty() || !reading.input) {
+    return reading;
+  }
+  std::vector<std::string> overrides = start_overrides(common, *reading.input);
+  const auto name_of = [](const std::string& text) {
+    return text.substr(0, text.find('='));
+  };
+  overrides.erase(std::remove_if(overrides.begin(), overrides.end(),
+                                 [&](const std::string& start) {
+                                   return std::any_of(
+                                       common.overrides.begin(),
+                                       common.overrides.end(),
+                                       [&](const std::string& said) {
+                                         return name_of(said) == name_of(start);
+                                       });
+                                 }),
+                  overrides.end());
+  overrides.insert(overrides.end(), common.overrides.begin(),
+                   common.overrides.end());
+  return reader::read_case_file(path, overrides);
+}
+
+}  // namespace
+
 reader::CaseReading read_and_report_case(const std::string& path,
                                          const CommonArguments& common) {
-  reader::CaseReading reading = reader::read_case_file(path, common.overrides);
+  reader::CaseReading reading = read_case(path, common);
   for (const std::string& problem : reading.problems) {
     std::fprintf(stderr, "%s\n", problem.c_str());
   }

@@ -11,8 +11,9 @@ namespace meniscus::app {
 
 struct CommonArguments {
   std::vector<std::string> overrides;  // "name=value"
-  std::string out;                     // results folder; empty: results/<name>
-  std::string log;                     // JSON-lines log file; empty: none
+  std::string from;  // folder of a run whose answer is the start; empty: none
+  std::string out;   // results folder; empty: results/<name>
+  std::string log;   // JSON-lines log file; empty: none
   bool quiet = false;
 };
 

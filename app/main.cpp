@@ -27,6 +27,11 @@ void add_overrides(CLI::App& command, CommonArguments& common) {
                   "override a parameter, a design variable's start or a key: "
                   "load_left=5e4, resolution.fea=6")
       ->type_name("NAME=VALUE");
+  command
+      .add_option("--from", common.from,
+                  "begin at the answer of another run: its design variables "
+                  "that this case has too; --set goes before it")
+      ->type_name("DIR");
 }
 
 void add_common(CLI::App& command, CommonArguments& common) {
@@ -139,7 +144,12 @@ int run_program(int argc, char** argv) {
                   "the threads; results do not depend on it")
       ->check(CLI::Range(1, meniscus::study::kMostJobs));
   run->add_option("--time-limit", run_arguments.time_limit,
-                  "stop after so many seconds and keep the best point")
+                  "stop after so many seconds, or \"10 min\", and keep the "
+                  "best point")
+      ->transform(CLI::AsNumberWithUnit(
+          std::map<std::string, double>{
+              {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}},
+          CLI::AsNumberWithUnit::UNIT_OPTIONAL, "TIME"))
       ->check(positive());
   run->callback([&] {
     command = [&] { return meniscus::app::run_command(run_arguments); };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/count_text.h"
 #include "optimize/first_start.h"
 #include "optimize/free_variables.h"
 #include "optimize/minimize_report.h"
@@ -145,6 +146,10 @@ MinimizeReport minimize_free(const MinimizeProblem& problem,
 }
 
 }  // namespace
+
+std::string MinimizeProblem::objective_text(double value) const {
+  return objective + ' ' + quantity_text(shown_factor * value, shown_unit);
+}
 
 const std::vector<MinimizeMethod>& minimize_methods() {
   static const std::vector<MinimizeMethod> methods = [] {

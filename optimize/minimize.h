@@ -37,6 +37,11 @@ struct MinimizeProblem {
   /// Asked only where a method needs derivatives, always after the function
   /// answered at the same x; empty: forward differences within the bounds.
   JacobianFunction jacobian = {};
+  /// What messages show the objective in: value x factor, then the unit.
+  double shown_factor = 1.0;
+  std::string shown_unit = {};
+
+  std::string objective_text(double value) const;  // "mass 0.485 kg"
 };
 
 struct MinimizeOptions {

@@ -213,9 +213,10 @@ void MinimizeEvaluator::account(const VectorX& x, const MinimizePoint& point) {
     make_incumbent(x, point.values);
   }
   report_progress(fmt::format(
-      "{}, {} {:.6g}{}, best {:.6g}{}", describe(x), problem_.objective,
-      objective, kept ? "" : fmt::format(" (violation {:.2g})", off),
-      best_objective_, best_is_feasible() ? "" : " (infeasible)"));
+      "{}, {}{}, best {}{}", describe(x), problem_.objective_text(objective),
+      kept ? "" : fmt::format(" (violation {:.2g})", off),
+      problem_.objective_text(best_objective_),
+      best_is_feasible() ? "" : " (infeasible)"));
   if (!varies_ && best_is_feasible() &&
       answered() >= kConstantAnswers + 2 * static_cast<int>(size())) {
     set_halt(Halt::Constant);

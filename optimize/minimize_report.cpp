@@ -103,10 +103,11 @@ std::string in_the_way(const MinimizeEvaluator& evaluator,
 
 std::string figures(const MinimizeEvaluator& evaluator,
                     const MinimizeReport& report) {
-  std::string text = fmt::format(
-      "{} {:.6g} at {} after {} evaluations{}", evaluator.problem().objective,
-      report.objective, evaluator.describe(report.best), report.evaluations,
-      evaluator.failures());
+  std::string text =
+      fmt::format("{} at {} after {} evaluations{}",
+                  evaluator.problem().objective_text(report.objective),
+                  evaluator.describe(report.best), report.evaluations,
+                  evaluator.failures());
   if (report.first_order) {
     text += fmt::format(", first-order residual {:.2g} (asked: {:.2g})",
                         report.first_order->residual,

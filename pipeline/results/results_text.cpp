@@ -136,12 +136,13 @@ std::string result_text(const case_data::Case& input,
         moves ? at_bound(variable, best.design[k]) : "");
   }
   const std::vector<std::string> names = case_data::response_names(input);
+  const bool moved = result.start && result.start->design != best.design;
   for (Eigen::Index k = 0; k < best.responses.size(); ++k) {
     const ShownUnit unit = case_data::shown_unit(input, static_cast<int>(k));
     text += fmt::format(
         "  {:<20} {}", names[k],
         with_error(best.responses[k], result.response_errors, k, unit));
-    if (result.start && result.start->responses.size() > k) {
+    if (moved && result.start->responses.size() > k) {
       text +=
           "   (at the start " +
           quantity_text(unit.factor * result.start->responses[k], unit.unit) +

@@ -1,10 +1,13 @@
 #include "pipeline/store/stored_case.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "core/json.h"
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/store/find_runs.h"
@@ -114,6 +117,36 @@ VectorX answer_of_run(const case_data::Case& input,
     }
   }
   return best_record(input, records).inputs;
+}
+
+std::vector<std::string> answer_as_overrides(
+    const std::filesystem::path& folder, const case_data::Case& input) {
+  const StudyStore store = StudyStore::read(folder.string());
+  const case_data::Case run = restore_case(store.meta());
+  if (run.units.length != input.units.length ||
+      run.units.force != input.units.force) {
+    throw InvalidInput(
+        fmt::format("the run in '{}' is in {} and {}, the case in {} and {}",
+                    folder.string(), run.units.length, run.units.force,
+                    input.units.length, input.units.force));
+  }
+  const VectorX answer = answer_of_run(run, store.all(), folder);
+  const std::vector<std::string> names = case_data::design_names(input);
+  std::vector<std::string> overrides;
+  for (std::size_t k = 0; k < run.design.size(); ++k) {
+    const std::string& name = run.design[k].name;
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      overrides.push_back(
+          fmt::format("{}={}", name, answer[static_cast<Eigen::Index>(k)]));
+    }
+  }
+  if (overrides.empty()) {
+    throw InvalidInput(fmt::format(
+        "the run in '{}' has no design variable of this case, which has {}",
+        folder.string(),
+        names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  return overrides;
 }
 
 }  // namespace meniscus::store

@@ -36,4 +36,11 @@ VectorX answer_of_run(const case_data::Case& input,
                       const std::vector<EvaluationRecord>& records,
                       const std::filesystem::path& folder);
 
+/// The answer of the run in `folder` as "NAME=VALUE" for each design variable
+/// that `input` has too, to the bit: overrides that make it the start. Throws
+/// IoError (no study there), InvalidInput (no design that was evaluated, none
+/// of these variables, other units than the case's).
+std::vector<std::string> answer_as_overrides(
+    const std::filesystem::path& folder, const case_data::Case& input);
+
 }  // namespace meniscus::store

@@ -22,6 +22,9 @@ optimize::MinimizeProblem minimize_problem(const StudyTask& task,
   optimize::MinimizeProblem problem;
   problem.variables = variables_of(input, task.start, task.reach);
   problem.objective = input.responses[*input.study.objective].name;
+  const ShownUnit shown = case_data::shown_unit(input, *input.study.objective);
+  problem.shown_factor = shown.factor;
+  problem.shown_unit = shown.unit;
   for (const case_data::ConstraintEntry& constraint : input.study.constraints) {
     const case_data::ResponseEntry& response =
         input.responses[static_cast<std::size_t>(constraint.response)];

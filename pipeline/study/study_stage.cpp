@@ -161,9 +161,12 @@ void StudyStage::judge(const StudyOutcome& found,
     }
   } else {
     outcome_.objective = start_.responses[*input_.study.objective];
+    const ShownUnit shown =
+        case_data::shown_unit(input_, *input_.study.objective);
     outcome_.message += fmt::format(
-        ". On a mesh made for it: {} {:.6g}",
-        input_.responses[*input_.study.objective].name, outcome_.objective);
+        ". On a mesh made for it: {} {}",
+        input_.responses[*input_.study.objective].name,
+        quantity_text(shown.factor * outcome_.objective, shown.unit));
   }
   if (!missed.empty()) {
     outcome_.message += fmt::format(

@@ -141,6 +141,38 @@ class Minimize(ProgramTest):
             self.assertAlmostEqual(other["objective"] / mass, 1.0, 2)
         self.assertGreater(best["fill"], 1.4e6)
 
+    def test_a_run_from_the_answer_of_another(self):
+        case = self.sized()
+        done, first = self.minimum(case, "first")
+        self.expect(done, 0)
+        look = ("--set", "study.kind=analyse")
+        done, again = self.minimum(case, "again", "--from",
+                                   self.folder / "first", *look)
+        self.expect(done, 0)
+        self.assertEqual(again["parameters"], first["parameters"])
+        # Judged on a mesh made for it: nearly that one.
+        self.assertLess(abs(again["responses"]["left_deflection"] /
+                            first["responses"]["left_deflection"] - 1), 1e-2)
+        # What --set says goes before it.
+        done, moved = self.minimum(case, "moved", "--from",
+                                   self.folder / "first", "--set",
+                                   "radius=33", *look)
+        self.expect(done, 0)
+        self.assertEqual(moved["parameters"],
+                         {**first["parameters"], "radius": 33.0})
+        # A sized part goes on from its answer and finds nothing much better.
+        done, on = self.minimum(case, "on", "--from", self.folder / "first")
+        self.expect(done, 0)
+        self.assertLess(abs(on["objective"] / first["objective"] - 1), 3e-3)
+        self.expect(self.call("run", case, "--from", self.folder / "none"), 2,
+                    "--from .*none")
+        self.expect(self.call("run", program.ROOT / "cases" / "stepped_shaft" /
+                              "case.toml", "--from", self.folder / "first"), 2,
+                    "no design variable of this case")
+        self.expect(self.call(
+            "run", case, "--from", self.folder / "first", "--set",
+            "design.radius.bounds=[36.5, 40]"), 2, r"radius.*bounds")
+
     def test_a_method_without_gradients_finds_it_too(self):
         case = self.sized()
         _, exact = self.minimum(case, "exact")
