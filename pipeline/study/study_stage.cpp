@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/count_text.h"
 #include "pipeline/accuracy/mesh_sequence.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
