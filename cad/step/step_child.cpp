@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLeastTime = 10.0;  // [s]
 constexpr double kTimePerByte = 20e-6;
-constexpr double kLeastMemory = 1.2e9;  // [byte]
+constexpr double kLeastMemory = 0.9e9;  // [byte] of address space
 constexpr double kMemoryPerByte = 500.0;
 
 std::string no_answer(const std::filesystem::path& path,
