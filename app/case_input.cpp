@@ -1,6 +1,5 @@
 #include "app/case_input.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <span>
 
@@ -24,7 +23,8 @@ std::vector<std::string> start_overrides(const CommonArguments& common,
   }
 }
 
-/// With the answer of `common.from` as the start, but for what --set says.
+/// With the answer of `common.from` as the start, but for what --set says: of
+/// two overrides of a name the later counts.
 reader::CaseReading read_case(const std::string& path,
                               const CommonArguments& common) {
   reader::CaseReading reading = reader::read_case_file(path, common.overrides);
@@ -32,19 +32,6 @@ reader::CaseReading read_case(const std::string& path,
     return reading;
   }
   std::vector<std::string> overrides = start_overrides(common, *reading.input);
-  const auto name_of = [](const std::string& text) {
-    return text.substr(0, text.find('='));
-  };
-  overrides.erase(std::remove_if(overrides.begin(), overrides.end(),
-                                 [&](const std::string& start) {
-                                   return std::any_of(
-                                       common.overrides.begin(),
-                                       common.overrides.end(),
-                                       [&](const std::string& said) {
-                                         return name_of(said) == name_of(start);
-                                       });
-                                 }),
-                  overrides.end());
   overrides.insert(overrides.end(), common.overrides.begin(),
                    common.overrides.end());
   return reader::read_case_file(path, overrides);

@@ -8,6 +8,7 @@
 
 #include "core/count_text.h"
 #include "core/json.h"
+#include "pipeline/case_data/studied_responses.h"
 #include "pipeline/forward/figures_json.h"
 
 namespace meniscus::study {
@@ -16,44 +17,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr Eigen::Index kMostNamed = 6;  // in a line that a person reads
+constexpr int kMostNamed = 6;  // in a line that a person reads
 
-/// Indices of all responses; of more than kMostNamed what the study asks for.
-std::vector<int> named_responses(const case_data::Case& input,
-                                 Eigen::Index count) {
-  std::vector<int> named;
+/// Indices of all responses; of more than kMostNamed what the study asks for
+/// before others.
+std::vector<int> named_responses(const case_data::Case& input, int count) {
+  std::vector<int> all(static_cast<std::size_t>(count));
+  std::iota(all.begin(), all.end(), 0);
   if (count <= kMostNamed) {
-    named.resize(static_cast<std::size_t>(count));
-    std::iota(named.begin(), named.end(), 0);
-    return named;
+    return all;
   }
-  const auto add = [&](int response) {
-    if (response >= 0 && response < count &&
-        static_cast<Eigen::Index>(named.size()) < kMostNamed &&
+  std::vector<int> candidates = case_data::studied_responses(input);
+  candidates.insert(candidates.end(), all.begin(), all.end());
+  std::vector<int> named;
+  for (const int response : candidates) {
+    if (static_cast<int>(named.size()) < kMostNamed &&
         std::find(named.begin(), named.end(), response) == named.end()) {
       named.push_back(response);
     }
-  };
-  const case_data::StudyEntry& study = input.study;
-  const std::vector<std::string> names = case_data::response_names(input);
-  const auto add_name = [&](const std::string& name) {
-    const auto at = std::find(names.begin(), names.end(), name);
-    add(at == names.end() ? -1 : static_cast<int>(at - names.begin()));
-  };
-  add(study.objective.value_or(-1));
-  add(study.second.value_or(-1));
-  add(study.fit.value_or(-1));
-  for (const std::string& name : study.equal) {
-    add_name(name);
-  }
-  for (const auto& [name, value] : study.targets) {
-    add_name(name);
-  }
-  for (const case_data::ConstraintEntry& entry : study.constraints) {
-    add(entry.response);
-  }
-  for (int k = 0; k < count; ++k) {
-    add(k);
   }
   return named;
 }
@@ -101,7 +82,8 @@ std::string describe(const case_data::Case& input,
     return text + " cannot evaluate here: " + record.failure->message;
   }
   const char* between = " ";
-  for (const int k : named_responses(input, record.responses.size())) {
+  for (const int k :
+       named_responses(input, static_cast<int>(record.responses.size()))) {
     const ShownUnit unit = case_data::shown_unit(input, k);
     text += fmt::format(
         "{}{} = {}", between, record.response_names[k],
