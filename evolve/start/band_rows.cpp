@@ -181,6 +181,7 @@ int joined_corners(const films::RuledBand& band,
 BandFilling fill_band(const films::RuledBand& band,
                       const std::vector<curves::Curve>& curves,
                       const BandRim& outer, const BandRim& inner, double edge) {
+  // 1. How many rows the ruling takes; a band of very uneven lines has none.
   const std::vector<double> lengths = line_lengths(band, curves, outer, inner);
   const auto [shortest, longest] =
       std::minmax_element(lengths.begin(), lengths.end());
@@ -193,6 +194,7 @@ BandFilling fill_band(const films::RuledBand& band,
       {edge, mean_piece_of(outer.points), mean_piece_of(inner.points)});
   const int rows =
       std::max(1, static_cast<int>(std::lround(mean / (kRowHeight * piece))));
+  // 2. The rims as the first and the last row, begun near each other.
   const int parts = joined_corners(band, curves);
   const auto first_inner = static_cast<int>(outer.points.size());
   const Row first = sorted_row(outer.t, 0, parts);
@@ -203,6 +205,8 @@ BandFilling fill_band(const films::RuledBand& band,
   mesh.points = outer.points;
   mesh.points.insert(mesh.points.end(), inner.points.begin(),
                      inner.points.end());
+  // 3. Rows between, on the ruling, every other one half a piece along; each is
+  //    stitched to the one below it.
   Row below = first;
   for (int k = 1; k < rows; ++k) {
     const double share = static_cast<double>(k) / rows;

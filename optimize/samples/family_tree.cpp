@@ -91,6 +91,8 @@ std::vector<FamilyStep> family_tree(const std::vector<VectorX>& members,
   check_members(members);
   const std::vector<VectorX> points = normalised(members);
   const std::size_t count = members.size();
+  // Prim's algorithm for the least spanning tree: each member that is not in it
+  // knows the nearest one that is.
   constexpr double kFar = std::numeric_limits<double>::infinity();
   std::vector<FamilyStep> best(count);
   std::vector<bool> joined(count, false);
@@ -110,6 +112,7 @@ std::vector<FamilyStep> family_tree(const std::vector<VectorX>& members,
       }
     }
   };
+  // First those that are kept, then again and again the nearest of the rest.
   std::vector<FamilyStep> steps = kept_steps(points, kept);
   steps.reserve(count);
   for (const FamilyStep& step : steps) {
