@@ -14,6 +14,9 @@ namespace {
 constexpr int kMatched = 96;         // points that are looked at on each curve
 constexpr int kShareSteps = 2048;    // of a table of lengths
 constexpr double kEqualSums = 1e-9;  // sums that differ by less are equal
+constexpr double kSmoothJoin =
+    0.02;                           // [rad] parts that meet at less: no corner
+constexpr double kJoinStep = 1e-6;  // of a part, beside its ends
 
 double wrapped(double t) {
   const double in = t - std::floor(t);
@@ -87,6 +90,83 @@ double squared_lengths(const Points& a, const Points& b, int turn, int first) {
   return sum;
 }
 
+/// How two curves are joined, and the sum of squared lengths of some lines.
+struct Match {
+  double turn = 1.0;
+  double shift = 0.0;
+  double sum = std::numeric_limits<double>::infinity();
+};
+
+/// Both ways around, by every `each`-th of `count` samples.
+Match match_samples(const Points& start, const Points& end, int each) {
+  const auto count = static_cast<int>(start.size());
+  Match best;
+  for (const int turn : {1, -1}) {
+    for (int first = 0; first < count; first += each) {
+      const double sum = squared_lengths(start, end, turn, first);
+      if (sum < best.sum * (1.0 - kEqualSums)) {
+        best = {static_cast<double>(turn), static_cast<double>(first) / count,
+                sum};
+      }
+    }
+  }
+  return best;
+}
+
+/// At equal parameters, part to part.
+Match match_by_parts(const curves::CurveShape& from,
+                     const curves::CurveShape& to, int parts) {
+  const int each = std::max(1, kMatched / parts);
+  const auto points = [&](const curves::CurveShape& shape) {
+    return points_at_shares(shape, {}, parts * each, 1.0, 0.0);
+  };
+  Match match = match_samples(points(from), points(to), each);
+  match.sum *= static_cast<double>(kMatched) / (parts * each);
+  return match;
+}
+
+/// At equal shares, from whichever place is best: also between samples.
+Match match_by_shares(const curves::CurveShape& from,
+                      const LengthShares& of_outer,
+                      const curves::CurveShape& to,
+                      const LengthShares& of_inner) {
+  const Points start = points_at_shares(from, of_outer, kMatched, 1.0, 0.0);
+  Match match = match_samples(
+      start, points_at_shares(to, of_inner, kMatched, 1.0, 0.0), 1);
+  const auto sum_at = [&](double shift) {
+    return squared_lengths(
+        start, points_at_shares(to, of_inner, kMatched, match.turn, shift), 1,
+        0);
+  };
+  constexpr double kStep = 1.0 / kMatched;
+  const double best =
+      golden_section(match.shift - kStep, match.shift + kStep, sum_at);
+  const double sum = sum_at(best);
+  if (sum < match.sum * (1.0 - kEqualSums)) {
+    match.shift = wrapped(best);
+    match.sum = sum;
+  }
+  return match;
+}
+
+/// Do parts of the curve meet at an angle?
+bool has_corners(const curves::CurveShape& shape) {
+  const int parts = curves::curve_shape::part_count(shape);
+  for (int k = 0; k < parts && parts > 1; ++k) {
+    const double at = static_cast<double>(k) / parts;
+    const double step = kJoinStep / parts;
+    const Points around =
+        curves::points_at(shape, {wrapped(at - step), at, wrapped(at + step)});
+    const Vec3 before = around[1] - around[0];
+    const Vec3 after = around[2] - around[1];
+    if (std::atan2(before.cross(after).norm(), before.dot(after)) >
+        kSmoothJoin) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Where the segment from a to b is nearest to `at`: its share in [0, 1].
 double share_along(const Vec3& a, const Vec3& b, const Vec3& at) {
   const double length2 = (b - a).squaredNorm();
@@ -112,48 +192,29 @@ double RuledBand::partner_of_inner(double t) const {
 
 RuledBand match_band(const std::vector<curves::Curve>& curves, int outer,
                      int inner) {
-  RuledBand band{.outer = outer, .inner = inner};
   const curves::CurveShape& from = curves[outer].shape;
   const curves::CurveShape& to = curves[inner].shape;
+  RuledBand band{.outer = outer, .inner = inner};
+  Match best;
+  const int parts = curves::curve_shape::part_count(from);
   const bool alike = are_alike(from, to);
-  if (!alike) {
-    band.outer_shares = shares_of(from);
-    band.inner_shares = shares_of(to);
+  if (alike && parts > 1) {
+    best = match_by_parts(from, to, parts);
   }
-  // Every shift by a sample, both ways around; where corners meet corners, by
-  // whole parts.
-  const int parts = alike ? curves::curve_shape::part_count(from) : 1;
-  const int each = parts > 1 ? std::max(1, kMatched / parts) : 1;
-  const int count = parts > 1 ? parts * each : kMatched;
-  const Points start =
-      points_at_shares(from, band.outer_shares, count, 1.0, 0.0);
-  const Points end = points_at_shares(to, band.inner_shares, count, 1.0, 0.0);
-  double least = std::numeric_limits<double>::infinity();
-  for (const int turn : {1, -1}) {
-    for (int first = 0; first < count; first += each) {
-      const double sum = squared_lengths(start, end, turn, first);
-      if (sum < least * (1.0 - kEqualSums)) {
-        least = sum;
-        band.turn = turn;
-        band.shift = static_cast<double>(first) / count;
-      }
+  if (alike && parts == 1) {
+    best = match_by_shares(from, {}, to, {});
+  } else if (!alike || !(has_corners(from) || has_corners(to))) {
+    LengthShares of_outer = shares_of(from);
+    LengthShares of_inner = shares_of(to);
+    const Match match = match_by_shares(from, of_outer, to, of_inner);
+    if (match.sum < best.sum * (1.0 - kEqualSums)) {
+      best = match;
+      band.outer_shares = std::move(of_outer);
+      band.inner_shares = std::move(of_inner);
     }
   }
-  if (parts > 1) {
-    return band;
-  }
-  // Smooth curves may meet between samples: the shift that is best of all.
-  const auto sum_at = [&](double shift) {
-    return squared_lengths(
-        start, points_at_shares(to, band.inner_shares, count, band.turn, shift),
-        1, 0);
-  };
-  const double step = 1.0 / count;
-  const double best =
-      golden_section(band.shift - step, band.shift + step, sum_at);
-  if (sum_at(best) < least * (1.0 - kEqualSums)) {
-    band.shift = wrapped(best);
-  }
+  band.turn = best.turn;
+  band.shift = best.shift;
   return band;
 }
 

@@ -31,8 +31,9 @@ struct RuledBand {
 };
 
 /// The band whose lines are shortest in the mean square. Curves of one kind
-/// with as many corners are joined at equal parameters, corner to corner;
-/// others at equal shares of their lengths. Closed curves only.
+/// with as many parts are joined at equal parameters, part to part, others at
+/// equal shares of their lengths; where the parts meet without corners, by
+/// whichever is shorter. Closed curves only.
 RuledBand match_band(const std::vector<curves::Curve>& curves, int outer,
                      int inner);
 

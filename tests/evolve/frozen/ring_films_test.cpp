@@ -1,6 +1,8 @@
 // Rings between rims, films nested in each other, and the gap between them.
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +10,7 @@
 #include "core/error.h"
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/surface_mesh.h"
+#include "evolve/films/ruled_band.h"
 #include "evolve/frozen/film_model.h"
 #include "evolve/frozen/gap_between.h"
 #include "evolve/start/start_complex.h"
@@ -116,6 +119,63 @@ TEST(Ring, BetweenEqualCirclesIsTheirCylinder) {
     }
     EXPECT_NEAR(area_of(model, state.points, "bore"),
                 2.0 * kHalfTurn * radius * 0.8, kRingFacets);
+  }
+}
+
+/// A circle as `count` arcs, the first of which begins at angle `from`.
+curves::Polyline arcs(const Vec3& center, double radius, int count,
+                      double from) {
+  curves::Polyline line;
+  const auto at = [&](double turns) -> Vec3 {
+    const double angle = from + 2.0 * kHalfTurn * turns;
+    return center + radius * Vec3(std::cos(angle), std::sin(angle), 0.0);
+  };
+  for (int k = 0; k < count; ++k) {
+    line.corners.push_back(at(static_cast<double>(k) / count));
+    line.via.emplace_back(at((k + 0.5) / count));
+  }
+  return line;
+}
+
+// Drawn in arcs, in as many or not, and begun at another place.
+TEST(Ring, BetweenCirclesDrawnAsArcsIsTheirCylinder) {
+  for (const auto& [low, high, turned] :
+       {std::tuple{2, 2, 0.5}, {4, 4, 0.2}, {3, 2, 1.1}, {2, 2, 1.5}}) {
+    films::FilmSystem system = bored(0.5, 0.0);
+    system.curves[2].shape = arcs({0, 0, 0}, 0.5, low, 0.1);
+    system.curves[3].shape = arcs({0, 0, 0.8}, 0.5, high, 0.1 + turned);
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(system, {.edge = kRingEdge});
+    ASSERT_FALSE(model.reference().failure)
+        << model.reference().failure->message;
+    const QuadraticSurface surface = model.surface(model.reference().points);
+    const int bore = surface.base.label_of("bore");
+    for (std::size_t f = 0; f < surface.base.facets.size(); ++f) {
+      if (surface.base.facet_label[f] != bore) {
+        continue;
+      }
+      for (int k = 0; k < 3; ++k) {
+        const Vec3& corner = surface.base.points[surface.base.facets[f][k]];
+        const Vec3& middle = surface.mid[surface.facet_edges[f][k]];
+        EXPECT_NEAR(corner.head<2>().norm(), 0.5, 1e-11);
+        EXPECT_NEAR(middle.head<2>().norm(), 0.5, 1e-11);
+      }
+    }
+  }
+}
+
+// Real corners are met by corners, also where a turn would shorten the lines.
+TEST(Ring, BetweenTurnedPolygonsGoesFromCornerToCorner) {
+  const auto square = [](double height, double turned) {
+    curves::Polyline line = arcs({0, 0, height}, 0.5, 4, turned);
+    line.via.assign(4, std::nullopt);
+    return line;
+  };
+  const std::vector<curves::Curve> curves = {{"low", square(0.0, 0.0)},
+                                             {"high", square(0.8, 0.4)}};
+  const films::RuledBand band = films::match_band(curves, 0, 1);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(band.partner_of_outer(0.25 * k), 0.25 * k);
   }
 }
 
