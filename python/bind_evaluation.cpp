@@ -46,8 +46,8 @@ std::vector<int> wanted_of(const case_data::Case& input,
     if (!case_data::has_derivatives(input, k)) {
       throw InvalidInput(fmt::format(
           "response '{}' has no derivatives (a peak of nodal stress, or made "
-          "of one); ask for the gradients of others by name, or use the "
-          "smooth peak von_mises_norm",
+          "of one); ask for the gradients of others by name, or use a "
+          "von_mises_norm, a mean below the peak",
           input.responses[static_cast<std::size_t>(k)].name));
     }
   }

@@ -21,19 +21,6 @@ struct StressField {
 /// Fills in von Mises stresses and their peak from `field.nodal`.
 void find_peak(StressField& field);
 
-/// The peak among nodes of elements that are not excluded (one char per
-/// element): `field`'s von Mises stresses must be there.
-void find_peak(const TetMesh& mesh, const std::vector<char>& excluded,
-               StressField& field);
-
-/// Means of element extrapolations at nodes, weighted by volume. Ten-node
-/// elements: from the four points of the stiffness rule linearly to the
-/// corners, mid-sides the mean of their ends; as CalculiX does. One order less
-/// accurate than patch recovery (patch_recovery.h), and never far from what
-/// the points say.
-StressField average_stress(const TetMesh& mesh,
-                           const element::PointStress& points);
-
 /// Nodal stresses by patch recovery (patch_recovery.h) of point_stress
 /// (point_stress.h); where materials meet, those of the side with the larger
 /// von Mises stress. Throws InvalidInput when sizes or materials do not fit the

@@ -54,7 +54,7 @@ const std::vector<ResponseRow>& response_kinds() {
        D::Pressure,
        "of nodal stresses, without derivatives",
        {{}, {"load_case"}},
-       E::Unknown,
+       E::ByReadings,
        !kOfFilms,
        !kDerivatives,
        kExtreme},

@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "fea/loads/body_loads.h"
+#include "fea/stress/averaged_stress.h"
 #include "fea/stress/error_estimate.h"
+#include "fea/stress/peak_stress.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_kinds.h"
 
@@ -114,6 +116,7 @@ class ResponseErrors {
   bool solve(const std::vector<std::vector<Dual>>& duals, std::size_t round,
              const elastic::ElasticModel& model);
   void add_expressions();
+  double peak_error(std::size_t load_case) const;
   double& error(std::size_t response) {
     return errors_.responses[static_cast<Eigen::Index>(response)];
   }
@@ -125,13 +128,26 @@ class ResponseErrors {
   ElementErrors& errors_;
 };
 
+/// What the largest of the readings of a peak is above the one that is told.
+double ResponseErrors::peak_error(std::size_t load_case) const {
+  const PartStress& found = fields_.stresses[load_case];
+  const stress::RecoveredStress averaged =
+      stress::average_extrapolations(fields_.mesh, found.points);
+  const stress::PeakReadings peaks = stress::peak_readings(
+      {fields_.mesh, found.recovered, averaged, found.points},
+      fields_.exclusion.element);
+  return peaks.largest().von_mises - peaks.recovered.von_mises;
+}
+
 std::vector<std::vector<Dual>> ResponseErrors::duals() {
   std::vector<std::vector<Dual>> result(fields_.inputs.load_cases.size());
   for (std::size_t r = 0; r < input_.responses.size(); ++r) {
     const case_data::ResponseEntry& response = input_.responses[r];
     const case_data::ErrorSource estimate =
         case_data::row_of(response.kind).error;
-    if (estimate == case_data::ErrorSource::Unknown) {
+    if (estimate == case_data::ErrorSource::ByReadings) {
+      error(r) = peak_error(static_cast<std::size_t>(response.load_case));
+    } else if (estimate == case_data::ErrorSource::Unknown) {
       error(r) = std::numeric_limits<double>::quiet_NaN();
     }
     if (estimate != case_data::ErrorSource::ByDual) {

@@ -12,8 +12,8 @@ namespace meniscus::forward {
 struct ElementErrors {
   double energy = 0.0;  // relative error in energy, of the worst load case
   /// Per response: what it would change by if the elements were exact, in its
-  /// units; not a number where there is no estimate (max_von_mises,
-  /// von_mises_ks).
+  /// units; of max_von_mises, what its largest reading (peak_stress.h) is above
+  /// it; not a number where there is no estimate (von_mises_ks).
   VectorX responses;
   /// Per element: its share of all these errors, the mean over load cases (in
   /// energy) and responses; the sum is 1, or 0 where there is no error.

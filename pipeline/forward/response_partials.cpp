@@ -10,6 +10,8 @@
 #include "fea/functionals/place_functionals.h"
 #include "fea/functionals/stress_functionals.h"
 #include "fea/functionals/volume_functionals.h"
+#include "fea/loads/body_loads.h"
+#include "fea/stress/peak_stress.h"
 
 namespace meniscus::forward {
 
@@ -145,10 +147,16 @@ ResponsePartials peak(const ResponseTask& task) {
         task.response.name));
   }
   ResponsePartials result;
-  result.value = load_case_stress(task.fields.mesh, task.fields.inputs,
-                                  task.response.load_case, displacement(task),
-                                  task.fields.excluded)
-                     .max_von_mises;
+  const TetMesh& mesh = task.fields.mesh;
+  const element::PointStress points = element::point_stress(
+      mesh, materials(task), displacement(task),
+      loads::temperature_change(
+          mesh,
+          task.fields.inputs
+              .load_cases[static_cast<std::size_t>(task.response.load_case)]));
+  result.value = stress::peak_of(mesh, stress::recover_by_patches(mesh, points),
+                                 task.fields.excluded)
+                     .von_mises;
   return result;
 }
 

@@ -7,7 +7,6 @@
 
 #include "fea/functionals/displacement_functionals.h"
 #include "fea/functionals/place_functionals.h"
-#include "fea/loads/body_loads.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/response_partials.h"
@@ -30,19 +29,6 @@ double expression_value(const case_data::Case& input,
 }
 
 }  // namespace
-
-stress::StressField load_case_stress(const TetMesh& mesh,
-                                     const case_data::EvaluatedCase& inputs,
-                                     std::size_t load_case, const VectorX& u,
-                                     const std::vector<char>& excluded) {
-  stress::StressField field = stress::recover_stress(
-      mesh, inputs.materials, u,
-      loads::temperature_change(mesh, inputs.load_cases[load_case]));
-  if (!excluded.empty()) {
-    stress::find_peak(mesh, excluded, field);
-  }
-  return field;
-}
 
 functionals::ThicknessPairs thickness_pairs_of(const case_data::Case& input,
                                                const TetMesh& base) {

@@ -69,11 +69,4 @@ double place_rate(const case_data::ResponseEntry& response,
                   const case_data::ResponseInputs& rates,
                   const ResponseContext& fields);
 
-/// Nodal stresses of one load case, its expansion taken out. `u`: 3 per node;
-/// `excluded`: one char per element that the peak leaves out, or empty.
-stress::StressField load_case_stress(const TetMesh& mesh,
-                                     const case_data::EvaluatedCase& inputs,
-                                     std::size_t load_case, const VectorX& u,
-                                     const std::vector<char>& excluded = {});
-
 }  // namespace meniscus::forward

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/count_text.h"
+#include "fea/stress/averaged_stress.h"
 #include "pipeline/files/place_json.h"
 
 namespace meniscus::forward {
@@ -28,11 +29,11 @@ Json uniformity_json(const stress::Uniformity& u) {
 }
 
 std::optional<StressFigures::Safety> safety_of(
-    const TetMesh& mesh, const std::vector<element::Material>& materials,
-    const stress::RecoveredStress& recovered,
-    const element::PointStress& points, const std::vector<char>& excluded) {
+    const stress::StressReadings& stress,
+    const std::vector<element::Material>& materials,
+    const std::vector<char>& excluded) {
   const stress::SafetyFactor safety =
-      stress::safety_factor(mesh, materials, recovered, points, excluded);
+      stress::safety_factor(stress, materials, excluded);
   if (!std::isfinite(safety.smallest)) {
     return std::nullopt;
   }
@@ -54,30 +55,25 @@ std::vector<char> complement(std::vector<char> excluded) {
 
 /// All but how even the stress is.
 StressFigures peaks_of(const EvaluationFields& fields, std::size_t load_case) {
-  const TetMesh& mesh = fields.mesh;
   const auto& materials = fields.inputs.materials;
-  const loads::LoadCase& loads = fields.inputs.load_cases[load_case];
   const std::vector<char>& excluded = fields.exclusion.element;
-  const element::PointStress& points = fields.stresses[load_case].points;
-  const stress::RecoveredStress& recovered =
-      fields.stresses[load_case].recovered;
-  stress::StressField nodal = stress::nodal_stress(mesh, recovered);
-  const auto place = [&] {
-    return mesh.nodes[static_cast<std::size_t>(nodal.max_node)];
-  };
-  StressFigures figures{.load_case = loads.name};
+  const PartStress& found = fields.stresses[load_case];
+  const stress::RecoveredStress averaged =
+      stress::average_extrapolations(fields.mesh, found.points);
+  const stress::StressReadings stress{fields.mesh, found.recovered, averaged,
+                                      found.points};
+  StressFigures figures{.load_case = fields.inputs.load_cases[load_case].name,
+                        .readings = stress::peak_readings(stress, excluded),
+                        .safety = safety_of(stress, materials, excluded)};
+  figures.max_von_mises = figures.readings.recovered.von_mises;
+  figures.position = figures.readings.recovered.position;
   if (fields.exclusion.all.elements > 0) {
     const std::vector<char> counted = complement(excluded);
-    stress::find_peak(mesh, counted, nodal);
+    const stress::Peak peak =
+        stress::peak_of(fields.mesh, found.recovered, counted);
     figures.excluded = StressFigures::Excluded{
-        nodal.max_von_mises, place(),
-        safety_of(mesh, materials, recovered, points, counted)};
-    stress::find_peak(mesh, excluded, nodal);
+        peak.von_mises, peak.position, safety_of(stress, materials, counted)};
   }
-  figures.max_von_mises = nodal.max_von_mises;
-  figures.readings = stress::peak_readings(mesh, recovered, points, excluded);
-  figures.position = place();
-  figures.safety = safety_of(mesh, materials, recovered, points, excluded);
   return figures;
 }
 
@@ -158,9 +154,9 @@ Json stress_json(const std::vector<StressFigures>& figures) {
     Json entry = {{"max_von_mises", f.max_von_mises},
                   {"position", files::place_json(f.position)},
                   {"readings",
-                   {{"recovered", f.readings.recovered},
-                    {"averaged", f.readings.averaged},
-                    {"points", f.readings.points}}}};
+                   {{"recovered", f.readings.recovered.von_mises},
+                    {"averaged", f.readings.averaged.von_mises},
+                    {"points", f.readings.points.von_mises}}}};
     if (f.safety) {
       entry["safety_factor"] = safety_json(*f.safety);
     }

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "fea/stress/safety_factor.h"
+#include "fea/stress/peak_stress.h"
 #include "fea/stress/stress_uniformity.h"
 #include "pipeline/forward/forward_model.h"
 
@@ -15,7 +15,7 @@ namespace meniscus::forward {
 
 struct StressFigures {
   std::string load_case;
-  double max_von_mises = 0.0;     // of nodal stresses that count [pressure]
+  double max_von_mises = 0.0;     // recovered, of elements that count
   Vec3 position = Vec3::Zero();   // of that [length]
   stress::PeakReadings readings;  // of the elements that count
   /// Where the part is nearest to yield, against each body's own material; none

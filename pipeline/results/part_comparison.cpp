@@ -10,6 +10,7 @@
 #include "core/math/union_find.h"
 #include "fea/functionals/volume_functionals.h"
 #include "fea/loads/loads.h"
+#include "pipeline/files/place_json.h"
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/forward/stress_figures.h"
 #include "pipeline/results/results.h"
@@ -73,6 +74,8 @@ PartLoadFigures load_figures(const forward::EvaluationFields& fields,
       .load_case = load_case.name,
       .stiffness = std::nullopt,
       .max_von_mises = stress.max_von_mises,
+      .highest_reading = stress.readings.largest().von_mises,
+      .peak_position = stress.position,
       .max_principal = largest_principal(fields.mesh, fields.exclusion.element,
                                          fields.stresses[k].recovered),
       .coefficient_of_variation =
@@ -130,6 +133,18 @@ class Table {
     rows.push_back(std::move(row));
   }
 
+  void add_texts(const std::string& what,
+                 const std::function<std::string(const PartFigures&)>& of) {
+    std::vector<std::string> row = {what};
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      row.push_back(of(parts_[k]));
+      if (k > 0) {
+        row.emplace_back();
+      }
+    }
+    rows.push_back(std::move(row));
+  }
+
   std::vector<std::vector<std::string>> rows;
 
  private:
@@ -160,6 +175,20 @@ void add_load_case(Table& table, const std::string& name,
             figure([](const auto& /*part*/, const auto& f) {
               return std::optional(f.max_von_mises);
             }));
+  table.add(name + ": its highest reading", units.pressure,
+            figure([](const auto& /*part*/, const auto& f) {
+              return std::optional(f.highest_reading);
+            }));
+  table.add_texts(fmt::format("{}: peak at [{}]", name, units.length),
+                  [&name](const PartFigures& part) {
+                    const PartLoadFigures* f = find(part, name);
+                    return f == nullptr
+                               ? std::string()
+                               : fmt::format("({:.4g}, {:.4g}, {:.4g})",
+                                             f->peak_position.x(),
+                                             f->peak_position.y(),
+                                             f->peak_position.z());
+                  });
   table.add(name + ": peak principal", units.pressure,
             figure([](const auto& /*part*/, const auto& f) {
               return std::optional(f.max_principal);
@@ -212,6 +241,8 @@ Json part_json(const PartFigures& part) {
                   {"stiffness_per_mass", nullptr},
                   {"work", f.work},
                   {"max_von_mises", f.max_von_mises},
+                  {"highest_reading", f.highest_reading},
+                  {"position", files::place_json(f.peak_position)},
                   {"max_principal", f.max_principal},
                   {"coefficient_of_variation", f.coefficient_of_variation},
                   {"gini", f.gini}};

@@ -22,8 +22,12 @@ struct PartLoadFigures {
   /// force over the mean displacement of the loaded surface along it. None
   /// where the loads have no resultant (moments) or heat acts.
   std::optional<double> stiffness;
-  double work = 0.0;           // f . u [force length], twice the strain energy
-  double max_von_mises = 0.0;  // of nodal stresses that count [pressure]
+  double work = 0.0;  // f . u [force length], twice the strain energy
+  /// Of stresses that count; the largest of the readings on one mesh tells how
+  /// far to trust the peak, which is recovered.
+  double max_von_mises = 0.0;  // [pressure]
+  double highest_reading = 0.0;
+  Vec3 peak_position = Vec3::Zero();
   double max_principal = 0.0;  // the same of principal stresses
   /// Of von Mises over the volume that counts (fea/stress/stress_uniformity.h).
   double coefficient_of_variation = 0.0;

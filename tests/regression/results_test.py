@@ -136,10 +136,11 @@ class Results(ProgramTest):
             result[key] = other[key]
         for key, value in result.items():
             self.assertEqual(nested_keys(value), rows[key] - PETSC, key)
-        # A peak has no estimate of the elements' error: null, not NaN.
-        self.assertIsNone(result["element_errors"]["responses"]["summit"])
+        # Of a peak, what its largest reading says above it.
+        self.assertGreaterEqual(
+            result["element_errors"]["responses"]["summit"], 0)
         after = result["adaptation"]["after"]
-        self.assertIsNone(after["response_errors"]["summit"])
+        self.assertGreaterEqual(after["response_errors"]["summit"], 0)
         self.assertLess(after["energy_error"],
                         result["adaptation"]["before"]["energy_error"])
         self.assertEqual(after["elements"], result["tet"]["elements"])

@@ -3,6 +3,7 @@
 cylinders, and its gradients are exact where the rims leave their planes."""
 import json
 import math
+import random
 import unittest
 
 from program import ProgramTest
@@ -127,6 +128,37 @@ class Rings(ProgramTest):
                 self.assertAlmostEqual(figures["work"] / work, 1, delta=5e-3)
                 self.assertAlmostEqual(figures["max_von_mises"] / peak, 1,
                                        delta=0.06)
+
+    def test_the_safety_of_any_tube_is_lames(self):
+        """Walls of any thickness at edges of any length: what the elements'
+        points say is mended by their neighbours, or the smaller one counts."""
+        draw = random.Random(20261124)
+        for k in range(6):
+            inside = draw.uniform(6, 14)
+            outside = inside * draw.uniform(1.3, 2.6)
+            edge = draw.uniform(0.3, 0.7) * (outside - inside)
+            case = self.folder / f"case {k}.toml"
+            case.write_text(
+                TUBE.replace("radius = 10.0", f"radius = {inside}")
+                .replace("radius = 20.0", f"radius = {outside}")
+                .replace("initial = 20.0", f"initial = {outside}")
+                .replace("bounds = [15.0, 25.0]", "bounds = [7.0, 40.0]")
+                .replace("fea = 5.0", f"fea = {edge}")
+                .replace("density", "yield_strength = 500\ndensity"))
+            out = self.folder / f"out {k}"
+            self.expect(self.call("run", case, "--no-pictures", "--no-report",
+                                  "--out", out), 0)
+            a2, b2 = inside**2, outside**2
+            around = PRESSURE * (a2 + b2) / (b2 - a2)
+            along = RATIO * (around - PRESSURE)
+            peak = math.sqrt(0.5 * ((around + PRESSURE)**2 +
+                                    (around - along)**2 +
+                                    (along + PRESSURE)**2))
+            figures = self.result(out)["stress"]["pressed"]["safety_factor"]
+            with self.subTest(inside=inside, outside=outside, edge=edge):
+                found = figures["smallest"] * peak / 500
+                self.assertLess(found, 1.02)
+                self.assertGreater(found, 0.9)
 
     def test_its_gradients_are_exact(self):
         self.expect(self.call("check-gradient", self.tube()), 0)

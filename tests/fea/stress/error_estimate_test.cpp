@@ -6,7 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "fea/stress/safety_factor.h"
+#include "fea/stress/averaged_stress.h"
+#include "fea/stress/peak_stress.h"
 #include "tests/support/parts.h"
 
 namespace meniscus::error_estimate_test {
@@ -187,9 +188,12 @@ TEST(SafetyFactors, AreEachRegionsOwnAndTellThePlace) {
     return strain * Vec3(x.x(), -nu * x.y(), -nu * x.z());
   });
   const auto safety = [&](const std::vector<element::Material>& materials) {
+    const element::PointStress points =
+        element::point_stress(mesh, {strong, weak}, u);
     return stress::safety_factor(
-        mesh, materials, recovered(mesh, {strong, weak}, u),
-        element::point_stress(mesh, {strong, weak}, u));
+        {mesh, recovered(mesh, {strong, weak}, u),
+         stress::average_extrapolations(mesh, points), points},
+        materials);
   };
   const stress::SafetyFactor both = safety({strong, weak});
   EXPECT_NEAR(both.smallest, 0.5, kEstimateRounding);

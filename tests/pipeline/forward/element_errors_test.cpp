@@ -121,8 +121,8 @@ TEST(ElementErrors, PredictWhatAFinerMeshGives) {
         << coarse.input.responses[r].name;
     EXPECT_LT(estimate / change[r], 2.0) << coarse.input.responses[r].name;
   }
-  EXPECT_EQ(errors.responses[kKnown], 0.0);  // volume
-  EXPECT_TRUE(std::isnan(errors.responses[kKnown + 1]));
+  EXPECT_EQ(errors.responses[kKnown], 0.0);      // volume
+  EXPECT_GE(errors.responses[kKnown + 1], 0.0);  // a peak: by its readings
   EXPECT_TRUE(std::isnan(errors.responses[kKnown + 2]));
 }
 

@@ -1,0 +1,16 @@
+/// Nodal stresses as means of what the elements around say.
+#pragma once
+
+#include "fea/stress/patch_recovery.h"
+
+namespace meniscus::stress {
+
+/// Means of element extrapolations at nodes, weighted by volume, each region's
+/// own. Ten-node elements: from the four points of the stiffness rule linearly
+/// to the corners, mid-sides the mean of their ends; as CalculiX does. One
+/// order less accurate than patch recovery, and never far from what the points
+/// say.
+RecoveredStress average_extrapolations(const TetMesh& mesh,
+                                       const element::PointStress& points);
+
+}  // namespace meniscus::stress

@@ -1,0 +1,100 @@
+#include "fea/stress/peak_stress.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace meniscus::stress {
+
+namespace {
+
+bool counts(const std::vector<char>& excluded, int element) {
+  return excluded.empty() || excluded[element] == 0;
+}
+
+/// visit(von Mises, place, region) of every node of every element that counts.
+template <class Visit>
+void visit_nodes(const TetMesh& mesh, const RecoveredStress& stress,
+                 const std::vector<char>& excluded, const Visit& visit) {
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!counts(excluded, e)) {
+      continue;
+    }
+    for (const int copy : stress.nodes.element(e)) {
+      visit(element::von_mises(stress.value[copy]),
+            mesh.nodes[stress.nodes.node[copy]], mesh.element_region[e]);
+    }
+  }
+}
+
+/// The same of integration points.
+template <class Visit>
+void visit_points(const TetMesh& mesh, const element::PointStress& points,
+                  const std::vector<char>& excluded, const Visit& visit) {
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int q = 0; counts(excluded, e) && q < points.points_per_element; ++q) {
+      const std::size_t at = points.index(e, q);
+      visit(element::von_mises(points.stress[at]), points.position[at],
+            mesh.element_region[e]);
+    }
+  }
+}
+
+/// Keeps the largest of what it visits, the first of equals.
+class Largest {
+ public:
+  explicit Largest(Peak& peak) : peak_(peak) {}
+  void operator()(double von_mises, const Vec3& position, int region) const {
+    if (von_mises > peak_.von_mises) {
+      peak_ = {von_mises, position, region};
+    }
+  }
+
+ private:
+  Peak& peak_;
+};
+
+}  // namespace
+
+Peak peak_of(const TetMesh& mesh, const RecoveredStress& stress,
+             const std::vector<char>& excluded) {
+  Peak peak;
+  visit_nodes(mesh, stress, excluded, Largest(peak));
+  return peak;
+}
+
+const Peak& PeakReadings::largest() const {
+  const Peak& nodal =
+      averaged.von_mises > recovered.von_mises ? averaged : recovered;
+  return points.von_mises > nodal.von_mises ? points : nodal;
+}
+
+PeakReadings peak_readings(const StressReadings& stress,
+                           const std::vector<char>& excluded) {
+  PeakReadings peaks{
+      .recovered = peak_of(stress.mesh, stress.recovered, excluded),
+      .averaged = peak_of(stress.mesh, stress.averaged, excluded),
+      .points = {}};
+  visit_points(stress.mesh, stress.points, excluded, Largest(peaks.points));
+  return peaks;
+}
+
+SafetyFactor safety_factor(const StressReadings& stress,
+                           const std::vector<element::Material>& materials,
+                           const std::vector<char>& excluded) {
+  element::check_materials(stress.mesh, materials);
+  SafetyFactor result{.smallest = std::numeric_limits<double>::infinity()};
+  const auto keep_least = [&](double von_mises, const Vec3& position,
+                              int region) {
+    const std::optional<double>& strength = materials[region].yield_strength;
+    if (strength && von_mises > 0.0 &&
+        *strength / von_mises < result.smallest) {
+      result = {*strength / von_mises, position, region, von_mises};
+    }
+  };
+  visit_nodes(stress.mesh, stress.recovered, excluded, keep_least);
+  visit_nodes(stress.mesh, stress.averaged, excluded, keep_least);
+  visit_points(stress.mesh, stress.points, excluded, keep_least);
+  return result;
+}
+
+}  // namespace meniscus::stress
