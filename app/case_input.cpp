@@ -59,6 +59,26 @@ std::filesystem::path results_folder(const case_data::Case& input,
                      : std::filesystem::path(out);
 }
 
+std::filesystem::path film_folder(const std::string& name,
+                                  const std::string& out) {
+  namespace fs = std::filesystem;
+  const auto holds_run = [](const fs::path& folder) {
+    return fs::exists(folder / "study.sqlite") ||
+           fs::exists(folder / "family.csv");
+  };
+  const fs::path usual = fs::path("results") / name;
+  if (out.empty()) {
+    return holds_run(usual) ? fs::path(usual.string() + "_film") : usual;
+  }
+  if (holds_run(out)) {
+    throw IoError(fmt::format(
+        "{} holds a run: the film of another design would stand beside its "
+        "figures; name another folder by --out",
+        out));
+  }
+  return out;
+}
+
 std::pair<std::string, std::string> named_text(const std::string& option,
                                                const std::string& text,
                                                const char* expected) {

@@ -17,6 +17,7 @@
 #include "pipeline/case_data/film_advice.h"
 #include "pipeline/case_data/film_start.h"
 #include "pipeline/forward/walls.h"
+#include "pipeline/frames/film_frames.h"
 #include "pipeline/results/datafile.h"
 #include "pipeline/results/evolved_film.h"
 #include "pipeline/results/family_table.h"
@@ -25,7 +26,6 @@
 #include "pipeline/results/run_files.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
-#include "pipeline/study/film_frames.h"
 #include "report/output/run_pictures.h"
 
 namespace meniscus::app {
@@ -98,13 +98,13 @@ results::DatafileOptions datafile_options(const EvolveArguments& arguments,
 int evolve_datafile_command(const EvolveArguments& arguments) {
   const CommonArguments& common = arguments.common;
   const fs::path path = arguments.path;
-  const fs::path folder = common.out.empty() ? fs::path("results") / path.stem()
-                                             : fs::path(common.out);
+  fs::path folder;
   results::DatafileResult result;
   TerminalMonitor monitor(monitor_options(common));
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     const results::DatafileOptions options =
         datafile_options(arguments, monitor);
+    folder = film_folder(path.stem().string(), common.out);
     make_folder(folder);
     catch_stop_signals();
     result = results::evolve_datafile(path, options);
@@ -201,8 +201,8 @@ void write_evolved(const case_data::Case& input,
   results::write_film(input, model.fine_mesh(film.points), folder);
   std::vector<forward::FilmFrame> frames;
   if (arguments.frames) {
-    frames = study::settling_frames(inputs, model, monitor);
-    study::write_frames(input, frames, folder);
+    frames = frames::settling_frames(inputs, model, monitor);
+    frames::write_frames(input, frames, folder);
   }
   results::write_evolved_film(
       {.title = input.title,
@@ -241,8 +241,9 @@ int evolve_command(const EvolveArguments& arguments) {
     return kExitWrongInput;
   }
   const case_data::Case& input = *reading.input;
-  const fs::path folder = results_folder(input, common.out);
+  fs::path folder;
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
+    folder = film_folder(input.name, common.out);
     make_folder(folder);
     return kExitDone;
   });

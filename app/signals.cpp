@@ -64,8 +64,8 @@ void watch_stop(const sigset_t& signals) {
     }
   }
   const std::string_view text =
-      "ended in the middle of a step that does not stop; finished evaluations "
-      "are kept, --resume goes on with them\n";
+      "ended in the middle of a step that does not stop; of a run the finished "
+      "evaluations are kept, --resume goes on with them\n";
   [[maybe_unused]] const auto said =
       ::write(STDERR_FILENO, text.data(), text.size());
   _exit(kInterrupted);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/count_text.h"
 #include "pipeline/case_data/study_kinds.h"
 #include "pipeline/results/results.h"
 #include "pipeline/study/study_records.h"
@@ -71,8 +72,8 @@ Json evaluation_json(const case_data::Case& input,
   return json;
 }
 
-/// "minimize: evaluation 12 of at most 300, mass = 0.0123 t, violation 0.02 of
-/// 'sway', best so far mass = 0.012 t (evaluation 9), at most 3 min left".
+/// "minimize: evaluation 12 of at most 300, mass = 12.3 kg, violation 0.02 of
+/// 'sway', best so far mass = 12 kg (evaluation 9), at most 3 min left".
 std::string status_text(const case_data::Case& input,
                         const study::EvaluationEvent& event) {
   std::string text =
@@ -81,9 +82,10 @@ std::string status_text(const case_data::Case& input,
     text += fmt::format(" of at most {}", *event.planned);
   }
   if (event.status.objective) {
+    const ShownUnit& shown = event.objective_shown;
     text += fmt::format(
-        ", {} = {:.6g}{}{}", event.objective_name, *event.status.objective,
-        event.objective_unit.empty() ? "" : " ", event.objective_unit);
+        ", {} = {}", event.objective_name,
+        quantity_text(shown.factor * *event.status.objective, shown.unit));
   }
   const std::string progress = study::progress_text(event);
   return progress.empty() ? text : text + ", " + progress;

@@ -168,7 +168,7 @@ void set_ended(const MinimizeEvaluator& evaluator, const SearchResult& search,
       figures(evaluator, report),
       search.walled
           ? kWalled
-          : "Loosen optimality_tolerance, start elsewhere, or choose another "
+          : "Loosen the tolerance, start elsewhere, or choose another "
             "method");
 }
 

@@ -21,6 +21,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastOrder = 0.5;
 constexpr double kMostOrder = 1.0;
 constexpr double kUnseenOrder = 0.7;
+constexpr double kNoTrend = 1e-3;  // x the value: smaller changes show none
 constexpr double kSafety = 1.5;
 // Films show 2 (docs/verification.md). Their coarsest model, of few edges
 // around a rim, may be far off: the change to the nearer one counts.
@@ -86,7 +87,8 @@ FigureError figure_error(const MeshValues& values, FigureKind kind) {
   const double order = same_way
                            ? std::log(before / last) / std::log(kEdgeFactors[1])
                            : kUnseenOrder;
-  const bool settles = !same_way || order >= kLeastOrder;
+  const bool settles =
+      !same_way || order >= kLeastOrder || change <= kNoTrend * std::abs(fine);
   // 3. What is left.
   if (kind == FigureKind::Extreme) {
     return {rest_of_extreme(change), settles};
@@ -121,6 +123,14 @@ std::vector<FigureError> response_errors(const case_data::Case& input,
     errors.push_back(error);
   }
   return errors;
+}
+
+VectorX bounds_of(const std::vector<FigureError>& errors) {
+  VectorX bounds(static_cast<Eigen::Index>(errors.size()));
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    bounds[static_cast<Eigen::Index>(r)] = errors[r].bound;
+  }
+  return bounds;
 }
 
 void add_eigen_errors(MeshSequence& meshes) {
@@ -171,14 +181,17 @@ std::vector<std::string> unsettled_warnings(
     };
     warnings.push_back(fmt::format(
         "'{}' may have no limit: it is {}, {} and {} at edges of {:.3g}, "
-        "{:.3g} and {:.3g} {}, so its +- is no bound. Stress has none at a "
-        "clamped rim or a sharp corner: leave such places out by "
-        "analysis.exclude, or look at shorter edges",
+        "{:.3g} and {:.3g} {}, so its +- is no bound. {}",
         input.responses[r].name, text(2), text(1),
         quantity_text(unit.factor * meshes.responses[0][r], unit.unit, 4),
         kEdgeFactors[2] * input.resolution.fea,
         kEdgeFactors[1] * input.resolution.fea, input.resolution.fea,
-        input.units.length));
+        input.units.length,
+        case_data::row_of(input.responses[r].kind).dimension ==
+                Dimension::Pressure
+            ? "Stress has none at a clamped rim or a sharp corner: leave such "
+              "places out by analysis.exclude, or look at shorter edges"
+            : "Look at shorter edges"));
   }
   return warnings;
 }

@@ -42,6 +42,9 @@ std::vector<FigureError> response_errors(const case_data::Case& input,
                                          const MeshSequence& meshes,
                                          const VectorX& dual);
 
+/// Their bounds, in order.
+VectorX bounds_of(const std::vector<FigureError>& errors);
+
 /// Gives the figures of the first mesh their errors.
 void add_eigen_errors(MeshSequence& meshes);
 

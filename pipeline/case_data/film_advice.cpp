@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/geometry/mesh_checks.h"
 #include "evolve/frozen/film_model.h"
 
 namespace meniscus::case_data {
@@ -121,10 +122,11 @@ class QuietMonitor : public Monitor {
 
 bool stands(const films::FilmSystem& system, double edge, Monitor& monitor) {
   try {
-    return !frozen::FilmModel::freeze(
-                system, {.edge = edge, .refinements = 0, .monitor = &monitor})
-                .reference()
-                .failure;
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        system, {.edge = edge, .refinements = 0, .monitor = &monitor});
+    return !model.reference().failure &&
+           (system.bodies.empty() ||
+            check_surface(model.boundary(model.reference().points)).empty());
   } catch (const InvalidInput&) {  // rims that meet, a body that stays open
     return false;
   } catch (const MeshError&) {

@@ -83,18 +83,33 @@ std::optional<frozen::FilmModel> freeze_next(const frozen::FilmModel& before,
 
 }  // namespace
 
+Case frozen_at(Case input, const VectorX& design) {
+  input.earlier_freezes.push_back(initial_design(input));
+  for (std::size_t k = 0; k < input.design.size(); ++k) {
+    input.design[k].initial = design[static_cast<Eigen::Index>(k)];
+  }
+  return input;
+}
+
 frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
-                               const frozen::FilmModelOptions& options) {
+                               const frozen::FilmModelOptions& options,
+                               std::optional<double> earlier_edge) {
+  const auto options_of = [&](bool last) {
+    frozen::FilmModelOptions own = options;
+    own.edge = last ? options.edge : earlier_edge.value_or(options.edge);
+    return own;
+  };
   try {
     std::vector<films::FilmSystem> way;
     for (const VectorX& design : input.earlier_freezes) {
       way.push_back(evaluate(input, design).film_system);
     }
     way.push_back(inputs.film_system);
-    frozen::FilmModel model = frozen::FilmModel::freeze(way.front(), options);
+    frozen::FilmModel model =
+        frozen::FilmModel::freeze(way.front(), options_of(way.size() == 1));
     for (std::size_t k = 1; k < way.size(); ++k) {
-      std::optional<frozen::FilmModel> next =
-          freeze_next(model, way[k - 1], way[k], options);
+      std::optional<frozen::FilmModel> next = freeze_next(
+          model, way[k - 1], way[k], options_of(k + 1 == way.size()));
       if (!next) {  // as a case of its own
         return frozen::FilmModel::freeze(way.back(), options);
       }

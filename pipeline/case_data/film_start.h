@@ -1,6 +1,7 @@
 /// Films of a case as they start, and where in the case a film is that cannot.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "evolve/frozen/film_model.h"
@@ -12,13 +13,20 @@ namespace meniscus::case_data {
 /// first; 0: none.
 SourceLine line_of_start(const Case& input, const std::string& message);
 
+/// The case with `design` for its initial one, whose film begins from that of
+/// the model before.
+Case frozen_at(Case input, const VectorX& design);
+
 /// FilmModel::freeze() of the case's films; what it refuses is told with the
 /// line of the case. After earlier_freezes it begins from the film that the
 /// model before settles at this design, not from first facets, which may find
 /// another film there or none. Rims keep their divisions on that way: where one
 /// is longer or shorter by a third, first facets come first, and count where
 /// they lead to the same film (areas within 5 %). Throws InvalidInput.
+/// `earlier_edge`: of the models before; those of `options` where it is left
+/// out.
 frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
-                               const frozen::FilmModelOptions& options);
+                               const frozen::FilmModelOptions& options,
+                               std::optional<double> earlier_edge = {});
 
 }  // namespace meniscus::case_data

@@ -27,28 +27,15 @@ const walls::ThickWall& first_with_findings(const walls::WallModel& walls) {
       [](const walls::ThickWall& wall) { return !wall.findings.empty(); });
 }
 
-/// Of the volumes that the case asks for.
-double solid_volume(const case_data::Case& input,
-                    const films::FilmSystem& system) {
-  double sum = 0.0;
-  for (const case_data::BodyEntry& body : case_data::solid_bodies(input)) {
-    for (const films::BodySpec& spec : system.bodies) {
-      sum += spec.name == body.name ? spec.volume.value_or(0.0) : 0.0;
-    }
-  }
-  return sum;
-}
-
 bool freeze_film(const case_data::EvaluatedCase& inputs,
                  const ForwardModelOptions& options, Monitor& monitor,
                  FrozenPart& part) {
   const StageMeter meter;
   Evaluation& start = part.start;
   const double edge = inputs.fea_edge * options.edge_factor;
-  const double volume = solid_volume(part.input, inputs.film_system);
-  const WorkEstimate work = estimate_work(volume, 0, edge);
+  const WorkEstimate work = estimate_work(part.input, inputs, edge);
   monitor.progress({.stage = "film",
-                    .detail = volume > 0.0
+                    .detail = work.elements > 1.0
                                   ? "settling the start of " + text_of(work)
                                   : std::string("settling the start")});
   require_work(work, edge);
@@ -56,7 +43,9 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
       part.input, inputs,
       {.edge = edge,
        .refinements = case_data::film_refinements(part.input),
-       .monitor = &monitor}));
+       .monitor = &monitor},
+      options.earlier_at_own_edges ? std::optional(inputs.fea_edge)
+                                   : std::nullopt));
   const settle::FilmState& film = part.film->reference();
   start.film = film.report;
   start.failure = film.failure;

@@ -42,6 +42,18 @@ WorkEstimate estimate_work(double volume, std::size_t facets, double edge) {
   return {elements, kBytesPerElement * elements};
 }
 
+WorkEstimate estimate_work(const case_data::Case& input,
+                           const case_data::EvaluatedCase& inputs,
+                           double edge) {
+  double volume = 0.0;
+  for (const case_data::BodyEntry& body : case_data::solid_bodies(input)) {
+    for (const films::BodySpec& spec : inputs.film_system.bodies) {
+      volume += spec.name == body.name ? spec.volume.value_or(0.0) : 0.0;
+    }
+  }
+  return estimate_work(volume, 0, edge);
+}
+
 std::string text_of(const WorkEstimate& work) {
   return fmt::format("about {} elements, {:.2g} GB", rounded(work.elements),
                      work.bytes / 1e9);
@@ -63,6 +75,12 @@ void require_work(const WorkEstimate& work, double edge) {
       "wrong",
       text_of(work), edge, free / 1e9,
       1.05 * edge * std::cbrt(work.elements / most)));
+}
+
+void require_work(const case_data::Case& input) {
+  const case_data::EvaluatedCase inputs =
+      case_data::evaluate(input, case_data::initial_design(input));
+  require_work(estimate_work(input, inputs, inputs.fea_edge), inputs.fea_edge);
 }
 
 }  // namespace meniscus::forward

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "pipeline/case_data/case.h"
+
 namespace meniscus::forward {
 
 struct WorkEstimate {
@@ -16,11 +18,17 @@ struct WorkEstimate {
 /// facet, 4.2 kB for each element, as docs/performance.md has them.
 WorkEstimate estimate_work(double volume, std::size_t facets, double edge);
 
+/// Of the volumes that the case asks for.
+WorkEstimate estimate_work(const case_data::Case& input,
+                           const case_data::EvaluatedCase& inputs, double edge);
+
 /// "about 110,000 elements, 0.5 GB".
 std::string text_of(const WorkEstimate& work);
 
 /// Throws InvalidInput where memory does not hold it, or numbers of nodes do
 /// not: names what `edge` is and what would fit.
 void require_work(const WorkEstimate& work, double edge);
+/// Of the case's initial design.
+void require_work(const case_data::Case& input);
 
 }  // namespace meniscus::forward

@@ -272,6 +272,27 @@ std::string without_side(const std::string& surface,
   return surface;
 }
 
+/// The other way around, for messages: sides of walls by where they lie.
+std::vector<std::string> with_sides(std::vector<std::string> known) {
+  constexpr std::string_view kBack = "/back";
+  std::vector<std::string> films;
+  for (const std::string& name : known) {
+    if (name.ends_with(kBack)) {
+      films.push_back(name.substr(0, name.size() - kBack.size()));
+    }
+  }
+  for (std::string& name : known) {
+    for (const std::string& film : films) {
+      if (name == film) {
+        name += "/outside";
+      } else if (name == film + std::string(kBack)) {
+        name = film + "/inside";
+      }
+    }
+  }
+  return known;
+}
+
 }  // namespace
 
 std::string surface_on(CaseContext& context, const CaseTable& table,
@@ -296,7 +317,8 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
     }
   }
   if (std::find(known.begin(), known.end(), surface) == known.end()) {
-    context.problems.unknown(table.line(key), "surface", surface, known);
+    context.problems.unknown(table.line(key), "surface", surface,
+                             with_sides(known));
   } else if (context.bodies_good && solid == 0) {
     context.problems.add(
         table.line(key),

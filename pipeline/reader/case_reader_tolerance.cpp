@@ -32,8 +32,17 @@ void read_deviation(CaseContext& context, const std::string& name,
                              "design variable or parameter", name, names);
     return;
   }
-  const auto value =
-      read_like(context, node, at->measure, "study.deviations." + name);
+  const std::string key = "study.deviations." + name;
+  const auto given = read_measured(context, node, std::nullopt, key);
+  if (given && given->measure.is_known() && !at->measure.is_known()) {
+    context.problems.add(
+        context.line_of(node),
+        fmt::format("{} is {}, and '{}' is a plain number; give both a unit or "
+                    "none",
+                    key, described(node), name));
+    return;
+  }
+  const auto value = read_like(context, node, at->measure, key);
   if (value && !(*value > 0.0)) {
     context.problems.add(context.line_of(node),
                          fmt::format("study.deviations.{} is {:g}; a standard "

@@ -1,6 +1,8 @@
 #include "pipeline/results/datafile.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +11,7 @@
 #include "core/error.h"
 #include "core/heed_stop.h"
 #include "core/math/expression.h"
+#include "core/memory.h"
 #include "core/timer.h"
 #include "evolve/datafile/fe_bodies.h"
 #include "evolve/datafile/fe_script.h"
@@ -31,6 +34,8 @@ namespace {
 constexpr double kEnoughFacets = 2000.0;
 constexpr long kEvaluationsPerStep = 30;   // on average; a dozen are usual
 constexpr double kDescentResidual = 1e-6;  // x tension x edge
+constexpr double kMostFacets = 8e6;        // as a script's own
+constexpr double kBytesPerFacet = 1000.0;  // of a film that settles
 // Facets below which vertices slide: there what facets miss is more than a
 // rounding, and the shapes that sliding leaves do not matter.
 constexpr std::size_t kSlid = 2000;
@@ -59,9 +64,27 @@ double residual_bound_of(const energy::FilmEnergy& energy, const Points& points,
   return kDescentResidual * tension * energy.mean_edge(points);
 }
 
-/// The film as descent left it, with the verdict.
+/// Throws InvalidInput where so many refinements make more facets than the
+/// machine has room for.
+void require_room(const films::FilmComplex& complex, int refinements) {
+  const double facets = static_cast<double>(complex.mesh.facets.size()) *
+                        std::pow(4.0, refinements);
+  const double room = available_memory();
+  if (facets > kMostFacets || kBytesPerFacet * facets > room) {
+    throw InvalidInput(fmt::format(
+        "{} refinements make {:.2g} facets, which need {:.2g} GB; at most "
+        "{:.2g} facets and the {:.2g} GB that are free can be settled: refine "
+        "less",
+        refinements, facets, kBytesPerFacet * facets / 1e9, kMostFacets,
+        room / 1e9));
+  }
+}
+
+/// The film as descent left it, with the verdict; of one that was stopped
+/// nothing is computed any more.
 settle::FilmState state_after(const films::FilmComplex& complex,
-                              const settle::DescentReport& descent, int steps) {
+                              const settle::DescentReport& descent, int steps,
+                              bool stopped) {
   const energy::FilmEnergy energy(complex);
   const films::FilmTargets targets = energy::targets_of(complex);
   settle::FilmState state;
@@ -71,6 +94,11 @@ settle::FilmState state_after(const films::FilmComplex& complex,
   figures.residual = descent.residual;
   figures.residual_bound = residual_bound_of(energy, state.points, targets);
   figures.iterations = steps;
+  if (stopped) {
+    figures.verdict = descent.message;
+    figures.min_eigenvalue = std::numeric_limits<double>::quiet_NaN();
+    return state;
+  }
   const energy::LowestMode mode =
       settle::lowest_mode_of(energy, targets, state.points, descent.pressure);
   figures.min_eigenvalue = mode.eigenvalue;
@@ -131,7 +159,7 @@ settle::FilmState descend_by_levels(films::FilmComplex& complex,
     report.message = "stopped on request";
   }
   settle::require_motion(complex);
-  return state_after(complex, report, steps);
+  return state_after(complex, report, steps, stopped);
 }
 
 /// The film as it is, with the verdict on it.
@@ -139,7 +167,7 @@ settle::FilmState judge_macro(films::FilmComplex& complex, int iterations) {
   settle::DescentReport now =
       descend_to_rest(complex, {.max_steps = 0, .most_restore = 0.0});
   now.message = "the macro ended here";
-  settle::FilmState state = state_after(complex, now, iterations);
+  settle::FilmState state = state_after(complex, now, iterations, false);
   if (state.report.residual > state.report.residual_bound) {
     state.report.verdict = fmt::format(
         "not at rest: the macro ended at a residual of {:.3g} (bound {:.3g})",
@@ -226,6 +254,7 @@ DatafileResult evolve_film(const datafile::FeFile& file,
   result.complex = std::move(script.complex);
   result.printed = std::move(script.output);
   const int refinements = refinements_of(result.complex, options);
+  require_room(result.complex, refinements);
   settle::FilmState state;
   if (options.macro) {
     state = judge_macro(result.complex, script.iterations);

@@ -12,7 +12,7 @@
 #include "evolve/films/nesting.h"
 #include "evolve/frozen/film_model.h"
 #include "pipeline/case_data/case.h"
-#include "pipeline/study/film_frames.h"
+#include "pipeline/frames/film_frames.h"
 
 namespace meniscus::results {
 

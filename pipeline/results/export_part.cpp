@@ -20,6 +20,7 @@
 #include "pipeline/results/export_step.h"
 #include "pipeline/results/make_ledger.h"
 #include "pipeline/results/results.h"
+#include "pipeline/results/run_files.h"
 #include "pipeline/study/ledger.h"
 
 namespace meniscus::results {
@@ -189,10 +190,11 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   const case_data::Resolution& resolution = job.input().resolution;
   const double edge =
       options.edge.value_or(format.of_film ? resolution.film : resolution.fea);
-  fs::path file =
-      options.out.empty()
-          ? folder / fmt::format("part_{:g}.{}", edge, format.extension)
-          : options.out;
+  fs::path file = options.out;
+  if (file.empty()) {
+    file = folder / fmt::format("part_{:g}.{}", edge, format.extension);
+    claim_files(folder, {file.filename().string()});
+  }
   format.write(job, file);
   note_file(folder, file, fmt::format("part_{:g}.{}", edge, format.name));
   return file;

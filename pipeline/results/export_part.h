@@ -33,7 +33,8 @@ inline constexpr const char* kNotWritten = "not written as ";
 struct ExportOptions {
   std::string format = "stl";   // of export_formats()
   std::optional<double> edge;   // [length]; the run's own when absent
-  std::filesystem::path out;    // file; empty: part_<edge>.<format> in the run
+  std::filesystem::path out;    // file; empty: part_<edge>.<format> in the run,
+                                // which goes with the run's own files
   std::string program_version;  // for the file's head
   Monitor* monitor = nullptr;
 };

@@ -23,6 +23,7 @@
 #include "pipeline/results/run_folder.h"
 #include "pipeline/store/run_lock.h"
 #include "pipeline/store/study_table.h"
+#include "pipeline/study/held_margins.h"
 #include "pipeline/study/partial_result.h"
 #include "pipeline/study/study_records.h"
 #include "pipeline/study/time_limit.h"
@@ -132,7 +133,7 @@ class FamilyRun {
   std::mutex mutex_;  // of all below and of result_.rows while threads run
   std::exception_ptr error_;
   std::atomic<bool> stopping_{false};
-  std::vector<std::vector<std::string>> missing_;  // files, by member
+  std::vector<std::vector<std::string>> told_;  // files, by member
   int finished_ = 0;
   int computed_ = 0;      // of these not only read
   double seconds_ = 0.0;  // that computing them took
@@ -145,7 +146,7 @@ void FamilyRun::prepare() {
   // An older result must not stand beside a study that is not its own.
   fs::remove(options_.folder / "result.json");
   parents_.assign(members_.size(), -1);
-  missing_.assign(members_.size(), {});
+  told_.assign(members_.size(), {});
   for (std::size_t k = 0; k < members_.size(); ++k) {
     const std::string& name = family_.study.members[k].name;
     FamilyRow row;
@@ -313,11 +314,12 @@ void FamilyRun::finish(std::size_t k, const Json& result) {
   row.name = result_.rows[k].name;
   row.folder = result_.rows[k].folder;
   row.parent = result["member"].value("parent", "");
-  missing_[k].clear();
+  told_[k].clear();
   for (const Json& warning : result.value("warnings", Json::array())) {
     const std::string text = warning.is_string() ? warning : "";
-    if (text.rfind(kNotWritten, 0) == 0) {  // asked for, and not there
-      missing_[k].push_back(row.name + ": " + text);
+    // Asked for and not there; held above what was asked.
+    if (text.rfind(kNotWritten, 0) == 0 || text.ends_with(study::kHeldAbove)) {
+      told_[k].push_back(row.name + ": " + text);
     }
   }
   result_.rows[k] = std::move(row);
@@ -412,7 +414,7 @@ FamilyResult FamilyRun::run() {
     }
   }
   set_status(result_);
-  for (const std::vector<std::string>& files : missing_) {
+  for (const std::vector<std::string>& files : told_) {
     result_.warnings.insert(result_.warnings.end(), files.begin(), files.end());
   }
   if (stopping_) {

@@ -22,7 +22,7 @@ std::string with_error(double value, const VectorX& errors, Eigen::Index k,
 
 /// "   at its lower bound" of a variable that a study moved there.
 std::string at_bound(const case_data::DesignVariable& variable, double value) {
-  constexpr double kThere = 1e-6;  // of the range
+  constexpr double kThere = 1e-5;  // of the range
   const double near = kThere * (variable.upper - variable.lower);
   if (!(variable.upper > variable.lower)) {
     return "";

@@ -4,10 +4,10 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "pipeline/frames/film_frames.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_files.h"
 #include "pipeline/store/stored_case.h"
-#include "pipeline/study/film_frames.h"
 #include "pipeline/study/partial_result.h"
 #include "pipeline/study/study_records.h"
 
@@ -32,7 +32,7 @@ store::StudyStore open_run(const case_data::Case& input, const fs::path& folder,
     for (const char* name : {"result.json", "family.csv", "report.html"}) {
       fs::remove(folder / name);
     }
-    study::remove_frames(folder);
+    frames::remove_frames(folder);
   } catch (const fs::filesystem_error& error) {
     throw IoError(error.what());
   }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "optimize/minimize.h"
-#include "pipeline/store/refreeze.h"
 
 namespace meniscus::store {
 
@@ -44,10 +43,9 @@ bool is_better(const Merit& a, const Merit& b) {
 
 const EvaluationRecord* best_by_objective(
     const case_data::StudyEntry& study,
-    const std::vector<EvaluationRecord>& records) {
+    const std::vector<EvaluationRecord>& records, const std::string& model) {
   const EvaluationRecord* best = nullptr;
   Merit standing;
-  const std::string model = answering_model(records);
   for (const EvaluationRecord& record : records) {
     if (record.failure || record.model != model) {
       continue;

@@ -1,6 +1,7 @@
 /// Which of two designs a study prefers, where it has an objective.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/types.h"
@@ -32,11 +33,10 @@ Merit merit_of(const case_data::StudyEntry& study, const VectorX& responses);
 /// all goes before one that does not.
 bool is_better(const Merit& a, const Merit& b);
 
-/// The first of the best records of the answering model by objective and
-/// constraints, or null when all failed. `records` must be of a study with an
-/// objective.
+/// The first of the best records of `model` by objective and constraints, or
+/// null when all failed. `records` must be of a study with an objective.
 const EvaluationRecord* best_by_objective(
     const case_data::StudyEntry& study,
-    const std::vector<EvaluationRecord>& records);
+    const std::vector<EvaluationRecord>& records, const std::string& model);
 
 }  // namespace meniscus::store

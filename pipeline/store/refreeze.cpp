@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
+#include "pipeline/case_data/film_start.h"
 
 namespace meniscus::store {
 
@@ -127,14 +128,6 @@ double design_distance(const case_data::Case& input, const VectorX& a,
   return largest;
 }
 
-case_data::Case frozen_at(case_data::Case input, const VectorX& design) {
-  input.earlier_freezes.push_back(case_data::initial_design(input));
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    input.design[k].initial = design[static_cast<Eigen::Index>(k)];
-  }
-  return input;
-}
-
 case_data::Case frozen_as_answered(
     case_data::Case input, const std::vector<EvaluationRecord>& records) {
   // Back from the last model to the first: each names the design that it is
@@ -153,7 +146,7 @@ case_data::Case frozen_as_answered(
     model = at->model;
   }
   for (auto design = way.rbegin(); design != way.rend(); ++design) {
-    input = frozen_at(std::move(input), *design);
+    input = case_data::frozen_at(std::move(input), *design);
   }
   return input;
 }

@@ -43,10 +43,6 @@ std::string answering_model(const std::vector<EvaluationRecord>& records);
 double design_distance(const case_data::Case& input, const VectorX& a,
                        const VectorX& b);
 
-/// The case with `design` for its initial one, whose film begins from that of
-/// the model before.
-case_data::Case frozen_at(case_data::Case input, const VectorX& design);
-
 /// The case whose freeze is the answering model, with all before it.
 case_data::Case frozen_as_answered(
     case_data::Case input, const std::vector<EvaluationRecord>& records);

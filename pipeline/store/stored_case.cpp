@@ -73,12 +73,18 @@ std::map<std::string, std::string> stored_units(
 const EvaluationRecord& best_record(
     const case_data::Case& input,
     const std::vector<EvaluationRecord>& records) {
+  return best_record(input, records, answering_model(records));
+}
+
+const EvaluationRecord& best_record(
+    const case_data::Case& input, const std::vector<EvaluationRecord>& records,
+    const std::string& model) {
   const EvaluationRecord* best =
-      input.study.objective ? best_by_objective(input.study, records) : nullptr;
+      input.study.objective ? best_by_objective(input.study, records, model)
+                            : nullptr;
   if (best != nullptr) {
     return *best;
   }
-  const std::string model = answering_model(records);
   for (const EvaluationRecord& record : records) {
     if (record.failure || record.model != model) {
       continue;

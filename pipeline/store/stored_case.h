@@ -24,9 +24,14 @@ case_data::Case restore_case(const StudyMeta& meta);
 std::map<std::string, std::string> stored_units(
     const std::filesystem::path& folder);
 
-/// The incumbent of a study: the evaluated design with the least mismatch; of a
-/// minimum the one that violates its bounds least, then with the least
-/// objective; of an analysis the first. Throws InvalidInput when there is none.
+/// The incumbent of a study on one of its models: the evaluated design with the
+/// least mismatch; of a minimum the one that violates its bounds least, then
+/// with the least objective; of an analysis the first. Throws InvalidInput when
+/// there is none.
+const EvaluationRecord& best_record(
+    const case_data::Case& input, const std::vector<EvaluationRecord>& records,
+    const std::string& model);
+/// On the answering model.
 const EvaluationRecord& best_record(
     const case_data::Case& input, const std::vector<EvaluationRecord>& records);
 

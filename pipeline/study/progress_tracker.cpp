@@ -99,14 +99,14 @@ EvaluationEvent ProgressTracker::event(
   if (const std::optional<int>& fit = input_.study.fit) {
     event.objective_name =
         input_.responses[static_cast<std::size_t>(*fit)].name;
-    event.objective_unit = case_data::response_unit(input_, *fit);
+    event.objective_shown = case_data::shown_unit(input_, *fit);
   } else if (input_.study.kind == case_data::StudyKind::Match) {
     event.objective_name = "mismatch";
   } else if (input_.study.objective) {
     const int response = *input_.study.objective;
     event.objective_name =
         input_.responses[static_cast<std::size_t>(response)].name;
-    event.objective_unit = case_data::response_unit(input_, response);
+    event.objective_shown = case_data::shown_unit(input_, response);
   }
   event.evaluations = evaluations_;
   event.failed = failed_;
@@ -145,7 +145,8 @@ std::string progress_text(const EvaluationEvent& event) {
     const bool kept = event.best->violation.value_or(0.0) <= store::kFeasible;
     add(fmt::format(
         "best so far {} = {}{} (evaluation {})", event.objective_name,
-        quantity_text(*event.best->objective, event.objective_unit),
+        quantity_text(event.objective_shown.factor * *event.best->objective,
+                      event.objective_shown.unit),
         kept ? ""
              : fmt::format(" with violation {:.2g} of '{}'",
                            *event.best->violation, event.best->worst),

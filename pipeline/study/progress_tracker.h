@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/timer.h"
+#include "core/units.h"
 #include "pipeline/case_data/case.h"
 #include "pipeline/store/study_store.h"
 
@@ -28,11 +29,11 @@ struct EvaluationEvent {
   DesignStatus status;               // of it; empty where the design failed
   std::optional<DesignStatus> best;  // of this model, so far
   std::string objective_name;        // "mismatch", or a response
-  std::string objective_unit;
-  int evaluations = 0;         // of this model, in the database
-  int failed = 0;              // of these
-  std::optional<int> planned;  // evaluations in all, at most
-  double elapsed = 0.0;        // since the study began [s]
+  ShownUnit objective_shown;         // to people
+  int evaluations = 0;               // of this model, in the database
+  int failed = 0;                    // of these
+  std::optional<int> planned;        // evaluations in all, at most
+  double elapsed = 0.0;              // since the study began [s]
   std::optional<double> left;  // [s], at most: to `planned` or to the limit
   std::string member;          // of a family
 };

@@ -158,6 +158,11 @@ std::function<void(const std::vector<VectorX>&)> prefetch_of(
   };
 }
 
+bool all_kept(const std::vector<Constraint>& constraints) {
+  return std::all_of(constraints.begin(), constraints.end(),
+                     [](const Constraint& c) { return c.satisfied; });
+}
+
 StudyOutcome conduct(const StudyTask& task) {
   task.evaluator.limit_time(task.options.time_limit);
   switch (task.input.study.kind) {

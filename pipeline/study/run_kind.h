@@ -36,7 +36,14 @@ struct StudyOutcome {
   std::optional<ToleranceFigures> tolerance;
   std::optional<FrontFigures> front;
   std::vector<std::string> warnings;
+
+  /// Not by the search itself.
+  bool ended_by_limit() const {
+    return status == RunStatus::Stopped && !unproven;
+  }
 };
+
+bool all_kept(const std::vector<Constraint>& constraints);
 
 /// What the case's study.kind says.
 StudyOutcome conduct(const StudyTask& task);

@@ -1,9 +1,6 @@
 #include "pipeline/study/study.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <memory>
 #include <optional>
 
 #include <Eigen/Core>
@@ -16,13 +13,16 @@
 #include "pipeline/accuracy/mesh_errors.h"
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/part_warnings.h"
+#include "pipeline/frames/film_frames.h"
+#include "pipeline/store/incumbent.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/accuracy_note.h"
-#include "pipeline/study/film_frames.h"
+#include "pipeline/study/held_margins.h"
+#include "pipeline/study/own_mesh.h"
 #include "pipeline/study/run_kind.h"
+#include "pipeline/study/study_models.h"
 #include "pipeline/study/study_monitor.h"
 #include "pipeline/study/study_records.h"
-#include "pipeline/study/study_stage.h"
 #include "pipeline/study/time_limit.h"
 
 namespace meniscus::study {
@@ -33,44 +33,17 @@ namespace {
 // under way is given up.
 constexpr double kLateness = 0.5;
 
-// A model frozen this near to a design, x the ranges of the variables, is one
-// of that design.
-constexpr double kAtDesign = 1e-2;
-
-// An answer that is not kept on a model frozen at it is sought there again, so
-// often and this near to it, x the ranges of the variables: another mesh moves
-// every figure by its own noise, so that a search without these bounds would
-// find another answer on each. The last is within kAtDesign.
-constexpr std::array<double, 4> kReaches = {1.0, 0.1, 0.03, 0.009};
-
-// Bounds of margins to collapse are raised above their errors so often.
+// Bounds of margins to collapse are raised above their errors so often, by a
+// quarter and more; a search that ends so near to one keeps the margin.
 constexpr int kMostRaises = 3;
+constexpr double kRaisedBoundMissed = 1e-2;
 
-bool keeps_all(const StudyOutcome& outcome) {
-  return std::all_of(outcome.constraints.begin(), outcome.constraints.end(),
-                     [](const Constraint& c) { return c.satisfied; });
-}
-
-bool ended_by_limit(const StudyOutcome& outcome) {
-  return outcome.status == RunStatus::Stopped && !outcome.unproven;
-}
-
-VectorX bounds_of(const std::vector<accuracy::FigureError>& errors) {
-  VectorX bounds(static_cast<Eigen::Index>(errors.size()));
-  for (std::size_t r = 0; r < errors.size(); ++r) {
-    bounds[static_cast<Eigen::Index>(r)] = errors[r].bound;
-  }
-  return bounds;
-}
-
-/// What a point of a front is on a mesh of its own.
-void judge_point(const case_data::Case& input, const VectorX& responses,
-                 FrontPoint& point) {
-  point.own_mesh = OwnMesh{.first = responses[*input.study.objective],
-                           .second = responses[*input.study.second]};
-  for (const Constraint& constraint : bound_constraints(input, responses)) {
-    point.own_mesh->kept = point.own_mesh->kept && constraint.satisfied;
-  }
+/// With the limit and its monitor in place of the caller's.
+StudyOptions limited_options(StudyOptions options, double limit,
+                             Monitor& monitor) {
+  options.time_limit = limit;
+  options.monitor = &monitor;
+  return options;
 }
 
 /// From the frozen model to the answer with its error, step by step.
@@ -79,46 +52,28 @@ class StudyRun {
   StudyRun(const case_data::Case& input, store::StudyStore& store,
            const StudyOptions& options)
       : input_(input),
-        case_(input),
         store_(store),
-        options_(options),
         monitor_(options.monitor != nullptr ? *options.monitor
                                             : silent_monitor()),
         limit_(smaller_limit(options.time_limit, input.study.time_limit)),
         limited_(monitor_, limit_),
-        hard_limit_(monitor_, limit_ > 0.0 ? limit_ + kLateness : 0.0) {
-    options_.time_limit = limit_;
-    options_.monitor = &hard_limit_;
-  }
+        hard_limit_(monitor_, limit_ > 0.0 ? limit_ + kLateness : 0.0),
+        options_(limited_options(options, limit_, hard_limit_)),
+        models_(input, store, options_) {}
 
   RunResult run();
   /// Of the best design; or what there is of a surface that was not filled.
   forward::EvaluationFields release_fields() { return std::move(fields_); }
 
  private:
-  void start_coarse();
+  StudyStage& stage() { return *models_.stage(); }
   bool begin();
   bool study_in_time();
   void keep_best_in_time();
-  bool may_refreeze() const;
-  bool refreeze();
-  bool go_on_at(store::Refreeze wanted);
-  std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
-                                       const std::string& name,
-                                       const case_data::Case& input);
-  void update_time_limit();
-  int evaluations_left() const {
-    return input_.study.max_evaluations - earlier_evaluations_ -
-           stage_->evaluations();
-  }
-  void add_stage_totals();
   void conduct_study();
-  void take_outcome();
-  bool has_answer_to_judge() const;
-  void judge_answer();
-  void judge_front();
   bool raise_doubted_margins();
-  void doubt_margins();
+  void take_outcome();
+  void judge_by_own_bounds();
   bool finish_best();
   template <class Work>
   void run_if_time_left(const char* what, const Work& work);
@@ -126,8 +81,8 @@ class StudyRun {
   void solve_eigenproblems();
   void estimate_element_errors_of_best();
   void estimate_errors();
-  bool is_judged(const VectorX& design) const {
-    return judged_ && judged_->model == stage_->model_name() &&
+  bool is_judged(const VectorX& design) {
+    return judged_ && judged_->model == stage().model_name() &&
            judged_->design == design;
   }
   accuracy::MeshSequence other_meshes(bool with_eigen);
@@ -136,18 +91,15 @@ class StudyRun {
   void count();
 
   const case_data::Case& input_;
-  case_data::Case case_;  // with the bounds that the search keeps
   store::StudyStore& store_;
-  StudyOptions options_;  // its start and time as stages leave them
   Monitor& monitor_;
   double limit_;                // [s], 0: none
   DeadlineMonitor limited_;     // of what may be left out at the end
   DeadlineMonitor hard_limit_;  // of what is computed before
+  StudyOptions options_;
+  StudyModels models_;
   std::vector<std::string> left_out_;
   Timer timer_;
-  std::unique_ptr<case_data::Case>
-      frozen_;           // what the stage's model is frozen of, where
-                         // that is not the case's initial design
   bool raised_ = false;  // bounds of margins, above those of the input
   // The last best design that was put on other meshes, of that model.
   struct OnOtherMeshes {
@@ -156,53 +108,24 @@ class StudyRun {
     accuracy::MeshSequence meshes;
   };
   std::optional<OnOtherMeshes> judged_;
-  std::unique_ptr<StudyStage> stage_;
   forward::EvaluationFields fields_;
-  forward::StageSeconds own_seconds_;  // beside those of the evaluator
-  int earlier_gradients_ = 0;          // of stages before this one
-  int earlier_evaluations_ = 0;
+  forward::StageSeconds own_seconds_;  // beside those of the models
   RunResult result_;
 };
 
-/// The answer of the coarser model is where the case's own starts.
-void StudyRun::start_coarse() {
-  if (!(input_.study.coarse_first > 1.0)) {
-    return;
-  }
-  monitor_.log(Severity::Info, "first on a coarser model");
-  CoarseStage coarse = run_coarse_stage(input_, store_, options_);
-  own_seconds_ += coarse.seconds;
-  if (coarse.best) {
-    options_.start = coarse.best;
-  } else {
-    result_.warnings.push_back("the coarser model gave no start: " +
-                               coarse.figures.message);
-  }
-  result_.coarse = std::move(coarse.figures);
-  update_time_limit();
-}
-
-/// What a stage took is gone for the next.
-void StudyRun::update_time_limit() {
-  constexpr double kLeast = 1e-3;
-  if (limit_ > 0.0) {
-    options_.time_limit = std::max(limit_ - timer_.seconds(), kLeast);
-  }
-}
-
 bool StudyRun::begin() {
-  stage_ = std::make_unique<StudyStage>(case_, store_, options_);
-  const forward::ForwardModel& model = stage_->evaluator().model();
+  models_.freeze();
+  const forward::ForwardModel& model = stage().evaluator().model();
   if (const forward::Adaptation* adaptation = model.adaptation()) {
     result_.adaptation = *adaptation;
   }
-  result_.start = stage_->start();
+  result_.start = stage().start();
   result_.frozen = model.frozen();
-  if (stage_->failure()) {
+  if (stage().failure()) {
     result_.status = RunStatus::Failed;
     result_.message = fmt::format("the initial design cannot be evaluated: {}",
-                                  stage_->failure()->message);
-    result_.best = stage_->start();
+                                  stage().failure()->message);
+    result_.best = stage().start();
     if (model.failure()) {
       fields_.surface.base = model.unfilled_surface();
       fields_.findings = model.findings();
@@ -216,283 +139,70 @@ bool StudyRun::begin() {
   return true;
 }
 
-void StudyRun::add_stage_totals() {
-  own_seconds_ += stage_->evaluator().seconds();
-  earlier_gradients_ += stage_->evaluator().counts().gradients;
-  earlier_evaluations_ += stage_->evaluations();
-}
-
-/// A stage on a model frozen there, or null where it cannot be.
-std::unique_ptr<StudyStage> StudyRun::stage_at(const store::Refreeze& refreeze,
-                                               const std::string& name,
-                                               const case_data::Case& input) {
-  std::unique_ptr<StudyStage> stage;
-  std::string reason = what_prevents([&] {
-    stage = std::make_unique<StudyStage>(
-        input, store_, options_,
-        StageModel{.name = name, .reference = result_.start->responses});
-  });
-  if (stage != nullptr && !stage->failure()) {
-    return stage;
-  }
-  if (stage != nullptr) {
-    own_seconds_ += stage->evaluator().seconds();
-    reason = stage->failure()->message;
-  }
-  result_.warnings.push_back(fmt::format(
-      "{}, but no new model can be frozen there: {}", refreeze.reason, reason));
-  return nullptr;
-}
-
-/// Goes on with a new model where the study has left the reach of the last;
-/// false when there is none.
-bool StudyRun::refreeze() {
-  const StudyOutcome& outcome = stage_->outcome();
-  if (!may_refreeze() || ended_by_limit(outcome) || evaluations_left() <= 0) {
-    return false;
-  }
-  std::optional<store::Refreeze> wanted =
-      stage_->wanted(outcome.best, outcome.status == RunStatus::Converged);
-  if (!wanted) {
-    return false;
-  }
-  return go_on_at(*std::move(wanted));
-}
-
-/// With a model frozen there; false where there is none.
-bool StudyRun::go_on_at(store::Refreeze wanted) {
-  monitor_.log(Severity::Info,
-               fmt::format("a new model is frozen at evaluation {}: {}",
-                           wanted.evaluation, wanted.reason));
-  auto input = std::make_unique<case_data::Case>(
-      store::frozen_at(frozen_ ? *frozen_ : case_, wanted.design));
-  input->study.max_evaluations = std::max(1, evaluations_left());
-  update_time_limit();
-  std::unique_ptr<StudyStage> stage =
-      stage_at(wanted, store::refrozen_model(wanted.evaluation), *input);
-  if (stage == nullptr) {
-    return false;
-  }
-  wanted.shift = stage->start().responses - wanted.responses;
-  add_stage_totals();
-  options_.start = wanted.go_on_from;
-  stage_ = std::move(stage);
-  frozen_ = std::move(input);
-  result_.refrozen.push_back(std::move(wanted));
-  return true;
-}
-
-/// One of a study that seeks designs, where its model is frozen elsewhere.
-bool StudyRun::has_answer_to_judge() const {
-  const case_data::StudyKind kind = input_.study.kind;
-  const VectorX& best = stage_->outcome().best;
-  return (kind == case_data::StudyKind::Match ||
-          kind == case_data::StudyKind::Minimize ||
-          kind == case_data::StudyKind::Pareto) &&
-         best.size() > 0 && stage_->was_answered(best) &&
-         store::design_distance(input_, best, stage_->start().design) >
-             kAtDesign;
-}
-
-/// The mesh of an answer was dragged to it from another design: it is evaluated
-/// on one of its own, and what is not kept there is not kept. Then the study
-/// goes on from that model, so often.
-void StudyRun::judge_answer() {
-  if (input_.study.kind == case_data::StudyKind::Pareto) {
-    return;
-  }
-  for (std::size_t round = 0; has_answer_to_judge(); ++round) {
-    const StudyOutcome found = stage_->outcome();
-    if (ended_by_limit(found) || limited_.expired()) {
-      // Of no use yet: with a higher limit the study goes on from its model.
-      result_.warnings.emplace_back(
-          "a limit ended the study: its best design was not evaluated on a "
-          "mesh of its own");
-      return;
-    }
-    const store::EvaluationRecord record =
-        *store_.find(stage_->model_name(), found.best);
-    if (!go_on_at({.evaluation = record.number,
-                   .design = found.best,
-                   .reason = "the answer on a mesh of its own",
-                   .shift = {},
-                   .responses = record.responses})) {
-      return;
-    }
-    stage_->judge(found, input_);
-    const bool lost = keeps_all(found) && !keeps_all(stage_->outcome());
-    if (!lost || !input_.study.refreeze || evaluations_left() <= 0 ||
-        round >= kReaches.size()) {
-      return;
-    }
-    monitor_.log(Severity::Info,
-                 "not kept on a mesh of its own: the study goes on there");
-    stage_->conduct(StudyStage::Leave::Late, kReaches[round]);
-  }
-}
-
-bool StudyRun::may_refreeze() const {
-  const case_data::StudyEntry& study = input_.study;
-  return study.refreeze &&
-         static_cast<int>(result_.refrozen.size()) < store::kMostRefreezes &&
-         (study.kind == case_data::StudyKind::Match ||
-          study.kind == case_data::StudyKind::Minimize);
-}
-
-/// Each point of a front on a mesh of its own, that of the part last: the
-/// others tell how much of the front is the mesh's.
-void StudyRun::judge_front() {
-  StudyOutcome found = stage_->outcome();
-  if (!found.front || found.best.size() == 0) {
-    return;
-  }
-  for (FrontPoint& point : found.front->points) {
-    const std::optional<store::EvaluationRecord> record =
-        store_.find(stage_->model_name(), point.design);
-    const bool of_part = point.design == found.best;
-    if (!record || limited_.expired()) {
-      left_out_.emplace_back("a point of the front on a mesh of its own");
-      continue;
-    }
-    if (of_part) {
-      continue;
-    }
-    store::Refreeze wanted{.evaluation = record->number,
-                           .design = point.design,
-                           .reason =
-                               "a point of the front, on a mesh of its "
-                               "own",
-                           .shift = {},
-                           .responses = record->responses};
-    const case_data::Case input = store::frozen_at(input_, point.design);
-    // A model that only looks: the study's answer is not of it.
-    const std::unique_ptr<StudyStage> stage = stage_at(
-        wanted, fmt::format("point of evaluation {}", record->number), input);
-    if (stage != nullptr) {
-      own_seconds_ += stage->evaluator().seconds();
-      judge_point(input_, stage->start().responses, point);
-    }
-  }
-  if (has_answer_to_judge()) {
-    const store::EvaluationRecord record =
-        *store_.find(stage_->model_name(), found.best);
-    if (!go_on_at({.evaluation = record.number,
-                   .design = found.best,
-                   .reason = "the answer on a mesh of its own",
-                   .shift = {},
-                   .responses = record.responses})) {
-      return;
-    }
-    for (FrontPoint& point : found.front->points) {
-      if (point.design == found.best) {
-        judge_point(input_, stage_->start().responses, point);
-      }
-    }
-    stage_->judge(found, input_);
-  }
-}
-
 /// True where a margin's bound was raised, for the study to go on with: the
 /// answer's own margin is within the mesh's error of it, so that the film may
 /// be there on this mesh alone.
 bool StudyRun::raise_doubted_margins() {
-  const StudyOutcome& outcome = stage_->outcome();
-  case_data::Case& working = frozen_ ? *frozen_ : case_;
-  const bool goes_on = input_.study.kind == case_data::StudyKind::Minimize &&
-                       input_.study.refreeze && options_.estimate_errors &&
-                       keeps_all(outcome) && !limited_.expired() &&
-                       evaluations_left() > 0;
-  if (!goes_on) {
-    return false;
-  }
-  auto& constraints = working.study.constraints;
-  const bool any = std::any_of(
-      constraints.begin(), constraints.end(), [&](const auto& entry) {
-        return accuracy::holds_margin(input_, entry) && entry.lower > 0.0;
-      });
-  if (!any) {
+  const StudyOutcome& outcome = stage().outcome();
+  if (!input_.study.refreeze || !options_.estimate_errors ||
+      !holds_margins(models_.working()) || !all_kept(outcome.constraints) ||
+      limited_.expired() || models_.evaluations_left() <= 0) {
     return false;
   }
   if (!is_judged(outcome.best)) {
-    judged_ = {stage_->model_name(), outcome.best, other_meshes(false)};
-  }
-  bool raised = false;
-  for (const accuracy::DoubtedMargin& margin :
-       accuracy::doubted_margins(input_, judged_->meshes.responses[0],
-                                 bounds_of(accuracy::response_errors(
-                                     input_, judged_->meshes, VectorX())))) {
-    double& lower = constraints[margin.constraint].lower;
-    if (!(lower > 0.0)) {
-      continue;
+    run_if_time_left("the errors of margins", [&] {
+      judged_ = {stage().model_name(), outcome.best, other_meshes(false)};
+    });
+    if (!is_judged(outcome.best)) {
+      return false;
     }
-    lower = accuracy::raised_bound(margin, lower);
-    raised = true;
-    monitor_.log(Severity::Info,
-                 fmt::format("'{}' is {:.2g}, and {}: the study goes on and "
-                             "holds it at {:.2g}",
-                             margin.name, margin.value,
-                             accuracy::doubt_text(margin), lower));
-    result_.warnings.push_back(fmt::format(
+  }
+  const std::vector<RaisedMargin> raised =
+      raise_margins(input_, judged_->meshes, models_.working());
+  for (const auto& [margin, lower] : raised) {
+    const std::string doubt = accuracy::doubt_text(margin);
+    models_.log(
+        fmt::format("'{}' is {:.2g}, and {}: the study goes on and holds it "
+                    "at {:.2g}",
+                    margin.name, margin.value, doubt, lower));
+    models_.warn(fmt::format(
         "'{}' was {:.2g} at a first answer, and {}: it is held at {:.2g} or "
-        "more, above its bound",
-        margin.name, margin.value, accuracy::doubt_text(margin), lower));
+        "more{}",
+        margin.name, margin.value, doubt, lower, kHeldAbove));
   }
-  if (raised) {
-    raised_ = true;
-    working.study.max_evaluations = std::max(1, evaluations_left());
+  if (raised.empty()) {
+    return false;
   }
-  return raised;
-}
-
-/// A margin that its own error makes nothing is no margin.
-void StudyRun::doubt_margins() {
-  if (input_.study.kind != case_data::StudyKind::Minimize ||
-      result_.response_errors.size() == 0) {
-    return;
-  }
-  for (const accuracy::DoubtedMargin& margin : accuracy::doubted_margins(
-           input_, result_.best->responses, result_.response_errors)) {
-    for (Constraint& constraint : result_.constraints) {
-      if (constraint.name == margin.name) {
-        constraint.satisfied = false;
-      }
-    }
-    const std::string note = fmt::format(
-        "'{}' is {:.2g} and {}: the film may be there on this mesh alone, so "
-        "the bound is not kept; raise it{}, or shorten resolution.fea",
-        margin.name, margin.value, accuracy::doubt_text(margin),
-        std::isfinite(margin.error) ? " above the error" : "");
-    result_.message += ". " + note;
-    result_.warnings.push_back(note);
-    if (result_.status == RunStatus::Converged) {
-      result_.status = RunStatus::Infeasible;
-    }
-  }
+  raised_ = true;
+  models_.limit_evaluations();
+  return true;
 }
 
 void StudyRun::conduct_study() {
   using Leave = StudyStage::Leave;
   do {
-    stage_->conduct(may_refreeze() ? Leave::Early : Leave::Late);
-  } while (refreeze());
-  if (stage_->stopped_early()) {
-    stage_->conduct();
+    stage().conduct(models_.may_refreeze() ? Leave::Early : Leave::Late);
+  } while (models_.refreeze());
+  if (stage().stopped_early()) {
+    stage().conduct();
   }
-  judge_answer();
+  judge_answer(models_, limited_);
   for (int k = 0; k < kMostRaises && raise_doubted_margins(); ++k) {
-    stage_->conduct();
-    judge_answer();
+    stage().conduct();
+    judge_answer(models_, limited_);
   }
-  judge_front();
+  for (std::string& point : judge_front(models_, limited_)) {
+    left_out_.push_back(std::move(point));
+  }
   if (const forward::Adaptation* adaptation =
-          stage_->evaluator().model().adaptation()) {
+          stage().evaluator().model().adaptation()) {
     result_.adaptation = *adaptation;
   }
   take_outcome();
 }
 
 void StudyRun::take_outcome() {
-  const StudyOutcome& outcome = stage_->outcome();
+  const StudyOutcome& outcome = stage().outcome();
   result_.status = outcome.status;
   result_.message = outcome.message;
   result_.objective = outcome.objective;
@@ -504,9 +214,25 @@ void StudyRun::take_outcome() {
                           outcome.warnings.end());
 }
 
+/// Raised bounds are for the search alone: the user's are what counts.
+void StudyRun::judge_by_own_bounds() {
+  const VectorX& responses = result_.best->responses;
+  result_.constraints = bound_constraints(input_, responses);
+  if (result_.status != RunStatus::Infeasible ||
+      !all_kept(result_.constraints)) {
+    return;
+  }
+  const double missed =
+      store::merit_of(models_.working().study, responses).violation;
+  result_.status =
+      missed < kRaisedBoundMissed ? RunStatus::Converged : RunStatus::Stopped;
+  result_.message +=
+      ". All bounds of the case are kept; what is missed was raised above one";
+}
+
 bool StudyRun::finish_best() {
   result_.best =
-      stage_->evaluator().with_fields(stage_->outcome().best, fields_);
+      stage().evaluator().with_fields(stage().outcome().best, fields_);
   if (result_.best->failure) {  // only an analysis can end here
     result_.status = RunStatus::Failed;
     result_.message = result_.best->failure->message;
@@ -526,7 +252,7 @@ bool StudyRun::finish_best() {
     result_.warnings.push_back(std::move(warning));
   }
   for (std::string& warning :
-       forward::wall_warnings(stage_->evaluator().model())) {
+       forward::wall_warnings(stage().evaluator().model())) {
     result_.warnings.push_back(std::move(warning));
   }
   for (std::string& warning : forward::process_warnings(input_, fields_.mesh)) {
@@ -555,17 +281,17 @@ void StudyRun::run_if_time_left(const char* what, const Work& work) {
 }
 
 void StudyRun::keep_history() {
-  fields_.history =
-      film_frames(input_, stage_->evaluator().model(),
-                  kept_designs(input_, store_.all(), stage_->outcome().best,
-                               options_.frames),
-                  limited_);
+  fields_.history = frames::film_frames(
+      input_, stage().evaluator().model(),
+      frames::kept_designs(input_, store_.all(), stage().outcome().best,
+                           options_.frames),
+      limited_);
 }
 
 void StudyRun::solve_eigenproblems() {
   monitor_.progress({.stage = "fea", .detail = "buckling, frequencies"});
   result_.eigen = forward::eigen_figures(
-      input_, fields_, stage_->evaluator().model().elasticity(), &limited_);
+      input_, fields_, stage().evaluator().model().elasticity(), &limited_);
   own_seconds_.fea += result_.eigen->seconds;
   fields_.modes = forward::mode_shapes(input_, *result_.eigen);
   for (std::string& warning : forward::buckling_warnings(*result_.eigen)) {
@@ -578,7 +304,7 @@ void StudyRun::estimate_element_errors_of_best() {
   const Timer timer;
   forward::ElementErrors errors = forward::estimate_element_errors(
       input_, fields_, result_.best->responses,
-      stage_->evaluator().model().elasticity());
+      stage().evaluator().model().elasticity());
   own_seconds_.fea += timer.seconds();
   if (errors.failure) {
     result_.warnings.push_back("no estimate of the elements' errors: " +
@@ -615,8 +341,8 @@ void StudyRun::estimate_errors() {
 /// The best design on its own mesh and on others.
 accuracy::MeshSequence StudyRun::other_meshes(bool with_eigen) {
   accuracy::MeshSequence meshes = accuracy::evaluate_on_other_meshes(
-      frozen_ ? *frozen_ : case_, stage_->outcome().best,
-      store_.find(stage_->model_name(), stage_->outcome().best)->responses,
+      models_.working(), stage().outcome().best,
+      store_.find(stage().model_name(), stage().outcome().best)->responses,
       with_eigen, limited_);
   own_seconds_ += meshes.seconds;
   return meshes;
@@ -626,17 +352,17 @@ void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
   const std::vector<accuracy::FigureError> errors = accuracy::response_errors(
       input_, meshes,
       result_.element_errors ? result_.element_errors->responses : VectorX());
-  result_.response_errors = bounds_of(errors);
+  result_.response_errors = accuracy::bounds_of(errors);
   result_.meshes = meshes.responses;
   for (std::string& warning :
        accuracy::unsettled_warnings(input_, meshes, errors)) {
     result_.warnings.push_back(std::move(warning));
   }
-  if (stage_->targets() != nullptr && stage_->outcome().jacobian.size() > 0) {
-    const Eigen::MatrixXd inverse = pseudo_inverse(stage_->outcome().jacobian);
+  if (stage().targets() != nullptr && stage().outcome().jacobian.size() > 0) {
+    const Eigen::MatrixXd inverse = pseudo_inverse(stage().outcome().jacobian);
     result_.design_errors =
         inverse.cwiseAbs() *
-        stage_->targets()->residual_errors(result_.response_errors);
+        stage().targets()->residual_errors(result_.response_errors);
   }
 }
 
@@ -647,7 +373,7 @@ void StudyRun::warn() {
                     limited_.limit(), fmt::join(left_out_, ", ")));
   }
   const std::string note =
-      accuracy_note(input_, stage_->targets(), result_.best->responses,
+      accuracy_note(input_, stage().targets(), result_.best->responses,
                     result_.response_errors);
   if (!note.empty()) {
     result_.message += ". " + note;
@@ -656,7 +382,6 @@ void StudyRun::warn() {
 }
 
 void StudyRun::count() {
-  add_stage_totals();
   for (const store::EvaluationRecord& record : store_.all()) {
     if (store::is_study_model(record.model)) {
       ++result_.evaluations;
@@ -669,16 +394,16 @@ void StudyRun::count() {
             .second;
     }
   }
-  result_.gradient_evaluations = earlier_gradients_;
   result_.seconds = own_seconds_;
+  models_.add_to(result_);
 }
 
 /// The best of what was evaluated, where a computation outlasted the limit.
 void StudyRun::keep_best_in_time() {
   hard_limit_.lift();
   std::vector<store::EvaluationRecord> records;
-  if (stage_ != nullptr) {
-    records = stage_->records();
+  if (models_.stage() != nullptr) {
+    records = stage().records();
   }
   const bool any = std::any_of(
       records.begin(), records.end(),
@@ -694,7 +419,7 @@ void StudyRun::keep_best_in_time() {
   if (input_.study.kind == case_data::StudyKind::Minimize) {
     outcome.constraints = bound_constraints(input_, best.responses);
   }
-  stage_->leave(std::move(outcome));
+  stage().leave(std::move(outcome));
   take_outcome();
 }
 
@@ -702,7 +427,7 @@ void StudyRun::keep_best_in_time() {
 /// before any design was evaluated.
 bool StudyRun::study_in_time() {
   try {
-    start_coarse();
+    result_.coarse = models_.run_coarse();
     if (!begin()) {
       return false;
     }
@@ -721,8 +446,7 @@ RunResult StudyRun::run() {
   if (study_in_time()) {
     if (finish_best()) {
       if (raised_) {
-        result_.constraints =
-            bound_constraints(input_, result_.best->responses);
+        judge_by_own_bounds();
       }
       if (options_.answered) {
         options_.answered(fields_);
@@ -731,7 +455,7 @@ RunResult StudyRun::run() {
                        [&] { solve_eigenproblems(); });
       if (options_.estimate_errors) {
         run_if_time_left("estimates of the errors", [&] { estimate_errors(); });
-        doubt_margins();
+        doubt_margins(input_, result_);
       }
       if (options_.frames > 0) {
         run_if_time_left("films of the history", [&] { keep_history(); });

@@ -6,6 +6,7 @@
 
 #include "core/count_text.h"
 #include "pipeline/accuracy/mesh_sequence.h"
+#include "pipeline/case_data/film_start.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/study_records.h"
@@ -101,7 +102,8 @@ void StudyStage::stop_if_inverted(const store::EvaluationRecord& record) {
   if (inverted_ < store::kMostInverted) {
     return;
   }
-  const VectorX best = store::best_record(input_, records()).inputs;
+  const VectorX best =
+      store::best_record(input_, records(), model_.name).inputs;
   if (wanted(best, false)) {
     throw EarlyStop{best};
   }
@@ -216,7 +218,7 @@ CoarseStage run_coarse_stage(const case_data::Case& input,
       if (!stage.stopped_early()) {
         return;
       }
-      working = store::frozen_at(std::move(working), *result.best);
+      working = case_data::frozen_at(std::move(working), *result.best);
       working.study.max_evaluations =
           std::max(1, working.study.max_evaluations - evaluations);
       asked.start.reset();

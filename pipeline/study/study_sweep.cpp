@@ -4,6 +4,7 @@
 
 #include "optimize/samples/sampling.h"
 #include "pipeline/store/incumbent.h"
+#include "pipeline/store/refreeze.h"
 #include "pipeline/study/run_kind.h"
 
 namespace meniscus::study {
@@ -56,7 +57,9 @@ void choose_best(const StudyTask& task,
                  StudyOutcome& outcome) {
   const case_data::StudyEntry& study = task.input.study;
   const store::EvaluationRecord* best =
-      study.objective ? store::best_by_objective(study, records) : nullptr;
+      study.objective ? store::best_by_objective(
+                            study, records, store::answering_model(records))
+                      : nullptr;
   if (best == nullptr) {
     return;
   }

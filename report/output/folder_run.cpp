@@ -7,9 +7,10 @@
 #include "core/timer.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/walls.h"
+#include "pipeline/forward/work_estimate.h"
+#include "pipeline/frames/film_frames.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_folder.h"
-#include "pipeline/study/film_frames.h"
 #include "pipeline/study/time_limit.h"
 #include "report/output/run_output.h"
 #include "report/page/report_page.h"
@@ -53,6 +54,7 @@ void write_run_page(const fs::path& folder, const FolderRunOptions& options,
 void prepare_run_folder(const case_data::Case& input, const fs::path& folder) {
   forward::refuse_walls(input);
   forward::require_solver(input);
+  forward::require_work(input);
   make_folder(folder);
 }
 
@@ -69,7 +71,7 @@ study::RunResult FolderRun::study(const FolderRunListener& listener,
       study::run_study(input_, store_,
                        {.time_limit = options_.time_limit,
                         .estimate_errors = options_.estimate_errors,
-                        .frames = options_.frames ? study::kMostFrames : 0,
+                        .frames = options_.frames ? frames::kMostFrames : 0,
                         .jobs = options_.jobs,
                         .listener = listener.evaluated,
                         .answered =
@@ -147,17 +149,17 @@ results::FamilyResult run_family_into_folder(
     }
     RunOutput(member, folder, chosen).finish(fields, outcome);
   };
-  return results::run_family(input,
-                             {.folder = options.folder,
-                              .program_version = options.program_version,
-                              .resume = options.resume,
-                              .jobs = options.jobs,
-                              .threads = options.threads,
-                              .time_limit = options.time_limit,
-                              .frames = options.frames ? study::kMostFrames : 0,
-                              .listener = listener.evaluated,
-                              .monitor = listener.monitor,
-                              .write_files = write_member});
+  return results::run_family(
+      input, {.folder = options.folder,
+              .program_version = options.program_version,
+              .resume = options.resume,
+              .jobs = options.jobs,
+              .threads = options.threads,
+              .time_limit = options.time_limit,
+              .frames = options.frames ? frames::kMostFrames : 0,
+              .listener = listener.evaluated,
+              .monitor = listener.monitor,
+              .write_files = write_member});
 }
 
 void write_family_pages(const results::FamilyResult& result,

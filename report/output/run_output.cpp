@@ -4,11 +4,11 @@
 
 #include "core/error.h"
 #include "core/timer.h"
+#include "pipeline/frames/film_frames.h"
 #include "pipeline/results/export_part.h"
 #include "pipeline/results/make_ledger.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_files.h"
-#include "pipeline/study/film_frames.h"
 #include "report/output/run_pictures.h"
 
 namespace meniscus::output {
@@ -21,7 +21,8 @@ RunOutput::RunOutput(const case_data::Case& input, fs::path folder,
       folder_(std::move(folder)),
       options_(options),
       monitor_(options.monitor != nullptr ? *options.monitor
-                                          : silent_monitor()) {}
+                                          : silent_monitor()),
+      in_time_(monitor_, options.time_limit) {}
 
 void RunOutput::begin(const forward::EvaluationFields& fields) {
   if (options_.pictures && !fields.mesh.nodes.empty()) {
@@ -34,7 +35,7 @@ void RunOutput::begin(const forward::EvaluationFields& fields) {
     }
     results::claim_files(folder_, names);
     pictures_.emplace(std::move(jobs),
-                      picture::PictureOptions{.monitor = options_.monitor});
+                      picture::PictureOptions{.monitor = &in_time_});
   }
 }
 
@@ -45,7 +46,7 @@ void RunOutput::finish(const forward::EvaluationFields& fields,
   if (!fields.mesh.nodes.empty()) {
     monitor_.progress({.stage = "output", .detail = "writing meshes"});
     results::write_meshes(input_, fields, folder_);
-    study::write_frames(input_, fields.history, folder_);
+    frames::write_frames(input_, fields.history, folder_);
     exported = export_all(result);
     if (options_.pictures) {
       finish_pictures(fields, result);
@@ -94,7 +95,6 @@ std::vector<fs::path> RunOutput::export_all(study::RunResult& result) {
           folder_, {.format = format,
                     .program_version = options_.program_version,
                     .monitor = options_.monitor}));
-      results::claim_files(folder_, {files.back().filename().string()});
     } catch (const Interrupted&) {
       throw;
     } catch (const IoError&) {
@@ -110,15 +110,22 @@ std::vector<fs::path> RunOutput::export_all(study::RunResult& result) {
 /// What was begun, and what needs the frames.
 void RunOutput::finish_pictures(const forward::EvaluationFields& fields,
                                 study::RunResult& result) {
-  const bool late =
-      options_.time_limit > 0.0 && result.total_seconds >= options_.time_limit;
-  if (late) {
+  try {
+    throw_if_stopped(in_time_, "output");
+    draw_pictures(fields, result);
+  } catch (const Interrupted&) {
+    if (monitor_.stop_requested()) {
+      throw;
+    }
     pictures_.reset();
     result.warnings.push_back(
         fmt::format("the time limit of {:g} s left no time for pictures",
                     options_.time_limit));
-    return;
   }
+}
+
+void RunOutput::draw_pictures(const forward::EvaluationFields& fields,
+                              study::RunResult& result) {
   monitor_.progress({.stage = "output", .detail = "drawing pictures"});
   const auto warn = [&](std::vector<std::string> warnings) {
     result.warnings.insert(result.warnings.end(), warnings.begin(),
@@ -135,14 +142,14 @@ void RunOutput::finish_pictures(const forward::EvaluationFields& fields,
   std::vector<std::string> captions;
   captions.reserve(fields.history.size());
   for (const forward::FilmFrame& frame : fields.history) {
-    captions.push_back(study::frame_caption(input_, frame));
+    captions.push_back(frames::frame_caption(input_, frame));
   }
   std::vector<std::string> solids;
   for (const films::CapSpec& cap : fields.inputs.film_system.caps) {
     solids.push_back(cap.name);
   }
   warn(draw_frames(input_.title, solids, fields.history, captions, folder_,
-                   monitor_));
+                   in_time_));
 }
 
 }  // namespace meniscus::output

@@ -8,6 +8,7 @@
 
 #include "core/monitor.h"
 #include "pipeline/study/study.h"
+#include "pipeline/study/study_monitor.h"
 #include "report/picture/picture.h"
 
 namespace meniscus::output {
@@ -18,7 +19,8 @@ struct RunOutputOptions {
   /// Formats of export_formats() to write the part in besides.
   std::vector<std::string> exports = {};
   std::string program_version = {};  // for the heads of those files
-  double time_limit = 0.0;     // [s]: pictures are left out beyond; 0: none
+  double time_limit = 0.0;     // [s], from the start of the run: no pictures
+                               // beyond it; 0: none
   Monitor* monitor = nullptr;  // not owned
 };
 
@@ -46,11 +48,14 @@ class RunOutput {
   std::vector<std::filesystem::path> export_all(study::RunResult& result);
   void finish_pictures(const forward::EvaluationFields& fields,
                        study::RunResult& result);
+  void draw_pictures(const forward::EvaluationFields& fields,
+                     study::RunResult& result);
 
   const case_data::Case& input_;
   std::filesystem::path folder_;
   RunOutputOptions options_;
   Monitor& monitor_;
+  study::DeadlineMonitor in_time_;  // of pictures
   std::optional<picture::PicturesBeside> pictures_;
 };
 

@@ -9,7 +9,7 @@
 
 #include "io/vtk_files.h"
 #include "pipeline/forward/stress_figures.h"
-#include "pipeline/study/film_frames.h"
+#include "pipeline/frames/film_frames.h"
 #include "report/picture/picture.h"
 
 namespace meniscus::output {
@@ -298,7 +298,7 @@ std::vector<std::string> draw_frames(
   jobs.reserve(frames.size());
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const fs::path film =
-        folder / "frames" / study::frame_name(frames[k].evaluation);
+        folder / "frames" / frames::frame_name(frames[k].evaluation);
     job.film.file = film.string();
     job.output = fs::path(film).replace_extension("png").string();
     job.caption = captions[k];

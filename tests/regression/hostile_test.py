@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What a hostile hand may give the program: an answer or a reason, in time and
 within the machine's limits."""
+import itertools
 import os
 import pathlib
 import random
@@ -162,14 +163,35 @@ curves = ["support", "left", "right"]
 
     def test_little_address_space(self):
         """OpenBLAS asks again and again for a buffer that it does not get."""
-        for space in (150, 300, 500):
+        for space, threads in itertools.product((150, 200, 300, 500),
+                                                ("1", "2", None)):
             size = space << 20
-            done = self.call(
-                "run", CASE, "--out", "out", "--no-pictures", *COARSE,
-                timeout=90, env={"OMP_NUM_THREADS": "1"},
-                preexec_fn=lambda size=size: resource.setrlimit(
-                    resource.RLIMIT_AS, (size, size)))
-            self.assertIn(done.returncode, (0, 2, 3, 4, 127), done.stderr)
+            env = {**os.environ, **({"OMP_NUM_THREADS": threads} if threads
+                                    else {})}
+            with self.subTest(space=space, threads=threads):
+                done = self.call(
+                    "run", CASE, "--out", "out", "--no-pictures", *COARSE,
+                    timeout=90, env=env,
+                    preexec_fn=lambda size=size: resource.setrlimit(
+                        resource.RLIMIT_AS, (size, size)))
+                self.assertIn(done.returncode, (0, 2, 3, 4, 127), done.stderr)
+
+    def test_blas_starts_no_threads_of_its_own(self):
+        """They would ask for buffers before the program's first line."""
+        size = 300 << 20
+        done = self.call("--version", timeout=20,
+                         preexec_fn=lambda: resource.setrlimit(
+                             resource.RLIMIT_AS, (size, size)))
+        self.expect(done, 0)
+
+    def test_work_that_is_refused_leaves_the_earlier_answer(self):
+        self.expect(self.call("run", CASE, "--out", "out", "--no-pictures",
+                              *COARSE), 0)
+        before = sorted(path.name for path in (self.folder / "out").iterdir())
+        self.expect(self.call("run", CASE, "--out", "out", "--set",
+                              "resolution.fea=0.02"), 2, "GB are free")
+        self.assertEqual(sorted(path.name for path in
+                                (self.folder / "out").iterdir()), before)
 
 
 class Orphans(ProgramTest):

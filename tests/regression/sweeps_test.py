@@ -213,6 +213,7 @@ class Tolerances(SweepTest):
         for text, told in (
                 ("", "study.deviations is missing"),
                 ("deviations = { radius = 0 }", "must be above 0"),
+                ('deviations = { radius = "5 kN" }', "5 kN"),
                 ("deviations = { radios = 1 }", "did you mean 'radius'"),
                 ("deviations = { radius = 1 }\ncount = 1",
                  "a whole number from 2"),

@@ -147,11 +147,16 @@ class WorstCase(ProgramTest):
         for name in ("part_8.stl", "part_6.stl", "part.png", "part_turn.png",
                      "film.png", "overview.png"):
             self.assertFalse((out / name).exists(), name)
+        # What `export` put beside the answer goes with it, too.
+        self.assertEqual(self.call("export", out, "--format", "obj").returncode, 0)
+        exported = list(out.glob("*.obj"))
+        self.assertEqual(len(exported), 1)
         # A film that does not stand leaves its picture, and no part.
         _, failed, done = self.run_case(CASE, "--set", "length=150", code=3)
         self.assertEqual(failed["status"], "failed")
         for name in ("part.vtu", "part_surface.vtp", "part_7.stl"):
             self.assertFalse((out / name).exists(), name)
+        self.assertFalse(exported[0].exists())
         self.assertTrue((out / "film.png").exists())
         self.assertIn("film.png", done.stderr)
         page = (out / "report.html").read_text()
@@ -161,6 +166,14 @@ class WorstCase(ProgramTest):
         self.assertFalse((out / "film.png").exists())
         for name, text in mine.items():
             self.assertEqual((out / name).read_text(), text)
+
+    def test_a_film_alone_goes_to_no_runs_folder(self):
+        out, result, _ = self.run_case(CASE, "--no-pictures")
+        film = (out / "film.vtp").read_bytes()
+        done = self.call("evolve", self.folder / "case.toml", "--out", out)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("holds a run", done.stderr)
+        self.assertEqual((out / "film.vtp").read_bytes(), film)
 
     def test_an_older_films_picture_goes(self):
         path = self.folder / "case.toml"

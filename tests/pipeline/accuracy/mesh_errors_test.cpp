@@ -66,6 +66,18 @@ TEST(MeshErrors, FiguresWithoutLimitDoNotSettle) {
   EXPECT_FALSE(figure_error({3.0, 2.0, 1.0}, FigureKind::Extreme).settles);
 }
 
+// Of a figure that is settled to a thousandth the order of what still changes
+// says nothing.
+TEST(MeshErrors, SmallChangesAreNoTrend) {
+  const auto settles = [](double change) {
+    return figure_error({1000.0, 1000.0 - change, 1000.0 - 1.9 * change},
+                        FigureKind::Extreme)
+        .settles;
+  };
+  EXPECT_TRUE(settles(0.4));
+  EXPECT_FALSE(settles(4.0));
+}
+
 TEST(MeshErrors, ScatterIsNoOrder) {
   const FigureError error = figure_error({1.0, 1.1, 1.0}, FigureKind::Integral);
   EXPECT_GT(error.bound, 0.1);

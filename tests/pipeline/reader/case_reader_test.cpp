@@ -141,10 +141,12 @@ TEST(CaseReader, KeepsTheFilesOrderOfParameters) {
 
 // A parameter that study.deviations names scatters like a design variable.
 TEST(CaseReader, LetsParametersScatter) {
-  const std::string text =
-      changed(strut(), "kind = \"match\"\ntargets = { sway = 0.01 }",
-              "kind = \"tolerance\"\ndeviations = { foot = 0.1, load = \"20 "
-              "N\", length = \"0.2 mm\" }");
+  const std::string text = changed(
+      changed(changed(strut(), "kind = \"match\"\ntargets = { sway = 0.01 }",
+                      "kind = \"tolerance\"\ndeviations = { foot = 0.1, load "
+                      "= \"20 N\", length = \"0.2 mm\" }"),
+              "load = 1000.0", "load = \"1 kN\""),
+      "length = 60.0", "length = \"60 mm\"");
   for (const std::vector<std::string>& overrides :
        {std::vector<std::string>{}, {"load=2 kN"}}) {
     const reader::CaseReading reading =
@@ -168,11 +170,12 @@ TEST(CaseReader, LetsParametersScatter) {
   }
   EXPECT_THAT(problems_of(changed(text, "length = \"0.2 mm\"", "lenght = 2")),
               Contains(HasSubstr("did you mean 'length'")));
-  EXPECT_THAT(
-      problems_of(changed(changed(text, "load = 1000.0", "load = \"1 kN\""),
-                          "\"20 N\"", "\"20 mm\"")),
-      Contains(AllOf(HasSubstr("study.deviations.load"),
-                     HasSubstr("a length; expected a force"))));
+  EXPECT_THAT(problems_of(changed(text, "\"20 N\"", "\"20 mm\"")),
+              Contains(AllOf(HasSubstr("study.deviations.load"),
+                             HasSubstr("a length; expected a force"))));
+  EXPECT_THAT(problems_of(changed(text, "\"60 mm\"", "60.0")),
+              Contains(HasSubstr("study.deviations.length is the text "
+                                 "'0.2 mm', and 'length' is a plain number")));
 }
 
 TEST(CaseReader, ReadsEveryKindOfCurve) {

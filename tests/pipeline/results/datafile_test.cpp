@@ -69,6 +69,13 @@ std::string refusal(const std::string& text,
   return "";
 }
 
+TEST(Datafile, RefinementsBeyondTheMachineAreRefused) {
+  // Four facets make 64 at two refinements and 67 million at twelve.
+  EXPECT_EQ(evolved(kSquare, {.refinements = 2}).report.facets, 64U);
+  EXPECT_THAT(refusal(kSquare, {.refinements = 12}),
+              HasSubstr("12 refinements make 6.7e+07 facets"));
+}
+
 TEST(Datafile, RunsCommandsThatStandOutsideOfMacros) {
   const results::DatafileOptions options{.refinements = 0};
   EXPECT_EQ(evolved(kSquare, options).report.facets, 4U);

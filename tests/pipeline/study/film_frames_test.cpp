@@ -1,5 +1,5 @@
 // Which designs of a study are shown, and what it tells of each.
-#include "pipeline/study/film_frames.h"
+#include "pipeline/frames/film_frames.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,9 +39,9 @@ case_data::Case minimized() {
   return input;
 }
 
-std::vector<int> numbers_of(const std::vector<study::KeptDesign>& kept) {
+std::vector<int> numbers_of(const std::vector<frames::KeptDesign>& kept) {
   std::vector<int> numbers;
-  for (const study::KeptDesign& design : kept) {
+  for (const frames::KeptDesign& design : kept) {
     numbers.push_back(design.record->number);
   }
   return numbers;
@@ -58,13 +58,13 @@ TEST(KeptDesigns, AreTheStartWhatIsBetterAndTheBest) {
   store::EvaluationRecord other = record(9, 0.1, 0.1);
   other.model = "coarse x2";
   records.push_back(other);
-  const auto kept = study::kept_designs(input, records, records[7].inputs);
+  const auto kept = frames::kept_designs(input, records, records[7].inputs);
   EXPECT_THAT(numbers_of(kept), ElementsAre(1, 3, 5, 8));
   EXPECT_STREQ(kept.front().why, "start");
   EXPECT_STREQ(kept[1].why, "better");
   EXPECT_STREQ(kept.back().why, "best");
   EXPECT_THAT(
-      numbers_of(study::kept_designs(input, records, records[4].inputs, 2)),
+      numbers_of(frames::kept_designs(input, records, records[4].inputs, 2)),
       ElementsAre(1, 5));
 }
 
@@ -76,14 +76,14 @@ TEST(KeptDesigns, OfASweepAreAllOrSomeEvenlyChosen) {
   for (int k = 1; k <= 41; ++k) {
     records.push_back(record(k, 1.0, 1.0, "sweep"));
   }
-  EXPECT_EQ(study::kept_designs(input, records, records[0].inputs, 50).size(),
+  EXPECT_EQ(frames::kept_designs(input, records, records[0].inputs, 50).size(),
             41);
   EXPECT_THAT(
-      numbers_of(study::kept_designs(input, records, records[0].inputs, 5)),
+      numbers_of(frames::kept_designs(input, records, records[0].inputs, 5)),
       ElementsAre(1, 11, 21, 31, 41));
   // The best takes the place of a neighbour.
   EXPECT_THAT(
-      numbers_of(study::kept_designs(input, records, records[12].inputs, 5)),
+      numbers_of(frames::kept_designs(input, records, records[12].inputs, 5)),
       ElementsAre(1, 11, 13, 31, 41));
 }
 
@@ -103,10 +103,10 @@ TEST(FilmFrames, HaveTheEvaluationsOwnBits) {
   for (std::size_t i = 0; i < last.surface.points.size(); ++i) {
     EXPECT_EQ(last.surface.points[i], fields.surface.base.points[i]);
   }
-  study::write_frames(input, fields.history, folder.path());
+  frames::write_frames(input, fields.history, folder.path());
   EXPECT_THAT(read_file(folder.path() / "frames.pvd"),
-              HasSubstr("frames/" + study::frame_name(last.evaluation)));
-  study::remove_frames(folder.path());
+              HasSubstr("frames/" + frames::frame_name(last.evaluation)));
+  frames::remove_frames(folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "frames"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "frames.pvd"));
 }
@@ -131,7 +131,7 @@ TEST(ProgressTracker, KnowsTheBestSoFarAndWhatIsLeft) {
   const store::EvaluationRecord worse = record(4, 1.5, 3.0);
   const std::string text = study::progress_text(tracker.add_new(worse));
   EXPECT_THAT(text, HasSubstr("violation 0.5 of '"));
-  EXPECT_THAT(text, HasSubstr("best so far mass = 6 t (evaluation 3)"));
+  EXPECT_THAT(text, HasSubstr("best so far mass = 6000 kg (evaluation 3)"));
   EXPECT_THAT(study::duration_text(61.0), Not(HasSubstr("min")));
   EXPECT_EQ(study::duration_text(119.5), "2 min");
 }

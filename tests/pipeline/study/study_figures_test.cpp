@@ -6,6 +6,7 @@
 
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/store/incumbent.h"
+#include "pipeline/store/refreeze.h"
 #include "pipeline/study/front_figures.h"
 #include "pipeline/study/sweep_figures.h"
 #include "pipeline/study/tolerance_figures.h"
@@ -68,8 +69,8 @@ TEST(Incumbent, KeepingConstraintsGoesBeforeTheObjective) {
   study.objective = 0;
   study.constraints = {{.response = 1, .upper = 4.0}};
   const auto best = [&](const std::vector<store::EvaluationRecord>& records) {
-    const store::EvaluationRecord* found =
-        store::best_by_objective(study, records);
+    const store::EvaluationRecord* found = store::best_by_objective(
+        study, records, store::answering_model(records));
     return found == nullptr ? -1.0 : found->inputs[0];
   };
   EXPECT_EQ(best({answer(1, 3, 0), answer(2, 1, 5), answer(3, 2, 4)}), 3);

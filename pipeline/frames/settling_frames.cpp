@@ -4,9 +4,9 @@
 #include "evolve/groom/remesh.h"
 #include "evolve/settle/curvature_flow.h"
 #include "evolve/start/start_complex.h"
-#include "pipeline/study/film_frames.h"
+#include "pipeline/frames/film_frames.h"
 
-namespace meniscus::study {
+namespace meniscus::frames {
 
 namespace {
 
@@ -58,4 +58,4 @@ std::vector<forward::FilmFrame> settling_frames(
   return frames;
 }
 
-}  // namespace meniscus::study
+}  // namespace meniscus::frames

@@ -1,4 +1,4 @@
-#include "pipeline/study/film_frames.h"
+#include "pipeline/frames/film_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "pipeline/store/incumbent.h"
 #include "pipeline/store/refreeze.h"
 
-namespace meniscus::study {
+namespace meniscus::frames {
 
 namespace {
 
@@ -296,4 +296,4 @@ void remove_frames(const fs::path& folder) {
   fs::remove(frames, code);  // only when empty
 }
 
-}  // namespace meniscus::study
+}  // namespace meniscus::frames

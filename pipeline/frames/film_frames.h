@@ -8,7 +8,7 @@
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/store/study_store.h"
 
-namespace meniscus::study {
+namespace meniscus::frames {
 
 /// As many films tell a history; more only take time.
 inline constexpr int kMostFrames = 24;
@@ -62,4 +62,4 @@ std::vector<forward::FilmFrame> settling_frames(
 /// it.
 void remove_frames(const std::filesystem::path& folder);
 
-}  // namespace meniscus::study
+}  // namespace meniscus::frames

@@ -1,0 +1,23 @@
+/// Judges what a study found on meshes made for it (internal to run_study()).
+/// The mesh of an answer was dragged to it from another design: what is not
+/// kept on one of its own is not kept.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/study/study_models.h"
+#include "pipeline/study/study_monitor.h"
+
+namespace meniscus::study {
+
+/// The answer of a match or a minimum; where it is not kept there, the study
+/// goes on from that model. `limited` says when there is no time for it.
+void judge_answer(StudyModels& models, const DeadlineMonitor& limited);
+
+/// Each point of a front, that of the part last: the others tell how much of
+/// the front is the mesh's. Returns what was left out.
+std::vector<std::string> judge_front(StudyModels& models,
+                                     const DeadlineMonitor& limited);
+
+}  // namespace meniscus::study

@@ -1,0 +1,182 @@
+#include "pipeline/study/study_models.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "pipeline/case_data/film_start.h"
+#include "pipeline/store/stored_case.h"
+
+namespace meniscus::study {
+
+namespace {
+
+// A model frozen this near to a design, x the ranges of the variables, is one
+// of that design.
+constexpr double kAtDesign = 1e-2;
+
+}  // namespace
+
+StudyModels::StudyModels(const case_data::Case& input, store::StudyStore& store,
+                         const StudyOptions& options)
+    : input_(input),
+      case_(input),
+      store_(store),
+      options_(options),
+      limit_(options.time_limit) {}
+
+std::optional<CoarseFigures> StudyModels::run_coarse() {
+  if (!(input_.study.coarse_first > 1.0)) {
+    return std::nullopt;
+  }
+  log("first on a coarser model");
+  CoarseStage coarse = run_coarse_stage(input_, store_, options_);
+  earlier_seconds_ += coarse.seconds;
+  if (coarse.best) {
+    options_.start = coarse.best;
+  } else {
+    warn("the coarser model gave no start: " + coarse.figures.message);
+  }
+  update_time_limit();
+  return std::move(coarse.figures);
+}
+
+/// What a stage took is gone for the next.
+void StudyModels::update_time_limit() {
+  constexpr double kLeast = 1e-3;
+  if (limit_ > 0.0) {
+    options_.time_limit = std::max(limit_ - timer_.seconds(), kLeast);
+  }
+}
+
+void StudyModels::freeze() {
+  stage_ = std::make_unique<StudyStage>(case_, store_, options_);
+  reference_ = stage_->start().responses;
+}
+
+void StudyModels::add_stage_totals() {
+  earlier_seconds_ += stage_->evaluator().seconds();
+  earlier_gradients_ += stage_->evaluator().counts().gradients;
+  earlier_evaluations_ += stage_->evaluations();
+}
+
+/// A stage on a model frozen there, or null where it cannot be.
+std::unique_ptr<StudyStage> StudyModels::stage_at(
+    const store::Refreeze& refreeze, const std::string& name,
+    const case_data::Case& input) {
+  std::unique_ptr<StudyStage> stage;
+  std::string reason = what_prevents([&] {
+    stage = std::make_unique<StudyStage>(
+        input, store_, options_,
+        StageModel{.name = name, .reference = reference_});
+  });
+  if (stage != nullptr && !stage->failure()) {
+    return stage;
+  }
+  if (stage != nullptr) {
+    earlier_seconds_ += stage->evaluator().seconds();
+    reason = stage->failure()->message;
+  }
+  warn(fmt::format("{}, but no new model can be frozen there: {}",
+                   refreeze.reason, reason));
+  return nullptr;
+}
+
+bool StudyModels::may_refreeze() const {
+  const case_data::StudyEntry& study = input_.study;
+  return study.refreeze &&
+         static_cast<int>(refrozen_.size()) < store::kMostRefreezes &&
+         (study.kind == case_data::StudyKind::Match ||
+          study.kind == case_data::StudyKind::Minimize);
+}
+
+bool StudyModels::refreeze() {
+  const StudyOutcome& outcome = stage_->outcome();
+  if (!may_refreeze() || outcome.ended_by_limit() || evaluations_left() <= 0) {
+    return false;
+  }
+  std::optional<store::Refreeze> wanted =
+      stage_->wanted(outcome.best, outcome.status == RunStatus::Converged);
+  return wanted && go_on_at(*std::move(wanted));
+}
+
+bool StudyModels::go_on_at(store::Refreeze wanted) {
+  log(fmt::format("a new model is frozen at evaluation {}: {}",
+                  wanted.evaluation, wanted.reason));
+  auto input = std::make_unique<case_data::Case>(
+      case_data::frozen_at(working(), wanted.design));
+  input->study.max_evaluations = std::max(1, evaluations_left());
+  update_time_limit();
+  std::unique_ptr<StudyStage> stage =
+      stage_at(wanted, store::refrozen_model(wanted.evaluation), *input);
+  if (stage == nullptr) {
+    return false;
+  }
+  wanted.shift = stage->start().responses - wanted.responses;
+  add_stage_totals();
+  options_.start = wanted.go_on_from;
+  stage_ = std::move(stage);
+  frozen_ = std::move(input);
+  refrozen_.push_back(std::move(wanted));
+  return true;
+}
+
+bool StudyModels::has_dragged_answer() const {
+  const case_data::StudyKind kind = input_.study.kind;
+  const VectorX& best = stage_->outcome().best;
+  return (kind == case_data::StudyKind::Match ||
+          kind == case_data::StudyKind::Minimize ||
+          kind == case_data::StudyKind::Pareto) &&
+         best.size() > 0 && stage_->was_answered(best) &&
+         store::design_distance(input_, best, stage_->start().design) >
+             kAtDesign;
+}
+
+store::EvaluationRecord StudyModels::answer() const {
+  return *store_.find(stage_->model_name(), stage_->outcome().best);
+}
+
+bool StudyModels::go_on_at_answer() {
+  const store::EvaluationRecord record = answer();
+  return go_on_at({.evaluation = record.number,
+                   .design = stage_->outcome().best,
+                   .reason = "the answer on a mesh of its own",
+                   .shift = {},
+                   .responses = record.responses});
+}
+
+std::optional<forward::Evaluation> StudyModels::look_at(
+    const VectorX& design, int evaluation, const std::string& reason) {
+  const case_data::Case input = case_data::frozen_at(input_, design);
+  const std::unique_ptr<StudyStage> stage =
+      stage_at({.evaluation = evaluation,
+                .design = design,
+                .reason = reason,
+                .shift = {},
+                .responses = {}},
+               fmt::format("point of evaluation {}", evaluation), input);
+  if (stage == nullptr) {
+    return std::nullopt;
+  }
+  earlier_seconds_ += stage->evaluator().seconds();
+  return stage->start();
+}
+
+void StudyModels::limit_evaluations() {
+  working().study.max_evaluations = std::max(1, evaluations_left());
+}
+
+void StudyModels::add_to(RunResult& result) const {
+  result.warnings.insert(result.warnings.begin(), warnings_.begin(),
+                         warnings_.end());
+  result.refrozen = refrozen_;
+  result.seconds += earlier_seconds_;
+  result.gradient_evaluations += earlier_gradients_;
+  if (stage_ != nullptr) {
+    result.seconds += stage_->evaluator().seconds();
+    result.gradient_evaluations += stage_->evaluator().counts().gradients;
+  }
+}
+
+}  // namespace meniscus::study

@@ -1,0 +1,102 @@
+/// The frozen models that a study goes through, from the case's own to that of
+/// its answer (internal to run_study()).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/timer.h"
+#include "pipeline/case_data/case.h"
+#include "pipeline/store/refreeze.h"
+#include "pipeline/store/study_store.h"
+#include "pipeline/study/study.h"
+#include "pipeline/study/study_stage.h"
+
+namespace meniscus::study {
+
+class StudyModels {
+ public:
+  /// `options.time_limit` [s] is that of the whole study and counts from here.
+  /// All references must outlive it.
+  StudyModels(const case_data::Case& input, store::StudyStore& store,
+              const StudyOptions& options);
+
+  /// The study on a coarser model, whose answer is where the case's own starts;
+  /// nothing where study.coarse_first does not ask for it.
+  std::optional<CoarseFigures> run_coarse();
+  /// Freezes the case's own model, at its initial design.
+  void freeze();
+  /// Goes on with a new model where the study has left the reach of the last;
+  /// false when there is none.
+  bool refreeze();
+  /// Goes on with a model frozen at the stage's answer; false where there is
+  /// none.
+  bool go_on_at_answer();
+  /// The start of a model that only looks at a design: the study's answer is
+  /// not of it. Nothing where it cannot be frozen.
+  std::optional<forward::Evaluation> look_at(const VectorX& design,
+                                             int evaluation,
+                                             const std::string& reason);
+  /// What the study goes on with may take the evaluations that are left.
+  void limit_evaluations();
+
+  /// Null before freeze().
+  StudyStage* stage() { return stage_.get(); }
+  const StudyStage* stage() const { return stage_.get(); }
+  const case_data::Case& input() const { return input_; }
+  store::StudyStore& store() { return store_; }
+  const StudyOptions& options() const { return options_; }
+  /// What the stage's model is frozen of, with the bounds that the search
+  /// keeps.
+  case_data::Case& working() { return frozen_ ? *frozen_ : case_; }
+  bool may_refreeze() const;
+  int evaluations_left() const {
+    return input_.study.max_evaluations - earlier_evaluations_ -
+           stage_->evaluations();
+  }
+  /// The stage seeks designs, and its model is frozen at another than its
+  /// answer.
+  bool has_dragged_answer() const;
+  /// Its answer in the database.
+  store::EvaluationRecord answer() const;
+
+  void log(const std::string& message) const {
+    monitor().log(Severity::Info, message);
+  }
+  void warn(std::string warning) { warnings_.push_back(std::move(warning)); }
+  /// What the models add to the result: warnings, later models, their time and
+  /// gradients.
+  void add_to(RunResult& result) const;
+  double elapsed_seconds() const { return timer_.seconds(); }
+
+ private:
+  bool go_on_at(store::Refreeze wanted);
+  std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
+                                       const std::string& name,
+                                       const case_data::Case& input);
+  void add_stage_totals();
+  void update_time_limit();
+  Monitor& monitor() const {
+    return options_.monitor != nullptr ? *options_.monitor : silent_monitor();
+  }
+
+  const case_data::Case& input_;
+  case_data::Case case_;  // with the bounds that the search keeps
+  store::StudyStore& store_;
+  StudyOptions options_;  // its start and time as stages leave them
+  double limit_;          // [s], 0: none
+  Timer timer_;
+  std::unique_ptr<case_data::Case> frozen_;  // what the stage's model is frozen
+                                             // of, where that is not case_
+  std::unique_ptr<StudyStage> stage_;
+  VectorX reference_;  // responses of the initial design
+  forward::StageSeconds earlier_seconds_;
+  int earlier_gradients_ = 0;  // of stages before this one
+  int earlier_evaluations_ = 0;
+  std::vector<store::Refreeze> refrozen_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace meniscus::study

@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+"""Studies that a film's margin decides: struts on an oblique ellipse with four
+design variables, whose searches meet pinching films, inverted elements and
+doubtful margins on their way; a tripod whose coarser film does not stand."""
+import unittest
+
+from program import ProgramTest
+
+STRUT = """title = "An oblique strut"
+units = "mm-N-MPa"
+parameters = {{ length = {length}, off = {off}, tilt = {tilt}, load = {load} }}
+design.ra = {{ initial = {ra}, bounds = [14, 26] }}
+design.rb = {{ initial = {rb}, bounds = [12, 22] }}
+design.head = {{ initial = {head}, bounds = [9, 16] }}
+design.fill = {{ initial = {fill}, bounds = [0.8, 1.6] }}
+resolution = {{ fea = 8, film = 4 }}
+analysis.buckling = 0
+films.skin = {{ kind = "branch", curves = ["foot", "eye"] }}
+solids.pad = {{ kind = "cap", curve = "foot" }}
+solids.top = {{ kind = "cap", curve = "eye" }}
+
+[curves.foot]
+kind = "ellipse"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+axis = [1, 0, 0]
+radius_1 = "ra"
+radius_2 = "rb"
+
+[curves.eye]
+kind = "circle"
+center = ["off", 0, "length"]
+normal = ["sin(tilt*deg)", 0, "cos(tilt*deg)"]
+radius = "head"
+
+[bodies.part]
+enclosed_by = ["skin", "pad", "top"]
+volume = "fill*length*pi*(ra*rb+head^2)/2"
+material = "al"
+
+[materials.al]
+youngs_modulus = "71.7 GPa"
+poisson_ratio = 0.33
+density = 2.8e-9
+
+[load_cases.push]
+supports = [{{ on = "pad", fix = "xyz" }}]
+loads = [{{ on = "top", force = ["load", 0, "-load"] }}]
+
+[load_cases.side]
+supports = [{{ on = "pad", fix = "xyz" }}]
+loads = [{{ on = "top", force = [0, "0.5*load", 0] }}]
+
+[responses]
+mass = {{ kind = "mass" }}
+margin = {{ kind = "collapse_margin" }}
+ux = {{ kind = "mean_displacement", on = "top", direction = [1, 0, 0] }}
+uy = {{ kind = "mean_displacement", on = "top", direction = [0, 1, 0], load_case = "side" }}
+
+[study]
+kind = "minimize"
+objective = "mass"
+max_evaluations = 120
+constraints = [{{ response = "ux", max = {ux} }}, {{ response = "uy", max = {uy} }},
+               {{ response = "margin", min = 2e-4 }}]
+"""
+# Far from its optimum: many of a coarse model's designs invert elements.
+FAR = {"length": 70.0995, "off": 2.4009, "tilt": -1.424, "load": 2621.08,
+       "ra": 22.9086, "rb": 21.2227, "head": 14.0412, "fill": 1.3518,
+       "ux": 0.2149, "uy": 0.0924}
+NEAR = {**FAR, "ra": 20.9356, "rb": 16.2535, "head": 12.2544, "fill": 1.2442}
+# Its margin is raised and ends on the raised bound.
+RAISED = {"length": 70.2074865483431, "off": 1.1577989565177051,
+          "tilt": -2.1267517960110593, "load": 2435.3376848832067,
+          "ra": 18.8395, "rb": 15.9365, "head": 11.8859, "fill": 1.2146,
+          "ux": 0.2609, "uy": 0.1074}
+
+
+def leg(angle):
+    return f"""
+[curves.foot_{angle}]
+kind = "circle"
+center = ["45 * cos({angle}*deg)", "45 * sin({angle}*deg)", 0]
+normal = ["0.7 * cos({angle}*deg)", "0.7 * sin({angle}*deg)", -1]
+radius = "foot"
+
+[solids.pad_{angle}]
+kind = "cap"
+curve = "foot_{angle}"
+"""
+
+
+TRIPOD = """title = "A tripod"
+units = "mm-N-MPa"
+design.foot = { initial = 13.0, bounds = [9.0, 18.0] }
+design.head = { initial = 16.0, bounds = [11.0, 22.0] }
+design.fill = { initial = 1.7, bounds = [1.2, 2.4] }
+resolution = { fea = 7.0, film = 3.5 }
+analysis.buckling = 0
+solids.head_pad = { kind = "cap", curve = "head" }
+
+[curves.head]
+kind = "circle"
+center = [0, 0, 70]
+normal = [0, 0, 1]
+radius = "head"
+
+[films.skin]
+kind = "branch"
+curves = ["foot_90", "foot_210", "foot_330", "head"]
+
+[bodies.part]
+enclosed_by = ["skin", "pad_90", "pad_210", "pad_330", "head_pad"]
+volume = "fill * (2.25 * pi * foot^2 * sqrt(45^2 + 35^2) + 42 * pi * head^2)"
+material = "al"
+
+[materials.al]
+youngs_modulus = "71.7 GPa"
+poisson_ratio = 0.33
+density = 2.8e-9
+
+[load_cases.stand]
+supports = [{ on = "pad_90", fix = "xyz" }, { on = "pad_210", fix = "xyz" },
+            { on = "pad_330", fix = "xyz" }]
+loads = [{ on = "head_pad", force = [800, 0, -3000] }]
+
+[responses]
+mass = { kind = "mass" }
+margin = { kind = "collapse_margin" }
+sway = { kind = "mean_displacement", on = "head_pad", direction = [1, 0, 0] }
+sink = { kind = "mean_displacement", on = "head_pad", direction = [0, 0, -1] }
+
+[study]
+kind = "minimize"
+objective = "mass"
+constraints = [{ response = "sway", max = 0.01 },
+               { response = "sink", max = 0.008 },
+               { response = "margin", min = 2e-4 }]
+""" + leg(90) + leg(210) + leg(330)
+
+
+class FilmMargins(ProgramTest):
+    def minimum(self, numbers, name, *more):
+        case = self.folder / f"{name}.toml"
+        case.write_text(STRUT.format(**numbers))
+        out = self.folder / name
+        done = self.call("run", case, "--no-pictures", "--no-report",
+                         "--no-frames", "--out", out, *more)
+        return done, self.result(out)
+
+    def test_a_coarse_model_left_behind_is_made_anew(self):
+        done, result = self.minimum(FAR, "coarse", "--set",
+                                    "study.coarse_first=2")
+        self.expect(done, 0)
+        self.assertIsNotNone(result["coarse"]["parameters"])
+        self.assertGreater(result["coarse"]["evaluations"], 5)
+        self.assertNotIn("coarser model", " ".join(result["warnings"]))
+
+    def test_a_time_limit_leaves_an_answer_wherever_it_falls(self):
+        done, whole = self.minimum(NEAR, "whole")
+        self.expect(done, 0)
+        seconds = whole["seconds"]["total"]
+        for share in (0.5, 0.65, 0.75, 0.85, 0.92):
+            done, result = self.minimum(NEAR, f"limit {share}", "--time-limit",
+                                        f"{share * seconds:.3f}")
+            self.assertIn(done.returncode, (0, 3), done.stderr)
+            self.assertIn(result["status"], ("stopped", "converged"))
+            for name in ("part.vtu", "film.vtp"):
+                self.assertTrue((self.folder / f"limit {share}" / name).exists())
+
+    def test_what_is_kept_by_the_cases_bounds_is_no_failure(self):
+        done, result = self.minimum(RAISED, "raised")
+        self.assertTrue(all(c["satisfied"]
+                            for c in result["constraints"].values()))
+        self.assertIn("it is held at", " ".join(result["warnings"]))
+        self.expect(done, 0)
+
+    def test_a_family_names_the_margins_that_it_held_higher(self):
+        numbers = {**RAISED, "ra": 18.0}
+        table = STRUT.format(**numbers).replace(
+            'kind = "minimize"',
+            'kind = "family"\neach = "minimize"\nmembers = "members.csv"')
+        (self.folder / "case.toml").write_text(table)
+        (self.folder / "members.csv").write_text(
+            f"name,load\nheld,{RAISED['load']}\n")
+        out = self.folder / "out"
+        self.call("run", self.folder / "case.toml", "--no-pictures",
+                  "--no-report", "--no-frames", "--out", out)
+        self.assertRegex(" ".join(self.result(out)["warnings"]),
+                         r"held: 'margin' was .* above its bound")
+
+    def test_a_margin_is_judged_where_its_film_has_no_coarser_one(self):
+        """Else a film that stands by twice the bound is held at more and more,
+        for 0.449 kg of 0.405."""
+        case = self.folder / "tripod.toml"
+        case.write_text(TRIPOD)
+        out = self.folder / "tripod"
+        done = self.expect(self.call("run", case, "--no-pictures",
+                                     "--no-report", "--no-frames", "--out",
+                                     out), 0)
+        result = self.result(out)
+        self.assertLess(result["responses"]["mass"], 0.41e-3)
+        self.assertLess(result["evaluations"], 130)
+        self.assertGreater(result["response_errors"]["margin"], 0)
+        # People read kilograms wherever masses stand.
+        self.assertRegex(done.stderr, r"best so far mass = 0\.\d+ kg")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
