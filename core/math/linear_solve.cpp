@@ -5,6 +5,7 @@
 #include <cmath>
 #include <metis.h>
 #include <mutex>
+#include <omp.h>
 
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -53,6 +54,22 @@ void require_blas_buffer() {
               product.data(), kSize);
   taken = true;
 }
+
+/// While it lives, OpenMP's regions in this thread have one thread. CHOLMOD
+/// asks for four, whatever this program is to use: they came and went by the
+/// thousand, and where a limit left no room for one libgomp ended the process.
+class OneThread {
+ public:
+  OneThread() : levels_(omp_get_max_active_levels()) {
+    omp_set_max_active_levels(0);
+  }
+  ~OneThread() { omp_set_max_active_levels(levels_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int levels_;
+};
 
 /// A CHOLMOD session.
 class Session {
@@ -245,7 +262,10 @@ bool SymmetricFactor::factorize(const SparseMatrix& lower) {
   }
   impl_->failed_column = -1;
   impl_->negative_pivots = 0;
-  cholmod_l_factorize(&view.sparse, &factor, &common);
+  {
+    const OneThread here;
+    cholmod_l_factorize(&view.sparse, &factor, &common);
+  }
   count_operations(impl_->factor_work);
   if (common.status == CHOLMOD_OUT_OF_MEMORY ||
       common.status == CHOLMOD_TOO_LARGE) {

@@ -7,6 +7,7 @@
 #include "core/timer.h"
 #include "fea/distributed/distributed_system.h"
 #include "fea/equations/elastic_system.h"
+#include "fea/solver/preconditioner.h"
 
 namespace meniscus::elastic {
 
@@ -36,11 +37,23 @@ ElasticModel::ElasticModel(const TetMesh& base,
     impl_->base = impl_->distributed->solve(
         base, cases, impl_->distributed->base().regions, nullptr);
   } else {
-    solver::BlockMatrix<double> matrix;
-    impl_->system.emplace(base, materials, cases, options, matrix);
-    seconds = timer.seconds();
-    impl_->base = impl_->system->solve(
-        base, cases, impl_->system->base().regions, matrix, nullptr);
+    const auto solve_by = [&](const equations::ElasticOptions& chosen) {
+      solver::BlockMatrix<double> matrix;
+      impl_->system.emplace(base, materials, cases, chosen, matrix);
+      seconds = timer.seconds();
+      impl_->base = impl_->system->solve(
+          base, cases, impl_->system->base().regions, matrix, nullptr);
+    };
+    solve_by(options);
+    // Multigrid comes to a halt where material is nearly incompressible and
+    // springs hardly hold: the model goes on with a factor.
+    if (impl_->base.failure && impl_->base.report.solver != "cholmod" &&
+        options.solver == equations::SolverKind::Automatic &&
+        impl_->base.report.dofs <= solver::kSecondChance) {
+      equations::ElasticOptions factor = options;
+      factor.solver = equations::SolverKind::Cholesky;
+      solve_by(factor);
+    }
   }
   impl_->base.report.setup_seconds += seconds;
 }
