@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <omp.h>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -330,6 +331,10 @@ int run_program(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? 0 : meniscus::app::kExitWrongInput;
   }
+  if (run_arguments.threads > 0) {
+    omp_set_num_threads(run_arguments.threads);
+  }
+  meniscus::start_threads();
   return command();
 }
 

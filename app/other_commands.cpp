@@ -68,7 +68,7 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
   if (!input.study.members.empty()) {
     text += ", " + count_text(input.study.members.size(), "member");
   }
-  std::printf("%s\n", text.c_str());
+  std::printf("%s\n  %s\n", text.c_str(), results::study_text(input).c_str());
   return kExitDone;
 }
 

@@ -155,9 +155,6 @@ int run_members(const case_data::Case& input,
 }  // namespace
 
 int run_command(const RunArguments& arguments) {
-  if (arguments.threads > 0) {
-    omp_set_num_threads(arguments.threads);
-  }
   const CommonArguments& common = arguments.common;
   const reader::CaseReading reading =
       read_and_report_case(arguments.case_path, common);

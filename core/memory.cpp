@@ -8,9 +8,11 @@
 #include <malloc.h>
 #endif
 
+#include <omp.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 
 #include "core/error.h"
@@ -82,6 +84,34 @@ void keep_freed_memory() {
   mallopt(M_TOP_PAD, kTopPad);
   mallopt(M_TRIM_THRESHOLD, kMostFree);
 #endif
+}
+
+void start_threads() {
+  const int others = omp_get_max_threads() - 1;
+  rlimit limit{};
+  if (others < 1 || getrlimit(RLIMIT_AS, &limit) != 0 ||
+      limit.rlim_cur == RLIM_INFINITY) {
+    return;
+  }
+  rlimit stack{};
+  constexpr rlim_t kUsualStack = 8 << 20;  // [byte]
+  const bool limited =
+      getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur != RLIM_INFINITY;
+  constexpr rlim_t kBeside = 2 << 20;  // what a thread takes beside its stack
+  const auto bytes = static_cast<std::size_t>(others) *
+                     ((limited ? stack.rlim_cur : kUsualStack) + kBeside);
+  void* room = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) {
+    throw SolverError(fmt::format(
+        "the limit of address space (ulimit -v) leaves no {} MB for {} more "
+        "threads; raise it, or give --threads 1",
+        bytes >> 20, others));
+  }
+  ::munmap(room, bytes);
+  int started = 0;
+#pragma omp parallel reduction(+ : started)
+  started += 1;  // or the compiler leaves the region out
 }
 
 double available_memory() {

@@ -12,6 +12,12 @@ namespace meniscus {
 /// the C library is not glibc.
 void keep_freed_memory();
 
+/// Starts the threads that OpenMP will use now where address space is limited
+/// (ulimit -v): later, among arrays, there may be no room for their stacks, and
+/// libgomp then ends the process. For programs, at their start. Throws
+/// SolverError where there is no room now.
+void start_threads();
+
 /// Bytes that this process can still get: what the machine and the process's
 /// control group have left, at most its own limit of address space. Infinite
 /// where the system does not tell.
