@@ -24,6 +24,10 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
 std::string result_text(const case_data::Case& input,
                         const study::RunResult& result);
 
+/// What the case asks for, in the units that people read: "minimize mass; sway
+/// at most 0.1 mm".
+std::string study_text(const case_data::Case& input);
+
 /// The film's report for people.
 std::string film_text(const case_data::Case& input,
                       const settle::FilmReport& film);

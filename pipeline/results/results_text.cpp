@@ -1,8 +1,11 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/count_text.h"
+#include "pipeline/case_data/response_entries.h"
+#include "pipeline/case_data/study_kinds.h"
 #include "pipeline/forward/eigen_figures.h"
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/results/results.h"
@@ -51,35 +54,41 @@ std::string shift_text(const case_data::Case& input,
                                  input.responses[worst].name, 100.0 * largest);
 }
 
-/// "  sway   0.09 mm, at most 0.1 mm: kept".
+/// "at least 0.05 mm, at most 0.1 mm".
 std::string bounds_text(const case_data::Case& input,
-                        const case_data::ConstraintEntry& entry,
-                        const study::Constraint& constraint) {
-  constexpr double kAtBound = 1e-3;  // of the bound
+                        const case_data::ConstraintEntry& entry) {
   const ShownUnit unit = case_data::shown_unit(input, entry.response);
   const auto shown = [&](double value) {
     return quantity_text(unit.factor * value, unit.unit);
   };
+  if (entry.lower == entry.upper) {
+    return "wanted " + shown(entry.lower);
+  }
+  std::string bounds;
+  if (std::isfinite(entry.lower)) {
+    bounds = "at least " + shown(entry.lower);
+  }
+  if (std::isfinite(entry.upper)) {
+    bounds += (bounds.empty() ? "at most " : ", at most ") + shown(entry.upper);
+  }
+  return bounds;
+}
+
+/// "  sway   0.09 mm, at most 0.1 mm: kept".
+std::string constraint_text(const case_data::Case& input,
+                            const case_data::ConstraintEntry& entry,
+                            const study::Constraint& constraint) {
+  constexpr double kAtBound = 1e-3;  // of the bound
+  const ShownUnit unit = case_data::shown_unit(input, entry.response);
   const auto is_at = [&](double bound) {
     return std::isfinite(bound) &&
            std::abs(constraint.value - bound) <= kAtBound * std::abs(bound);
   };
-  std::string bounds;
-  bool active = false;
-  if (entry.lower == entry.upper) {
-    bounds = "wanted " + shown(entry.lower);
-  } else {
-    if (std::isfinite(entry.lower)) {
-      bounds = "at least " + shown(entry.lower);
-    }
-    if (std::isfinite(entry.upper)) {
-      bounds +=
-          (bounds.empty() ? "at most " : ", at most ") + shown(entry.upper);
-    }
-    active = is_at(entry.lower) || is_at(entry.upper);
-  }
+  const bool active =
+      entry.lower != entry.upper && (is_at(entry.lower) || is_at(entry.upper));
   return fmt::format("  {:<20} {}, {}: {}\n", constraint.name,
-                     shown(constraint.value), bounds,
+                     quantity_text(unit.factor * constraint.value, unit.unit),
+                     bounds_text(input, entry),
                      !constraint.satisfied ? "VIOLATED"
                      : active              ? "kept, at its bound"
                                            : "kept");
@@ -156,7 +165,7 @@ std::string result_text(const case_data::Case& input,
     text += matches
                 ? fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n",
                               c.name, c.value, c.bound)
-                : bounds_text(input, input.study.constraints[k], c);
+                : constraint_text(input, input.study.constraints[k], c);
   }
   for (const forward::NormPeak& peak :
        forward::norm_peaks(input, best.responses, result.stress)) {
@@ -220,6 +229,36 @@ std::string result_text(const case_data::Case& input,
       result.total_seconds, result.seconds.film, result.seconds.mesh,
       result.seconds.fea, result.seconds.gradient);
   return text;
+}
+
+std::string study_text(const case_data::Case& input) {
+  const case_data::StudyEntry& study = input.study;
+  const auto name_of = [&](int response) {
+    return input.responses[static_cast<std::size_t>(response)].name;
+  };
+  std::vector<std::string> parts;
+  for (const std::optional<int>& sought :
+       {study.fit, study.objective, study.second}) {
+    if (sought) {
+      parts.push_back(name_of(*sought));
+    }
+  }
+  if (!study.equal.empty()) {
+    parts.push_back(fmt::format("{}", fmt::join(study.equal, " = ")));
+  }
+  for (const auto& [name, value] : study.targets) {
+    const ShownUnit unit =
+        case_data::shown_unit(input, case_data::response_index(input, name));
+    parts.push_back(fmt::format("{} = {}", name,
+                                quantity_text(unit.factor * value, unit.unit)));
+  }
+  for (const case_data::ConstraintEntry& entry : study.constraints) {
+    parts.push_back(fmt::format("{} {}", name_of(entry.response),
+                                bounds_text(input, entry)));
+  }
+  return (study.members.empty() ? "" : "each member: ") +
+         std::string(case_data::row_of(study.kind).name) +
+         (parts.empty() ? "" : " ") + fmt::format("{}", fmt::join(parts, "; "));
 }
 
 std::string film_text(const case_data::Case& input,

@@ -197,6 +197,18 @@ class Minimize(ProgramTest):
         self.expect(self.call("run", case, *COARSE, "--no-pictures", "--out",
                               out), 3, "bounds")
 
+    def test_check_says_what_it_read_in_the_units_of_people(self):
+        """A plain number of mass is in tonnes where units are mm-N-MPa."""
+        case = self.folder / "case.toml"
+        case.write_text(program.SIZED_STRUT.replace(
+            "max = 0.0075 }]",
+            'max = 0.0075 }, { response = "mass", min = 1e-5, max = 4.7 }]'))
+        self.expect(self.call("check", case), 0,
+                    r"minimize mass; sway at most 0\.0075 mm; "
+                    r"mass at least 0\.01 kg, at most 4700 kg")
+        self.expect(self.call("check", program.CASE), 0,
+                    "match left_deflection = right_deflection")
+
     def test_what_is_wrong_in_the_study_is_told_by_line(self):
         for old, new, told in (
                 ('objective = "mass"', 'objective = "mas"',
