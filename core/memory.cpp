@@ -86,6 +86,12 @@ void keep_freed_memory() {
 #endif
 }
 
+bool has_address_space(std::size_t bytes) {
+  void* room = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return room != MAP_FAILED && ::munmap(room, bytes) == 0;
+}
+
 void start_threads() {
   const int others = omp_get_max_threads() - 1;
   rlimit limit{};
@@ -100,15 +106,12 @@ void start_threads() {
   constexpr rlim_t kBeside = 2 << 20;  // what a thread takes beside its stack
   const auto bytes = static_cast<std::size_t>(others) *
                      ((limited ? stack.rlim_cur : kUsualStack) + kBeside);
-  void* room = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (room == MAP_FAILED) {
+  if (!has_address_space(bytes)) {
     throw SolverError(fmt::format(
         "the limit of address space (ulimit -v) leaves no {} MB for {} more "
         "threads; raise it, or give --threads 1",
         bytes >> 20, others));
   }
-  ::munmap(room, bytes);
   int started = 0;
 #pragma omp parallel reduction(+ : started)
   started += 1;  // or the compiler leaves the region out

@@ -1,6 +1,7 @@
 /// How this process gets its memory, and how much it can get.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace meniscus {
@@ -17,6 +18,9 @@ void keep_freed_memory();
 /// libgomp then ends the process. For programs, at their start. Throws
 /// SolverError where there is no room now.
 void start_threads();
+
+/// Whether so many bytes of address space can be mapped now, in one piece.
+bool has_address_space(std::size_t bytes);
 
 /// Bytes that this process can still get: what the machine and the process's
 /// control group have left, at most its own limit of address space. Infinite

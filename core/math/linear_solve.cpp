@@ -8,7 +8,6 @@
 #include <omp.h>
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 
 #include "core/error.h"
 #include "core/memory.h"
@@ -36,15 +35,12 @@ void require_blas_buffer() {
     return;
   }
   constexpr std::size_t kBuffer = std::size_t{130} << 20;  // of 0.3.21: 128
-  void* room = ::mmap(nullptr, kBuffer, PROT_READ | PROT_WRITE,
-                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (room == MAP_FAILED) {
+  if (!has_address_space(kBuffer)) {
     throw SolverError(fmt::format(
         "the limit of address space (ulimit -v) leaves no {} MB for the "
         "buffers of linear algebra; raise it",
         kBuffer >> 20));
   }
-  ::munmap(room, kBuffer);
   // Large enough that OpenBLAS uses its buffer.
   constexpr int kSize = 64;
   std::vector<double> square(static_cast<std::size_t>(kSize) * kSize, 1.0);

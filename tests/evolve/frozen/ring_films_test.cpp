@@ -96,7 +96,21 @@ films::FilmSystem bored(double radius, double tilted) {
   return system;
 }
 
-// Vertices and mid-sides alike, at the design that was frozen and at others.
+/// Vertices and mid-sides alike lie about the z axis.
+void expect_cylinder(const QuadraticSurface& surface, const char* label,
+                     double radius, double tolerance) {
+  const int wanted = surface.base.label_of(label);
+  for (std::size_t f = 0; f < surface.base.facets.size(); ++f) {
+    for (int k = 0; surface.base.facet_label[f] == wanted && k < 3; ++k) {
+      const Vec3& corner = surface.base.points[surface.base.facets[f][k]];
+      const Vec3& middle = surface.mid[surface.facet_edges[f][k]];
+      EXPECT_NEAR(corner.head<2>().norm(), radius, tolerance);
+      EXPECT_NEAR(middle.head<2>().norm(), radius, tolerance);
+    }
+  }
+}
+
+// At the design that was frozen and at others.
 TEST(Ring, BetweenEqualCirclesIsTheirCylinder) {
   const frozen::FilmModel model = frozen::FilmModel::freeze(
       bored(0.5, 0.0), {.edge = kRingEdge, .refinements = 2});
@@ -105,18 +119,7 @@ TEST(Ring, BetweenEqualCirclesIsTheirCylinder) {
     const settle::FilmState state = model.settle(bored(radius, 0.0));
     ASSERT_FALSE(state.failure) << state.failure->message;
     const QuadraticSurface surface = model.surface(state.points);
-    const int bore = surface.base.label_of("bore");
-    for (std::size_t f = 0; f < surface.base.facets.size(); ++f) {
-      if (surface.base.facet_label[f] != bore) {
-        continue;
-      }
-      for (int k = 0; k < 3; ++k) {
-        const Vec3& corner = surface.base.points[surface.base.facets[f][k]];
-        const Vec3& middle = surface.mid[surface.facet_edges[f][k]];
-        EXPECT_NEAR(corner.head<2>().norm(), radius, 1e-12);
-        EXPECT_NEAR(middle.head<2>().norm(), radius, 1e-12);
-      }
-    }
+    expect_cylinder(surface, "bore", radius, 1e-12);
     EXPECT_NEAR(area_of(model, state.points, "bore"),
                 2.0 * kHalfTurn * radius * 0.8, kRingFacets);
   }
@@ -149,18 +152,7 @@ TEST(Ring, BetweenCirclesDrawnAsArcsIsTheirCylinder) {
     ASSERT_FALSE(model.reference().failure)
         << model.reference().failure->message;
     const QuadraticSurface surface = model.surface(model.reference().points);
-    const int bore = surface.base.label_of("bore");
-    for (std::size_t f = 0; f < surface.base.facets.size(); ++f) {
-      if (surface.base.facet_label[f] != bore) {
-        continue;
-      }
-      for (int k = 0; k < 3; ++k) {
-        const Vec3& corner = surface.base.points[surface.base.facets[f][k]];
-        const Vec3& middle = surface.mid[surface.facet_edges[f][k]];
-        EXPECT_NEAR(corner.head<2>().norm(), 0.5, 1e-11);
-        EXPECT_NEAR(middle.head<2>().norm(), 0.5, 1e-11);
-      }
-    }
+    expect_cylinder(surface, "bore", 0.5, 1e-11);
   }
 }
 
