@@ -95,14 +95,18 @@ double TetEditor::star_merit(int node) const {
 
 double TetEditor::star_merit_at(int node, const Vec3& place,
                                 double floor) const {
+  const std::vector<int>& star = star_[node];
+  const std::size_t first = std::min(last_short_, star.size() - 1);
   double least = 2.0;
-  for (const int e : star_[node]) {
-    const TetNodes ids = nodes(e);
+  for (std::size_t k = 0; k < star.size(); ++k) {
+    const std::size_t i = k == 0 ? first : k - (k <= first ? 1 : 0);
+    const TetNodes ids = nodes(star[i]);
     TetCorners x = corners(ids);
     x[std::find(ids.begin(), ids.end(), node) - ids.begin()] = place;
     ++evaluations_;
     least = std::min(least, tet_merit(x));
     if (!(least > floor)) {
+      last_short_ = i;
       break;
     }
   }

@@ -76,6 +76,8 @@ class TetEditor {
   TetMesh& mesh_;
   int fixed_;
   mutable std::int64_t evaluations_ = 0;
+  /// Which of a star fell short last: it will most often be the next to do so.
+  mutable std::size_t last_short_ = 0;
   std::vector<double> merit_;
   std::vector<char> alive_;
   std::vector<std::vector<int>> star_;

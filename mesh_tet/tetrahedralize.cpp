@@ -110,10 +110,18 @@ std::string check_volumes(const TetMesh& mesh, const SurfaceFit& fit) {
   return {};
 }
 
-/// The mesh from TetGen's answer; returns why it is none, or nothing.
+bool is_poor(const TetQuality& quality, const TetrahedralizeOptions& options) {
+  return quality.min_dihedral_deg < options.improve_below_deg ||
+         find_breach(quality, options.bounds);
+}
+
+/// The mesh from TetGen's answer, its worst elements mended, checked as it is
+/// then; returns why it is none, or nothing.
 std::string find_fault(const SurfaceMesh& surface, const Frame& frame,
                        const TetgenOutput& output, const SurfaceFit& fit,
-                       TetMesh& mesh) {
+                       const TetrahedralizeOptions& options,
+                       Tetrahedralization& result) {
+  TetMesh& mesh = result.mesh;
   if (output.elements.empty()) {
     return "it has no elements";
   }
@@ -121,9 +129,19 @@ std::string find_fault(const SurfaceMesh& surface, const Frame& frame,
   if (fault.empty()) {
     fault = take_nodes(surface, frame, output, mesh);
   }
-  if (fault.empty()) {
-    fault = attach_surface(surface, mesh);
+  if (!fault.empty()) {
+    return fault;
   }
+  result.quality = tet_quality(mesh);
+  if (is_poor(result.quality, options)) {
+    put_faces(surface, mesh);
+    mesh.element_region.assign(mesh.element_count(), 0);
+    improve_tets(mesh, static_cast<int>(surface.points.size()),
+                 {.below_deg = std::max(options.improve_below_deg,
+                                        options.bounds.min_dihedral_deg)});
+    result.quality = tet_quality(mesh);
+  }
+  fault = attach_surface(surface, mesh);
   return fault.empty() ? check_volumes(mesh, fit) : fault;
 }
 
@@ -154,32 +172,6 @@ std::optional<Failure> find_surface_fault(const SurfaceMesh& surface,
   return std::nullopt;
 }
 
-/// Mends the worst elements; refuses a mesh that stays too poor.
-std::optional<Failure> finish(const SurfaceMesh& surface,
-                              const TetrahedralizeOptions& options,
-                              TetMesh& mesh, TetQuality& quality) {
-  quality = tet_quality(mesh);
-  if (quality.min_dihedral_deg < options.improve_below_deg ||
-      find_breach(quality, options.bounds)) {
-    improve_tets(mesh, static_cast<int>(surface.points.size()),
-                 {.below_deg = std::max(options.improve_below_deg,
-                                        options.bounds.min_dihedral_deg)});
-    const std::string fault = attach_surface(surface, mesh);
-    if (!fault.empty()) {
-      throw MeshError(fmt::format("improving elements broke one: {}", fault));
-    }
-    quality = tet_quality(mesh);
-  }
-  const auto breach = find_breach(quality, options.bounds);
-  if (!breach) {
-    return std::nullopt;
-  }
-  return meshing_failure(fmt::format(
-      "the best mesh has {} ({}); remesh the surface more evenly there, or "
-      "change the element edge",
-      breach->what, place_of(mesh, breach->element)));
-}
-
 /// The mesh in `result` from what TetGen returned.
 std::optional<Failure> take(const SurfaceMesh& surface, const SurfaceFit& fit,
                             const Frame& frame, const TetgenOutput& output,
@@ -189,12 +181,19 @@ std::optional<Failure> take(const SurfaceMesh& surface, const SurfaceFit& fit,
     return meshing_failure(*output.failure);
   }
   const std::string fault =
-      find_fault(surface, frame, output, fit, result.mesh);
+      find_fault(surface, frame, output, fit, options, result);
   if (!fault.empty()) {
     return meshing_failure(fmt::format(
         "TetGen's mesh cannot be used: {}; try another element edge", fault));
   }
-  return finish(surface, options, result.mesh, result.quality);
+  const auto breach = find_breach(result.quality, options.bounds);
+  if (!breach) {
+    return std::nullopt;
+  }
+  return meshing_failure(fmt::format(
+      "the best mesh has {} ({}); remesh the surface more evenly there, or "
+      "change the element edge",
+      breach->what, place_of(result.mesh, breach->element)));
 }
 
 std::optional<Failure> run(const SurfaceMesh& surface,
