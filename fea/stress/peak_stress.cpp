@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace meniscus::stress {
 
@@ -76,6 +77,54 @@ PeakReadings peak_readings(const StressReadings& stress,
       .points = {}};
   visit_points(stress.mesh, stress.points, excluded, Largest(peaks.points));
   return peaks;
+}
+
+bool one_element_through(const TetMesh& mesh, const Vec3& position,
+                         int region) {
+  constexpr int kRings = 2;  // a sharp edge alone may have no inner corner
+  const int corners = mesh.corner_count;
+  std::vector<char> outside(static_cast<std::size_t>(corners), 0);
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      outside[mesh.face(f)[k]] = 1;
+    }
+  }
+  // 1. The nearest corner node of the region.
+  std::vector<char> reached(static_cast<std::size_t>(corners), 0);
+  int nearest = -1;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int k = 0; k < 4 && mesh.element_region[e] == region; ++k) {
+      const int node = mesh.element(e)[k];
+      if (nearest < 0 || (mesh.nodes[node] - position).squaredNorm() <
+                             (mesh.nodes[nearest] - position).squaredNorm()) {
+        nearest = node;
+      }
+    }
+  }
+  if (nearest < 0) {
+    return false;
+  }
+  reached[nearest] = 1;
+  // 2. Ring by ring: does an element have a corner inside?
+  for (int ring = 0; ring < kRings; ++ring) {
+    std::vector<char> next = reached;
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const auto element = mesh.element(e).first(4);
+      if (mesh.element_region[e] != region ||
+          std::none_of(element.begin(), element.end(),
+                       [&](int node) { return reached[node] != 0; })) {
+        continue;
+      }
+      for (const int node : element) {
+        if (outside[node] == 0) {
+          return false;
+        }
+        next[node] = 1;
+      }
+    }
+    reached = std::move(next);
+  }
+  return true;
 }
 
 SafetyFactor safety_factor(const StressReadings& stress,

@@ -38,6 +38,12 @@ struct PeakReadings {
 PeakReadings peak_readings(const StressReadings& stress,
                            const std::vector<char>& excluded = {});
 
+/// True where the material is one element thick: of the elements of that region
+/// around the corner node nearest to `position`, and of their neighbours, none
+/// has a corner inside. Linear strains then bend through the whole thickness,
+/// and a peak may be further off than other meshes of such elements tell.
+bool one_element_through(const TetMesh& mesh, const Vec3& position, int region);
+
 /// Yield strength over von Mises stress where it is least; infinite where no
 /// material has a yield strength or there is no stress.
 struct SafetyFactor {

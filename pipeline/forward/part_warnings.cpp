@@ -1,11 +1,14 @@
 #include "pipeline/forward/part_warnings.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "fea/functionals/thickness.h"
+#include "fea/stress/peak_stress.h"
 
 namespace meniscus::forward {
 
@@ -37,6 +40,29 @@ std::string yield_warning(const case_data::Case& input,
       input.units.pressure, s.factor);
 }
 
+/// Of the load cases whose peak is where the material is one element thick.
+std::string thin_warning(const case_data::Case& input, const TetMesh& mesh,
+                         const std::vector<StressFigures>& stress) {
+  std::vector<std::string> places;
+  for (const StressFigures& figures : stress) {
+    const stress::Peak& peak = figures.readings.largest();
+    if (peak.von_mises > 0.0 &&
+        stress::one_element_through(mesh, peak.position, peak.region)) {
+      places.push_back(fmt::format("of '{}' at ({:.4g}, {:.4g}, {:.4g})",
+                                   figures.load_case, peak.position.x(),
+                                   peak.position.y(), peak.position.z()));
+    }
+  }
+  return places.empty()
+             ? ""
+             : fmt::format(
+                   "one element through the material at the peak stress {}: it "
+                   "may be too low, and by more than its +-; take a shorter "
+                   "resolution.fea (now {:.4g} {})",
+                   fmt::join(places, ", "), input.resolution.fea,
+                   input.units.length);
+}
+
 }  // namespace
 
 std::vector<std::string> part_warnings(
@@ -63,6 +89,10 @@ std::vector<std::string> part_warnings(
           stress[k].load_case, largest, input.units.length,
           100.0 * largest / size));
     }
+  }
+  std::string thin = thin_warning(input, fields.mesh, stress);
+  if (!thin.empty()) {
+    warnings.push_back(std::move(thin));
   }
   return warnings;
 }

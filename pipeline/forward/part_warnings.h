@@ -10,8 +10,9 @@
 namespace meniscus::forward {
 
 /// Sentences for stress above yield (the place with the least safety factor,
-/// each body against its own material) and for displacements that are not small
-/// against the part. `stress`: stress_figures() of the fields, every load case.
+/// each body against its own material), for displacements that are not small
+/// against the part, and for peaks where the material is one element thick.
+/// `stress`: stress_figures() of the fields, every load case.
 std::vector<std::string> part_warnings(
     const case_data::Case& input, const EvaluationFields& fields,
     const std::vector<StressFigures>& stress);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -108,11 +109,17 @@ int count_of_model(const std::vector<EvaluationRecord>& records,
 }
 
 std::string answering_model(const std::vector<EvaluationRecord>& records) {
-  const auto last = std::find_if(
-      records.rbegin(), records.rend(), [](const EvaluationRecord& record) {
-        return !record.failure && is_study_model(record.model);
-      });
-  return last == records.rend() ? kStudyModel : last->model;
+  // A sweep that grows adds designs to its first model after the best of the
+  // shorter one had its own: it is the last to begin that counts.
+  std::string answering = kStudyModel;
+  std::set<std::string> begun = {answering};
+  for (const EvaluationRecord& record : records) {
+    if (!record.failure && is_study_model(record.model) &&
+        begun.insert(record.model).second) {
+      answering = record.model;
+    }
+  }
+  return answering;
 }
 
 double design_distance(const case_data::Case& input, const VectorX& a,

@@ -35,8 +35,8 @@ bool is_study_model(const std::string& model);
 int count_of_model(const std::vector<EvaluationRecord>& records,
                    const std::string& model);
 
-/// The last of these models that has evaluated a design; kStudyModel when none
-/// has.
+/// The last of these models to begin; kStudyModel when none has evaluated a
+/// design.
 std::string answering_model(const std::vector<EvaluationRecord>& records);
 
 /// The largest difference of a variable, x its range.

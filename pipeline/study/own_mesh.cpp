@@ -45,6 +45,9 @@ void judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
     }
     StudyStage& stage = *models.stage();
     stage.judge(found, models.input());
+    if (study.kind == case_data::StudyKind::Sweep) {
+      return;  // its designs are given: there is nothing to go on with
+    }
     const bool lost =
         all_kept(found.constraints) && !all_kept(stage.outcome().constraints);
     if (!lost || !study.refreeze || models.evaluations_left() <= 0 ||

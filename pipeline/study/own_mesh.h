@@ -11,8 +11,9 @@
 
 namespace meniscus::study {
 
-/// The answer of a match or a minimum; where it is not kept there, the study
-/// goes on from that model. `limited` says when there is no time for it.
+/// The answer of a match or a minimum, or the best design of a sweep. Where a
+/// match or a minimum is not kept there, the study goes on from that model.
+/// `limited` says when there is no time for it.
 void judge_answer(StudyModels& models, const DeadlineMonitor& limited);
 
 /// Each point of a front, that of the part last: the others tell how much of

@@ -125,10 +125,12 @@ bool StudyModels::go_on_at(store::Refreeze wanted) {
 bool StudyModels::has_dragged_answer() const {
   const case_data::StudyKind kind = input_.study.kind;
   const VectorX& best = stage_->outcome().best;
-  return (kind == case_data::StudyKind::Match ||
-          kind == case_data::StudyKind::Minimize ||
-          kind == case_data::StudyKind::Pareto) &&
-         best.size() > 0 && stage_->was_answered(best) &&
+  const bool seeks = kind == case_data::StudyKind::Match ||
+                     kind == case_data::StudyKind::Minimize ||
+                     kind == case_data::StudyKind::Pareto ||
+                     (kind == case_data::StudyKind::Sweep &&
+                      input_.study.objective.has_value());
+  return seeks && best.size() > 0 && stage_->was_answered(best) &&
          store::design_distance(input_, best, stage_->start().design) >
              kAtDesign;
 }

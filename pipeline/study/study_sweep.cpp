@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/count_text.h"
 #include "optimize/samples/sampling.h"
+#include "pipeline/case_data/response_entries.h"
 #include "pipeline/store/incumbent.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/study/run_kind.h"
@@ -72,9 +74,10 @@ void choose_best(const StudyTask& task,
         constraint_of(task.input, entry, best->responses[entry.response]));
   }
   if (standing.feasible()) {
-    outcome.message += fmt::format("; the best has {} = {:.6g}",
-                                   task.input.responses[*study.objective].name,
-                                   standing.objective);
+    const ShownUnit shown = case_data::shown_unit(task.input, *study.objective);
+    outcome.message += fmt::format(
+        "; the best has {} = {}", task.input.responses[*study.objective].name,
+        quantity_text(shown.factor * standing.objective, shown.unit));
   } else if (outcome.status == RunStatus::Converged) {
     outcome.status = RunStatus::Infeasible;
     outcome.message += fmt::format(

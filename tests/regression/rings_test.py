@@ -160,6 +160,28 @@ class Rings(ProgramTest):
                 self.assertLess(found, 1.02)
                 self.assertGreater(found, 0.9)
 
+    def test_walls_one_element_thick_are_warned_of(self):
+        """Edges longer than the wall: neither safety nor +- are sure."""
+        draw = random.Random(26)
+        for k, (least, most, warned) in enumerate(
+                [(1.1, 1.5, True), (1.5, 2.0, True), (0.25, 0.35, False),
+                 (0.35, 0.45, False)]):
+            wall = draw.uniform(3, 6)
+            edge = draw.uniform(least, most) * wall
+            case = self.folder / f"wall {k}.toml"
+            case.write_text(
+                TUBE.replace("radius = 20.0", f"radius = {10 + wall}")
+                .replace("initial = 20.0", f"initial = {10 + wall}")
+                .replace("bounds = [15.0, 25.0]", "bounds = [11.0, 40.0]")
+                .replace("fea = 5.0", f"fea = {edge}"))
+            out = self.folder / f"thin {k}"
+            self.expect(self.call("run", case, "--no-pictures", "--no-report",
+                                  "--out", out), 0)
+            with self.subTest(wall=wall, edge=edge):
+                told = any("one element through" in text
+                           for text in self.result(out)["warnings"])
+                self.assertEqual(told, warned)
+
     def test_what_springs_hardly_hold_is_solved(self):
         """Nearly incompressible on soft springs: multigrid comes to a halt."""
         case = self.folder / "case.toml"

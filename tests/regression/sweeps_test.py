@@ -44,6 +44,9 @@ class SweepTest(ProgramTest):
             return database.execute(
                 f"SELECT {COLUMNS} FROM evaluation ORDER BY number").fetchall()
 
+    def models(self, out):
+        return [record[2] for record in self.records(out)]
+
     def kept(self, out):
         """What of result.json must not depend on when or how fast."""
         return json.dumps(without_seconds(self.result(out)))
@@ -69,7 +72,8 @@ class Sweeps(SweepTest):
         self.expect(done, 0)
         self.assert_same(one, three)
         result = self.result(three)
-        self.assertEqual(result["evaluations"], 7)  # the start is one, too
+        # The start is one, too, and so is the best design on its own mesh.
+        self.assertEqual(result["evaluations"], 8)
         self.assertEqual(result["evaluations"], len(self.rows(three)))
         self.expect(done, 0, r"least [0-9.e-]+ kg at support_x", "accuracy: ")
         sweep = result["sweep"]
@@ -86,11 +90,19 @@ class Sweeps(SweepTest):
         self.assertEqual((mass["least"], mass["largest"]),
                          (min(masses), max(masses)))
         self.assertAlmostEqual(mass["mean"] / (sum(masses) / 6), 1.0, 12)
-        # The best is the least mass, with its meshes.
-        self.assertEqual(result["objective"], min(masses))
-        self.assertEqual(
-            result["parameters"]["radius"],
-            float(swept[masses.index(min(masses))]["radius"]))
+        # The best is the least mass, on a mesh made for it: both are told.
+        best = swept[masses.index(min(masses))]
+        self.assertEqual(result["parameters"]["radius"], float(best["radius"]))
+        self.assertEqual(self.models(three)[-1],
+                         f"frozen at evaluation {best['evaluation']}")
+        self.assertEqual(result["objective"], float(rows[-1]["mass"]))
+        self.assertEqual(result["objective"], result["responses"]["mass"])
+        dragged = result["refrozen"][-1]["responses"]["mass"]
+        self.assertEqual(dragged, min(masses))
+        self.assertAlmostEqual(result["objective"] / dragged, 1.0, 2)
+        self.expect(done, 0, f"the best has mass = {1e3 * dragged:.6g} kg",
+                    f"On a mesh made for it: mass "
+                    f"{1e3 * result['objective']:.6g} kg")
         self.assertEqual(mass["least_at"]["radius"],
                          result["parameters"]["radius"])
         self.assertTrue((three / "part.vtu").exists())
@@ -109,6 +121,27 @@ class Sweeps(SweepTest):
             self.assertTrue(28 <= float(row["radius"]) <= 42)
         shown = self.expect(self.call("study", "show", out), 0, "sweep")
         self.assertEqual(len(re.findall(r"\bsweep\b", shown.stdout)), 5)
+
+    def test_a_longer_sweep_is_answered_by_its_own_best(self):
+        # Of the least radius: the fourth of Sobol's designs beats the first
+        # two by it, so that a mesh for the shorter sweep's best is there.
+        case = self.sweep('method = "sobol"\ncount = 2\nobjective = "mass"\n')
+        self.expect(self.run_case(case, "out")[0], 0)
+        case.write_text(case.read_text().replace("count = 2", "count = 7"))
+        done, out = self.run_case(case, "out", "--resume")
+        self.expect(done, 0, "looked at all 7 designs")
+        alone = self.run_case(case, "alone")[1]
+        grown, straight = self.result(out), self.result(alone)
+        self.assertEqual(grown["parameters"], straight["parameters"])
+        self.assertEqual(grown["responses"], straight["responses"])
+        self.assertEqual(len(set(self.models(out))), 3, self.models(out))
+        # What is made of the results later is of the same mesh.
+        for name in ("out", "alone"):
+            self.expect(self.call("export", self.folder / name, "--format",
+                                  "stl", "--out",
+                                  self.folder / f"{name}.stl"), 0)
+        self.assertEqual((self.folder / "out.stl").read_bytes(),
+                         (self.folder / "alone.stl").read_bytes())
 
     def test_designs_that_fail_are_rows_with_their_cause(self):
         # Past some volume the film of this case has no equilibrium.

@@ -5,7 +5,9 @@
 
 #include "core/error.h"
 #include "fea/element/tet_shape.h"
+#include "fea/stress/peak_stress.h"
 #include "tests/support/parts.h"
+#include "tests/support/shapes.h"
 
 namespace meniscus::stress_test {
 namespace {
@@ -196,4 +198,22 @@ TEST(Stress, WrongSizesAreRefused) {
 }
 
 }  // namespace
+// Plates of so many cells through their thickness, of either order.
+TEST(Peak, KnowsWhereOneElementIsAllThereIs) {
+  const Vec3 corner(0.0, 0.0, 0.0);
+  const Vec3 middle(4.0, 4.0, 0.0);
+  for (const int layers : {1, 2, 3}) {
+    const TetMesh plate = shapes::brick({8.0, 8.0, 1.0}, 8, 8, layers);
+    EXPECT_EQ(stress::one_element_through(plate, middle, 0), layers == 1)
+        << layers;
+    EXPECT_EQ(stress::one_element_through(plate, corner, 0), layers == 1)
+        << layers;
+    EXPECT_FALSE(stress::one_element_through(plate, middle, 1))
+        << "no such region";
+    EXPECT_EQ(stress::one_element_through(shapes::straight_quadratic(plate),
+                                          middle, 0),
+              layers == 1);
+  }
+}
+
 }  // namespace meniscus::stress_test
