@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/json.h"
 #include "pipeline/forward/forward_model.h"
+#include "pipeline/results/run_files.h"
 #include "pipeline/store/stored_case.h"
 #include "report/output/run_pictures.h"
 #include "report/page/report_page.h"
@@ -43,10 +44,14 @@ void redraw_pictures(const fs::path& folder, Monitor& monitor) {
   const case_data::Case input = store::restore_case(store.meta());
   const case_data::EvaluatedCase inputs = case_data::evaluate(
       input, store::answer_of_run(input, store.all(), folder));
-  warn(picture::render_pictures(
-      output::stored_run_pictures(input, inputs, stored_worst_case(folder),
-                                  folder),
-      {.monitor = &monitor}));
+  std::vector<picture::PictureJob> jobs = output::stored_run_pictures(
+      input, inputs, stored_worst_case(folder), folder);
+  std::vector<std::string> names;
+  for (const picture::PictureJob& job : jobs) {
+    names.push_back(fs::path(job.output).filename().string());
+  }
+  results::claim_files(folder, names);
+  warn(picture::render_pictures(std::move(jobs), {.monitor = &monitor}));
 }
 
 }  // namespace

@@ -26,6 +26,9 @@ constexpr double kUnseenOrder = 0.7;
 // by less.
 constexpr double kNoTrend = 0.1;
 constexpr double kSafety = 1.5;
+// Meshes that agree so far cut the part alike (the least number of facets on a
+// rim, plane faces): they tell nothing of its error.
+constexpr double kAlike = 1e-12;
 // Films show 2 (docs/verification.md). Their coarsest model, of few edges
 // around a rim, may be far off: the change to the nearer one counts.
 constexpr double kLeastFilmOrder = 1.0;
@@ -51,6 +54,16 @@ FigureKind kind_of(const case_data::Case& input, int response) {
   return case_data::row_of(input.responses[r].kind).of_films
              ? FigureKind::Film
              : FigureKind::Integral;
+}
+
+/// A response on all meshes.
+MeshValues values_of(const MeshSequence& meshes, int response) {
+  MeshValues values{};
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    values[m] =
+        meshes.responses[m].size() > 0 ? meshes.responses[m][response] : kNaN;
+  }
+  return values;
 }
 
 }  // namespace
@@ -83,8 +96,8 @@ FigureError figure_error(const MeshValues& values, FigureKind kind) {
   const double before = middle - coarse;
   const double change =
       std::max({std::abs(last), std::abs(before), std::abs(fine - coarse)});
-  if (change == 0.0) {
-    return {0.0, true};
+  if (change <= kAlike * std::abs(fine)) {
+    return {kNaN, true};
   }
   const bool same_way = last * before > 0.0;
   const double order = same_way
@@ -112,12 +125,7 @@ std::vector<FigureError> response_errors(const case_data::Case& input,
                                          const VectorX& dual) {
   std::vector<FigureError> errors;
   for (int r = 0; r < static_cast<int>(input.responses.size()); ++r) {
-    MeshValues values{};
-    for (std::size_t m = 0; m < values.size(); ++m) {
-      values[m] =
-          meshes.responses[m].size() > 0 ? meshes.responses[m][r] : kNaN;
-    }
-    FigureError error = figure_error(values, kind_of(input, r));
+    FigureError error = figure_error(values_of(meshes, r), kind_of(input, r));
     // A dual of 0 is that of a figure in which the elements make no error: no
     // error of its own where the meshes gave none.
     if (dual.size() > 0 && std::isfinite(dual[r]) && dual[r] != 0.0) {
@@ -169,6 +177,26 @@ void add_eigen_errors(MeshSequence& meshes) {
   }
 }
 
+std::string unsettled_text(const case_data::Case& input,
+                           const std::string& name, const MeshValues& values,
+                           const ShownUnit& unit, Dimension dimension) {
+  const auto text = [&](std::size_t mesh) {
+    return fmt::format("{:.4g}", unit.factor * values[mesh]);
+  };
+  return fmt::format(
+      "{} may have no limit: it is {}, {} and {} at edges of {:.3g}, {:.3g} "
+      "and {:.3g} {}, so its +- is no bound. {}",
+      name, text(2), text(1),
+      quantity_text(unit.factor * values[0], unit.unit, 4),
+      kEdgeFactors[2] * input.resolution.fea,
+      kEdgeFactors[1] * input.resolution.fea, input.resolution.fea,
+      input.units.length,
+      dimension == Dimension::Pressure
+          ? "Stress has none at a clamped rim or a sharp corner: leave such "
+            "places out by analysis.exclude, or look at shorter edges"
+          : "Look at shorter edges");
+}
+
 std::vector<std::string> unsettled_warnings(
     const case_data::Case& input, const MeshSequence& meshes,
     const std::vector<FigureError>& errors) {
@@ -178,23 +206,10 @@ std::vector<std::string> unsettled_warnings(
     if (errors[r].settles || !case_data::is_extreme(input, r)) {
       continue;
     }
-    const ShownUnit unit = case_data::shown_unit(input, r);
-    const auto text = [&](std::size_t mesh) {
-      return fmt::format("{:.4g}", unit.factor * meshes.responses[mesh][r]);
-    };
-    warnings.push_back(fmt::format(
-        "'{}' may have no limit: it is {}, {} and {} at edges of {:.3g}, "
-        "{:.3g} and {:.3g} {}, so its +- is no bound. {}",
-        input.responses[r].name, text(2), text(1),
-        quantity_text(unit.factor * meshes.responses[0][r], unit.unit, 4),
-        kEdgeFactors[2] * input.resolution.fea,
-        kEdgeFactors[1] * input.resolution.fea, input.resolution.fea,
-        input.units.length,
-        case_data::row_of(input.responses[r].kind).dimension ==
-                Dimension::Pressure
-            ? "Stress has none at a clamped rim or a sharp corner: leave such "
-              "places out by analysis.exclude, or look at shorter edges"
-            : "Look at shorter edges"));
+    warnings.push_back(
+        unsettled_text(input, fmt::format("'{}'", input.responses[r].name),
+                       values_of(meshes, r), case_data::shown_unit(input, r),
+                       case_data::row_of(input.responses[r].kind).dimension));
   }
   return warnings;
 }

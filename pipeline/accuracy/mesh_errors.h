@@ -24,7 +24,7 @@ enum class FigureKind {
 
 struct FigureError {
   double bound = 0.0;   // of the first value, both ways, >= 0; NaN where only
-                        // that one is known
+                        // that one is known, or all meshes agree to rounding
   bool settles = true;  // false: its changes do not shrink with the edges, as
                         // where there is no limit
 };
@@ -47,6 +47,11 @@ VectorX bounds_of(const std::vector<FigureError>& errors);
 
 /// Gives the figures of the first mesh their errors.
 void add_eigen_errors(MeshSequence& meshes);
+
+/// "NAME may have no limit: ...", with its values; `unit`: as they are shown.
+std::string unsettled_text(const case_data::Case& input,
+                           const std::string& name, const MeshValues& values,
+                           const ShownUnit& unit, Dimension dimension);
 
 /// A sentence for each response whose changes do not shrink, with its values.
 std::vector<std::string> unsettled_warnings(

@@ -1,5 +1,6 @@
 #include "pipeline/accuracy/mesh_sequence.h"
 
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include "pipeline/case_data/film_start.h"
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/forward/forward_model.h"
+#include "pipeline/forward/stress_figures.h"
 
 namespace meniscus::accuracy {
 
@@ -35,14 +37,18 @@ void add_mesh(const case_data::Case& input, const VectorX& design,
       return;
     }
     forward::EvaluationFields fields;
-    const forward::Evaluation there =
-        model.evaluate(design, with_eigen ? &fields : nullptr);
+    const forward::Evaluation there = model.evaluate(design, &fields);
     meshes.seconds += there.seconds;
     if (there.failure) {
       meshes.failures[m] = there.failure->message;
       return;
     }
     meshes.responses[m] = there.responses;
+    if (film == FilmFrom::OwnFacets) {
+      fields.stresses =
+          forward::part_stresses(fields.mesh, fields.inputs, fields.solution);
+      meshes.peaks[m] = forward::highest_readings(fields);
+    }
     if (with_eigen) {
       meshes.eigen[m] =
           forward::eigen_figures(input, fields, model.elasticity(), &monitor);
@@ -74,6 +80,22 @@ void add_films(const case_data::Case& input, const VectorX& design,
   }
 }
 
+/// Coarser meshes on which every figure is that of the first cut the part
+/// alike, by the least number of facets on its rims: they tell nothing.
+bool tell_nothing(const MeshSequence& meshes) {
+  constexpr double kAlike = 1e-12;
+  for (std::size_t m = 1; m < kFinerMesh; ++m) {
+    const VectorX& found = meshes.responses[m];
+    for (Eigen::Index r = 0; r < found.size(); ++r) {
+      const double own = meshes.responses[0][r];
+      if (std::abs(found[r] - own) > kAlike * std::abs(own)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 MeshSequence evaluate_on_other_meshes(const case_data::Case& input,
@@ -83,6 +105,13 @@ MeshSequence evaluate_on_other_meshes(const case_data::Case& input,
   MeshSequence meshes;
   meshes.responses[0] = responses;
   for (std::size_t m = 1; m < kEdgeFactors.size(); ++m) {
+    if (m == kFinerMesh && tell_nothing(meshes)) {
+      for (std::size_t coarser = 1; coarser < kFinerMesh; ++coarser) {
+        meshes.responses[coarser] = {};
+        meshes.peaks[coarser] = {};
+        meshes.eigen[coarser] = {};
+      }
+    }
     if (m != kFinerMesh || !meshes.has_coarser()) {
       add_mesh(input, design, m, FilmFrom::OwnFacets, with_eigen, monitor,
                meshes);

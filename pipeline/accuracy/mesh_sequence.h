@@ -14,7 +14,7 @@
 namespace meniscus::accuracy {
 
 /// Edges of the meshes, times the case's own. The last is made only where
-/// neither of the two before can be.
+/// neither of the two before can be, or both cut the part as the first does.
 inline constexpr std::array<double, 4> kEdgeFactors = {
     1.0, 1.4142135623730951, 2.0, 0.70710678118654752};
 inline constexpr std::size_t kFinerMesh = 3;
@@ -24,6 +24,10 @@ struct MeshSequence {
   /// not made.
   std::array<VectorX, kEdgeFactors.size()> responses;
   std::array<forward::EigenFigures, kEdgeFactors.size()> eigen;
+  /// Of each load case, the highest reading of its peak stress (peak_stress.h)
+  /// [pressure]; empty as responses are. That of the first mesh is the
+  /// caller's.
+  std::array<std::vector<double>, kEdgeFactors.size()> peaks;
   std::array<std::string, kEdgeFactors.size()> failures;  // why it failed
   forward::StageSeconds seconds;  // of the models that were made for it
 

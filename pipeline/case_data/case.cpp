@@ -356,10 +356,21 @@ Measure measure_of(const ResponseEntry& response) {
     const Measure& measure = response.value.measure;
     return measure.is_known() ? measure : Measure{};
   }
-  const Dimension dimension = dimension_of(response.kind);
-  const bool unknown = response.weight.has_value() ||
-                       response.kind == ResponseKind::CollapseMargin;
-  return unknown ? Measure{} : Measure::of(powers_of(dimension));
+  if (response.kind == ResponseKind::CollapseMargin) {
+    return Measure::of({.length = -3.0, .force = 1.0});
+  }
+  UnitPowers powers = powers_of(dimension_of(response.kind));
+  if (response.weight) {
+    if (response.weight->of_place) {
+      return {};
+    }
+    // A plain number is a factor.
+    const Measure& weight = response.weight->quantity.measure;
+    powers.length += weight.powers.length;
+    powers.force += weight.powers.force;
+    powers.time += weight.powers.time;
+  }
+  return Measure::of(powers);
 }
 
 ShownUnit shown_unit(const Case& input, int response) {

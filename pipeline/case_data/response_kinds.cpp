@@ -133,7 +133,7 @@ const std::vector<ResponseRow>& response_kinds() {
        D::Length,
        "the solid's smallest one, smooth",
        {{}, {"smoothing"}},
-       E::Exact,
+       E::BySmoothing,
        !kOfFilms,
        kDerivatives,
        kExtreme},
@@ -143,7 +143,7 @@ const std::vector<ResponseRow>& response_kinds() {
        "how far the solid reaches into a region to keep out of, or out of one "
        "to keep in, below 0 where it keeps clear, smooth",
        {{}, {"keep_out", "keep_in", "smoothing"}},
-       E::Exact,
+       E::BySmoothing,
        !kOfFilms,
        kDerivatives,
        kExtreme},
@@ -153,7 +153,7 @@ const std::vector<ResponseRow>& response_kinds() {
        "the least distance of two films, smooth; films that cross have none: a "
        "design that fails",
        {{"films"}, {"smoothing"}},
-       E::Exact,
+       E::BySmoothing,
        kOfFilms,
        kDerivatives,
        kExtreme},

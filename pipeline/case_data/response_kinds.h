@@ -14,10 +14,11 @@ namespace meniscus::case_data {
 
 /// How the error that the mesh makes in a response is estimated.
 enum class ErrorSource {
-  Exact,       // none that counts
-  ByDual,      // by_displacement makes a dual load
-  ByReadings,  // what the largest reading of a peak says above the one told
-  Unknown      // of smooth maxima: recovery and the dual solution miss the most
+  Exact,        // none that counts
+  ByDual,       // by_displacement makes a dual load
+  ByReadings,   // what the largest reading of a peak says above the one told
+  BySmoothing,  // what a smooth extreme is beside the sharp one
+  Unknown  // of smooth maxima: recovery and the dual solution miss the most
 };
 
 struct ResponseRow {

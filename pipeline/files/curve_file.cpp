@@ -184,7 +184,7 @@ void Reader::read(const CsvRows& csv) {
     add(1, "the file is empty; expected a head row x,y,z and points below");
     return;
   }
-  if (csv.rows.size() > kMostPoints) {
+  if (csv.rows.size() > kMostPoints + 1) {  // the first is the head
     add(1, fmt::format("{} points; a boundary curve is sparse, and at most {} "
                        "are taken: thin them out",
                        csv.rows.size() - 1, kMostPoints));

@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "evolve/frozen/gap_between.h"
+#include "fea/functionals/place_functionals.h"
+#include "fea/functionals/thickness.h"
 #include "fea/loads/body_loads.h"
 #include "fea/stress/averaged_stress.h"
 #include "fea/stress/error_estimate.h"
 #include "fea/stress/peak_stress.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_kinds.h"
+#include "pipeline/forward/response_partials.h"
 
 namespace meniscus::forward {
 
@@ -117,6 +122,7 @@ class ResponseErrors {
              const elastic::ElasticModel& model);
   void add_expressions();
   double peak_error(std::size_t load_case) const;
+  double smoothing_error(std::size_t r) const;
   double& error(std::size_t response) {
     return errors_.responses[static_cast<Eigen::Index>(response)];
   }
@@ -139,6 +145,45 @@ double ResponseErrors::peak_error(std::size_t load_case) const {
   return peaks.largest().von_mises - peaks.recovered.von_mises;
 }
 
+/// What smoothing alone makes of an extreme: it is proportional to the
+/// smoothing, so that an eighth of it shows the rest.
+double ResponseErrors::smoothing_error(std::size_t r) const {
+  constexpr double kPart = 8.0;
+  using Kind = case_data::ResponseKind;
+  const case_data::ResponseEntry& response = input_.responses[r];
+  const double edge = fields_.inputs.fea_edge;
+  std::function<double(double)> value;  // by the smoothing
+  double smoothing = response.smoothing.value_or(0.1 * edge);
+  functionals::ThicknessPairs pairs;
+  if (response.kind == Kind::Thickness) {
+    pairs = functionals::thickness_pairs(fields_.mesh);
+    smoothing =
+        response.smoothing.value_or(1.0 / functionals::usual_sharpness(pairs));
+    value = [&](double s) {
+      return functionals::thickness_functional(fields_.mesh, pairs, 1.0 / s,
+                                               element::Derivatives::None)
+          .value;
+    };
+  } else if (response.kind == Kind::Gap) {
+    smoothing = response.smoothing.value_or(kGapSmoothing * edge);
+    value = [&](double s) {
+      return frozen::gap_between(fields_.film,
+                                 fields_.film.label_of(response.films[0]),
+                                 fields_.film.label_of(response.films[1]), s)
+          .value;
+    };
+  } else {
+    const loads::NumberOfPlace& level = fields_.inputs.responses[r].level;
+    value = [&](double s) {
+      return functionals::intrusion_functional(
+                 fields_.mesh, {level, {}}, 1.0 / s, element::Derivatives::None)
+          .value;
+    };
+  }
+  return std::abs(value(smoothing / kPart) - value(smoothing)) * kPart /
+         (kPart - 1.0);
+}
+
 std::vector<std::vector<Dual>> ResponseErrors::duals() {
   std::vector<std::vector<Dual>> result(fields_.inputs.load_cases.size());
   for (std::size_t r = 0; r < input_.responses.size(); ++r) {
@@ -147,6 +192,8 @@ std::vector<std::vector<Dual>> ResponseErrors::duals() {
         case_data::row_of(response.kind).error;
     if (estimate == case_data::ErrorSource::ByReadings) {
       error(r) = peak_error(static_cast<std::size_t>(response.load_case));
+    } else if (estimate == case_data::ErrorSource::BySmoothing) {
+      error(r) = smoothing_error(r);
     } else if (estimate == case_data::ErrorSource::Unknown) {
       error(r) = std::numeric_limits<double>::quiet_NaN();
     }

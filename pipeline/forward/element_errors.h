@@ -13,7 +13,8 @@ struct ElementErrors {
   double energy = 0.0;  // relative error in energy, of the worst load case
   /// Per response: what it would change by if the elements were exact, in its
   /// units; of max_von_mises, what its largest reading (peak_stress.h) is above
-  /// it; not a number where there is no estimate (von_mises_ks).
+  /// it; of smooth extremes (thickness, distance, gap), what they are beside
+  /// the sharp one; not a number where there is no estimate (von_mises_ks).
   VectorX responses;
   /// Per element: its share of all these errors, the mean over load cases (in
   /// energy) and responses; the sum is 1, or 0 where there is no error.

@@ -258,9 +258,7 @@ ResponsePartials distance(const ResponseTask& task) {
 }
 
 ResponsePartials gap(const ResponseTask& task) {
-  // Films run beside each other over wide areas, and many edges count.
-  constexpr double kGapPartOfEdge = 0.01;
-  const double usual = kGapPartOfEdge * task.fields.inputs.fea_edge;
+  const double usual = kGapSmoothing * task.fields.inputs.fea_edge;
   return to_partials(task.fields.film->gap(
       task.fields.film_state->points, task.response.films[0],
       task.response.films[1], task.response.smoothing.value_or(usual)));

@@ -17,6 +17,10 @@ struct ResponseTask {
 /// Of every kind but expressions of other responses.
 ResponsePartials compute_partials(const ResponseTask& task);
 
+/// Of gaps, x the edge, where the case says nothing else: films run beside each
+/// other over wide areas, and many edges count.
+inline constexpr double kGapSmoothing = 0.01;
+
 /// Of extremes over the part's surface, where the case says nothing else: to a
 /// tenth of an edge [1/length].
 double sharpness_of(const case_data::ResponseEntry& response,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "core/count_text.h"
@@ -95,6 +96,21 @@ bool is_worse(const StressFigures& a, const StressFigures& b) {
              : a.safety.has_value();
 }
 
+/// " (of 72 MPa, its highest reading; 1.9 with the +-)".
+std::string safety_text(const StressFigures& figures, const UnitSystem& units) {
+  constexpr double kOther = 1.01;  // x the peak told: another reading's
+  std::vector<std::string> parts;
+  if (figures.safety->von_mises > kOther * figures.max_von_mises) {
+    parts.push_back(
+        "of " + quantity_text(figures.safety->von_mises, units.pressure, 4) +
+        ", the highest reading");
+  }
+  if (const auto least = safety_with_error(figures)) {
+    parts.push_back(fmt::format("{:.3g} with the +-", *least));
+  }
+  return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, "; "));
+}
+
 Json safety_json(const StressFigures::Safety& safety) {
   return {{"smallest", safety.factor},
           {"von_mises", safety.von_mises},
@@ -110,6 +126,22 @@ std::vector<StressFigures> stress_figures(const EvaluationFields& fields) {
     figures.push_back(figures_of(fields, k));
   }
   return figures;
+}
+
+std::vector<double> highest_readings(const EvaluationFields& fields) {
+  std::vector<double> peaks;
+  for (std::size_t k = 0; k < fields.inputs.load_cases.size(); ++k) {
+    peaks.push_back(peaks_of(fields, k).readings.largest().von_mises);
+  }
+  return peaks;
+}
+
+std::optional<double> safety_with_error(const StressFigures& figures) {
+  if (!figures.safety || !std::isfinite(figures.peak_error)) {
+    return std::nullopt;
+  }
+  return figures.safety->yield_strength /
+         (figures.safety->von_mises + figures.peak_error);
 }
 
 std::size_t worst_load_case(const std::vector<StressFigures>& figures) {
@@ -137,11 +169,15 @@ std::string stress_text(const std::vector<StressFigures>& figures,
   for (std::size_t k = 0; k < figures.size(); ++k) {
     const StressFigures& f = figures[k];
     const Vec3& at = f.position;
-    text += fmt::format(
-        "  peak stress, {:<8} {} at ({:.4g}, {:.4g}, {:.4g})", f.load_case,
-        quantity_text(f.max_von_mises, units.pressure), at.x(), at.y(), at.z());
+    text += fmt::format("  peak stress, {:<8} {}", f.load_case,
+                        quantity_text(f.max_von_mises, units.pressure));
+    if (std::isfinite(f.peak_error)) {
+      text += "  +- " + quantity_text(f.peak_error, units.pressure, 2);
+    }
+    text += fmt::format(" at ({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z());
     if (f.safety) {
       text += fmt::format(", safety {:.3g}", f.safety->factor);
+      text += safety_text(f, units);
     }
     text += figures.size() > 1 && k == worst ? "   <- the worst\n" : "\n";
   }
@@ -156,9 +192,13 @@ Json stress_json(const std::vector<StressFigures>& figures) {
                   {"readings",
                    {{"recovered", f.readings.recovered.von_mises},
                     {"averaged", f.readings.averaged.von_mises},
-                    {"points", f.readings.points.von_mises}}}};
+                    {"points", f.readings.points.von_mises}}},
+                  {"error", f.peak_error}};
     if (f.safety) {
       entry["safety_factor"] = safety_json(*f.safety);
+      if (const auto least = safety_with_error(f)) {
+        entry["safety_factor"]["with_error"] = *least;
+      }
     }
     if (f.excluded) {
       entry["excluded"] = {

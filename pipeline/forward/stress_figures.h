@@ -1,6 +1,7 @@
 /// What a part's stresses come to, load case by load case.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ struct StressFigures {
   double max_von_mises = 0.0;     // recovered, of elements that count
   Vec3 position = Vec3::Zero();   // of that [length]
   stress::PeakReadings readings;  // of the elements that count
+  /// Of their largest, from other meshes [pressure]; not a number where there
+  /// is none.
+  double peak_error = std::numeric_limits<double>::quiet_NaN();
   /// Where the part is nearest to yield, against each body's own material; none
   /// where no material has a yield strength.
   struct Safety {
@@ -41,6 +45,13 @@ struct StressFigures {
 /// Of `fields.stresses`; elements of `fields.exclusion` are left out.
 std::vector<StressFigures> stress_figures(const EvaluationFields& fields);
 
+/// The largest reading of each load case's peak [pressure].
+std::vector<double> highest_readings(const EvaluationFields& fields);
+
+/// The safety factor where the stress is higher by the peak's error; nothing
+/// without either.
+std::optional<double> safety_with_error(const StressFigures& figures);
+
 /// The load case that is nearest to yield, by the least safety factor; without
 /// any, the one of the highest peak. The first of equals, 0 for none.
 std::size_t worst_load_case(const std::vector<StressFigures>& figures);
@@ -48,8 +59,9 @@ std::size_t worst_load_case(const std::vector<StressFigures>& figures);
 /// The same from the stresses themselves, at the price of their peaks.
 std::size_t worst_load_case(const EvaluationFields& fields);
 
-/// A line per load case for people: peak, place and safety, the worst marked
-/// where there are several.
+/// A line per load case for people: peak with its error, place and safety, the
+/// stress that safety is of where another reading is worse, the safety with the
+/// error, and the worst marked where there are several.
 std::string stress_text(const std::vector<StressFigures>& figures,
                         const UnitSystem& units);
 

@@ -154,6 +154,15 @@ std::optional<double> read_like(CaseContext& context, const toml::node& node,
   if (!found) {
     return std::nullopt;
   }
+  if (!measure.is_known() && found->measure.is_known()) {
+    context.problems.add(
+        context.line_of(node),
+        fmt::format("{} is {}, {}, of what adds quantities of several "
+                    "dimensions or has none that is known; write a plain "
+                    "number, in the units of the case",
+                    key, described(node), described(found->measure.powers)));
+    return std::nullopt;
+  }
   if (measure.is_known() && found->measure.is_known() &&
       !(measure.powers == found->measure.powers)) {
     context.problems.add(

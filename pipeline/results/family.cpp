@@ -17,9 +17,11 @@
 #include "core/timer.h"
 #include "optimize/samples/family_tree.h"
 #include "pipeline/case_data/content_hash.h"
+#include "pipeline/frames/film_frames.h"
 #include "pipeline/reader/family_members.h"
 #include "pipeline/results/export_part.h"
 #include "pipeline/results/results.h"
+#include "pipeline/results/run_files.h"
 #include "pipeline/results/run_folder.h"
 #include "pipeline/store/run_lock.h"
 #include "pipeline/store/study_table.h"
@@ -144,6 +146,13 @@ double FamilyRun::time_left() const { return limit_ - timer_.seconds(); }
 void FamilyRun::prepare() {
   remove_leftovers(options_.folder);
   // An older result must not stand beside a study that is not its own.
+  const fs::path database = options_.folder / "study.sqlite";
+  const bool was_run = fs::exists(database);
+  remove_owned_files(options_.folder, was_run);
+  if (was_run) {
+    frames::remove_frames(options_.folder);
+  }
+  fs::remove(database);
   fs::remove(options_.folder / "result.json");
   parents_.assign(members_.size(), -1);
   told_.assign(members_.size(), {});

@@ -14,6 +14,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/forward/part_file.h"
 #include "pipeline/forward/work_estimate.h"
+#include "pipeline/results/even_surface.h"
 #include "pipeline/results/face_list.h"
 
 namespace meniscus::results {
@@ -270,6 +271,9 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
   std::unique_ptr<PartShape> shape;
   if (forward::has_curved_faces(path)) {
     shape = std::make_unique<PartShape>(read(kShapeInEdges * edge));
+  }
+  if (shape != nullptr) {
+    own = even_surface(own, edge, *shape);
   }
   const SurfaceMesh surface =
       with_short_edges(std::move(own), longest, shape.get());

@@ -109,8 +109,15 @@ void add_surfaces(const SurfaceMesh& start, const SurfaceMesh& film,
   }
 }
 
+/// Empty where films of the answer's curves cannot start by themselves: the
+/// model's began at another design.
 SurfaceMesh start_surface(const forward::EvaluationFields& fields) {
-  return start::build_start(fields.inputs.film_system, fields.start_edge).mesh;
+  SurfaceMesh surface;
+  what_prevents([&] {
+    surface =
+        start::build_start(fields.inputs.film_system, fields.start_edge).mesh;
+  });
+  return surface;
 }
 
 /// The files of a run that hold the part, and the deck as it would be exported

@@ -1,6 +1,7 @@
 #include "pipeline/results/part_shape.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/geometry/edge_key.h"
 
@@ -46,24 +47,30 @@ PartShape::PartShape(SurfaceMesh fine) : fine_(std::move(fine)) {
   }
 }
 
-Vec3 PartShape::middle(const Vec3& a, const Vec3& b, const Edge& labels) const {
-  const Vec3 straight = 0.5 * (a + b);
-  Vec3 place = straight;
+Vec3 PartShape::nearest(const Vec3& at, const Edge& labels) const {
   if (labels[0] == labels[1]) {
-    if (const auto nearest = faces_[labels[0]]->nearest(straight)) {
-      place = nearest->point;
-    }
-  } else if (const auto line = lines_.find(edge_key(labels[0], labels[1]));
-             line != lines_.end()) {
-    double least = kFarthest * (b - a).norm();
-    for (const std::array<Vec3, 2>& piece : line->second) {
-      const Vec3 point = nearest_of(piece, straight);
-      if ((point - straight).norm() < least) {
-        least = (point - straight).norm();
-        place = point;
-      }
+    const auto nearest = faces_[labels[0]]->nearest(at);
+    return nearest ? nearest->point : at;
+  }
+  const auto line = lines_.find(edge_key(labels[0], labels[1]));
+  if (line == lines_.end()) {
+    return at;
+  }
+  Vec3 place = at;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::array<Vec3, 2>& piece : line->second) {
+    const Vec3 point = nearest_of(piece, at);
+    if ((point - at).squaredNorm() < least) {
+      least = (point - at).squaredNorm();
+      place = point;
     }
   }
+  return place;
+}
+
+Vec3 PartShape::middle(const Vec3& a, const Vec3& b, const Edge& labels) const {
+  const Vec3 straight = 0.5 * (a + b);
+  const Vec3 place = nearest(straight, labels);
   return (place - straight).norm() <= kFarthest * (b - a).norm() ? place
                                                                  : straight;
 }

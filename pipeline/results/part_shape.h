@@ -23,6 +23,10 @@ class PartShape {
   /// those that were meant.
   Vec3 middle(const Vec3& a, const Vec3& b, const Edge& labels) const;
 
+  /// The nearest place on the face, or on the line where the two faces meet;
+  /// `at` itself where they do not.
+  Vec3 nearest(const Vec3& at, const Edge& labels) const;
+
  private:
   using Line = std::vector<std::array<Vec3, 2>>;
 

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/heed_stop.h"
 #include "core/json.h"
 #include "io/stl.h"
 #include "io/vtk_files.h"
@@ -15,6 +17,7 @@
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/walls.h"
+#include "pipeline/results/export_part.h"
 #include "pipeline/results/run_files.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
@@ -317,9 +320,11 @@ std::vector<std::string> mesh_names(const case_data::Case& input) {
 
 std::vector<std::string> write_meshes(const case_data::Case& input,
                                       const forward::EvaluationFields& fields,
-                                      const std::filesystem::path& folder) {
-  std::vector<std::string> names = mesh_names(input);
-  claim_files(folder, names);
+                                      const std::filesystem::path& folder,
+                                      const Monitor& monitor) {
+  const Heeding heeding(&monitor);
+  std::vector<std::string> warnings;
+  claim_files(folder, mesh_names(input));
   const io::MeshFields part = part_fields(input, fields);
   write_film(input, fields.film, folder);
   io::write_vtu(folder / "part.vtu", fields.mesh, part);
@@ -332,9 +337,14 @@ std::vector<std::string> write_meshes(const case_data::Case& input,
     write_part_stl(fields.boundary, input.resolution.film);
   }
   for (const double edge : input.resolution.export_edges) {
-    write_part_stl(settle_again(fields.inputs, edge), edge);
+    const std::string prevented = what_prevents(
+        [&] { write_part_stl(settle_again(fields.inputs, edge), edge); });
+    if (!prevented.empty()) {
+      warnings.push_back(
+          fmt::format("{}{}: {}", kNotWritten, stl_name(edge), prevented));
+    }
   }
-  return names;
+  return warnings;
 }
 
 std::vector<std::string> write_unfilled(const forward::EvaluationFields& fields,

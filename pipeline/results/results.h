@@ -55,10 +55,12 @@ void write_part_surface(const std::filesystem::path& file,
 std::vector<std::string> mesh_names(const case_data::Case& input);
 
 /// The same files of a finished run; the folder owns them (run_files.h).
-/// Returns the names written. Throws IoError.
+/// Returns warnings of STL files whose film does not settle at their edge.
+/// Throws IoError, Interrupted where `monitor` asks for a stop.
 std::vector<std::string> write_meshes(const case_data::Case& input,
                                       const forward::EvaluationFields& fields,
-                                      const std::filesystem::path& folder);
+                                      const std::filesystem::path& folder,
+                                      const Monitor& monitor);
 
 /// Where a surface could not be filled, for the eye: findings.vtp (places and
 /// facets at fault) and unfilled_surface.vtp. Returns the names written, none

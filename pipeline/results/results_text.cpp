@@ -35,10 +35,17 @@ std::string at_bound(const case_data::DesignVariable& variable, double value) {
                                           : "";
 }
 
+/// Of a variable that the targets of a match do not hold.
+std::string free_text(const VectorX& errors, Eigen::Index k) {
+  return k < errors.size() && std::isnan(errors[k])
+             ? "   not fixed by the targets"
+             : "";
+}
+
 /// What another mesh changed most, relative to the answer.
 std::string shift_text(const case_data::Case& input,
                        const store::Refreeze& refreeze, const VectorX& answer) {
-  constexpr double kOfNothing = 10.0;
+  constexpr double kOfNothing = 1.0;
   Eigen::Index worst = -1;
   double largest = 0.0;
   for (Eigen::Index k = 0; k < refreeze.shift.size(); ++k) {
@@ -142,7 +149,8 @@ std::string result_text(const case_data::Case& input,
         "  {:<20} {}{}\n", designs[k],
         with_error(best.design[k], result.design_errors, k,
                    {1.0, case_data::unit_of(input.units, variable.measure)}),
-        moves ? at_bound(variable, best.design[k]) : "");
+        (moves ? at_bound(variable, best.design[k]) : "") +
+            free_text(result.design_errors, k));
   }
   const std::vector<std::string> names = case_data::response_names(input);
   const bool moved = result.start && result.start->design != best.design;

@@ -102,19 +102,36 @@ const EvaluationRecord& best_record(
   return *best;
 }
 
+namespace {
+
+/// The design that result.json tells. Throws InvalidInput where it tells none.
+VectorX told_design(const case_data::Case& input,
+                    const std::filesystem::path& file) {
+  const auto result = parse_json(read_file(file));
+  VectorX design = case_data::initial_design(input);
+  for (std::size_t k = 0; k < input.design.size(); ++k) {
+    const std::string& name = input.design[k].name;
+    const auto told =
+        result.is_object() ? result.find("parameters") : result.end();
+    if (told == result.end() || !told->is_object() || !told->contains(name) ||
+        !(*told)[name].is_number()) {
+      throw InvalidInput(fmt::format(
+          "{}: it is damaged: no number for '{}' among its parameters; remove "
+          "it to have the best design of study.sqlite, or run the case again",
+          file.string(), name));
+    }
+    design[static_cast<Eigen::Index>(k)] = (*told)[name].get<double>();
+  }
+  return design;
+}
+
+}  // namespace
+
 VectorX answer_of_run(const case_data::Case& input,
                       const std::vector<EvaluationRecord>& records,
                       const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder / "result.json")) {
-    const auto result = parse_json(read_file(folder / "result.json"));
-    VectorX design = case_data::initial_design(input);
-    for (std::size_t k = 0; k < input.design.size(); ++k) {
-      const nlohmann::json::json_pointer at("/parameters/" +
-                                            input.design[k].name);
-      if (result.is_object() && result.contains(at)) {
-        design[static_cast<Eigen::Index>(k)] = result[at].get<double>();
-      }
-    }
+    const VectorX design = told_design(input, folder / "result.json");
     for (const EvaluationRecord& record : records) {
       if (!record.failure && record.inputs.size() == design.size() &&
           record.inputs == design) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include <fmt/format.h>
+
 namespace meniscus::study {
 
 namespace {
@@ -48,14 +50,22 @@ void judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
     if (study.kind == case_data::StudyKind::Sweep) {
       return;  // its designs are given: there is nothing to go on with
     }
-    const bool lost =
-        all_kept(found.constraints) && !all_kept(stage.outcome().constraints);
-    if (!lost || !study.refreeze || models.evaluations_left() <= 0 ||
-        round >= kReaches.size()) {
+    const bool kept = all_kept(stage.outcome().constraints);
+    if (all_kept(found.constraints) == kept || !study.refreeze ||
+        models.evaluations_left() <= 0 || round >= kReaches.size()) {
       return;
     }
-    models.log("not kept on a mesh of its own: the study goes on there");
+    models.log(fmt::format("{} on a mesh of its own{}: the study goes on there",
+                           kept ? "kept" : "not kept",
+                           kept ? ", and not on that before" : ""));
     stage.conduct(StudyStage::Leave::Late, kReaches[round]);
+    if (kReaches[round] < 1.0 && !all_kept(stage.outcome().constraints) &&
+        models.evaluations_left() > 0) {
+      models.log(
+          "nothing near it is kept: the whole of the bounds is searched");
+      models.limit_evaluations();
+      stage.conduct(StudyStage::Leave::Late);
+    }
   }
 }
 

@@ -1,6 +1,8 @@
 #include "pipeline/study/study.h"
 
 #include <algorithm>
+#include <limits>
+#include <new>
 #include <optional>
 
 #include <Eigen/Core>
@@ -46,6 +48,27 @@ StudyOptions limited_options(StudyOptions options, double limit,
   return options;
 }
 
+/// What the residuals' errors make of the variables; not a number of those that
+/// the targets leave free.
+VectorX matched_errors(const case_data::Case& input,
+                       const Eigen::MatrixXd& jacobian,
+                       const VectorX& residual_errors) {
+  constexpr double kFree = 1e-3;  // share that moves without a residual
+  VectorX ranges(jacobian.cols());
+  for (Eigen::Index k = 0; k < ranges.size(); ++k) {
+    ranges[k] = input.design[k].upper - input.design[k].lower;
+  }
+  const Eigen::MatrixXd scaled = jacobian * ranges.asDiagonal();
+  const Eigen::MatrixXd inverse = pseudo_inverse(scaled);
+  VectorX errors = ranges.cwiseProduct(inverse.cwiseAbs() * residual_errors);
+  for (Eigen::Index k = 0; k < ranges.size(); ++k) {
+    if (ranges[k] > 0.0 && 1.0 - inverse.row(k).dot(scaled.col(k)) > kFree) {
+      errors[k] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return errors;
+}
+
 /// From the frozen model to the answer with its error, step by step.
 class StudyRun {
  public:
@@ -87,6 +110,7 @@ class StudyRun {
   }
   accuracy::MeshSequence other_meshes(bool with_eigen);
   void combine_errors(const accuracy::MeshSequence& meshes);
+  void add_peak_errors(const accuracy::MeshSequence& meshes);
   void warn();
   void count();
 
@@ -264,19 +288,24 @@ bool StudyRun::finish_best() {
 /// What an answer can do without; told in the warnings where it is missing.
 template <class Work>
 void StudyRun::run_if_time_left(const char* what, const Work& work) {
-  bool done = false;
-  if (!limited_.expired()) {
-    try {
-      work();
-      done = true;
-    } catch (const Interrupted&) {
-      if (monitor_.stop_requested()) {
-        throw;
-      }
-    }
-  }
-  if (!done) {
+  if (limited_.expired()) {
     left_out_.emplace_back(what);
+    return;
+  }
+  try {
+    const std::string prevented = what_prevents(work);
+    if (!prevented.empty()) {
+      result_.warnings.push_back(
+          fmt::format("left out: {} ({})", what, prevented));
+    }
+  } catch (const Interrupted&) {
+    if (monitor_.stop_requested()) {
+      throw;
+    }
+    left_out_.emplace_back(what);
+  } catch (const std::bad_alloc&) {
+    result_.warnings.push_back(
+        fmt::format("left out: {} (not enough memory)", what));
   }
 }
 
@@ -348,6 +377,26 @@ accuracy::MeshSequence StudyRun::other_meshes(bool with_eigen) {
   return meshes;
 }
 
+void StudyRun::add_peak_errors(const accuracy::MeshSequence& meshes) {
+  for (std::size_t k = 0; k < result_.stress.size(); ++k) {
+    forward::StressFigures& figures = result_.stress[k];
+    accuracy::MeshValues values = {figures.readings.largest().von_mises};
+    for (std::size_t m = 1; m < values.size(); ++m) {
+      values[m] = k < meshes.peaks[m].size()
+                      ? meshes.peaks[m][k]
+                      : std::numeric_limits<double>::quiet_NaN();
+    }
+    const accuracy::FigureError error =
+        accuracy::figure_error(values, accuracy::FigureKind::Extreme);
+    figures.peak_error = error.bound;
+    if (!error.settles) {
+      result_.warnings.push_back(accuracy::unsettled_text(
+          input_, fmt::format("the peak stress of '{}'", figures.load_case),
+          values, {1.0, input_.units.pressure}, Dimension::Pressure));
+    }
+  }
+}
+
 void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
   const std::vector<accuracy::FigureError> errors = accuracy::response_errors(
       input_, meshes,
@@ -358,11 +407,11 @@ void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
        accuracy::unsettled_warnings(input_, meshes, errors)) {
     result_.warnings.push_back(std::move(warning));
   }
+  add_peak_errors(meshes);
   if (stage().targets() != nullptr && stage().outcome().jacobian.size() > 0) {
-    const Eigen::MatrixXd inverse = pseudo_inverse(stage().outcome().jacobian);
-    result_.design_errors =
-        inverse.cwiseAbs() *
-        stage().targets()->residual_errors(result_.response_errors);
+    result_.design_errors = matched_errors(
+        input_, stage().outcome().jacobian,
+        stage().targets()->residual_errors(result_.response_errors));
   }
 }
 

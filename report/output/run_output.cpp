@@ -45,7 +45,7 @@ void RunOutput::finish(const forward::EvaluationFields& fields,
   std::vector<fs::path> exported;
   if (!fields.mesh.nodes.empty()) {
     monitor_.progress({.stage = "output", .detail = "writing meshes"});
-    results::write_meshes(input_, fields, folder_);
+    write_meshes(fields, result);
     frames::write_frames(input_, fields.history, folder_);
     exported = export_all(result);
     if (options_.pictures) {
@@ -62,6 +62,24 @@ void RunOutput::finish(const forward::EvaluationFields& fields,
   }
   for (const std::string& name : results::write_unfilled(fields, folder_)) {
     result.warnings.push_back("look at the surface in " + name);
+  }
+}
+
+void RunOutput::write_meshes(const forward::EvaluationFields& fields,
+                             study::RunResult& result) {
+  try {
+    for (std::string& warning :
+         results::write_meshes(input_, fields, folder_, in_time_)) {
+      result.warnings.push_back(std::move(warning));
+    }
+  } catch (const Interrupted&) {
+    if (monitor_.stop_requested()) {
+      throw;
+    }
+    result.warnings.push_back(fmt::format(
+        "the time limit of {:g} s left no time for all STL files of "
+        "resolution.export",
+        options_.time_limit));
   }
 }
 

@@ -43,6 +43,8 @@ class RunOutput {
               study::RunResult& result);
 
  private:
+  void write_meshes(const forward::EvaluationFields& fields,
+                    study::RunResult& result);
   void show_failed_film(const forward::EvaluationFields& fields,
                         study::RunResult& result);
   std::vector<std::filesystem::path> export_all(study::RunResult& result);

@@ -82,7 +82,9 @@ TEST(MeshErrors, ScatterIsNoOrder) {
   const FigureError error = figure_error({1.0, 1.1, 1.0}, FigureKind::Integral);
   EXPECT_GT(error.bound, 0.1);
   EXPECT_TRUE(error.settles);
-  EXPECT_EQ(figure_error({2.0, 2.0, 2.0}, FigureKind::Extreme).bound, 0.0);
+  // Meshes that cut the part alike tell nothing.
+  EXPECT_TRUE(
+      std::isnan(figure_error({2.0, 2.0, 2.0}, FigureKind::Extreme).bound));
 }
 
 // Where no coarser film is there a finer one judges: it covers the error of the

@@ -1,8 +1,11 @@
 #include "pipeline/results/imported_part.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "core/atomic_file.h"
@@ -11,6 +14,7 @@
 #include "io/read_stl.h"
 #include "io/stl.h"
 #include "pipeline/forward/part_file.h"
+#include "pipeline/results/even_surface.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
@@ -108,6 +112,69 @@ TEST(ImportedPart, ShortEdgesKeepTheShape) {
                     .norm(),
                 longest);
     }
+  }
+}
+
+/// A cylinder as CAD programs cut it: one needle along each of `n` sides, lids
+/// of needles from one corner. Radius 3, height 20; labels side, low, high.
+SurfaceMesh needles(int n) {
+  SurfaceMesh mesh{.labels = {"side", "low", "high"}};
+  for (const double z : {0.0, 20.0}) {
+    for (int k = 0; k < n; ++k) {
+      const double angle = 2.0 * M_PI * k / n;
+      mesh.points.emplace_back(3.0 * std::cos(angle), 3.0 * std::sin(angle), z);
+    }
+  }
+  const auto add = [&](int a, int b, int c, int label) {
+    mesh.facets.push_back({a, b, c});
+    mesh.facet_label.push_back(label);
+  };
+  for (int k = 0; k < n; ++k) {
+    const int next = (k + 1) % n;
+    add(k, next, n + next, 0);
+    add(k, n + next, n + k, 0);
+  }
+  for (int k = 1; k + 1 < n; ++k) {
+    add(0, k + 1, k, 1);
+    add(n, n + k, n + k + 1, 2);
+  }
+  return mesh;
+}
+
+double smallest_angle(const SurfaceMesh& mesh) {
+  double smallest = M_PI;
+  for (const Triangle& t : mesh.facets) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 u = mesh.points[t[(k + 1) % 3]] - mesh.points[t[k]];
+      const Vec3 v = mesh.points[t[(k + 2) % 3]] - mesh.points[t[k]];
+      smallest = std::min(smallest, std::atan2(u.cross(v).norm(), u.dot(v)));
+    }
+  }
+  return smallest * 180.0 / M_PI;
+}
+
+TEST(ImportedPart, NeedlesBecomeEvenFacetsOnTheSameFaces) {
+  constexpr double kTruth = 9.0 * M_PI * 20.0;  // the cylinder's volume
+  ASSERT_LT(smallest_angle(needles(18)), 5.0);
+  const results::PartShape shape(needles(360));
+  for (const double edge : {1.0, 2.0, 4.0}) {
+    const SurfaceMesh even = results::even_surface(needles(18), edge, shape);
+    EXPECT_TRUE(check_surface(even).empty()) << edge;
+    EXPECT_GT(smallest_angle(even), 20.0) << edge;
+    EXPECT_EQ(even.labels, needles(18).labels);
+    // A facet's sagitta over the radius, h^2 / 8 r^2 with h 0.27 r and less.
+    EXPECT_NEAR(enclosed_volume(even) / kTruth, 1.0, 0.01) << edge;
+    for (std::size_t f = 0; f < even.facets.size(); ++f) {
+      for (const int v : even.facets[f]) {
+        const Vec3& at = even.points[v];
+        const double off = even.facet_label[f] == 0 ? at.head<2>().norm() - 3.0
+                           : even.facet_label[f] == 1 ? at.z()
+                                                      : at.z() - 20.0;
+        EXPECT_NEAR(off, 0.0, 1e-3) << edge;  // a 360th of a turn is flat
+      }
+    }
+    EXPECT_EQ(results::even_surface(needles(18), edge, shape).points,
+              even.points);
   }
 }
 

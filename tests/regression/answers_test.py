@@ -1,0 +1,239 @@
+#!/usr/bin/env python3
+"""No answer is lost on its way out, none is told of another design, and what is
+told beside it covers what it leaves open."""
+import json
+import math
+import unittest
+
+from program import COARSE, SIZED_STRUT, ProgramTest
+
+LINK = """title = "Two arms on a foot, rims near the hull of all"
+units = "mm-N-MPa"
+
+[design.r0]
+initial = 22
+bounds = [20, 27]
+
+[curves.support]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = 22
+
+[curves.arm0]
+kind = "circle"
+center = [45.161, 0, 23.311]
+normal = ["sin(72 * deg)", 0, "cos(72 * deg)"]
+radius = "r0"
+
+[curves.arm1]
+kind = "circle"
+center = [-45.161, 0, 23.311]
+normal = ["-sin(45 * deg)", 0, "cos(45 * deg)"]
+radius = 22.5617
+
+[films.skin]
+kind = "branch"
+curves = ["support", "arm0", "arm1"]
+
+[solids.support_pad]
+kind = "cap"
+curve = "support"
+
+[solids.arm0_pad]
+kind = "cap"
+curve = "arm0"
+
+[solids.arm1_pad]
+kind = "cap"
+curve = "arm1"
+
+[bodies.part]
+enclosed_by = ["skin", "support_pad", "arm0_pad", "arm1_pad"]
+volume = "0.8*(pi*22^2*23.31*0.7 + pi*(r0^2 + 22.5617^2)*45.16*0.9)"
+material = "aluminium"
+
+[resolution]
+fea = 11.29
+film = 5.65
+
+[materials.aluminium]
+youngs_modulus = 71700.0
+poisson_ratio = 0.33
+density = 2.8e-9
+
+[load_cases.service]
+supports = [{ on = "support_pad", fix = "xyz" }]
+loads = [{ on = "arm0_pad", force = [0, 0, -1849.4] }]
+
+[responses.sink]
+kind = "mean_displacement"
+on = "arm0_pad"
+direction = [0, 0, -1]
+
+[responses.mass]
+kind = "mass"
+
+[analysis]
+buckling = 0
+
+[study]
+kind = "minimize"
+objective = "sink"
+"""
+
+
+class Answers(ProgramTest):
+    def case(self, text, name="case.toml"):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def run_case(self, case, name, *more):
+        out = self.folder / name
+        return self.call("run", case, "--no-pictures", "--out", out,
+                         *more), out
+
+    def test_films_that_cannot_start_at_the_answer_lose_nothing(self):
+        """At the largest rim its curves are off the hull of all; the model's
+        film came from the initial design."""
+        done, out = self.run_case(self.case(LINK), "out")
+        self.assertNotEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(self.result(out)["parameters"]["r0"], 27)
+        fresh, _ = self.run_case(self.case(LINK.replace(
+            "initial = 22", "initial = 27"), "fresh.toml"), "fresh")
+        self.assertIn("convex hull", fresh.stderr)  # or this tests nothing
+
+    def test_a_surface_that_cannot_be_exported_ends_no_run(self):
+        case = self.case(SIZED_STRUT)
+        done, out = self.run_case(case, "out", "--set",
+                                  "resolution.export=[0.001]")
+        self.expect(done, 0, "not written as part_0.001.stl")
+        self.assertTrue(self.result(out)["responses"])
+
+    def test_a_damaged_result_stands_for_no_other_design(self):
+        case = self.case(SIZED_STRUT)
+        done, out = self.run_case(case, "out")
+        self.expect(done, 0)
+        file = out / "result.json"
+        good = file.read_text()
+        names = json.loads(good)
+        for text in (good[:300], "[" * 5000,
+                     json.dumps({**names, "parameters": [1]}),
+                     json.dumps({**names, "parameters": {"foot": "a"}})):
+            file.write_text(text)
+            for command in (("export", out, "--format", "stl"),
+                            ("check", case, "--from", out),
+                            ("compare", out, out)):
+                with self.subTest(command=command[0], text=text[:20]):
+                    self.expect(self.call(*command), 2, "damaged")
+        file.unlink()  # the database has it, too
+        self.expect(self.call("export", out, "--format", "stl"), 0)
+
+    def test_pictures_made_later_go_with_the_answer(self):
+        case = self.case(SIZED_STRUT.replace('kind = "minimize"',
+                                             'kind = "analyse"')
+                         .split("objective")[0])
+        done, out = self.run_case(case, "out")
+        self.expect(done, 0)
+        self.expect(self.call("report", out), 0)
+        drawn = sorted(path.name for path in out.glob("*.png"))
+        self.assertTrue(drawn)
+        self.expect(self.run_case(case, "out", "--set", "foot=27")[0], 0)
+        self.assertEqual(sorted(out.glob("*.png")), [])
+
+    def test_a_family_takes_the_place_of_a_run(self):
+        done, out = self.run_case(self.case(SIZED_STRUT), "out")
+        self.expect(done, 0)
+        family = self.case(
+            SIZED_STRUT.split("[study]")[0] + """
+[study]
+kind = "family"
+each = "analyse"
+
+[study.members.a]
+foot = 26
+""", "family.toml")
+        self.expect(self.run_case(family, "out")[0], 0)
+        left = {path.name for path in out.iterdir()}
+        self.assertFalse(left & {"part.vtu", "film.vtp", "study.sqlite",
+                                 "history.csv"}, left)
+
+    def test_variables_that_targets_leave_free_have_no_error(self):
+        text = SIZED_STRUT.split("[study]")[0] + """
+[study]
+kind = "match"
+targets = { sway = 0.007 }
+"""
+        done, out = self.run_case(self.case(text), "out")
+        self.expect(done, 0, "not fixed by the targets")
+        errors = self.result(out)["parameter_errors"]
+        self.assertEqual(errors, {"foot": None, "fill": None})
+        text = text.replace("sway = 0.007", "sway = 0.007, mass = 2.5e-4")
+        done, out = self.run_case(self.case(text), "both")
+        for name, error in self.result(out)["parameter_errors"].items():
+            self.assertGreater(error, 0, name)
+
+    def test_a_peak_has_its_error_and_safety_is_told_with_it(self):
+        done, out = self.run_case(
+            self.write_case((r"^yield_strength.*", "yield_strength = 400.0")),
+            "out", *COARSE)
+        self.expect(done, 0, r"peak stress, service +\S+ MPa  \+- \S+ MPa at")
+        entry = self.result(out)["stress"]["service"]
+        highest = max(entry["readings"].values())
+        self.assertGreater(entry["error"], 0)
+        self.assertAlmostEqual(
+            entry["safety_factor"]["with_error"],
+            400 / (entry["safety_factor"]["von_mises"] + entry["error"]), 9)
+        self.assertAlmostEqual(entry["safety_factor"]["von_mises"], highest, 9)
+
+    def test_smoothing_is_part_of_an_error(self):
+        """A tube of rings whose meshes are all alike: its wall is known."""
+        from rings_test import TUBE
+        for inside, outside in ((8.7, 15.28), (10.0, 14.0), (17.09, 32.37)):
+            text = (TUBE.replace("radius = 10.0", f"radius = {inside}")
+                    .replace("radius = 20.0", f"radius = {outside}")
+                    .replace("initial = 20.0", f"initial = {outside}")
+                    .replace("bounds = [15.0, 25.0]", "bounds = [7.0, 40.0]")
+                    .replace("fea = 5.0", "fea = 4.0") +
+                    '\n[responses.wall]\nkind = "thickness"\n')
+            done, out = self.run_case(self.case(text), f"tube {inside}")
+            self.expect(done, 0)
+            result = self.result(out)
+            wall = result["responses"]["wall"]
+            error = result["response_errors"]["wall"]
+            with self.subTest(inside=inside):
+                self.assertLessEqual(wall, outside - inside)
+                self.assertGreater(error, 0.01 * wall)
+                self.assertGreater(wall + 2 * error, outside - inside)
+                self.assertLess(error, 0.3 * wall)
+                mass = math.pi * (outside**2 - inside**2) * 30 * 7.85e-9
+                told = result["response_errors"]["mass"]
+                self.assertTrue(
+                    told is None or
+                    abs(result["responses"]["mass"] - mass) <= told, told)
+
+    def test_bounds_have_the_dimension_of_what_they_bound(self):
+        sized = SIZED_STRUT.replace("max = 0.0075 }]",
+                                    'max = 0.0075 }, { response = "extra", '
+                                    'min = BOUND }]')
+        for response, wrong, right in (
+                ('kind = "collapse_margin"', '"3 kg"', '"1e-5 N/mm3"'),
+                ('kind = "collapse_margin"', '"0.5 mm"', "1e-5"),
+                ('kind = "collapse_margin"', '"1e-4 MPa"', "1e-5"),
+                ('kind = "mean_displacement"\non = "top"\nweight = 2\n'
+                 "direction = [1, 0, 0]", '"5 kg"', '"1e-5 mm"'),
+                ('kind = "mean_displacement"\non = "top"\nweight = "z / 60"\n'
+                 "direction = [1, 0, 0]", '"5 kg"', "1e-5"),
+                ('kind = "expression"\nvalue = "mass + sway"', '"5 MPa"',
+                 "1e-5")):
+            text = sized.replace("[analysis]",
+                                 f"[responses.extra]\n{response}\n\n[analysis]")
+            for bound, code in ((wrong, 2), (right, 0)):
+                with self.subTest(response=response, bound=bound):
+                    self.expect(self.call("check", self.case(
+                        text.replace("BOUND", bound))), code)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
