@@ -73,7 +73,8 @@ Json evaluation_json(const case_data::Case& input,
 }
 
 /// "minimize: evaluation 12 of at most 300, mass = 12.3 kg, violation 0.02 of
-/// 'sway', best so far mass = 12 kg (evaluation 9), at most 3 min left".
+/// 'sway', best so far mass = 12 kg (evaluation 9), at most 3 min left on this
+/// model".
 std::string status_text(const case_data::Case& input,
                         const study::EvaluationEvent& event) {
   std::string text =

@@ -5,6 +5,13 @@
 #include <fmt/format.h>
 
 namespace meniscus::optimize {
+
+std::string limit_text(int evaluations, int earlier) {
+  return fmt::format(
+      "limit of {} evaluations{}", evaluations + earlier,
+      earlier > 0 ? fmt::format(" ({} before, {} here)", earlier, evaluations)
+                  : "");
+}
 namespace {
 
 // A variable this close to a bound, x range, counts as being there.

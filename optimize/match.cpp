@@ -107,11 +107,11 @@ void finish_report(const MatchEvaluator& evaluator,
         break;
       }
       report.termination = Termination::LimitReached;
-      report.message = fmt::format(
-          "stopped at the limit of {} evaluations: {}. {}allow more "
-          "evaluations",
-          evaluator.options().max_evaluations, figures,
-          match_advice(evaluator, report.best));
+      report.message =
+          fmt::format("stopped at the {}: {}. {}allow more evaluations",
+                      limit_text(evaluator.options().max_evaluations,
+                                 evaluator.options().earlier_evaluations),
+                      figures, match_advice(evaluator, report.best));
       break;
     case MatchEvaluator::Halt::Time:
       report.termination = Termination::LimitReached;

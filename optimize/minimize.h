@@ -53,6 +53,7 @@ struct MinimizeOptions {
   /// Without derivatives: steps below this x range end the search, > 0.
   double step_tolerance = 1e-6;
   int max_evaluations = 300;      // finite-difference ones included, >= 1
+  int earlier_evaluations = 0;    // of the caller's limit, for messages
   double time_limit = 0.0;        // [s], 0: none
   double difference_step = 1e-4;  // x (upper - lower)
   std::uint32_t seed = 1;         // of the global methods

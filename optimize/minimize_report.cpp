@@ -191,8 +191,8 @@ void set_limit(const MinimizeEvaluator& evaluator, MinimizeReport& report) {
   report.message = fmt::format(
       "stopped at the {}: {}. {}allow more {}",
       time ? fmt::format("time limit of {} s", evaluator.options().time_limit)
-           : fmt::format("limit of {} evaluations",
-                         evaluator.options().max_evaluations),
+           : limit_text(evaluator.options().max_evaluations,
+                        evaluator.options().earlier_evaluations),
       figures(evaluator, report), minimum_advice(evaluator, report),
       time ? "time" : "evaluations");
 }

@@ -76,6 +76,7 @@ struct MatchOptions {
   std::string method = "ceres";  // or NLopt's: "bobyqa", "cobyla", "sbplx", ...
   double tolerance = 1e-3;       // largest mismatch accepted
   int max_evaluations = 100;     // finite-difference ones included, >= 1
+  int earlier_evaluations = 0;   // of the caller's limit, for messages
   double time_limit = 0.0;       // [s], 0: none
   double difference_step = 1e-3;  // x (upper - lower), for finite differences
   Monitor* monitor = nullptr;

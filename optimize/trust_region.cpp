@@ -464,7 +464,8 @@ void TrustRegion::adjust_radius(Outcome outcome, double length) {
   }
 }
 
-// False beside points that fail, once little is gained for long.
+// False once little is gained for long, beside points that fail or where
+// constraints stay missed.
 bool TrustRegion::worth_going_on() {
   const double scale =
       std::max(evaluator_.objective_scale(), evaluator_.objective_unit());
@@ -481,6 +482,7 @@ bool TrustRegion::worth_going_on() {
   }
   const int since = evaluator_.evaluations() - gained_at_;
   const bool held_up =
+      !evaluator_.best_is_feasible() ||
       2 * (evaluator_.failed_evaluations() - failed_at_gain_) >= since;
   return !held_up || since <= kPatience + static_cast<int>(ranges_.size());
 }
@@ -498,7 +500,9 @@ SearchResult TrustRegion::run(const VectorX& start) {
   while (true) {
     if (!worth_going_on()) {
       result.finished = false;
-      result.message = "only designs that cannot be evaluated lie ahead";
+      result.message = evaluator_.best_is_feasible()
+                           ? "only designs that cannot be evaluated lie ahead"
+                           : "what is missed comes no nearer to its bounds";
       break;
     }
     const std::optional<Proposal> proposal = propose(centre_.sides);

@@ -13,8 +13,9 @@ namespace meniscus::optimize {
 /// points that failed. Constraints that exclude each other there are missed by
 /// as little as can be. A step is judged by an exact penalty; where curved
 /// constraints spoil it, a second-order correction follows. Ends when the
-/// evaluator halts, when steps are shorter than same_design(), or when points
-/// that fail hold it up and little is gained.
+/// evaluator halts, when steps are shorter than same_design(), or when little
+/// is gained for long where points that fail hold it up or constraints are
+/// missed.
 SearchResult trust_region_run(MinimizeEvaluator& evaluator,
                               const VectorX& start, double radius);
 

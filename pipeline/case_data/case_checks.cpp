@@ -128,6 +128,47 @@ void check_loads(const Case& input, const EvaluatedCase& inputs,
   }
 }
 
+/// Plain numbers are in the units of the case, which nothing can check: what
+/// nature has none of is told.
+void check_plausible(const Case& input, const EvaluatedCase& inputs,
+                     CaseProblems& problems) {
+  const auto one = [&](const char* unit, Dimension dimension) {
+    return parse_quantity(fmt::format("1 {}", unit), dimension, input.units);
+  };
+  const auto check = [&](SourceLine line, const std::string& what, double value,
+                         Dimension dimension, const char* unit, double least,
+                         double most, const char* example) {
+    const double in_unit = value / one(unit, dimension);
+    if (value != 0.0 && !(in_unit >= least && in_unit <= most)) {
+      problems.warn(line,
+                    fmt::format("{} is {:g} {}, which is {:.3g} {}: is its "
+                                "unit meant? It can be given, as \"{}\"",
+                                what, value, input.units.unit_of(dimension),
+                                in_unit, unit, example));
+    }
+  };
+  const std::vector<BodyEntry> solid = solid_bodies(input);
+  for (std::size_t k = 0; k < inputs.materials.size(); ++k) {
+    const MaterialEntry& entry =
+        input.materials[static_cast<std::size_t>(solid[k].material)];
+    const element::Material& material = inputs.materials[k];
+    const std::string name = "materials." + entry.name;
+    check(entry.density.line, name + ".density", material.density,
+          Dimension::Density, "kg/m3", 1.0, 25000.0, "2800 kg/m3");
+    if (!material.orthotropic) {
+      check(entry.youngs_modulus.line, name + ".youngs_modulus",
+            material.youngs_modulus, Dimension::Pressure, "GPa", 1e-6, 2000.0,
+            "71.7 GPa");
+    }
+  }
+  for (std::size_t k = 0; k < inputs.load_cases.size(); ++k) {
+    check(input.load_cases[k].line,
+          "the gravity of load case '" + inputs.load_cases[k].name + "'",
+          inputs.load_cases[k].gravity.norm(), Dimension::Acceleration, "m/s2",
+          0.1, 1e6, "9.81 m/s2");
+  }
+}
+
 bool takes_scale_of_yield(const Case& input) {
   return std::any_of(input.responses.begin(), input.responses.end(),
                      [](const ResponseEntry& r) {
@@ -179,6 +220,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
   }
   check_start(input, inputs, problems);
   check_loads(input, inputs, problems);
+  check_plausible(input, inputs, problems);
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     for (const double end : {input.design[k].lower, input.design[k].upper}) {
       VectorX design = initial;

@@ -307,6 +307,7 @@ struct StudyEntry {
   double tolerance = 1e-3;
   std::string method = "ceres";
   int max_evaluations = 200;
+  int earlier_evaluations = 0;     // of models before; the limit is their sum
   double coarse_first = 1.0;       // edges of a first, coarser model; 1: none
   double time_limit = 0.0;         // [s], 0: none
   bool refreeze = true;            // where the frozen mesh no longer follows

@@ -17,7 +17,7 @@ namespace meniscus::results {
 
 namespace {
 
-constexpr double kBend = 0.2;      // edges where faces bend, x their radius
+constexpr double kBend = 0.2;       // edges where faces bend, x their radius
 constexpr double kGrowth = 0.35;    // of the edges with the distance from there
 constexpr double kShortest = 0.05;  // x the edge asked for, however they bend
 // Bends of a tessellation are below 0.35 rad from facet to facet.
@@ -141,31 +141,36 @@ BendSizes bend_sizes(const SurfaceMesh& part, const std::vector<Hinge>& hinges,
   return sizes;
 }
 
-/// One char per point: it stays. Ends of sharp edges inside a face, and where
-/// a line between faces turns.
-std::vector<char> corners_of(const SurfaceMesh& part,
-                             const std::vector<Hinge>& hinges) {
-  std::vector<char> stays(part.points.size(), 0);
+/// Lines between faces, and sharp edges inside one.
+struct Creases {
+  std::vector<films::ComplexEdge> sharp;  // inside a face
+  std::vector<char> turns;                // per point: a line turns there
+};
+
+Creases creases_of(const SurfaceMesh& part, const std::vector<Hinge>& hinges) {
+  Creases creases;
+  creases.turns.assign(part.points.size(), 0);
   std::vector<std::vector<int>> lines(part.points.size());
   for (const Hinge& hinge : hinges) {
-    if (!is_inside_face(part, hinge)) {
-      lines[hinge.a].push_back(hinge.b);
-      lines[hinge.b].push_back(hinge.a);
-    } else if (angle_between(part, hinge) > kSharp) {
-      stays[hinge.a] = 1;
-      stays[hinge.b] = 1;
+    const bool inside = is_inside_face(part, hinge);
+    if (inside && angle_between(part, hinge) <= kSharp) {
+      continue;
     }
+    if (inside) {
+      creases.sharp.push_back({.a = hinge.a, .b = hinge.b});
+    }
+    lines[hinge.a].push_back(hinge.b);
+    lines[hinge.b].push_back(hinge.a);
   }
   for (std::size_t v = 0; v < lines.size(); ++v) {
     if (lines[v].size() == 2) {
       const Vec3 in = part.points[v] - part.points[lines[v][0]];
       const Vec3 out = part.points[lines[v][1]] - part.points[v];
-      if (std::atan2(in.cross(out).norm(), in.dot(out)) > kTurn) {
-        stays[v] = 1;
-      }
+      creases.turns[v] =
+          std::atan2(in.cross(out).norm(), in.dot(out)) > kTurn ? 1 : 0;
     }
   }
-  return stays;
+  return creases;
 }
 
 /// Faces beside each point.
@@ -220,11 +225,12 @@ SurfaceMesh even_surface(const SurfaceMesh& part, double edge,
   // 1. What must stay, and how long edges should be.
   const std::vector<Hinge> hinges = hinges_of(part);
   const BendSizes sizes = bend_sizes(part, hinges, edge);
-  const std::vector<char> stays = corners_of(part, hinges);
+  Creases creases = creases_of(part, hinges);
   // 2. The part as films that meet on lines.
   films::FilmComplex complex;
   complex.mesh = part;
-  for (const char corner : stays) {
+  complex.edges = std::move(creases.sharp);
+  for (const char corner : creases.turns) {
     complex.vertices.push_back({.kind = corner != 0 ? films::VertexKind::Fixed
                                                     : films::VertexKind::Free});
   }

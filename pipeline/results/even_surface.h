@@ -9,8 +9,8 @@ namespace meniscus::results {
 
 /// `part` remeshed towards edges of `edge` [length], shorter where its faces
 /// bend: 0.2 of their radius there, longer with the distance from it. Points
-/// stand on `shape`; lines where faces meet stay lines, and their corners, as
-/// those of sharp edges inside a face, stay where they are. Labels stay.
+/// stand on `shape`; lines where faces meet and sharp edges inside a face stay
+/// lines, and their corners stay where they are. Labels stay.
 /// Deterministic. Throws InvalidInput where memory does not hold the facets.
 SurfaceMesh even_surface(const SurfaceMesh& part, double edge,
                          const PartShape& shape);

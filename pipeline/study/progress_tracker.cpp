@@ -155,7 +155,9 @@ std::string progress_text(const EvaluationEvent& event) {
     add("the best so far");
   }
   if (event.left && *event.left > 0.0) {
-    add(fmt::format("at most {} left", duration_text(*event.left)));
+    // New models and meshes beside them come on top of what is planned.
+    add(fmt::format("at most {} left on this model",
+                    duration_text(*event.left)));
   }
   return text;
 }

@@ -74,6 +74,7 @@ StudyOutcome match(const StudyTask& task) {
       {.method = study.method,
        .tolerance = study.tolerance,
        .max_evaluations = study.max_evaluations,
+       .earlier_evaluations = study.earlier_evaluations,
        .time_limit = task.options.time_limit,
        .monitor = task.options.monitor,
        .announce =

@@ -61,6 +61,7 @@ StudyOutcome fit_scan(const StudyTask& task) {
       {.method = study.method,
        .tolerance = study.tolerance > 0.0 ? study.tolerance : kNone,
        .max_evaluations = study.max_evaluations,
+       .earlier_evaluations = study.earlier_evaluations,
        .time_limit = task.options.time_limit,
        .monitor = task.options.monitor,
        .announce =

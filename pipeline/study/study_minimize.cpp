@@ -74,6 +74,7 @@ optimize::MinimizeOptions minimize_options(const StudyTask& task,
   return {.method = study.method,
           .optimality_tolerance = study.tolerance,
           .max_evaluations = study.max_evaluations,
+          .earlier_evaluations = study.earlier_evaluations,
           .time_limit = task.options.time_limit,
           .monitor = task.options.monitor,
           .announce =

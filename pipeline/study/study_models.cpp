@@ -107,6 +107,8 @@ bool StudyModels::go_on_at(store::Refreeze wanted) {
   auto input = std::make_unique<case_data::Case>(
       case_data::frozen_at(working(), wanted.design));
   input->study.max_evaluations = std::max(1, evaluations_left());
+  input->study.earlier_evaluations =
+      input_.study.max_evaluations - input->study.max_evaluations;
   update_time_limit();
   std::unique_ptr<StudyStage> stage =
       stage_at(wanted, store::refrozen_model(wanted.evaluation), *input);
@@ -166,7 +168,10 @@ std::optional<forward::Evaluation> StudyModels::look_at(
 }
 
 void StudyModels::limit_evaluations() {
-  working().study.max_evaluations = std::max(1, evaluations_left());
+  case_data::StudyEntry& study = working().study;
+  study.max_evaluations = std::max(1, evaluations_left());
+  study.earlier_evaluations =
+      input_.study.max_evaluations - study.max_evaluations;
 }
 
 void StudyModels::add_to(RunResult& result) const {

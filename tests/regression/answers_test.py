@@ -234,6 +234,28 @@ targets = { sway = 0.007 }
                     self.expect(self.call("check", self.case(
                         text.replace("BOUND", bound))), code)
 
+    def test_numbers_that_nature_has_none_of_are_told(self):
+        """A density in kg/m3 where the case counts in t/mm3."""
+        good = self.call("check", self.case(SIZED_STRUT))
+        self.assertNotIn("unit meant", good.stdout + good.stderr)
+        for was, now, told in (
+                ("density = 2.8e-9", "density = 2800",
+                 r"density is 2800 t/mm3, which is 2.8e\+15 kg/m3"),
+                ("youngs_modulus = 71700.0", "youngs_modulus = 71.7e9",
+                 r"youngs_modulus is 7.17e\+10 MPa"),
+                ("loads = [{", "loads = [{ gravity = [0, 0, -9.81] }, {",
+                 "gravity of load case 'service' is 9.81 mm/s2")):
+            done = self.call("check", self.case(SIZED_STRUT.replace(was, now)))
+            self.expect(done, 0, told)
+
+    def test_what_cannot_be_kept_ends_the_search(self):
+        """A sway that no design has: told so, well before the limit."""
+        text = SIZED_STRUT.replace("max = 0.0075", "max = 0.0005").replace(
+            'method = "mma"', 'method = "slsqp"')
+        done, out = self.run_case(self.case(text), "out")
+        self.expect(done, 3, "no design was found that keeps")
+        self.assertLess(self.result(out)["evaluations"], 60)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

@@ -178,5 +178,26 @@ TEST(ImportedPart, NeedlesBecomeEvenFacetsOnTheSameFaces) {
   }
 }
 
+// All faces under one name, as those of a solid of `sides` are.
+TEST(ImportedPart, SharpEdgesInsideAFaceStay) {
+  SurfaceMesh plate =
+      shapes::cubes({1, 1, 1}, 1, [](int, int, int) { return 0; });
+  for (Vec3& p : plate.points) {
+    p = p.cwiseProduct(Vec3(40.0, 20.0, 2.0));
+  }
+  const double volume = enclosed_volume(plate);
+  ASSERT_NEAR(std::abs(volume), 1600.0, 1e-9);
+  std::fill(plate.facet_label.begin(), plate.facet_label.end(), 0);
+  plate.labels = {"all"};
+  plate.facet_bodies.clear();
+  const results::PartShape shape(plate);
+  for (const double edge : {1.0, 3.0, 8.0}) {
+    const SurfaceMesh even = results::even_surface(plate, edge, shape);
+    EXPECT_NEAR(enclosed_volume(even) / volume, 1.0, 1e-9) << edge;
+    EXPECT_NEAR(surface_area(even, 0) / surface_area(plate, 0), 1.0, 1e-9);
+    EXPECT_TRUE(check_surface(even).empty()) << edge;
+  }
+}
+
 }  // namespace
 }  // namespace meniscus::imported_part_test
