@@ -1,7 +1,6 @@
 #include "cad/solid/film_solid.h"
 
 #include <algorithm>
-#include <deque>
 #include <map>
 #include <set>
 
@@ -10,9 +9,10 @@
 
 #include "cad/solid/film_faces.h"
 #include "cad/solid/measure_solid.h"
+#include "cad/solid/mesh_parts.h"
+#include "cad/solid/solid_rims.h"
 #include "cad/solid/turned_face.h"
 #include "core/error.h"
-#include "core/geometry/edge_key.h"
 #include "core/geometry/facet_tree.h"
 
 namespace meniscus::solid {
@@ -23,55 +23,25 @@ constexpr double kSpanInEdges = 2.0;   // longest knot span
 constexpr double kMergeInEdges = 0.1;  // corners on a rim that become one
 constexpr double kPlanar = 1e-6;       // of the diagonal
 
-/// Facets of one label that hang together by edges, in order of the first.
-std::vector<std::vector<int>> connected_parts(const SurfaceMesh& mesh) {
-  std::map<Edge, std::vector<int>> at_edge;
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = mesh.facets[f][k];
-      const int b = mesh.facets[f][(k + 1) % 3];
-      at_edge[edge_key(a, b)].push_back(static_cast<int>(f));
-    }
-  }
-  std::vector<char> seen(mesh.facets.size(), 0);
-  std::vector<std::vector<int>> parts;
-  for (std::size_t first = 0; first < mesh.facets.size(); ++first) {
-    if (seen[first] != 0) {
-      continue;
-    }
-    seen[first] = 1;
-    std::vector<int> part;
-    std::deque<int> queue{static_cast<int>(first)};
-    while (!queue.empty()) {
-      const int f = queue.front();
-      queue.pop_front();
-      part.push_back(f);
-      for (int k = 0; k < 3; ++k) {
-        const int a = mesh.facets[f][k];
-        const int b = mesh.facets[f][(k + 1) % 3];
-        for (const int g : at_edge[edge_key(a, b)]) {
-          if (seen[g] == 0 && mesh.facet_label[g] == mesh.facet_label[f]) {
-            seen[g] = 1;
-            queue.push_back(g);
-          }
-        }
+/// What a plane leaves of its edges: corners of a plane face may be a little
+/// off it.
+void measure_plane(const BrepFace& face, const PlaneSurface& plane,
+                   Brep& brep) {
+  for (const std::vector<BrepUse>& loop : face.loops) {
+    for (const BrepUse& use : loop) {
+      BrepEdge& edge = brep.edges[use.edge];
+      for (const int v : {edge.from, edge.to}) {
+        const Vec3 d = brep.vertices[v] - plane.point;
+        edge.gap = std::max(edge.gap, std::abs(plane.normal.dot(d)));
       }
     }
-    std::sort(part.begin(), part.end());
-    parts.push_back(std::move(part));
   }
-  return parts;
 }
 
 class SolidBuilder {
  public:
   explicit SolidBuilder(const FilmSolidInput& input)
-      : input_(input), mesh_(input.mesh) {
-    for (const NamedRim& rim : input.rims) {
-      curves_.push_back(rim.curve);
-      members_.emplace_back(rim.vertices.begin(), rim.vertices.end());
-    }
-  }
+      : input_(input), mesh_(input.mesh), rims_(input.mesh, input.rims) {}
   FilmSolid build();
 
  private:
@@ -83,7 +53,8 @@ class SolidBuilder {
     PlaneSurface plane;
   };
 
-  int rim_of(const std::vector<int>& loop);
+  bool is_cap(int label) const;
+  bool ends_at(int facet, int other, const Edge& edge) const;
   void add_film(const std::string& name, const std::vector<int>& facets);
   bool add_simple(const std::string& name, const std::vector<int>& facets,
                   const FilmMesh& mesh, const std::vector<FilmRim>& rims,
@@ -94,31 +65,12 @@ class SolidBuilder {
 
   const FilmSolidInput& input_;
   const SurfaceMesh& mesh_;
-  std::deque<RimCurve> curves_;  // addresses stay
-  std::vector<std::set<int>> members_;
+  SolidRims rims_;
   std::vector<FilmPiece> films_;
   std::vector<TurnedFilm> turned_;
   std::vector<Cap> caps_;
   FilmSolidReport report_;
 };
-
-/// The curve that a loop lies on; a new one where there is none.
-int SolidBuilder::rim_of(const std::vector<int>& loop) {
-  for (std::size_t r = 0; r < members_.size(); ++r) {
-    if (std::all_of(loop.begin(), loop.end(),
-                    [&](int v) { return members_[r].count(v) > 0; })) {
-      return static_cast<int>(r);
-    }
-  }
-  Points points;
-  points.reserve(loop.size());
-  for (const int v : loop) {
-    points.push_back(mesh_.points[v]);
-  }
-  curves_.push_back(rim_through(points));
-  members_.emplace_back(loop.begin(), loop.end());
-  return static_cast<int>(members_.size()) - 1;
-}
 
 void SolidBuilder::add_film(const std::string& name,
                             const std::vector<int>& facets) {
@@ -151,8 +103,8 @@ void SolidBuilder::add_film(const std::string& name,
     for (const int v : loop) {
       whole.push_back(global[v]);
     }
-    film.rims.push_back(rim_of(whole));
-    FilmRim rim{&curves_[film.rims.back()], std::move(loop), {}};
+    film.rims.push_back(rims_.rim_of(whole));
+    FilmRim rim{&rims_.curve(film.rims.back()), std::move(loop), {}};
     for (const int v : whole) {
       rim.positions.push_back(rim.curve->nearest(mesh_.points[v]));
     }
@@ -226,7 +178,7 @@ void SolidBuilder::add_cap(const std::string& name,
   cap.plane = {mesh_.points[corners[0][0]], normal};
   cap.loops = boundary_loops(corners);
   for (const std::vector<int>& loop : cap.loops) {
-    cap.rims.push_back(rim_of(loop));
+    cap.rims.push_back(rims_.rim_of(loop));
   }
   caps_.push_back(std::move(cap));
 }
@@ -239,10 +191,11 @@ BrepFace SolidBuilder::face_of(const Cap& cap,
   for (std::size_t k = 0; k < cap.loops.size(); ++k) {
     const std::vector<int>& loop = cap.loops[k];
     const RimEdges& rim = rims[cap.rims[k]];
+    // From the middle of the first edge: a corner has two tangents.
     const Vec3& p = mesh_.points[loop[0]];
-    const double here = rim.curve().nearest(p);
-    const bool growing =
-        rim.curve().tangent(here).dot(mesh_.points[loop[1]] - p) > 0.0;
+    const Vec3 way = mesh_.points[loop[1]] - p;
+    const double here = rim.curve().nearest(p + 0.5 * way);
+    const bool growing = rim.curve().tangent(here).dot(way) > 0.0;
     Vec3 area = Vec3::Zero();
     for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
       area += (mesh_.points[loop[i]] - p).cross(mesh_.points[loop[i + 1]] - p);
@@ -264,29 +217,57 @@ BrepFace SolidBuilder::face_of(const Cap& cap,
 
 /// With the vertices that the films' faces want; only those that are used.
 std::vector<RimEdges> SolidBuilder::build_rims(Brep& brep) const {
-  std::vector<RimEdges> rims(curves_.begin(), curves_.end());
   std::set<int> used;
   for (const FilmPiece& film : films_) {
-    want_corners(film, rims);
     used.insert(film.rims.begin(), film.rims.end());
   }
   for (const TurnedFilm& film : turned_) {
-    want_seam(film, rims);
     used.insert(film.rims.begin(), film.rims.end());
   }
   for (const Cap& cap : caps_) {
     used.insert(cap.rims.begin(), cap.rims.end());
   }
+  std::vector<RimEdges> rims = rims_.edges(used);
+  for (const FilmPiece& film : films_) {
+    want_corners(film, rims);
+  }
+  for (const TurnedFilm& film : turned_) {
+    want_seam(film, rims);
+  }
   for (const int r : used) {
-    rims[r].build(kMergeInEdges * input_.edge, brep);
+    rims[r].build(kMergeInEdges * input_.edge, brep, rims_.same());
   }
   return rims;
 }
 
+/// True where a plane face ends at another of its name.
+bool SolidBuilder::ends_at(int facet, int other, const Edge& edge) const {
+  const int label = mesh_.facet_label[facet];
+  const auto& creased = input_.creased;
+  return is_cap(label) && (rims_.on_shared_side(edge) ||
+                           (std::count(creased.begin(), creased.end(),
+                                       mesh_.labels[label]) > 0 &&
+                            is_crease(mesh_, facet, other)));
+}
+
+bool SolidBuilder::is_cap(int label) const {
+  return std::count(input_.caps.begin(), input_.caps.end(),
+                    mesh_.labels[label]) > 0;
+}
+
 FilmSolid SolidBuilder::build() {
-  for (const std::vector<int>& part : connected_parts(mesh_)) {
-    const std::string& name = mesh_.labels[mesh_.facet_label[part[0]]];
-    if (std::count(input_.caps.begin(), input_.caps.end(), name) > 0) {
+  // Plane faces of one name may meet.
+  const auto ends = [this](int f, int g, const Edge& edge) {
+    if (!ends_at(f, g, edge)) {
+      return false;
+    }
+    rims_.add_crease(edge);
+    return true;
+  };
+  for (const std::vector<int>& part : connected_parts(mesh_, ends)) {
+    const int label = mesh_.facet_label[part[0]];
+    const std::string& name = mesh_.labels[label];
+    if (is_cap(label)) {
       add_cap(name, part);
     } else {
       add_film(name, part);
@@ -296,6 +277,7 @@ FilmSolid SolidBuilder::build() {
   const std::vector<RimEdges> rims = build_rims(solid.brep);
   for (const Cap& cap : caps_) {
     solid.brep.faces.push_back(face_of(cap, rims));
+    measure_plane(solid.brep.faces.back(), cap.plane, solid.brep);
   }
   report_.planes = static_cast<int>(caps_.size());
   for (const TurnedFilm& film : turned_) {
@@ -306,8 +288,11 @@ FilmSolid SolidBuilder::build() {
     const FilmFaces faces =
         add_faces(film, rims, kSpanInEdges * input_.edge, solid.brep);
     report_.patches += static_cast<int>(faces.patches.size());
-    measure_film(film, faces, solid.brep, FacetTree(mesh_, film.facets),
-                 input_.edge, report_);
+    measure_film(film, faces, FacetTree(mesh_, film.facets), input_.edge,
+                 report_);
+  }
+  for (const BrepEdge& e : solid.brep.edges) {
+    report_.gap = std::max(report_.gap, e.gap);
   }
   solid.report = std::move(report_);
   return solid;

@@ -20,8 +20,11 @@ struct NamedRim {
 struct FilmSolidInput {
   const SurfaceMesh& mesh;        // closed, outward
   std::vector<NamedRim> rims;     // loops on none get a spline through them
-  std::vector<std::string> caps;  // labels of planar faces
+  std::vector<std::string> caps;  // labels of planar faces, which end at sides
+                                  // that two rims share
   double edge = 0.0;              // the film's edge length [length]
+  std::vector<std::string> creased = {};  // of these, those that end at creases
+                                          // too: several planes
 };
 
 /// A film that is a plane, a cylinder or a sphere (cad/solid/simple_film.h).

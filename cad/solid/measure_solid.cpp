@@ -134,8 +134,7 @@ void measure_breaks(const FilmPiece& film, const FilmFaces& faces,
 }  // namespace
 
 void measure_film(const FilmPiece& film, const FilmFaces& faces,
-                  const Brep& brep, const FacetTree& tree, double edge,
-                  FilmSolidReport& report) {
+                  const FacetTree& tree, double edge, FilmSolidReport& report) {
   const int most = *std::max_element(film.facets.begin(), film.facets.end());
   const std::vector<int> part_of(most + 1, 0);
   for (std::size_t p = 0; p < faces.patches.size(); ++p) {
@@ -149,9 +148,6 @@ void measure_film(const FilmPiece& film, const FilmFaces& faces,
     measure_samples(patch.surface, tree, part_of, edge, report);
   }
   measure_breaks(film, faces, report);
-  for (const BrepEdge& e : brep.edges) {
-    report.gap = std::max(report.gap, e.gap);
-  }
 }
 
 }  // namespace meniscus::solid

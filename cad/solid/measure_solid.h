@@ -10,7 +10,6 @@ namespace meniscus::solid {
 /// Adds a film's distances and tangent breaks to the report. `tree`: of the
 /// film's own facets in the whole mesh.
 void measure_film(const FilmPiece& film, const FilmFaces& faces,
-                  const Brep& brep, const FacetTree& tree, double edge,
-                  FilmSolidReport& report);
+                  const FacetTree& tree, double edge, FilmSolidReport& report);
 
 }  // namespace meniscus::solid

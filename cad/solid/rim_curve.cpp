@@ -187,6 +187,13 @@ RimCurve rim_through(const Points& points, double sharp) {
     const int first = corners[c];
     int count = (corners[(c + 1) % corners.size()] - first + n) % n;
     count = count == 0 ? n : count;
+    // Between two corners next to each other nothing says how it bends.
+    if (count == 1) {
+      const Vec3 way = points[(first + 1) % n] - points[first];
+      pieces.push_back(
+          {StraightLine{points[first], way.normalized()}, 0.0, way.norm()});
+      continue;
+    }
     CurveFit fit;
     // A smooth closed curve runs on past its start, so that it has no corner.
     const int beyond = smooth ? std::min(4, n / 2) : 0;

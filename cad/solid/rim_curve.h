@@ -50,8 +50,9 @@ Vec3 point_of(const EdgeCurve& curve, double t);
 Vec3 slope_of(const EdgeCurve& curve, double t);
 
 /// A closed spline with two continuous derivatives through `points`, cut where
-/// it turns by more than `sharp` [rad] at a point. Throws MeshError for fewer
-/// than three points.
-RimCurve rim_through(const Points& points, double sharp = 0.5);
+/// it turns by more than `sharp` [rad] at a point: more than a twelfth of a
+/// turn, as which the smallest smooth curves are given; between corners next to
+/// each other straight. Throws MeshError for fewer than three points.
+RimCurve rim_through(const Points& points, double sharp = 0.6);
 
 }  // namespace meniscus::solid

@@ -14,9 +14,71 @@ double apart(double s, double t, double length) {
   return std::abs(d - length * std::round(d / length));
 }
 
+/// The place on piece j of `to` that place s of piece k of `from` is: both
+/// pieces are one straight line.
+double moved(const RimCurve& from, int k, double s, const RimCurve& to, int j,
+             bool reversed) {
+  const double share =
+      (s - from.start_of(k)) / (from.start_of(k + 1) - from.start_of(k));
+  return to.start_of(j) + (reversed ? 1.0 - share : share) *
+                              (to.start_of(j + 1) - to.start_of(j));
+}
+
 }  // namespace
 
-void RimEdges::build(double tolerance, Brep& brep) {
+void RimEdges::share(int k, RimEdges& owner, int piece, bool reversed) {
+  owners_[k] = {&owner, piece, reversed};
+  shares_ = true;
+  owner.shares_ = true;
+}
+
+void RimEdges::want(double s) {
+  const int k = curve_->piece_at(s);
+  if (owners_[k].rim != nullptr) {
+    owners_[k].rim->want(at_owner(k, curve_->wrapped(s)));
+  } else {
+    wanted_.push_back(s);
+  }
+}
+
+void RimEdges::want_exactly(double s) {
+  const int k = curve_->piece_at(s);
+  if (owners_[k].rim != nullptr) {
+    owners_[k].rim->want_exactly(at_owner(k, curve_->wrapped(s)));
+  } else {
+    exact_.push_back(s);
+  }
+}
+
+/// The owner's place that place s of piece k is.
+double RimEdges::at_owner(int k, double s) const {
+  const Owner& owner = owners_[k];
+  return moved(*curve_, k, s, owner.rim->curve(), owner.piece, owner.reversed);
+}
+
+/// Those within the piece, where it is shared.
+void RimEdges::add_owners_places(int k) {
+  const Owner& owner = owners_[k];
+  if (owner.rim == nullptr) {
+    return;
+  }
+  const RimCurve& there = owner.rim->curve();
+  for (const double place : owner.rim->places_) {
+    if (place > there.start_of(owner.piece) &&
+        place < there.start_of(owner.piece + 1)) {
+      places_.push_back(
+          moved(there, owner.piece, place, *curve_, k, owner.reversed));
+    }
+  }
+}
+
+/// The end of the edge from place k, the last one's beyond the beginning.
+double RimEdges::end_of(std::size_t k) const {
+  return k + 1 < places_.size() ? places_[k + 1]
+                                : places_[0] + curve_->length();
+}
+
+void RimEdges::set_places(double tolerance) {
   // Vertices stand where pieces of the curve meet; a whole circle has none.
   const double length = curve_->length();
   const bool one_arc =
@@ -24,6 +86,7 @@ void RimEdges::build(double tolerance, Brep& brep) {
       std::holds_alternative<EllipseCurve>(curve_->piece(0).curve);
   for (int k = 0; k < curve_->piece_count() && !one_arc; ++k) {
     places_.push_back(curve_->start_of(k));
+    add_owners_places(k);
   }
   // Wishes near a vertex that is there are served by it (places are periodic);
   // exact ones come first, so that others move to them.
@@ -43,22 +106,80 @@ void RimEdges::build(double tolerance, Brep& brep) {
   if (places_.empty()) {
     places_.push_back(0.0);
   }
-  // Each interval of the sorted places is an edge within one piece, the last
-  // one across the beginning.
   std::sort(places_.begin(), places_.end());
-  for (const double s : places_) {
-    vertices_.push_back(static_cast<int>(brep.vertices.size()));
-    brep.vertices.push_back(curve_->point(s));
+}
+
+/// Where pieces are shared, the owners' edges and their vertices.
+void RimEdges::take_parts(const Brep& brep) {
+  const std::size_t count = places_.size();
+  parts_.assign(count, {});
+  vertices_.assign(count, -1);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double middle = curve_->wrapped(0.5 * (places_[k] + end_of(k)));
+    const int piece = curve_->piece_at(middle);
+    const Owner& owner = owners_[piece];
+    if (owner.rim == nullptr) {
+      continue;
+    }
+    const std::vector<double>& places = owner.rim->places_;
+    const auto after =
+        std::upper_bound(places.begin(), places.end(), at_owner(piece, middle));
+    // Those before the first place are of the last edge, across the beginning.
+    const std::size_t at =
+        (after - places.begin() + places.size() - 1) % places.size();
+    parts_[k] = {owner.rim->parts_[at].edge, !owner.reversed};
+    const BrepEdge& edge = brep.edges[parts_[k].edge];
+    vertices_[k] = owner.reversed ? edge.to : edge.from;
+    vertices_[(k + 1) % count] = owner.reversed ? edge.from : edge.to;
   }
+}
+
+/// The vertex that another rim has at this corner, or -1.
+int RimEdges::corner(double s, const Brep& brep, double same) const {
+  const Vec3 place = curve_->point(s);
+  for (std::size_t v = 0; v < brep.vertices.size() && shares_; ++v) {
+    if ((brep.vertices[v] - place).norm() <= same) {
+      return static_cast<int>(v);
+    }
+  }
+  return -1;
+}
+
+void RimEdges::build(double tolerance, Brep& brep, double same) {
+  set_places(tolerance);
+  take_parts(brep);
   const std::size_t count = places_.size();
   for (std::size_t k = 0; k < count; ++k) {
-    const double end = k + 1 < count ? places_[k + 1] : places_[0] + length;
+    if (vertices_[k] < 0) {
+      vertices_[k] = corner(places_[k], brep, same);
+    }
+    if (vertices_[k] < 0) {
+      vertices_[k] = static_cast<int>(brep.vertices.size());
+      brep.vertices.push_back(curve_->point(places_[k]));
+    }
+  }
+  // Each interval of the sorted places is an edge within one piece, the last
+  // one across the beginning.
+  for (std::size_t k = 0; k < count; ++k) {
+    if (parts_[k].edge >= 0) {
+      continue;
+    }
+    const double end = end_of(k);
     const int piece = curve_->piece_at(0.5 * (places_[k] + end));
-    edges_.push_back(static_cast<int>(brep.edges.size()));
+    parts_[k].edge = static_cast<int>(brep.edges.size());
     brep.edges.push_back({vertices_[k], vertices_[(k + 1) % count],
                           curve_->piece(piece).curve,
                           curve_->parameter_at(piece, places_[k]),
                           curve_->parameter_at(piece, end)});
+  }
+  // Shared corners may lie beside this rim's own by as much as rims may.
+  for (std::size_t k = 0; k < count && shares_; ++k) {
+    const double off =
+        (curve_->point(places_[k]) - brep.vertices[vertices_[k]]).norm();
+    for (const std::size_t at : {k, (k + count - 1) % count}) {
+      double& gap = brep.edges[parts_[at].edge].gap;
+      gap = std::max(gap, off);
+    }
   }
 }
 
@@ -86,15 +207,13 @@ std::vector<RimEdges::Step> RimEdges::between(double from, double to,
   do {
     const int next = growing ? (at + 1) % count : (at + count - 1) % count;
     const int edge = growing ? at : next;
-    const double length = edge + 1 < count
-                              ? places_[edge + 1] - places_[edge]
-                              : places_[0] + curve_->length() - places_[edge];
-    const double begin_share = done / whole;
-    done += length;
+    const double begin = done / whole;
+    done += end_of(edge) - places_[edge];
     const double end_share = next == end ? 1.0 : done / whole;
-    steps.push_back(growing
-                        ? Step{edges_[edge], true, begin_share, end_share}
-                        : Step{edges_[edge], false, end_share, begin_share});
+    const Part& part = parts_[edge];
+    steps.push_back(growing == part.along
+                        ? Step{part.edge, true, begin, end_share}
+                        : Step{part.edge, false, end_share, begin});
     at = next;
   } while (at != end);
   return steps;

@@ -1,4 +1,6 @@
-/// A rim as edges of a solid, cut where faces on either side have corners.
+/// A rim as edges of a solid, cut where faces on either side have corners. Rims
+/// of plane faces may share sides: a piece of one is a piece of another, and
+/// the edges there are the same.
 #pragma once
 
 #include <vector>
@@ -10,15 +12,21 @@ namespace meniscus::solid {
 
 class RimEdges {
  public:
-  explicit RimEdges(const RimCurve& curve) : curve_(&curve) {}
+  explicit RimEdges(const RimCurve& curve)
+      : curve_(&curve), owners_(curve.piece_count()) {}
 
+  /// The straight piece k is the owner's own piece, run the other way where
+  /// `reversed`. Before any wish; the owner stays where it is, and is built
+  /// before this rim.
+  void share(int k, RimEdges& owner, int piece, bool reversed);
   /// Asks for a vertex at place s of the curve.
-  void want(double s) { wanted_.push_back(s); }
+  void want(double s);
   /// The same; it becomes no other vertex.
-  void want_exactly(double s) { exact_.push_back(s); }
+  void want_exactly(double s);
   /// Adds vertices and edges; wishes within `tolerance` [length] of each other
-  /// or of where pieces meet become one vertex.
-  void build(double tolerance, Brep& brep);
+  /// or of where pieces meet become one vertex. Corners of rims that share
+  /// sides are one vertex within `same` [length].
+  void build(double tolerance, Brep& brep, double same = 0.0);
 
   /// The place of the vertex that a wish became.
   double place(double s) const { return places_[index_of(s)]; }
@@ -40,14 +48,33 @@ class RimEdges {
   const RimCurve& curve() const { return *curve_; }
 
  private:
+  /// Whose edges a piece has: none, its own.
+  struct Owner {
+    RimEdges* rim = nullptr;
+    int piece = -1;
+    bool reversed = false;
+  };
+  struct Part {
+    int edge = -1;
+    bool along = true;  // the edge runs along growing s
+  };
+
   int index_of(double s) const;
+  double at_owner(int k, double s) const;
+  void add_owners_places(int k);
+  double end_of(std::size_t k) const;
+  void set_places(double tolerance);
+  void take_parts(const Brep& brep);
+  int corner(double s, const Brep& brep, double same) const;
 
   const RimCurve* curve_;
+  std::vector<Owner> owners_;  // one per piece
+  bool shares_ = false;        // sides of it, with others either way
   std::vector<double> wanted_;
   std::vector<double> exact_;
   std::vector<double> places_;  // rising
   std::vector<int> vertices_;
-  std::vector<int> edges_;  // from each place to the next
+  std::vector<Part> parts_;  // from each place to the next
 };
 
 }  // namespace meniscus::solid

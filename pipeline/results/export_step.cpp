@@ -1,100 +1,32 @@
 #include "pipeline/results/export_step.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "cad/solid/bulge_volume.h"
 #include "cad/solid/film_solid.h"
+#include "cad/solid/mesh_parts.h"
 #include "cad/step/step_writer.h"
 #include "core/error.h"
-#include "evolve/curves/curve_shape.h"
 #include "evolve/frozen/film_model.h"
+#include "pipeline/results/rim_pieces.h"
 
 namespace meniscus::results {
 
 namespace {
 
-constexpr double kMostDeviation = 0.1;  // of the film's edge: else a warning
-constexpr double kMostBreak = 1.0;      // [degree]
-constexpr double kFlatRing = 1e-7;      // of the part's size
-constexpr double kFullTurn = 2.0 * std::numbers::pi;
-
-solid::RimPiece line_piece(const Vec3& from, const Vec3& to) {
-  const Vec3 way = to - from;
-  return {solid::StraightLine{from, way.normalized()}, 0.0, way.norm()};
-}
-
-std::vector<solid::RimPiece> pieces_of(const curves::Circle& circle) {
-  const auto frame = curves::curve_shape::frame_of(circle);
-  return {{solid::EllipseCurve{circle.center, circle.radius * frame.u,
-                               circle.radius * frame.v},
-           0.0, kFullTurn}};
-}
-
-std::vector<solid::RimPiece> pieces_of(const curves::Ellipse& ellipse) {
-  const auto frame = curves::curve_shape::frame_of(ellipse);
-  return {{solid::EllipseCurve{ellipse.center, ellipse.radius_1 * frame.u,
-                               ellipse.radius_2 * frame.v},
-           0.0, kFullTurn}};
-}
-
-std::vector<solid::RimPiece> pieces_of(const curves::Rectangle& box) {
-  const auto frame = curves::curve_shape::frame_of(box);
-  const double r = box.corner_radius;
-  std::vector<solid::RimPiece> pieces;
-  const auto at = [&](double a, double b) {
-    return Vec3(box.center + a * frame.u + b * frame.v);
-  };
-  // Counter-clockwise from the right side, as evolve/curves/curve has it.
-  const double w = 0.5 * box.width;
-  const double h = 0.5 * box.height;
-  const std::array<solid::Vec2, 4> from{
-      solid::Vec2(w, r - h), solid::Vec2(w - r, h), solid::Vec2(-w, h - r),
-      solid::Vec2(r - w, -h)};
-  const std::array<solid::Vec2, 4> to{
-      solid::Vec2(w, h - r), solid::Vec2(r - w, h), solid::Vec2(-w, r - h),
-      solid::Vec2(w - r, -h)};
-  const std::array<solid::Vec2, 4> middle{
-      solid::Vec2(w - r, h - r), solid::Vec2(r - w, h - r),
-      solid::Vec2(r - w, r - h), solid::Vec2(w - r, r - h)};
-  for (int k = 0; k < 4; ++k) {
-    pieces.push_back(
-        line_piece(at(from[k][0], from[k][1]), at(to[k][0], to[k][1])));
-    if (r > 0.0) {
-      const double start = 0.25 * kFullTurn * k;
-      pieces.push_back({solid::EllipseCurve{at(middle[k][0], middle[k][1]),
-                                            r * frame.u, r * frame.v},
-                        start, start + 0.25 * kFullTurn});
-    }
-  }
-  return pieces;
-}
-
-std::vector<solid::RimPiece> pieces_of(const curves::Polygon& polygon) {
-  std::vector<solid::RimPiece> pieces;
-  const std::size_t n = polygon.points.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    pieces.push_back(
-        line_piece(polygon.points[k], polygon.points[(k + 1) % n]));
-  }
-  return pieces;
-}
-
-/// Other kinds: none, a spline goes through the film's own points.
-template <class Shape>
-std::vector<solid::RimPiece> pieces_of(const Shape& /*shape*/) {
-  return {};
-}
+constexpr double kMostDeviation = 0.1;    // of the film's edge: else a warning
+constexpr double kMostBreak = 1.0;        // [degree]
+constexpr std::size_t kMostPlanes = 200;  // of a solid from a file
+constexpr double kFlatRing = 1e-7;        // of the part's size
 
 std::vector<solid::NamedRim> rims_of(const films::FilmSystem& system,
                                      const frozen::FilmModel& model) {
   std::vector<solid::NamedRim> rims;
   for (const curves::Curve& curve : system.curves) {
-    std::vector<solid::RimPiece> pieces = std::visit(
-        [](const auto& shape) { return pieces_of(shape); }, curve.shape);
+    std::vector<solid::RimPiece> pieces = rim_pieces(curve.shape);
     if (!pieces.empty()) {
       rims.push_back({curve.name, solid::RimCurve(std::move(pieces)),
                       model.rim(curve.name)});
@@ -103,10 +35,55 @@ std::vector<solid::NamedRim> rims_of(const films::FilmSystem& system,
   return rims;
 }
 
-/// A disk, or a ring between curves of one plane; other rings are ruled.
-bool is_flat(const films::CapSpec& cap, const SurfaceMesh& mesh) {
+/// The corners of a curve of straight sides; 0 for others.
+std::size_t corners_of(const films::FilmSystem& system,
+                       const std::string& name) {
+  std::vector<solid::RimPiece> pieces;
+  for (const curves::Curve& curve : system.curves) {
+    if (curve.name == name) {
+      pieces = rim_pieces(curve.shape);
+    }
+  }
+  const bool straight = std::all_of(
+      pieces.begin(), pieces.end(), [](const solid::RimPiece& piece) {
+        return std::holds_alternative<solid::StraightLine>(piece.curve);
+      });
+  return straight ? pieces.size() : 0;
+}
+
+/// Of how many plane faces the solid may be: a ring between polygons of one on
+/// each side of either; where a side is twisted there are more facets.
+std::size_t most_planes(const films::CapSpec& cap,
+                        const films::FilmSystem& system) {
+  if (cap.start) {
+    return kMostPlanes;
+  }
+  const std::size_t outer = corners_of(system, cap.curve);
+  const std::size_t inner = corners_of(system, cap.inner);
+  return outer > 0 && inner > 0 ? outer + inner : 0;
+}
+
+std::size_t plane_count(const SurfaceMesh& mesh, int label) {
+  const std::vector<std::vector<int>> parts = solid::connected_parts(
+      mesh, [&](int facet, int other, const Edge& /*edge*/) {
+        return solid::is_crease(mesh, facet, other);
+      });
+  return static_cast<std::size_t>(std::count_if(
+      parts.begin(), parts.end(), [&](const std::vector<int>& part) {
+        return mesh.facet_label[part[0]] == label;
+      }));
+}
+
+/// Plane faces: disks, sides, rings between polygons or between curves of one
+/// plane, few facets of a file; other rings are ruled.
+bool is_flat(const films::CapSpec& cap, const films::FilmSystem& system,
+             const SurfaceMesh& mesh) {
   const int label = mesh.label_of(cap.name);
-  if (cap.inner.empty() || label < 0) {
+  if ((cap.inner.empty() && !cap.start) || label < 0) {
+    return true;
+  }
+  const std::size_t planes = most_planes(cap, system);
+  if (planes > 0 && plane_count(mesh, label) <= planes) {
     return true;
   }
   Vec3 normal = Vec3::Zero();
@@ -136,7 +113,8 @@ films::FilmSystem for_smooth_films(films::FilmSystem system,
   for (const std::string& label : mesh.labels) {
     flat.push_back(std::any_of(system.caps.begin(), system.caps.end(),
                                [&](const films::CapSpec& cap) {
-                                 return cap.name == label && is_flat(cap, mesh);
+                                 return cap.name == label &&
+                                        is_flat(cap, system, mesh);
                                })
                        ? 1
                        : 0);
@@ -229,8 +207,11 @@ void export_step(const std::filesystem::path& file,
   mesh = model.boundary(model.reference().points);
   solid::FilmSolidInput input{mesh, rims_of(system, model), {}, options.edge};
   for (const films::CapSpec& cap : system.caps) {
-    if (is_flat(cap, mesh)) {
+    if (is_flat(cap, system, mesh)) {
       input.caps.push_back(cap.name);
+    }
+    if (!cap.inner.empty() || cap.start) {
+      input.creased.push_back(cap.name);
     }
   }
   const solid::FilmSolid solid = solid::film_solid(input);

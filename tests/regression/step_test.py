@@ -106,6 +106,88 @@ enclosed_by = ["skin", "foot_pad"]
 material = "aluminium"
 volume = "pi * 14 * (3 * 20^2 + 14^2) / 6"
 """
+REST = """[resolution]
+fea = 8.0
+film = 4.0
+[materials.aluminium]
+youngs_modulus = "71.7 GPa"
+poisson_ratio = 0.33
+density = 2.8e-9
+[load_cases.weight]
+supports = [{ on = "bottom", fix = "xyz" }]
+loads = [{ gravity = [0, 0, -9810] }]
+[responses.mass]
+kind = "mass"
+[study]
+kind = "analyse"
+"""
+EXACT = 1e-9  # planes and cylinders, of the volume
+
+
+def polygon(name, points):
+    return f'[curves.{name}]\nkind = "polygon"\npoints = {points}\n'
+
+
+def circle(name, x, y, z, radius):
+    return (f'[curves.{name}]\nkind = "circle"\ncenter = {[x, y, z]}\n'
+            f"normal = [0, 0, 1]\nradius = {radius}\n")
+
+
+def cap(name, curve, *holes):
+    return (f'[solids.{name}]\nkind = "cap"\ncurve = "{curve}"\n' +
+            (f"holes = {list(holes)}\n" if holes else ""))
+
+
+def ring(name, curve, inner):
+    return (f'[solids.{name}]\nkind = "ring"\ncurve = "{curve}"\n'
+            f'inner = "{inner}"\n')
+
+
+def sides(name, low, high):
+    return f'[solids.{name}]\nkind = "sides"\ncurves = {[low, high]}\n'
+
+
+def part_of(pieces, surfaces):
+    """A case whose body has these surfaces; its "bottom" is on the ground."""
+    return ('title = "Plates"\nunits = "mm-N-MPa"\n' + "".join(pieces) +
+            f"[bodies.part]\nenclosed_by = {surfaces}\n"
+            'material = "aluminium"\n' + REST)
+
+
+def at_height(outline, z):
+    return [[x, y, z] for x, y in outline]
+
+
+def walls(low, high):
+    """A polygon and a cap, wall_0 ..., over each side of an outline."""
+    pieces = []
+    for k, a in enumerate(low):
+        b = (k + 1) % len(low)
+        pieces += [polygon(f"side_{k}", [a, low[b], high[b], high[k]]),
+                   cap(f"wall_{k}", f"side_{k}")]
+    return pieces, [f"wall_{k}" for k in range(len(low))]
+
+
+def area_of(outline):
+    turned = outline[1:] + outline[:1]
+    return 0.5 * sum(a[0] * b[1] - a[1] * b[0]
+                     for a, b in zip(outline, turned))
+
+
+def volume_between(low, high, height):
+    """Of what straight lines fill from one outline to the other: Simpson's
+    rule is exact."""
+    middle = [[0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+              for a, b in zip(low, high)]
+    return height / 6 * (area_of(low) + 4 * area_of(middle) + area_of(high))
+
+
+def face_names(path):
+    """How many faces have which name."""
+    names = {}
+    for name in re.findall(r"ADVANCED_FACE\('([^']*)'", path.read_text()):
+        names[name] = names.get(name, 0) + 1
+    return names
 
 
 def surface_kinds(path):
@@ -333,6 +415,117 @@ Save "{can}";
         count, volume = gmsh_volume(step)
         self.assertEqual(count, 1)
         self.assertAlmostEqual(volume / 52000, 1, delta=MOST_VOLUME_ERROR)
+
+    def plates(self, text, kinds, names, volume, accuracy=EXACT):
+        """Exports a case whose part has these faces; the run and the file."""
+        path = self.folder / "plates.toml"
+        path.write_text(text)
+        run = self.folder / "plates"
+        self.expect(self.call("run", path, "--out", run, "--no-pictures",
+                              "--quiet"), 0)
+        file, said = self.export(run)
+        self.assertIn("valid closed solid", said)
+        self.assertEqual(face_names(file), names)
+        self.assertEqual(surface_kinds(file), kinds)
+        count, found = gmsh_volume(file)
+        self.assertEqual(count, 1)
+        self.assertAlmostEqual(found / volume, 1, delta=accuracy)
+        return run, file
+
+    def test_plates_of_caps_with_bores(self):
+        """Caps around a plate of six corners, bored through twice."""
+        outline = [[0, 0], [60, 0], [60, 20], [30, 20], [30, 45], [0, 45]]
+        low, high = at_height(outline, 0), at_height(outline, 7)
+        around, names = walls(low, high)
+        pieces = [polygon("low", low), polygon("high", high), *around,
+                  cap("bottom", "low", "hole_0", "hole_2"),
+                  cap("top", "high", "hole_1", "hole_3")]
+        for k, (x, y, r) in enumerate([(15, 30, 6), (45, 10, 4)]):
+            pieces = [circle(f"hole_{2 * k}", x, y, 0, r),
+                      circle(f"hole_{2 * k + 1}", x, y, 7, r), *pieces,
+                      ring(f"bore_{k}", f"hole_{2 * k}", f"hole_{2 * k + 1}")]
+        names += ["bottom", "top", "bore_0", "bore_1"]
+        volume = 7 * (area_of(outline) - math.pi * (6 ** 2 + 4 ** 2))
+        run, file = self.plates(part_of(pieces, names),
+                                {"Plane": 8, "Cylinder": 2},
+                                {name: 1 for name in names}, volume)
+        self.expect(self.call("compare", run, file, "--out",
+                              self.folder / "compared"), 0)
+        own, read = json.loads((self.folder / "compared" / "compare.json")
+                               .read_text())["parts"]
+        self.assertLess(abs(read["mass"] / own["mass"] - 1.0), MOST_FACETED)
+
+    def test_faces_of_sides(self):
+        """Two of the five sides lie in one plane, all have the one name."""
+        low = [[-30, -20], [0, -20], [30, -20], [30, 20], [-30, 20]]
+        high = [[-20, -12], [0, -12], [20, -12], [20, 12], [-20, 12]]
+        pieces = [polygon("low", at_height(low, 0)),
+                  polygon("high", at_height(high, 25)), cap("bottom", "low"),
+                  cap("top", "high"), sides("skirt", "low", "high")]
+        self.plates(part_of(pieces, ["bottom", "top", "skirt"]), {"Plane": 7},
+                    {"bottom": 1, "top": 1, "skirt": 5},
+                    volume_between(low, high, 25))
+
+    def test_plates_of_a_case(self):
+        """An H that tapers under a plate, whose face it is a hole in."""
+        text = (program.ROOT / "cases" / "bracket_vs_solid" /
+                "plates.toml").read_text()
+        low = [[-30, -37], [-24.5, -37], [-24.5, -2], [44.5, -2], [44.5, -37],
+               [50, -37], [50, 37], [44.5, 37], [44.5, 2], [-24.5, 2],
+               [-24.5, 37], [-30, 37]]
+        high = [[44, -19], [49.5, -19], [49.5, -2], [70.5, -2], [70.5, -19],
+                [76, -19], [76, 19], [70.5, 19], [70.5, 2], [49.5, 2],
+                [49.5, 19], [44, 19]]
+        self.plates(text[:text.index("[study]")] +
+                    '[study]\nkind = "analyse"\n', {"Plane": 19},
+                    {"foot": 1, "column": 12, "top_face": 1, "top_edges": 4,
+                     "pad": 1},
+                    volume_between(low, high, 115) + 44 * 44 * 5)
+
+    def test_rings_between_polygons(self):
+        """No curve runs along the corners of a ring: they are its creases."""
+        outline = [[-20, -15], [0, -15], [20, -15], [20, 15], [-20, 15]]
+        window = [[-8, -5], [8, -5], [8, 5], [-8, 5]]
+        pieces = [polygon("low", at_height(outline, 0)),
+                  polygon("high", at_height(outline, 8)),
+                  polygon("from", at_height(window, 0)),
+                  polygon("to", at_height(window, 8)),
+                  cap("bottom", "low", "from"), cap("top", "high", "to"),
+                  ring("skin", "low", "high"), ring("window", "from", "to")]
+        self.plates(part_of(pieces, ["bottom", "top", "skin", "window"]),
+                    {"Plane": 10},
+                    {"bottom": 1, "top": 1, "skin": 4, "window": 4},
+                    8 * (area_of(outline) - area_of(window)))
+
+    def test_bore_between_a_circle_and_its_copy(self):
+        outline = [[-20, -15], [20, -15], [20, 15], [-20, 15]]
+        pieces = [polygon("low", at_height(outline, 0)),
+                  polygon("high", at_height(outline, 8)),
+                  circle("from", 0, 0, 0, 6),
+                  '[curves.to]\nkind = "copy"\nof = "from"\nmove = [0, 0, 8]\n',
+                  cap("bottom", "low", "from"), cap("top", "high", "to"),
+                  sides("edges", "low", "high"), ring("bore", "from", "to")]
+        self.plates(part_of(pieces, ["bottom", "top", "edges", "bore"]),
+                    {"Plane": 6, "Cylinder": 1},
+                    {"bottom": 1, "top": 1, "edges": 4, "bore": 1},
+                    8 * (area_of(outline) - math.pi * 6 ** 2))
+
+    def test_film_on_plates(self):
+        """A film's patches have corners on sides that it shares with caps: a
+        body of each, and between them a cap that is no face of the part."""
+        outline = [[-20, -15], [20, -15], [20, 15], [-20, 15]]
+        low, high = at_height(outline, 0), at_height(outline, 10)
+        around, names = walls(low, high)
+        pieces = [polygon("high", high), polygon("low", low), *around,
+                  circle("head", 0, 0, 40, 12), cap("bottom", "low"),
+                  cap("between", "high"), cap("top", "head"),
+                  '[films.skin]\nkind = "loft"\ncurves = ["high", "head"]\n',
+                  '[bodies.post]\nenclosed_by = ["between", "skin", "top"]\n'
+                  'material = "aluminium"\nvolume = 24000\n']
+        self.plates(part_of(pieces, [*names, "bottom", "between"]),
+                    {"Plane": 6, "BSpline surface": 4},
+                    {**{name: 1 for name in names}, "bottom": 1, "top": 1,
+                     "skin": 4}, 12000 + 24000, MOST_VOLUME_ERROR)
 
     def test_the_ledger_notes_what_was_exported(self):
         run = self.analysed("strut_family", "--set", "resolution.fea=10",

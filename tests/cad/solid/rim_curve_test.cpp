@@ -1,5 +1,6 @@
 #include "cad/solid/rim_curve.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -102,6 +103,48 @@ TEST(RimEdges, WishesNearEachOtherBecomeOneVertex) {
     EXPECT_LT((solid::point_of(edge.curve, edge.last) - brep.vertices[edge.to])
                   .norm(),
               1e-12);
+  }
+}
+
+/// A square of side 2 with one side from (0, -1, 0) to (0, 1, 0) or back.
+solid::RimCurve square(const Vec3& away, bool up) {
+  const Vec3 low(0, -1, 0);
+  const Vec3 high(0, 1, 0);
+  Points corners{low, high, high + 2.0 * away, low + 2.0 * away};
+  if (!up) {
+    std::reverse(corners.begin(), corners.end());
+  }
+  std::vector<solid::RimPiece> pieces;
+  for (int k = 0; k < 4; ++k) {
+    const Vec3 way = corners[(k + 1) % 4] - corners[k];
+    pieces.push_back(
+        {solid::StraightLine{corners[k], way.normalized()}, 0.0, way.norm()});
+  }
+  return solid::RimCurve(std::move(pieces));
+}
+
+TEST(RimEdges, RimsThatShareASideHaveItsEdgesInCommon) {
+  const solid::RimCurve first = square(Vec3::UnitX(), true);
+  const solid::RimCurve second = square(Vec3::UnitZ(), false);
+  solid::RimEdges owner(first);
+  solid::RimEdges other(second);
+  other.share(2, owner, 0, true);  // from (0, 1, 0) to (0, -1, 0)
+  other.want(4.5);                 // at (0, 0.5, 0)
+  other.want(4.02);                // near the side's own end
+  solid::Brep brep;
+  owner.build(0.1, brep, 1e-9);
+  other.build(0.1, brep, 1e-9);
+  EXPECT_EQ(brep.vertices.size(), 7U);  // six corners and the wish
+  EXPECT_EQ(brep.edges.size(), 8U);
+  EXPECT_EQ(other.vertex(4.5), owner.vertex(1.5));
+  const auto there = other.between(4.0, 6.0, true);
+  const auto back = owner.between(0.0, 2.0, true);
+  ASSERT_EQ(there.size(), 2U);
+  ASSERT_EQ(back.size(), 2U);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(there[k].edge, back[1 - k].edge);
+    EXPECT_NE(there[k].forward, back[1 - k].forward);
+    EXPECT_NEAR(there[k].first, 1.0 - back[1 - k].first, 1e-12);
   }
 }
 
