@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 #include "core/heed_stop.h"
 #include "mesh_tet/tet_cavity.h"
 #include "mesh_tet/tet_editor.h"
@@ -14,7 +16,10 @@ namespace meniscus::mesh_tet {
 namespace {
 
 constexpr std::size_t kLongestRing = 7;
-constexpr double kFlipGain = 1.05;  // of the merit; a flip costs nothing
+// Of the merit; a flip costs nothing. What replaces elements without volume,
+// whose merit is below 0, must have some.
+constexpr double kFlipGain = 1.05;
+double flip_floor(double merit) { return kFlipGain * std::max(merit, 0.0); }
 // A few seconds where most elements are bad, as in plates of one layer; some
 // ten evaluations an element are usual.
 constexpr std::int64_t kFreeEvaluations = 20'000'000;
@@ -233,6 +238,28 @@ class Improver {
     return gained;
   }
 
+  /// Whether the face or the edges within a ring that `fresh` makes are not in
+  /// the mesh yet.
+  bool is_new(const std::vector<int>& ring,
+              const std::vector<TetNodes>& fresh) const {
+    if (ring.size() == 3) {
+      return !tets_.has(ring);
+    }
+    const auto place = [&](int node) {
+      return std::find(ring.begin(), ring.end(), node) - ring.begin();
+    };
+    for (const TetNodes& nodes : fresh) {
+      for (int k = 0; k < 3; ++k) {
+        const Edge edge = {nodes[k], nodes[(k + 1) % 3]};
+        const auto apart = std::abs(place(edge[0]) - place(edge[1]));
+        if (apart != 1 && apart != std::ssize(ring) - 1 && tets_.has(edge)) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
   bool remove_edge(int e) {
     const TetNodes ids = tets_.nodes(e);
     for (const Edge& edge : kTetEdges) {
@@ -242,9 +269,9 @@ class Improver {
       if (!ring || ring->nodes.size() > kLongestRing) {
         continue;
       }
-      RingFiller filler(tets_, a, b, ring->nodes, kFlipGain * ring->merit);
+      RingFiller filler(tets_, a, b, ring->nodes, flip_floor(ring->merit));
       const std::vector<TetNodes> fresh = filler.fill();
-      if (!fresh.empty()) {
+      if (!fresh.empty() && is_new(ring->nodes, fresh)) {
         unsettle(ring->elements);
         tets_.replace(ring->elements, fresh);
         return true;
@@ -277,7 +304,8 @@ class Improver {
         merit = std::min(merit, tets_.merit_of(fresh[k]));
       }
       const double before = std::min(tets_.merit(e), tets_.merit(other));
-      if (merit > kFlipGain * before) {
+      const Edge edge = {ids[corner], apex};
+      if (merit > flip_floor(before) && !tets_.has(edge)) {
         const std::array<int, 2> old = {e, other};
         unsettle(old);
         tets_.replace(old, fresh);
@@ -330,7 +358,7 @@ class Improver {
       taken.push_back(e);
     }
     smooth(node);
-    if (tets_.star_merit(node) > kNodeGain * ring->merit) {
+    if (tets_.star_merit(node) > kNodeGain * std::max(ring->merit, 0.0)) {
       unsettle(taken);
       return true;
     }
@@ -338,6 +366,30 @@ class Improver {
     tets_.drop_last_node();
     settled_.pop_back();
     return false;
+  }
+
+  /// Whether `fresh` has the volume of the elements: a cavity with elements
+  /// turned inside out may have a boundary that encloses another.
+  bool fills(std::span<const int> elements,
+             std::span<const TetNodes> fresh) const {
+    constexpr double kRounding = 1e-9;
+    double volume = 0.0;
+    double sum = 0.0;
+    const auto add = [&](const TetNodes& nodes, double sign) {
+      const Vec3& origin = tets_.point(nodes[0]);
+      const double part = (tets_.point(nodes[1]) - origin)
+                              .cross(tets_.point(nodes[2]) - origin)
+                              .dot(tets_.point(nodes[3]) - origin);
+      volume += sign * part;
+      sum += std::abs(part);
+    };
+    for (const int e : elements) {
+      add(tets_.nodes(e), 1.0);
+    }
+    for (const TetNodes& nodes : fresh) {
+      add(nodes, -1.0);
+    }
+    return std::abs(volume) <= kRounding * sum;
   }
 
   /// A node beside a bad element, most often one that lies flat on the
@@ -363,6 +415,11 @@ class Improver {
     std::vector<TetNodes> fresh;
     for (const auto& face : best->faces) {
       fresh.push_back({face[0], face[2], face[1], node});
+    }
+    if (!fills(best->elements, fresh)) {
+      tets_.drop_last_node();
+      settled_.pop_back();
+      return false;
     }
     unsettle(best->elements);
     tets_.replace(best->elements, fresh);

@@ -181,6 +181,15 @@ std::optional<TetEditor::Ring> TetEditor::ring(int a, int b) const {
   return ring;
 }
 
+bool TetEditor::has(std::span<const int> nodes) const {
+  return std::ranges::any_of(star_[nodes[0]], [&](int e) {
+    const auto ids = mesh_.element(e);
+    return std::ranges::all_of(nodes, [&](int node) {
+      return std::ranges::find(ids, node) != ids.end();
+    });
+  });
+}
+
 int TetEditor::neighbour(int e, int corner) const {
   const TetNodes ids = nodes(e);
   const auto& face = kTetFaces[corner];

@@ -54,6 +54,11 @@ class TetEditor {
   };
   std::optional<Ring> ring(int a, int b) const;
 
+  /// Whether some element has all of these nodes. An exchange that makes an
+  /// edge or face anew where elements have it already, as those may that lie
+  /// over each other, would hang together what does not.
+  bool has(std::span<const int> nodes) const;
+
   /// The element on the other side of the face opposite to `corner` of `e`;
   /// -1 where that is the surface.
   int neighbour(int e, int corner) const;

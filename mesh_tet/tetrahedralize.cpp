@@ -129,19 +129,21 @@ std::string find_fault(const SurfaceMesh& surface, const Frame& frame,
   if (fault.empty()) {
     fault = take_nodes(surface, frame, output, mesh);
   }
+  // Improving takes for granted that elements fill space once.
+  if (fault.empty()) {
+    fault = attach_surface(surface, mesh);
+  }
   if (!fault.empty()) {
     return fault;
   }
   result.quality = tet_quality(mesh);
   if (is_poor(result.quality, options)) {
-    put_faces(surface, mesh);
-    mesh.element_region.assign(mesh.element_count(), 0);
     improve_tets(mesh, static_cast<int>(surface.points.size()),
                  {.below_deg = std::max(options.improve_below_deg,
                                         options.bounds.min_dihedral_deg)});
     result.quality = tet_quality(mesh);
+    fault = attach_surface(surface, mesh);
   }
-  fault = attach_surface(surface, mesh);
   return fault.empty() ? check_volumes(mesh, fit) : fault;
 }
 

@@ -48,6 +48,8 @@ constexpr double kRoundingOfMerit = 1e-13;
 // violation.
 constexpr double kWorthIt = 1e-3;
 constexpr int kPatience = 12;
+// So it does where constraints stay missed by more than this x their scale.
+constexpr double kMissedByMuch = 1e-2;
 
 // By how much each side is missed, >= 0.
 VectorX misses(const VectorX& values, const std::vector<char>& equation) {
@@ -482,7 +484,7 @@ bool TrustRegion::worth_going_on() {
   }
   const int since = evaluator_.evaluations() - gained_at_;
   const bool held_up =
-      !evaluator_.best_is_feasible() ||
+      evaluator_.best_violation() > kMissedByMuch ||
       2 * (evaluator_.failed_evaluations() - failed_at_gain_) >= since;
   return !held_up || since <= kPatience + static_cast<int>(ranges_.size());
 }
@@ -500,9 +502,9 @@ SearchResult TrustRegion::run(const VectorX& start) {
   while (true) {
     if (!worth_going_on()) {
       result.finished = false;
-      result.message = evaluator_.best_is_feasible()
-                           ? "only designs that cannot be evaluated lie ahead"
-                           : "what is missed comes no nearer to its bounds";
+      result.message = evaluator_.best_violation() > kMissedByMuch
+                           ? "what is missed comes no nearer to its bounds"
+                           : "only designs that cannot be evaluated lie ahead";
       break;
     }
     const std::optional<Proposal> proposal = propose(centre_.sides);

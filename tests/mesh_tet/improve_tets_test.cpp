@@ -1,7 +1,9 @@
 #include "mesh_tet/improve_tets.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -40,6 +42,69 @@ TEST(ImproveTets, MovesADisplacedNodeBack) {
   EXPECT_GT(mesh_tet::tet_quality(mesh).min_dihedral_deg, 2.0 * poor);
   for (int n = 0; n < last; ++n) {
     EXPECT_EQ(mesh.nodes[n], straight[n]);
+  }
+}
+
+/// A brick of cells whose inner nodes, numbered last, are moved by up to
+/// `amount` x a cell.
+TetMesh shaken_brick(int cells, double amount, unsigned seed, int& fixed) {
+  TetMesh mesh = shapes::brick(Vec3::Ones(), cells, cells, cells);
+  std::vector<int> order;
+  for (const bool inner : {false, true}) {
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+      const Vec3& p = mesh.nodes[n];
+      const bool inside = p.minCoeff() > 1e-9 && p.maxCoeff() < 1.0 - 1e-9;
+      if (inside == inner) {
+        order.push_back(static_cast<int>(n));
+      }
+    }
+    fixed = inner ? fixed : static_cast<int>(order.size());
+  }
+  std::vector<int> number(order.size());
+  Points nodes(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    number[order[k]] = static_cast<int>(k);
+    nodes[k] = mesh.nodes[order[k]];
+  }
+  for (std::vector<int>* ids : {&mesh.elements, &mesh.faces}) {
+    for (int& id : *ids) {
+      id = number[id];
+    }
+  }
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> move(-amount / cells, amount / cells);
+  for (std::size_t k = fixed; k < nodes.size(); ++k) {
+    nodes[k] += Vec3(move(random), move(random), move(random));
+  }
+  mesh.nodes = nodes;
+  return mesh;
+}
+
+// Elements turned inside out come from rounding; whatever is exchanged for
+// them, elements stay elements and fill the same space.
+TEST(ImproveTets, ElementsWithoutVolumeAreNotMultiplied) {
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    int fixed = 0;
+    TetMesh mesh = shaken_brick(3 + seed % 2, 0.6 + 0.02 * seed, seed, fixed);
+    int inverted = 0;
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      inverted += corner_volume(mesh, e) <= 0.0 ? 1 : 0;
+    }
+    ASSERT_GT(inverted, 0) << seed;
+    mesh_tet::improve_tets(mesh, fixed, {.below_deg = 15.0});
+    double volume = 0.0;
+    std::set<std::array<int, 4>> seen;
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const auto ids = mesh.element(e);
+      std::array<int, 4> sorted = {ids[0], ids[1], ids[2], ids[3]};
+      std::sort(sorted.begin(), sorted.end());
+      ASSERT_EQ(std::adjacent_find(sorted.begin(), sorted.end()), sorted.end())
+          << seed;
+      ASSERT_TRUE(seen.insert(sorted).second) << seed;
+      volume += corner_volume(mesh, e);
+    }
+    // Nodes of overlapping elements may go far: sums of large volumes.
+    EXPECT_NEAR(volume, 1.0, 1e-6) << seed;
   }
 }
 

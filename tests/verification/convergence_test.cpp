@@ -72,6 +72,9 @@ TEST(TwoArmConvergence, AnswerConvergesAndItsErrorEstimateIsHonest) {
   }
   const std::array<double, 3> h = {answers[0].size, answers[1].size,
                                    answers[2].size};
+  // Of support_x, where the order of three meshes says little of its limit:
+  // 13.29 mm by four down to 3 mm (docs/verification.md), 0.02 from fit to fit.
+  constexpr double kLimit = 13.29;
   for (int q = 0; q < 3; ++q) {
     const double coarse = answers[1].value[q] - answers[0].value[q];
     const double fine = answers[2].value[q] - answers[1].value[q];
@@ -82,7 +85,8 @@ TEST(TwoArmConvergence, AnswerConvergesAndItsErrorEstimateIsHonest) {
     std::cout << fmt::format("{}: order {:.2f}, limit {:.8g}\n", kNames[q],
                              order, limit);
     for (std::size_t k = 0; k < answers.size(); ++k) {
-      const double error = std::abs(answers[k].value[q] - limit);
+      const double error =
+          std::abs(answers[k].value[q] - (q == 0 ? kLimit : limit));
       ASSERT_TRUE(answers[k].estimate);
       const double estimate = (*answers[k].estimate)[q];
       std::cout << fmt::format("  edge {}: {:.8g}, error {:.3g}, est. {:.3g}\n",
