@@ -26,9 +26,6 @@ constexpr double kUnseenOrder = 0.7;
 // by less.
 constexpr double kNoTrend = 0.1;
 constexpr double kSafety = 1.5;
-// Meshes that agree so far cut the part alike (the least number of facets on a
-// rim, plane faces): they tell nothing of its error.
-constexpr double kAlike = 1e-12;
 // Films show 2 (docs/verification.md). Their coarsest model, of few edges
 // around a rim, may be far off: the change to the nearer one counts.
 constexpr double kLeastFilmOrder = 1.0;

@@ -80,10 +80,8 @@ void add_films(const case_data::Case& input, const VectorX& design,
   }
 }
 
-/// Coarser meshes on which every figure is that of the first cut the part
-/// alike, by the least number of facets on its rims: they tell nothing.
+/// Every figure of the coarser meshes is that of the first.
 bool tell_nothing(const MeshSequence& meshes) {
-  constexpr double kAlike = 1e-12;
   for (std::size_t m = 1; m < kFinerMesh; ++m) {
     const VectorX& found = meshes.responses[m];
     for (Eigen::Index r = 0; r < found.size(); ++r) {

@@ -19,6 +19,10 @@ inline constexpr std::array<double, 4> kEdgeFactors = {
     1.0, 1.4142135623730951, 2.0, 0.70710678118654752};
 inline constexpr std::size_t kFinerMesh = 3;
 
+/// Meshes whose figures differ by less, relative, cut the part alike (the least
+/// number of facets on a rim, plane faces): they tell nothing of its error.
+inline constexpr double kAlike = 1e-12;
+
 struct MeshSequence {
   /// By mesh, one each in the case's order; empty: that model failed, or was
   /// not made.

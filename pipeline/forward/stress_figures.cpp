@@ -172,7 +172,7 @@ std::string stress_text(const std::vector<StressFigures>& figures,
     text += fmt::format("  peak stress, {:<8} {}", f.load_case,
                         quantity_text(f.max_von_mises, units.pressure));
     if (std::isfinite(f.peak_error)) {
-      text += "  +- " + quantity_text(f.peak_error, units.pressure, 2);
+      text += "  +- " + quantity_text(f.peak_error, units.pressure, 3);
     }
     text += fmt::format(" at ({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z());
     if (f.safety) {
