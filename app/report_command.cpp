@@ -44,14 +44,15 @@ void redraw_pictures(const fs::path& folder, Monitor& monitor) {
   const case_data::Case input = store::restore_case(store.meta());
   const case_data::EvaluatedCase inputs = case_data::evaluate(
       input, store::answer_of_run(input, store.all(), folder));
-  std::vector<picture::PictureJob> jobs = output::stored_run_pictures(
+  const std::vector<picture::PictureJob> jobs = output::stored_run_pictures(
       input, inputs, stored_worst_case(folder), folder);
   std::vector<std::string> names;
+  names.reserve(jobs.size());
   for (const picture::PictureJob& job : jobs) {
     names.push_back(fs::path(job.output).filename().string());
   }
   results::claim_files(folder, names);
-  warn(picture::render_pictures(std::move(jobs), {.monitor = &monitor}));
+  warn(picture::render_pictures(jobs, {.monitor = &monitor}));
 }
 
 }  // namespace
