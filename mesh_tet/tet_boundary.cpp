@@ -205,8 +205,9 @@ std::string fill_regions(const SurfaceMesh& surface, RegionFiller& filler,
 
 }  // namespace
 
-void put_faces(const SurfaceMesh& surface, TetMesh& mesh) {
+std::string attach_surface(const SurfaceMesh& surface, TetMesh& mesh) {
   const std::size_t count = surface.facets.size();
+  const bool bodies = !surface.facet_bodies.empty();
   mesh.labels = surface.labels;
   mesh.face_label = surface.facet_label;
   mesh.faces.resize(3 * count);
@@ -214,12 +215,6 @@ void put_faces(const SurfaceMesh& surface, TetMesh& mesh) {
     std::copy(surface.facets[f].begin(), surface.facets[f].end(),
               mesh.faces.begin() + 3 * static_cast<std::ptrdiff_t>(f));
   }
-}
-
-std::string attach_surface(const SurfaceMesh& surface, TetMesh& mesh) {
-  const std::size_t count = surface.facets.size();
-  const bool bodies = !surface.facet_bodies.empty();
-  put_faces(surface, mesh);
   mesh.face_element.assign(count, -1);
   mesh.face_front.assign(bodies ? count : 0, -1);
   std::string problem;

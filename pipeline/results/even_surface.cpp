@@ -191,7 +191,6 @@ std::vector<std::vector<int>> labels_at(const SurfaceMesh& mesh) {
 /// Points onto their faces and lines, but for those that would turn a facet.
 void put_on_shape(films::FilmComplex& complex, const PartShape& shape) {
   SurfaceMesh& mesh = complex.mesh;
-  const Points before = mesh.points;
   const SurfaceMesh old = mesh;
   const std::vector<std::vector<int>> labels = labels_at(mesh);
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
@@ -211,8 +210,8 @@ void put_on_shape(films::FilmComplex& complex, const PartShape& shape) {
         continue;
       }
       for (const int v : mesh.facets[f]) {
-        turned = turned || mesh.points[v] != before[v];
-        mesh.points[v] = before[v];
+        turned = turned || mesh.points[v] != old.points[v];
+        mesh.points[v] = old.points[v];
       }
     }
   }
