@@ -41,11 +41,17 @@ std::string doubt_text(const DoubtedMargin& margin) {
 }
 
 double raised_bound(const DoubtedMargin& margin, double lower) {
+  // The error falls as the margin grows: far from the collapse another mesh
+  // moves the film less. A wild one must not send the study to designs of no
+  // use.
   constexpr double kAboveError = 1.25;
-  constexpr double kRaise = 1.5;
+  constexpr double kLeastRaise = 1.25;
+  constexpr double kMostRaise = 1.5;
+  const double held = std::max(margin.value, lower);
   return std::isfinite(margin.error)
-             ? kAboveError * std::max(margin.error, lower)
-             : kRaise * std::max(margin.value, lower);
+             ? std::clamp(kAboveError * margin.error, kLeastRaise * held,
+                          kMostRaise * held)
+             : kMostRaise * held;
 }
 
 }  // namespace meniscus::accuracy

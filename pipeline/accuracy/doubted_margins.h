@@ -31,8 +31,8 @@ std::vector<DoubtedMargin> doubted_margins(const case_data::Case& input,
 std::string doubt_text(const DoubtedMargin& margin);
 
 /// What its bound is raised to, from `lower` > 0, for the search to go on with:
-/// above the error by a quarter, or half as much again where the film is on no
-/// other mesh.
+/// above the error by a quarter, but by a quarter at least and by half at most;
+/// by half where the film is on no other mesh.
 double raised_bound(const DoubtedMargin& margin, double lower);
 
 }  // namespace meniscus::accuracy

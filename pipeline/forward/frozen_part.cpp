@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,10 @@ namespace {
 
 // TetGen now and then leaves a flat element; another edge, and it does not.
 constexpr std::array<double, 3> kEdgeFactors = {1.0, 1.1, 0.9};
+
+// Rise of an edge's middle over its length, from which its facets are halved:
+// that of an arc of 50 degrees.
+constexpr double kTightRise = 0.11;
 
 const walls::ThickWall& first_with_findings(const walls::WallModel& walls) {
   return *std::find_if(
@@ -66,6 +71,36 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
   }
   meter.add_to(start.seconds.film, start.operations.film);
   return !start.failure;
+}
+
+/// Marks facets that span so much of the film's curvature that their elements
+/// would fold at the next design.
+std::vector<char> tight_facets(const case_data::EvaluatedCase& inputs,
+                               const FrozenPart& part) {
+  const QuadraticSurface surface =
+      part.surface(inputs, part.film->reference().points);
+  const Points& points = surface.base.points;
+  std::vector<char> tight;
+  tight.reserve(surface.facet_edges.size());
+  for (const Triangle& edges : surface.facet_edges) {
+    tight.push_back(std::any_of(edges.begin(), edges.end(), [&](int i) {
+      const auto [a, b] = surface.edges[i];
+      const Vec3 rise = surface.mid[i] - 0.5 * (points[a] + points[b]);
+      return rise.norm() > kTightRise * (points[b] - points[a]).norm();
+    }));
+  }
+  return tight;
+}
+
+void split_facets(const std::vector<char>& marked, FrozenPart& part) {
+  if (std::find(marked.begin(), marked.end(), 1) == marked.end()) {
+    return;
+  }
+  if (part.walls) {
+    part.walls->split_facets(marked);
+  } else {
+    part.film->split_facets(marked);
+  }
 }
 
 bool fill_surface(const case_data::EvaluatedCase& inputs,
@@ -156,11 +191,10 @@ bool refine_mesh(const case_data::EvaluatedCase& inputs,
                  FrozenPart& part) {
   const double edge = mean_edge_length(
       part.surface(inputs, part.film->reference().points).base);
-  if (part.walls) {
-    part.walls->split_facets(plan.split);
-  } else {
-    part.film->split_facets(plan.split);
-  }
+  std::vector<char> split = tight_facets(inputs, part);
+  std::transform(split.begin(), split.end(), plan.split.begin(), split.begin(),
+                 std::bit_or<char>());
+  split_facets(split, part);
   std::optional<Failure>& failure = part.start.failure;
   for (const double factor : kEdgeFactors) {
     failure.reset();
@@ -212,8 +246,13 @@ Monitor& monitor_of(const ForwardModelOptions& options) {
 bool film_and_mesh(const case_data::EvaluatedCase& inputs,
                    const ForwardModelOptions& options, FrozenPart& part) {
   Monitor& monitor = monitor_of(options);
-  return freeze_film(inputs, options, monitor, part) &&
-         fill_surface(inputs, {.monitor = &monitor}, monitor, part);
+  if (!freeze_film(inputs, options, monitor, part)) {
+    return false;
+  }
+  if (!part.input.analysis.adapt) {  // else with the facets that err
+    split_facets(tight_facets(inputs, part), part);
+  }
+  return fill_surface(inputs, {.monitor = &monitor}, monitor, part);
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ TableSpec study_table() {
         "two; no limit when left out"},
        {"refreeze", K::Flag, D::None, false,
         "of match and minimize: where the frozen mesh no longer follows, "
-        "freeze a new model at the best design and go on from there, three "
+        "freeze a new model at the best design and go on from there, ten "
         "times at most; true when left out"}}};
 }
 

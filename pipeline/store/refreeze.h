@@ -23,7 +23,7 @@ struct Refreeze {
                                            // is frozen at another
 };
 
-inline constexpr int kMostRefreezes = 3;
+inline constexpr int kMostRefreezes = 10;
 
 /// How the database names a model: "frozen at evaluation 12".
 std::string refrozen_model(int evaluation);

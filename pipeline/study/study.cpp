@@ -35,9 +35,9 @@ namespace {
 // under way is given up.
 constexpr double kLateness = 0.5;
 
-// Bounds of margins to collapse are raised above their errors so often, by a
-// quarter and more; a search that ends so near to one keeps the margin.
-constexpr int kMostRaises = 3;
+// Bounds of margins to collapse are raised towards their errors so often, to
+// half as much again at most; a search that ends so near to one keeps the margin.
+constexpr int kMostRaises = 5;
 constexpr double kRaisedBoundMissed = 1e-2;
 
 /// With the limit and its monitor in place of the caller's.

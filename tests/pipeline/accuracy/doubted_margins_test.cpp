@@ -56,6 +56,10 @@ TEST(DoubtedMargins, AreHeldAboveTheirErrorAndTheirBound) {
   const accuracy::DoubtedMargin known{.value = 2e-4, .error = 3e-4};
   EXPECT_GT(accuracy::raised_bound(known, 1e-4), known.error);
   EXPECT_GT(accuracy::raised_bound(known, 5e-4), 5e-4);
+  // A wild error sends no study away at once.
+  accuracy::DoubtedMargin wild = known;
+  wild.error = 100.0 * wild.value;
+  EXPECT_DOUBLE_EQ(accuracy::raised_bound(wild, 1e-4), 1.5 * wild.value);
   const accuracy::DoubtedMargin lost{.value = 2e-4, .error = kNaN};
   EXPECT_GT(accuracy::raised_bound(lost, 1e-4), lost.value);
   EXPECT_LT(accuracy::raised_bound(lost, 1e-4), kInfinity);
