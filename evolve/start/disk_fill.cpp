@@ -36,6 +36,8 @@ std::vector<Vec2> flattened(const Points& points, const Points& rim) {
   return flat;
 }
 
+constexpr double kOnLine = 1e-13;  // x the squared extent
+
 // Cuts the best-shaped ear first; ears' shapes are kept and only the two
 // neighbours of a cut are looked at again. The ring may visit a point twice:
 // where a bridge to a hole begins and ends.
@@ -44,6 +46,11 @@ class EarClipper {
   EarClipper(const Points& points, const std::vector<Vec2>& flat,
              std::vector<int> ring)
       : points_(points), flat_(flat), ring_(std::move(ring)) {
+    Eigen::AlignedBox2d box;
+    for (const Vec2& p : flat_) {
+      box.extend(p);
+    }
+    on_line_ = kOnLine * box.diagonal().squaredNorm();
     const int n = static_cast<int>(ring_.size());
     for (int i = 0; i < n; ++i) {
       next_.push_back((i + 1) % n);
@@ -94,7 +101,7 @@ class EarClipper {
     const Vec2& pa = flat_[ring_[a]];
     const Vec2& pi = flat_[ring_[i]];
     const Vec2& pb = flat_[ring_[b]];
-    if (!(cross2(pi - pa, pb - pi) > 0.0)) {
+    if (!(cross2(pi - pa, pb - pi) > on_line_)) {
       return 0.0;
     }
     for (int v = next_[b]; v != a; v = next_[v]) {
@@ -103,8 +110,10 @@ class EarClipper {
         continue;
       }
       const Vec2& p = flat_[ring_[v]];
-      if (cross2(pi - pa, p - pa) >= 0.0 && cross2(pb - pi, p - pi) >= 0.0 &&
-          cross2(pa - pb, p - pb) >= 0.0) {
+      // Points on the ear's sides count: what is left must not be a line.
+      if (cross2(pi - pa, p - pa) >= -on_line_ &&
+          cross2(pb - pi, p - pi) >= -on_line_ &&
+          cross2(pa - pb, p - pb) >= -on_line_) {
         return 0.0;
       }
     }
@@ -118,6 +127,7 @@ class EarClipper {
   std::vector<int> next_;
   std::vector<int> previous_;
   std::vector<double> shape_;
+  double on_line_ = 0.0;  // cross products of points in line, but for rounding
 };
 
 /// Joins holes to the ring around them by bridges that go there and back.

@@ -29,16 +29,28 @@ double min_dihedral_of(const EvaluationRecord& record) {
                                                      : 0.0;
 }
 
-/// The designs that inverted elements of the stage's model.
-std::vector<const EvaluationRecord*> inverted_of(const FrozenStage& stage) {
-  std::vector<const EvaluationRecord*> inverted;
+/// The designs that were beyond the reach of the stage's model.
+std::vector<const EvaluationRecord*> beyond_of(const FrozenStage& stage) {
+  std::vector<const EvaluationRecord*> beyond;
   for (const EvaluationRecord& record : stage.records) {
-    if (record.model == stage.model && record.failure &&
-        record.failure->kind == FailureKind::ElementsInverted) {
-      inverted.push_back(&record);
+    if (record.model == stage.model && is_beyond_reach(record)) {
+      beyond.push_back(&record);
     }
   }
-  return inverted;
+  return beyond;
+}
+
+/// What they do, said of `count` of them.
+std::string beyond_text(const std::vector<const EvaluationRecord*>& beyond,
+                        std::ptrdiff_t count) {
+  const bool all_invert = std::all_of(
+      beyond.begin(), beyond.end(), [](const EvaluationRecord* record) {
+        return record->failure->kind == FailureKind::ElementsInverted;
+      });
+  const char* one = count == 1 ? "s" : "";
+  return all_invert ? fmt::format("invert{} elements", one)
+                    : fmt::format("invert{} elements or {} not solved", one,
+                                  count == 1 ? "is" : "are");
 }
 
 /// Why the model no longer serves at `best`; empty: it does.
@@ -50,27 +62,28 @@ std::string reason_at(const FrozenStage& stage, const EvaluationRecord& best) {
         "that of the frozen mesh {:.1f}",
         angle, stage.min_dihedral_deg);
   }
-  const std::vector<const EvaluationRecord*> inverted = inverted_of(stage);
+  const std::vector<const EvaluationRecord*> beyond = beyond_of(stage);
   const auto near = std::count_if(
-      inverted.begin(), inverted.end(), [&](const EvaluationRecord* record) {
+      beyond.begin(), beyond.end(), [&](const EvaluationRecord* record) {
         return design_distance(stage.input, record->inputs, best.inputs) <=
                kNear;
       });
-  if (stage.converged || inverted.empty()) {
+  if (stage.converged || beyond.empty()) {
     return "";
   }
   if (near > 0) {
-    return fmt::format("{} design{} near the best one invert{} elements", near,
-                       near == 1 ? "" : "s", near == 1 ? "s" : "");
+    return fmt::format("{} design{} near the best one {}", near,
+                       near == 1 ? "" : "s", beyond_text(beyond, near));
   }
-  return std::ssize(inverted) >= kMostInverted
-             ? fmt::format("{} designs invert elements", inverted.size())
+  return std::ssize(beyond) >= kMostBeyond
+             ? fmt::format("{} designs {}", beyond.size(),
+                           beyond_text(beyond, std::ssize(beyond)))
              : "";
 }
 
 /// Of the designs that answered off the freeze, the one nearest to one that
-/// inverted elements: from there the search can go on towards it.
-const EvaluationRecord* nearest_to_inverted(const FrozenStage& stage) {
+/// was beyond reach: from there the search can go on towards it.
+const EvaluationRecord* nearest_to_beyond(const FrozenStage& stage) {
   const VectorX frozen = case_data::initial_design(stage.input);
   const EvaluationRecord* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
@@ -79,9 +92,9 @@ const EvaluationRecord* nearest_to_inverted(const FrozenStage& stage) {
         design_distance(stage.input, record.inputs, frozen) <= kSame) {
       continue;
     }
-    for (const EvaluationRecord* inverted : inverted_of(stage)) {
+    for (const EvaluationRecord* beyond : beyond_of(stage)) {
       const double distance =
-          design_distance(stage.input, record.inputs, inverted->inputs);
+          design_distance(stage.input, record.inputs, beyond->inputs);
       if (distance < least) {
         least = distance;
         nearest = &record;
@@ -99,6 +112,14 @@ std::string refrozen_model(int evaluation) {
 
 bool is_study_model(const std::string& model) {
   return model == kStudyModel || model.rfind(kRefrozen, 0) == 0;
+}
+
+bool is_beyond_reach(const EvaluationRecord& record) {
+  // Iterations have the factor of the freeze's stiffness: they too fail far
+  // from it.
+  return record.failure &&
+         (record.failure->kind == FailureKind::ElementsInverted ||
+          record.failure->kind == FailureKind::SolverFailed);
 }
 
 int count_of_model(const std::vector<EvaluationRecord>& records,
@@ -178,7 +199,7 @@ std::optional<Refreeze> find_refreeze(const FrozenStage& stage) {
                   .responses = best->responses};
   if (design_distance(stage.input, stage.best,
                       case_data::initial_design(stage.input)) <= kSame) {
-    const EvaluationRecord* there = nearest_to_inverted(stage);
+    const EvaluationRecord* there = nearest_to_beyond(stage);
     if (there == nullptr) {
       return std::nullopt;
     }

@@ -57,15 +57,18 @@ struct FrozenStage {
   bool converged = false;
 };
 
-/// Designs that invert elements, after which a search is ended early for a new
-/// model.
-inline constexpr int kMostInverted = 6;
+/// Whether a design failed because of its distance from the model's: its
+/// elements invert, or the solver does not converge.
+bool is_beyond_reach(const EvaluationRecord& record);
+
+/// Designs beyond reach, after which a search is ended early for a new model.
+inline constexpr int kMostBeyond = 6;
 
 /// Where the study should go on with a new model, shift not filled in: at its
 /// best design when the elements there have become flat, when so many designs
-/// inverted elements, or when the search ended beside some that did. Where the
+/// were beyond reach, or when the search ended beside some that were. Where the
 /// model is frozen at that very design the new one is frozen at the design that
-/// answered nearest to those that did not, and the study goes on from its best.
+/// answered nearest to those beyond, and the study goes on from its best.
 /// Nothing where no other design has answered.
 std::optional<Refreeze> find_refreeze(const FrozenStage& stage);
 

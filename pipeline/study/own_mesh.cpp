@@ -26,6 +26,18 @@ OwnMesh point_on_own_mesh(const case_data::Case& input,
           .kept = all_kept(constraints)};
 }
 
+/// Found on a mesh dragged to it, and on no other: no answer to build on.
+StudyOutcome without_own_mesh(StudyOutcome found) {
+  if (found.status == RunStatus::Converged) {
+    found.status = RunStatus::Stopped;
+  }
+  found.message +=
+      ". No mesh can be made at this design, so that nothing proves its "
+      "figures: they are those of a mesh that followed it there. Narrow the "
+      "bounds, or add a constraint that keeps away from it";
+  return found;
+}
+
 }  // namespace
 
 void judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
@@ -43,6 +55,7 @@ void judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
       return;
     }
     if (!models.go_on_at_answer()) {
+      models.stage()->leave(without_own_mesh(found));
       return;
     }
     StudyStage& stage = *models.stage();
@@ -95,13 +108,18 @@ std::vector<std::string> judge_front(StudyModels& models,
       look(point, start->responses);
     }
   }
-  if (models.has_dragged_answer() && models.go_on_at_answer()) {
+  if (!models.has_dragged_answer()) {
+    return left_out;
+  }
+  if (models.go_on_at_answer()) {
     for (FrontPoint& point : found.front->points) {
       if (point.design == found.best) {
         look(point, models.stage()->start().responses);
       }
     }
     models.stage()->judge(found, models.input());
+  } else {
+    models.stage()->leave(without_own_mesh(std::move(found)));
   }
   return left_out;
 }

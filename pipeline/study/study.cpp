@@ -36,7 +36,8 @@ namespace {
 constexpr double kLateness = 0.5;
 
 // Bounds of margins to collapse are raised towards their errors so often, to
-// half as much again at most; a search that ends so near to one keeps the margin.
+// half as much again at most; a search that ends so near to one keeps the
+// margin.
 constexpr int kMostRaises = 5;
 constexpr double kRaisedBoundMissed = 1e-2;
 

@@ -92,14 +92,11 @@ void StudyStage::count(const store::EvaluationRecord& record) {
   }
 }
 
-/// Ends the study after so many designs that invert elements, as soon as there
-/// is a design to freeze another model at.
-void StudyStage::stop_if_inverted(const store::EvaluationRecord& record) {
-  inverted_ +=
-      record.failure && record.failure->kind == FailureKind::ElementsInverted
-          ? 1
-          : 0;
-  if (inverted_ < store::kMostInverted) {
+/// Ends the study after so many designs beyond the model's reach, as soon as
+/// there is a design to freeze another model at.
+void StudyStage::stop_if_beyond(const store::EvaluationRecord& record) {
+  beyond_ += store::is_beyond_reach(record) ? 1 : 0;
+  if (beyond_ < store::kMostBeyond) {
     return;
   }
   const VectorX best =
@@ -113,11 +110,11 @@ void StudyStage::conduct(Leave leave, double reach) {
   const VectorX start = begin();
   evaluator_.reset_counts();  // the kinds of study ask for the start again
   left_early_ = false;
-  inverted_ = 0;
+  beyond_ = 0;
   evaluator_.set_observer([this, leave](const store::EvaluationRecord& record) {
     count(record);
     if (leave == Leave::Early) {
-      stop_if_inverted(record);
+      stop_if_beyond(record);
     }
   });
   try {

@@ -76,7 +76,7 @@ class StudyStage {
   VectorX begin();
 
   void count(const store::EvaluationRecord& record);
-  void stop_if_inverted(const store::EvaluationRecord& record);
+  void stop_if_beyond(const store::EvaluationRecord& record);
 
   const case_data::Case& input_;
   const store::StudyStore& store_;
@@ -91,7 +91,7 @@ class StudyStage {
   std::optional<MatchTargets> targets_;
   StudyOutcome outcome_;
   bool left_early_ = false;
-  int inverted_ = 0;  // designs that the study has asked for
+  int beyond_ = 0;  // designs that the study has asked for
 };
 
 /// The same study on a model whose edges are study.coarse_first as long, for

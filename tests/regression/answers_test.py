@@ -82,6 +82,57 @@ kind = "minimize"
 objective = "sink"
 """
 
+WEDGE = """title = "A wedge"
+units = "mm-N-MPa"
+
+[design.high]
+initial = 20
+bounds = [1.3, 30]
+
+[curves.front]
+kind = "polygon"
+points = [[0, 0, 0], [100, 0, 0], [100, 0, "high"]]
+
+[curves.back]
+kind = "polygon"
+points = [[0, 20, 0], [100, 20, 0], [100, 20, "high"]]
+
+[solids.near]
+kind = "cap"
+curve = "front"
+
+[solids.far]
+kind = "cap"
+curve = "back"
+
+[solids.round]
+kind = "sides"
+curves = ["front", "back"]
+
+[bodies.wedge]
+enclosed_by = ["near", "far", "round"]
+material = "steel"
+
+[resolution]
+fea = 12
+
+[materials.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+density = "7850 kg/m3"
+
+[load_cases.pull]
+supports = [{ on = "near", fix = "xyz" }]
+loads = [{ on = "far", force = ["1 N", 0, 0] }]
+
+[responses.mass]
+kind = "mass"
+
+[study]
+kind = "minimize"
+objective = "mass"
+"""
+
 
 class Answers(ProgramTest):
     def case(self, text, name="case.toml"):
@@ -255,6 +306,24 @@ targets = { sway = 0.007 }
         done, out = self.run_case(self.case(text), "out")
         self.expect(done, 3, "no design was found that keeps")
         self.assertLess(self.result(out)["evaluations"], 60)
+
+    def test_an_answer_that_no_mesh_can_be_made_for_is_not_converged(self):
+        """At its lower bound the wedge has an edge of 0.7 degrees: a mesh
+        follows it there, and none can be made there."""
+        done, out = self.run_case(self.case(WEDGE), "out")
+        self.expect(done, 3, "nothing proves its figures")
+        result = self.result(out)
+        self.assertEqual(result["status"], "stopped")
+        self.assertTrue(result["refrozen"])  # from 20 mm it went on as it could
+        self.assertAlmostEqual(result["parameters"]["high"], 1.3, 6)
+
+    def test_slanting_faces_are_filled_at_any_height(self):
+        """Points in line but for rounding are no crossing."""
+        for high in (2.5, 6, 8, 13.7, 21.3, 28.9):
+            text = WEDGE.replace("initial = 20", f"initial = {high}")
+            done, _ = self.run_case(self.case(text), f"at_{high}", "--set",
+                                    "study.kind=analyse")
+            self.expect(done, 0, "analysed")
 
 
 if __name__ == "__main__":
