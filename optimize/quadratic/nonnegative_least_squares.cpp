@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "core/heed_stop.h"
 #include "core/math/dense.h"
 
 namespace meniscus::quadratic {
@@ -64,6 +65,7 @@ VectorX nonnegative_least_squares(const Eigen::MatrixXd& A, const VectorX& b) {
   std::vector<Eigen::Index> used;
   std::vector<bool> barred(static_cast<std::size_t>(A.cols()), false);
   for (Eigen::Index round = 0; round < 3 * A.cols() + 10; ++round) {
+    heed_stop("optimize");
     const VectorX gain = A.transpose() * (b - A * x);
     Eigen::Index next = -1;
     for (Eigen::Index j = 0; j < A.cols(); ++j) {

@@ -79,6 +79,9 @@ std::vector<char> tight_facets(const case_data::EvaluatedCase& inputs,
                                const FrozenPart& part) {
   const QuadraticSurface surface =
       part.surface(inputs, part.film->reference().points);
+  if (part.walls) {  // thin: their rims turn within one facet
+    return std::vector<char>(surface.base.facets.size(), 0);
+  }
   const Points& points = surface.base.points;
   std::vector<char> tight;
   tight.reserve(surface.facet_edges.size());

@@ -41,6 +41,8 @@ Json object(const FamilyRow::Numbers& numbers) {
   return json;
 }
 
+constexpr const char* kError = "_error";
+
 std::vector<std::string> names_of(const FamilyRow::Numbers& numbers) {
   std::vector<std::string> names;
   names.reserve(numbers.size());
@@ -72,13 +74,50 @@ std::vector<std::string> columns_of(const std::vector<FamilyRow>& rows,
   return columns;
 }
 
-/// Six digits of what is a number.
-std::string shortened(const std::string& cell) {
+/// `digits` of what is a number.
+std::string shortened(const std::string& cell, int digits = 6) {
   double value = 0.0;
   const char* end = cell.data() + cell.size();
   const auto [at, error] = std::from_chars(cell.data(), end, value);
-  return error == std::errc() && at == end ? fmt::format("{:.6g}", value)
-                                           : cell;
+  return error == std::errc() && at == end
+             ? fmt::format("{:.{}g}", value, digits)
+             : cell;
+}
+
+/// Puts each NAME_error column, its unit in the head or not, beside NAME's.
+void join_errors(std::vector<files::TextRow>& table) {
+  for (std::size_t e = 0; !table.empty() && e < table[0].size();) {
+    const std::size_t end = table[0][e].find(kError);
+    const std::string name = table[0][e].substr(0, end);
+    const auto of = std::find_if(
+        table[0].begin(), table[0].end(), [&](const std::string& head) {
+          return head == name || head.starts_with(name + " [");
+        });
+    if (end == std::string::npos || of == table[0].end()) {
+      ++e;
+      continue;
+    }
+    const auto value = static_cast<std::size_t>(of - table[0].begin());
+    for (std::size_t r = 0; r < table.size(); ++r) {
+      if (e >= table[r].size()) {
+        continue;
+      }
+      if (r > 0 && !table[r][e].empty()) {
+        table[r][value] += " +- " + shortened(table[r][e], 2);
+      }
+      table[r].erase(table[r].begin() + static_cast<std::ptrdiff_t>(e));
+    }
+  }
+}
+
+std::vector<std::string> missed_by(const FamilyRow& row) {
+  std::vector<std::string> missed;
+  for (const study::Constraint& constraint : row.constraints) {
+    if (!constraint.satisfied) {
+      missed.push_back(constraint.name);
+    }
+  }
+  return missed;
 }
 
 }  // namespace
@@ -97,6 +136,22 @@ FamilyRow family_row(const case_data::Case& member, const Json& result) {
   if (!row.responses.empty()) {
     row.design =
         numbers_of(result, "parameters", case_data::design_names(member));
+  }
+  for (const auto& error : numbers_of(result, "response_errors",
+                                      case_data::response_names(member))) {
+    if (std::isfinite(error.second)) {
+      row.errors.push_back(error);
+    }
+  }
+  for (const auto& [name, value] : row.design) {
+    const auto variable =
+        std::find_if(member.design.begin(), member.design.end(),
+                     [&](const auto& v) { return v.name == name; });
+    const std::string side =
+        variable == member.design.end() ? "" : bound_reached(*variable, value);
+    if (!side.empty()) {
+      row.at_bound.push_back(fmt::format("{} ({})", name, side));
+    }
   }
   row.objective = number(result.value("objective", Json()));
   const Json constraints = result.value("constraints", Json::object());
@@ -119,18 +174,32 @@ std::string family_csv(const std::vector<FamilyRow>& rows) {
   for (const auto* names : {&parameters, &design, &responses}) {
     head.insert(head.end(), names->begin(), names->end());
   }
-  head.insert(head.end(), {"objective", "evaluations", "seconds", "message"});
+  std::vector<std::string> errors;
+  for (const std::string& name : responses) {
+    if (std::any_of(rows.begin(), rows.end(), [&](const FamilyRow& row) {
+          const auto of = names_of(row.errors);
+          return std::find(of.begin(), of.end(), name) != of.end();
+        })) {
+      errors.push_back(name);
+      head.push_back(name + kError);
+    }
+  }
+  head.insert(head.end(), {"objective", "evaluations", "seconds", "at_bound",
+                           "missed", "message"});
   std::vector<files::TextRow> table = {head};
   for (const FamilyRow& row : rows) {
     files::TextRow cells = {row.name, row.status, row.parent};
     add_cells(row.parameters, parameters, cells);
     add_cells(row.design, design, cells);
     add_cells(row.responses, responses, cells);
+    add_cells(row.errors, errors, cells);
     cells.push_back(row.responses.empty() || std::isnan(row.objective)
                         ? ""
                         : fmt::format("{}", row.objective));
     cells.push_back(std::to_string(row.evaluations));
     cells.push_back(fmt::format("{:.3f}", row.seconds));
+    cells.push_back(fmt::format("{}", fmt::join(row.at_bound, ", ")));
+    cells.push_back(fmt::format("{}", fmt::join(missed_by(row), ", ")));
     cells.push_back(row.message);
     table.push_back(std::move(cells));
   }
@@ -150,11 +219,16 @@ std::string family_table_text(const std::string& csv,
         messages += fmt::format("{}: {}\n", cells[0], message);
       }
       std::transform(cells.begin() + 1, cells.end(), cells.begin() + 1,
-                     shortened);
+                     [](const std::string& cell) { return shortened(cell); });
     }
     table.push_back(std::move(cells));
   }
-  files::show_units(units, table);
+  std::map<std::string, std::string> with_errors = units;
+  for (const auto& [name, unit] : units) {
+    with_errors.emplace(name + kError, unit);
+  }
+  files::show_units(with_errors, table);
+  join_errors(table);
   return table.empty() ? "" : files::aligned_text(table) + messages;
 }
 
@@ -180,6 +254,8 @@ Json family_json(const case_data::Case& family, const FamilyResult& result,
                   {"objective", row.objective},
                   {"constraints", Json::object()},
                   {"responses", object(row.responses)},
+                  {"response_errors", object(row.errors)},
+                  {"at_bound", row.at_bound},
                   {"evaluations", row.evaluations},
                   {"seconds", row.seconds}};
     for (const study::Constraint& c : row.constraints) {

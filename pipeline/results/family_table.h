@@ -24,6 +24,8 @@ struct FamilyRow {
   Numbers parameters;
   Numbers design;     // the best one; empty: none
   Numbers responses;  // there, in the case's units
+  Numbers errors;     // of those that have one: estimated, the same units
+  std::vector<std::string> at_bound;  // design variables, "foot (lower)"
   double objective = 0.0;
   std::vector<study::Constraint> constraints;
   int evaluations = 0;
@@ -44,13 +46,14 @@ struct FamilyResult {
 FamilyRow family_row(const case_data::Case& member,
                      const nlohmann::ordered_json& result);
 
-/// Head line: member, status, parent, each parameter, design variable and
-/// response, then objective, evaluations, seconds, message. Numbers with the
+/// Head line: member, status, parent, each parameter, design variable,
+/// response and NAME_error of those that some member has, then objective,
+/// evaluations, seconds, at_bound, missed (constraints not kept), message. Numbers with the
 /// digits that bring the same double back.
 std::string family_csv(const std::vector<FamilyRow>& rows);
 
-/// The text of family_csv() as columns with six digits; messages of members
-/// that were not sized below. `units`, by name of a response, go into the head
+/// The text of family_csv() as columns with six digits, errors beside what they
+/// are of; messages of members that were not sized below. `units`, by name of a response, go into the head
 /// line.
 std::string family_table_text(
     const std::string& csv,

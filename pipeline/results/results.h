@@ -81,4 +81,8 @@ void write_summary(const case_data::Case& input, const study::RunResult& result,
                    const std::string& program_version,
                    const std::filesystem::path& folder);
 
+/// "lower" or "upper" where a variable stands at a bound, to 1e-5 of its range.
+std::string bound_reached(const case_data::DesignVariable& variable,
+                          double value);
+
 }  // namespace meniscus::results

@@ -25,14 +25,8 @@ std::string with_error(double value, const VectorX& errors, Eigen::Index k,
 
 /// "   at its lower bound" of a variable that a study moved there.
 std::string at_bound(const case_data::DesignVariable& variable, double value) {
-  constexpr double kThere = 1e-5;  // of the range
-  const double near = kThere * (variable.upper - variable.lower);
-  if (!(variable.upper > variable.lower)) {
-    return "";
-  }
-  return value <= variable.lower + near   ? "   at its lower bound"
-         : value >= variable.upper - near ? "   at its upper bound"
-                                          : "";
+  const std::string side = bound_reached(variable, value);
+  return side.empty() ? "" : fmt::format("   at its {} bound", side);
 }
 
 /// Of a variable that the targets of a match do not hold.
@@ -133,6 +127,18 @@ std::string counts_text(const study::RunResult& result) {
 }
 
 }  // namespace
+
+std::string bound_reached(const case_data::DesignVariable& variable,
+                          double value) {
+  constexpr double kThere = 1e-5;  // of the range
+  const double near = kThere * (variable.upper - variable.lower);
+  if (!(variable.upper > variable.lower)) {
+    return "";
+  }
+  return value <= variable.lower + near   ? "lower"
+         : value >= variable.upper - near ? "upper"
+                                          : "";
+}
 
 std::string result_text(const case_data::Case& input,
                         const study::RunResult& result) {

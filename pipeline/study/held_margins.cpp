@@ -20,13 +20,12 @@ bool holds_margins(const case_data::Case& working) {
 }
 
 std::vector<RaisedMargin> raise_margins(const case_data::Case& input,
-                                        const accuracy::MeshSequence& meshes,
+                                        const VectorX& responses,
+                                        const VectorX& errors,
                                         case_data::Case& working) {
-  const VectorX errors =
-      accuracy::bounds_of(accuracy::response_errors(input, meshes, VectorX()));
   std::vector<RaisedMargin> raised;
   for (accuracy::DoubtedMargin& margin :
-       accuracy::doubted_margins(input, meshes.responses[0], errors)) {
+       accuracy::doubted_margins(input, responses, errors)) {
     double& lower = working.study.constraints[margin.constraint].lower;
     if (lower > 0.0) {
       lower = accuracy::raised_bound(margin, lower);

@@ -23,10 +23,12 @@ struct RaisedMargin {
   double lower = 0.0;  // its bound, above the margin's error
 };
 
-/// Raises the bounds in `working` of those margins that the answer's figures on
-/// `meshes` make doubtful.
+/// Raises the bounds in `working` of those margins of an answer that `errors`
+/// (of its responses, not a number where no other mesh has a film) make
+/// doubtful.
 std::vector<RaisedMargin> raise_margins(const case_data::Case& input,
-                                        const accuracy::MeshSequence& meshes,
+                                        const VectorX& responses,
+                                        const VectorX& errors,
                                         case_data::Case& working);
 
 /// A margin of the result that its own error makes nothing is no margin: its

@@ -26,7 +26,8 @@ OwnMesh point_on_own_mesh(const case_data::Case& input,
           .kept = all_kept(constraints)};
 }
 
-/// Found on a mesh dragged to it, and on no other: no answer to build on.
+}  // namespace
+
 StudyOutcome without_own_mesh(StudyOutcome found) {
   if (found.status == RunStatus::Converged) {
     found.status = RunStatus::Stopped;
@@ -38,12 +39,10 @@ StudyOutcome without_own_mesh(StudyOutcome found) {
   return found;
 }
 
-}  // namespace
-
-void judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
+bool judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
   const case_data::StudyEntry& study = models.input().study;
   if (study.kind == case_data::StudyKind::Pareto) {
-    return;
+    return true;
   }
   for (std::size_t round = 0; models.has_dragged_answer(); ++round) {
     const StudyOutcome found = models.stage()->outcome();
@@ -52,21 +51,20 @@ void judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
       models.warn(
           "a limit ended the study: its best design was not evaluated on a "
           "mesh of its own");
-      return;
+      return true;
     }
     if (!models.go_on_at_answer()) {
-      models.stage()->leave(without_own_mesh(found));
-      return;
+      return false;
     }
     StudyStage& stage = *models.stage();
     stage.judge(found, models.input());
     if (study.kind == case_data::StudyKind::Sweep) {
-      return;  // its designs are given: there is nothing to go on with
+      return true;  // its designs are given: there is nothing to go on with
     }
     const bool kept = all_kept(stage.outcome().constraints);
     if (all_kept(found.constraints) == kept || !study.refreeze ||
         models.evaluations_left() <= 0 || round >= kReaches.size()) {
-      return;
+      return true;
     }
     models.log(fmt::format("{} on a mesh of its own{}: the study goes on there",
                            kept ? "kept" : "not kept",
@@ -80,6 +78,7 @@ void judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
       stage.conduct(StudyStage::Leave::Late);
     }
   }
+  return true;
 }
 
 std::vector<std::string> judge_front(StudyModels& models,

@@ -13,8 +13,12 @@ namespace meniscus::study {
 
 /// The answer of a match or a minimum, or the best design of a sweep. Where a
 /// match or a minimum is not kept there, the study goes on from that model.
-/// `limited` says when there is no time for it.
-void judge_answer(StudyModels& models, const DeadlineMonitor& limited);
+/// `limited` says when there is no time for it. False where no mesh of its own
+/// can be made: nothing proves the answer.
+bool judge_answer(StudyModels& models, const DeadlineMonitor& limited);
+
+/// An answer that no mesh proves: it is not converged, and says why.
+StudyOutcome without_own_mesh(StudyOutcome found);
 
 /// Each point of a front, that of the part last: the others tell how much of
 /// the front is the mesh's. Returns what was left out.

@@ -95,7 +95,8 @@ class StudyRun {
   bool study_in_time();
   void keep_best_in_time();
   void conduct_study();
-  bool raise_doubted_margins();
+  std::optional<VectorX> errors_of_margins(bool proven);
+  bool raise_doubted_margins(bool proven);
   void take_outcome();
   void judge_by_own_bounds();
   bool finish_best();
@@ -164,26 +165,44 @@ bool StudyRun::begin() {
   return true;
 }
 
+/// The answer's errors by its figures on other meshes; nothing where there is
+/// no time. Not numbers where the answer is of a film that another mesh has
+/// not.
+std::optional<VectorX> StudyRun::errors_of_margins(bool proven) {
+  const VectorX& best = stage().outcome().best;
+  if (!proven) {
+    return VectorX::Constant(std::ssize(input_.responses),
+                             std::numeric_limits<double>::quiet_NaN());
+  }
+  if (!is_judged(best)) {
+    run_if_time_left("the errors of margins", [&] {
+      judged_ = {stage().model_name(), best, other_meshes(false)};
+    });
+  }
+  if (!is_judged(best)) {
+    return std::nullopt;
+  }
+  return accuracy::bounds_of(
+      accuracy::response_errors(input_, judged_->meshes, VectorX()));
+}
+
 /// True where a margin's bound was raised, for the study to go on with: the
 /// answer's own margin is within the mesh's error of it, so that the film may
-/// be there on this mesh alone.
-bool StudyRun::raise_doubted_margins() {
+/// be there on this mesh alone, or another mesh has none.
+bool StudyRun::raise_doubted_margins(bool proven) {
   const StudyOutcome& outcome = stage().outcome();
   if (!input_.study.refreeze || !options_.estimate_errors ||
       !holds_margins(models_.working()) || !all_kept(outcome.constraints) ||
-      limited_.expired() || models_.evaluations_left() <= 0) {
+      limited_.expired() || models_.evaluations_left() <= 0 ||
+      (!proven && !models_.lost_film())) {
     return false;
   }
-  if (!is_judged(outcome.best)) {
-    run_if_time_left("the errors of margins", [&] {
-      judged_ = {stage().model_name(), outcome.best, other_meshes(false)};
-    });
-    if (!is_judged(outcome.best)) {
-      return false;
-    }
+  const std::optional<VectorX> errors = errors_of_margins(proven);
+  if (!errors) {
+    return false;
   }
-  const std::vector<RaisedMargin> raised =
-      raise_margins(input_, judged_->meshes, models_.working());
+  const std::vector<RaisedMargin> raised = raise_margins(
+      input_, models_.answer().responses, *errors, models_.working());
   for (const auto& [margin, lower] : raised) {
     const std::string doubt = accuracy::doubt_text(margin);
     models_.log(
@@ -211,10 +230,13 @@ void StudyRun::conduct_study() {
   if (stage().stopped_early()) {
     stage().conduct();
   }
-  judge_answer(models_, limited_);
-  for (int k = 0; k < kMostRaises && raise_doubted_margins(); ++k) {
+  bool proven = judge_answer(models_, limited_);
+  for (int k = 0; k < kMostRaises && raise_doubted_margins(proven); ++k) {
     stage().conduct();
-    judge_answer(models_, limited_);
+    proven = judge_answer(models_, limited_);
+  }
+  if (!proven) {
+    stage().leave(without_own_mesh(stage().outcome()));
   }
   for (std::string& point : judge_front(models_, limited_)) {
     left_out_.push_back(std::move(point));

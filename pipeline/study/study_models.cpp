@@ -71,6 +71,10 @@ std::unique_ptr<StudyStage> StudyModels::stage_at(
         input, store_, options_,
         StageModel{.name = name, .reference = reference_});
   });
+  lost_film_ = stage != nullptr && stage->failure() &&
+               (stage->failure()->kind == FailureKind::FilmNotFound ||
+                stage->failure()->kind == FailureKind::FilmPinched ||
+                stage->failure()->kind == FailureKind::FilmUnstable);
   if (stage != nullptr && !stage->failure()) {
     return stage;
   }

@@ -34,6 +34,8 @@ class StudyModels {
   /// Goes on with a model frozen at the stage's answer; false where there is
   /// none.
   bool go_on_at_answer();
+  /// Whether the last model that was wanted has no film at its design.
+  bool lost_film() const { return lost_film_; }
   /// The start of a model that only looks at a design: the study's answer is
   /// not of it. Nothing where it cannot be frozen.
   std::optional<forward::Evaluation> look_at(const VectorX& design,
@@ -95,6 +97,7 @@ class StudyModels {
   forward::StageSeconds earlier_seconds_;
   int earlier_gradients_ = 0;  // of stages before this one
   int earlier_evaluations_ = 0;
+  bool lost_film_ = false;
   std::vector<store::Refreeze> refrozen_;
   std::vector<std::string> warnings_;
 };

@@ -184,6 +184,10 @@ class Family(ProgramTest):
                       "slender (failed)", done.stderr)
         rows = {row["member"]: row for row in self.rows(out)}
         self.assertIn("deflection", rows["weak"]["message"])
+        self.assertIn("deflection", rows["weak"]["missed"])
+        self.assertEqual(rows["good"]["missed"], "")
+        self.assertGreater(float(rows["good"]["mass_error"]), 0)
+        self.assertRegex(done.stdout, r"\d \+- \d")
         self.assertRegex(rows["slender"]["message"], "pinch|unstable|neck")
         self.assertEqual(rows["good"]["status"], "converged")
         self.assertEqual(rows["other"]["status"], "converged")
