@@ -306,7 +306,7 @@ struct StudyEntry {
   std::vector<ConstraintEntry> constraints;
   double tolerance = 1e-3;
   std::string method = "ceres";
-  int max_evaluations = 200;
+  int max_evaluations = 400;
   int earlier_evaluations = 0;     // of models before; the limit is their sum
   double coarse_first = 1.0;       // edges of a first, coarser model; 1: none
   double time_limit = 0.0;         // [s], 0: none

@@ -57,7 +57,13 @@ void CaseProblems::add_text(const std::string& message) {
 }
 
 void CaseProblems::warn(SourceLine line, const std::string& message) {
-  warnings_.push_back({line, with_location(line, "warning: " + message)});
+  Entry entry{line, with_location(line, "warning: " + message)};
+  // What several bodies share is told once.
+  if (std::none_of(warnings_.begin(), warnings_.end(), [&](const Entry& other) {
+        return other.text == entry.text;
+      })) {
+    warnings_.push_back(std::move(entry));
+  }
 }
 
 void CaseProblems::unknown(SourceLine line, const char* what,

@@ -155,11 +155,13 @@ std::string tried_advice(const EvaluatedCase& inputs, const Failure& failure,
   for (const Trial& trial : trials_of(inputs, films)) {
     outer.progress({.stage = "film", .detail = "trying " + trial.what});
     if (stands(trial.system, options.edge, quiet)) {
-      return fmt::format("tried: with {} the film stands{}", trial.what,
-                         in_vain.empty()
-                             ? ""
-                             : fmt::format("; not with {}",
-                                           fmt::join(in_vain, ", nor with ")));
+      return fmt::format(
+          "tried: with {} the film stands{}; an arm longer than six times its "
+          "radius stands with less by a cap in its middle (docs/arms.md)",
+          trial.what,
+          in_vain.empty() ? ""
+                          : fmt::format("; not with {}",
+                                        fmt::join(in_vain, ", nor with ")));
     }
     in_vain.push_back(trial.what);
   }

@@ -166,7 +166,7 @@ TableSpec study_table() {
         "the case's own model starts; no such stage when left out"},
        {"max_evaluations", K::Integer, D::None, false,
         "of match, minimize and each minimum of pareto: limit, "
-        "finite-difference ones included; 200 when left out"},
+        "finite-difference ones included; 400 when left out"},
        {"time_limit", K::Constant, D::Time, false,
         "of the whole study, in seconds or as \"10 min\": it stops then and "
         "keeps the best design; --time-limit counts too, the smaller of the "

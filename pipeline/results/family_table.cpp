@@ -42,6 +42,8 @@ Json object(const FamilyRow::Numbers& numbers) {
 }
 
 constexpr const char* kError = "_error";
+constexpr const char* kAtBoundColumn = "at_bound";
+constexpr const char* kMissedColumn = "missed";
 
 std::vector<std::string> names_of(const FamilyRow::Numbers& numbers) {
   std::vector<std::string> names;
@@ -106,6 +108,25 @@ void join_errors(std::vector<files::TextRow>& table) {
         table[r][value] += " +- " + shortened(table[r][e], 2);
       }
       table[r].erase(table[r].begin() + static_cast<std::ptrdiff_t>(e));
+    }
+  }
+}
+
+/// What no member has needs no column.
+void drop_empty_columns(std::vector<files::TextRow>& table) {
+  for (std::size_t k = 0; !table.empty() && k < table[0].size();) {
+    const bool filled = std::any_of(
+        table.begin() + 1, table.end(),
+        [&](const auto& row) { return k < row.size() && !row[k].empty(); });
+    if (filled ||
+        (table[0][k] != kAtBoundColumn && table[0][k] != kMissedColumn)) {
+      ++k;
+      continue;
+    }
+    for (files::TextRow& row : table) {
+      if (k < row.size()) {
+        row.erase(row.begin() + static_cast<std::ptrdiff_t>(k));
+      }
     }
   }
 }
@@ -184,8 +205,8 @@ std::string family_csv(const std::vector<FamilyRow>& rows) {
       head.push_back(name + kError);
     }
   }
-  head.insert(head.end(), {"objective", "evaluations", "seconds", "at_bound",
-                           "missed", "message"});
+  head.insert(head.end(), {"objective", "evaluations", "seconds",
+                           kAtBoundColumn, kMissedColumn, "message"});
   std::vector<files::TextRow> table = {head};
   for (const FamilyRow& row : rows) {
     files::TextRow cells = {row.name, row.status, row.parent};
@@ -229,6 +250,7 @@ std::string family_table_text(const std::string& csv,
   }
   files::show_units(with_errors, table);
   join_errors(table);
+  drop_empty_columns(table);
   return table.empty() ? "" : files::aligned_text(table) + messages;
 }
 

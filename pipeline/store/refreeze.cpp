@@ -21,6 +21,7 @@ constexpr double kFlatter = 0.5;
 // Designs are one within this part of the ranges, and near within that.
 constexpr double kSame = 1e-3;
 constexpr double kNear = 0.25;
+constexpr double kClose = 0.02;
 
 double min_dihedral_of(const EvaluationRecord& record) {
   const auto figures = parse_json(record.figures);
@@ -33,7 +34,8 @@ double min_dihedral_of(const EvaluationRecord& record) {
 std::vector<const EvaluationRecord*> beyond_of(const FrozenStage& stage) {
   std::vector<const EvaluationRecord*> beyond;
   for (const EvaluationRecord& record : stage.records) {
-    if (record.model == stage.model && is_beyond_reach(record)) {
+    if (record.model == stage.model &&
+        is_beyond_reach(stage.input, record, stage.best)) {
       beyond.push_back(&record);
     }
   }
@@ -49,8 +51,7 @@ std::string beyond_text(const std::vector<const EvaluationRecord*>& beyond,
       });
   const char* one = count == 1 ? "s" : "";
   return all_invert ? fmt::format("invert{} elements", one)
-                    : fmt::format("invert{} elements or {} not solved", one,
-                                  count == 1 ? "is" : "are");
+                    : fmt::format("fail{} on its model", one);
 }
 
 /// Why the model no longer serves at `best`; empty: it does.
@@ -114,12 +115,18 @@ bool is_study_model(const std::string& model) {
   return model == kStudyModel || model.rfind(kRefrozen, 0) == 0;
 }
 
-bool is_beyond_reach(const EvaluationRecord& record) {
-  // Iterations have the factor of the freeze's stiffness: they too fail far
-  // from it.
-  return record.failure &&
-         (record.failure->kind == FailureKind::ElementsInverted ||
-          record.failure->kind == FailureKind::SolverFailed);
+bool is_beyond_reach(const case_data::Case& input,
+                     const EvaluationRecord& record, const VectorX& best) {
+  if (!record.failure) {
+    return false;
+  }
+  const FailureKind kind = record.failure->kind;
+  // Iterations have the factor of the freeze's stiffness, and facets the shape
+  // that they have there: both fail far from it.
+  return kind == FailureKind::ElementsInverted ||
+         kind == FailureKind::SolverFailed ||
+         (kind == FailureKind::FilmNotFound &&
+          design_distance(input, record.inputs, best) <= kClose);
 }
 
 int count_of_model(const std::vector<EvaluationRecord>& records,

@@ -58,8 +58,10 @@ struct FrozenStage {
 };
 
 /// Whether a design failed because of its distance from the model's: its
-/// elements invert, or the solver does not converge.
-bool is_beyond_reach(const EvaluationRecord& record);
+/// elements invert, the solver does not converge, or, though it is close to
+/// `best`, the film is not found.
+bool is_beyond_reach(const case_data::Case& input,
+                     const EvaluationRecord& record, const VectorX& best);
 
 /// Designs beyond reach, after which a search is ended early for a new model.
 inline constexpr int kMostBeyond = 6;

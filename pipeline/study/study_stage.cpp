@@ -95,12 +95,15 @@ void StudyStage::count(const store::EvaluationRecord& record) {
 /// Ends the study after so many designs beyond the model's reach, as soon as
 /// there is a design to freeze another model at.
 void StudyStage::stop_if_beyond(const store::EvaluationRecord& record) {
-  beyond_ += store::is_beyond_reach(record) ? 1 : 0;
-  if (beyond_ < store::kMostBeyond) {
+  if (!record.failure) {
     return;
   }
   const VectorX best =
       store::best_record(input_, records(), model_.name).inputs;
+  beyond_ += store::is_beyond_reach(input_, record, best) ? 1 : 0;
+  if (beyond_ < store::kMostBeyond) {
+    return;
+  }
   if (wanted(best, false)) {
     throw EarlyStop{best};
   }

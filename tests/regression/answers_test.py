@@ -3,6 +3,7 @@
 told beside it covers what it leaves open."""
 import json
 import math
+import time
 import unittest
 
 from program import COARSE, SIZED_STRUT, ProgramTest
@@ -316,6 +317,21 @@ targets = { sway = 0.007 }
         self.assertEqual(result["status"], "stopped")
         self.assertTrue(result["refrozen"])  # from 20 mm it went on as it could
         self.assertAlmostEqual(result["parameters"]["high"], 1.3, 6)
+
+    def test_a_thousand_variables_are_heard_and_done(self):
+        """Their bounds once made one step of the search take minutes."""
+        names = [f"d{k}" for k in range(1000)]
+        designs = "".join(f"[design.{n}]\ninitial = 0\nbounds = [-1, 1]\n\n"
+                          for n in names)
+        text = SIZED_STRUT.replace("[curves", designs + "[curves", 1).replace(
+            'volume = "fill"', 'volume = "fill + ' + " + ".join(names) + '"')
+        self.assertIn("d999", text.split("volume", 1)[1])
+        for method in ("mma", "slsqp"):
+            began = time.monotonic()
+            done, _ = self.run_case(
+                self.case(text.replace('"mma"', f'"{method}"')), method)
+            self.expect(done, 0, "converged")
+            self.assertLess(time.monotonic() - began, 60)
 
     def test_slanting_faces_are_filled_at_any_height(self):
         """Points in line but for rounding are no crossing."""
