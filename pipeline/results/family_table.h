@@ -48,13 +48,13 @@ FamilyRow family_row(const case_data::Case& member,
 
 /// Head line: member, status, parent, each parameter, design variable,
 /// response and NAME_error of those that some member has, then objective,
-/// evaluations, seconds, at_bound, missed (constraints not kept), message. Numbers with the
-/// digits that bring the same double back.
+/// evaluations, seconds, at_bound, missed (constraints not kept), message.
+/// Numbers with the digits that bring the same double back.
 std::string family_csv(const std::vector<FamilyRow>& rows);
 
 /// The text of family_csv() as columns with six digits, errors beside what they
-/// are of; messages of members that were not sized below. `units`, by name of a response, go into the head
-/// line.
+/// are of; messages of members that were not sized below. `units`, by name of a
+/// response, go into the head line.
 std::string family_table_text(
     const std::string& csv,
     const std::map<std::string, std::string>& units = {});
