@@ -265,8 +265,14 @@ void StudyRun::take_outcome() {
 void StudyRun::judge_by_own_bounds() {
   const VectorX& responses = result_.best->responses;
   result_.constraints = bound_constraints(input_, responses);
+  if (result_.status == RunStatus::Converged) {
+    return;
+  }
   if (result_.status != RunStatus::Infeasible ||
       !all_kept(result_.constraints)) {
+    result_.message +=
+        ". The bound of a margin stands above the case's own here, for the "
+        "mesh's error of it: see the warnings";
     return;
   }
   const double missed =

@@ -13,8 +13,8 @@ namespace {
 /// The strut as a fat drop between small pads, by edges twice as long as its
 /// rims' radii.
 case_data::Case fat_drop(const std::string& more = "") {
-  std::string text = changed(strut(), "fea = 6.0\nfilm = 3.0",
-                             "fea = 22.0\nfilm = 11.0");
+  std::string text =
+      changed(strut(), "fea = 6.0\nfilm = 3.0", "fea = 22.0\nfilm = 11.0");
   text = changed(text, "initial = 25.0\nbounds = [20.0, 32.0]",
                  "initial = 11.0\nbounds = [9.0, 14.0]");
   text = changed(text, "radius = 20", "radius = 11");
