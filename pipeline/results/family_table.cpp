@@ -164,14 +164,13 @@ FamilyRow family_row(const case_data::Case& member, const Json& result) {
       row.errors.push_back(error);
     }
   }
-  for (const auto& [name, value] : row.design) {
-    const auto variable =
-        std::find_if(member.design.begin(), member.design.end(),
-                     [&](const auto& v) { return v.name == name; });
-    const std::string side =
-        variable == member.design.end() ? "" : bound_reached(*variable, value);
-    if (!side.empty()) {
-      row.at_bound.push_back(fmt::format("{} ({})", name, side));
+  for (const case_data::DesignVariable& variable : member.design) {
+    for (const auto& [name, value] : row.design) {
+      const std::string side =
+          name == variable.name ? bound_reached(variable, value) : "";
+      if (!side.empty()) {
+        row.at_bound.push_back(fmt::format("{} ({})", name, side));
+      }
     }
   }
   row.objective = number(result.value("objective", Json()));
