@@ -26,6 +26,9 @@ struct Side {
 struct Room {
   double above = 0.0;  // to the upper bound, >= 0
   double below = 0.0;
+
+  // To the bound that a slope pushes the variable against.
+  double against(double slope) const { return slope < 0.0 ? above : below; }
 };
 
 void check_sizes(const FirstOrderInput& input) {
@@ -82,13 +85,13 @@ std::vector<Room> rooms_of(const FirstOrderInput& input,
 // min over m >= 0 of (r + m)^2 + (m room)^2 at the upper bound, of
 // (r - m)^2 + (m room)^2 at the lower one. Positive at the upper.
 double bound_multiplier(double r, const Room& room) {
-  const double slack = r < 0.0 ? room.above : room.below;
+  const double slack = room.against(r);
   return -r / (1.0 + slack * slack);
 }
 
 // What is then left of r^2.
 double weight(double r, const Room& room) {
-  const double slack = r < 0.0 ? room.above : room.below;
+  const double slack = room.against(r);
   return slack * slack / (1.0 + slack * slack);
 }
 
@@ -189,8 +192,7 @@ FirstOrderReport first_order(const FirstOrderInput& input) {
     const Room& room = rooms[static_cast<std::size_t>(j)];
     const double m = bound_multiplier(rest[j], room);
     report.complementarity =
-        std::max(report.complementarity,
-                 std::abs(m) * (rest[j] < 0.0 ? room.above : room.below));
+        std::max(report.complementarity, std::abs(m) * room.against(rest[j]));
     rest[j] += m;
     report.bound_multipliers[j] = unit * m / ranges[j];
   }

@@ -134,13 +134,13 @@ bool stands(const films::FilmSystem& system, double edge, Monitor& monitor) {
   }
 }
 
+}  // namespace
+
 bool is_of_films(const Failure& failure) {
   return failure.kind == FailureKind::FilmPinched ||
          failure.kind == FailureKind::FilmUnstable ||
          failure.kind == FailureKind::FilmNotFound;
 }
-
-}  // namespace
 
 std::string tried_advice(const EvaluatedCase& inputs, const Failure& failure,
                          const AdviceOptions& options) {

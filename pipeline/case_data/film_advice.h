@@ -9,6 +9,9 @@
 
 namespace meniscus::case_data {
 
+/// Whether there is no film, or none that is stable.
+bool is_of_films(const Failure& failure);
+
 struct AdviceOptions {
   double edge = 0.0;  // of the films that are tried [length], > 0
   Monitor* monitor = nullptr;

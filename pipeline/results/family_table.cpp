@@ -165,12 +165,13 @@ FamilyRow family_row(const case_data::Case& member, const Json& result) {
     }
   }
   for (const case_data::DesignVariable& variable : member.design) {
-    for (const auto& [name, value] : row.design) {
-      const std::string side =
-          name == variable.name ? bound_reached(variable, value) : "";
-      if (!side.empty()) {
-        row.at_bound.push_back(fmt::format("{} ({})", name, side));
-      }
+    const std::string side =
+        row.design.empty()
+            ? ""
+            : bound_reached(variable, number(result["parameters"].value(
+                                          variable.name, Json())));
+    if (!side.empty()) {
+      row.at_bound.push_back(fmt::format("{} ({})", variable.name, side));
     }
   }
   row.objective = number(result.value("objective", Json()));

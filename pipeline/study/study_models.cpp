@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/case_data/film_advice.h"
 #include "pipeline/case_data/film_start.h"
 #include "pipeline/store/stored_case.h"
 
@@ -72,9 +73,7 @@ std::unique_ptr<StudyStage> StudyModels::stage_at(
         StageModel{.name = name, .reference = reference_});
   });
   lost_film_ = stage != nullptr && stage->failure() &&
-               (stage->failure()->kind == FailureKind::FilmNotFound ||
-                stage->failure()->kind == FailureKind::FilmPinched ||
-                stage->failure()->kind == FailureKind::FilmUnstable);
+               case_data::is_of_films(*stage->failure());
   if (stage != nullptr && !stage->failure()) {
     return stage;
   }
