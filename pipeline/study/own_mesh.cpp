@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 
 #include <fmt/format.h>
+
+#include "pipeline/accuracy/doubted_margins.h"
+#include "pipeline/study/held_margins.h"
 
 namespace meniscus::study {
 
@@ -17,6 +21,14 @@ namespace {
 // design.
 constexpr std::array<double, 4> kReaches = {1.0, 0.1, 0.03, 0.009};
 
+// Where a margin is missed on the answer's own mesh, so many evaluations there
+// may find it before it is sought on the model before: above its bound by so
+// much of what that model has too much of it, and this near to the answer, x
+// the ranges.
+constexpr int kFewEvaluations = 40;
+constexpr double kExcess = 1.1;
+constexpr double kReturnReach = 0.3;
+
 OwnMesh point_on_own_mesh(const case_data::Case& input,
                           const VectorX& responses) {
   const std::vector<Constraint> constraints =
@@ -26,7 +38,99 @@ OwnMesh point_on_own_mesh(const case_data::Case& input,
           .kept = all_kept(constraints)};
 }
 
+/// Of a study that holds margins to collapse: it misses nothing else.
+bool misses_margins_only(const case_data::Case& input,
+                         const std::vector<Constraint>& constraints) {
+  if (!holds_margins(input)) {
+    return false;
+  }
+  const auto& entries = input.study.constraints;
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    if (!constraints[k].satisfied &&
+        !accuracy::holds_margin(input, entries[k])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// What was sought above raised bounds is judged by those that count.
+StudyOutcome judged_by(const case_data::Case& input, StudyOutcome found,
+                       const VectorX& responses) {
+  found.constraints = bound_constraints(input, responses);
+  if (found.status == RunStatus::Infeasible && all_kept(found.constraints)) {
+    found.status = RunStatus::Stopped;
+    found.unproven = true;
+  }
+  return found;
+}
+
+/// True where the stage is now another's, with another answer.
+bool seek_on_model_before(StudyModels& models) {
+  const forward::Evaluation own = models.stage()->start();
+  const auto bounds = models.working().study.constraints;
+  models.go_back(own.design);
+  const auto there =
+      models.store().find(models.stage()->model_name(), own.design);
+  if (!there || there->failure) {
+    models.go_back(own.design);
+    return false;
+  }
+  models.log(
+      "no design found on the answer's own mesh keeps its margin: it is sought "
+      "on the model before, above its bound by what that has too much of it");
+  case_data::Case& working = models.working();
+  working.study.constraints = bounds;
+  for (case_data::ConstraintEntry& entry : working.study.constraints) {
+    if (accuracy::holds_margin(working, entry) && entry.lower > 0.0) {
+      entry.lower += kExcess * std::max(0.0, there->responses[entry.response] -
+                                                 own.responses[entry.response]);
+    }
+  }
+  models.limit_to_what_is_left();
+  models.stage()->conduct(models.may_refreeze() ? StudyStage::Leave::Early
+                                                : StudyStage::Leave::Late,
+                          kReturnReach);
+  working.study.constraints = bounds;
+  if (models.stage()->stopped_early() && models.refreeze()) {
+    models.conduct();  // beyond the reach of the model before
+    return true;
+  }
+  const StudyOutcome& found = models.stage()->outcome();
+  if (found.best.size() == 0 || found.best == own.design ||
+      !models.stage()->was_answered(found.best)) {
+    models.go_back(own.design);
+    return false;
+  }
+  models.stage()->leave(judged_by(working, found, models.answer().responses));
+  return true;
+}
+
 }  // namespace
+
+bool search_again(StudyModels& models, const std::function<void()>& search) {
+  const bool may_return =
+      models.may_go_back() &&
+      misses_margins_only(models.working(),
+                          bound_constraints(models.working(),
+                                            models.stage()->start().responses));
+  models.limit_to_what_is_left(may_return ? kFewEvaluations
+                                          : StudyModels::kNoLimit);
+  search();
+  if (!may_return) {
+    return false;
+  }
+  const StudyOutcome& found = models.stage()->outcome();
+  if (!all_kept(found.constraints) && seek_on_model_before(models)) {
+    return true;
+  }
+  if (found.ended_by_limit() && models.evaluations_left() > 0) {
+    models.start_at(found.best);
+    models.limit_to_what_is_left();
+    search();
+  }
+  return false;
+}
 
 StudyOutcome without_own_mesh(StudyOutcome found) {
   if (found.status == RunStatus::Converged) {
@@ -44,7 +148,8 @@ bool judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
   if (study.kind == case_data::StudyKind::Pareto) {
     return true;
   }
-  for (std::size_t round = 0; models.has_dragged_answer(); ++round) {
+  std::size_t round = 0;
+  while (models.has_dragged_answer()) {
     const StudyOutcome found = models.stage()->outcome();
     if (found.ended_by_limit() || limited.expired()) {
       // Of no use yet: with a higher limit the study goes on from its model.
@@ -69,12 +174,17 @@ bool judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
     models.log(fmt::format("{} on a mesh of its own{}: the study goes on there",
                            kept ? "kept" : "not kept",
                            kept ? ", and not on that before" : ""));
-    stage.conduct(StudyStage::Leave::Late, kReaches[round]);
-    if (kReaches[round] < 1.0 && !all_kept(stage.outcome().constraints) &&
+    const double reach = kReaches[round++];
+    if (search_again(models, [&] {
+          models.stage()->conduct(StudyStage::Leave::Late, reach);
+        })) {
+      continue;
+    }
+    if (reach < 1.0 && !all_kept(stage.outcome().constraints) &&
         models.evaluations_left() > 0) {
       models.log(
           "nothing near it is kept: the whole of the bounds is searched");
-      models.limit_evaluations();
+      models.limit_to_what_is_left();
       stage.conduct(StudyStage::Leave::Late);
     }
   }

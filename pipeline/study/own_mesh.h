@@ -3,6 +3,7 @@
 /// kept on one of its own is not kept.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,16 @@ namespace meniscus::study {
 /// `limited` says when there is no time for it. False where no mesh of its own
 /// can be made: nothing proves the answer.
 bool judge_answer(StudyModels& models, const DeadlineMonitor& limited);
+
+/// Searches again, by `search` on the stage's model, which is frozen at an
+/// answer that misses a bound. Where that is only a margin to collapse and a
+/// few evaluations find no design that keeps it, the search returns to the
+/// model before, which found that answer, and holds its margins above their
+/// bounds by what the two models differ in them: two meshes differ by the same
+/// in designs that are near each other (an additive correction, as in model
+/// management: Alexandrov and Lewis, Optimization and Engineering 2, 2001). The
+/// stage is then that model's, or a later one's: true; else the search goes on.
+bool search_again(StudyModels& models, const std::function<void()>& search);
 
 /// An answer that no mesh proves: it is not converged, and says why.
 StudyOutcome without_own_mesh(StudyOutcome found);

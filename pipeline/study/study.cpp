@@ -218,21 +218,14 @@ bool StudyRun::raise_doubted_margins(bool proven) {
     return false;
   }
   raised_ = true;
-  models_.limit_evaluations();
   return true;
 }
 
 void StudyRun::conduct_study() {
-  using Leave = StudyStage::Leave;
-  do {
-    stage().conduct(models_.may_refreeze() ? Leave::Early : Leave::Late);
-  } while (models_.refreeze());
-  if (stage().stopped_early()) {
-    stage().conduct();
-  }
+  models_.conduct();
   bool proven = judge_answer(models_, limited_);
   for (int k = 0; k < kMostRaises && raise_doubted_margins(proven); ++k) {
-    stage().conduct();
+    search_again(models_, [&] { models_.conduct(); });
     proven = judge_answer(models_, limited_);
   }
   if (!proven) {

@@ -1,6 +1,7 @@
 #include "pipeline/study/study_models.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include "pipeline/case_data/film_advice.h"
 #include "pipeline/case_data/film_start.h"
 #include "pipeline/store/stored_case.h"
+#include "pipeline/study/held_margins.h"
 
 namespace meniscus::study {
 
@@ -56,10 +58,13 @@ void StudyModels::freeze() {
   reference_ = stage_->start().responses;
 }
 
-void StudyModels::add_stage_totals() {
-  earlier_seconds_ += stage_->evaluator().seconds();
-  earlier_gradients_ += stage_->evaluator().counts().gradients;
-  earlier_evaluations_ += stage_->evaluations();
+/// Its totals are all that stays of it.
+void StudyModels::end(Model model) {
+  if (model.stage != nullptr) {
+    earlier_seconds_ += model.stage->evaluator().seconds();
+    earlier_gradients_ += model.stage->evaluator().counts().gradients;
+    earlier_evaluations_ += model.stage->evaluations();
+  }
 }
 
 /// A stage on a model frozen there, or null where it cannot be.
@@ -94,6 +99,16 @@ bool StudyModels::may_refreeze() const {
           study.kind == case_data::StudyKind::Minimize);
 }
 
+void StudyModels::conduct() {
+  using Leave = StudyStage::Leave;
+  do {
+    stage_->conduct(may_refreeze() ? Leave::Early : Leave::Late);
+  } while (refreeze());
+  if (stage_->stopped_early()) {
+    stage_->conduct();
+  }
+}
+
 bool StudyModels::refreeze() {
   const StudyOutcome& outcome = stage_->outcome();
   if (!may_refreeze() || outcome.ended_by_limit() || evaluations_left() <= 0) {
@@ -113,16 +128,23 @@ bool StudyModels::go_on_at(store::Refreeze wanted) {
   input->study.earlier_evaluations =
       input_.study.max_evaluations - input->study.max_evaluations;
   update_time_limit();
+  end(std::move(before_));
+  before_ = {};
   std::unique_ptr<StudyStage> stage =
       stage_at(wanted, store::refrozen_model(wanted.evaluation), *input);
   if (stage == nullptr) {
     return false;
   }
   wanted.shift = stage->start().responses - wanted.responses;
-  add_stage_totals();
-  options_.start = wanted.go_on_from;
-  stage_ = std::move(stage);
+  Model left{.frozen = std::move(frozen_), .stage = std::move(stage_)};
   frozen_ = std::move(input);
+  stage_ = std::move(stage);
+  if (holds_margins(working())) {
+    before_ = std::move(left);
+  } else {
+    end(std::move(left));
+  }
+  options_.start = wanted.go_on_from;
   refrozen_.push_back(std::move(wanted));
   return true;
 }
@@ -170,9 +192,16 @@ std::optional<forward::Evaluation> StudyModels::look_at(
   return stage->start();
 }
 
-void StudyModels::limit_evaluations() {
+void StudyModels::go_back(const VectorX& design) {
+  std::swap(frozen_, before_.frozen);
+  std::swap(stage_, before_.stage);
+  options_.start = design;
+}
+
+void StudyModels::limit_to_what_is_left(int most) {
+  update_time_limit();
   case_data::StudyEntry& study = working().study;
-  study.max_evaluations = std::max(1, evaluations_left());
+  study.max_evaluations = std::clamp(evaluations_left(), 1, most);
   study.earlier_evaluations =
       input_.study.max_evaluations - study.max_evaluations;
 }
@@ -183,9 +212,11 @@ void StudyModels::add_to(RunResult& result) const {
   result.refrozen = refrozen_;
   result.seconds += earlier_seconds_;
   result.gradient_evaluations += earlier_gradients_;
-  if (stage_ != nullptr) {
-    result.seconds += stage_->evaluator().seconds();
-    result.gradient_evaluations += stage_->evaluator().counts().gradients;
+  for (const StudyStage* stage : {before_.stage.get(), stage_.get()}) {
+    if (stage != nullptr) {
+      result.seconds += stage->evaluator().seconds();
+      result.gradient_evaluations += stage->evaluator().counts().gradients;
+    }
   }
 }
 

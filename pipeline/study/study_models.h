@@ -2,6 +2,7 @@
 /// its answer (internal to run_study()).
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,12 +29,20 @@ class StudyModels {
   std::optional<CoarseFigures> run_coarse();
   /// Freezes the case's own model, at its initial design.
   void freeze();
+  /// Conducts the stage, and on each new model where it has left the reach of
+  /// the last.
+  void conduct();
   /// Goes on with a new model where the study has left the reach of the last;
   /// false when there is none.
   bool refreeze();
   /// Goes on with a model frozen at the stage's answer; false where there is
   /// none.
   bool go_on_at_answer();
+  /// The stage changes places with the one before it, of a study that holds
+  /// margins; its next search starts from `design`.
+  void go_back(const VectorX& design);
+  bool may_go_back() const { return before_.stage != nullptr; }
+  void start_at(const VectorX& design) { options_.start = design; }
   /// Whether the last model that was wanted has no film at its design.
   bool lost_film() const { return lost_film_; }
   /// The start of a model that only looks at a design: the study's answer is
@@ -41,8 +50,10 @@ class StudyModels {
   std::optional<forward::Evaluation> look_at(const VectorX& design,
                                              int evaluation,
                                              const std::string& reason);
-  /// What the study goes on with may take the evaluations that are left.
-  void limit_evaluations();
+  /// What the study goes on with may take the evaluations, at most so many, and
+  /// the time that are left.
+  static constexpr int kNoLimit = std::numeric_limits<int>::max();
+  void limit_to_what_is_left(int most = kNoLimit);
 
   /// Null before freeze().
   StudyStage* stage() { return stage_.get(); }
@@ -56,6 +67,7 @@ class StudyModels {
   bool may_refreeze() const;
   int evaluations_left() const {
     return input_.study.max_evaluations - earlier_evaluations_ -
+           (before_.stage ? before_.stage->evaluations() : 0) -
            stage_->evaluations();
   }
   /// The stage seeks designs, and its model is frozen at another than its
@@ -78,7 +90,12 @@ class StudyModels {
   std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
                                        const std::string& name,
                                        const case_data::Case& input);
-  void add_stage_totals();
+  /// A stage, and what its model is frozen of where that is not case_.
+  struct Model {
+    std::unique_ptr<case_data::Case> frozen;
+    std::unique_ptr<StudyStage> stage;
+  };
+  void end(Model model);
   void update_time_limit();
   Monitor& monitor() const {
     return options_.monitor != nullptr ? *options_.monitor : silent_monitor();
@@ -90,9 +107,9 @@ class StudyModels {
   StudyOptions options_;  // its start and time as stages leave them
   double limit_;          // [s], 0: none
   Timer timer_;
-  std::unique_ptr<case_data::Case> frozen_;  // what the stage's model is frozen
-                                             // of, where that is not case_
+  std::unique_ptr<case_data::Case> frozen_;
   std::unique_ptr<StudyStage> stage_;
+  Model before_;       // where a study may go back to it
   VectorX reference_;  // responses of the initial design
   forward::StageSeconds earlier_seconds_;
   int earlier_gradients_ = 0;  // of stages before this one
