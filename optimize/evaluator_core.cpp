@@ -12,6 +12,13 @@ std::string limit_text(int evaluations, int earlier) {
       earlier > 0 ? fmt::format(" ({} before, {} here)", earlier, evaluations)
                   : "");
 }
+
+std::string evaluations_text(int evaluations, int earlier) {
+  return fmt::format("{} evaluation{}{}", evaluations,
+                     evaluations == 1 ? "" : "s",
+                     earlier > 0 ? " on its model" : "");
+}
+
 namespace {
 
 // A variable this close to a bound, x range, counts as being there.

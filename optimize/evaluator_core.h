@@ -18,6 +18,8 @@ namespace meniscus::optimize {
 
 /// "limit of 120 evaluations", "... (99 before, 21 here)".
 std::string limit_text(int evaluations, int earlier);
+/// "21 evaluations", "... on its model" where there were earlier ones.
+std::string evaluations_text(int evaluations, int earlier);
 
 /// Throws InvalidInput, naming it, for a variable with bounds or an initial
 /// value that cannot be, and when there is none; equal bounds pass.

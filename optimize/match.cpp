@@ -91,10 +91,11 @@ void finish_report(const MatchEvaluator& evaluator,
   report.answer = evaluator.best_answer();
   report.cost = cost_of(report.answer);
   const std::string figures = fmt::format(
-      "largest mismatch {:.3g} against a tolerance of {:.3g} at {} after {} "
-      "evaluations{}",
+      "largest mismatch {:.3g} against a tolerance of {:.3g} at {} after {}{}",
       worst_mismatch(report.answer), evaluator.options().tolerance,
-      evaluator.describe(report.best), evaluator.evaluations(),
+      evaluator.describe(report.best),
+      evaluations_text(evaluator.evaluations(),
+                       evaluator.options().earlier_evaluations),
       evaluator.failures());
   switch (evaluator.halt()) {
     case MatchEvaluator::Halt::Converged:

@@ -104,9 +104,11 @@ std::string in_the_way(const MinimizeEvaluator& evaluator,
 std::string figures(const MinimizeEvaluator& evaluator,
                     const MinimizeReport& report) {
   std::string text =
-      fmt::format("{} at {} after {} evaluations{}",
+      fmt::format("{} at {} after {}{}",
                   evaluator.problem().objective_text(report.objective),
-                  evaluator.describe(report.best), report.evaluations,
+                  evaluator.describe(report.best),
+                  evaluations_text(report.evaluations,
+                                   evaluator.options().earlier_evaluations),
                   evaluator.failures());
   if (report.first_order) {
     text += fmt::format(", first-order residual {:.2g} (asked: {:.2g})",

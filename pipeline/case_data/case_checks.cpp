@@ -20,7 +20,32 @@ namespace {
 constexpr double kNesting = 0.01;  // film may miss fea / 2^k by 1 %
 constexpr int kMostRefinements = 4;
 
+/// A film without liquid is no mistake, but seldom what a part is meant to be.
+void check_liquid(const Case& input, CaseProblems& problems) {
+  for (const BodyEntry& body : input.bodies) {
+    const bool pushed =
+        body.volume || body.pressure ||
+        std::any_of(input.fields.begin(), input.fields.end(),
+                    [&](const FieldEntry& field) {
+                      return field.kind == FieldKind::Pressure;
+                    });
+    const auto film = std::find_if(
+        input.films.begin(), input.films.end(), [&](const FilmEntry& entry) {
+          return std::find(body.enclosed_by.begin(), body.enclosed_by.end(),
+                           entry.spec.name) != body.enclosed_by.end();
+        });
+    if (!pushed && film != input.films.end()) {
+      problems.warn(body.line,
+                    fmt::format("body '{}' has neither volume nor pressure: "
+                                "film '{}' settles without liquid, as a soap "
+                                "film between its curves; give a volume",
+                                body.name, film->spec.name));
+    }
+  }
+}
+
 void check_use(const Case& input, CaseProblems& problems) {
+  check_liquid(input, problems);
   std::set<std::string> used_curves;
   std::set<std::string> used_surfaces;
   std::set<int> used_materials;
@@ -159,6 +184,18 @@ void check_plausible(const Case& input, const EvaluatedCase& inputs,
       check(entry.youngs_modulus.line, name + ".youngs_modulus",
             material.youngs_modulus, Dimension::Pressure, "GPa", 1e-6, 2000.0,
             "71.7 GPa");
+      // No solid is as dense as a metal and as soft as rubber.
+      const double stiffness =
+          material.youngs_modulus / one("GPa", Dimension::Pressure);
+      const double density =
+          material.density / one("kg/m3", Dimension::Density);
+      if (density > 2000.0 && stiffness < 0.5 && stiffness > 1e-6) {
+        problems.warn(entry.youngs_modulus.line,
+                      fmt::format("{}.youngs_modulus is {:.4g} GPa at {:.4g} "
+                                  "kg/m3, as soft as rubber and as dense as "
+                                  "metal: is GPa meant?",
+                                  name, stiffness, density));
+      }
     }
   }
   for (std::size_t k = 0; k < inputs.load_cases.size(); ++k) {

@@ -295,6 +295,8 @@ targets = { sway = 0.007 }
                  r"density is 2800 t/mm3, which is 2.8e\+15 kg/m3"),
                 ("youngs_modulus = 71700.0", "youngs_modulus = 71.7e9",
                  r"youngs_modulus is 7.17e\+10 MPa"),
+                ("youngs_modulus = 71700.0", "youngs_modulus = 71.7",
+                 "youngs_modulus is 0.0717 GPa at 2800 kg/m3, as soft as"),
                 ("loads = [{", "loads = [{ gravity = [0, 0, -9.81] }, {",
                  "gravity of load case 'service' is 9.81 mm/s2")):
             done = self.call("check", self.case(SIZED_STRUT.replace(was, now)))

@@ -138,6 +138,57 @@ constraints = [{ response = "sway", max = 0.01 },
                { response = "margin", min = 2e-4 }]
 """ + leg(90) + leg(210) + leg(330)
 
+# Drawn at random, on coarse meshes: each moves its margin by a fifth and more.
+COARSE_TRIPOD = """title = "A tripod"
+units = "mm-N-MPa"
+design.foot = { initial = 12.911, bounds = [6.09, 20.3] }
+design.head = { initial = 12.911, bounds = [6.09, 24.36] }
+design.fill = { initial = 1, bounds = [0.6, 1.6] }
+resolution = { fea = 11, film = 5.5 }
+films.skin = { kind = "branch", curves = ["foot_1", "foot_2", "foot_3", "head"] }
+solids.pad = { kind = "cap", curve = "foot_{i}", repeat = 3 }
+solids.seat = { kind = "cap", curve = "head" }
+
+[curves.foot]
+kind = "circle"
+center = ["40.6 * cos(2 * pi * i / 3)", "40.6 * sin(2 * pi * i / 3)", 0]
+normal = [0, 0, -1]
+radius = "foot"
+repeat = 3
+
+[curves.head]
+kind = "circle"
+center = [0, 0, 53.6]
+normal = [0, 0, 1]
+radius = "head"
+
+[bodies.tripod]
+enclosed_by = ["skin", "pad_1", "pad_2", "pad_3", "seat"]
+volume = "1.3 * fill * 3 * pi * foot^2 * sqrt(40.6^2 + 53.6^2)"
+material = "al"
+
+[materials.al]
+youngs_modulus = "71.7 GPa"
+poisson_ratio = 0.33
+density = 2.8e-9
+
+[load_cases.service]
+supports = [{ on = "pad_{i}", fix = "xyz", repeat = 3 }]
+loads = [{ on = "seat", force = [422, 0, -2708] }]
+
+[responses]
+mass = { kind = "mass" }
+margin = { kind = "collapse_margin" }
+sway = { kind = "mean_displacement", on = "seat", direction = [1, 0, 0] }
+sink = { kind = "mean_displacement", on = "seat", direction = [0, 0, -1] }
+
+[study]
+kind = "minimize"
+objective = "mass"
+constraints = [{ response = "sway", max = 0.03 }, { response = "sink", max = 0.03 },
+               { response = "margin", min = 4e-4 }]
+"""
+
 
 class FilmMargins(ProgramTest):
     def minimum(self, numbers, name, *more):
@@ -204,6 +255,32 @@ class FilmMargins(ProgramTest):
         self.assertGreater(result["response_errors"]["margin"], 0)
         # People read kilograms wherever masses stand.
         self.assertRegex(done.stderr, r"best so far mass = 0\.\d+ kg")
+
+    def test_a_margin_that_its_own_mesh_misses_is_found_from_the_one_before(self):
+        """Else the search creeps on the answer's own mesh to the limit of
+        evaluations."""
+        case = self.folder / "coarse.toml"
+        case.write_text(COARSE_TRIPOD)
+        out = self.folder / "coarse"
+        done = self.expect(self.call("run", case, "--no-pictures",
+                                     "--no-report", "--no-frames", "--out",
+                                     out), 0)
+        self.assertIn("it is sought on the model before", done.stderr)
+        result = self.result(out)
+        self.assertEqual(result["status"], "converged")
+        self.assertTrue(all(c["satisfied"]
+                            for c in result["constraints"].values()))
+        self.assertGreater(result["responses"]["margin"],
+                           result["response_errors"]["margin"])
+        self.assertLess(result["evaluations"], 200)
+        # Two searches make the last one's count a part of all.
+        self.assertRegex(result["message"], r"after \d+ evaluations? on its model")
+        # Nothing is computed twice on the way back, or again on resuming.
+        again = self.call("run", case, "--no-pictures", "--no-report",
+                          "--no-frames", "--resume", "--out", out)
+        self.expect(again, 0)
+        self.assertEqual(self.result(out)["responses"], result["responses"])
+        self.assertEqual(self.result(out)["evaluations"], result["evaluations"])
 
 
 if __name__ == "__main__":
