@@ -23,12 +23,11 @@ constexpr int kMostRefinements = 4;
 /// A film without liquid is no mistake, but seldom what a part is meant to be.
 void check_liquid(const Case& input, CaseProblems& problems) {
   for (const BodyEntry& body : input.bodies) {
-    const bool pushed =
-        body.volume || body.pressure ||
-        std::any_of(input.fields.begin(), input.fields.end(),
-                    [&](const FieldEntry& field) {
-                      return field.kind == FieldKind::Pressure;
-                    });
+    const bool pushed = body.volume || body.pressure ||
+                        std::any_of(input.fields.begin(), input.fields.end(),
+                                    [&](const FieldEntry& field) {
+                                      return field.kind == FieldKind::Pressure;
+                                    });
     const auto film = std::find_if(
         input.films.begin(), input.films.end(), [&](const FilmEntry& entry) {
           return std::find(body.enclosed_by.begin(), body.enclosed_by.end(),
