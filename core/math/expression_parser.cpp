@@ -55,8 +55,9 @@ class ExpressionParser {
     comparison();
     skip_space();
     if (at_ < text_.size()) {
-      fail(text_[at_] == ')' ? "')' without its '('"
-                             : fmt::format("unexpected '{}'", here()));
+      fail(text_[at_] == ')'
+               ? "')' without its '('"
+               : fmt::format("unexpected '{}'{}", here(), unit_advice()));
     }
     Expression result;
     result.text_ = text_;
@@ -65,6 +66,22 @@ class ExpressionParser {
   }
 
  private:
+  /// Where a number runs into a word: "59.3mm".
+  std::string unit_advice() const {
+    const std::string_view before = text_.substr(0, at_);
+    double number = 0.0;
+    const auto read =
+        std::from_chars(before.data(), before.data() + before.size(), number);
+    return read.ec == std::errc() &&
+                   read.ptr == before.data() + before.size() &&
+                   is_letter(text_[at_]) && text_.size() <= kShown
+               ? fmt::format(
+                     " (write '{0} {1}' for a unit, '{0}*{1}' for a "
+                     "product)",
+                     before, text_.substr(at_))
+               : "";
+  }
+
   [[noreturn]] void fail(const std::string& message) const {
     throw ExpressionError(fmt::format("{} in '{}'", message, shown()),
                           static_cast<int>(at_) + 1);

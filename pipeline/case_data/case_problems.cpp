@@ -17,6 +17,11 @@ constexpr std::size_t kMostKnown = 15;  // names listed in one message
 
 std::string advice(const std::string& name,
                    const std::vector<std::string>& known) {
+  if (name.find('{') != std::string::npos) {
+    return "; braces count copies: give this table repeat = N, or write a "
+           "copy's name" +
+           (known.empty() ? "" : ", as '" + known.front() + "'");
+  }
   const std::string near = nearest_name(name, known);
   if (!near.empty()) {
     return "; did you mean '" + near + "'?";

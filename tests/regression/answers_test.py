@@ -302,6 +302,13 @@ targets = { sway = 0.007 }
             done = self.call("check", self.case(SIZED_STRUT.replace(was, now)))
             self.expect(done, 0, told)
 
+    def test_a_body_without_liquid_is_told(self):
+        done = self.call("check", self.case(SIZED_STRUT.replace(
+            'volume = "fill"', "")))
+        self.expect(done, 0, "neither volume nor pressure: film 'skin'")
+        self.assertNotIn("neither volume", self.call(
+            "check", self.case(SIZED_STRUT)).stderr)
+
     def test_what_cannot_be_kept_ends_the_search(self):
         """A sway that no design has: told so, well before the limit."""
         text = SIZED_STRUT.replace("max = 0.0075", "max = 0.0005").replace(

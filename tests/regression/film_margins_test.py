@@ -141,30 +141,31 @@ constraints = [{ response = "sway", max = 0.01 },
 # Drawn at random, on coarse meshes: each moves its margin by a fifth and more.
 COARSE_TRIPOD = """title = "A tripod"
 units = "mm-N-MPa"
-design.foot = { initial = 12.911, bounds = [6.09, 20.3] }
-design.head = { initial = 12.911, bounds = [6.09, 24.36] }
-design.fill = { initial = 1, bounds = [0.6, 1.6] }
-resolution = { fea = 11, film = 5.5 }
-films.skin = { kind = "branch", curves = ["foot_1", "foot_2", "foot_3", "head"] }
-solids.pad = { kind = "cap", curve = "foot_{i}", repeat = 3 }
-solids.seat = { kind = "cap", curve = "head" }
+parameters = {{ ring = {ring}, height = {height}, down = {down}, side = {side} }}
+design.foot = {{ initial = "{start} * ring", bounds = ["0.15 * ring", "0.5 * ring"] }}
+design.head = {{ initial = "{start} * ring", bounds = ["0.15 * ring", "0.6 * ring"] }}
+design.fill = {{ initial = 1, bounds = [{fill}, 1.6] }}
+resolution = {{ fea = 11, film = 5.5 }}
+films.skin = {{ kind = "branch", curves = ["foot_1", "foot_2", "foot_3", "head"] }}
+solids.pad = {{ kind = "cap", curve = "foot_{{i}}", repeat = 3 }}
+solids.seat = {{ kind = "cap", curve = "head" }}
 
 [curves.foot]
 kind = "circle"
-center = ["40.6 * cos(2 * pi * i / 3)", "40.6 * sin(2 * pi * i / 3)", 0]
+center = ["ring * cos(2 * pi * i / 3)", "ring * sin(2 * pi * i / 3)", 0]
 normal = [0, 0, -1]
 radius = "foot"
 repeat = 3
 
 [curves.head]
 kind = "circle"
-center = [0, 0, 53.6]
+center = [0, 0, "height"]
 normal = [0, 0, 1]
 radius = "head"
 
 [bodies.tripod]
 enclosed_by = ["skin", "pad_1", "pad_2", "pad_3", "seat"]
-volume = "1.3 * fill * 3 * pi * foot^2 * sqrt(40.6^2 + 53.6^2)"
+volume = "1.3 * fill * 3 * pi * foot^2 * sqrt(ring^2 + height^2)"
 material = "al"
 
 [materials.al]
@@ -173,21 +174,23 @@ poisson_ratio = 0.33
 density = 2.8e-9
 
 [load_cases.service]
-supports = [{ on = "pad_{i}", fix = "xyz", repeat = 3 }]
-loads = [{ on = "seat", force = [422, 0, -2708] }]
+supports = [{{ on = "pad_{{i}}", fix = "xyz", repeat = 3 }}]
+loads = [{{ on = "seat", force = ["side", 0, "-down"] }}]
 
 [responses]
-mass = { kind = "mass" }
-margin = { kind = "collapse_margin" }
-sway = { kind = "mean_displacement", on = "seat", direction = [1, 0, 0] }
-sink = { kind = "mean_displacement", on = "seat", direction = [0, 0, -1] }
+mass = {{ kind = "mass" }}
+margin = {{ kind = "collapse_margin" }}
+sway = {{ kind = "mean_displacement", on = "seat", direction = [1, 0, 0] }}
+sink = {{ kind = "mean_displacement", on = "seat", direction = [0, 0, -1] }}
 
 [study]
 kind = "minimize"
 objective = "mass"
-constraints = [{ response = "sway", max = 0.03 }, { response = "sink", max = 0.03 },
-               { response = "margin", min = 4e-4 }]
+constraints = [{{ response = "sway", max = 0.03 }}, {{ response = "sink", max = 0.03 }},
+               {{ response = "margin", min = 4e-4 }}]
 """
+COARSE = {"ring": 40.6, "height": 53.6, "down": 2708, "side": 422, "start": 0.318,
+          "fill": 0.6}
 
 
 class FilmMargins(ProgramTest):
@@ -211,7 +214,7 @@ class FilmMargins(ProgramTest):
         done, whole = self.minimum(NEAR, "whole")
         self.expect(done, 0)
         seconds = whole["seconds"]["total"]
-        for share in (0.5, 0.75, 0.92):
+        for share in (0.6, 0.92):
             done, result = self.minimum(NEAR, f"limit {share}", "--time-limit",
                                         f"{share * seconds:.3f}")
             self.assertIn(done.returncode, (0, 3), done.stderr)
@@ -256,15 +259,15 @@ class FilmMargins(ProgramTest):
         # People read kilograms wherever masses stand.
         self.assertRegex(done.stderr, r"best so far mass = 0\.\d+ kg")
 
-    def test_a_margin_that_its_own_mesh_misses_is_found_from_the_one_before(self):
-        """Else the search creeps on the answer's own mesh to the limit of
-        evaluations."""
+    def test_a_margin_that_its_own_mesh_misses_is_found(self):
+        """From the model before; else the search creeps on the answer's own
+        mesh to the limit of evaluations."""
         case = self.folder / "coarse.toml"
-        case.write_text(COARSE_TRIPOD)
+        case.write_text(COARSE_TRIPOD.format(**COARSE))
         out = self.folder / "coarse"
-        done = self.expect(self.call("run", case, "--no-pictures",
-                                     "--no-report", "--no-frames", "--out",
-                                     out), 0)
+        call = ("run", case, "--no-pictures", "--no-report", "--no-frames",
+                "--out", out)
+        done = self.expect(self.call(*call), 0)
         self.assertIn("it is sought on the model before", done.stderr)
         result = self.result(out)
         self.assertEqual(result["status"], "converged")
@@ -272,15 +275,15 @@ class FilmMargins(ProgramTest):
                             for c in result["constraints"].values()))
         self.assertGreater(result["responses"]["margin"],
                            result["response_errors"]["margin"])
-        self.assertLess(result["evaluations"], 200)
-        # Two searches make the last one's count a part of all.
-        self.assertRegex(result["message"], r"after \d+ evaluations? on its model")
-        # Nothing is computed twice on the way back, or again on resuming.
-        again = self.call("run", case, "--no-pictures", "--no-report",
-                          "--no-frames", "--resume", "--out", out)
-        self.expect(again, 0)
-        self.assertEqual(self.result(out)["responses"], result["responses"])
-        self.assertEqual(self.result(out)["evaluations"], result["evaluations"])
+        self.assertLess(result["evaluations"], 400)
+        # Several searches make the last one's count a part of all.
+        self.assertRegex(result["message"],
+                         r"after \d+ evaluations? on its model")
+        # On resuming the same way is taken, and nothing computed twice.
+        self.expect(self.call(*call, "--resume"), 0)
+        again = self.result(out)
+        self.assertEqual(again["responses"], result["responses"])
+        self.assertEqual(again["evaluations"], result["evaluations"])
 
 
 if __name__ == "__main__":

@@ -198,11 +198,12 @@ class Restorer {
 
 TEST(TwoArmSized, TwoStartsComeToOneMassAndNoSampleIsLighter) {
   const case_data::Case input =
-      reader::read_case(kCase, {"resolution.fea=24", "resolution.film=12"});
+      reader::read_case(kCase, {"resolution.fea=22", "resolution.film=11"});
   Loop loop(input);
   ASSERT_TRUE(loop.usable());
-  const optimize::MinimizeReport optimum = minimum_from(
-      loop, start({0, 28, 27, 27, 65, 65, 25, 25, 58, 3.6e5, 2.3e5, 2.3e5}));
+  const optimize::MinimizeReport optimum =
+      minimum_from(loop, start({4, 25.5, 25.8, 26.2, 65, 62.5, 24.4, 23.6, 60.5,
+                                3.45e5, 2.05e5, 2e5}));
   ASSERT_EQ(optimum.termination, optimize::Termination::Converged)
       << optimum.message;
   EXPECT_LE(optimum.first_order->residual, kOptimality);

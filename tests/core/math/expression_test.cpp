@@ -83,6 +83,9 @@ TEST(Expression, NamesWhatIsWrongAndWhere) {
   EXPECT_THAT(error_of("(a + b"), HasSubstr("7: ')' is missing before 'end'"));
   EXPECT_THAT(error_of("a + b)"), HasSubstr("6: ')' without its '('"));
   EXPECT_THAT(error_of("a b"), HasSubstr("3: unexpected 'b'"));
+  EXPECT_THAT(error_of("59.3mm"),
+              HasSubstr("5: unexpected 'm' (write '59.3 mm' for a unit, "
+                        "'59.3*mm' for a product)"));
   EXPECT_THAT(error_of("1,5"), HasSubstr("2: unexpected ','"));
   EXPECT_THAT(error_of(""), HasSubstr("a value is missing at the end"));
   EXPECT_THAT(error_of("a +"), HasSubstr("a value is missing at the end"));

@@ -196,6 +196,10 @@ const Trouble kMistakes[] = {
     {"UnknownCurve", "curves = [\"base\", \"head\"]",
      "curves = [\"base\", \"heat\"]",
      "26: there is no curve 'heat'; did you mean 'head'?"},
+    {"CopyWithoutRepeat", "curves = [\"base\", \"head\"]",
+     "curves = [\"base\", \"head_{i}\"]",
+     "26: there is no curve 'head_{i}'; braces count copies: give this table "
+     "repeat = N, or write a copy's name, as 'base'"},
     {"CurveTwice", "curves = [\"base\", \"head\"]",
      "curves = [\"base\", \"head\", \"base\"]",
      "26: films.skin names curve 'base' twice"},
