@@ -22,18 +22,20 @@ constexpr int kMostRefinements = 4;
 
 /// A film without liquid is no mistake, but seldom what a part is meant to be.
 void check_liquid(const Case& input, CaseProblems& problems) {
-  for (const BodyEntry& body : input.bodies) {
-    const bool pushed = body.volume || body.pressure ||
-                        std::any_of(input.fields.begin(), input.fields.end(),
-                                    [&](const FieldEntry& field) {
+  const bool inflated = std::any_of(input.fields.begin(), input.fields.end(),
+                                    [](const FieldEntry& field) {
                                       return field.kind == FieldKind::Pressure;
                                     });
+  for (const BodyEntry& body : input.bodies) {
+    if (inflated || body.volume || body.pressure) {
+      continue;
+    }
     const auto film = std::find_if(
         input.films.begin(), input.films.end(), [&](const FilmEntry& entry) {
           return std::find(body.enclosed_by.begin(), body.enclosed_by.end(),
                            entry.spec.name) != body.enclosed_by.end();
         });
-    if (!pushed && film != input.films.end()) {
+    if (film != input.films.end()) {
       problems.warn(body.line,
                     fmt::format("body '{}' has neither volume nor pressure: "
                                 "film '{}' settles without liquid, as a soap "
@@ -44,7 +46,6 @@ void check_liquid(const Case& input, CaseProblems& problems) {
 }
 
 void check_use(const Case& input, CaseProblems& problems) {
-  check_liquid(input, problems);
   std::set<std::string> used_curves;
   std::set<std::string> used_surfaces;
   std::set<int> used_materials;
@@ -359,6 +360,7 @@ std::vector<std::string> body_names(const Case& input) {
 
 void check_case(const Case& input, CaseProblems& problems) {
   if (problems.empty()) {
+    check_liquid(input, problems);
     check_use(input, problems);
     check_numbers(input, problems);
   }

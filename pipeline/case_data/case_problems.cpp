@@ -13,15 +13,17 @@ namespace {
 constexpr std::size_t kMostProblems = 20;
 constexpr std::size_t kMostKnown = 15;  // names listed in one message
 
+/// Of a copy's name where nothing is counted.
+std::string copies_advice(const std::vector<std::string>& known) {
+  return "; braces count copies: give this table repeat = N, or write a "
+         "copy's name" +
+         (known.empty() ? "" : ", as '" + known.front() + "'");
+}
+
 }  // namespace
 
 std::string advice(const std::string& name,
                    const std::vector<std::string>& known) {
-  if (name.find('{') != std::string::npos) {
-    return "; braces count copies: give this table repeat = N, or write a "
-           "copy's name" +
-           (known.empty() ? "" : ", as '" + known.front() + "'");
-  }
   const std::string near = nearest_name(name, known);
   if (!near.empty()) {
     return "; did you mean '" + near + "'?";
@@ -74,8 +76,9 @@ void CaseProblems::warn(SourceLine line, const std::string& message) {
 void CaseProblems::unknown(SourceLine line, const char* what,
                            const std::string& name,
                            const std::vector<std::string>& known) {
-  add(line,
-      fmt::format("there is no {} '{}'{}", what, name, advice(name, known)));
+  const bool counts = name.find('{') != std::string::npos;
+  add(line, fmt::format("there is no {} '{}'{}", what, name,
+                        counts ? copies_advice(known) : advice(name, known)));
 }
 
 std::vector<std::string> CaseProblems::take() {

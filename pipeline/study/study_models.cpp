@@ -54,8 +54,8 @@ void StudyModels::update_time_limit() {
 }
 
 void StudyModels::freeze() {
-  stage_ = std::make_unique<StudyStage>(case_, store_, options_);
-  reference_ = stage_->start().responses;
+  now_.stage = std::make_unique<StudyStage>(case_, store_, options_);
+  reference_ = now_.stage->start().responses;
 }
 
 /// Its totals are all that stays of it.
@@ -102,20 +102,20 @@ bool StudyModels::may_refreeze() const {
 void StudyModels::conduct() {
   using Leave = StudyStage::Leave;
   do {
-    stage_->conduct(may_refreeze() ? Leave::Early : Leave::Late);
+    now_.stage->conduct(may_refreeze() ? Leave::Early : Leave::Late);
   } while (refreeze());
-  if (stage_->stopped_early()) {
-    stage_->conduct();
+  if (now_.stage->stopped_early()) {
+    now_.stage->conduct();
   }
 }
 
 bool StudyModels::refreeze() {
-  const StudyOutcome& outcome = stage_->outcome();
+  const StudyOutcome& outcome = now_.stage->outcome();
   if (!may_refreeze() || outcome.ended_by_limit() || evaluations_left() <= 0) {
     return false;
   }
   std::optional<store::Refreeze> wanted =
-      stage_->wanted(outcome.best, outcome.status == RunStatus::Converged);
+      now_.stage->wanted(outcome.best, outcome.status == RunStatus::Converged);
   return wanted && go_on_at(*std::move(wanted));
 }
 
@@ -128,17 +128,15 @@ bool StudyModels::go_on_at(store::Refreeze wanted) {
   input->study.earlier_evaluations =
       input_.study.max_evaluations - input->study.max_evaluations;
   update_time_limit();
-  end(std::move(before_));
-  before_ = {};
+  end(std::exchange(before_, {}));
   std::unique_ptr<StudyStage> stage =
       stage_at(wanted, store::refrozen_model(wanted.evaluation), *input);
   if (stage == nullptr) {
     return false;
   }
   wanted.shift = stage->start().responses - wanted.responses;
-  Model left{.frozen = std::move(frozen_), .stage = std::move(stage_)};
-  frozen_ = std::move(input);
-  stage_ = std::move(stage);
+  Model left = std::exchange(
+      now_, Model{.frozen = std::move(input), .stage = std::move(stage)});
   if (holds_margins(working())) {
     before_ = std::move(left);
   } else {
@@ -151,25 +149,25 @@ bool StudyModels::go_on_at(store::Refreeze wanted) {
 
 bool StudyModels::has_dragged_answer() const {
   const case_data::StudyKind kind = input_.study.kind;
-  const VectorX& best = stage_->outcome().best;
+  const VectorX& best = now_.stage->outcome().best;
   const bool seeks = kind == case_data::StudyKind::Match ||
                      kind == case_data::StudyKind::Minimize ||
                      kind == case_data::StudyKind::Pareto ||
                      (kind == case_data::StudyKind::Sweep &&
                       input_.study.objective.has_value());
-  return seeks && best.size() > 0 && stage_->was_answered(best) &&
-         store::design_distance(input_, best, stage_->start().design) >
+  return seeks && best.size() > 0 && now_.stage->was_answered(best) &&
+         store::design_distance(input_, best, now_.stage->start().design) >
              kAtDesign;
 }
 
 store::EvaluationRecord StudyModels::answer() const {
-  return *store_.find(stage_->model_name(), stage_->outcome().best);
+  return *store_.find(now_.stage->model_name(), now_.stage->outcome().best);
 }
 
 bool StudyModels::go_on_at_answer() {
   const store::EvaluationRecord record = answer();
   return go_on_at({.evaluation = record.number,
-                   .design = stage_->outcome().best,
+                   .design = now_.stage->outcome().best,
                    .reason = "the answer on a mesh of its own",
                    .shift = {},
                    .responses = record.responses});
@@ -193,8 +191,7 @@ std::optional<forward::Evaluation> StudyModels::look_at(
 }
 
 void StudyModels::go_back(const VectorX& design) {
-  std::swap(frozen_, before_.frozen);
-  std::swap(stage_, before_.stage);
+  std::swap(now_, before_);
   options_.start = design;
 }
 
@@ -212,7 +209,7 @@ void StudyModels::add_to(RunResult& result) const {
   result.refrozen = refrozen_;
   result.seconds += earlier_seconds_;
   result.gradient_evaluations += earlier_gradients_;
-  for (const StudyStage* stage : {before_.stage.get(), stage_.get()}) {
+  for (const StudyStage* stage : {before_.stage.get(), now_.stage.get()}) {
     if (stage != nullptr) {
       result.seconds += stage->evaluator().seconds();
       result.gradient_evaluations += stage->evaluator().counts().gradients;

@@ -56,19 +56,19 @@ class StudyModels {
   void limit_to_what_is_left(int most = kNoLimit);
 
   /// Null before freeze().
-  StudyStage* stage() { return stage_.get(); }
-  const StudyStage* stage() const { return stage_.get(); }
+  StudyStage* stage() { return now_.stage.get(); }
+  const StudyStage* stage() const { return now_.stage.get(); }
   const case_data::Case& input() const { return input_; }
   store::StudyStore& store() { return store_; }
   const StudyOptions& options() const { return options_; }
   /// What the stage's model is frozen of, with the bounds that the search
   /// keeps.
-  case_data::Case& working() { return frozen_ ? *frozen_ : case_; }
+  case_data::Case& working() { return now_.frozen ? *now_.frozen : case_; }
   bool may_refreeze() const;
   int evaluations_left() const {
     return input_.study.max_evaluations - earlier_evaluations_ -
            (before_.stage ? before_.stage->evaluations() : 0) -
-           stage_->evaluations();
+           now_.stage->evaluations();
   }
   /// The stage seeks designs, and its model is frozen at another than its
   /// answer.
@@ -107,8 +107,7 @@ class StudyModels {
   StudyOptions options_;  // its start and time as stages leave them
   double limit_;          // [s], 0: none
   Timer timer_;
-  std::unique_ptr<case_data::Case> frozen_;
-  std::unique_ptr<StudyStage> stage_;
+  Model now_;
   Model before_;       // where a study may go back to it
   VectorX reference_;  // responses of the initial design
   forward::StageSeconds earlier_seconds_;
