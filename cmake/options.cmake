@@ -65,17 +65,18 @@ function(meniscus_add_column name)
   set_property(GLOBAL APPEND PROPERTY MENISCUS_LIBRARIES meniscus_${name})
 endfunction()
 
-# meniscus_link_whole(TARGET [LEVEL]): a test's program or library; LEVEL of
-# optimisation is O0 or O2. Tests link one shared
-# library of all rooms and are compiled for a quick build, not for quick tests:
-# what they measure is in the library. It binds its own symbols, so no inline
-# function of a test stands in for one of ours (decision 0017).
-function(meniscus_link_whole target)
+# meniscus_link_rooms(TARGET [LEVEL]): a test's program or library; LEVEL of
+# optimisation is O0 or O2. Tests link shared libraries of the rooms
+# (MENISCUS_TEST_ROOMS, tests/CMakeLists.txt) and are compiled for a quick build,
+# not for quick tests: what they measure is in the library. It binds its own
+# symbols, so no inline function of a test stands in for one of ours (decision
+# 0017).
+function(meniscus_link_rooms target)
   set(level ${ARGN})
   if(NOT level)
     set(level O0)
   endif()
-  target_link_libraries(${target} PUBLIC meniscus_whole)
+  target_link_libraries(${target} PUBLIC ${MENISCUS_TEST_ROOMS})
   target_compile_options(${target} PRIVATE -${level})
   target_compile_definitions(${target}
     PRIVATE MENISCUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
@@ -90,7 +91,7 @@ function(meniscus_add_test name)
   cmake_parse_arguments(ARG "ALONE" "TIMEOUT;LEVEL" "SOURCES;LINK;LABELS"
     ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  meniscus_link_whole(${name} ${ARG_LEVEL})
+  meniscus_link_rooms(${name} ${ARG_LEVEL})
   target_link_libraries(${name}
     PRIVATE meniscus_test_support ${ARG_LINK} GTest::gmock GTest::gtest_main)
   if(NOT ARG_TIMEOUT)

@@ -6,7 +6,7 @@ namespace meniscus::rational {
 
 namespace {
 
-using Points = std::array<Point, 3>;
+using Corners = std::array<Point, 3>;
 
 Point operator-(const Point& a, const Point& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -27,19 +27,19 @@ Point between(const Point& a, const Point& b, const Number& at) {
 }
 
 /// How far within edge k of t, in its plane of normal n.
-Number within(const Points& t, const Point& n, int k, const Point& p) {
+Number within(const Corners& t, const Point& n, int k, const Point& p) {
   const Point& a = t[static_cast<std::size_t>(k)];
   const Point& b = t[static_cast<std::size_t>((k + 1) % 3)];
   return dot(cross(n, b - a), p - a);
 }
 
-bool holds(const Points& t, const Point& n, const Point& p) {
+bool holds(const Corners& t, const Point& n, const Point& p) {
   return within(t, n, 0, p) >= 0 && within(t, n, 1, p) >= 0 &&
          within(t, n, 2, p) >= 0;
 }
 
 /// Of a segment in the plane of t: is anything left within all three edges?
-bool clipped(const Points& t, const Point& n, const Point& p, const Point& q) {
+bool clipped(const Corners& t, const Point& n, const Point& p, const Point& q) {
   Number low = 0;
   Number high = 1;
   for (int k = 0; k < 3; ++k) {
@@ -57,7 +57,7 @@ bool clipped(const Points& t, const Point& n, const Point& p, const Point& q) {
   return low <= high;
 }
 
-bool edge_meets(const Point& p, const Point& q, const Points& t) {
+bool edge_meets(const Point& p, const Point& q, const Corners& t) {
   const Point n = cross(t[1] - t[0], t[2] - t[0]);
   const Number at_p = dot(n, p - t[0]);
   const Number at_q = dot(n, q - t[0]);
@@ -82,8 +82,8 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 }
 
 bool meet(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>& t) {
-  const Points a = {point(s[0]), point(s[1]), point(s[2])};
-  const Points b = {point(t[0]), point(t[1]), point(t[2])};
+  const Corners a = {point(s[0]), point(s[1]), point(s[2])};
+  const Corners b = {point(t[0]), point(t[1]), point(t[2])};
   for (std::size_t k = 0; k < 3; ++k) {
     if (edge_meets(a[k], a[(k + 1) % 3], b) ||
         edge_meets(b[k], b[(k + 1) % 3], a)) {
