@@ -393,15 +393,25 @@ Parts parts_of(std::string_view text) {
   return *std::move(parts);
 }
 
+/// "0.4 N/mm / ring^2": what is not a unit and looks like an expression.
+bool has_operators(std::string_view unit) {
+  return unit.find_first_of("*^()+") != std::string_view::npos ||
+         unit.find(" / ") != std::string_view::npos ||
+         unit.find(" - ") != std::string_view::npos;
+}
+
 /// Of a text's unit; the caller holds the database's lock.
 Unit unit_in(const Database& database, const Parts& parts,
              std::string_view text, std::optional<Dimension> dimension,
              const UnitSystem& system) {
   Unit unit = database.parse(parts.unit);
   if (!unit) {
-    throw InvalidInput(fmt::format("unknown unit '{}' in '{}'; try {}",
-                                   parts.unit, text,
-                                   advised_unit(dimension, system)));
+    throw InvalidInput(fmt::format(
+        "unknown unit '{}' in '{}'; {}", parts.unit, text,
+        has_operators(parts.unit)
+            ? "an expression holds no units: give the quantity a name in "
+              "[parameters] and write that here"
+            : "try " + advised_unit(dimension, system)));
   }
   return unit;
 }

@@ -133,6 +133,11 @@ TEST(Quantity, RefusesWrongUnitsByName) {
   EXPECT_EQ(error_of("20 furlongs_per", Dimension::Length),
             "unknown unit 'furlongs_per' in '20 furlongs_per'; try a value in "
             "mm");
+  EXPECT_EQ(
+      error_of("0.4 N/mm / ring^2", Dimension::Pressure),
+      "unknown unit 'N/mm / ring^2' in '0.4 N/mm / ring^2'; an expression "
+      "holds no units: give the quantity a name in [parameters] and write "
+      "that here");
   EXPECT_EQ(error_of("20 N", Dimension::Length),
             "'20 N' is no length but a force; try a value in mm");
   EXPECT_EQ(error_of("20 mm", Dimension::None),

@@ -16,7 +16,7 @@ import unittest
 
 from program import SIZED_STRUT, ProgramTest, without_seconds
 
-MOMENTS = int(os.environ.get("MENISCUS_KILLS", "25"))
+MOMENTS = int(os.environ.get("MENISCUS_KILLS", "12"))
 # Of a record: all but the seconds, which no two runs share.
 COLUMNS = ("number, key, model, phase, input_names, inputs, response_names, "
            "responses, gradient, mismatch, failure, failure_message, figures")
