@@ -373,25 +373,36 @@ Measure measure_of(const ResponseEntry& response) {
   return Measure::of(powers);
 }
 
-ShownUnit shown_unit(const Case& input, int response) {
-  return input.units.shown(
-      dimension_of(input.responses[static_cast<std::size_t>(response)].kind));
-}
-
-std::string unit_of(const UnitSystem& units, const Measure& measure) {
+Dimension dimension_of(const Measure& measure) {
   for (int d = 1; d <= static_cast<int>(Dimension::Foundation); ++d) {
     const auto dimension = static_cast<Dimension>(d);
     if (measure.is_known() && dimension != Dimension::Angle &&
         powers_of(dimension) == measure.powers) {
-      return units.unit_of(dimension);
+      return dimension;
     }
   }
-  return "";
+  return Dimension::None;
+}
+
+Dimension dimension_of(const ResponseEntry& response) {
+  const Dimension usual = dimension_of(response.kind);
+  return usual == Dimension::None || response.weight
+             ? dimension_of(measure_of(response))
+             : usual;
+}
+
+ShownUnit shown_unit(const Case& input, int response) {
+  return input.units.shown(
+      dimension_of(input.responses[static_cast<std::size_t>(response)]));
+}
+
+std::string unit_of(const UnitSystem& units, const Measure& measure) {
+  return units.unit_of(dimension_of(measure));
 }
 
 std::string response_unit(const Case& input, int response) {
   return input.units.unit_of(
-      dimension_of(input.responses[static_cast<std::size_t>(response)].kind));
+      dimension_of(input.responses[static_cast<std::size_t>(response)]));
 }
 
 }  // namespace meniscus::case_data

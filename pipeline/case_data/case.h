@@ -130,6 +130,11 @@ VectorX initial_design(const Case& input);
 std::vector<std::string> design_names(const Case& input);
 std::vector<std::string> response_names(const Case& input);
 Dimension dimension_of(ResponseKind kind);
+/// The one that has these powers, not the angle; None: unknown, or without a
+/// name.
+Dimension dimension_of(const Measure& measure);
+/// Its kind's; where that says none, or beside a weight, by measure_of().
+Dimension dimension_of(const ResponseEntry& response);
 /// What is known of a response's dimension; of an expression what its parts
 /// say.
 Measure measure_of(const ResponseEntry& response);

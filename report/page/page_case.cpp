@@ -109,10 +109,12 @@ Json page_case(const case_data::Case& input) {
                {"design", Json::array()},      {"responses", Json::array()},
                {"study", study_json(input)}};
   for (const case_data::DesignVariable& d : input.design) {
-    json["design"].push_back({{"name", d.name},
-                              {"initial", d.initial},
-                              {"lower", number(d.lower)},
-                              {"upper", number(d.upper)}});
+    json["design"].push_back(
+        {{"name", d.name},
+         {"unit", case_data::unit_of(input.units, d.measure)},
+         {"initial", d.initial},
+         {"lower", number(d.lower)},
+         {"upper", number(d.upper)}});
   }
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
@@ -121,6 +123,11 @@ Json page_case(const case_data::Case& input) {
          {"unit", case_data::response_unit(input, static_cast<int>(k))},
          {"on", response.surface},
          {"load_case", load_case_of(input, response)}});
+  }
+  json["parameter_units"] = Json::object();
+  for (const case_data::Parameter& parameter : input.parameters) {
+    json["parameter_units"][parameter.name] =
+        case_data::unit_of(input.units, parameter.value.measure);
   }
   return json;
 }

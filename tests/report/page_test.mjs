@@ -106,7 +106,10 @@ material = "aluminium"
 const TORN = STRUTS.replace("height = 60", "height = 160")
   .replace('volume = "1500 * height"', 'volume = "300 * height"')
   .replace(/\[study\][^]*/, "");
-const SOFT = STRUTS.replace("[parameters]\nheight = 60", "[design.height]\ninitial = 60\nbounds = [50, 70]").replace(
+const SOFT = STRUTS.replace('"1500 * height"', '"area * height"').replace(
+  "[parameters]\nheight = 60",
+  '[parameters]\narea = "1500 mm2"\n[design.height]\ninitial = "60 mm"\nbounds = ["50 mm", "70 mm"]',
+).replace(
   /\[study\][^]*/,
   `[study]
 kind = "minimize"
@@ -302,6 +305,12 @@ class Visit {
       if (document.documentElement.scrollWidth > window.innerWidth) {
         found.push(`wider than the window: ${document.documentElement.scrollWidth}`);
       }
+      // Every mass in kg, charts and tables alike, where the case counts in tonnes.
+      for (const node of document.querySelectorAll("main td, main th, main dd, main figcaption, main svg text, .design-text")) {
+        if (/\[t\]|[\d.]\u202ft$|\u202ft[ /,]/.test(node.textContent)) {
+          found.push(`${node.textContent}: in tonnes`);
+        }
+      }
       if (/undefined|NaN|\[object/.test(document.querySelector("main").innerText)) {
         found.push("undefined, NaN or [object in the text");
       }
@@ -404,6 +413,15 @@ async function testOthers(browser) {
       assert.match(told, pattern);
     }
     assert.ok(told.replace(/\s+/g, " ").includes(message.replace(/\s+/g, " ")), message);
+    if (name === "soft") {
+      for (const pattern of [/area 1500 mm\u00b2/, /height\s+50 mm \(at its lower bound\)[^]*50 to 70\smm/, /at most 1\.?0*\u00d710\u207b\u2076\smm/, /Objective mass \[kg\]/]) {
+        assert.match(told.replace(/[\t\u202f]/g, " "), pattern);
+      }
+      const cards = await failed.page.evaluate(() => [...document.querySelectorAll(".card")].map((c) => c.innerText.replace(/\s+/g, " ")));
+      assert.match(cards[0], /^0\.\d+ kg mass$/i);
+      const axes = await failed.page.evaluate(() => [...document.querySelectorAll("figure.chart svg text")].map((t) => t.textContent));
+      assert.ok(axes.some((t) => t.includes("mass [kg]")), axes.join("; "));
+    }
     await failed.shot(name);
     await failed.leave();
   }

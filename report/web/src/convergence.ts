@@ -4,6 +4,7 @@ import type { PageData } from "./data";
 import { h, section } from "./dom";
 import { number, words } from "./format";
 import { historyOf, type HistoryRow } from "./history";
+import { labelOf, measureOf, shown } from "./measures";
 
 /** Whole numbers only, at most a dozen. */
 function axisX(rows: HistoryRow[]): Plot.ScaleOptions {
@@ -95,15 +96,15 @@ function objectiveChart(data: PageData, rows: HistoryRow[]): HTMLElement | null 
   if (!name) {
     return null;
   }
-  const unit = data.case?.responses.find((r) => r.name === name)?.unit ?? "";
-  const found = points(rows, words(name), (r) => r.values[name]);
+  const label = labelOf(data, name);
+  const found = points(rows, words(name), (r) => shown(data, name, r.values[name]));
   const log = found.length > 0 && found.every((p) => p.value > 0) &&
     Math.max(...found.map((p) => p.value)) > 20 * Math.min(...found.map((p) => p.value));
   return found.length < 2
     ? null
-    : chart(`Objective ${words(name)} [${unit}] per evaluation${log ? " (log scale)" : ""}.`, {
+    : chart(`Objective ${label} per evaluation${log ? " (log scale)" : ""}.`, {
         x: axisX(rows),
-        y: { type: log ? "log" : "linear", label: `\u2191 ${words(name)} [${unit}]`, tickFormat: tick },
+        y: { type: log ? "log" : "linear", label: `\u2191 ${label}`, tickFormat: tick },
         marks: lineAndDots(found, false),
       });
 }
@@ -140,13 +141,14 @@ function constraintChart(data: PageData, rows: HistoryRow[]): HTMLElement | null
 function responseCharts(data: PageData, rows: HistoryRow[]): HTMLElement[] {
   const byUnit = new Map<string, string[]>();
   for (const response of data.case?.responses ?? []) {
-    byUnit.set(response.unit, [...(byUnit.get(response.unit) ?? []), response.name]);
+    const { unit } = measureOf(data, response.name);
+    byUnit.set(unit, [...(byUnit.get(unit) ?? []), response.name]);
   }
   const charts: HTMLElement[] = [];
   for (const [unit, names] of byUnit) {
-    const found = names.flatMap((name) => points(rows, words(name), (r) => r.values[name]));
-    const shown = names.length === 1 && names[0] === data.case?.study.objective;
-    if (found.length >= 2 && !shown) {
+    const found = names.flatMap((name) => points(rows, words(name), (r) => shown(data, name, r.values[name])));
+    const isObjective = names.length === 1 && names[0] === data.case?.study.objective;
+    if (found.length >= 2 && !isObjective) {
       const what = unit ? `[${unit}]` : "";
       charts.push(
         chart(`Responses ${what} per evaluation.`, {

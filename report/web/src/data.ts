@@ -93,6 +93,8 @@ export interface Gradients {
 
 export interface DesignVariable {
   name: string;
+  /** In the case's units; empty where the case does not say. */
+  unit: string;
   initial: number;
   lower: number | null;
   upper: number | null;
@@ -118,6 +120,7 @@ export interface CaseData {
   hash: string;
   design: DesignVariable[];
   responses: ResponseData[];
+  parameter_units: Record<string, string>;
   study: {
     kind: string;
     method: string;

@@ -1,6 +1,7 @@
 import type { MemberResult, PageData } from "./data";
 import { h, section, table } from "./dom";
-import { number, quantity, seconds, shownUnit, unitText, words } from "./format";
+import { number, quantity, seconds, words } from "./format";
+import { labelOf, shown } from "./measures";
 
 /** A family's members in one table. */
 export function familySection(data: PageData): HTMLElement | null {
@@ -15,10 +16,7 @@ export function familySection(data: PageData): HTMLElement | null {
   const parameters = keysOf((m) => m.parameters);
   const design = keysOf((m) => m.design);
   const responses = keysOf((m) => m.responses);
-  const shownOf = (name: string) => shownUnit(data.case?.responses.find((r) => r.name === name)?.unit ?? "");
-  const unitOf = (name: string) => unitText(shownOf(name)[1]);
-  const shown = (name: string, value: number | null | undefined) =>
-    typeof value === "number" ? shownOf(name)[0] * value : value;
+  const shownText = (name: string, value: number | null | undefined) => number(shown(data, name, value));
   return section(
     "members",
     "Members",
@@ -27,8 +25,7 @@ export function familySection(data: PageData): HTMLElement | null {
       [
         { head: "member" },
         { head: "status" },
-        ...[...parameters, ...design].map((n) => ({ head: words(n), numeric })),
-        ...responses.map((n) => ({ head: `${words(n)}${unitOf(n) ? ` [${unitOf(n)}]` : ""}`, numeric })),
+        ...[...parameters, ...design, ...responses].map((n) => ({ head: labelOf(data, n), numeric })),
         { head: "evaluations", numeric },
         { head: "time", numeric },
       ],
@@ -38,9 +35,9 @@ export function familySection(data: PageData): HTMLElement | null {
         return [
           link ? h("a", { href: link }, m.name) : m.name,
           sized ? "\u2713 done" : h("strong", { class: "bad", title: m.message }, `\u2717 ${m.status}`),
-          ...parameters.map((n) => number(m.parameters?.[n])),
-          ...design.map((n) => number(m.design?.[n])),
-          ...responses.map((n) => number(shown(n, m.responses?.[n]))),
+          ...parameters.map((n) => shownText(n, m.parameters?.[n])),
+          ...design.map((n) => shownText(n, m.design?.[n])),
+          ...responses.map((n) => shownText(n, m.responses?.[n])),
           String(m.evaluations ?? 0),
           seconds(m.seconds),
         ];

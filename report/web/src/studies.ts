@@ -2,16 +2,9 @@ import * as Plot from "@observablehq/plot";
 import { chart, roomFor, row, tick } from "./charts";
 import type { PageData } from "./data";
 import { h, section, table } from "./dom";
-import { number, plusMinus, quantity, words } from "./format";
+import { number, words } from "./format";
 import { historyOf } from "./history";
-
-function unitOf(data: PageData, response: string): string {
-  return data.case?.responses.find((r) => r.name === response)?.unit ?? "";
-}
-
-function label(name: string, unit: string): string {
-  return unit ? `${words(name)} [${unit}]` : words(name);
-}
+import { errorOf, labelOf, measureOf, rangeOf, shown, textOf } from "./measures";
 
 /** A sweep: every response over every design variable. */
 export function sweepSection(data: PageData): HTMLElement | null {
@@ -24,15 +17,14 @@ export function sweepSection(data: PageData): HTMLElement | null {
   for (const response of Object.keys(sweep.responses)) {
     for (const design of data.case?.design ?? []) {
       const found = rows.flatMap((r) => {
-        const x = r.values[design.name];
-        const y = r.values[response];
+        const x = shown(data, design.name, r.values[design.name]);
+        const y = shown(data, response, r.values[response]);
         return typeof x === "number" && typeof y === "number" ? [{ x, y }] : [];
       });
-      const unit = unitOf(data, response);
       charts.push(
-        chart(`${label(response, unit)} over ${words(design.name)}, ${found.length} designs.`, {
-          x: { label: `${words(design.name)} \u2192`, tickFormat: tick },
-          y: { label: `\u2191 ${label(response, unit)}`, tickFormat: tick },
+        chart(`${labelOf(data, response)} over ${words(design.name)}, ${found.length} designs.`, {
+          x: { label: `${labelOf(data, design.name)} \u2192`, tickFormat: tick },
+          y: { label: `\u2191 ${labelOf(data, response)}`, tickFormat: tick },
           marks: [Plot.dot(found, { x: "x", y: "y", stroke: "#0072b2", r: 3.2 })],
         }),
       );
@@ -46,10 +38,10 @@ export function sweepSection(data: PageData): HTMLElement | null {
     table(
       "Responses over all designs",
       [{ head: "response" }, { head: "least", numeric }, { head: "mean", numeric }, { head: "largest", numeric }],
-      Object.entries(sweep.responses).map(([name, s]) => {
-        const unit = unitOf(data, name);
-        return [words(name), quantity(s.least, unit), quantity(s.mean, unit), quantity(s.largest, unit)];
-      }),
+      Object.entries(sweep.responses).map(([name, s]) => [
+        words(name),
+        ...[s.least, s.mean, s.largest].map((value) => textOf(data, name, value)),
+      ]),
     ),
     row(...charts.slice(0, 24)),
   );
@@ -63,11 +55,11 @@ export function frontSection(data: PageData): HTMLElement | null {
   }
   const [first, second] = front.objectives;
   const found = front.points.flatMap((p) => {
-    const x = p[first];
-    const y = p[second];
+    const x = shown(data, first, p[first] as number | null);
+    const y = shown(data, second, p[second] as number | null);
     return typeof x === "number" && typeof y === "number" ? [{ x, y, parameters: p.parameters }] : [];
   });
-  const [a, b] = [first, second].map((name) => label(name, unitOf(data, name)));
+  const [a, b] = [first, second].map((name) => labelOf(data, name));
   const names = (data.case?.design ?? []).map((d) => d.name);
   const numeric = true;
   return section(
@@ -85,8 +77,8 @@ export function frontSection(data: PageData): HTMLElement | null {
     ),
     table(
       "Points of the front",
-      [{ head: a, numeric }, { head: b, numeric }, ...names.map((n) => ({ head: words(n), numeric }))],
-      found.map((p) => [number(p.x), number(p.y), ...names.map((n) => number(p.parameters[n]))]),
+      [{ head: a, numeric }, { head: b, numeric }, ...names.map((n) => ({ head: labelOf(data, n), numeric }))],
+      found.map((p) => [number(p.x), number(p.y), ...names.map((n) => number(shown(data, n, p.parameters[n])))]),
     ),
   );
 }
@@ -111,20 +103,19 @@ export function toleranceSection(data: PageData): HTMLElement | null {
     table(
       "Standard deviations of the design variables",
       [{ head: "design variable" }, { head: "deviation", numeric }],
-      Object.entries(tolerance.deviations).map(([name, d]) => [words(name), number(d)]),
+      Object.entries(tolerance.deviations).map(([name, d]) => [words(name), textOf(data, name, d)]),
     ),
     table(
       "Standard deviations of the responses",
       [{ head: "response" }, { head: "by the gradient", numeric }, { head: "sampled", numeric }, { head: "sampled mean", numeric }, { head: "least to largest sampled", numeric }],
       Object.entries(tolerance.responses).map(([name, r]) => {
-        const unit = unitOf(data, name);
         const s = r.sampled;
         return [
           words(name),
-          quantity(r.deviation, unit),
-          s ? `${quantity(s.deviation, unit)} ${plusMinus(s.deviation_error, unit)}` : "\u2013",
-          s ? `${quantity(s.mean, unit)} ${plusMinus(s.mean_error, unit)}` : "\u2013",
-          s ? `${number(s.least)} to ${quantity(s.largest, unit)}` : "\u2013",
+          textOf(data, name, r.deviation),
+          s ? `${textOf(data, name, s.deviation)} ${errorOf(data, name, s.deviation_error)}` : "\u2013",
+          s ? `${textOf(data, name, s.mean)} ${errorOf(data, name, s.mean_error)}` : "\u2013",
+          s ? rangeOf(data, name, s.least, s.largest) : "\u2013",
         ];
       }),
     ),
@@ -164,7 +155,11 @@ export function sensitivitySection(data: PageData): HTMLElement | null {
         bars.push({ response: words(response.name), variable: words(variable.name), change: (g * range) / Math.abs(value) });
       }
     });
-    rows.push([words(response.name), ...line.map((g) => quantity(g, response.unit))]);
+    rows.push([
+      words(response.name),
+      // Per unit as it is shown.
+      ...line.map((g, k) => textOf(data, response.name, g === null ? null : g / measureOf(data, design[k].name).factor)),
+    ]);
   });
   if (rows.length === 0) {
     return null;
@@ -197,7 +192,7 @@ export function sensitivitySection(data: PageData): HTMLElement | null {
     ),
     table(
       "Change of each response per unit of each design variable",
-      [{ head: "response" }, ...design.map((d) => ({ head: `per unit of ${words(d.name)}`, numeric: true }))],
+      [{ head: "response" }, ...design.map((d) => ({ head: `per ${measureOf(data, d.name).unit || "unit"} of ${words(d.name)}`, numeric: true }))],
       rows,
     ),
   );

@@ -1,6 +1,7 @@
 import type { PageData, Result, StressFigures } from "./data";
 import { h, section, table } from "./dom";
-import { count, number, percent, plusMinus, quantity, seconds, unitText, words } from "./format";
+import { count, number, percent, quantity, seconds, words } from "./format";
+import { errorOf, rangeOf, textOf } from "./measures";
 
 const STATUS: Record<string, string> = {
   converged: "done",
@@ -78,6 +79,13 @@ function worstLoadCase(result: Result): [string, StressFigures, number] | null {
   return [found[0], found[1], cases.length > 1 ? cases.length : 0];
 }
 
+/** What the study makes least, then the others in the file's order: four. */
+function firstResponses(data: PageData): string[] {
+  const names = (data.case?.responses ?? []).map((r) => r.name);
+  const objective = data.case?.study.objective;
+  return [...names.filter((n) => n === objective), ...names.filter((n) => n !== objective)].slice(0, 4);
+}
+
 /** The few figures that one wants first. */
 export function keyFigures(data: PageData): HTMLElement | null {
   const result = data.result;
@@ -85,10 +93,10 @@ export function keyFigures(data: PageData): HTMLElement | null {
     return null;
   }
   const cards: HTMLElement[] = [];
-  for (const response of (data.case?.responses ?? []).slice(0, 4)) {
-    const value = result.responses?.[response.name];
+  for (const name of firstResponses(data)) {
+    const value = result.responses?.[name];
     if (value !== undefined) {
-      cards.push(card(quantity(value, unitText(response.unit)), words(response.name)));
+      cards.push(card(textOf(data, name, value), words(name)));
     }
   }
   const worst = worstLoadCase(result);
@@ -126,14 +134,13 @@ export function answerSection(data: PageData): HTMLElement | null {
   };
   const designRows = designs.map((d) => [
     words(d.name),
-    number(parameters[d.name]) + atBound(parameters[d.name], d),
-    plusMinus(result.parameter_errors?.[d.name]),
-    number(result.start?.parameters[d.name] ?? d.initial),
-    `${number(d.lower)} to ${number(d.upper)}`,
+    textOf(data, d.name, parameters[d.name]) + atBound(parameters[d.name], d),
+    errorOf(data, d.name, result.parameter_errors?.[d.name]),
+    textOf(data, d.name, result.start?.parameters[d.name] ?? d.initial),
+    rangeOf(data, d.name, d.lower, d.upper),
   ]);
   const others = Object.entries(parameters).filter(([name]) => !names.includes(name));
   const responses = Object.entries(result.responses ?? {});
-  const unitOf = (name: string) => unitText(data.case?.responses.find((r) => r.name === name)?.unit ?? "");
   return section(
     "answer",
     responses.length > 0 ? "The answer" : "The design",
@@ -150,9 +157,9 @@ export function answerSection(data: PageData): HTMLElement | null {
           [{ head: "response" }, { head: "answer", numeric }, { head: "mesh error", numeric }, { head: "at the start", numeric }],
           responses.map(([name, value]) => [
             words(name),
-            quantity(value, unitOf(name)),
-            plusMinus(result.response_errors?.[name], unitOf(name)),
-            quantity(result.start?.responses[name], unitOf(name)),
+            textOf(data, name, value),
+            errorOf(data, name, result.response_errors?.[name]),
+            textOf(data, name, result.start?.responses[name]),
           ]),
         )
       : null,
@@ -161,10 +168,20 @@ export function answerSection(data: PageData): HTMLElement | null {
       ? table(
           "Parameters of the case",
           [{ head: "parameter" }, { head: "value", numeric }],
-          others.map(([name, value]) => [words(name), number(value)]),
+          others.map(([name, value]) => [words(name), textOf(data, name, value)]),
         )
       : null,
   );
+}
+
+/** "at most 0.1 mm". */
+function boundText(data: PageData, name: string, bound: number | null): string {
+  const entry = data.case?.study.constraints.find((b) => b.response === name);
+  const sides = [
+    typeof entry?.min === "number" ? `at least ${textOf(data, name, entry.min)}` : "",
+    typeof entry?.max === "number" ? `at most ${textOf(data, name, entry.max)}` : "",
+  ].filter((side) => side !== "");
+  return sides.length > 0 ? sides.join(", ") : textOf(data, name, bound);
 }
 
 function constraintTable(data: PageData, result: Result): HTMLElement | null {
@@ -191,8 +208,8 @@ function constraintTable(data: PageData, result: Result): HTMLElement | null {
       const over = peak?.peak_within_bound === false;
       return [
         peak ? `${words(name)} (a mean over the volume)` : words(name),
-        number(c.value),
-        number(c.bound),
+        matches ? number(c.value) : textOf(data, name, c.value),
+        matches ? number(c.bound) : boundText(data, name, c.bound),
         c.satisfied ? "\u2713 yes" : h("strong", { class: "bad" }, "\u2717 no"),
         ...(beside ? [over ? h("strong", { class: "bad" }, `${text} \u2717 above the bound`) : text] : []),
       ];

@@ -1,7 +1,8 @@
 import type { PageData } from "../data";
 import { h } from "../dom";
-import { number, quantity, words } from "../format";
+import { words } from "../format";
 import { historyOf } from "../history";
+import { textOf } from "../measures";
 
 /** A slider through the designs that the study looked at; null: none kept. */
 export function historyControl(
@@ -35,10 +36,10 @@ export function historyControl(
     const row = rows.find((r) => r.evaluation === evaluation);
     const numbers = [
       ...(data.case?.design ?? []).map(
-        (d) => `${words(d.name)} ${number(row?.values[d.name])}`,
+        (d) => `${words(d.name)} ${textOf(data, d.name, row?.values[d.name])}`,
       ),
       ...(data.case?.responses ?? []).map(
-        (r) => `${words(r.name)} ${quantity(row?.values[r.name], r.unit)}`,
+        (r) => `${words(r.name)} ${textOf(data, r.name, row?.values[r.name])}`,
       ),
     ];
     return `evaluation ${evaluation}: ${numbers.join(", ")}`;
