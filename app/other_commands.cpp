@@ -13,6 +13,7 @@
 #include "app/versions.h"
 #include "core/atomic_file.h"
 #include "core/count_text.h"
+#include "core/geometry/mesh_checks.h"
 #include "io/vtk_files.h"
 #include "pipeline/case_data/film_advice.h"
 #include "pipeline/case_data/film_start.h"
@@ -180,13 +181,30 @@ std::string find_unknown(const films::FilmSystem& system,
   return "";
 }
 
+/// Why the film cannot be a part's surface; what walls lack is told by them.
+std::optional<Failure> failure_of(const case_data::EvaluatedCase& inputs,
+                                  const frozen::FilmModel& model) {
+  const settle::FilmState& film = model.reference();
+  if (film.failure || inputs.film_system.bodies.empty() ||
+      !inputs.walls.empty()) {
+    return film.failure;
+  }
+  const std::vector<Finding> findings =
+      check_surface(model.surface(film.points).base);
+  return findings.empty() ? std::nullopt
+                          : std::optional<Failure>({FailureKind::SurfaceInvalid,
+                                                    summary(findings)});
+}
+
 /// film.vtp, film.json and, where they are wanted, the film's way to rest and
 /// pictures.
 void write_evolved(const case_data::Case& input,
                    const case_data::EvaluatedCase& inputs,
                    const frozen::FilmModel& model,
-                   const films::NestingReport& nesting, const fs::path& folder,
-                   const EvolveArguments& arguments, Monitor& monitor) {
+                   const films::NestingReport& nesting,
+                   const std::optional<Failure>& failure,
+                   const fs::path& folder, const EvolveArguments& arguments,
+                   Monitor& monitor) {
   const settle::FilmState& film = model.reference();
   const std::vector<std::string> owned = results::owned_files(folder);
   if (!arguments.pictures &&
@@ -209,7 +227,7 @@ void write_evolved(const case_data::Case& input,
        .units = input.units,
        .report = film.report,
        .nesting = nesting,
-       .failure = film.failure,
+       .failure = failure,
        .solids = solids,
        .areas = results::areas_of_films(input, model),
        .curves = results::pieces_of_curves(inputs.film_system.curves)},
@@ -272,7 +290,9 @@ int evolve_command(const EvolveArguments& arguments) {
   const films::NestingReport nesting =
       film.failure ? films::NestingReport{}
                    : results::nesting_of_films(input, model);
-  write_evolved(input, inputs, model, nesting, folder, arguments, monitor);
+  const std::optional<Failure> failure = failure_of(inputs, model);
+  write_evolved(input, inputs, model, nesting, failure, folder, arguments,
+                monitor);
   if (!common.quiet) {
     std::fputs(results::film_text(input, film.report).c_str(), stdout);
     if (const std::string text =
@@ -281,10 +301,13 @@ int evolve_command(const EvolveArguments& arguments) {
       std::printf("  films %s\n", text.c_str());
     }
   }
-  if (film.failure) {
-    const std::string advice = case_data::tried_advice(
-        inputs, *film.failure, {.edge = inputs.fea_edge, .monitor = &monitor});
-    std::string message = film.failure->message;
+  if (failure) {
+    const std::string advice =
+        case_data::tried_advice(input, inputs, *failure,
+                                {.edge = inputs.fea_edge,
+                                 .refinements = input.resolution.refinements,
+                                 .monitor = &monitor});
+    std::string message = failure->message;
     message += advice.empty() ? "" : "; " + advice;
     if (arguments.pictures) {
       message += "; look at " + (folder / "film.png").string();

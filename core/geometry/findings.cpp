@@ -43,10 +43,10 @@ Words words_of(FindingKind kind) {
               "remesh the film or use another edge length"};
     case FindingKind::Crossing:
       return {"crossing", "crosses or overlaps another",
-              "move the curves apart or give the body another volume"};
+              "surfaces must not meet but at their common edges"};
     case FindingKind::TooClose:
       return {"too_close", "nearly touches another",
-              "move the curves apart or give the body another volume"};
+              "surfaces must keep apart but at their common edges"};
     case FindingKind::NegativeVolume:
       return {"negative_volume", "belongs to a closed part that is inside out",
               "turn the facets of that part"};
@@ -54,8 +54,8 @@ Words words_of(FindingKind kind) {
       return {"body_mismatch",
               "does not look at the same body as the next facet about their "
               "edge",
-              "films cross or fold over there: move their curves apart or "
-              "change a volume; or a body between them is missing"};
+              "films cross or fold over there, or a body between them is "
+              "missing"};
     case FindingKind::BadNesting:
       return {"bad_nesting", "belongs to a closed part inside another body",
               "turn its facets round for a cavity, or leave one of them out"};

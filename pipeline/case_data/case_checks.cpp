@@ -100,6 +100,39 @@ void check_use(const Case& input, CaseProblems& problems) {
   }
 }
 
+/// What acts on a surface between two solid bodies acts within the part.
+void check_inner_surfaces(const Case& input, CaseProblems& problems) {
+  std::map<std::string, std::vector<std::string>> solids;  // by surface
+  for (const BodyEntry& body : input.bodies) {
+    for (const std::string& surface : body.enclosed_by) {
+      if (body.material != kVoid) {
+        solids[surface].push_back(body.name);
+      }
+    }
+  }
+  const auto look = [&](const std::string& what, const std::string& surface,
+                        SourceLine line) {
+    const auto found = solids.find(surface);
+    if (found != solids.end() && found->second.size() == 2) {
+      problems.warn(
+          line, fmt::format("the {} on '{}' acts within the part: it lies "
+                            "between bodies '{}' and '{}'",
+                            what, surface, found->second[0], found->second[1]));
+    }
+  };
+  for (const LoadCaseEntry& load_case : input.load_cases) {
+    for (const LoadEntry& load : load_case.loads) {
+      look("load", load.surface, load.line);
+    }
+    for (const loads::Support& support : load_case.supports) {
+      look("support", support.surface, load_case.line);
+    }
+    for (const loads::SpringBed& springs : load_case.springs) {
+      look("spring bed", springs.surface, load_case.line);
+    }
+  }
+}
+
 void check_loads(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems) {
   for (std::size_t k = 0; k < inputs.load_cases.size(); ++k) {
@@ -362,6 +395,7 @@ void check_case(const Case& input, CaseProblems& problems) {
   if (problems.empty()) {
     check_liquid(input, problems);
     check_use(input, problems);
+    check_inner_surfaces(input, problems);
     check_numbers(input, problems);
   }
 }

@@ -1,16 +1,20 @@
 #include "pipeline/case_data/film_advice.h"
 
 #include <algorithm>
-#include <functional>
+#include <array>
+#include <cmath>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "core/geometry/mesh_checks.h"
+#include "evolve/energy/energy.h"
 #include "evolve/frozen/film_model.h"
+#include "evolve/start/start_complex.h"
 
 namespace meniscus::case_data {
 
@@ -18,29 +22,49 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// Films that the message names; all where it names none.
-Names films_named(const films::FilmSystem& system, const std::string& message) {
+/// Films and caps that the message names; all films where it names none.
+Names surfaces_named(const films::FilmSystem& system,
+                     const std::string& message) {
   Names named;
-  Names all;
+  Names films;
+  const auto look = [&](const std::string& name) {
+    if (message.find("'" + name + "'") != std::string::npos) {
+      named.insert(name);
+    }
+  };
   for (const films::FilmSpec& film : system.films) {
-    all.insert(film.name);
-    if (message.find("'" + film.name + "'") != std::string::npos) {
-      named.insert(film.name);
+    films.insert(film.name);
+    look(film.name);
+  }
+  if (named.empty()) {
+    for (const films::CapSpec& cap : system.caps) {
+      look(cap.name);
     }
   }
-  return named.empty() ? all : named;
+  return named.empty() ? films : named;
 }
 
-/// Bodies of given volume that these films enclose, by index.
+/// Where the case has the volume of the body of that name.
+SourceLine volume_line(const Case& input, const std::string& name) {
+  for (const BodyEntry& body : input.bodies) {
+    if (body.name == name && body.volume) {
+      return body.volume->line;
+    }
+  }
+  return 0;
+}
+
+/// Bodies of given volume that these surfaces enclose, by index.
 std::vector<std::size_t> bodies_beside(const films::FilmSystem& system,
-                                       const Names& films) {
+                                       const Names& surfaces) {
   std::vector<std::size_t> found;
   for (std::size_t b = 0; b < system.bodies.size(); ++b) {
     const films::BodySpec& body = system.bodies[b];
     if (body.volume &&
-        std::any_of(
-            body.enclosed_by.begin(), body.enclosed_by.end(),
-            [&](const std::string& name) { return films.count(name) > 0; })) {
+        std::any_of(body.enclosed_by.begin(), body.enclosed_by.end(),
+                    [&](const std::string& name) {
+                      return surfaces.count(name) > 0;
+                    })) {
       found.push_back(b);
     }
   }
@@ -73,40 +97,123 @@ bool enlarge_rims(films::FilmSystem& system, const Names& films,
   return any;
 }
 
-/// One change of the case and what it is called.
+/// One change of the case. `factor` and `of` say it in words: "1.3", "times the
+/// volume of 'part'".
 struct Trial {
-  std::string what;  // "1.3 times the volume of 'part' (1.17e+05 mm3)"
   films::FilmSystem system;
+  std::string factor;
+  std::string of;
+  std::string detail;  // "volume = 1.17e+05 mm3, case.toml:27"
 };
 
-std::vector<Trial> trials_of(const EvaluatedCase& inputs, const Names& films) {
+/// Multiplies volumes of bodies, by index.
+using Factors = std::vector<std::pair<std::size_t, double>>;
+
+Trial volume_trial(const Case& input, const films::FilmSystem& system,
+                   const Factors& factors) {
+  Trial trial{system, "", "", ""};
+  std::vector<std::string> numbers;
+  std::vector<std::string> names;
+  std::vector<std::string> details;
+  for (const auto& [b, factor] : factors) {
+    films::BodySpec& body = trial.system.bodies[b];
+    *body.volume *= factor;
+    numbers.push_back(fmt::format("{:.3g}", factor));
+    names.push_back("'" + body.name + "'");
+    details.push_back(fmt::format("volume = {:.4g} {}, {}", *body.volume,
+                                  input.units.unit_of(Dimension::Volume),
+                                  place(input, volume_line(input, body.name))));
+  }
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  trial.factor = fmt::format("{}", fmt::join(numbers, "/"));
+  trial.of = fmt::format("times the volume of {}", fmt::join(names, " and "));
+  trial.detail = fmt::format("{}", fmt::join(details, "; "));
+  return trial;
+}
+
+/// "1.3, 1.7 times the volume of 'part'; rims of skin 1.3 times as large".
+std::string listed(const std::vector<Trial>& trials) {
+  std::string text;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    text += k == 0 ? "" : trials[k].of == trials[k - 1].of ? ", " : "; ";
+    text += trials[k].factor;
+    if (k + 1 == trials.size() || trials[k + 1].of != trials[k].of) {
+      text += (trials[k].factor.empty() ? "" : " ") + trials[k].of;
+    }
+  }
+  return text;
+}
+
+/// What the first facets between the curves enclose of each body, over the
+/// volume that is asked of it; nothing where they cannot be made.
+std::vector<double> fills_of_start(const films::FilmSystem& system,
+                                   double edge) {
+  try {
+    const films::FilmComplex start = start::build_start(system, edge);
+    const VectorX volumes =
+        energy::FilmEnergy(start).volumes(start.mesh.points);
+    std::vector<double> fills;
+    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+      fills.push_back(volumes[static_cast<Eigen::Index>(b)] /
+                      system.bodies[b].volume.value_or(1.0));
+    }
+    return fills;
+  } catch (const InvalidInput&) {
+    return {};
+  }
+}
+
+std::vector<Trial> trials_of(const Case& input, const EvaluatedCase& inputs,
+                             const Names& named, bool of_films, double edge) {
   constexpr std::array<double, 4> kVolumes = {1.3, 1.7, 2.2, 0.75};
+  constexpr double kFar = 2.2;  // times what the first facets enclose
   constexpr double kRims = 1.3;
-  std::vector<Trial> trials;
   const films::FilmSystem& system = inputs.film_system;
-  const std::vector<std::size_t> bodies = bodies_beside(system, films);
-  for (const double factor : kVolumes) {
-    if (bodies.empty()) {
-      break;
+  const std::vector<std::size_t> bodies = bodies_beside(system, named);
+  const std::vector<double> fills = fills_of_start(system, edge);
+  Factors far;     // to the volume of the first facets
+  Factors others;  // the same of bodies that the message does not name
+  Factors same;
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    const bool beside =
+        std::find(bodies.begin(), bodies.end(), b) != bodies.end();
+    if (beside) {
+      same.emplace_back(b, 1.0);
     }
-    Trial trial{"", system};
-    std::vector<std::string> names;
-    for (const std::size_t b : bodies) {
-      films::BodySpec& body = trial.system.bodies[b];
-      *body.volume *= factor;
-      names.push_back(
-          fmt::format("'{}' (volume = {:.4g})", body.name, *body.volume));
+    if (system.bodies[b].volume && !fills.empty() && fills[b] > 0.0 &&
+        std::abs(std::log(fills[b])) > std::log(kFar)) {
+      (beside ? far : others).emplace_back(b, fills[b]);
     }
-    trial.what = fmt::format("{:g} times the volume of {}", factor,
-                             fmt::join(names, " and "));
+  }
+  std::vector<Trial> trials;
+  const auto add = [&](Factors factors, double power, double times) {
+    for (auto& [b, factor] : factors) {
+      factor = times * std::pow(factor, power);
+    }
+    trials.push_back(volume_trial(input, system, factors));
+  };
+  const auto add_way = [&](const Factors& factors) {
+    if (!factors.empty()) {
+      add(factors, 1.0 / 3.0, 1.0);
+      add(factors, 2.0 / 3.0, 1.0);
+      for (const double times : {1.0, 2.2, 4.0}) {
+        add(factors, 1.0, times);
+      }
+    }
+  };
+  add_way(far);
+  if (far.empty() && !same.empty()) {
+    for (const double times : kVolumes) {
+      add(same, 1.0, times);
+    }
+  }
+  Trial trial{system, "", "", ""};
+  if (of_films && enlarge_rims(trial.system, named, kRims)) {
+    trial.of = fmt::format("rims of {} {:g} times as large",
+                           fmt::join(named, " and "), kRims);
     trials.push_back(std::move(trial));
   }
-  Trial trial{"", system};
-  if (enlarge_rims(trial.system, films, kRims)) {
-    trial.what = fmt::format("rims of {} {:g} times as large",
-                             fmt::join(films, " and "), kRims);
-    trials.push_back(std::move(trial));
-  }
+  add_way(others);
   return trials;
 }
 
@@ -120,18 +227,29 @@ class QuietMonitor : public Monitor {
   const Monitor& outer_;
 };
 
-bool stands(const films::FilmSystem& system, double edge, Monitor& monitor) {
+bool stands(const films::FilmSystem& system, double edge, int refinements,
+            Monitor& monitor) {
   try {
     const frozen::FilmModel model = frozen::FilmModel::freeze(
-        system, {.edge = edge, .refinements = 0, .monitor = &monitor});
-    return !model.reference().failure &&
+        system,
+        {.edge = edge, .refinements = refinements, .monitor = &monitor});
+    const settle::FilmState& film = model.reference();
+    return !film.failure &&
            (system.bodies.empty() ||
-            check_surface(model.boundary(model.reference().points)).empty());
+            check_surface(model.surface(film.points).base).empty());
   } catch (const InvalidInput&) {  // rims that meet, a body that stays open
     return false;
   } catch (const MeshError&) {
     return false;
   }
+}
+
+/// On coarse facets first, which tells most that do not.
+bool stands(const films::FilmSystem& system, const AdviceOptions& options,
+            Monitor& monitor) {
+  return stands(system, options.edge, 0, monitor) &&
+         (options.refinements == 0 ||
+          stands(system, options.edge, options.refinements, monitor));
 }
 
 }  // namespace
@@ -142,36 +260,39 @@ bool is_of_films(const Failure& failure) {
          failure.kind == FailureKind::FilmNotFound;
 }
 
-std::string tried_advice(const EvaluatedCase& inputs, const Failure& failure,
-                         const AdviceOptions& options) {
-  if (!is_of_films(failure) || inputs.film_system.films.empty()) {
+std::string tried_advice(const Case& input, const EvaluatedCase& inputs,
+                         const Failure& failure, const AdviceOptions& options) {
+  const bool of_films = is_of_films(failure);
+  if ((!of_films && failure.kind != FailureKind::SurfaceInvalid) ||
+      inputs.film_system.films.empty()) {
     return "";
   }
   Monitor& outer =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   QuietMonitor quiet(outer);
-  const Names films = films_named(inputs.film_system, failure.message);
-  std::vector<std::string> in_vain;
-  for (const Trial& trial : trials_of(inputs, films)) {
-    outer.progress({.stage = "film", .detail = "trying " + trial.what});
-    if (stands(trial.system, options.edge, quiet)) {
+  const Names named = surfaces_named(inputs.film_system, failure.message);
+  std::vector<Trial> in_vain;
+  for (const Trial& trial :
+       trials_of(input, inputs, named, of_films, options.edge)) {
+    outer.progress({.stage = "film", .detail = "trying " + listed({trial})});
+    if (stands(trial.system, options, quiet)) {
       return fmt::format(
-          "tried: with {} the film stands{}; an arm longer than six times its "
-          "radius stands with less by a cap in its middle (docs/arms.md)",
-          trial.what,
-          in_vain.empty() ? ""
-                          : fmt::format("; not with {}",
-                                        fmt::join(in_vain, ", nor with ")));
+          "tried: with {}{} the film stands{}{}", listed({trial}),
+          trial.detail.empty() ? "" : " (" + trial.detail + ")",
+          in_vain.empty() ? "" : "; not with " + listed(in_vain),
+          of_films ? "; an arm longer than six times its radius stands with "
+                     "less by a cap in its middle (docs/arms.md)"
+                   : "");
     }
-    in_vain.push_back(trial.what);
+    in_vain.push_back(trial);
   }
   const std::string tried =
-      in_vain.empty()
-          ? ""
-          : fmt::format("tried in vain: {}; ", fmt::join(in_vain, "; "));
-  return tried +
-         "arms that pinch stand when each has liquid of its own: a cap at its "
-         "waist, a body on either side (docs/arms.md)";
+      in_vain.empty() ? "" : "tried in vain: " + listed(in_vain) + "; ";
+  return tried + (of_films ? "arms that pinch stand when each has liquid of "
+                             "its own: a cap at its waist, a body on either "
+                             "side (docs/arms.md)"
+                           : "it is the curves there that are too near each "
+                             "other or in each other's way");
 }
 
 }  // namespace meniscus::case_data

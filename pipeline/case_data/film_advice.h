@@ -1,4 +1,5 @@
-/// What would help a film that does not stand: tried before it is said.
+/// What would help a film that does not stand or meets other surfaces of its
+/// body: tried before it is said.
 #pragma once
 
 #include <string>
@@ -13,16 +14,19 @@ namespace meniscus::case_data {
 bool is_of_films(const Failure& failure);
 
 struct AdviceOptions {
-  double edge = 0.0;  // of the films that are tried [length], > 0
+  double edge = 0.0;    // of the films that are tried [length], > 0
+  int refinements = 0;  // of those that stand without
   Monitor* monitor = nullptr;
 };
 
-/// Other films of the same case, settled at that edge without refinement: more
-/// and less of the liquid next to the films that `failure` names, and larger
-/// rims. Says which of them stands first, or which were tried in vain and what
-/// is left to do; empty for failures that are not of films. The same for the
-/// same input: a fixed list, no clock. Throws Interrupted.
-std::string tried_advice(const EvaluatedCase& inputs, const Failure& failure,
-                         const AdviceOptions& options);
+/// Other films of the same case, settled at that edge and refinement: more
+/// and less of the liquid next to the films that `failure` names, volumes on
+/// the way to what the first facets between the curves enclose, and larger
+/// rims. Says which of them stands first without meeting itself, or which were
+/// tried in vain and what is left to do; empty for failures that are neither of
+/// films nor of the surface that they close. The same for the same input: a
+/// fixed list, no clock. Throws Interrupted.
+std::string tried_advice(const Case& input, const EvaluatedCase& inputs,
+                         const Failure& failure, const AdviceOptions& options);
 
 }  // namespace meniscus::case_data

@@ -32,6 +32,22 @@ const walls::ThickWall& first_with_findings(const walls::WallModel& walls) {
       [](const walls::ThickWall& wall) { return !wall.findings.empty(); });
 }
 
+/// Adds to the start's failure what was found to help; for models whose
+/// failures are told.
+void advise(const case_data::EvaluatedCase& inputs,
+            const ForwardModelOptions& options, Monitor& monitor,
+            FrozenPart& part) {
+  if (!(options.edge_factor > 1.0)) {
+    Failure& failure = *part.start.failure;
+    const std::string advice = case_data::tried_advice(
+        part.input, inputs, failure,
+        {.edge = inputs.fea_edge,
+         .refinements = case_data::film_refinements(part.input),
+         .monitor = &monitor});
+    failure.message += advice.empty() ? "" : "; " + advice;
+  }
+}
+
 bool freeze_film(const case_data::EvaluatedCase& inputs,
                  const ForwardModelOptions& options, Monitor& monitor,
                  FrozenPart& part) {
@@ -54,10 +70,8 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
   const settle::FilmState& film = part.film->reference();
   start.film = film.report;
   start.failure = film.failure;
-  if (start.failure && !(options.edge_factor > 1.0)) {
-    const std::string advice = case_data::tried_advice(
-        inputs, *start.failure, {.edge = inputs.fea_edge, .monitor = &monitor});
-    start.failure->message += advice.empty() ? "" : "; " + advice;
+  if (start.failure) {
+    advise(inputs, options, monitor, part);
   }
   if (!start.failure && !inputs.walls.empty()) {
     monitor.progress({.stage = "film", .detail = "thickening the films"});
@@ -255,7 +269,13 @@ bool film_and_mesh(const case_data::EvaluatedCase& inputs,
   if (!part.input.analysis.adapt) {  // else with the facets that err
     split_facets(tight_facets(inputs, part), part);
   }
-  return fill_surface(inputs, {.monitor = &monitor}, monitor, part);
+  if (fill_surface(inputs, {.monitor = &monitor}, monitor, part)) {
+    return true;
+  }
+  if (!part.walls) {
+    advise(inputs, options, monitor, part);
+  }
+  return false;
 }
 
 }  // namespace

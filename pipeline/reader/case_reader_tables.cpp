@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <set>
 
 #include <fmt/format.h>
@@ -355,10 +356,37 @@ void read_process(CaseContext& context, const toml::table& root,
   result.process.smallest_feature = least;
 }
 
-void warn_of_unused(CaseContext& context, const case_data::Case& result) {
+/// Does some text of these entries match?
+bool has_text(const toml::node& node, const std::regex& pattern) {
+  if (const auto* table = node.as_table()) {
+    return std::any_of(table->begin(), table->end(), [&](const auto& entry) {
+      return has_text(entry.second, pattern);
+    });
+  }
+  if (const auto* array = node.as_array()) {
+    return std::any_of(array->begin(), array->end(), [&](const auto& entry) {
+      return has_text(entry, pattern);
+    });
+  }
+  const auto* text = node.as_string();
+  return text != nullptr && std::regex_search(text->get(), pattern);
+}
+
+/// Studies of one kind leave the keys of others unread: what stands there is
+/// used, and so may be what follows a mistake.
+void warn_of_unused(CaseContext& context, const toml::table& root,
+                    const case_data::Case& result) {
+  if (!context.problems.empty()) {
+    return;
+  }
+  const toml::node* study = root.get("study");
+  const auto in_study = [&](const std::string& name) {
+    return study != nullptr &&
+           has_text(*study, std::regex("\\b" + name + "\\b"));
+  };
   for (std::size_t k = 0; k < context.names.size(); ++k) {
     const bool is_design = k < result.design.size();
-    if (context.used[k] == 0) {
+    if (context.used[k] == 0 && !in_study(context.names[k])) {
       context.problems.warn(
           is_design ? result.design[k].line
                     : result.parameters[k - result.design.size()].value.line,
@@ -457,7 +485,7 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   read_resolution(context, root, result);
   read_process(context, root, result);
   read_analysis(context, root, result);
-  warn_of_unused(context, result);
+  warn_of_unused(context, root, result);
 }
 
 }  // namespace meniscus::reader

@@ -5,7 +5,7 @@ import json
 import re
 import unittest
 
-from program import ProgramTest, strut
+from program import ROOT, ProgramTest, strut
 
 CASE = """title = "A strut pushed and pulled"
 units = "mm-N-MPa"
@@ -249,7 +249,8 @@ class WorstCase(ProgramTest):
                          "--set", "bodies.part.volume=4.5e4")
         self.assertEqual(done.returncode, 3)
         found = re.search(r"tried: with .* the volume of 'part' "
-                          r"\(volume = ([\d.e+]+)\) the film stands",
+                          r"\(volume = ([\d.e+]+ mm3), .*case\.toml: --set "
+                          r"bodies\.part\.volume=4\.5e4\) the film stands",
                           done.stderr)
         self.assertTrue(found, done.stderr)
         held = self.call("evolve", path, "--no-pictures", "--set",
@@ -260,6 +261,31 @@ class WorstCase(ProgramTest):
         self.assertEqual(lost.returncode, 3)
         self.assertIn("tried in vain", lost.stderr)
         self.assertIn("docs/arms.md", lost.stderr)
+
+    def test_volumes_that_cannot_stand(self):
+        """A volume a hundred times too large or too small, of an eye about a
+        bore: named with its line and its way, which was tried; by evolve too."""
+        text = (ROOT / "cases/bell_crank/case.toml").read_text()
+        given = re.search(r"\[bodies\.end_b\]\n.*\nvolume = (\".*\")", text)
+        line = text[:given.start(1)].count("\n") + 1
+        for volume, factor in (("50 mm3", r"\d{2,3}"), ("2000 cm3", r"0\.\d+")):
+            path = self.folder / "crank.toml"
+            path.write_text(text[:given.start(1)] + f'"{volume}"' +
+                            text[given.end(1):])
+            calls = [("evolve",), ("run", "--set", "study.kind=analyse")]
+            for command, *more in calls:
+                with self.subTest(volume=volume, command=command):
+                    done = self.call(command, path, "--no-pictures", *more,
+                                     "--out", f"{command}_{volume[:2]}")
+                    self.assertEqual(done.returncode, 3, done.stderr)
+                    found = re.search(
+                        r"tried: with (" + factor + r") times the volume of "
+                        r"'end_b' \(volume = ([\d.e+]+ mm3), .*crank\.toml:"
+                        rf"{line}\) the film stands", done.stderr)
+                    self.assertTrue(found, done.stderr)
+            held = self.call("evolve", path, "--no-pictures", "--set",
+                             f"bodies.end_b.volume={found.group(2)}")
+            self.assertEqual(held.returncode, 0, held.stderr)
 
 
 if __name__ == "__main__":

@@ -154,7 +154,7 @@ volume = 5.6e4
 material = "aluminium"
 """)
         self.fail_with(path, r"facet \d+ \('skin'\).*facet \d+ \('peg'\)",
-                       "move the curves",
+                       "must not meet but at their common edges",
                        arguments=["--set", "resolution.fea=8",
                                   "--set", "resolution.film=4"])
 

@@ -256,6 +256,30 @@ TEST(CaseReader, WarnsOfWhatIsNotUsed) {
                           HasSubstr("material 'steel' fills no body")));
 }
 
+const std::string kBellCrank =
+    MENISCUS_SOURCE_DIR "/cases/bell_crank/case.toml";
+
+TEST(CaseReader, UsesWhatASwitchedOffStudyUses) {
+  const auto warnings = [](std::vector<std::string> overrides) {
+    return reader::read_case_file(kBellCrank, std::move(overrides)).warnings;
+  };
+  EXPECT_THAT(warnings({"study.kind=analyse"}), IsEmpty());
+  EXPECT_THAT(warnings({"study.kind=analyse", "study.constraints=[]"}),
+              ElementsAre(HasSubstr("parameter 'hold' is not used")));
+}
+
+TEST(CaseReader, WarnsOfLoadsWithinThePart) {
+  const reader::CaseReading reading = reader::read_case_file(
+      kBellCrank, {"load_cases.service.loads=[{ on = \"b_tip_cap\", force = "
+                   "[0, 0, \"up * 1e3\"] }, { on = \"pin_b\", force = [0, 0, "
+                   "\"along * 1e3\"] }]"});
+  EXPECT_THAT(reading.problems, IsEmpty());
+  EXPECT_THAT(reading.warnings,
+              ElementsAre(HasSubstr("the load on 'b_tip_cap' acts within the "
+                                    "part: it lies between bodies 'middle_b' "
+                                    "and 'end_b'")));
+}
+
 TEST(Overrides, ReachParametersDesignAndKeys) {
   const case_data::Case input = reader::read_case(
       two_arm_path(),
