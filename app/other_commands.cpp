@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include "core/atomic_file.h"
 #include "core/count_text.h"
 #include "core/geometry/mesh_checks.h"
+#include "core/math/union_find.h"
 #include "io/vtk_files.h"
 #include "pipeline/case_data/film_advice.h"
 #include "pipeline/case_data/film_start.h"
@@ -181,7 +183,25 @@ std::string find_unknown(const films::FilmSystem& system,
   return "";
 }
 
-/// Why the film cannot be a part's surface; what walls lack is told by them.
+/// Surfaces, by name, of bodies that hang together by common surfaces have one
+/// number.
+std::map<std::string, int> parts_of_surfaces(const films::FilmSystem& system) {
+  std::map<std::string, int> first;  // body
+  UnionFind bodies(system.bodies.size());
+  for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+    for (const std::string& name : system.bodies[b].enclosed_by) {
+      bodies.join(static_cast<int>(b),
+                  first.emplace(name, static_cast<int>(b)).first->second);
+    }
+  }
+  for (auto& [name, body] : first) {
+    body = bodies.root(body);
+  }
+  return first;
+}
+
+/// Why the film cannot be a part's surface; what walls lack is told by them,
+/// and that parts cross each other by the report on nesting.
 std::optional<Failure> failure_of(const case_data::EvaluatedCase& inputs,
                                   const frozen::FilmModel& model) {
   const settle::FilmState& film = model.reference();
@@ -189,8 +209,21 @@ std::optional<Failure> failure_of(const case_data::EvaluatedCase& inputs,
       !inputs.walls.empty()) {
     return film.failure;
   }
-  const std::vector<Finding> findings =
+  const std::map<std::string, int> parts =
+      parts_of_surfaces(inputs.film_system);
+  const auto is_of_several = [&](const Finding& finding) {
+    std::set<int> found;
+    for (const std::string& name : finding.surfaces) {
+      const auto part = parts.find(name);
+      found.insert(part == parts.end() ? -1 : part->second);
+    }
+    return found.size() > 1;
+  };
+  std::vector<Finding> findings =
       check_surface(model.surface(film.points).base);
+  findings.erase(
+      std::remove_if(findings.begin(), findings.end(), is_of_several),
+      findings.end());
   return findings.empty() ? std::nullopt
                           : std::optional<Failure>({FailureKind::SurfaceInvalid,
                                                     summary(findings)});

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/count_text.h"
 #include "pipeline/case_data/study_kinds.h"
 #include "pipeline/results/results.h"
 #include "pipeline/study/study_records.h"
@@ -84,9 +83,8 @@ std::string status_text(const case_data::Case& input,
   }
   if (event.status.objective) {
     const ShownUnit& shown = event.objective_shown;
-    text += fmt::format(
-        ", {} = {}", event.objective_name,
-        quantity_text(shown.factor * *event.status.objective, shown.unit));
+    text += fmt::format(", {} = {}", event.objective_name,
+                        shown.text(*event.status.objective));
   }
   const std::string progress = study::progress_text(event);
   return progress.empty() ? text : text + ", " + progress;

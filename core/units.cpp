@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include "core/count_text.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -308,6 +309,10 @@ std::string described(const UnitPowers& powers) {
   add("force", powers.force);
   add("time", powers.time);
   return "a quantity of" + text;
+}
+
+std::string ShownUnit::text(double value, int digits) const {
+  return quantity_text(factor * value, unit, digits);
 }
 
 std::string UnitSystem::unit_of(Dimension dimension) const {

@@ -41,7 +41,9 @@ std::string described(const UnitPowers& powers);
 /// How a quantity is shown to people: its number times `factor`, in `unit`.
 struct ShownUnit {
   double factor = 1.0;
-  std::string unit;
+  std::string unit = {};
+  /// "0.485 kg" of 4.85e-4 t, with `digits` significant digits.
+  std::string text(double value, int digits = 6) const;
 };
 
 /// One consistent system: nothing in the engine converts, so mm-N-MPa means

@@ -173,8 +173,9 @@ void EvaluatorCore::report_progress(const std::string& detail) {
 std::string EvaluatorCore::describe(const VectorX& x) const {
   std::string text;
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    text += fmt::format("{}{} = {:.6g}", i == 0 ? "" : ", ",
-                        variables_[static_cast<std::size_t>(i)].name, x[i]);
+    const Variable& variable = variables_[static_cast<std::size_t>(i)];
+    text += fmt::format("{}{} = {}", i == 0 ? "" : ", ", variable.name,
+                        variable.shown.text(x[i]));
   }
   return text;
 }
@@ -186,10 +187,10 @@ std::string EvaluatorCore::bounds_reached(const VectorX& x) const {
     const double near = kAtBound * ranges_[i];
     const bool low = x[i] <= variable.lower + near;
     if (low || x[i] >= variable.upper - near) {
-      text += fmt::format("{}{} at its {} {} {}", text.empty() ? "" : ", ",
-                          variable.name, low ? "lower" : "upper",
-                          variable.range ? "end here," : "bound",
-                          low ? variable.lower : variable.upper);
+      text += fmt::format(
+          "{}{} at its {} {} {}", text.empty() ? "" : ", ", variable.name,
+          low ? "lower" : "upper", variable.range ? "end here," : "bound",
+          variable.shown.text(low ? variable.lower : variable.upper));
     }
   }
   return text;

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/count_text.h"
 #include "optimize/first_start.h"
 #include "optimize/free_variables.h"
 #include "optimize/minimize_report.h"
@@ -148,7 +147,7 @@ MinimizeReport minimize_free(const MinimizeProblem& problem,
 }  // namespace
 
 std::string MinimizeProblem::objective_text(double value) const {
-  return objective + ' ' + quantity_text(shown_factor * value, shown_unit);
+  return objective + ' ' + shown.text(value);
 }
 
 const std::vector<MinimizeMethod>& minimize_methods() {

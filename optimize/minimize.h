@@ -25,6 +25,7 @@ struct ResponseBounds {
   /// none (the lowest eigenvalue before a fold): the search sees its square,
   /// which is nearly straight there. No effect on a bound of 0.
   bool root_like = false;
+  ShownUnit shown = {};  // in messages
 };
 
 /// The function answers with 1 + constraints.size() values: the objective,
@@ -37,9 +38,7 @@ struct MinimizeProblem {
   /// Asked only where a method needs derivatives, always after the function
   /// answered at the same x; empty: forward differences within the bounds.
   JacobianFunction jacobian = {};
-  /// What messages show the objective in: value x factor, then the unit.
-  double shown_factor = 1.0;
-  std::string shown_unit = {};
+  ShownUnit shown = {};  // the objective in messages
 
   std::string objective_text(double value) const;  // "mass 0.485 kg"
 };
@@ -74,6 +73,7 @@ double kept_objective(double objective, double violation);
 
 struct ConstraintState {
   std::string name;
+  ShownUnit shown = {};
   double value = 0.0;
   double lower = 0.0;
   double upper = 0.0;

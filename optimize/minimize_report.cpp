@@ -35,6 +35,7 @@ void fill_constraints(const MinimizeEvaluator& evaluator,
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     ConstraintState state{.name = constraints[i].name,
+                          .shown = constraints[i].shown,
                           .value = report.values[row + 1],
                           .lower = constraints[i].lower,
                           .upper = constraints[i].upper};
@@ -56,11 +57,11 @@ void fill_constraints(const MinimizeEvaluator& evaluator,
 
 std::string demand(const ConstraintState& state) {
   if (state.lower == state.upper) {
-    return fmt::format("must be {:.6g}", state.upper);
+    return "must be " + state.shown.text(state.upper);
   }
   return state.value > state.upper
-             ? fmt::format("must be at most {:.6g}", state.upper)
-             : fmt::format("must be at least {:.6g}", state.lower);
+             ? "must be at most " + state.shown.text(state.upper)
+             : "must be at least " + state.shown.text(state.lower);
 }
 
 std::string missed(const MinimizeReport& report) {
@@ -76,8 +77,9 @@ std::string missed(const MinimizeReport& report) {
                    });
   std::string text;
   for (std::size_t i = 0; i < std::min(states.size(), kNamed); ++i) {
-    text += fmt::format("{}'{}' is {:.6g} and {}", i == 0 ? "" : ", ",
-                        states[i].name, states[i].value, demand(states[i]));
+    text +=
+        fmt::format("{}'{}' is {} and {}", i == 0 ? "" : ", ", states[i].name,
+                    states[i].shown.text(states[i].value), demand(states[i]));
   }
   if (states.size() > kNamed) {
     text += fmt::format(" and {} more", states.size() - kNamed);
@@ -93,9 +95,9 @@ std::string in_the_way(const MinimizeEvaluator& evaluator,
     const ConstraintState& state =
         report.constraints[static_cast<std::size_t>(side.row) - 1];
     if (state.satisfied && side.value(report.values) > -kInTheWay) {
-      text += fmt::format("{}'{}' at its {} bound {:.6g}",
-                          text.empty() ? "" : ", ", state.name,
-                          side.sign > 0.0 ? "upper" : "lower", side.bound);
+      text += fmt::format("{}'{}' at its {} bound {}", text.empty() ? "" : ", ",
+                          state.name, side.sign > 0.0 ? "upper" : "lower",
+                          state.shown.text(side.bound));
     }
   }
   return text;
@@ -140,10 +142,11 @@ void set_infeasible(const MinimizeEvaluator& evaluator,
 void set_constant(const MinimizeEvaluator& evaluator, MinimizeReport& report) {
   report.termination = Termination::Constant;
   report.message = fmt::format(
-      "'{}' is {:.6g} wherever it was evaluated: no design variable changes "
+      "'{}' is {} wherever it was evaluated: no design variable changes "
       "it. Choose another objective, or variables that move this one ({} "
       "evaluations{})",
-      evaluator.problem().objective, report.objective, report.evaluations,
+      evaluator.problem().objective,
+      evaluator.problem().shown.text(report.objective), report.evaluations,
       evaluator.failures());
 }
 

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/monitor.h"
 #include "core/types.h"
+#include "core/units.h"
 
 namespace meniscus::optimize {
 
@@ -22,6 +23,7 @@ struct Variable {
   /// What counts as one unit of it, > 0; none: upper - lower. Larger where the
   /// bounds hold a search near its start.
   std::optional<double> range = {};
+  ShownUnit shown = {};  // in messages
 };
 
 /// The values of all responses at a design, or why there are none.

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "core/count_text.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/response_kinds.h"
 
@@ -183,8 +182,7 @@ std::string unsettled_text(const case_data::Case& input,
   return fmt::format(
       "{} may have no limit: it is {}, {} and {} at edges of {:.3g}, {:.3g} "
       "and {:.3g} {}, so its +- is no bound. {}",
-      name, text(2), text(1),
-      quantity_text(unit.factor * values[0], unit.unit, 4),
+      name, text(2), text(1), unit.text(values[0], 4),
       kEdgeFactors[2] * input.resolution.fea,
       kEdgeFactors[1] * input.resolution.fea, input.resolution.fea,
       input.units.length,

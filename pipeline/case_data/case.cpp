@@ -396,6 +396,21 @@ ShownUnit shown_unit(const Case& input, int response) {
       dimension_of(input.responses[static_cast<std::size_t>(response)]));
 }
 
+ShownUnit shown_unit(const Case& input, const DesignVariable& variable) {
+  return input.units.shown(dimension_of(variable.measure));
+}
+
+std::string design_text(const Case& input, const VectorX& design) {
+  std::string text;
+  for (std::size_t k = 0; k < input.design.size(); ++k) {
+    const DesignVariable& variable = input.design[k];
+    text += fmt::format(
+        "{}{} = {}", k == 0 ? "" : ", ", variable.name,
+        shown_unit(input, variable).text(design[static_cast<Eigen::Index>(k)]));
+  }
+  return text;
+}
+
 std::string unit_of(const UnitSystem& units, const Measure& measure) {
   return units.unit_of(dimension_of(measure));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -117,10 +118,12 @@ Trial volume_trial(const Case& input, const films::FilmSystem& system,
   std::vector<std::string> details;
   for (const auto& [b, factor] : factors) {
     films::BodySpec& body = trial.system.bodies[b];
-    *body.volume *= factor;
+    // Tried as it is told: beside a collapse digits matter.
+    const std::string volume = fmt::format("{:.4g}", *body.volume * factor);
+    std::from_chars(volume.data(), volume.data() + volume.size(), *body.volume);
     numbers.push_back(fmt::format("{:.3g}", factor));
     names.push_back("'" + body.name + "'");
-    details.push_back(fmt::format("volume = {:.4g} {}, {}", *body.volume,
+    details.push_back(fmt::format("volume = {} {}, {}", volume,
                                   input.units.unit_of(Dimension::Volume),
                                   place(input, volume_line(input, body.name))));
   }

@@ -67,8 +67,7 @@ std::optional<frozen::FilmModel> freeze_next(const frozen::FilmModel& before,
   if (!rims_keep_their_size(from, system)) {
     frozen::FilmModel anew = frozen::FilmModel::freeze(system, options);
     const settle::FilmState& found = anew.reference();
-    if (!found.failure && std::abs(found.report.area - state.report.area) <=
-                              kSameFilm * state.report.area) {
+    if (!found.failure && is_same_film(state.report, found.report)) {
       return anew;
     }
   }
@@ -82,6 +81,11 @@ std::optional<frozen::FilmModel> freeze_next(const frozen::FilmModel& before,
 }
 
 }  // namespace
+
+bool is_same_film(const settle::FilmReport& one,
+                  const settle::FilmReport& other) {
+  return std::abs(one.area - other.area) <= kSameFilm * one.area;
+}
 
 Case frozen_at(Case input, const VectorX& design) {
   input.earlier_freezes.push_back(initial_design(input));

@@ -17,12 +17,17 @@ SourceLine line_of_start(const Case& input, const std::string& message);
 /// the model before.
 Case frozen_at(Case input, const VectorX& design);
 
+/// Films of one design are one film, on other facets, where their areas are
+/// within 5 %.
+bool is_same_film(const settle::FilmReport& one,
+                  const settle::FilmReport& other);
+
 /// FilmModel::freeze() of the case's films; what it refuses is told with the
 /// line of the case. After earlier_freezes it begins from the film that the
 /// model before settles at this design, not from first facets, which may find
 /// another film there or none. Rims keep their divisions on that way: where one
 /// is longer or shorter by a third, first facets come first, and count where
-/// they lead to the same film (areas within 5 %). Throws InvalidInput.
+/// they lead to the same film (is_same_film). Throws InvalidInput.
 /// `earlier_edge`: of the models before; those of `options` where it is left
 /// out.
 frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,

@@ -70,9 +70,6 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
   const settle::FilmState& film = part.film->reference();
   start.film = film.report;
   start.failure = film.failure;
-  if (start.failure) {
-    advise(inputs, options, monitor, part);
-  }
   if (!start.failure && !inputs.walls.empty()) {
     monitor.progress({.stage = "film", .detail = "thickening the films"});
     part.walls.emplace(wall_model(inputs, *part.film, film.points));
@@ -260,8 +257,8 @@ Monitor& monitor_of(const ForwardModelOptions& options) {
   return options.monitor != nullptr ? *options.monitor : silent_monitor();
 }
 
-bool film_and_mesh(const case_data::EvaluatedCase& inputs,
-                   const ForwardModelOptions& options, FrozenPart& part) {
+bool fill_film(const case_data::EvaluatedCase& inputs,
+               const ForwardModelOptions& options, FrozenPart& part) {
   Monitor& monitor = monitor_of(options);
   if (!freeze_film(inputs, options, monitor, part)) {
     return false;
@@ -269,9 +266,52 @@ bool film_and_mesh(const case_data::EvaluatedCase& inputs,
   if (!part.input.analysis.adapt) {  // else with the facets that err
     split_facets(tight_facets(inputs, part), part);
   }
-  if (fill_surface(inputs, {.monitor = &monitor}, monitor, part)) {
+  return fill_surface(inputs, {.monitor = &monitor}, monitor, part);
+}
+
+/// Where the film is there and its facets make no sound surface: the same film
+/// from first facets instead of followed ones; and for walls, whose creases
+/// depend on how facets fall there, from some a little smaller.
+bool fill_other_facets(const case_data::EvaluatedCase& inputs,
+                       const ForwardModelOptions& options, FrozenPart& part) {
+  constexpr double kSmaller = 0.97;
+  if (case_data::is_of_films(*part.start.failure)) {
+    return false;
+  }
+  std::vector<double> edges;
+  if (!part.input.earlier_freezes.empty()) {
+    edges.push_back(1.0);
+  }
+  if (part.walls) {
+    edges.push_back(kSmaller);
+  }
+  return std::any_of(edges.begin(), edges.end(), [&](double edge) {
+    FrozenPart anew{.input = part.input,
+                    .monitor = part.monitor,
+                    .start = part.start,
+                    .scans = part.scans};
+    anew.input.earlier_freezes.clear();
+    anew.start.failure.reset();
+    ForwardModelOptions own = options;
+    own.edge_factor *= edge;
+    if (!fill_film(inputs, own, anew) ||
+        !case_data::is_same_film(part.film->reference().report,
+                                 anew.film->reference().report)) {
+      return false;
+    }
+    anew.input.earlier_freezes = part.input.earlier_freezes;
+    part = std::move(anew);
+    return true;
+  });
+}
+
+bool film_and_mesh(const case_data::EvaluatedCase& inputs,
+                   const ForwardModelOptions& options, FrozenPart& part) {
+  if (fill_film(inputs, options, part) ||
+      fill_other_facets(inputs, options, part)) {
     return true;
   }
+  Monitor& monitor = monitor_of(options);
   if (!part.walls) {
     advise(inputs, options, monitor, part);
   }

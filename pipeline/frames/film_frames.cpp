@@ -252,14 +252,15 @@ std::string frame_caption(const case_data::Case& input,
   const std::vector<std::string> designs = case_data::design_names(input);
   for (Eigen::Index k = 0;
        k < frame.design.size() && frame.design.size() <= kMostDesigns; ++k) {
-    parts.push_back(fmt::format(
-        "{} = {:.4g}", designs[static_cast<std::size_t>(k)], frame.design[k]));
+    const auto i = static_cast<std::size_t>(k);
+    parts.push_back(
+        designs[i] + " = " +
+        case_data::shown_unit(input, input.design[i]).text(frame.design[k], 4));
   }
   const auto add = [&](int k) {
-    const auto [factor, unit] = case_data::shown_unit(input, k);
-    parts.push_back(fmt::format(
-        "{} = {:.4g}{}{}", input.responses[static_cast<std::size_t>(k)].name,
-        factor * frame.responses[k], unit.empty() ? "" : " ", unit));
+    parts.push_back(
+        input.responses[static_cast<std::size_t>(k)].name + " = " +
+        case_data::shown_unit(input, k).text(frame.responses[k], 4));
   };
   const int first = input.study.objective.value_or(-1);
   if (first >= 0) {

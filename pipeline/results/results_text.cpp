@@ -16,9 +16,9 @@ namespace {
 
 std::string with_error(double value, const VectorX& errors, Eigen::Index k,
                        const ShownUnit& unit) {
-  std::string text = quantity_text(unit.factor * value, unit.unit);
+  std::string text = unit.text(value);
   if (k < errors.size() && std::isfinite(errors[k])) {
-    text += "  +- " + quantity_text(unit.factor * errors[k], unit.unit, 2);
+    text += "  +- " + unit.text(errors[k], 2);
   }
   return text;
 }
@@ -59,9 +59,7 @@ std::string shift_text(const case_data::Case& input,
 std::string bounds_text(const case_data::Case& input,
                         const case_data::ConstraintEntry& entry) {
   const ShownUnit unit = case_data::shown_unit(input, entry.response);
-  const auto shown = [&](double value) {
-    return quantity_text(unit.factor * value, unit.unit);
-  };
+  const auto shown = [&](double value) { return unit.text(value); };
   if (entry.lower == entry.upper) {
     return "wanted " + shown(entry.lower);
   }
@@ -88,8 +86,7 @@ std::string constraint_text(const case_data::Case& input,
   const bool active =
       entry.lower != entry.upper && (is_at(entry.lower) || is_at(entry.upper));
   return fmt::format("  {:<20} {}, {}: {}\n", constraint.name,
-                     quantity_text(unit.factor * constraint.value, unit.unit),
-                     bounds_text(input, entry),
+                     unit.text(constraint.value), bounds_text(input, entry),
                      !constraint.satisfied ? "VIOLATED"
                      : active              ? "kept, at its bound"
                                            : "kept");
@@ -151,12 +148,11 @@ std::string result_text(const case_data::Case& input,
   const bool moves = input.study.kind != case_data::StudyKind::Analyse;
   for (Eigen::Index k = 0; k < best.design.size(); ++k) {
     const case_data::DesignVariable& variable = input.design[k];
-    text += fmt::format(
-        "  {:<20} {}{}\n", designs[k],
-        with_error(best.design[k], result.design_errors, k,
-                   {1.0, case_data::unit_of(input.units, variable.measure)}),
-        (moves ? at_bound(variable, best.design[k]) : "") +
-            free_text(result.design_errors, k));
+    text += fmt::format("  {:<20} {}{}\n", designs[k],
+                        with_error(best.design[k], result.design_errors, k,
+                                   case_data::shown_unit(input, variable)),
+                        (moves ? at_bound(variable, best.design[k]) : "") +
+                            free_text(result.design_errors, k));
   }
   const std::vector<std::string> names = case_data::response_names(input);
   const bool moved = result.start && result.start->design != best.design;
@@ -166,10 +162,7 @@ std::string result_text(const case_data::Case& input,
         "  {:<20} {}", names[k],
         with_error(best.responses[k], result.response_errors, k, unit));
     if (moved && result.start->responses.size() > k) {
-      text +=
-          "   (at the start " +
-          quantity_text(unit.factor * result.start->responses[k], unit.unit) +
-          ")";
+      text += "   (at the start " + unit.text(result.start->responses[k]) + ")";
     }
     text += "\n";
   }
@@ -263,8 +256,7 @@ std::string study_text(const case_data::Case& input) {
   for (const auto& [name, value] : study.targets) {
     const ShownUnit unit =
         case_data::shown_unit(input, case_data::response_index(input, name));
-    parts.push_back(fmt::format("{} = {}", name,
-                                quantity_text(unit.factor * value, unit.unit)));
+    parts.push_back(fmt::format("{} = {}", name, unit.text(value)));
   }
   for (const case_data::ConstraintEntry& entry : study.constraints) {
     parts.push_back(fmt::format("{} {}", name_of(entry.response),

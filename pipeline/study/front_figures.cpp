@@ -27,9 +27,8 @@ double share(const std::vector<FrontPoint>& points, const FrontPoint& point,
 
 std::string value_text(const case_data::Case& input, int response,
                        double value) {
-  const auto [factor, unit] = case_data::shown_unit(input, response);
-  return fmt::format("{} = {:.6g}{}{}", input.responses[response].name,
-                     factor * value, unit.empty() ? "" : " ", unit);
+  return input.responses[response].name + " = " +
+         case_data::shown_unit(input, response).text(value);
 }
 
 }  // namespace
@@ -79,15 +78,10 @@ std::string front_text(const case_data::Case& input,
                        const FrontFigures& figures) {
   std::string text = "  front:\n";
   for (const FrontPoint& point : figures.points) {
-    text += fmt::format("    {}, {} at",
+    text += fmt::format("    {}, {} at {} ({})\n",
                         value_text(input, *input.study.objective, point.first),
-                        value_text(input, *input.study.second, point.second));
-    for (std::size_t j = 0; j < input.design.size(); ++j) {
-      text +=
-          fmt::format("{} {} = {:.6g}", j == 0 ? "" : ",", input.design[j].name,
-                      point.design[static_cast<Eigen::Index>(j)]);
-    }
-    text += fmt::format(" ({})\n", point.end);
+                        value_text(input, *input.study.second, point.second),
+                        case_data::design_text(input, point.design), point.end);
     if (point.own_mesh) {
       text += fmt::format(
           "      on a mesh of its own {}, {}{}\n",

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "core/count_text.h"
 #include "pipeline/case_data/study_kinds.h"
 #include "pipeline/store/incumbent.h"
 
@@ -145,8 +144,7 @@ std::string progress_text(const EvaluationEvent& event) {
     const bool kept = event.best->violation.value_or(0.0) <= store::kFeasible;
     add(fmt::format(
         "best so far {} = {}{} (evaluation {})", event.objective_name,
-        quantity_text(event.objective_shown.factor * *event.best->objective,
-                      event.objective_shown.unit),
+        event.objective_shown.text(*event.best->objective),
         kept ? ""
              : fmt::format(" with violation {:.2g} of '{}'",
                            *event.best->violation, event.best->worst),

@@ -203,6 +203,7 @@ std::vector<optimize::Variable> variables_of(const case_data::Case& input,
                                 .initial = start[k],
                                 .lower = v.lower,
                                 .upper = v.upper};
+    variable.shown = case_data::shown_unit(input, v);
     const double range = v.upper - v.lower;
     if (reach < 1.0 && range > 0.0) {
       variable.lower = std::max(v.lower, start[k] - reach * range);

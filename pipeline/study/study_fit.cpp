@@ -30,8 +30,8 @@ std::string bounds_reached(const case_data::Case& input, const VectorX& best) {
     const double near = kAt * (v.upper - v.lower);
     if (v.upper > v.lower &&
         (value <= v.lower + near || value >= v.upper - near)) {
-      text +=
-          fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", v.name, value);
+      text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", v.name,
+                          case_data::shown_unit(input, v).text(value));
     }
   }
   return text;

@@ -22,9 +22,7 @@ optimize::MinimizeProblem minimize_problem(const StudyTask& task,
   optimize::MinimizeProblem problem;
   problem.variables = variables_of(input, task.start, task.reach);
   problem.objective = input.responses[*input.study.objective].name;
-  const ShownUnit shown = case_data::shown_unit(input, *input.study.objective);
-  problem.shown_factor = shown.factor;
-  problem.shown_unit = shown.unit;
+  problem.shown = case_data::shown_unit(input, *input.study.objective);
   for (const case_data::ConstraintEntry& constraint : input.study.constraints) {
     const case_data::ResponseEntry& response =
         input.responses[static_cast<std::size_t>(constraint.response)];
@@ -32,8 +30,8 @@ optimize::MinimizeProblem minimize_problem(const StudyTask& task,
         {.name = response.name,
          .lower = constraint.lower,
          .upper = constraint.upper,
-         .root_like =
-             response.kind == case_data::ResponseKind::CollapseMargin});
+         .root_like = response.kind == case_data::ResponseKind::CollapseMargin,
+         .shown = case_data::shown_unit(input, constraint.response)});
   }
   if (input.study.second) {
     problem.constraints.push_back(

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/count_text.h"
 #include "core/json.h"
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/forward/figures_json.h"
@@ -73,8 +72,10 @@ std::string describe(const case_data::Case& input,
                                  store::purpose_of(record));
   if (record.inputs.size() <= kMostNamed) {
     for (Eigen::Index k = 0; k < record.inputs.size(); ++k) {
-      text += fmt::format(" {} = {}", record.input_names[k],
-                          quantity_text(record.inputs[k], ""));
+      const auto i = static_cast<std::size_t>(k);
+      text += fmt::format(" {} = {}", record.input_names[i],
+                          case_data::shown_unit(input, input.design[i])
+                              .text(record.inputs[k]));
     }
     text += record.inputs.size() > 0 ? ";" : "";
   }
@@ -85,9 +86,8 @@ std::string describe(const case_data::Case& input,
   for (const int k :
        named_responses(input, static_cast<int>(record.responses.size()))) {
     const ShownUnit unit = case_data::shown_unit(input, k);
-    text += fmt::format(
-        "{}{} = {}", between, record.response_names[k],
-        quantity_text(unit.factor * record.responses[k], unit.unit));
+    text += fmt::format("{}{} = {}", between, record.response_names[k],
+                        unit.text(record.responses[k]));
     between = ", ";
   }
   if (record.mismatch) {

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "core/count_text.h"
 #include "pipeline/accuracy/mesh_sequence.h"
 #include "pipeline/case_data/film_start.h"
 #include "pipeline/store/refreeze.h"
@@ -150,11 +149,17 @@ void StudyStage::judge(const StudyOutcome& found,
           ? match_constraints(input_, targets(), start_.responses)
           : bound_constraints(asked, start_.responses);
   std::string missed;
-  for (const Constraint& c : outcome_.constraints) {
+  for (std::size_t k = 0; k < outcome_.constraints.size(); ++k) {
+    const Constraint& c = outcome_.constraints[k];
+    const bool bound = input_.study.kind != case_data::StudyKind::Match;
+    const ShownUnit unit =
+        bound
+            ? case_data::shown_unit(input_, asked.study.constraints[k].response)
+            : ShownUnit{};
     if (!c.satisfied) {
-      missed +=
-          fmt::format("{}'{}' is {:.6g} and its bound {:.6g}",
-                      missed.empty() ? "" : ", ", c.name, c.value, c.bound);
+      missed += fmt::format("{}'{}' is {} and its bound {}",
+                            missed.empty() ? "" : ", ", c.name,
+                            unit.text(c.value), unit.text(c.bound));
     }
   }
   if (input_.study.kind == case_data::StudyKind::Match) {
@@ -166,10 +171,10 @@ void StudyStage::judge(const StudyOutcome& found,
     outcome_.objective = start_.responses[*input_.study.objective];
     const ShownUnit shown =
         case_data::shown_unit(input_, *input_.study.objective);
-    outcome_.message += fmt::format(
-        ". On a mesh made for it: {} {}",
-        input_.responses[*input_.study.objective].name,
-        quantity_text(shown.factor * outcome_.objective, shown.unit));
+    outcome_.message +=
+        fmt::format(". On a mesh made for it: {} {}",
+                    input_.responses[*input_.study.objective].name,
+                    shown.text(outcome_.objective));
   }
   if (!missed.empty()) {
     outcome_.message += fmt::format(

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/count_text.h"
 #include "optimize/samples/sampling.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/store/incumbent.h"
@@ -75,9 +74,9 @@ void choose_best(const StudyTask& task,
   }
   if (standing.feasible()) {
     const ShownUnit shown = case_data::shown_unit(task.input, *study.objective);
-    outcome.message += fmt::format(
-        "; the best has {} = {}", task.input.responses[*study.objective].name,
-        quantity_text(shown.factor * standing.objective, shown.unit));
+    outcome.message += fmt::format("; the best has {} = {}",
+                                   task.input.responses[*study.objective].name,
+                                   shown.text(standing.objective));
   } else if (outcome.status == RunStatus::Converged) {
     outcome.status = RunStatus::Infeasible;
     outcome.message += fmt::format(

@@ -34,16 +34,6 @@ Json place_json(const case_data::Case& input, const VectorX& design) {
   return json;
 }
 
-std::string place_text(const case_data::Case& input, const VectorX& design) {
-  std::string text;
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    text +=
-        fmt::format("{}{} = {:.6g}", k == 0 ? "" : ", ", input.design[k].name,
-                    design[static_cast<Eigen::Index>(k)]);
-  }
-  return text;
-}
-
 }  // namespace
 
 SweepFigures sweep_figures(
@@ -109,15 +99,15 @@ std::string sweep_text(const case_data::Case& input,
   text += "\n";
   for (std::size_t k = 0; k < figures.responses.size(); ++k) {
     const ResponseRange& range = figures.responses[k];
-    auto [factor, unit] = case_data::shown_unit(input, static_cast<int>(k));
-    unit.insert(0, unit.empty() ? "" : " ");
+    const ShownUnit shown = case_data::shown_unit(input, static_cast<int>(k));
     text += fmt::format(
-        "  {:<20} mean {:.6g}{}\n"
-        "  {:<20} least {:.6g}{} at {}\n"
-        "  {:<20} largest {:.6g}{} at {}\n",
-        input.responses[k].name, factor * range.mean, unit, "",
-        factor * range.least, unit, place_text(input, range.least_at), "",
-        factor * range.largest, unit, place_text(input, range.largest_at));
+        "  {:<20} mean {}\n"
+        "  {:<20} least {} at {}\n"
+        "  {:<20} largest {} at {}\n",
+        input.responses[k].name, shown.text(range.mean), "",
+        shown.text(range.least), case_data::design_text(input, range.least_at),
+        "", shown.text(range.largest),
+        case_data::design_text(input, range.largest_at));
   }
   return text;
 }

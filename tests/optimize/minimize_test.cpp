@@ -212,6 +212,36 @@ TEST(Minimize, PrecisionFinerThanTheMeshIsSaid) {
   EXPECT_EQ(optimize::precision_note(known.problem, report, 0.1, {}), "");
 }
 
+TEST(Minimize, MessagesHaveUnits) {
+  // Masses are counted in tonnes and shown in kg.
+  optimize::MinimizeProblem problem{
+      .variables = {{.name = "height",
+                     .initial = 1.5,
+                     .lower = 1.0,
+                     .upper = 2.0,
+                     .shown = {1.0, "mm"}}},
+      .objective = "sag",
+      .constraints = {{.name = "weight",
+                       .upper = 5e-4,
+                       .shown = {1000.0, "kg"}}},
+      .function =
+          [](const VectorX& x) {
+            return optimize::VectorAnswer{
+                .values = vector_of({1.0 / x[0], 1e-3 * x[0]}), .failure = {}};
+          },
+      .shown = {1.0, "mm"}};
+  const optimize::MinimizeReport missed = optimize::minimize(problem);
+  EXPECT_EQ(missed.termination, optimize::Termination::Infeasible);
+  EXPECT_THAT(missed.message,
+              AllOf(HasSubstr("height = 1 mm, 'weight' is 1 kg and must be at "
+                              "most 0.5 kg"),
+                    HasSubstr("height at its lower bound 1 mm")));
+  problem.constraints[0].upper = 1.7e-3;
+  const optimize::MinimizeReport found = optimize::minimize(problem);
+  EXPECT_EQ(found.termination, optimize::Termination::Converged);
+  EXPECT_THAT(found.message, HasSubstr(" mm at height = 1.7 mm"));
+}
+
 TEST(StandardProblems, HaveExactJacobians) {
   // Taylor: |f(x + h d) - f(x) - h J d| falls by 4 when h halves.
   for (const StandardProblem& known : tests::standard_problems()) {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "fea/stress/stress.h"
+#include "pipeline/case_data/film_start.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/gradient_check.h"
 #include "pipeline/forward/part_warnings.h"
@@ -189,6 +190,25 @@ TEST(WallRuns, FollowTheirThickness) {
   design[1] = 8.0;
   const double after = model.evaluate(design).responses[2];
   EXPECT_NEAR(after / before, 8.0 / 6.0, 1e-3);
+}
+
+// The film that was followed from the design of the freeze before gives a
+// crease whose wall crosses itself; the film of first facets does not.
+TEST(WallRuns, AreFrozenAnewFromFirstFacetsWhereOthersMakeNoWall) {
+  const case_data::Case input = reader::read_case(
+      MENISCUS_SOURCE_DIR "/cases/bracket_vs_solid/case.toml");
+  const VectorX before{{-30.313908084589013, 54.0, 58.89485012386359,
+                        1.1945374086781442, 3.5601666755839423,
+                        5.940604597700847}};
+  const VectorX answer{{-32.31312220071308, 54.0, 57.51064240775859,
+                        1.2177704500693325, 3.3856092879918407,
+                        7.700998812093871}};
+  for (const double way : {0.6, 0.8, 0.9, 1.0}) {
+    const case_data::Case asked = case_data::frozen_at(
+        case_data::frozen_at(input, before), before + way * (answer - before));
+    const forward::ForwardModel model(asked);
+    EXPECT_FALSE(model.failure()) << way << ": " << model.failure()->message;
+  }
 }
 
 TEST(WallRuns, TellTheLargestSafeThickness) {
