@@ -189,11 +189,12 @@ std::vector<Trial> trials_of(const Case& input, const EvaluatedCase& inputs,
     }
   }
   std::vector<Trial> trials;
-  const auto add = [&](Factors factors, double power, double times) {
-    for (auto& [b, factor] : factors) {
+  const auto add = [&](const Factors& factors, double power, double times) {
+    Factors own = factors;
+    for (auto& [b, factor] : own) {
       factor = times * std::pow(factor, power);
     }
-    trials.push_back(volume_trial(input, system, factors));
+    trials.push_back(volume_trial(input, system, own));
   };
   const auto add_way = [&](const Factors& factors) {
     if (!factors.empty()) {

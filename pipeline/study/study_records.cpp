@@ -73,9 +73,9 @@ std::string describe(const case_data::Case& input,
   if (record.inputs.size() <= kMostNamed) {
     for (Eigen::Index k = 0; k < record.inputs.size(); ++k) {
       const auto i = static_cast<std::size_t>(k);
-      text += fmt::format(" {} = {}", record.input_names[i],
-                          case_data::shown_unit(input, input.design[i])
-                              .text(record.inputs[k]));
+      text += fmt::format(
+          " {} = {}", record.input_names[i],
+          case_data::shown_unit(input, input.design[i]).text(record.inputs[k]));
     }
     text += record.inputs.size() > 0 ? ";" : "";
   }
