@@ -200,33 +200,35 @@ std::map<std::string, int> parts_of_surfaces(const films::FilmSystem& system) {
   return first;
 }
 
-/// Why the film cannot be a part's surface; what walls lack is told by them,
-/// and that parts cross each other by the report on nesting.
-std::optional<Failure> failure_of(const case_data::EvaluatedCase& inputs,
-                                  const frozen::FilmModel& model) {
-  const settle::FilmState& film = model.reference();
-  if (film.failure || inputs.film_system.bodies.empty() ||
-      !inputs.walls.empty()) {
-    return film.failure;
+/// Why the settled film cannot be a part's surface. Left out: what walls lack,
+/// which is told of them, and films of parts that hang together nowhere, whose
+/// crossings the report on nesting has.
+std::vector<Finding> surface_findings(const films::FilmSystem& system,
+                                      const frozen::FilmModel& model) {
+  constexpr int kMost = 100000;  // so that none is left out for another
+  if (model.reference().failure || system.bodies.empty()) {
+    return {};
   }
-  const std::map<std::string, int> parts =
-      parts_of_surfaces(inputs.film_system);
+  const std::map<std::string, int> parts = parts_of_surfaces(system);
+  const auto is_film = [&](const std::string& name) {
+    return std::any_of(system.films.begin(), system.films.end(),
+                       [&](const auto& film) { return film.name == name; });
+  };
   const auto is_of_several = [&](const Finding& finding) {
     std::set<int> found;
     for (const std::string& name : finding.surfaces) {
       const auto part = parts.find(name);
       found.insert(part == parts.end() ? -1 : part->second);
     }
-    return found.size() > 1;
+    return found.size() > 1 && std::all_of(finding.surfaces.begin(),
+                                           finding.surfaces.end(), is_film);
   };
-  std::vector<Finding> findings =
-      check_surface(model.surface(film.points).base);
+  std::vector<Finding> findings = check_surface(
+      model.surface(model.reference().points).base, {.max_findings = kMost});
   findings.erase(
       std::remove_if(findings.begin(), findings.end(), is_of_several),
       findings.end());
-  return findings.empty() ? std::nullopt
-                          : std::optional<Failure>({FailureKind::SurfaceInvalid,
-                                                    summary(findings)});
+  return findings;
 }
 
 /// film.vtp, film.json and, where they are wanted, the film's way to rest and
@@ -323,7 +325,13 @@ int evolve_command(const EvolveArguments& arguments) {
   const films::NestingReport nesting =
       film.failure ? films::NestingReport{}
                    : results::nesting_of_films(input, model);
-  const std::optional<Failure> failure = failure_of(inputs, model);
+  const std::vector<Finding> findings =
+      inputs.walls.empty() ? surface_findings(inputs.film_system, model)
+                           : std::vector<Finding>();
+  const std::optional<Failure> failure =
+      findings.empty() ? film.failure
+                       : std::optional<Failure>(
+                             {FailureKind::SurfaceInvalid, summary(findings)});
   write_evolved(input, inputs, model, nesting, failure, folder, arguments,
                 monitor);
   if (!common.quiet) {
@@ -339,6 +347,7 @@ int evolve_command(const EvolveArguments& arguments) {
         case_data::tried_advice(input, inputs, *failure,
                                 {.edge = inputs.fea_edge,
                                  .refinements = input.resolution.refinements,
+                                 .findings = findings,
                                  .monitor = &monitor});
     std::string message = failure->message;
     message += advice.empty() ? "" : "; " + advice;

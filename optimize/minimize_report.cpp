@@ -289,9 +289,10 @@ std::string precision_note(const MinimizeProblem& problem,
                                      std::abs(state.value - state.upper));
     if (distance < error) {
       note += fmt::format(
-          "{}'{}' stands {:.2g} from its bound, nearer than the mesh's own "
-          "error of it, about {:.2g}",
-          note.empty() ? "" : ". ", state.name, distance, error);
+          "{}'{}' stands {} from its bound, nearer than the mesh's own error "
+          "of it, about {}",
+          note.empty() ? "" : ". ", state.name, state.shown.text(distance, 2),
+          state.shown.text(error, 2));
     }
   }
   return note.empty() ? "" : note + ". Shorten the edges to trust more digits";

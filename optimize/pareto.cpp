@@ -70,8 +70,12 @@ MinimizeProblem with_upper_bound(const MinimizeProblem& problem, int index,
 
 MinimizeProblem exchanged(const MinimizeProblem& problem, int index) {
   MinimizeProblem other = problem;
-  constraint_of(other, index) = {.name = problem.objective};
-  other.objective = problem.constraints[static_cast<std::size_t>(index)].name;
+  const ResponseBounds& second =
+      problem.constraints[static_cast<std::size_t>(index)];
+  constraint_of(other, index) = {.name = problem.objective,
+                                 .shown = problem.shown};
+  other.objective = second.name;
+  other.shown = second.shown;
   const Eigen::Index row = index + 1;
   other.function = [inner = problem.function, row](const VectorX& x) {
     VectorAnswer answer = inner(x);

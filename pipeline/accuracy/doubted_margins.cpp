@@ -28,16 +28,17 @@ std::vector<DoubtedMargin> doubted_margins(const case_data::Case& input,
           {.constraint = k,
            .name = input.responses[static_cast<std::size_t>(response)].name,
            .value = responses[response],
-           .error = errors[response]});
+           .error = errors[response],
+           .shown = case_data::shown_unit(input, response)});
     }
   }
   return doubted;
 }
 
 std::string doubt_text(const DoubtedMargin& margin) {
-  return std::isfinite(margin.error)
-             ? fmt::format("the mesh's own error of it is {:.2g}", margin.error)
-             : "the film is on no other mesh";
+  return std::isfinite(margin.error) ? "the mesh's own error of it is " +
+                                           margin.shown.text(margin.error, 2)
+                                     : "the film is on no other mesh";
 }
 
 double raised_bound(const DoubtedMargin& margin, double lower) {

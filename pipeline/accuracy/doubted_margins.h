@@ -15,6 +15,7 @@ struct DoubtedMargin {
   std::string name;            // of the response
   double value = 0.0;          // [stress / length]
   double error = 0.0;          // of it; NaN where no other mesh has the film
+  ShownUnit shown = {};        // of both, in messages
 };
 
 /// A bound from below that keeps a film from its collapse.

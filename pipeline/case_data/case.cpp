@@ -377,6 +377,7 @@ Dimension dimension_of(const Measure& measure) {
   for (int d = 1; d <= static_cast<int>(Dimension::Foundation); ++d) {
     const auto dimension = static_cast<Dimension>(d);
     if (measure.is_known() && dimension != Dimension::Angle &&
+        dimension != Dimension::Rate &&
         powers_of(dimension) == measure.powers) {
       return dimension;
     }
@@ -392,12 +393,17 @@ Dimension dimension_of(const ResponseEntry& response) {
 }
 
 ShownUnit shown_unit(const Case& input, int response) {
-  return input.units.shown(
-      dimension_of(input.responses[static_cast<std::size_t>(response)]));
+  const auto& entry = input.responses[static_cast<std::size_t>(response)];
+  const ShownUnit shown = input.units.shown(dimension_of(entry));
+  return shown.unit.empty() ? ShownUnit{1.0, response_unit(input, response)}
+                            : shown;
 }
 
 ShownUnit shown_unit(const Case& input, const DesignVariable& variable) {
-  return input.units.shown(dimension_of(variable.measure));
+  const ShownUnit shown = input.units.shown(dimension_of(variable.measure));
+  return shown.unit.empty()
+             ? ShownUnit{1.0, unit_of(input.units, variable.measure)}
+             : shown;
 }
 
 std::string design_text(const Case& input, const VectorX& design) {
@@ -412,12 +418,17 @@ std::string design_text(const Case& input, const VectorX& design) {
 }
 
 std::string unit_of(const UnitSystem& units, const Measure& measure) {
-  return units.unit_of(dimension_of(measure));
+  // Angles are numbers, so that a rate may be one of turning or not.
+  return measure.is_known() && measure.powers == powers_of(Dimension::Rate)
+             ? "1/s"
+             : units.unit_of(dimension_of(measure));
 }
 
 std::string response_unit(const Case& input, int response) {
-  return input.units.unit_of(
-      dimension_of(input.responses[static_cast<std::size_t>(response)]));
+  const auto& entry = input.responses[static_cast<std::size_t>(response)];
+  const Dimension dimension = dimension_of(entry);
+  return dimension == Dimension::None ? unit_of(input.units, measure_of(entry))
+                                      : input.units.unit_of(dimension);
 }
 
 }  // namespace meniscus::case_data

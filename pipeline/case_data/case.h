@@ -130,8 +130,8 @@ VectorX initial_design(const Case& input);
 std::vector<std::string> design_names(const Case& input);
 std::vector<std::string> response_names(const Case& input);
 Dimension dimension_of(ResponseKind kind);
-/// The one that has these powers, not the angle; None: unknown, or without a
-/// name.
+/// The one that has these powers, neither angle nor rate; None: unknown, or
+/// without a name.
 Dimension dimension_of(const Measure& measure);
 /// Its kind's; where that says none, or beside a weight, by measure_of().
 Dimension dimension_of(const ResponseEntry& response);

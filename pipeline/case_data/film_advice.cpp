@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <set>
 #include <utility>
@@ -104,7 +105,8 @@ struct Trial {
   films::FilmSystem system;
   std::string factor;
   std::string of;
-  std::string detail;  // "volume = 1.17e+05 mm3, case.toml:27"
+  std::string detail;    // "volume = 1.17e+05 mm3, case.toml:27"
+  bool is_more = false;  // of every volume
 };
 
 /// Multiplies volumes of bodies, by index.
@@ -112,7 +114,7 @@ using Factors = std::vector<std::pair<std::size_t, double>>;
 
 Trial volume_trial(const Case& input, const films::FilmSystem& system,
                    const Factors& factors) {
-  Trial trial{system, "", "", ""};
+  Trial trial{.system = system, .factor = "", .of = "", .detail = ""};
   std::vector<std::string> numbers;
   std::vector<std::string> names;
   std::vector<std::string> details;
@@ -127,9 +129,14 @@ Trial volume_trial(const Case& input, const films::FilmSystem& system,
                                   input.units.unit_of(Dimension::Volume),
                                   place(input, volume_line(input, body.name))));
   }
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  trial.factor = fmt::format("{}", fmt::join(numbers, "/"));
+  if (std::count(numbers.begin(), numbers.end(), numbers.front()) ==
+      static_cast<std::ptrdiff_t>(numbers.size())) {
+    numbers.resize(1);
+  }
+  trial.factor = fmt::format("{}", fmt::join(numbers, " and "));
   trial.of = fmt::format("times the volume of {}", fmt::join(names, " and "));
+  trial.is_more = std::all_of(factors.begin(), factors.end(),
+                              [](const auto& f) { return f.second > 1.0; });
   trial.detail = fmt::format("{}", fmt::join(details, "; "));
   return trial;
 }
@@ -151,17 +158,19 @@ std::string listed(const std::vector<Trial>& trials) {
 /// volume that is asked of it; nothing where they cannot be made.
 std::vector<double> fills_of_start(const films::FilmSystem& system,
                                    double edge) {
+  std::vector<double> fills;
   try {
-    const films::FilmComplex start = start::build_start(system, edge);
-    const VectorX volumes =
-        energy::FilmEnergy(start).volumes(start.mesh.points);
-    std::vector<double> fills;
-    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
-      fills.push_back(volumes[static_cast<Eigen::Index>(b)] /
-                      system.bodies[b].volume.value_or(1.0));
-    }
-    return fills;
-  } catch (const InvalidInput&) {
+    const std::string prevented = what_prevents([&] {
+      const films::FilmComplex start = start::build_start(system, edge);
+      const VectorX volumes =
+          energy::FilmEnergy(start).volumes(start.mesh.points);
+      for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+        fills.push_back(volumes[static_cast<Eigen::Index>(b)] /
+                        system.bodies[b].volume.value_or(1.0));
+      }
+    });
+    return prevented.empty() ? fills : std::vector<double>();
+  } catch (const ExpressionError&) {  // of a field
     return {};
   }
 }
@@ -211,7 +220,7 @@ std::vector<Trial> trials_of(const Case& input, const EvaluatedCase& inputs,
       add(same, 1.0, times);
     }
   }
-  Trial trial{system, "", "", ""};
+  Trial trial{.system = system, .factor = "", .of = "", .detail = ""};
   if (of_films && enlarge_rims(trial.system, named, kRims)) {
     trial.of = fmt::format("rims of {} {:g} times as large",
                            fmt::join(named, " and "), kRims);
@@ -219,6 +228,12 @@ std::vector<Trial> trials_of(const Case& input, const EvaluatedCase& inputs,
   }
   add_way(others);
   return trials;
+}
+
+bool is_meeting(const Finding& finding) {
+  return finding.kind == FindingKind::Crossing ||
+         finding.kind == FindingKind::TooClose ||
+         finding.kind == FindingKind::BodyMismatch;
 }
 
 /// Passes on a stop and says nothing.
@@ -233,19 +248,18 @@ class QuietMonitor : public Monitor {
 
 bool stands(const films::FilmSystem& system, double edge, int refinements,
             Monitor& monitor) {
-  try {
+  bool stands = false;
+  // Rims that meet, a body that stays open, modes that are not found.
+  what_prevents([&] {
     const frozen::FilmModel model = frozen::FilmModel::freeze(
         system,
         {.edge = edge, .refinements = refinements, .monitor = &monitor});
     const settle::FilmState& film = model.reference();
-    return !film.failure &&
-           (system.bodies.empty() ||
-            check_surface(model.surface(film.points).base).empty());
-  } catch (const InvalidInput&) {  // rims that meet, a body that stays open
-    return false;
-  } catch (const MeshError&) {
-    return false;
-  }
+    stands = !film.failure &&
+             (system.bodies.empty() ||
+              check_surface(model.surface(film.points).base).empty());
+  });
+  return stands;
 }
 
 /// On coarse facets first, which tells most that do not.
@@ -267,8 +281,10 @@ bool is_of_films(const Failure& failure) {
 std::string tried_advice(const Case& input, const EvaluatedCase& inputs,
                          const Failure& failure, const AdviceOptions& options) {
   const bool of_films = is_of_films(failure);
-  if ((!of_films && failure.kind != FailureKind::SurfaceInvalid) ||
-      inputs.film_system.films.empty()) {
+  const bool meets =
+      failure.kind == FailureKind::SurfaceInvalid &&
+      std::any_of(options.findings.begin(), options.findings.end(), is_meeting);
+  if ((!of_films && !meets) || inputs.film_system.films.empty()) {
     return "";
   }
   Monitor& outer =
@@ -284,9 +300,10 @@ std::string tried_advice(const Case& input, const EvaluatedCase& inputs,
           "tried: with {}{} the film stands{}{}", listed({trial}),
           trial.detail.empty() ? "" : " (" + trial.detail + ")",
           in_vain.empty() ? "" : "; not with " + listed(in_vain),
-          of_films ? "; an arm longer than six times its radius stands with "
-                     "less by a cap in its middle (docs/arms.md)"
-                   : "");
+          of_films && trial.is_more
+              ? "; an arm longer than six times its radius stands with "
+                "less by a cap in its middle (docs/arms.md)"
+              : "");
     }
     in_vain.push_back(trial);
   }
@@ -295,8 +312,7 @@ std::string tried_advice(const Case& input, const EvaluatedCase& inputs,
   return tried + (of_films ? "arms that pinch stand when each has liquid of "
                              "its own: a cap at its waist, a body on either "
                              "side (docs/arms.md)"
-                           : "it is the curves there that are too near each "
-                             "other or in each other's way");
+                           : "move or turn the curves there");
 }
 
 }  // namespace meniscus::case_data

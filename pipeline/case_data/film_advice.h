@@ -3,8 +3,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/error.h"
+#include "core/geometry/mesh_checks.h"
 #include "core/monitor.h"
 #include "pipeline/case_data/case.h"
 
@@ -16,6 +18,8 @@ bool is_of_films(const Failure& failure);
 struct AdviceOptions {
   double edge = 0.0;    // of the films that are tried [length], > 0
   int refinements = 0;  // of those that stand without
+  /// Of the surface that the films close, where they are at rest.
+  std::vector<Finding> findings = {};
   Monitor* monitor = nullptr;
 };
 

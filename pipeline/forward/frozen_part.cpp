@@ -38,13 +38,16 @@ void advise(const case_data::EvaluatedCase& inputs,
             const ForwardModelOptions& options, Monitor& monitor,
             FrozenPart& part) {
   if (!(options.edge_factor > 1.0)) {
+    const StageMeter meter;
     Failure& failure = *part.start.failure;
     const std::string advice = case_data::tried_advice(
         part.input, inputs, failure,
         {.edge = inputs.fea_edge,
          .refinements = case_data::film_refinements(part.input),
+         .findings = part.findings,
          .monitor = &monitor});
     failure.message += advice.empty() ? "" : "; " + advice;
+    meter.add_to(part.start.seconds.film, part.start.operations.film);
   }
 }
 
@@ -294,9 +297,14 @@ bool fill_other_facets(const case_data::EvaluatedCase& inputs,
     anew.start.failure.reset();
     ForwardModelOptions own = options;
     own.edge_factor *= edge;
-    if (!fill_film(inputs, own, anew) ||
+    bool filled = false;
+    const std::string prevented =
+        what_prevents([&] { filled = fill_film(inputs, own, anew); });
+    if (!prevented.empty() || !filled ||
         !case_data::is_same_film(part.film->reference().report,
                                  anew.film->reference().report)) {
+      part.start.seconds = anew.start.seconds;
+      part.start.operations = anew.start.operations;
       return false;
     }
     anew.input.earlier_freezes = part.input.earlier_freezes;

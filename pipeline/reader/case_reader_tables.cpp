@@ -5,6 +5,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -356,20 +357,25 @@ void read_process(CaseContext& context, const toml::table& root,
   result.process.smallest_feature = least;
 }
 
-/// Does some text of these entries match?
-bool has_text(const toml::node& node, const std::regex& pattern) {
+/// Does some text of the node's entries match? Of tables only what stands under
+/// a key for quantities, unless `within` one.
+bool has_quantity(const toml::node& node, const std::regex& pattern,
+                  bool within) {
+  static const std::set<std::string_view> kQuantities = {
+      "min", "max", "targets", "tolerance", "deviations", "members"};
   if (const auto* table = node.as_table()) {
     return std::any_of(table->begin(), table->end(), [&](const auto& entry) {
-      return has_text(entry.second, pattern);
+      return has_quantity(entry.second, pattern,
+                          within || kQuantities.count(entry.first.str()) > 0);
     });
   }
   if (const auto* array = node.as_array()) {
     return std::any_of(array->begin(), array->end(), [&](const auto& entry) {
-      return has_text(entry, pattern);
+      return has_quantity(entry, pattern, within);
     });
   }
   const auto* text = node.as_string();
-  return text != nullptr && std::regex_search(text->get(), pattern);
+  return within && text != nullptr && std::regex_search(text->get(), pattern);
 }
 
 /// Studies of one kind leave the keys of others unread: what stands there is
@@ -382,7 +388,7 @@ void warn_of_unused(CaseContext& context, const toml::table& root,
   const toml::node* study = root.get("study");
   const auto in_study = [&](const std::string& name) {
     return study != nullptr &&
-           has_text(*study, std::regex("\\b" + name + "\\b"));
+           has_quantity(*study, std::regex("\\b" + name + "\\b"), false);
   };
   for (std::size_t k = 0; k < context.names.size(); ++k) {
     const bool is_design = k < result.design.size();

@@ -39,6 +39,7 @@ std::string of_minimum(const case_data::Case& input, const VectorX& responses,
     const auto response = static_cast<std::size_t>(constraint.response);
     report.constraints.push_back(
         {.name = input.responses[response].name,
+         .shown = case_data::shown_unit(input, constraint.response),
          .value = report.values[static_cast<Eigen::Index>(k) + 1],
          .lower = constraint.lower,
          .upper = constraint.upper});

@@ -48,9 +48,10 @@ void doubt_margins(const case_data::Case& input, RunResult& result) {
       }
     }
     const std::string note = fmt::format(
-        "'{}' is {:.2g} and {}: the film may be there on this mesh alone, so "
+        "'{}' is {} and {}: the film may be there on this mesh alone, so "
         "the bound is not kept; raise it{}, or shorten resolution.fea",
-        margin.name, margin.value, accuracy::doubt_text(margin),
+        margin.name, margin.shown.text(margin.value, 2),
+        accuracy::doubt_text(margin),
         std::isfinite(margin.error) ? " above the error" : "");
     result.message += ". " + note;
     result.warnings.push_back(note);

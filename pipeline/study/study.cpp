@@ -205,14 +205,14 @@ bool StudyRun::raise_doubted_margins(bool proven) {
       input_, models_.answer().responses, *errors, models_.working());
   for (const auto& [margin, lower] : raised) {
     const std::string doubt = accuracy::doubt_text(margin);
+    const std::string value = margin.shown.text(margin.value, 2);
+    const std::string held = margin.shown.text(lower, 2);
     models_.log(
-        fmt::format("'{}' is {:.2g}, and {}: the study goes on and holds it "
-                    "at {:.2g}",
-                    margin.name, margin.value, doubt, lower));
+        fmt::format("'{}' is {}, and {}: the study goes on and holds it at {}",
+                    margin.name, value, doubt, held));
     models_.warn(fmt::format(
-        "'{}' was {:.2g} at a first answer, and {}: it is held at {:.2g} or "
-        "more{}",
-        margin.name, margin.value, doubt, lower, kHeldAbove));
+        "'{}' was {} at a first answer, and {}: it is held at {} or more{}",
+        margin.name, value, doubt, held, kHeldAbove));
   }
   if (raised.empty()) {
     return false;

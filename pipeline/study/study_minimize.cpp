@@ -35,7 +35,8 @@ optimize::MinimizeProblem minimize_problem(const StudyTask& task,
   }
   if (input.study.second) {
     problem.constraints.push_back(
-        {.name = input.responses[*input.study.second].name});
+        {.name = input.responses[*input.study.second].name,
+         .shown = case_data::shown_unit(input, *input.study.second)});
   }
   const std::vector<int> responses = case_data::studied_responses(input);
   problem.function = [&task, &phase, responses](const VectorX& x) {

@@ -51,12 +51,13 @@ std::vector<std::string> tolerance_warnings(const case_data::Case& input,
     const double error = figures.sampled->deviation_error[k];
     if (std::abs(sampled - linear) >
         std::max(kErrors * error, kLinear * linear)) {
+      const ShownUnit unit = case_data::shown_unit(input, static_cast<int>(k));
       warnings.push_back(fmt::format(
-          "the standard deviation of '{}' is {:.3g} by gradient and {:.3g} +- "
-          "{:.1g} by {} samples: it is not linear over this scatter, believe "
-          "the samples",
-          input.responses[static_cast<std::size_t>(k)].name, linear, sampled,
-          error, figures.sampled->count));
+          "the standard deviation of '{}' is {} by gradient and {} +- {} by {} "
+          "samples: it is not linear over this scatter, believe the samples",
+          input.responses[static_cast<std::size_t>(k)].name,
+          unit.text(linear, 3), unit.text(sampled, 3), unit.text(error, 1),
+          figures.sampled->count));
     }
   }
   return warnings;

@@ -307,7 +307,7 @@ class Visit {
       }
       // Every mass in kg, charts and tables alike, where the case counts in tonnes.
       for (const node of document.querySelectorAll("main td, main th, main dd, main figcaption, main svg text, .design-text")) {
-        if (/\[t\]|[\d.]\u202ft$|\u202ft[ /,]/.test(node.textContent)) {
+        if (/\[t\]|[\u202f/]t(?![\w\u00b2\u00b3])/.test(node.textContent)) {
           found.push(`${node.textContent}: in tonnes`);
         }
       }

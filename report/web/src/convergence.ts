@@ -4,7 +4,7 @@ import type { PageData } from "./data";
 import { h, section } from "./dom";
 import { number, words } from "./format";
 import { historyOf, type HistoryRow } from "./history";
-import { labelOf, measureOf, shown } from "./measures";
+import { responsesOf } from "./measures";
 
 /** Whole numbers only, at most a dozen. */
 function axisX(rows: HistoryRow[]): Plot.ScaleOptions {
@@ -96,8 +96,9 @@ function objectiveChart(data: PageData, rows: HistoryRow[]): HTMLElement | null 
   if (!name) {
     return null;
   }
-  const label = labelOf(data, name);
-  const found = points(rows, words(name), (r) => shown(data, name, r.values[name]));
+  const responses = responsesOf(data);
+  const label = responses.label(name);
+  const found = points(rows, words(name), (r) => responses.shown(name, r.values[name]));
   const log = found.length > 0 && found.every((p) => p.value > 0) &&
     Math.max(...found.map((p) => p.value)) > 20 * Math.min(...found.map((p) => p.value));
   return found.length < 2
@@ -139,14 +140,15 @@ function constraintChart(data: PageData, rows: HistoryRow[]): HTMLElement | null
 }
 
 function responseCharts(data: PageData, rows: HistoryRow[]): HTMLElement[] {
+  const responses = responsesOf(data);
   const byUnit = new Map<string, string[]>();
   for (const response of data.case?.responses ?? []) {
-    const { unit } = measureOf(data, response.name);
+    const unit = responses.unit(response.name);
     byUnit.set(unit, [...(byUnit.get(unit) ?? []), response.name]);
   }
   const charts: HTMLElement[] = [];
   for (const [unit, names] of byUnit) {
-    const found = names.flatMap((name) => points(rows, words(name), (r) => shown(data, name, r.values[name])));
+    const found = names.flatMap((name) => points(rows, words(name), (r) => responses.shown(name, r.values[name])));
     const isObjective = names.length === 1 && names[0] === data.case?.study.objective;
     if (found.length >= 2 && !isObjective) {
       const what = unit ? `[${unit}]` : "";

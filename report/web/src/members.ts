@@ -1,7 +1,7 @@
 import type { MemberResult, PageData } from "./data";
 import { h, section, table } from "./dom";
-import { number, quantity, seconds, words } from "./format";
-import { labelOf, shown } from "./measures";
+import { number, quantity, seconds, shownUnit, words } from "./format";
+import { inputsOf, responsesOf } from "./measures";
 
 /** A family's members in one table. */
 export function familySection(data: PageData): HTMLElement | null {
@@ -16,7 +16,8 @@ export function familySection(data: PageData): HTMLElement | null {
   const parameters = keysOf((m) => m.parameters);
   const design = keysOf((m) => m.design);
   const responses = keysOf((m) => m.responses);
-  const shownText = (name: string, value: number | null | undefined) => number(shown(data, name, value));
+  const inputs = inputsOf(data);
+  const outputs = responsesOf(data);
   return section(
     "members",
     "Members",
@@ -25,7 +26,8 @@ export function familySection(data: PageData): HTMLElement | null {
       [
         { head: "member" },
         { head: "status" },
-        ...[...parameters, ...design, ...responses].map((n) => ({ head: labelOf(data, n), numeric })),
+        ...[...parameters, ...design].map((n) => ({ head: inputs.label(n), numeric })),
+        ...responses.map((n) => ({ head: outputs.label(n), numeric })),
         { head: "evaluations", numeric },
         { head: "time", numeric },
       ],
@@ -35,9 +37,9 @@ export function familySection(data: PageData): HTMLElement | null {
         return [
           link ? h("a", { href: link }, m.name) : m.name,
           sized ? "\u2713 done" : h("strong", { class: "bad", title: m.message }, `\u2717 ${m.status}`),
-          ...parameters.map((n) => shownText(n, m.parameters?.[n])),
-          ...design.map((n) => shownText(n, m.design?.[n])),
-          ...responses.map((n) => shownText(n, m.responses?.[n])),
+          ...parameters.map((n) => number(inputs.shown(n, m.parameters?.[n]))),
+          ...design.map((n) => number(inputs.shown(n, m.design?.[n]))),
+          ...responses.map((n) => number(outputs.shown(n, m.responses?.[n]))),
           String(m.evaluations ?? 0),
           seconds(m.seconds),
         ];
@@ -73,11 +75,12 @@ export function comparisonSection(data: PageData): HTMLElement | null {
     add("volume left out of stresses", "%", parts.map((p) => 100 * (p.exclusion?.volume_share ?? 0)));
   }
   const stiffness = `${units.force}/${units.length}`;
+  const [massFactor, massUnit] = shownUnit(units.mass);
   for (const name of [...new Set(parts.flatMap((p) => Object.keys(p.load_cases)))]) {
     const of = parts.map((p) => p.load_cases[name]);
     const prefix = `${words(name)}: `;
     add(`${prefix}stiffness`, stiffness, of.map((f) => f?.stiffness));
-    add(`${prefix}stiffness per mass`, `${stiffness}/${units.mass}`, of.map((f) => f?.stiffness_per_mass));
+    add(`${prefix}stiffness per mass`, `${stiffness}/${massUnit}`, of.map((f) => (f?.stiffness_per_mass ?? NaN) / massFactor));
     add(`${prefix}peak von Mises stress`, units.pressure, of.map((f) => f?.max_von_mises));
     add(`${prefix}scatter of stress (coefficient of variation)`, "", of.map((f) => f?.coefficient_of_variation));
     add(`${prefix}unevenness of stress (Gini)`, "", of.map((f) => f?.gini));

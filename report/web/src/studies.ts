@@ -4,7 +4,7 @@ import type { PageData } from "./data";
 import { h, section, table } from "./dom";
 import { number, words } from "./format";
 import { historyOf } from "./history";
-import { errorOf, labelOf, measureOf, rangeOf, shown, textOf } from "./measures";
+import { inputsOf, responsesOf } from "./measures";
 
 /** A sweep: every response over every design variable. */
 export function sweepSection(data: PageData): HTMLElement | null {
@@ -12,19 +12,21 @@ export function sweepSection(data: PageData): HTMLElement | null {
   if (!sweep) {
     return null;
   }
+  const responses = responsesOf(data);
+  const inputs = inputsOf(data);
   const rows = historyOf(data).filter((r) => r.status === "ok");
   const charts: HTMLElement[] = [];
   for (const response of Object.keys(sweep.responses)) {
     for (const design of data.case?.design ?? []) {
       const found = rows.flatMap((r) => {
-        const x = shown(data, design.name, r.values[design.name]);
-        const y = shown(data, response, r.values[response]);
+        const x = inputs.shown(design.name, r.values[design.name]);
+        const y = responses.shown(response, r.values[response]);
         return typeof x === "number" && typeof y === "number" ? [{ x, y }] : [];
       });
       charts.push(
-        chart(`${labelOf(data, response)} over ${words(design.name)}, ${found.length} designs.`, {
-          x: { label: `${labelOf(data, design.name)} \u2192`, tickFormat: tick },
-          y: { label: `\u2191 ${labelOf(data, response)}`, tickFormat: tick },
+        chart(`${responses.label(response)} over ${words(design.name)}, ${found.length} designs.`, {
+          x: { label: `${inputs.label(design.name)} \u2192`, tickFormat: tick },
+          y: { label: `\u2191 ${responses.label(response)}`, tickFormat: tick },
           marks: [Plot.dot(found, { x: "x", y: "y", stroke: "#0072b2", r: 3.2 })],
         }),
       );
@@ -40,7 +42,7 @@ export function sweepSection(data: PageData): HTMLElement | null {
       [{ head: "response" }, { head: "least", numeric }, { head: "mean", numeric }, { head: "largest", numeric }],
       Object.entries(sweep.responses).map(([name, s]) => [
         words(name),
-        ...[s.least, s.mean, s.largest].map((value) => textOf(data, name, value)),
+        ...[s.least, s.mean, s.largest].map((value) => responses.text(name, value)),
       ]),
     ),
     row(...charts.slice(0, 24)),
@@ -53,13 +55,15 @@ export function frontSection(data: PageData): HTMLElement | null {
   if (!front) {
     return null;
   }
+  const responses = responsesOf(data);
+  const inputs = inputsOf(data);
   const [first, second] = front.objectives;
   const found = front.points.flatMap((p) => {
-    const x = shown(data, first, p[first] as number | null);
-    const y = shown(data, second, p[second] as number | null);
+    const x = responses.shown(first, p[first] as number | null);
+    const y = responses.shown(second, p[second] as number | null);
     return typeof x === "number" && typeof y === "number" ? [{ x, y, parameters: p.parameters }] : [];
   });
-  const [a, b] = [first, second].map((name) => labelOf(data, name));
+  const [a, b] = [first, second].map((name) => responses.label(name));
   const names = (data.case?.design ?? []).map((d) => d.name);
   const numeric = true;
   return section(
@@ -77,8 +81,8 @@ export function frontSection(data: PageData): HTMLElement | null {
     ),
     table(
       "Points of the front",
-      [{ head: a, numeric }, { head: b, numeric }, ...names.map((n) => ({ head: labelOf(data, n), numeric }))],
-      found.map((p) => [number(p.x), number(p.y), ...names.map((n) => number(shown(data, n, p.parameters[n])))]),
+      [{ head: a, numeric }, { head: b, numeric }, ...names.map((n) => ({ head: inputs.label(n), numeric }))],
+      found.map((p) => [number(p.x), number(p.y), ...names.map((n) => number(inputs.shown(n, p.parameters[n])))]),
     ),
   );
 }
@@ -89,6 +93,7 @@ export function toleranceSection(data: PageData): HTMLElement | null {
   if (!tolerance) {
     return null;
   }
+  const responses = responsesOf(data);
   const shares = Object.entries(tolerance.responses).flatMap(([response, r]) =>
     Object.entries(r.shares ?? {}).map(([variable, share]) => ({
       response: words(response),
@@ -103,7 +108,7 @@ export function toleranceSection(data: PageData): HTMLElement | null {
     table(
       "Standard deviations of the design variables",
       [{ head: "design variable" }, { head: "deviation", numeric }],
-      Object.entries(tolerance.deviations).map(([name, d]) => [words(name), textOf(data, name, d)]),
+      Object.entries(tolerance.deviations).map(([name, d]) => [words(name), inputsOf(data).text(name, d)]),
     ),
     table(
       "Standard deviations of the responses",
@@ -112,10 +117,10 @@ export function toleranceSection(data: PageData): HTMLElement | null {
         const s = r.sampled;
         return [
           words(name),
-          textOf(data, name, r.deviation),
-          s ? `${textOf(data, name, s.deviation)} ${errorOf(data, name, s.deviation_error)}` : "\u2013",
-          s ? `${textOf(data, name, s.mean)} ${errorOf(data, name, s.mean_error)}` : "\u2013",
-          s ? rangeOf(data, name, s.least, s.largest) : "\u2013",
+          responses.text(name, r.deviation),
+          s ? `${responses.text(name, s.deviation)} ${responses.error(name, s.deviation_error)}` : "\u2013",
+          s ? `${responses.text(name, s.mean)} ${responses.error(name, s.mean_error)}` : "\u2013",
+          s ? responses.range(name, s.least, s.largest) : "\u2013",
         ];
       }),
     ),
@@ -158,7 +163,7 @@ export function sensitivitySection(data: PageData): HTMLElement | null {
     rows.push([
       words(response.name),
       // Per unit as it is shown.
-      ...line.map((g, k) => textOf(data, response.name, g === null ? null : g / measureOf(data, design[k].name).factor)),
+      ...line.map((g, k) => responsesOf(data).text(response.name, g === null ? null : g / inputsOf(data).factor(design[k].name))),
     ]);
   });
   if (rows.length === 0) {
@@ -192,7 +197,7 @@ export function sensitivitySection(data: PageData): HTMLElement | null {
     ),
     table(
       "Change of each response per unit of each design variable",
-      [{ head: "response" }, ...design.map((d) => ({ head: `per ${measureOf(data, d.name).unit || "unit"} of ${words(d.name)}`, numeric: true }))],
+      [{ head: "response" }, ...design.map((d) => ({ head: `per ${inputsOf(data).unit(d.name) || "unit"} of ${words(d.name)}`, numeric: true }))],
       rows,
     ),
   );

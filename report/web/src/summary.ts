@@ -1,7 +1,7 @@
 import type { PageData, Result, StressFigures } from "./data";
 import { h, section, table } from "./dom";
 import { count, number, percent, quantity, seconds, words } from "./format";
-import { errorOf, rangeOf, textOf } from "./measures";
+import { inputsOf, responsesOf } from "./measures";
 
 const STATUS: Record<string, string> = {
   converged: "done",
@@ -96,7 +96,7 @@ export function keyFigures(data: PageData): HTMLElement | null {
   for (const name of firstResponses(data)) {
     const value = result.responses?.[name];
     if (value !== undefined) {
-      cards.push(card(textOf(data, name, value), words(name)));
+      cards.push(card(responsesOf(data).text(name, value), words(name)));
     }
   }
   const worst = worstLoadCase(result);
@@ -132,12 +132,14 @@ export function answerSection(data: PageData): HTMLElement | null {
     const near = Number.isFinite(high - low) ? 1e-6 * (high - low) : 0;
     return value <= low + near ? " (at its lower bound)" : value >= high - near ? " (at its upper bound)" : "";
   };
+  const inputs = inputsOf(data);
+  const outputs = responsesOf(data);
   const designRows = designs.map((d) => [
     words(d.name),
-    textOf(data, d.name, parameters[d.name]) + atBound(parameters[d.name], d),
-    errorOf(data, d.name, result.parameter_errors?.[d.name]),
-    textOf(data, d.name, result.start?.parameters[d.name] ?? d.initial),
-    rangeOf(data, d.name, d.lower, d.upper),
+    inputs.text(d.name, parameters[d.name]) + atBound(parameters[d.name], d),
+    inputs.error(d.name, result.parameter_errors?.[d.name]),
+    inputs.text(d.name, result.start?.parameters[d.name] ?? d.initial),
+    inputs.range(d.name, d.lower, d.upper),
   ]);
   const others = Object.entries(parameters).filter(([name]) => !names.includes(name));
   const responses = Object.entries(result.responses ?? {});
@@ -157,9 +159,9 @@ export function answerSection(data: PageData): HTMLElement | null {
           [{ head: "response" }, { head: "answer", numeric }, { head: "mesh error", numeric }, { head: "at the start", numeric }],
           responses.map(([name, value]) => [
             words(name),
-            textOf(data, name, value),
-            errorOf(data, name, result.response_errors?.[name]),
-            textOf(data, name, result.start?.responses[name]),
+            outputs.text(name, value),
+            outputs.error(name, result.response_errors?.[name]),
+            outputs.text(name, result.start?.responses[name]),
           ]),
         )
       : null,
@@ -168,7 +170,7 @@ export function answerSection(data: PageData): HTMLElement | null {
       ? table(
           "Parameters of the case",
           [{ head: "parameter" }, { head: "value", numeric }],
-          others.map(([name, value]) => [words(name), textOf(data, name, value)]),
+          others.map(([name, value]) => [words(name), inputs.text(name, value)]),
         )
       : null,
   );
@@ -176,12 +178,16 @@ export function answerSection(data: PageData): HTMLElement | null {
 
 /** "at most 0.1 mm". */
 function boundText(data: PageData, name: string, bound: number | null): string {
-  const entry = data.case?.study.constraints.find((b) => b.response === name);
-  const sides = [
-    typeof entry?.min === "number" ? `at least ${textOf(data, name, entry.min)}` : "",
-    typeof entry?.max === "number" ? `at most ${textOf(data, name, entry.max)}` : "",
-  ].filter((side) => side !== "");
-  return sides.length > 0 ? sides.join(", ") : textOf(data, name, bound);
+  const text = (value: number | null) => responsesOf(data).text(name, value);
+  const sides = (data.case?.study.constraints ?? [])
+    .filter((b) => b.response === name)
+    .flatMap((b) =>
+      b.min !== null && b.min === b.max
+        ? [`wanted ${text(b.min)}`]
+        : [b.min !== null ? `at least ${text(b.min)}` : "", b.max !== null ? `at most ${text(b.max)}` : ""],
+    )
+    .filter((side) => side !== "");
+  return sides.length > 0 ? sides.join(", ") : text(bound);
 }
 
 function constraintTable(data: PageData, result: Result): HTMLElement | null {
@@ -208,7 +214,7 @@ function constraintTable(data: PageData, result: Result): HTMLElement | null {
       const over = peak?.peak_within_bound === false;
       return [
         peak ? `${words(name)} (a mean over the volume)` : words(name),
-        matches ? number(c.value) : textOf(data, name, c.value),
+        matches ? number(c.value) : responsesOf(data).text(name, c.value),
         matches ? number(c.bound) : boundText(data, name, c.bound),
         c.satisfied ? "\u2713 yes" : h("strong", { class: "bad" }, "\u2717 no"),
         ...(beside ? [over ? h("strong", { class: "bad" }, `${text} \u2717 above the bound`) : text] : []),

@@ -2,7 +2,7 @@ import type { PageData } from "../data";
 import { h } from "../dom";
 import { words } from "../format";
 import { historyOf } from "../history";
-import { textOf } from "../measures";
+import { inputsOf, responsesOf } from "../measures";
 
 /** A slider through the designs that the study looked at; null: none kept. */
 export function historyControl(
@@ -36,10 +36,10 @@ export function historyControl(
     const row = rows.find((r) => r.evaluation === evaluation);
     const numbers = [
       ...(data.case?.design ?? []).map(
-        (d) => `${words(d.name)} ${textOf(data, d.name, row?.values[d.name])}`,
+        (d) => `${words(d.name)} ${inputsOf(data).text(d.name, row?.values[d.name])}`,
       ),
       ...(data.case?.responses ?? []).map(
-        (r) => `${words(r.name)} ${textOf(data, r.name, row?.values[r.name])}`,
+        (r) => `${words(r.name)} ${responsesOf(data).text(r.name, row?.values[r.name])}`,
       ),
     ];
     return `evaluation ${evaluation}: ${numbers.join(", ")}`;
