@@ -1,6 +1,7 @@
 #include "pipeline/case_data/case_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -129,6 +130,60 @@ void check_inner_surfaces(const Case& input, CaseProblems& problems) {
     }
     for (const loads::SpringBed& springs : load_case.springs) {
       look("spring bed", springs.surface, load_case.line);
+    }
+  }
+}
+
+/// Are all components of the load on `surface` held there? `force`: of loads
+/// that are one, else null: then all three count.
+bool is_held(const loads::LoadCase& load_case, const std::string& surface,
+             const Vec3* force) {
+  std::array<bool, 3> fixed = {false, false, false};
+  for (const loads::Support& support : load_case.supports) {
+    if (support.surface != surface ||
+        support.kind != loads::SupportKind::Components) {
+      continue;
+    }
+    const bool all = support.fix_x && support.fix_y && support.fix_z;
+    if (all || !support.axes) {
+      fixed[0] = fixed[0] || support.fix_x;
+      fixed[1] = fixed[1] || support.fix_y;
+      fixed[2] = fixed[2] || support.fix_z;
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!fixed[static_cast<std::size_t>(axis)] &&
+        (force == nullptr || (*force)[axis] != 0.0)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// A load on what is held moves nothing.
+void check_held_loads(const Case& input, const EvaluatedCase& inputs,
+                      CaseProblems& problems) {
+  for (std::size_t k = 0; k < inputs.load_cases.size(); ++k) {
+    const loads::LoadCase& load_case = inputs.load_cases[k];
+    for (const LoadEntry& load : input.load_cases[k].loads) {
+      if (load.surface.empty()) {
+        continue;
+      }
+      const auto force =
+          std::find_if(load_case.forces.begin(), load_case.forces.end(),
+                       [&](const loads::SurfaceForce& f) {
+                         return f.surface == load.surface;
+                       });
+      const bool is_force =
+          load.kind == LoadKind::Force && force != load_case.forces.end();
+      if (is_held(load_case, load.surface,
+                  is_force ? &force->total : nullptr)) {
+        problems.warn(
+            load.line,
+            fmt::format("the load on '{}' moves nothing: load case '{}' holds "
+                        "that surface the way it pushes",
+                        load.surface, load_case.name));
+      }
     }
   }
 }
@@ -289,6 +344,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
     return;
   }
   check_start(input, inputs, problems);
+  check_held_loads(input, inputs, problems);
   check_loads(input, inputs, problems);
   check_plausible(input, inputs, problems);
   for (std::size_t k = 0; k < input.design.size(); ++k) {

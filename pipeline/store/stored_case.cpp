@@ -57,6 +57,10 @@ std::map<std::string, std::string> stored_units(
       units[input.responses[k].name] =
           case_data::response_unit(input, static_cast<int>(k));
     }
+    if (input.study.objective && !input.study.fit) {
+      units.emplace("objective",
+                    case_data::response_unit(input, *input.study.objective));
+    }
     for (const case_data::DesignVariable& variable : input.design) {
       units[variable.name] = case_data::unit_of(input.units, variable.measure);
     }

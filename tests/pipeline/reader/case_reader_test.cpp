@@ -280,6 +280,27 @@ TEST(CaseReader, WarnsOfLoadsWithinThePart) {
                                     "and 'end_b'")));
 }
 
+TEST(CaseReader, WarnsOfLoadsOnWhatIsHeld) {
+  const auto warnings = [](const std::string& force, const std::string& fix) {
+    return reader::read_case_text(
+               strut(), "case.toml",
+               {"load_cases.service.supports=[{ on = \"foot_pad\", fix = "
+                "\"xyz\" }, { on = \"head_pad\", fix = \"" +
+                    fix + "\" }]",
+                "load_cases.service.loads=[{ on = \"head_pad\", force = " +
+                    force + " }]"})
+        .warnings;
+  };
+  const auto held =
+      ElementsAre(HasSubstr("the load on 'head_pad' moves nothing: load case "
+                            "'service' holds that surface "
+                            "the way it pushes"));
+  EXPECT_THAT(warnings("[\"load\", 0, 0]", "xyz"), held);
+  EXPECT_THAT(warnings("[\"load\", 0, 0]", "xz"), held);
+  EXPECT_THAT(warnings("[\"load\", \"load\", 0]", "xz"), IsEmpty());
+  EXPECT_THAT(warnings("[0, \"load\", 0]", "xz"), IsEmpty());
+}
+
 TEST(Overrides, ReachParametersDesignAndKeys) {
   const case_data::Case input = reader::read_case(
       two_arm_path(),
