@@ -385,25 +385,39 @@ Dimension dimension_of(const Measure& measure) {
   return Dimension::None;
 }
 
-Dimension dimension_of(const ResponseEntry& response) {
-  const Dimension usual = dimension_of(response.kind);
-  return usual == Dimension::None || response.weight
-             ? dimension_of(measure_of(response))
-             : usual;
+namespace {
+
+/// Angles are numbers, so that a rate may be one of turning or not.
+bool is_rate(const Measure& measure) {
+  return measure.is_known() && measure.powers == powers_of(Dimension::Rate);
 }
 
-ShownUnit shown_unit(const Case& input, int response) {
+ShownUnit shown_of(const UnitSystem& units, const Measure& measure) {
+  return is_rate(measure) ? ShownUnit{1.0, "1/s"}
+                          : units.shown(dimension_of(measure));
+}
+
+/// The dimension of its kind; None where that says none, or beside a weight.
+Dimension usual_dimension(const Case& input, int response) {
   const auto& entry = input.responses[static_cast<std::size_t>(response)];
-  const ShownUnit shown = input.units.shown(dimension_of(entry));
-  return shown.unit.empty() ? ShownUnit{1.0, response_unit(input, response)}
-                            : shown;
+  return entry.weight ? Dimension::None : dimension_of(entry.kind);
+}
+
+Measure measure_at(const Case& input, int response) {
+  return measure_of(input.responses[static_cast<std::size_t>(response)]);
+}
+
+}  // namespace
+
+ShownUnit shown_unit(const Case& input, int response) {
+  const Dimension usual = usual_dimension(input, response);
+  return usual == Dimension::None
+             ? shown_of(input.units, measure_at(input, response))
+             : input.units.shown(usual);
 }
 
 ShownUnit shown_unit(const Case& input, const DesignVariable& variable) {
-  const ShownUnit shown = input.units.shown(dimension_of(variable.measure));
-  return shown.unit.empty()
-             ? ShownUnit{1.0, unit_of(input.units, variable.measure)}
-             : shown;
+  return shown_of(input.units, variable.measure);
 }
 
 std::string design_text(const Case& input, const VectorX& design) {
@@ -418,17 +432,14 @@ std::string design_text(const Case& input, const VectorX& design) {
 }
 
 std::string unit_of(const UnitSystem& units, const Measure& measure) {
-  // Angles are numbers, so that a rate may be one of turning or not.
-  return measure.is_known() && measure.powers == powers_of(Dimension::Rate)
-             ? "1/s"
-             : units.unit_of(dimension_of(measure));
+  return is_rate(measure) ? "1/s" : units.unit_of(dimension_of(measure));
 }
 
 std::string response_unit(const Case& input, int response) {
-  const auto& entry = input.responses[static_cast<std::size_t>(response)];
-  const Dimension dimension = dimension_of(entry);
-  return dimension == Dimension::None ? unit_of(input.units, measure_of(entry))
-                                      : input.units.unit_of(dimension);
+  const Dimension usual = usual_dimension(input, response);
+  return usual == Dimension::None
+             ? unit_of(input.units, measure_at(input, response))
+             : input.units.unit_of(usual);
 }
 
 }  // namespace meniscus::case_data

@@ -133,8 +133,6 @@ Dimension dimension_of(ResponseKind kind);
 /// The one that has these powers, neither angle nor rate; None: unknown, or
 /// without a name.
 Dimension dimension_of(const Measure& measure);
-/// Its kind's; where that says none, or beside a weight, by measure_of().
-Dimension dimension_of(const ResponseEntry& response);
 /// What is known of a response's dimension; of an expression what its parts
 /// say.
 Measure measure_of(const ResponseEntry& response);

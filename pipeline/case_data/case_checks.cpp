@@ -134,10 +134,9 @@ void check_inner_surfaces(const Case& input, CaseProblems& problems) {
   }
 }
 
-/// Are all components of the load on `surface` held there? `force`: of loads
-/// that are one, else null: then all three count.
+/// Is `surface` held along all axes in which `push` is not 0?
 bool is_held(const loads::LoadCase& load_case, const std::string& surface,
-             const Vec3* force) {
+             const Vec3& push) {
   std::array<bool, 3> fixed = {false, false, false};
   for (const loads::Support& support : load_case.supports) {
     if (support.surface != surface ||
@@ -152,8 +151,7 @@ bool is_held(const loads::LoadCase& load_case, const std::string& surface,
     }
   }
   for (int axis = 0; axis < 3; ++axis) {
-    if (!fixed[static_cast<std::size_t>(axis)] &&
-        (force == nullptr || (*force)[axis] != 0.0)) {
+    if (!fixed[static_cast<std::size_t>(axis)] && push[axis] != 0.0) {
       return false;
     }
   }
@@ -169,15 +167,15 @@ void check_held_loads(const Case& input, const EvaluatedCase& inputs,
       if (load.surface.empty()) {
         continue;
       }
-      const auto force =
-          std::find_if(load_case.forces.begin(), load_case.forces.end(),
-                       [&](const loads::SurfaceForce& f) {
-                         return f.surface == load.surface;
-                       });
-      const bool is_force =
-          load.kind == LoadKind::Force && force != load_case.forces.end();
+      // Of several forces there: along all that any pushes.
+      Vec3 push = Vec3::Zero();
+      for (const loads::SurfaceForce& force : load_case.forces) {
+        if (load.kind == LoadKind::Force && force.surface == load.surface) {
+          push += force.total.cwiseAbs();
+        }
+      }
       if (is_held(load_case, load.surface,
-                  is_force ? &force->total : nullptr)) {
+                  push.isZero(0.0) ? Vec3::Ones() : push)) {
         problems.warn(
             load.line,
             fmt::format("the load on '{}' moves nothing: load case '{}' holds "
