@@ -239,7 +239,7 @@ FilmResponse FilmModel::margin(const settle::FilmState& state,
                                     film.directions, film.pressure);
   return film_margin(*impl_->energy, film.targets, state.points,
                      film.directions, film.pressure, saddle,
-                     std::abs(impl_->reference.report.min_eigenvalue), options);
+                     impl_->margin_scale, options);
 }
 
 FilmResponse FilmModel::smallest_radius(const Points& points, int power) const {

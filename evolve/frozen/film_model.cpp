@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -13,7 +14,9 @@
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/rim_grading.h"
 #include "evolve/films/solid_facets.h"
+#include "evolve/films/triangle_shape.h"
 #include "evolve/frozen/film_model_impl.h"
+#include "evolve/groom/flip_average.h"
 #include "evolve/settle/equilibrium.h"
 #include "evolve/settle/find_equilibrium.h"
 #include "evolve/start/start_complex.h"
@@ -29,6 +32,33 @@ constexpr std::array<int, 2> kParts = {1, 4};
 /// One step that needs more iterations than this is checked against parts:
 /// the film may have slid to another equilibrium.
 constexpr int kManyIterations = 15;
+/// Facets of a smaller angle are spread anew [rad], in so many rounds.
+constexpr double kSliver = 15.0 / 180.0 * std::numbers::pi;
+constexpr int kAveragings = 2;
+
+/// Corners of the films' slivers and of the facets around them, by vertex;
+/// empty where there is none.
+std::vector<char> beside_slivers(const films::FilmComplex& complex) {
+  const SurfaceMesh& mesh = complex.mesh;
+  std::vector<char> corner(mesh.points.size(), 0);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const auto [a, b, c] = mesh.facets[f];
+    if (complex.surfaces[mesh.facet_label[f]].liquid &&
+        films::smallest_angle(mesh.points[a], mesh.points[b], mesh.points[c]) <
+            kSliver) {
+      corner[a] = corner[b] = corner[c] = 1;
+    }
+  }
+  std::vector<char> beside = corner;
+  for (const auto& [a, b, c] : mesh.facets) {
+    if (corner[a] != 0 || corner[b] != 0 || corner[c] != 0) {
+      beside[a] = beside[b] = beside[c] = 1;
+    }
+  }
+  return std::find(corner.begin(), corner.end(), 1) != corner.end()
+             ? beside
+             : std::vector<char>();
+}
 
 films::FilmTargets blend(const films::FilmTargets& from,
                          const films::FilmTargets& to, double t) {
@@ -262,15 +292,38 @@ void FilmModel::Impl::settle_reference(films::FilmComplex first, int halvings,
   reference = settle::find_equilibrium(complex, find);
   meshed = complex.mesh;
   meshed_complex = complex;
-  for (int level = 0; level < options.refinements; ++level) {
+  refine_and_settle(options.refinements, !initial.keep_facets, settle);
+}
+
+void FilmModel::Impl::refine_and_settle(int levels, bool may_groom,
+                                        const settle::SettleOptions& settle) {
+  Monitor& monitor =
+      settle.monitor != nullptr ? *settle.monitor : silent_monitor();
+  const auto settle_level = [&] {
+    energy.emplace(complex);
+    reference =
+        settle::settle_in_normals(*energy, complex, energy::targets_of(complex),
+                                  complex.mesh.points, settle);
+    complex.mesh.points = reference.points;
+  };
+  for (int level = 0; level < levels; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
     refine_once(level);
-    if (!reference.failure) {
-      energy.emplace(complex);
-      reference = settle::settle_in_normals(*energy, complex,
-                                            energy::targets_of(complex),
-                                            complex.mesh.points, settle);
-      complex.mesh.points = reference.points;
+    if (reference.failure) {
+      continue;
+    }
+    settle_level();
+    // Where the coarser film was far from this one, new vertices came to it
+    // aslant: slivers, whose modes are wrong at any length of edge.
+    if (!may_groom || reference.failure) {
+      continue;
+    }
+    const std::vector<char> beside = beside_slivers(complex);
+    if (!beside.empty()) {
+      for (int round = 0; round < kAveragings; ++round) {
+        groom::average_vertices(complex, beside);
+      }
+      settle_level();
     }
   }
 }
@@ -337,6 +390,34 @@ FilmModel FilmModel::freeze(const films::FilmSystem& initial,
   } catch (const ExpressionError& error) {
     throw InvalidInput(no_value(error));
   }
+  FilmModel model = finish(std::move(impl), initial, settle);
+  model.impl_->reference.report.seconds = timer.seconds();
+  return model;
+}
+
+FilmModel FilmModel::refined(const settle::FilmState& state,
+                             const films::FilmSystem& system,
+                             Monitor* monitor) const {
+  const Heeding heeding(monitor);
+  const Timer timer;
+  const settle::SettleOptions settle{.monitor = monitor};
+  auto impl = std::make_unique<Impl>();
+  impl->complex = complex_at(state, system);
+  impl->meshed = impl->complex.mesh;
+  impl->meshed_complex = impl->complex;
+  impl->reference = state;
+  impl->start_edge = impl_->start_edge;
+  impl->refine_and_settle(1, !system.keep_facets, settle);
+  FilmModel model = finish(std::move(impl), system, settle);
+  model.impl_->margin_scale = impl_->margin_scale;
+  model.impl_->reference.report.seconds = timer.seconds();
+  return model;
+}
+
+/// From a found reference to a model that can be used.
+FilmModel FilmModel::finish(std::unique_ptr<Impl> impl,
+                            const films::FilmSystem& initial,
+                            const settle::SettleOptions& settle) {
   // The solid's surface as constant weights of film vertices: corners at
   // vertices of one level, mid-sides on the next finer one.
   std::vector<int> corner(impl->meshed.points.size());
@@ -367,7 +448,8 @@ FilmModel FilmModel::freeze(const films::FilmSystem& initial,
     model.impl_->reference.heights =
         VectorX::Zero(model.impl_->energy->unknowns());
   }
-  model.impl_->reference.report.seconds = timer.seconds();
+  model.impl_->margin_scale =
+      std::abs(model.impl_->reference.report.min_eigenvalue);
   return model;
 }
 

@@ -45,6 +45,14 @@ class FilmModel {
   static FilmModel freeze(const films::FilmSystem& initial,
                           const FilmModelOptions& options);
 
+  /// The same film on its own facets with edges half as long, for the error of
+  /// its figures: a model frozen at the design that `state` was settled for,
+  /// with the margins' scale of this one. A film that is not there on these
+  /// facets is in reference().failure. `monitor` may be null. Throws as
+  /// complex_at(), and InvalidInput for a model without liquid.
+  FilmModel refined(const settle::FilmState& state,
+                    const films::FilmSystem& system, Monitor* monitor) const;
+
   /// The settled film at the initial design.
   const settle::FilmState& reference() const;
 
@@ -166,6 +174,9 @@ class FilmModel {
  private:
   struct Impl;
   explicit FilmModel(std::unique_ptr<Impl> impl);
+  static FilmModel finish(std::unique_ptr<Impl> impl,
+                          const films::FilmSystem& initial,
+                          const settle::SettleOptions& settle);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -24,10 +24,11 @@ struct FilmModel::Impl {
   std::optional<Carry> carry;
   films::FilmTargets targets;
   settle::FilmState reference;
-  double usual_neck = 0.0;   // of the reference [length]
-  double start_edge = 0.0;   // of the start that it was found from [length]
-  std::vector<int> regions;  // per body, -1: void
-  SurfaceNodes nodes;        // the meshed level's, facets split
+  double usual_neck = 0.0;    // of the reference [length]
+  double margin_scale = 0.0;  // lowest eigenvalue that margins are smooth by
+  double start_edge = 0.0;    // of the start that it was found from [length]
+  std::vector<int> regions;   // per body, -1: void
+  SurfaceNodes nodes;         // the meshed level's, facets split
 
   /// What a film rests on, beside its points and heights.
   struct AtRest {
@@ -53,6 +54,10 @@ struct FilmModel::Impl {
                         const films::FilmSystem& initial,
                         const FilmModelOptions& options,
                         const settle::SettleOptions& settle);
+  /// Nested refinements of the settled complex, settled one by one.
+  /// `may_groom`: their vertices may be spread anew where facets are slivers.
+  void refine_and_settle(int levels, bool may_groom,
+                         const settle::SettleOptions& settle);
   /// A complex of the model's at a design.
   films::FilmComplex at_design(films::FilmComplex complex,
                                const settle::FilmState& state,

@@ -200,11 +200,13 @@ double SurfaceEditor::worst_shape(int v,
   return least;
 }
 
-void SurfaceEditor::average(const EdgeTarget& target) {
+void SurfaceEditor::average(const EdgeTarget& target,
+                            const std::vector<char>& marked) {
   std::vector<Vec3> normals;
   for (int v = 0; v < static_cast<int>(mesh_.points.size()); ++v) {
     heed_stop("film");
-    if (rank_[v] == Rank::Held || star_[v].empty()) {
+    if (rank_[v] == Rank::Held || star_[v].empty() ||
+        (!marked.empty() && marked[v] == 0)) {
       continue;
     }
     Vec3 move;

@@ -1,6 +1,8 @@
 /// Edges flipped and vertices averaged. Deterministic.
 #pragma once
 
+#include <vector>
+
 #include "evolve/films/film_complex.h"
 
 namespace meniscus::groom {
@@ -16,7 +18,9 @@ int equiangulate(films::FilmComplex& complex,
 
 /// One step of vertex averaging: liquid vertices move to the area-weighted
 /// centre of their facets, along the film only; on lines to the middle of
-/// their neighbours, along the line only.
-void average_vertices(films::FilmComplex& complex);
+/// their neighbours, along the line only. `marked`: one char per vertex, those
+/// that move; empty: all.
+void average_vertices(films::FilmComplex& complex,
+                      const std::vector<char>& marked = {});
 
 }  // namespace meniscus::groom

@@ -29,9 +29,10 @@ int equiangulate(films::FilmComplex& complex, FlipRule rule) {
   return flips;
 }
 
-void average_vertices(films::FilmComplex& complex) {
+void average_vertices(films::FilmComplex& complex,
+                      const std::vector<char>& marked) {
   SurfaceEditor editor(std::move(complex));
-  editor.average({});
+  editor.average({}, marked);
   complex = std::move(editor).finish();
 }
 

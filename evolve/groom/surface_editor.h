@@ -63,8 +63,9 @@ class SurfaceEditor {
 
   /// Moves each liquid vertex along its film to the centre of its facets
   /// (weights: area over target^2), on lines along the line to the middle of
-  /// its neighbours; less where a facet would turn over.
-  void average(const EdgeTarget& target);
+  /// its neighbours; less where a facet would turn over. `marked`: by point,
+  /// the only ones that move; empty: all.
+  void average(const EdgeTarget& target, const std::vector<char>& marked = {});
 
   /// The result: points that are still used, survivors first in their old
   /// order; marks likewise.

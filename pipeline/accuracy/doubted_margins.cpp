@@ -38,7 +38,7 @@ std::vector<DoubtedMargin> doubted_margins(const case_data::Case& input,
 std::string doubt_text(const DoubtedMargin& margin) {
   return std::isfinite(margin.error) ? "the mesh's own error of it is " +
                                            margin.shown.text(margin.error, 2)
-                                     : "the film is on no other mesh";
+                                     : "other facets have no such film";
 }
 
 double raised_bound(const DoubtedMargin& margin, double lower) {

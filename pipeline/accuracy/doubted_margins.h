@@ -14,8 +14,8 @@ struct DoubtedMargin {
   std::size_t constraint = 0;  // index into the study's
   std::string name;            // of the response
   double value = 0.0;          // [stress / length]
-  double error = 0.0;          // of it; NaN where no other mesh has the film
-  ShownUnit shown = {};        // of both, in messages
+  double error = 0.0;    // of it; NaN where other facets have no such film
+  ShownUnit shown = {};  // of both, in messages
 };
 
 /// A bound from below that keeps a film from its collapse.
@@ -33,7 +33,7 @@ std::string doubt_text(const DoubtedMargin& margin);
 
 /// What its bound is raised to, from `lower` > 0, for the search to go on with:
 /// above the error by a quarter, but by a quarter at least and by half at most;
-/// by half where the film is on no other mesh.
+/// by half where other facets have no such film.
 double raised_bound(const DoubtedMargin& margin, double lower);
 
 }  // namespace meniscus::accuracy

@@ -29,6 +29,8 @@ constexpr double kSafety = 1.5;
 // around a rim, may be far off: the change to the nearer one counts.
 constexpr double kLeastFilmOrder = 1.0;
 constexpr double kMostFilmOrder = 2.0;
+// The error over the change, where facets were halved at that order.
+constexpr double kWholeError = 4.0 / 3.0;
 
 /// What is left after a mesh whose edges are `factor` times shorter moved a
 /// figure by `change`, at that order.
@@ -116,12 +118,55 @@ FigureError figure_error(const MeshValues& values, FigureKind kind) {
       settles};
 }
 
+double finer_film_error(double own, double finer, FilmLaw law) {
+  if (law == FilmLaw::Smooth) {
+    return kSafety * kWholeError * std::abs(own - finer);
+  }
+  const double square = own * own;
+  const double limit = square - kWholeError * (square - finer * finer);
+  return kSafety * std::abs(own - std::sqrt(limit < 0.0 ? 0.0 : limit));
+}
+
+namespace {
+
+/// What the film's own finer facets say of a response; NaN where they say
+/// nothing, as of one without films.
+double error_by_finer_film(const case_data::Case& input,
+                           const MeshSequence& meshes, int response) {
+  const VectorX& finer = meshes.finer_film.responses;
+  if (finer.size() == 0) {
+    return kNaN;
+  }
+  const double own = meshes.responses[0][response];
+  if (std::abs(own - finer[response]) <= kAlike * std::abs(own)) {
+    return kNaN;
+  }
+  const bool is_margin =
+      input.responses[static_cast<std::size_t>(response)].kind ==
+      case_data::ResponseKind::CollapseMargin;
+  return finer_film_error(own, finer[response],
+                          is_margin ? FilmLaw::Root : FilmLaw::Smooth);
+}
+
+}  // namespace
+
 std::vector<FigureError> response_errors(const case_data::Case& input,
                                          const MeshSequence& meshes,
                                          const VectorX& dual) {
   std::vector<FigureError> errors;
   for (int r = 0; r < static_cast<int>(input.responses.size()); ++r) {
-    FigureError error = figure_error(values_of(meshes, r), kind_of(input, r));
+    const FigureKind kind = kind_of(input, r);
+    FigureError error = figure_error(values_of(meshes, r), kind);
+    const double film = error_by_finer_film(input, meshes, r);
+    if (kind == FigureKind::Film) {
+      // Other meshes stand in where the film's own facets say nothing, but for
+      // a film that is not there on finer ones.
+      if (std::isfinite(film) || meshes.finer_film.is_lost) {
+        error = {film, true};
+      }
+    } else {
+      error.bound = std::fmax(error.bound, film);
+    }
     // A dual of 0 is that of a figure in which the elements make no error: no
     // error of its own where the meshes gave none.
     if (dual.size() > 0 && std::isfinite(dual[r]) && dual[r] != 0.0) {

@@ -36,8 +36,19 @@ struct FigureError {
 /// docs/decisions/0006-mesh-error.md.
 FigureError figure_error(const MeshValues& values, FigureKind kind);
 
-/// Of each response; `dual`: of the elements alone where estimated (NaN where
-/// not; empty: none), no bound is below it.
+/// How a figure of films comes to its limit as facets are halved: with the
+/// square of their edges; a margin to collapse with the root of that, as it
+/// falls to 0 (docs/theory.md, Margins).
+enum class FilmLaw { Smooth, Root };
+
+/// The error of `own` by `finer`, the same on the same facets halved
+/// (Richardson at order 2), times the safety that figure_error() has. NaN where
+/// one is.
+double finer_film_error(double own, double finer, FilmLaw law);
+
+/// Of each response; figures of films by their finer film where it is there,
+/// all others by the meshes; `dual`: of the elements alone where estimated (NaN
+/// where not; empty: none), no bound is below it.
 std::vector<FigureError> response_errors(const case_data::Case& input,
                                          const MeshSequence& meshes,
                                          const VectorX& dual);

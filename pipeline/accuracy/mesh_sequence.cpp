@@ -1,13 +1,10 @@
 #include "pipeline/accuracy/mesh_sequence.h"
 
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "pipeline/case_data/film_start.h"
-#include "pipeline/case_data/response_kinds.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/stress_figures.h"
 
@@ -15,12 +12,9 @@ namespace meniscus::accuracy {
 
 namespace {
 
-/// How the film of another mesh is found.
-enum class FilmFrom { OwnFacets, TheDesignsFilm };
-
 /// On the mesh with edges kEdgeFactors[m] times as long.
 void add_mesh(const case_data::Case& input, const VectorX& design,
-              std::size_t m, FilmFrom film, bool with_eigen, Monitor& monitor,
+              std::size_t m, bool with_eigen, Monitor& monitor,
               MeshSequence& meshes) {
   monitor.progress(
       {.stage = "accuracy",
@@ -28,9 +22,7 @@ void add_mesh(const case_data::Case& input, const VectorX& design,
                              kEdgeFactors[m])});
   const std::string prevented = what_prevents([&] {
     const forward::ForwardModel model(
-        input, {.edge_factor = kEdgeFactors[m],
-                .earlier_at_own_edges = film == FilmFrom::TheDesignsFilm,
-                .monitor = &monitor});
+        input, {.edge_factor = kEdgeFactors[m], .monitor = &monitor});
     meshes.seconds += model.frozen().seconds;
     if (model.failure()) {
       meshes.failures[m] = model.failure()->message;
@@ -44,11 +36,9 @@ void add_mesh(const case_data::Case& input, const VectorX& design,
       return;
     }
     meshes.responses[m] = there.responses;
-    if (film == FilmFrom::OwnFacets) {
-      fields.stresses =
-          forward::part_stresses(fields.mesh, fields.inputs, fields.solution);
-      meshes.peaks[m] = forward::highest_readings(fields);
-    }
+    fields.stresses =
+        forward::part_stresses(fields.mesh, fields.inputs, fields.solution);
+    meshes.peaks[m] = forward::highest_readings(fields);
     if (with_eigen) {
       meshes.eigen[m] =
           forward::eigen_figures(input, fields, model.elasticity(), &monitor);
@@ -57,26 +47,6 @@ void add_mesh(const case_data::Case& input, const VectorX& design,
   });
   if (!prevented.empty()) {
     meshes.failures[m] = prevented;
-  }
-}
-
-/// Beside a collapse, facets that begin anew may find no film where there is
-/// one: it begins from that of the design then, and what the film's own figures
-/// are there counts. Rims keep their divisions on that way, so that nothing is
-/// said of the rest.
-void add_films(const case_data::Case& input, const VectorX& design,
-               Monitor& monitor, MeshSequence& meshes) {
-  const case_data::Case there = case_data::frozen_at(input, design);
-  for (const std::size_t m : {std::size_t{1}, kFinerMesh}) {
-    add_mesh(there, design, m, FilmFrom::TheDesignsFilm, false, monitor,
-             meshes);
-    VectorX& found = meshes.responses[m];
-    for (Eigen::Index r = 0; r < found.size(); ++r) {
-      const auto kind = input.responses[static_cast<std::size_t>(r)].kind;
-      if (!case_data::row_of(kind).of_films) {
-        found[r] = std::numeric_limits<double>::quiet_NaN();
-      }
-    }
   }
 }
 
@@ -111,12 +81,8 @@ MeshSequence evaluate_on_other_meshes(const case_data::Case& input,
       }
     }
     if (m != kFinerMesh || !meshes.has_coarser()) {
-      add_mesh(input, design, m, FilmFrom::OwnFacets, with_eigen, monitor,
-               meshes);
+      add_mesh(input, design, m, with_eigen, monitor, meshes);
     }
-  }
-  if (!meshes.has_others()) {
-    add_films(input, design, monitor, meshes);
   }
   return meshes;
 }

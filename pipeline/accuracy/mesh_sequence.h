@@ -7,6 +7,7 @@
 
 #include "core/math/dense.h"
 #include "core/monitor.h"
+#include "pipeline/accuracy/finer_film.h"
 #include "pipeline/case_data/case.h"
 #include "pipeline/forward/eigen_figures.h"
 #include "pipeline/forward/stage_meter.h"
@@ -33,6 +34,7 @@ struct MeshSequence {
   /// caller's.
   std::array<std::vector<double>, kEdgeFactors.size()> peaks;
   std::array<std::string, kEdgeFactors.size()> failures;  // why it failed
+  FinerFilm finer_film;           // where the caller adds it
   forward::StageSeconds seconds;  // of the models that were made for it
 
   bool has_coarser() const {

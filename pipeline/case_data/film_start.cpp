@@ -96,24 +96,17 @@ Case frozen_at(Case input, const VectorX& design) {
 }
 
 frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
-                               const frozen::FilmModelOptions& options,
-                               std::optional<double> earlier_edge) {
-  const auto options_of = [&](bool last) {
-    frozen::FilmModelOptions own = options;
-    own.edge = last ? options.edge : earlier_edge.value_or(options.edge);
-    return own;
-  };
+                               const frozen::FilmModelOptions& options) {
   try {
     std::vector<films::FilmSystem> way;
     for (const VectorX& design : input.earlier_freezes) {
       way.push_back(evaluate(input, design).film_system);
     }
     way.push_back(inputs.film_system);
-    frozen::FilmModel model =
-        frozen::FilmModel::freeze(way.front(), options_of(way.size() == 1));
+    frozen::FilmModel model = frozen::FilmModel::freeze(way.front(), options);
     for (std::size_t k = 1; k < way.size(); ++k) {
-      std::optional<frozen::FilmModel> next = freeze_next(
-          model, way[k - 1], way[k], options_of(k + 1 == way.size()));
+      std::optional<frozen::FilmModel> next =
+          freeze_next(model, way[k - 1], way[k], options);
       if (!next) {  // as a case of its own
         return frozen::FilmModel::freeze(way.back(), options);
       }

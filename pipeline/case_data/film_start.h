@@ -1,7 +1,6 @@
 /// Films of a case as they start, and where in the case a film is that cannot.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "evolve/frozen/film_model.h"
@@ -28,10 +27,7 @@ bool is_same_film(const settle::FilmReport& one,
 /// another film there or none. Rims keep their divisions on that way: where one
 /// is longer or shorter by a third, first facets come first, and count where
 /// they lead to the same film (is_same_film). Throws InvalidInput.
-/// `earlier_edge`: of the models before; those of `options` where it is left
-/// out.
 frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
-                               const frozen::FilmModelOptions& options,
-                               std::optional<double> earlier_edge = {});
+                               const frozen::FilmModelOptions& options);
 
 }  // namespace meniscus::case_data

@@ -83,10 +83,8 @@ struct Adaptation;  // pipeline/forward/adaptation.h
 struct FrozenPart;  // pipeline/forward/frozen_part.h
 
 struct ForwardModelOptions {
-  double edge_factor = 1.0;  // x all edge lengths of the case's resolution;
-                             // above 1, exclusion zones may be empty
-  /// Films of earlier freezes at the case's own edges, whatever the factor.
-  bool earlier_at_own_edges = false;
+  double edge_factor = 1.0;    // x all edge lengths of the case's resolution;
+                               // above 1, exclusion zones may be empty
   Monitor* monitor = nullptr;  // not owned; must outlive the model
 };
 

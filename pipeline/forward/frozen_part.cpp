@@ -67,9 +67,7 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
       part.input, inputs,
       {.edge = edge,
        .refinements = case_data::film_refinements(part.input),
-       .monitor = &monitor},
-      options.earlier_at_own_edges ? std::optional(inputs.fea_edge)
-                                   : std::nullopt));
+       .monitor = &monitor}));
   const settle::FilmState& film = part.film->reference();
   start.film = film.report;
   start.failure = film.failure;

@@ -9,6 +9,7 @@
 #include "fea/functionals/place_functionals.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_entries.h"
+#include "pipeline/case_data/response_kinds.h"
 #include "pipeline/forward/response_partials.h"
 
 namespace meniscus::forward {
@@ -68,6 +69,23 @@ double place_rate(const case_data::ResponseEntry& response,
                            fields.mesh, inputs.level, rates.level,
                            sharpness_of(response, fields))
                      : 0.0;
+}
+
+VectorX respond_films(const case_data::Case& input,
+                      const ResponseContext& fields, VectorX values) {
+  for (std::size_t k = 0; k < input.responses.size(); ++k) {
+    const case_data::ResponseEntry& response = input.responses[k];
+    double& value = values[static_cast<Eigen::Index>(k)];
+    if (response.kind == case_data::ResponseKind::Expression) {
+      value = expression_value(input, response, fields.inputs.design,
+                               {values.data(), k});
+    } else if (case_data::row_of(response.kind).of_films) {
+      value = partials_of(response, fields.inputs.responses[k], fields,
+                          element::Derivatives::None)
+                  .value;
+    }
+  }
+  return values;
 }
 
 VectorX respond(const case_data::Case& input, const ResponseContext& fields) {

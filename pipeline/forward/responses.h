@@ -54,6 +54,12 @@ functionals::ThicknessPairs thickness_pairs_of(const case_data::Case& input,
 /// where an expression, a weight or a region has no value.
 VectorX respond(const case_data::Case& input, const ResponseContext& fields);
 
+/// `values` with the figures of films computed anew, and the expressions of
+/// them: of another film of the design that they are of. The context may be
+/// without mesh and solution. Throws as respond().
+VectorX respond_films(const case_data::Case& input,
+                      const ResponseContext& fields, VectorX values);
+
 /// Of a response that is no expression of others. Throws InvalidInput for one
 /// without derivatives (has_derivatives()) when they are asked for.
 ResponsePartials partials_of(const case_data::ResponseEntry& response,

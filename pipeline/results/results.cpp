@@ -230,6 +230,9 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
            {"responses", value_map(names, result.meshes[m])}});
     }
   }
+  if (result.finer_film.size() > 0) {
+    json["finer_film"] = value_map(names, result.finer_film);
+  }
   if (result.element_errors) {
     json["element_errors"] = {
         {"energy", result.element_errors->energy},

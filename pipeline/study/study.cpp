@@ -95,6 +95,10 @@ class StudyRun {
   bool study_in_time();
   void keep_best_in_time();
   void conduct_study();
+  VectorX best_responses() {
+    return store_.find(stage().model_name(), stage().outcome().best)->responses;
+  }
+  std::optional<accuracy::FinerFilm> finer_film();
   std::optional<VectorX> errors_of_margins(bool proven);
   bool raise_doubted_margins(bool proven);
   void take_outcome();
@@ -127,13 +131,13 @@ class StudyRun {
   std::vector<std::string> left_out_;
   Timer timer_;
   bool raised_ = false;  // bounds of margins, above those of the input
-  // The last best design that was put on other meshes, of that model.
-  struct OnOtherMeshes {
+  // The last best design whose film was put on finer facets, of that model.
+  struct OnFinerFacets {
     std::string model;
     VectorX design;
-    accuracy::MeshSequence meshes;
+    accuracy::FinerFilm film;
   };
-  std::optional<OnOtherMeshes> judged_;
+  std::optional<OnFinerFacets> judged_;
   forward::EvaluationFields fields_;
   forward::StageSeconds own_seconds_;  // beside those of the models
   RunResult result_;
@@ -165,25 +169,37 @@ bool StudyRun::begin() {
   return true;
 }
 
-/// The answer's errors by its figures on other meshes; nothing where there is
-/// no time. Not numbers where the answer is of a film that another mesh has
-/// not.
-std::optional<VectorX> StudyRun::errors_of_margins(bool proven) {
+/// The answer's film on finer facets; nothing where there is no time.
+std::optional<accuracy::FinerFilm> StudyRun::finer_film() {
   const VectorX& best = stage().outcome().best;
+  if (!is_judged(best)) {
+    run_if_time_left("the errors of films", [&] {
+      judged_ = {
+          stage().model_name(), best,
+          accuracy::evaluate_finer_film(stage().evaluator().model(), best,
+                                        best_responses(), limited_)};
+      own_seconds_.film += judged_->film.seconds;
+    });
+  }
+  return is_judged(best) ? std::optional(judged_->film) : std::nullopt;
+}
+
+/// The errors of the answer's film figures; nothing where there is no time. Not
+/// numbers where the answer is of a film that other facets have not.
+std::optional<VectorX> StudyRun::errors_of_margins(bool proven) {
   if (!proven) {
     return VectorX::Constant(std::ssize(input_.responses),
                              std::numeric_limits<double>::quiet_NaN());
   }
-  if (!is_judged(best)) {
-    run_if_time_left("the errors of margins", [&] {
-      judged_ = {stage().model_name(), best, other_meshes(false)};
-    });
-  }
-  if (!is_judged(best)) {
+  std::optional<accuracy::FinerFilm> finer = finer_film();
+  if (!finer) {
     return std::nullopt;
   }
+  accuracy::MeshSequence alone;
+  alone.responses[0] = best_responses();
+  alone.finer_film = *std::move(finer);
   return accuracy::bounds_of(
-      accuracy::response_errors(input_, judged_->meshes, VectorX()));
+      accuracy::response_errors(input_, alone, VectorX()));
 }
 
 /// True where a margin's bound was raised, for the study to go on with: the
@@ -369,9 +385,10 @@ void StudyRun::estimate_errors() {
   estimate_element_errors_of_best();
   const bool with_eigen =
       result_.eigen && forward::deserve_errors(input_, *result_.eigen);
-  const bool known = !with_eigen && is_judged(result_.best->design);
-  accuracy::MeshSequence meshes =
-      known ? std::move(judged_->meshes) : other_meshes(with_eigen);
+  accuracy::MeshSequence meshes = other_meshes(with_eigen);
+  if (std::optional<accuracy::FinerFilm> finer = finer_film()) {
+    meshes.finer_film = *std::move(finer);
+  }
   if (!meshes.has_others()) {
     result_.warnings.push_back(fmt::format(
         "no error estimate{}, neither coarser nor finer models can be "
@@ -379,7 +396,8 @@ void StudyRun::estimate_errors() {
         result_.element_errors ? " beyond the elements' own part" : "",
         meshes.failures[accuracy::kFinerMesh]));
   }
-  if (meshes.has_others() || result_.element_errors) {
+  if (meshes.has_others() || result_.element_errors ||
+      meshes.finer_film.responses.size() > 0) {
     combine_errors(meshes);
   }
   if (with_eigen && meshes.has_others()) {
@@ -392,9 +410,8 @@ void StudyRun::estimate_errors() {
 /// The best design on its own mesh and on others.
 accuracy::MeshSequence StudyRun::other_meshes(bool with_eigen) {
   accuracy::MeshSequence meshes = accuracy::evaluate_on_other_meshes(
-      models_.working(), stage().outcome().best,
-      store_.find(stage().model_name(), stage().outcome().best)->responses,
-      with_eigen, limited_);
+      models_.working(), stage().outcome().best, best_responses(), with_eigen,
+      limited_);
   own_seconds_ += meshes.seconds;
   return meshes;
 }
@@ -425,6 +442,7 @@ void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
       result_.element_errors ? result_.element_errors->responses : VectorX());
   result_.response_errors = accuracy::bounds_of(errors);
   result_.meshes = meshes.responses;
+  result_.finer_film = meshes.finer_film.responses;
   for (std::string& warning :
        accuracy::unsettled_warnings(input_, meshes, errors)) {
     result_.warnings.push_back(std::move(warning));

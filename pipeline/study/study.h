@@ -68,6 +68,7 @@ struct RunResult {
   /// The responses on the meshes that the errors come from (mesh_errors.h):
   /// empty where one failed.
   std::array<VectorX, accuracy::kEdgeFactors.size()> meshes;
+  VectorX finer_film;  // the same with the film on finer facets; may be empty
   std::vector<forward::StressFigures>
       stress;                    // of the best design, per load case
   forward::Exclusion exclusion;  // what these leave out

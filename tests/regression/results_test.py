@@ -62,13 +62,15 @@ OTHER_STUDIES = {
                  'count = 2\n',
     "coarse": 'kind = "match"\ntargets = { sway = 0.0058 }\n'
               'coarse_first = 2\n',
+    "finer_film": 'kind = "analyse"\n',
     "front": 'kind = "pareto"\nobjectives = ["sway", "weight"]\ncount = 3\n',
 }
-WEIGHT = '\n[responses.weight]\nkind = "mass"\n\n[study]\n'
+WEIGHT = ('\n[responses.weight]\nkind = "mass"\n'
+          '[responses.skin_area]\nkind = "film_area"\n\n[study]\n')
 
 # What the case calls things: no keys of the schema.
 NAMES = {"foot", "load", "sway", "summit", "push", "part", "sway = 0.0058",
-         "weight"}
+         "weight", "skin_area"}
 
 
 # Of the solver petsc alone.

@@ -49,7 +49,8 @@ TEST(DoubtedMargins, AreThoseBelowTheirErrorOrWithoutOne) {
   EXPECT_EQ(doubted[0].name, "tight");
   EXPECT_THAT(accuracy::doubt_text(doubted[0]), HasSubstr("0.00021"));
   EXPECT_EQ(doubted[1].constraint, 3);
-  EXPECT_THAT(accuracy::doubt_text(doubted[1]), HasSubstr("no other mesh"));
+  EXPECT_THAT(accuracy::doubt_text(doubted[1]),
+              HasSubstr("other facets have no"));
 }
 
 TEST(DoubtedMargins, AreHeldAboveTheirErrorAndTheirBound) {

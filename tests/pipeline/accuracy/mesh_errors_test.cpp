@@ -120,5 +120,33 @@ TEST(MeshErrors, TwoMeshesSayLessThanThree) {
       figure_error({all[0], kNaN, kNaN, kNaN}, FigureKind::Integral).bound));
 }
 
+// Figures of order 2, and margins that fall as a root of what is left.
+TEST(FinerFilmError, IsTheErrorTimesItsSafety) {
+  std::mt19937 random(20261126);
+  std::uniform_real_distribution<double> numbers(-1.0, 1.0);
+  for (int k = 0; k < 1000; ++k) {
+    const double limit = 2.0 + numbers(random);
+    const double slope = numbers(random);
+    const auto smooth = [&](double h) { return limit + slope * h * h; };
+    EXPECT_NEAR(finer_film_error(smooth(1.0), smooth(0.5), FilmLaw::Smooth),
+                1.5 * std::abs(slope), 1e-12);
+    const auto root = [&](double h) {
+      return std::sqrt(limit + slope * h * h);
+    };
+    EXPECT_NEAR(finer_film_error(root(1.0), root(0.5), FilmLaw::Root),
+                1.5 * std::abs(root(1.0) - root(0.0)), 1e-12);
+  }
+}
+
+// Next to its end another such step leaves no film: the whole margin, and half
+// as much again.
+TEST(FinerFilmError, OfAMarginThatEndsIsMoreThanTheMargin) {
+  EXPECT_DOUBLE_EQ(finer_film_error(1.0, 0.4, FilmLaw::Root), 1.5);
+  EXPECT_DOUBLE_EQ(finer_film_error(1.0, 0.4, FilmLaw::Smooth), 1.2);
+  for (const FilmLaw law : {FilmLaw::Smooth, FilmLaw::Root}) {
+    EXPECT_TRUE(std::isnan(finer_film_error(1.0, kNaN, law)));
+  }
+}
+
 }  // namespace
 }  // namespace meniscus::mesh_errors_test
