@@ -97,11 +97,16 @@ std::vector<char> tight_facets(const case_data::EvaluatedCase& inputs,
   const Points& points = surface.base.points;
   std::vector<char> tight;
   tight.reserve(surface.facet_edges.size());
-  for (const Triangle& edges : surface.facet_edges) {
+  for (std::size_t f = 0; f < surface.facet_edges.size(); ++f) {
+    // Out of the facet: along it, middles may lie where they will.
+    const Vec3 normal =
+        area_vector2(surface.base, static_cast<int>(f)).normalized();
+    const Triangle& edges = surface.facet_edges[f];
     tight.push_back(std::any_of(edges.begin(), edges.end(), [&](int i) {
       const auto [a, b] = surface.edges[i];
       const Vec3 rise = surface.mid[i] - 0.5 * (points[a] + points[b]);
-      return rise.norm() > kTightRise * (points[b] - points[a]).norm();
+      return std::abs(rise.dot(normal)) >
+             kTightRise * (points[b] - points[a]).norm();
     }));
   }
   return tight;
