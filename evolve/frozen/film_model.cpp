@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -14,9 +13,8 @@
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/rim_grading.h"
 #include "evolve/films/solid_facets.h"
-#include "evolve/films/triangle_shape.h"
 #include "evolve/frozen/film_model_impl.h"
-#include "evolve/groom/flip_average.h"
+#include "evolve/groom/slivers.h"
 #include "evolve/settle/equilibrium.h"
 #include "evolve/settle/find_equilibrium.h"
 #include "evolve/start/start_complex.h"
@@ -32,33 +30,6 @@ constexpr std::array<int, 2> kParts = {1, 4};
 /// One step that needs more iterations than this is checked against parts:
 /// the film may have slid to another equilibrium.
 constexpr int kManyIterations = 15;
-/// Facets of a smaller angle are spread anew [rad], in so many rounds.
-constexpr double kSliver = 15.0 / 180.0 * std::numbers::pi;
-constexpr int kAveragings = 2;
-
-/// Corners of the films' slivers and of the facets around them, by vertex;
-/// empty where there is none.
-std::vector<char> beside_slivers(const films::FilmComplex& complex) {
-  const SurfaceMesh& mesh = complex.mesh;
-  std::vector<char> corner(mesh.points.size(), 0);
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    const auto [a, b, c] = mesh.facets[f];
-    if (complex.surfaces[mesh.facet_label[f]].liquid &&
-        films::smallest_angle(mesh.points[a], mesh.points[b], mesh.points[c]) <
-            kSliver) {
-      corner[a] = corner[b] = corner[c] = 1;
-    }
-  }
-  std::vector<char> beside = corner;
-  for (const auto& [a, b, c] : mesh.facets) {
-    if (corner[a] != 0 || corner[b] != 0 || corner[c] != 0) {
-      beside[a] = beside[b] = beside[c] = 1;
-    }
-  }
-  return std::find(corner.begin(), corner.end(), 1) != corner.end()
-             ? beside
-             : std::vector<char>();
-}
 
 films::FilmTargets blend(const films::FilmTargets& from,
                          const films::FilmTargets& to, double t) {
@@ -315,14 +286,7 @@ void FilmModel::Impl::refine_and_settle(int levels, bool may_groom,
     settle_level();
     // Where the coarser film was far from this one, new vertices came to it
     // aslant: slivers, whose modes are wrong at any length of edge.
-    if (!may_groom || reference.failure) {
-      continue;
-    }
-    const std::vector<char> beside = beside_slivers(complex);
-    if (!beside.empty()) {
-      for (int round = 0; round < kAveragings; ++round) {
-        groom::average_vertices(complex, beside);
-      }
+    if (may_groom && !reference.failure && groom::spread_slivers(complex)) {
       settle_level();
     }
   }

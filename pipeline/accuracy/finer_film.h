@@ -3,8 +3,6 @@
 /// halving on, where those of other meshes may agree by chance.
 #pragma once
 
-#include <string>
-
 #include "core/math/dense.h"
 #include "core/monitor.h"
 #include "pipeline/forward/forward_model.h"
@@ -15,8 +13,6 @@ struct FinerFilm {
   /// The figures of films on these facets and the expressions of them, all
   /// others as they were given; empty where there are none.
   VectorX responses;
-  std::string
-      failure;  // why: no response is of films, or the film is not there
   bool is_lost = false;  // the film is not there
   double seconds = 0.0;
 };

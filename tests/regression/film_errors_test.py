@@ -68,16 +68,9 @@ def draw(seed):
 class FilmErrors(ProgramTest):
     def figures(self, seed, text, edge, film):
         """{name: (value, bar)} of a mesh; None: there is no film."""
-        case = self.folder / f"tripod_{seed}.toml"
-        case.write_text(text)
-        out = self.folder / f"tripod_{seed}_{edge:.3f}"
-        done = self.call(
-            "run", case, "--out", out, "--no-pictures", "--no-report",
-            "--quiet", "--set", f"resolution.fea={edge:.6g}",
-            "--set", f"resolution.film={film:.6g}")
-        if done.returncode != 0:
+        result = self.analyse_at(f"tripod_{seed}", text, edge, film)
+        if result is None:
             return None
-        result = self.result(out)
         return {name: (result["responses"][name],
                        result["response_errors"][name]) for name in NAMES}
 

@@ -148,6 +148,17 @@ class ProgramTest(unittest.TestCase):
             self.assertRegex(done.stderr + done.stdout, pattern)
         return done
 
+    def analyse_at(self, name, text, edge, film):
+        """Its result at these edges; None where it fails."""
+        case = self.folder / f"{name}.toml"
+        case.write_text(text)
+        out = self.folder / f"{name}_{edge:.3f}"
+        done = self.call(
+            "run", case, "--out", out, "--no-pictures", "--no-report",
+            "--quiet", "--set", f"resolution.fea={edge:.6g}",
+            "--set", f"resolution.film={film:.6g}")
+        return self.result(out) if done.returncode == 0 else None
+
     def result(self, folder):
         return json.loads((folder / "result.json").read_text())
 
