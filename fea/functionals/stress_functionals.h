@@ -19,8 +19,8 @@ struct StressFunctionalInput {
   const std::vector<element::Material>& materials;
   const loads::LoadCase& load_case;  // for its temperature
   const VectorX& displacement;
-  /// One char per element, 1 where it is left out (stress_uniformity.h's
-  /// excluded_elements() at the base design); empty: all count.
+  /// One char per element, 1 where it is left out (exclusion_zones.h's
+  /// excluded_by() at the base design); empty: all count.
   const std::vector<char>& excluded;
   element::Derivatives derivatives = element::Derivatives::All;
 };

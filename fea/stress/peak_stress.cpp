@@ -8,34 +8,42 @@ namespace meniscus::stress {
 
 namespace {
 
-bool counts(const std::vector<char>& excluded, int element) {
-  return excluded.empty() || excluded[element] == 0;
-}
-
-/// visit(von Mises, place, region) of every node of every element that counts.
+/// visit(von Mises, place, region) of every node of every element, where both
+/// count.
 template <class Visit>
 void visit_nodes(const TetMesh& mesh, const RecoveredStress& stress,
-                 const std::vector<char>& excluded, const Visit& visit) {
+                 const Excluded& excluded, const Visit& visit) {
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!counts(excluded, e)) {
-      continue;
-    }
     for (const int copy : stress.nodes.element(e)) {
-      visit(element::von_mises(stress.value[copy]),
-            mesh.nodes[stress.nodes.node[copy]], mesh.element_region[e]);
+      const int node = stress.nodes.node[copy];
+      if (excluded.counts(e, node)) {
+        visit(element::von_mises(stress.value[copy]), mesh.nodes[node],
+              mesh.element_region[e]);
+      }
     }
   }
 }
 
-/// The same of integration points.
+int nearest_corner(const TetMesh& mesh, int e, const Vec3& place) {
+  const auto corners = mesh.element(e).first<4>();
+  return *std::min_element(corners.begin(), corners.end(), [&](int a, int b) {
+    return (mesh.nodes[a] - place).squaredNorm() <
+           (mesh.nodes[b] - place).squaredNorm();
+  });
+}
+
+/// The same of integration points, which go with their nearest corner.
 template <class Visit>
 void visit_points(const TetMesh& mesh, const element::PointStress& points,
-                  const std::vector<char>& excluded, const Visit& visit) {
+                  const Excluded& excluded, const Visit& visit) {
   for (int e = 0; e < mesh.element_count(); ++e) {
-    for (int q = 0; counts(excluded, e) && q < points.points_per_element; ++q) {
+    for (int q = 0; q < points.points_per_element; ++q) {
       const std::size_t at = points.index(e, q);
-      visit(element::von_mises(points.stress[at]), points.position[at],
-            mesh.element_region[e]);
+      const Vec3& place = points.position[at];
+      if (excluded.counts(e, nearest_corner(mesh, e, place))) {
+        visit(element::von_mises(points.stress[at]), place,
+              mesh.element_region[e]);
+      }
     }
   }
 }
@@ -57,7 +65,7 @@ class Largest {
 }  // namespace
 
 Peak peak_of(const TetMesh& mesh, const RecoveredStress& stress,
-             const std::vector<char>& excluded) {
+             const Excluded& excluded) {
   Peak peak;
   visit_nodes(mesh, stress, excluded, Largest(peak));
   return peak;
@@ -70,7 +78,7 @@ const Peak& PeakReadings::largest() const {
 }
 
 PeakReadings peak_readings(const StressReadings& stress,
-                           const std::vector<char>& excluded) {
+                           const Excluded& excluded) {
   PeakReadings peaks{
       .recovered = peak_of(stress.mesh, stress.recovered, excluded),
       .averaged = peak_of(stress.mesh, stress.averaged, excluded),
@@ -129,7 +137,7 @@ bool one_element_through(const TetMesh& mesh, const Vec3& position,
 
 SafetyFactor safety_factor(const StressReadings& stress,
                            const std::vector<element::Material>& materials,
-                           const std::vector<char>& excluded) {
+                           const Excluded& excluded) {
   element::check_materials(stress.mesh, materials);
   SafetyFactor result{.smallest = std::numeric_limits<double>::infinity()};
   const auto keep_least = [&](double von_mises, const Vec3& position,

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "fea/stress/exclusion_zones.h"
 #include "fea/stress/patch_recovery.h"
 
 namespace meniscus::stress {
@@ -23,10 +24,10 @@ struct Peak {
   int region = 0;
 };
 
-/// Of elements that are not excluded (one char per element, or empty), and of
-/// their own regions: what another region has at a shared node does not count.
+/// Of what is not excluded, and of an element's own region: what another region
+/// has at a shared node does not count.
 Peak peak_of(const TetMesh& mesh, const RecoveredStress& stress,
-             const std::vector<char>& excluded = {});
+             const Excluded& excluded = {});
 
 struct PeakReadings {
   Peak recovered;
@@ -36,7 +37,7 @@ struct PeakReadings {
   const Peak& largest() const;
 };
 PeakReadings peak_readings(const StressReadings& stress,
-                           const std::vector<char>& excluded = {});
+                           const Excluded& excluded = {});
 
 /// True where the material is one element thick: of the elements of that region
 /// around the corner node nearest to `position`, and of their neighbours, none
@@ -60,6 +61,6 @@ struct SafetyFactor {
 /// where materials do not fit the mesh.
 SafetyFactor safety_factor(const StressReadings& stress,
                            const std::vector<element::Material>& materials,
-                           const std::vector<char>& excluded = {});
+                           const Excluded& excluded = {});
 
 }  // namespace meniscus::stress

@@ -8,72 +8,10 @@
 
 #include "core/error.h"
 #include "fea/element/elastic_law.h"
-#include "fea/element/point_grid.h"
-#include "fea/element/surface_faces.h"
 
 namespace meniscus::stress {
 
 namespace {
-
-Vec3 centre(const TetMesh& mesh, int e) {
-  Vec3 sum = Vec3::Zero();
-  for (const int i : mesh.element(e).first<4>()) {
-    sum += 0.25 * mesh.nodes[i];
-  }
-  return sum;
-}
-
-void exclude_near(const TetMesh& mesh, const ExclusionZone& zone,
-                  std::vector<char>& excluded) {
-  if (!(zone.distance > 0.0)) {
-    throw InvalidInput(fmt::format(
-        "exclusion zone about surface '{}': distance is {}; it must be above 0",
-        zone.surface, zone.distance));
-  }
-  Points points;
-  for (const int node : element::surface_nodes(
-           mesh, element::surface_label(mesh, zone.surface))) {
-    points.push_back(mesh.nodes[node]);
-  }
-  const element::PointGrid nearest(points);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const Vec3 x = centre(mesh, e);
-    if ((points[nearest.of(x)] - x).norm() <= zone.distance) {
-      excluded[e] = 1;
-    }
-  }
-}
-
-void exclude_box(const TetMesh& mesh, const ExclusionZone::Box& box,
-                 std::vector<char>& excluded) {
-  if (!((box.high - box.low).minCoeff() > 0.0)) {
-    throw InvalidInput(fmt::format(
-        "exclusion zone: the box from ({}, {}, {}) to ({}, {}, {}) is empty",
-        box.low.x(), box.low.y(), box.low.z(), box.high.x(), box.high.y(),
-        box.high.z()));
-  }
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const Vec3 x = centre(mesh, e);
-    if ((x - box.low).minCoeff() >= 0.0 && (box.high - x).minCoeff() >= 0.0) {
-      excluded[e] = 1;
-    }
-  }
-}
-
-void exclude_ball(const TetMesh& mesh, const ExclusionZone::Ball& ball,
-                  std::vector<char>& excluded) {
-  if (!(ball.radius > 0.0)) {
-    throw InvalidInput(fmt::format(
-        "exclusion zone: the ball about ({}, {}, {}) has radius {}; it must be "
-        "above 0",
-        ball.center.x(), ball.center.y(), ball.center.z(), ball.radius));
-  }
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    if ((centre(mesh, e) - ball.center).norm() <= ball.radius) {
-      excluded[e] = 1;
-    }
-  }
-}
 
 void check_values(const std::vector<double>& values,
                   const std::vector<double>& volumes) {
@@ -97,27 +35,6 @@ void check_values(const std::vector<double>& values,
 double ratio(double a, double b) { return b > 0.0 ? a / b : 1.0; }
 
 }  // namespace
-
-std::vector<char> excluded_elements(const TetMesh& mesh,
-                                    const std::vector<ExclusionZone>& zones) {
-  std::vector<char> excluded(mesh.element_count(), 0);
-  for (const ExclusionZone& zone : zones) {
-    if (zone.surface.empty() && !zone.box && !zone.ball) {
-      throw InvalidInput(
-          "exclusion zone: give a surface with a distance, a box or a ball");
-    }
-    if (!zone.surface.empty()) {
-      exclude_near(mesh, zone, excluded);
-    }
-    if (zone.box) {
-      exclude_box(mesh, *zone.box, excluded);
-    }
-    if (zone.ball) {
-      exclude_ball(mesh, *zone.ball, excluded);
-    }
-  }
-  return excluded;
-}
 
 Uniformity uniformity(const std::vector<double>& values,
                       const std::vector<double>& volumes) {

@@ -1,38 +1,11 @@
 /// How evenly a part carries its load.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "fea/element/point_stress.h"
 
 namespace meniscus::stress {
-
-/// Where stresses are left out of account: about clamps and loads they are the
-/// model's, not the part's.
-struct ExclusionZone {
-  std::string surface;    // empty: none
-  double distance = 0.0;  // of an element's centre to the surface's nearest
-                          // node [length]
-  struct Box {
-    Vec3 low = Vec3::Zero();
-    Vec3 high = Vec3::Zero();  // [length]
-  };
-  std::optional<Box> box;  // elements with their centre in it
-  struct Ball {
-    Vec3 center = Vec3::Zero();  // [length]
-    double radius = 0.0;         // [length]
-  };
-  std::optional<Ball> ball;  // the same
-};
-
-/// One char per element: 1 where it is left out. Ask once, at a model's base
-/// design: the same elements must then count in every design. Throws
-/// InvalidInput for an unknown surface, a distance or radius that is not
-/// positive, an empty box, and a zone with none of them.
-std::vector<char> excluded_elements(const TetMesh& mesh,
-                                    const std::vector<ExclusionZone>& zones);
 
 /// Distribution over volume of a quantity that is not negative. A percentile
 /// p is the least value that p % of the volume do not exceed. All ratios are

@@ -15,7 +15,7 @@
 #include "evolve/scan/scan.h"
 #include "evolve/walls/thicken.h"
 #include "fea/elastic/elasticity.h"
-#include "fea/stress/stress_uniformity.h"
+#include "fea/stress/exclusion_zones.h"
 
 namespace meniscus::case_data {
 
@@ -229,6 +229,7 @@ enum class ResponseKind {
   CollapseMargin,
   Radius,
   Thickness,
+  Groove,
   Distance,
   Gap,
   ScanDistance,

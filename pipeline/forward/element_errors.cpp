@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "evolve/frozen/gap_between.h"
+#include "fea/functionals/groove.h"
 #include "fea/functionals/place_functionals.h"
 #include "fea/functionals/thickness.h"
 #include "fea/loads/body_loads.h"
@@ -141,7 +142,7 @@ double ResponseErrors::peak_error(std::size_t load_case) const {
       stress::average_extrapolations(fields_.mesh, found.points);
   const stress::PeakReadings peaks = stress::peak_readings(
       {fields_.mesh, found.recovered, averaged, found.points},
-      fields_.exclusion.element);
+      fields_.exclusion.what);
   return peaks.largest().von_mises - peaks.recovered.von_mises;
 }
 
@@ -162,6 +163,13 @@ double ResponseErrors::smoothing_error(std::size_t r) const {
     value = [&](double s) {
       return functionals::thickness_functional(fields_.mesh, pairs, 1.0 / s,
                                                element::Derivatives::None)
+          .value;
+    };
+  } else if (response.kind == Kind::Groove) {
+    smoothing = kGrooveSmoothing;
+    value = [&](double s) {
+      return functionals::groove_functional(fields_.mesh, 1.0 / s,
+                                            element::Derivatives::None)
           .value;
     };
   } else if (response.kind == Kind::Gap) {
@@ -204,7 +212,7 @@ std::vector<std::vector<Dual>> ResponseErrors::duals() {
     ResponsePartials partials =
         partials_of(response, fields_.inputs.responses[r],
                     {fields_.inputs, fields_.mesh, fields_.solution,
-                     fields_.exclusion.element},
+                     fields_.exclusion.what},
                     element::Derivatives::All);
     if (partials.self_adjoint != 0.0) {  // the dual is the solution itself
       const double norm = fields_.stresses[k].error.error;

@@ -65,9 +65,9 @@ Exclusion choose_exclusion(const case_data::Case& input, const TetMesh& mesh,
   std::vector<stress::ExclusionZone> zones;
   for (const case_data::ExclusionEntry& entry : entries) {
     zones.push_back(entry.zone);
-    result.zones.push_back(share(mesh,
-                                 stress::excluded_elements(mesh, {entry.zone}),
-                                 where(entry.zone, input.units.length)));
+    result.zones.push_back(
+        share(mesh, stress::excluded_by(mesh, {entry.zone}).element,
+              where(entry.zone, input.units.length)));
     if (empty == EmptyZones::Refused && result.zones.back().elements == 0) {
       throw InvalidInput(fmt::format(
           "{}: {}: no element has its centre {}; make the zone larger or "
@@ -76,8 +76,8 @@ Exclusion choose_exclusion(const case_data::Case& input, const TetMesh& mesh,
           result.zones.back().where));
     }
   }
-  result.element = stress::excluded_elements(mesh, zones);
-  result.all = share(mesh, result.element, "all zones");
+  result.what = stress::excluded_by(mesh, zones);
+  result.all = share(mesh, result.what.element, "all zones");
   if (result.all.elements == mesh.element_count()) {
     const std::size_t largest = static_cast<std::size_t>(
         std::max_element(result.zones.begin(), result.zones.end(),

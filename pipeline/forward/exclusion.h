@@ -1,5 +1,5 @@
-/// The elements that stress figures leave out: chosen once, on the frozen
-/// model, so that the same ones count in every design.
+/// The elements and nodes that stress figures leave out: chosen once, on the
+/// frozen model, so that the same ones count in every design.
 #pragma once
 
 #include <string>
@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "core/geometry/tet_mesh.h"
+#include "fea/stress/exclusion_zones.h"
 #include "pipeline/case_data/case.h"
 
 namespace meniscus::forward {
@@ -19,8 +20,8 @@ struct ExclusionShare {
 };
 
 struct Exclusion {
-  std::vector<char> element;  // 1: left out; empty when nothing is
-  ExclusionShare all;         // zones may overlap
+  stress::Excluded what;
+  ExclusionShare all;  // of elements; zones may overlap
   std::vector<ExclusionShare> zones;
 };
 

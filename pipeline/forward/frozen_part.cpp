@@ -363,7 +363,7 @@ SurfaceGradient FrozenPart::to_surface(const case_data::EvaluatedCase& inputs,
 ResponseContext FrozenPart::context(
     const case_data::EvaluatedCase& inputs, const settle::FilmState& film_state,
     const TetMesh& mesh, const equations::ElasticSolution& solution) const {
-  return {inputs, mesh,        solution, exclusion.element,
+  return {inputs, mesh,        solution, exclusion.what,
           &*film, &film_state, &pairs,   &scans};
 }
 

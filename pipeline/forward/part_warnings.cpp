@@ -80,6 +80,9 @@ std::vector<std::string> part_warnings(
       warnings.push_back(yield_warning(input, stress[k].load_case, *out->safety,
                                        " in an exclusion zone"));
     }
+    if (has_no_limit(stress[k])) {
+      warnings.push_back(no_limit_text(stress[k], input.units));
+    }
     const double largest =
         largest_displacement(fields.solution.displacements[k]);
     if (largest > kLargeDisplacement * size) {

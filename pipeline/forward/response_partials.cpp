@@ -7,6 +7,7 @@
 
 #include "fea/functionals/displacement_functionals.h"
 #include "fea/functionals/energy_functionals.h"
+#include "fea/functionals/groove.h"
 #include "fea/functionals/place_functionals.h"
 #include "fea/functionals/stress_functionals.h"
 #include "fea/functionals/volume_functionals.h"
@@ -165,7 +166,7 @@ functionals::StressFunctionalInput stress_input(const ResponseTask& task) {
           materials(task),
           task.fields.inputs.load_cases[task.response.load_case],
           displacement(task),
-          task.fields.excluded,
+          task.fields.excluded.element,
           task.derivatives};
 }
 
@@ -174,19 +175,10 @@ ResponsePartials von_mises_norm(const ResponseTask& task) {
       stress_input(task), task.response.power));
 }
 
-double least_yield(const std::vector<element::Material>& materials) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const element::Material& material : materials) {
-    least = std::min(least, material.yield_strength.value_or(least));
-  }
-  return least;
-}
-
 ResponsePartials von_mises_ks(const ResponseTask& task) {
-  const double yield = least_yield(materials(task));
   return to_partials(functionals::von_mises_ks_functional(
       stress_input(task), {.sharpness = task.response.sharpness,
-                           .scale = task.response.scale.value_or(yield)}));
+                           .scale = ks_scale(task.response, materials(task))}));
 }
 
 ResponsePartials uniformity(const ResponseTask& task) {
@@ -249,6 +241,11 @@ ResponsePartials thickness(const ResponseTask& task) {
                                : functionals::usual_sharpness(pairs);
   return to_partials(functionals::thickness_functional(
       task.fields.mesh, pairs, sharpness, task.derivatives));
+}
+
+ResponsePartials groove(const ResponseTask& task) {
+  return to_partials(functionals::groove_functional(
+      task.fields.mesh, 1.0 / kGrooveSmoothing, task.derivatives));
 }
 
 ResponsePartials distance(const ResponseTask& task) {
@@ -314,6 +311,8 @@ ResponsePartials compute_partials(const ResponseTask& task) {
       return radius(task);
     case Kind::Thickness:
       return thickness(task);
+    case Kind::Groove:
+      return groove(task);
     case Kind::Distance:
       return distance(task);
     case Kind::Gap:
@@ -324,6 +323,15 @@ ResponsePartials compute_partials(const ResponseTask& task) {
       break;  // of the responses above it
   }
   return {};
+}
+
+double ks_scale(const case_data::ResponseEntry& response,
+                const std::vector<element::Material>& materials) {
+  double yield = std::numeric_limits<double>::infinity();
+  for (const element::Material& material : materials) {
+    yield = std::min(yield, material.yield_strength.value_or(yield));
+  }
+  return response.scale.value_or(yield);
 }
 
 double sharpness_of(const case_data::ResponseEntry& response,

@@ -21,6 +21,14 @@ ResponsePartials compute_partials(const ResponseTask& task);
 /// other over wide areas, and many edges count.
 inline constexpr double kGapSmoothing = 0.01;
 
+/// Of grooves [rad]: with a few hundred edges as deep as the deepest the value
+/// is three degrees above it.
+inline constexpr double kGrooveSmoothing = 0.01;
+
+/// Of von_mises_ks: the case's, else the least yield strength [pressure].
+double ks_scale(const case_data::ResponseEntry& response,
+                const std::vector<element::Material>& materials);
+
 /// Of extremes over the part's surface, where the case says nothing else: to a
 /// tenth of an edge [1/length].
 double sharpness_of(const case_data::ResponseEntry& response,

@@ -7,6 +7,7 @@
 #include "evolve/frozen/film_model.h"
 #include "fea/element/functional.h"
 #include "fea/functionals/thickness.h"
+#include "fea/stress/exclusion_zones.h"
 #include "pipeline/case_data/case.h"
 #include "pipeline/forward/scans.h"
 
@@ -17,7 +18,7 @@ struct ResponseContext {
   const case_data::EvaluatedCase& inputs;
   const TetMesh& mesh;
   const equations::ElasticSolution& solution;
-  const std::vector<char>& excluded;  // that peaks leave out; may be empty
+  const stress::Excluded& excluded;  // that figures of stress leave out
   // May be null for responses of displacements and of the mesh:
   const frozen::FilmModel* film = nullptr;
   const settle::FilmState* film_state = nullptr;

@@ -1,6 +1,8 @@
 #include "pipeline/forward/stress_figures.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,12 +11,18 @@
 #include "core/count_text.h"
 #include "fea/stress/averaged_stress.h"
 #include "pipeline/files/place_json.h"
+#include "pipeline/forward/singular_places.h"
 
 namespace meniscus::forward {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// Of the peak, on edges kShorterEdges times shorter.
+constexpr double kNoLimit = 0.05;
+
+double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
 
 Json uniformity_json(const stress::Uniformity& u) {
   return {{"mean", u.mean},
@@ -32,7 +40,7 @@ Json uniformity_json(const stress::Uniformity& u) {
 std::optional<StressFigures::Safety> safety_of(
     const stress::StressReadings& stress,
     const std::vector<element::Material>& materials,
-    const std::vector<char>& excluded) {
+    const stress::Excluded& excluded) {
   const stress::SafetyFactor safety =
       stress::safety_factor(stress, materials, excluded);
   if (!std::isfinite(safety.smallest)) {
@@ -47,17 +55,10 @@ std::optional<StressFigures::Safety> safety_of(
                                .yield_strength = *weakest.yield_strength};
 }
 
-std::vector<char> complement(std::vector<char> excluded) {
-  for (char& e : excluded) {
-    e = e == 0 ? 1 : 0;
-  }
-  return excluded;
-}
-
 /// All but how even the stress is.
 StressFigures peaks_of(const EvaluationFields& fields, std::size_t load_case) {
   const auto& materials = fields.inputs.materials;
-  const std::vector<char>& excluded = fields.exclusion.element;
+  const stress::Excluded& excluded = fields.exclusion.what;
   const PartStress& found = fields.stresses[load_case];
   const stress::RecoveredStress averaged =
       stress::average_extrapolations(fields.mesh, found.points);
@@ -68,22 +69,46 @@ StressFigures peaks_of(const EvaluationFields& fields, std::size_t load_case) {
                         .safety = safety_of(stress, materials, excluded)};
   figures.max_von_mises = figures.readings.recovered.von_mises;
   figures.position = figures.readings.recovered.position;
-  if (fields.exclusion.all.elements > 0) {
-    const std::vector<char> counted = complement(excluded);
-    const stress::Peak peak =
-        stress::peak_of(fields.mesh, found.recovered, counted);
+  stress::Excluded left_out = excluded;
+  left_out.inverted = true;
+  const stress::Peak peak =
+      stress::peak_of(fields.mesh, found.recovered, left_out);
+  if (peak.von_mises > 0.0) {
     figures.excluded = StressFigures::Excluded{
-        peak.von_mises, peak.position, safety_of(stress, materials, counted)};
+        peak.von_mises, peak.position, safety_of(stress, materials, left_out)};
   }
   return figures;
+}
+
+std::optional<StressFigures::Singular> singular_place(
+    const EvaluationFields& fields, std::size_t load_case) {
+  const TetMesh& mesh = fields.mesh;
+  const std::optional<stress::SingularPeak> peak =
+      stress::largest_singular_peak(mesh, singular_edges_of(fields, load_case),
+                                    fields.stresses[load_case].recovered,
+                                    fields.exclusion.what, kShorterEdges);
+  if (!peak) {
+    return std::nullopt;
+  }
+  const auto surface = [&](std::size_t k) {
+    return mesh.labels[static_cast<std::size_t>(peak->edge.labels[k])];
+  };
+  return StressFigures::Singular{.position = peak->position,
+                                 .von_mises = peak->von_mises,
+                                 .grown = peak->grown,
+                                 .surfaces = {surface(0), surface(1)},
+                                 .clamped = peak->edge.clamped,
+                                 .angle = peak->edge.angle,
+                                 .order = peak->edge.order};
 }
 
 StressFigures figures_of(const EvaluationFields& fields,
                          std::size_t load_case) {
   StressFigures figures = peaks_of(fields, load_case);
+  figures.singular = singular_place(fields, load_case);
   figures.uniformity = stress::stress_uniformity(
       fields.mesh, fields.inputs.materials, fields.stresses[load_case].points,
-      fields.exclusion.element);
+      fields.exclusion.what.element);
   return figures;
 }
 
@@ -111,6 +136,15 @@ std::string safety_text(const StressFigures& figures, const UnitSystem& units) {
   return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, "; "));
 }
 
+Json no_limit_json(const StressFigures::Singular& singular) {
+  return {{"position", files::place_json(singular.position)},
+          {"von_mises", singular.von_mises},
+          {"surfaces", singular.surfaces},
+          {"clamped", singular.clamped},
+          {"angle_deg", degrees(singular.angle)},
+          {"order", singular.order}};
+}
+
 Json safety_json(const StressFigures::Safety& safety) {
   return {{"smallest", safety.factor},
           {"von_mises", safety.von_mises},
@@ -134,6 +168,35 @@ std::vector<double> highest_readings(const EvaluationFields& fields) {
     peaks.push_back(peaks_of(fields, k).readings.largest().von_mises);
   }
   return peaks;
+}
+
+double growth_of_peak(const StressFigures& figures) {
+  return figures.singular
+             ? std::max(0.0, figures.singular->grown - figures.max_von_mises)
+             : 0.0;
+}
+
+bool has_no_limit(const StressFigures& figures) {
+  return growth_of_peak(figures) > kNoLimit * figures.max_von_mises;
+}
+
+std::string no_limit_text(const StressFigures& figures,
+                          const UnitSystem& units) {
+  const StressFigures::Singular& s = *figures.singular;
+  return fmt::format(
+      "the peak stress of '{}' has no limit: at ({:.4g}, {:.4g}, {:.4g}) {}, "
+      "{:.0f} degrees of material, and stress ({} there) grows by {:.0f} % "
+      "whenever edges are halved; the +- looks ahead to edges {:g} times "
+      "shorter. {}eave the place out of stress figures by analysis.exclude",
+      figures.load_case, s.position.x(), s.position.y(), s.position.z(),
+      fmt::format(fmt::runtime(s.clamped ? "the held '{}' ends at '{}'"
+                                         : "'{}' and '{}' meet in a groove"),
+                  s.surfaces[0], s.surfaces[1]),
+      degrees(s.angle), quantity_text(s.von_mises, units.pressure, 4),
+      100.0 * (std::pow(2.0, s.order) - 1.0), kShorterEdges,
+      s.clamped ? "L"
+                : "Make the groove shallower (a response of kind groove shows "
+                  "how deep it is), or l");
 }
 
 std::optional<double> safety_with_error(const StressFigures& figures) {
@@ -199,6 +262,9 @@ Json stress_json(const std::vector<StressFigures>& figures) {
       if (const auto least = safety_with_error(f)) {
         entry["safety_factor"]["with_error"] = *least;
       }
+    }
+    if (has_no_limit(f)) {
+      entry["no_limit"] = no_limit_json(*f.singular);
     }
     if (f.excluded) {
       entry["excluded"] = {

@@ -1,6 +1,7 @@
 /// What a part's stresses come to, load case by load case.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -19,9 +20,21 @@ struct StressFigures {
   double max_von_mises = 0.0;     // recovered, of elements that count
   Vec3 position = Vec3::Zero();   // of that [length]
   stress::PeakReadings readings;  // of the elements that count
-  /// Of their largest, from other meshes [pressure]; not a number where there
-  /// is none.
+  /// Of the peak, by all that is known of it: other meshes, the readings, and
+  /// `singular` [pressure]; not a number where there is none.
   double peak_error = std::numeric_limits<double>::quiet_NaN();
+  /// Where stress has no limit (fea/stress/singular_edges.h), of the elements
+  /// that count: the place with the largest stress on shorter edges.
+  struct Singular {
+    Vec3 position = Vec3::Zero();  // [length]
+    double von_mises = 0.0;        // recovered [pressure]
+    double grown = 0.0;            // with edges shorter (singular_places.h)
+    std::array<std::string, 2> surfaces;  // that meet there
+    bool clamped = false;                 // the first of them is held
+    double angle = 0.0;                   // of the material [rad]
+    double order = 0.0;                   // stress grows as edges^-order
+  };
+  std::optional<Singular> singular;
   /// Where the part is nearest to yield, against each body's own material; none
   /// where no material has a yield strength.
   struct Safety {
@@ -47,6 +60,17 @@ std::vector<StressFigures> stress_figures(const EvaluationFields& fields);
 
 /// The largest reading of each load case's peak [pressure].
 std::vector<double> highest_readings(const EvaluationFields& fields);
+
+/// What the singular place would have above the peak [pressure], >= 0.
+double growth_of_peak(const StressFigures& figures);
+
+/// That is more than a few per cent of the peak, which has no limit then.
+bool has_no_limit(const StressFigures& figures);
+
+/// A sentence on a peak without limit: place, surfaces, angle, growth and what
+/// to do.
+std::string no_limit_text(const StressFigures& figures,
+                          const UnitSystem& units);
 
 /// The safety factor where the stress is higher by the peak's error; nothing
 /// without either.

@@ -100,7 +100,8 @@ TableSpec analysis_table() {
        {"exclude", K::Zones, D::None, false,
         "zones that stress figures leave out: peaks, safety factors, "
         "distributions and max_von_mises responses. Elements whose centre is "
-        "in one at the initial design, for every design"},
+        "in one at the initial design, for every design; of peaks nodes in "
+        "one, too"},
        {"solver", K::Choice, D::None, false,
         "of the linear systems: auto chooses by size between cholmod (a "
         "factor) and p-multigrid (conjugate gradients); petsc: in processes "

@@ -49,16 +49,16 @@ int piece_count(const TetMesh& mesh) {
   return pieces;
 }
 
-/// Of the nodes of elements that count.
-double largest_principal(const TetMesh& mesh, const std::vector<char>& excluded,
+/// Of the nodes that count.
+double largest_principal(const TetMesh& mesh, const stress::Excluded& excluded,
                          const stress::RecoveredStress& recovered) {
   const stress::StressField field = stress::nodal_stress(mesh, recovered);
   double largest = -std::numeric_limits<double>::infinity();
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!excluded.empty() && excluded[static_cast<std::size_t>(e)] != 0) {
-      continue;
-    }
     for (const int n : mesh.element(e)) {
+      if (!excluded.counts(e, n)) {
+        continue;
+      }
       const element::Stress& stress = field.nodal[static_cast<std::size_t>(n)];
       largest = std::max(largest, element::principal_stresses(stress)[0]);
     }
@@ -76,7 +76,7 @@ PartLoadFigures load_figures(const forward::EvaluationFields& fields,
       .max_von_mises = stress.max_von_mises,
       .highest_reading = stress.readings.largest().von_mises,
       .peak_position = stress.position,
-      .max_principal = largest_principal(fields.mesh, fields.exclusion.element,
+      .max_principal = largest_principal(fields.mesh, fields.exclusion.what,
                                          fields.stresses[k].recovered),
       .coefficient_of_variation =
           stress.uniformity.von_mises.coefficient_of_variation,

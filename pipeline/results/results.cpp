@@ -63,8 +63,8 @@ std::vector<io::Field> element_fields(const case_data::Case& input,
   io::Field error = element_field("energy_error", "");
   error.values = first.error.element;
   io::Field excluded = element_field("excluded", "");
-  excluded.values.assign(fields.exclusion.element.begin(),
-                         fields.exclusion.element.end());
+  const std::vector<char>& out = fields.exclusion.what.element;
+  excluded.values.assign(out.begin(), out.end());
   excluded.values.resize(first.error.element.size(), 0.0);
   return {std::move(stress), std::move(error), std::move(excluded)};
 }

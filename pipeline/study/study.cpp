@@ -1,6 +1,7 @@
 #include "pipeline/study/study.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "pipeline/accuracy/mesh_errors.h"
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/part_warnings.h"
+#include "pipeline/forward/singular_places.h"
 #include "pipeline/frames/film_frames.h"
 #include "pipeline/store/incumbent.h"
 #include "pipeline/store/stored_case.h"
@@ -117,6 +119,8 @@ class StudyRun {
   accuracy::MeshSequence other_meshes(bool with_eigen);
   void combine_errors(const accuracy::MeshSequence& meshes);
   void add_peak_errors(const accuracy::MeshSequence& meshes);
+  std::vector<std::size_t> peaks_of(std::size_t load_case) const;
+  void share_peak_error(std::size_t load_case);
   void warn();
   void count();
 
@@ -416,6 +420,31 @@ accuracy::MeshSequence StudyRun::other_meshes(bool with_eigen) {
   return meshes;
 }
 
+/// The responses that are the peak of a load case.
+std::vector<std::size_t> StudyRun::peaks_of(std::size_t load_case) const {
+  std::vector<std::size_t> peaks;
+  for (std::size_t r = 0; r < input_.responses.size(); ++r) {
+    const case_data::ResponseEntry& response = input_.responses[r];
+    if (response.kind == case_data::ResponseKind::MaxVonMises &&
+        static_cast<std::size_t>(response.load_case) == load_case) {
+      peaks.push_back(r);
+    }
+  }
+  return peaks;
+}
+
+/// A load case's peak and the responses that are the same one have one error.
+void StudyRun::share_peak_error(std::size_t load_case) {
+  double& shared = result_.stress[load_case].peak_error;
+  for (const std::size_t r : peaks_of(load_case)) {
+    shared = std::fmax(shared,
+                       result_.response_errors[static_cast<Eigen::Index>(r)]);
+  }
+  for (const std::size_t r : peaks_of(load_case)) {
+    result_.response_errors[static_cast<Eigen::Index>(r)] = shared;
+  }
+}
+
 void StudyRun::add_peak_errors(const accuracy::MeshSequence& meshes) {
   for (std::size_t k = 0; k < result_.stress.size(); ++k) {
     forward::StressFigures& figures = result_.stress[k];
@@ -428,7 +457,11 @@ void StudyRun::add_peak_errors(const accuracy::MeshSequence& meshes) {
     const accuracy::FigureError error =
         accuracy::figure_error(values, accuracy::FigureKind::Extreme);
     figures.peak_error = error.bound;
-    if (!error.settles) {
+    if (const double growth = forward::growth_of_peak(figures); growth > 0.0) {
+      figures.peak_error = std::fmax(figures.peak_error, growth);
+    }
+    share_peak_error(k);
+    if (!error.settles && !forward::has_no_limit(figures)) {
       result_.warnings.push_back(accuracy::unsettled_text(
           input_, fmt::format("the peak stress of '{}'", figures.load_case),
           values, {1.0, input_.units.pressure}, Dimension::Pressure));
@@ -437,10 +470,24 @@ void StudyRun::add_peak_errors(const accuracy::MeshSequence& meshes) {
 }
 
 void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
-  const std::vector<accuracy::FigureError> errors = accuracy::response_errors(
+  std::vector<accuracy::FigureError> errors = accuracy::response_errors(
       input_, meshes,
       result_.element_errors ? result_.element_errors->responses : VectorX());
+  for (std::size_t k = 0; k < result_.stress.size(); ++k) {
+    if (forward::has_no_limit(result_.stress[k])) {  // it has its warning
+      for (const std::size_t r : peaks_of(k)) {
+        errors[r].settles = true;
+      }
+    }
+  }
   result_.response_errors = accuracy::bounds_of(errors);
+  for (std::size_t r = 0; r < input_.responses.size(); ++r) {
+    double& error = result_.response_errors[static_cast<Eigen::Index>(r)];
+    const double growth = forward::growth_of_mean(input_.responses[r], fields_);
+    if (growth > 0.0) {
+      error = std::fmax(error, growth);
+    }
+  }
   result_.meshes = meshes.responses;
   result_.finer_film = meshes.finer_film.responses;
   for (std::string& warning :

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """What stands behind +-: random struts on a mesh as users take it, against the
-same on one of edges nearly three times shorter. MENISCUS_ERROR_BARS=N for N
-struts with a table; two otherwise."""
+same on one of edges nearly three times shorter, and the stress of bell cranks at
+random designs, whose films meet in grooves. MENISCUS_ERROR_BARS=N for N of each
+with a table; two otherwise."""
 import math
 import os
 import random
+import re
 import statistics
 import unittest
 
-from program import ProgramTest
+from program import ProgramTest, ROOT
 
 COUNT = int(os.environ.get("MENISCUS_ERROR_BARS", "2"))
 FINER = 2.0 ** 1.5
@@ -98,6 +100,7 @@ frequencies = 2
 [study]
 kind = "analyse"
 """
+CRANK_EDGE = 8.0
 EXTREMES = {"peak", "norm", "waist", "buckling"}
 
 
@@ -110,6 +113,36 @@ def draw(seed):
                  across=r.uniform(-3e3, 3e3), aside=r.uniform(-3e3, 3e3),
                  along=-r.uniform(0, 5e3))
     return words, min(foot, end) * r.uniform(0.25, 0.5)
+
+
+def draw_crank(seed):
+    """The case bell_crank at a random design, analysed: all but the clamp
+    counted, and as it is, without its grooves."""
+    r = random.Random(f"cranks {seed}")
+
+    def start(match):
+        low, high = (float(x) for x in re.findall(r"[\d.]+", match[3]))
+        inner = 0.15 * (high - low)
+        unit = " mm" if "mm" in match[3] else ""
+        return (f'{match[1]}"{r.uniform(low + inner, high - inner):.4f}{unit}"'
+                f"\n{match[3]}")
+
+    text = (ROOT / "cases/bell_crank/case.toml").read_text()
+    text = text[:text.index("[study]")] + "[study]\nkind = \"analyse\"\n"
+    text, variables = re.subn(
+        r"(\[design\.\w+\][^\n]*\ninitial = )([^\n]*)\n(bounds = [^\n]*)",
+        start, text)
+    assert variables == 11
+    for name, low, high in (("100 deg", 80, 130), ("120 mm", 100, 150),
+                            ("80 mm", 75, 110)):
+        unit = name.split()[1]
+        assert text.count(f'"{name}"') == 1
+        text = text.replace(f'"{name}"', f'"{r.uniform(low, high):.2f} {unit}"')
+    clamp = 'exclude = [{ near = "pivot", distance = "3 mm" }]'
+    all_count, zones = re.subn(r"exclude = \[.*?\n\]", clamp, text,
+                               flags=re.DOTALL)
+    assert zones == 1
+    return all_count, text
 
 
 class ErrorBars(ProgramTest):
@@ -160,6 +193,55 @@ class ErrorBars(ProgramTest):
             self.assertGreaterEqual(covered, COVERED[kind], sorted(rows)[:6])
             # A bar that covers all because it is huge says nothing.
             self.assertLess(statistics.median(ratios), 15.0)
+        peaks = [row for row in judged["extreme"] if row[1] == "peak"]
+        self.assertGreaterEqual(min(peaks)[0], 1.0, peaks)
+
+    def test_bars_of_stress_cover_grooves_and_what_zones_leave(self):
+        rows = []
+        cranks = 0
+        for seed in range(8 * COUNT):
+            found = [self.stress_bars(seed, text)
+                     for text in draw_crank(seed)]
+            if None in found:
+                continue  # a film that does not stand
+            grooved, zoned = found
+            # Where grooves count there is no limit, and the run says where.
+            self.assertIn("no_limit", grooved["case"])
+            self.assertFalse(grooved["case"]["no_limit"]["clamped"])
+            self.assertGreater(grooved["case"]["no_limit"]["angle_deg"], 180)
+            self.assertTrue(any("has no limit" in w and "in a groove" in w
+                                for w in grooved["warnings"]))
+            self.assertNotIn("no_limit", zoned["case"])
+            rows += grooved["rows"] + zoned["rows"]
+            cranks += 1
+            if cranks == COUNT:
+                break
+        self.assertEqual(cranks, COUNT)
+        covered = sum(row[0] >= 1.0 for row in rows) / len(rows)
+        print(f"cranks: {len(rows)} peaks and norms, {covered:.2f} covered, "
+              f"bar over error: median "
+              f"{statistics.median(row[0] for row in rows):.1f}")
+        for row in sorted(rows)[:6]:
+            print("  %.2f  %s of crank %d: %.5g +- %.2g, finer %.5g" % row)
+        self.assertGreaterEqual(covered, COVERED["integral"], sorted(rows)[:6])
+
+    def stress_bars(self, seed, text):
+        here = self.analyse_at(f"crank_{seed}", text, CRANK_EDGE,
+                               CRANK_EDGE / 2)
+        there = here and self.analyse_at(f"crank_{seed}", text,
+                                         CRANK_EDGE / 2, CRANK_EDGE / 4)
+        if not there:
+            return None
+        case = here["stress"]["service"]
+        # One peak has one error.
+        self.assertEqual(case["error"], here["response_errors"]["peak"])
+        rows = []
+        for name in ("peak", "stress"):
+            value, bar = here["responses"][name], here["response_errors"][name]
+            finer = there["responses"][name]
+            rows.append((bar / abs(value - finer), name, seed, value, bar,
+                         finer))
+        return {"case": case, "warnings": here["warnings"], "rows": rows}
 
 
 if __name__ == "__main__":

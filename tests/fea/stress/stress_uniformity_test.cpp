@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "fea/stress/exclusion_zones.h"
 #include "tests/support/parts.h"
 
 namespace meniscus::stress_uniformity_test {
@@ -147,10 +148,10 @@ TEST(StressUniformity, LeavesOutExclusionZones) {
     points.stress[q][0] = points.position[q].x() < 1.0 ? 500.0 : 10.0;
   }
   const auto by_surface =
-      stress::excluded_elements(mesh, {{.surface = "x0", .distance = 1.2}});
+      stress::excluded_by(mesh, {{.surface = "x0", .distance = 1.2}}).element;
   stress::ExclusionZone box;
   box.box = {{-1.0, -1.0, -1.0}, {1.0, 9.0, 9.0}};
-  const auto by_box = stress::excluded_elements(mesh, {box});
+  const auto by_box = stress::excluded_by(mesh, {box}).element;
   for (const auto& excluded : {by_surface, by_box}) {
     const stress::StressUniformity u =
         stress::stress_uniformity(mesh, {parts::steel()}, points, excluded);
@@ -172,7 +173,7 @@ TEST(StressUniformity, WrongZonesAreRefused) {
        {stress::ExclusionZone{},
         stress::ExclusionZone{.surface = "nose", .distance = 1.0},
         stress::ExclusionZone{.surface = "x0"}, flat}) {
-    EXPECT_THROW(stress::excluded_elements(mesh, {zone}), InvalidInput);
+    EXPECT_THROW(stress::excluded_by(mesh, {zone}), InvalidInput);
   }
   const std::vector<char> all(6, 1);
   EXPECT_THROW(

@@ -97,6 +97,9 @@ kind = "radius"
 [responses.thinnest]
 kind = "thickness"
 
+[responses.deepest]
+kind = "groove"
+
 [responses.clearance]
 kind = "distance"
 keep_out = "12 - sqrt((x - foot_at)^2 + y^2 + (z - 30)^2)"

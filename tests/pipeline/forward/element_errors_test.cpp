@@ -77,7 +77,7 @@ Part part(int n) {
 VectorX values(const Part& p) {
   return forward::respond(p.input,
                           {p.fields.inputs, p.fields.mesh, p.fields.solution,
-                           p.fields.exclusion.element});
+                           p.fields.exclusion.what});
 }
 
 TEST(ElementErrors, DoNotDependOnTheSizeOfTheLoad) {

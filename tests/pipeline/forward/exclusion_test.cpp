@@ -128,6 +128,44 @@ TEST(ExclusionZones, TakeAClampsPeakOutOfAllFiguresAndTellIt) {
   EXPECT_TRUE(told["excluded"].contains("safety_factor"));
 }
 
+// Elements are longer than the zone is deep: none has its centre in it.
+TEST(ExclusionZones, TakeNodesOutOfPeaksAndNothingIsHidden) {
+  forward::EvaluationFields fields = clamped_bar();
+  const forward::StressFigures whole = forward::stress_figures(fields).front();
+  fields.exclusion =
+      forward::choose_exclusion(with_zone({.surface = "x0", .distance = 0.02}),
+                                fields.mesh, forward::EmptyZones::Allowed);
+  ASSERT_EQ(fields.exclusion.all.elements, 0);
+  const forward::StressFigures counted =
+      forward::stress_figures(fields).front();
+  for (const stress::Peak* peak :
+       {&counted.readings.recovered, &counted.readings.averaged}) {
+    EXPECT_GT(peak->position.x(), 0.02);
+  }
+  EXPECT_LT(counted.max_von_mises, whole.max_von_mises);
+  ASSERT_TRUE(counted.excluded);
+  EXPECT_EQ(counted.excluded->max_von_mises, whole.max_von_mises);
+  EXPECT_FALSE(counted.singular);
+}
+
+TEST(ExclusionZones, AClampsRimHasNoLimitUntilItIsLeftOut) {
+  forward::EvaluationFields fields = clamped_bar();
+  const forward::StressFigures whole = forward::stress_figures(fields).front();
+  ASSERT_TRUE(whole.singular);
+  EXPECT_TRUE(whole.singular->clamped);
+  EXPECT_EQ(whole.singular->surfaces[0], "x0");
+  EXPECT_EQ(whole.singular->position.x(), 0.0);
+  EXPECT_NEAR(forward::growth_of_peak(whole),
+              whole.singular->grown - whole.max_von_mises, 1e-9);
+  EXPECT_THAT(
+      forward::part_warnings(with_zone({}), fields, {whole}),
+      testing::Contains(AllOf(
+          HasSubstr("the peak stress of 'pull' has no limit: at (0, "),
+          HasSubstr("the held 'x0' ends at '"),
+          HasSubstr("90 degrees of material"), HasSubstr("grows by 22 %"))));
+  EXPECT_TRUE(forward::stress_json({whole})["pull"].contains("no_limit"));
+}
+
 TEST(ExclusionZones, AreStatedWithTheirShareOfTheVolume) {
   const TetMesh mesh = shapes::brick({4.0, 1.0, 1.0}, 12, 4, 4);
   case_data::Case input = with_zone({});
