@@ -92,9 +92,10 @@ TEST(StartCase, WarnsWhereLinearAnalysisEnds) {
   const study::RunResult result =
       study::run_study(input, store, {.estimate_errors = false});
   ASSERT_EQ(result.status, study::RunStatus::Converged) << result.message;
-  ASSERT_EQ(result.warnings.size(), 2u);
+  ASSERT_EQ(result.warnings.size(), 3u);
   EXPECT_NE(result.warnings[0].find("above yield"), std::string::npos);
-  EXPECT_NE(result.warnings[1].find("not small"), std::string::npos);
+  EXPECT_NE(result.warnings[1].find("has no limit"), std::string::npos);
+  EXPECT_NE(result.warnings[2].find("not small"), std::string::npos);
 }
 
 TEST(MatchTargets, ScaleByTheStartAndJudgeByThePresent) {
