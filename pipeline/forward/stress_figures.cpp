@@ -243,6 +243,16 @@ std::string stress_text(const std::vector<StressFigures>& figures,
       text += safety_text(f, units);
     }
     text += figures.size() > 1 && k == worst ? "   <- the worst\n" : "\n";
+    if (f.excluded) {
+      const Vec3& out = f.excluded->position;
+      text += fmt::format(
+          "    in what is left out {} at ({:.4g}, {:.4g}, {:.4g})",
+          quantity_text(f.excluded->max_von_mises, units.pressure, 4), out.x(),
+          out.y(), out.z());
+      text += f.excluded->safety
+                  ? fmt::format(", safety {:.3g}\n", f.excluded->safety->factor)
+                  : "\n";
+    }
   }
   return text;
 }

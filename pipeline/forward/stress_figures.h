@@ -85,7 +85,8 @@ std::size_t worst_load_case(const EvaluationFields& fields);
 
 /// A line per load case for people: peak with its error, place and safety, the
 /// stress that safety is of where another reading is worse, the safety with the
-/// error, and the worst marked where there are several.
+/// error, and the worst marked where there are several; below it the peak of
+/// what is left out.
 std::string stress_text(const std::vector<StressFigures>& figures,
                         const UnitSystem& units);
 

@@ -123,6 +123,8 @@ TEST(ExclusionZones, TakeAClampsPeakOutOfAllFiguresAndTellIt) {
               ElementsAre(HasSubstr("stress above yield in an exclusion zone: "
                                     "load case 'pull'")));
 
+  EXPECT_THAT(forward::stress_text({counted}, input.units),
+              HasSubstr("in what is left out 1"));
   const auto told = forward::stress_json({counted})["pull"];
   EXPECT_EQ(told["excluded"]["max_von_mises"], whole.max_von_mises);
   EXPECT_TRUE(told["excluded"].contains("safety_factor"));
