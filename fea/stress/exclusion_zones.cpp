@@ -1,8 +1,5 @@
 #include "fea/stress/exclusion_zones.h"
 
-#include <functional>
-#include <memory>
-
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -13,8 +10,6 @@ namespace meniscus::stress {
 
 namespace {
 
-using HoldsPlace = std::function<bool(const Vec3&)>;
-
 Vec3 centre(const TetMesh& mesh, int e) {
   Vec3 sum = Vec3::Zero();
   for (const int i : mesh.element(e).first<4>()) {
@@ -23,47 +18,9 @@ Vec3 centre(const TetMesh& mesh, int e) {
   return sum;
 }
 
-HoldsPlace near_surface(const TetMesh& mesh, const ExclusionZone& zone) {
-  if (!(zone.distance > 0.0)) {
-    throw InvalidInput(fmt::format(
-        "exclusion zone about surface '{}': distance is {}; it must be above 0",
-        zone.surface, zone.distance));
-  }
-  Points points;
-  for (const int node : element::surface_nodes(
-           mesh, element::surface_label(mesh, zone.surface))) {
-    points.push_back(mesh.nodes[node]);
-  }
-  const auto nearest = std::make_shared<element::PointGrid>(points);
-  return [points, nearest, distance = zone.distance](const Vec3& x) {
-    return (points[nearest->of(x)] - x).norm() <= distance;
-  };
-}
-
-HoldsPlace in_box(const ExclusionZone::Box& box) {
-  if (!((box.high - box.low).minCoeff() > 0.0)) {
-    throw InvalidInput(fmt::format(
-        "exclusion zone: the box from ({}, {}, {}) to ({}, {}, {}) is empty",
-        box.low.x(), box.low.y(), box.low.z(), box.high.x(), box.high.y(),
-        box.high.z()));
-  }
-  return [box](const Vec3& x) {
-    return (x - box.low).minCoeff() >= 0.0 && (box.high - x).minCoeff() >= 0.0;
-  };
-}
-
-HoldsPlace in_ball(const ExclusionZone::Ball& ball) {
-  if (!(ball.radius > 0.0)) {
-    throw InvalidInput(fmt::format(
-        "exclusion zone: the ball about ({}, {}, {}) has radius {}; it must be "
-        "above 0",
-        ball.center.x(), ball.center.y(), ball.center.z(), ball.radius));
-  }
-  return
-      [ball](const Vec3& x) { return (x - ball.center).norm() <= ball.radius; };
-}
-
-void exclude(const TetMesh& mesh, const HoldsPlace& holds, Excluded& excluded) {
+/// `holds`(place): in the zone.
+template <class Holds>
+void exclude(const TetMesh& mesh, const Holds& holds, Excluded& excluded) {
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (holds(centre(mesh, e))) {
       excluded.element[static_cast<std::size_t>(e)] = 1;
@@ -74,6 +31,58 @@ void exclude(const TetMesh& mesh, const HoldsPlace& holds, Excluded& excluded) {
       excluded.node[n] = 1;
     }
   }
+}
+
+void exclude_near(const TetMesh& mesh, const ExclusionZone& zone,
+                  Excluded& excluded) {
+  if (!(zone.distance > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "exclusion zone about surface '{}': distance is {}; it must be above 0",
+        zone.surface, zone.distance));
+  }
+  Points points;
+  for (const int node : element::surface_nodes(
+           mesh, element::surface_label(mesh, zone.surface))) {
+    points.push_back(mesh.nodes[node]);
+  }
+  const element::PointGrid nearest(points);
+  exclude(
+      mesh,
+      [&](const Vec3& x) {
+        return (points[nearest.of(x)] - x).norm() <= zone.distance;
+      },
+      excluded);
+}
+
+void exclude_box(const TetMesh& mesh, const ExclusionZone::Box& box,
+                 Excluded& excluded) {
+  if (!((box.high - box.low).minCoeff() > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "exclusion zone: the box from ({}, {}, {}) to ({}, {}, {}) is empty",
+        box.low.x(), box.low.y(), box.low.z(), box.high.x(), box.high.y(),
+        box.high.z()));
+  }
+  exclude(
+      mesh,
+      [&](const Vec3& x) {
+        return (x - box.low).minCoeff() >= 0.0 &&
+               (box.high - x).minCoeff() >= 0.0;
+      },
+      excluded);
+}
+
+void exclude_ball(const TetMesh& mesh, const ExclusionZone::Ball& ball,
+                  Excluded& excluded) {
+  if (!(ball.radius > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "exclusion zone: the ball about ({}, {}, {}) has radius {}; it must be "
+        "above 0",
+        ball.center.x(), ball.center.y(), ball.center.z(), ball.radius));
+  }
+  exclude(
+      mesh,
+      [&](const Vec3& x) { return (x - ball.center).norm() <= ball.radius; },
+      excluded);
 }
 
 }  // namespace
@@ -89,13 +98,13 @@ Excluded excluded_by(const TetMesh& mesh,
           "exclusion zone: give a surface with a distance, a box or a ball");
     }
     if (!zone.surface.empty()) {
-      exclude(mesh, near_surface(mesh, zone), excluded);
+      exclude_near(mesh, zone, excluded);
     }
     if (zone.box) {
-      exclude(mesh, in_box(*zone.box), excluded);
+      exclude_box(mesh, *zone.box, excluded);
     }
     if (zone.ball) {
-      exclude(mesh, in_ball(*zone.ball), excluded);
+      exclude_ball(mesh, *zone.ball, excluded);
     }
   }
   return excluded;

@@ -187,16 +187,16 @@ std::string no_limit_text(const StressFigures& figures,
       "the peak stress of '{}' has no limit: at ({:.4g}, {:.4g}, {:.4g}) {}, "
       "{:.0f} degrees of material, and stress ({} there) grows by {:.0f} % "
       "whenever edges are halved; the +- looks ahead to edges {:g} times "
-      "shorter. {}eave the place out of stress figures by analysis.exclude",
+      "shorter. {} the place out of stress figures by analysis.exclude",
       figures.load_case, s.position.x(), s.position.y(), s.position.z(),
       fmt::format(fmt::runtime(s.clamped ? "the held '{}' ends at '{}'"
                                          : "'{}' and '{}' meet in a groove"),
                   s.surfaces[0], s.surfaces[1]),
       degrees(s.angle), quantity_text(s.von_mises, units.pressure, 4),
       100.0 * (std::pow(2.0, s.order) - 1.0), kShorterEdges,
-      s.clamped ? "L"
+      s.clamped ? "Leave"
                 : "Make the groove shallower (a response of kind groove shows "
-                  "how deep it is), or l");
+                  "how deep it is), or leave");
 }
 
 std::optional<double> safety_with_error(const StressFigures& figures) {
